@@ -1,0 +1,17 @@
+# What every target of Cordis is compiled with.
+add_library(cordis_options INTERFACE)
+target_compile_features(cordis_options INTERFACE cxx_std_20)
+target_include_directories(cordis_options INTERFACE ${PROJECT_SOURCE_DIR})
+# No contraction and no fast-math: a recording must replay bit for bit on every machine.
+target_compile_options(cordis_options INTERFACE
+  -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+
+if(CORDIS_SANITIZE)
+  target_compile_options(cordis_options INTERFACE
+    -fsanitize=${CORDIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(cordis_options INTERFACE -fsanitize=${CORDIS_SANITIZE})
+endif()
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)

@@ -1,0 +1,46 @@
+// node/config/launch.h -- a launch file: which nodes make up a session.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "node/config/value.h"
+
+namespace cordis::config {
+
+/// Who gives the time of a session.
+enum class Clock {
+  kRealtime,  ///< sim_node keeps absolute deadlines
+  kLockstep,  ///< each device sample is one tick; the result does not depend on timing
+  kAsap       ///< sim_node steps as fast as it can and takes the newest device sample
+};
+
+/// One node of a launch file: a process.
+struct LaunchNode {
+  std::string name;     ///< unique within the session; also the name of the device for a device_node
+  std::string program;  ///< sim_node, device_node, viz_node or record_node
+  bool required = true; ///< whether the session ends when this node ends
+  Value section;        ///< its mapping without the keys `node` and `required`; the node reads it itself
+  Place place;          ///< of the name
+};
+
+/// What a launch file says, with the overrides of the command line laid on it.
+struct Launch {
+  std::string file;
+  std::filesystem::path directory;  ///< relative paths in the file start here
+  std::string session;              ///< name of the session; DDS partition
+  int domain = 0;                   ///< DDS domain, 0..101
+  Clock clock = Clock::kRealtime;
+  std::vector<LaunchNode> nodes;    ///< in the order of the file
+
+  const LaunchNode* find(const std::string& name) const noexcept;  ///< nullptr when there is none
+  std::filesystem::path resolve(const std::string& path) const;    ///< path relative to the launch file
+};
+
+/// Reads a launch file.
+/// @param overrides  words `name.key=value` (key of a node, may be nested: hand.mass_kg) and `clock=`, `domain=`,
+///                   `session=` for the session itself; a word that fits nothing is a problem.
+Launch load_launch(const std::string& path, const std::vector<std::string>& overrides, Problems& problems);
+
+}  // namespace cordis::config

@@ -1,0 +1,66 @@
+// node/config/problem.h -- what is wrong in a file that a person wrote, and where.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace cordis::config {
+
+/// A place in a file (or in a word of the command line, then line is 0).
+struct Place {
+  std::string file;
+  int line = 0;    ///< from 1; 0 when there is none
+  int column = 0;  ///< from 1
+};
+
+/// One thing that is wrong: `file:line:column: error: message`, the line with a caret, and a hint.
+struct Problem {
+  enum class Severity { kError, kWarning };
+  Severity severity = Severity::kError;
+  Place place;
+  std::string message;      ///< what is wrong and what was expected, one sentence without a full stop
+  std::string hint;         ///< "did you mean 'x'?", may be empty
+  std::string source_line;  ///< the line of the file, may be empty
+
+  /// The problem as a person reads it; several lines, no trailing newline.
+  std::string text() const;
+};
+
+/// Thrown once a file has been read to its end, with everything that is wrong in it.
+class ConfigError : public std::runtime_error {
+ public:
+  explicit ConfigError(std::vector<Problem> problems);
+  const std::vector<Problem>& problems() const noexcept { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+/// Collects problems while files are read, so that a person sees all of them at once.
+class Problems {
+ public:
+  void error(const Place& place, std::string message, std::string hint = {});
+  void warning(const Place& place, std::string message, std::string hint = {});
+
+  /// Remembers the text of a file, so that problems in it show their line.
+  void remember_source(const std::string& file, const std::string& text);
+
+  bool has_errors() const noexcept { return error_count_ > 0; }
+  const std::vector<Problem>& all() const noexcept { return problems_; }
+
+  /// @throws ConfigError with all problems, in the order of their places, when there is an error among them.
+  void throw_if_any() const;
+
+ private:
+  void add(Problem problem);
+
+  std::vector<Problem> problems_;
+  std::vector<std::pair<std::string, std::vector<std::string>>> sources_;  // file, its lines
+  int error_count_ = 0;
+};
+
+/// The word of `candidates` nearest to `word` when it is near enough to be a slip, else an empty string.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
+
+}  // namespace cordis::config
