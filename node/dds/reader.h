@@ -1,0 +1,45 @@
+// node/dds/reader.h -- reads one topic.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+#include "node/dds/participant.h"
+#include "node/dds/topics.h"
+
+namespace cordis::dds {
+
+/// Reads messages of one topic. One thread takes at a time. Message is a class of cordis::msg.
+/// Contents are as another process wrote them: the caller checks lengths, ranges and that numbers are finite.
+template <class Message>
+class Reader {
+ public:
+  /// @throws std::runtime_error when DDS refuses.
+  Reader(Participant& participant, Topic topic);
+  ~Reader();
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  /// The oldest message not yet taken into `message`; false when there is none. Never blocks.
+  bool take(Message& message) noexcept;
+
+  /// Drains to the newest message; false when there was none. Never blocks.
+  /// Messages of all writers and keys count as one stream: use take() where they must not.
+  bool take_newest(Message& message) noexcept;
+
+  /// Waits until a message arrives, or was there already, at most so long; false when none is there. Also ends when
+  /// interrupt() is called.
+  bool wait(std::chrono::nanoseconds at_most) noexcept;
+
+  /// Ends a wait() of another thread, now or the next time it begins.
+  void interrupt() noexcept;
+
+  int matched_count() const noexcept;  ///< writers there are now
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cordis::dds

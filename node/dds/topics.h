@@ -1,0 +1,35 @@
+// node/dds/topics.h -- the one table of topics: name, message, quality of service.
+#pragma once
+
+#include <cstdint>
+
+namespace cordis::dds {
+
+/// The topics of the contract (idl/README.md).
+enum class Topic : std::uint8_t {
+  kPositions,    ///< gesture/positions   msg::GesturePositions
+  kForces,       ///< gesture/forces      msg::GestureForces
+  kDescription,  ///< scene/description   msg::SceneDescription
+  kFrame,        ///< scene/frame         msg::SceneFrame
+  kSignals,      ///< scene/signals       msg::SceneSignals
+  kEvents,       ///< scene/events        msg::SceneEvents
+  kCommand,      ///< control/command     msg::ControlCommand
+  kReply,        ///< control/reply       msg::ControlReply
+  kStatus        ///< node/status         msg::NodeStatus
+};
+
+/// Quality of service of a topic, in the words of DDS.
+struct TopicQos {
+  const char* name;
+  bool reliable;
+  bool kept_for_late_joiners;  ///< transient local, else volatile
+  int history_depth;           ///< keep last
+  bool asynchronous;           ///< written by a thread of the middleware: for large frames
+  bool exclusive;              ///< one writer per device at a time, the strongest
+  int heartbeat_msec;          ///< of a reliable writer
+};
+
+/// @param lockstep  the two gesture topics are reliable in a lockstep session and best effort otherwise
+TopicQos qos_of(Topic topic, bool lockstep) noexcept;
+
+}  // namespace cordis::dds

@@ -1,0 +1,35 @@
+// node/dds/writer.h -- writes one topic.
+#pragma once
+
+#include <chrono>
+#include <memory>
+
+#include "node/dds/participant.h"
+#include "node/dds/topics.h"
+
+namespace cordis::dds {
+
+/// Writes messages of one topic. One thread writes at a time. Message is a class of cordis::msg.
+template <class Message>
+class Writer {
+ public:
+  /// @throws std::runtime_error when DDS refuses.
+  Writer(Participant& participant, Topic topic);
+  ~Writer();
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  /// Sends one message; false when it could not be handed over. About 10 to 20 us for a gesture message.
+  bool write(Message& message) noexcept;
+
+  int matched_count() const noexcept;  ///< readers there are now
+
+  /// Waits until all reliable readers have what was written, at most so long.
+  bool wait_until_acknowledged(std::chrono::milliseconds at_most) noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cordis::dds

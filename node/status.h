@@ -1,0 +1,51 @@
+// node/status.h -- what a node says about itself, twice a second.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "idl/control.h"
+#include "node/dds/participant.h"
+#include "node/dds/writer.h"
+
+namespace cordis::node {
+
+/// Publishes node/status at 2 Hz from a thread of its own, and once more when it ends.
+class StatusPublisher {
+ public:
+  /// Fills in phase, text, rates, counters, latency, energy and hash. Called from the publisher's thread twice a
+  /// second; must not block. Name, kind, run, time, memory and the reached rate (from `ticks`) are filled in already.
+  using Fill = std::function<void(msg::NodeStatus&)>;
+
+  /// @param kind  "sim_node", "device_node", "viz_node" or "record_node"
+  StatusPublisher(dds::Participant& participant, const std::string& kind, std::uint64_t run, Fill fill);
+
+  /// Publishes the last status and waits a moment until it has arrived.
+  ~StatusPublisher();
+  StatusPublisher(const StatusPublisher&) = delete;
+  StatusPublisher& operator=(const StatusPublisher&) = delete;
+
+  /// Publishes at once, beside the regular rhythm: for a change of phase.
+  void publish_now();
+
+ private:
+  void loop();
+  void publish();
+
+  dds::Writer<msg::NodeStatus> writer_;
+  Fill fill_;
+  msg::NodeStatus status_;
+  std::int64_t started_nsec_;
+  std::int64_t last_time_nsec_;
+  std::uint64_t last_ticks_ = 0;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool wanted_ = false;
+  bool ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace cordis::node

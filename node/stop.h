@@ -1,0 +1,23 @@
+// node/stop.h -- the wish to stop, from a signal or from the node itself.
+#pragma once
+
+#include <chrono>
+
+namespace cordis::node {
+
+/// SIGINT and SIGTERM become a wish to stop that every thread can ask for and wait on. SIGPIPE is ignored.
+/// Call once at the beginning of main, before any thread exists.
+void install_stop_signals();
+
+bool stop_requested() noexcept;
+
+/// Asks the process to stop, as a signal would. Safe from any thread and from a signal handler.
+void request_stop() noexcept;
+
+/// Sleeps until a stop is requested, at most so long; true when it was.
+bool wait_for_stop(std::chrono::nanoseconds at_most) noexcept;
+
+/// Becomes readable when a stop is requested, for poll(); never read from it.
+int stop_file_descriptor() noexcept;
+
+}  // namespace cordis::node
