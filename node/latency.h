@@ -6,8 +6,9 @@
 
 namespace cordis::node {
 
-/// A histogram of delays from 1 ns to 70 s with steps of 1/32 of an octave (2.2 % wide), and their exact largest.
-/// Recording costs a few nanoseconds and allocates nothing. One thread at a time.
+/// A histogram of delays from 1 ns to 68 s with bins of 1/32 of an octave (at most 3.1 % wide), and
+/// their exact largest. Recording costs a few nanoseconds and allocates nothing. One thread at a
+/// time.
 class LatencyHistogram {
  public:
   /// A negative delay counts as 0.
@@ -19,11 +20,11 @@ class LatencyHistogram {
   /// The delay that the given share (0..1) of all samples does not exceed [ns]; 0 without samples.
   double quantile_nsec(double share) const noexcept;
 
-  void clear() noexcept;
+  void clear() noexcept;  ///< forgets all samples
 
  private:
   static constexpr int kStepsPerOctave = 32;
-  static constexpr int kOctaves = 36;
+  static constexpr int kOctaves = 33;
 
   std::array<std::uint64_t, kStepsPerOctave * kOctaves> bins_{};
   std::uint64_t count_ = 0;

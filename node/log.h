@@ -7,9 +7,10 @@
 
 namespace cordis::node {
 
-/// Sets up spdlog's default logger: stderr, `HH:MM:SS.mmm name level text`, colours on a terminal unless NO_COLOR is
-/// set, level from CORDIS_LOG_LEVEL (trace, debug, info, warning, error) else info. Under the launcher (CORDIS_LAUNCHED
-/// set) time and name are left to the launcher. Then log with spdlog::info(...) and the like.
+/// Sets up spdlog's default logger: stderr, `HH:MM:SS.mmm name level text`, colours on a terminal
+/// unless NO_COLOR is set, level from CORDIS_LOG_LEVEL (trace, debug, info, warning, error) else
+/// info. Under the launcher (CORDIS_LAUNCHED set) time and name are left to the launcher. Then log
+/// with spdlog::info(...) and the like.
 void install_log(const std::string& name);
 
 }  // namespace cordis::node

@@ -14,7 +14,7 @@ struct NodeStart {
   config::Launch launch;
   const config::LaunchNode* node = nullptr;  ///< its own entry in launch.nodes
   bool check_only = false;                   ///< --check: read and check everything, then end
-  std::uint64_t run = 0;                     ///< identifies this life of the process: its start time [ns]
+  std::uint64_t run = 0;  ///< identifies this life of the process: its start time [ns]
 
   dds::Membership membership() const;
 };
@@ -22,13 +22,17 @@ struct NodeStart {
 /// FNV-1a hash of a name: device_id and node_id on the wire.
 std::uint32_t id_of(const std::string& name) noexcept;
 
-/// Reads `LAUNCH.yaml --name NAME [--check] [name.key=value ...]`, installs log and stop signals, calls `run` and turns
-/// whatever it throws into one clear message: exit code 2 for a bad file or usage, 1 for a failure at run time.
+/// Reads `LAUNCH.yaml --name NAME [--check] [name.key=value ...]`, installs log and stop signals,
+/// calls `run` and turns whatever it throws into one clear message: exit code 2 for a bad file or
+/// usage, 1 for a failure at run time.
 /// @param kind  name of the program
-/// @param run   does the node's work and returns its exit code; ConfigError and std::exception may leave it
-int node_main(int argc, char** argv, const std::string& kind, int (*run)(const NodeStart&, config::Problems&));
+/// @param run   does the node's work and returns its exit code; ConfigError and std::exception may
+/// leave it
+int node_main(int argc, char** argv, const std::string& kind,
+              int (*run)(const NodeStart&, config::Problems&));
 
-/// Claims a name on this machine until the process ends, whichever way: an abstract socket, so nothing is left behind.
+/// Claims a name on this machine until the process ends, whichever way: an abstract socket, so
+/// nothing is left behind.
 /// @throws std::runtime_error with `refusal` when another process holds it.
 void claim(const std::string& name, const std::string& refusal);
 

@@ -13,26 +13,33 @@ struct RealtimeGrant {
   bool memory_locked = false;  ///< mlockall
 };
 
-/// Asks for SCHED_FIFO at `priority` for the calling thread and for locked memory; takes quietly what it gets, and
-/// always sets the timer slack to 1 ns. Call it from the loop thread after all other threads exist.
+/// Asks for SCHED_FIFO at `priority` for the calling thread and for locked memory; takes quietly
+/// what it gets, and always sets the timer slack to 1 ns. Call it from the loop thread after all
+/// other threads exist.
 RealtimeGrant make_realtime(int priority) noexcept;
 
 /// Ticks at a fixed rate against absolute deadlines of CLOCK_MONOTONIC.
 ///
-/// A tick that begins one period or more after its deadline is an overrun. The deadlines missed meanwhile are skipped
-/// and counted, never caught up in a burst, so that a stall does not end in a spiral.
+/// A tick that begins one period or more after its deadline is an overrun. The deadlines missed
+/// meanwhile are skipped and counted, never caught up in a burst, so that a stall does not end in a
+/// spiral.
 class PacedLoop {
  public:
   /// @param rate_hz  ticks per second, > 0
   explicit PacedLoop(double rate_hz) noexcept;
 
-  /// Sleeps until the next deadline. Ends early when a signal arrives. Returns the number of deadlines skipped.
+  /// Sleeps until the next deadline. Ends early when a signal arrives. Returns the number of
+  /// deadlines skipped.
   std::uint64_t wait() noexcept;
 
   std::uint64_t ticks() const noexcept { return ticks_; }
-  std::uint64_t overruns() const noexcept { return overruns_; }  ///< ticks that began a period or more too late
+  std::uint64_t overruns() const noexcept {
+    return overruns_;
+  }  ///< ticks that began a period or more too late
   double rate_hz() const noexcept { return rate_hz_; }
-  const LatencyHistogram& lateness() const noexcept { return lateness_; }  ///< begin of tick after its deadline
+  const LatencyHistogram& lateness() const noexcept {
+    return lateness_;
+  }  ///< begin of tick after its deadline
 
  private:
   double rate_hz_;

@@ -16,12 +16,14 @@ namespace cordis::node {
 /// Publishes node/status at 2 Hz from a thread of its own, and once more when it ends.
 class StatusPublisher {
  public:
-  /// Fills in phase, text, rates, counters, latency, energy and hash. Called from the publisher's thread twice a
-  /// second; must not block. Name, kind, run, time, memory and the reached rate (from `ticks`) are filled in already.
+  /// Fills in phase, text, rates, counters, latency, energy and hash. Called from the publisher's
+  /// thread twice a second; must not block. Name, kind, run, time, memory and the reached rate
+  /// (from `ticks`) are filled in already.
   using Fill = std::function<void(msg::NodeStatus&)>;
 
   /// @param kind  "sim_node", "device_node", "viz_node" or "record_node"
-  StatusPublisher(dds::Participant& participant, const std::string& kind, std::uint64_t run, Fill fill);
+  StatusPublisher(dds::Participant& participant, const std::string& kind, std::uint64_t run,
+                  Fill fill);
 
   /// Publishes the last status and waits a moment until it has arrived.
   ~StatusPublisher();

@@ -5,8 +5,8 @@
 
 namespace cordis::node {
 
-/// SIGINT and SIGTERM become a wish to stop that every thread can ask for and wait on. SIGPIPE is ignored.
-/// Call once at the beginning of main, before any thread exists.
+/// SIGINT and SIGTERM become a wish to stop that every thread can ask for and wait on. SIGPIPE is
+/// ignored. Call once at the beginning of main, before any thread exists.
 void install_stop_signals();
 
 bool stop_requested() noexcept;

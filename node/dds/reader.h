@@ -11,7 +11,8 @@
 namespace cordis::dds {
 
 /// Reads messages of one topic. One thread takes at a time. Message is a class of cordis::msg.
-/// Contents are as another process wrote them: the caller checks lengths, ranges and that numbers are finite.
+/// Contents are as another process wrote them: the caller checks lengths, ranges and that numbers
+/// are finite.
 template <class Message>
 class Reader {
  public:
@@ -28,8 +29,8 @@ class Reader {
   /// Messages of all writers and keys count as one stream: use take() where they must not.
   bool take_newest(Message& message) noexcept;
 
-  /// Waits until a message arrives, or was there already, at most so long; false when none is there. Also ends when
-  /// interrupt() is called.
+  /// Waits until a message arrives, or was there already, at most so long; false when none is
+  /// there. Also ends when interrupt() is called.
   bool wait(std::chrono::nanoseconds at_most) noexcept;
 
   /// Ends a wait() of another thread, now or the next time it begins.

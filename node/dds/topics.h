@@ -25,11 +25,11 @@ struct TopicQos {
   bool kept_for_late_joiners;  ///< transient local, else volatile
   int history_depth;           ///< keep last
   bool asynchronous;           ///< written by a thread of the middleware: for large frames
-  bool exclusive;              ///< one writer per device at a time, the strongest
   int heartbeat_msec;          ///< of a reliable writer
 };
 
-/// @param lockstep  the two gesture topics are reliable in a lockstep session and best effort otherwise
+/// @param lockstep  the two gesture topics are reliable in a lockstep session and best effort
+/// otherwise
 TopicQos qos_of(Topic topic, bool lockstep) noexcept;
 
 }  // namespace cordis::dds

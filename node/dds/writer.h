@@ -19,7 +19,8 @@ class Writer {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// Sends one message; false when it could not be handed over. About 10 to 20 us for a gesture message.
+  /// Sends one message; false when it could not be handed over. About 10 to 20 us for a gesture
+  /// message.
   bool write(Message& message) noexcept;
 
   int matched_count() const noexcept;  ///< readers there are now

@@ -1,0 +1,48 @@
+// node/dds/participant_impl.h -- what Participant, Reader and Writer share of Fast DDS. Included by
+// node/dds alone.
+#pragma once
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include "node/dds/participant.h"
+#include "node/dds/topics.h"
+
+namespace cordis::dds {
+
+namespace fast = eprosima::fastdds::dds;
+
+struct Participant::Impl {
+  Membership membership;
+  fast::DomainParticipant* participant = nullptr;
+  fast::Publisher* publisher = nullptr;
+  fast::Subscriber* subscriber = nullptr;
+
+  /// The topic of the table, made at its first use. `type` is registered when its name is new.
+  fast::Topic* topic(const TopicQos& row, fast::TypeSupport type);
+};
+
+/// Reliability, durability, history and memory of a row, on a DataWriterQos or DataReaderQos.
+template <class Qos>
+void apply(const TopicQos& row, Qos& qos) {
+  qos.reliability().kind =
+      row.reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
+  qos.durability().kind = row.kept_for_late_joiners ? fast::TRANSIENT_LOCAL_DURABILITY_QOS
+                                                    : fast::VOLATILE_DURABILITY_QOS;
+  qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = row.history_depth;
+  qos.data_sharing().off();
+  qos.endpoint().history_memory_policy =
+      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  // A keyed topic holds one instance per device or node; the default limits would reserve 10 of 100
+  // MB frames.
+  qos.resource_limits().max_instances = 64;
+  qos.resource_limits().max_samples_per_instance = row.history_depth;
+  qos.resource_limits().max_samples = 64 * row.history_depth;
+  qos.resource_limits().allocated_samples = row.history_depth;
+}
+
+}  // namespace cordis::dds

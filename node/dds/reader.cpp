@@ -1,0 +1,117 @@
+// node/dds/reader.cpp
+#include "node/dds/reader.h"
+
+#include <condition_variable>
+#include <mutex>
+#include <stdexcept>
+
+#include <fastdds/dds/core/status/SubscriptionMatchedStatus.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+
+#include "node/dds/message_types.h"
+#include "node/dds/participant_impl.h"
+
+namespace cordis::dds {
+
+template <class Message>
+struct Reader<Message>::Impl : fast::DataReaderListener {
+  fast::Subscriber* subscriber = nullptr;
+  fast::DataReader* reader = nullptr;
+  std::mutex mutex;
+  std::condition_variable arrived;
+  bool pending = false;
+  bool interrupted = false;
+
+  void on_data_available(fast::DataReader*) override {
+    {
+      const std::lock_guard lock(mutex);
+      pending = true;
+    }
+    arrived.notify_one();
+  }
+};
+
+template <class Message>
+Reader<Message>::Reader(Participant& participant, Topic topic) : impl_(std::make_unique<Impl>()) {
+  Participant::Impl& shared = participant.impl();
+  const TopicQos row = qos_of(topic, shared.membership.lockstep);
+  fast::Topic* dds_topic =
+      shared.topic(row, fast::TypeSupport(new typename TypeOf<Message>::Type()));
+
+  fast::DataReaderQos qos;
+  apply(row, qos);
+  impl_->subscriber = shared.subscriber;
+  impl_->reader = shared.subscriber->create_datareader(dds_topic, qos, impl_.get(),
+                                                       fast::StatusMask::data_available());
+  if (impl_->reader == nullptr) {
+    throw std::runtime_error(std::string("DDS refused to read ") + row.name);
+  }
+}
+
+template <class Message>
+Reader<Message>::~Reader() {
+  if (impl_->reader == nullptr) return;
+  impl_->reader->set_listener(nullptr);
+  impl_->subscriber->delete_datareader(impl_->reader);
+}
+
+template <class Message>
+bool Reader<Message>::take(Message& message) noexcept {
+  try {
+    fast::SampleInfo info;
+    while (impl_->reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
+      if (info.valid_data) return true;
+    }
+  } catch (...) {  // a message too large to hold counts as none
+  }
+  return false;
+}
+
+template <class Message>
+bool Reader<Message>::take_newest(Message& message) noexcept {
+  bool any = false;
+  while (take(message)) any = true;
+  return any;
+}
+
+template <class Message>
+bool Reader<Message>::wait(std::chrono::nanoseconds at_most) noexcept {
+  std::unique_lock lock(impl_->mutex);
+  impl_->arrived.wait_for(lock, at_most, [this] { return impl_->pending || impl_->interrupted; });
+  impl_->interrupted = false;
+  // A message may have been taken since the listener spoke; the caller's take() then finds nothing
+  // and waits again.
+  const bool pending = impl_->pending;
+  impl_->pending = false;
+  return pending;
+}
+
+template <class Message>
+void Reader<Message>::interrupt() noexcept {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->interrupted = true;
+  }
+  impl_->arrived.notify_one();
+}
+
+template <class Message>
+int Reader<Message>::matched_count() const noexcept {
+  fast::SubscriptionMatchedStatus status;
+  impl_->reader->get_subscription_matched_status(status);
+  return status.current_count;
+}
+
+template class Reader<msg::GesturePositions>;
+template class Reader<msg::GestureForces>;
+template class Reader<msg::SceneDescription>;
+template class Reader<msg::SceneFrame>;
+template class Reader<msg::SceneSignals>;
+template class Reader<msg::SceneEvents>;
+template class Reader<msg::ControlCommand>;
+template class Reader<msg::ControlReply>;
+template class Reader<msg::NodeStatus>;
+
+}  // namespace cordis::dds

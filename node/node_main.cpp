@@ -1,0 +1,150 @@
+// node/node_main.cpp
+#include "node/node_main.h"
+
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "node/log.h"
+#include "node/stop.h"
+#include "node/time.h"
+
+namespace cordis::node {
+namespace {
+
+constexpr int kRuntimeFailure = 1;
+constexpr int kBadInput = 2;
+
+struct Arguments {
+  std::string launch_file;
+  std::string name;
+  bool check_only = false;
+  bool help = false;
+  std::vector<std::string> overrides;
+};
+
+/// @throws std::invalid_argument with what is wrong with the command line.
+Arguments parse(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--help" || word == "-h") {
+      arguments.help = true;
+    } else if (word == "--check") {
+      arguments.check_only = true;
+    } else if (word == "--name") {
+      if (++i == argc) throw std::invalid_argument("--name needs the name of a node");
+      arguments.name = argv[i];
+    } else if (word.starts_with("--name=")) {
+      arguments.name = word.substr(std::strlen("--name="));
+    } else if (word.starts_with("-")) {
+      throw std::invalid_argument("unknown option '" + word + "'");
+    } else if (arguments.launch_file.empty()) {
+      arguments.launch_file = word;
+    } else {
+      arguments.overrides.push_back(word);
+    }
+  }
+  if (!arguments.help && arguments.launch_file.empty())
+    throw std::invalid_argument("which launch file?");
+  return arguments;
+}
+
+std::string usage(const std::string& kind) {
+  return "usage: " + kind + " LAUNCH.yaml [--name NAME] [--check] [NAME.key=value ...]\n\n" +
+         "Runs one node of a launch file by itself. `cordis run LAUNCH.yaml` starts them all.\n" +
+         "  --name NAME      which node of the file; not needed when it has a single " + kind +
+         "\n" + "  --check          read and check everything the node would use, then end\n" +
+         "  NAME.key=value   replaces a value of the file\n\n" + "example: " + kind +
+         " launch_configs/plucked_string.yaml\n";
+}
+
+const config::LaunchNode* choose(const config::Launch& launch, const std::string& kind,
+                                 const std::string& name) {
+  std::string names;
+  int matching = 0;
+  const config::LaunchNode* chosen = nullptr;
+  for (const auto& node : launch.nodes) {
+    if (node.program != kind) continue;
+    names += (names.empty() ? "'" : ", '") + node.name + "'";
+    ++matching;
+    if (name.empty() || node.name == name) chosen = &node;
+  }
+  if (name.empty() && matching > 1) {
+    throw std::invalid_argument(launch.file + " has several: --name one of " + names);
+  }
+  if (chosen == nullptr) {
+    throw std::invalid_argument(launch.file + " has no " + kind +
+                                (name.empty() ? "" : " named '" + name + "'") +
+                                (names.empty() ? "" : ", only " + names));
+  }
+  return chosen;
+}
+
+void print_problems(const std::vector<config::Problem>& problems) {
+  for (const auto& problem : problems) std::fprintf(stderr, "%s\n", problem.text().c_str());
+}
+
+}  // namespace
+
+dds::Membership NodeStart::membership() const {
+  return {launch.domain, launch.session, node->name, launch.clock == config::Clock::kLockstep};
+}
+
+std::uint32_t id_of(const std::string& name) noexcept {
+  std::uint32_t hash = 2166136261u;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  return hash;
+}
+
+int node_main(int argc, char** argv, const std::string& kind,
+              int (*run)(const NodeStart&, config::Problems&)) {
+  try {
+    const Arguments arguments = parse(argc, argv);
+    if (arguments.help) {
+      std::fputs(usage(kind).c_str(), stdout);
+      return 0;
+    }
+    config::Problems problems;
+    NodeStart start;
+    start.launch = config::load_launch(arguments.launch_file, arguments.overrides, problems);
+    problems.throw_if_any();
+    start.node = choose(start.launch, kind, arguments.name);
+    start.check_only = arguments.check_only;
+    start.run = static_cast<std::uint64_t>(monotonic_nsec());
+    install_log(start.node->name);
+    install_stop_signals();
+    return run(start, problems);
+  } catch (const config::ConfigError& error) {
+    print_problems(error.problems());
+    return kBadInput;
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "%s: %s (see %s --help)\n", kind.c_str(), error.what(), kind.c_str());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", kind.c_str(), error.what());
+    return kRuntimeFailure;
+  }
+}
+
+void claim(const std::string& name, const std::string& refusal) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  // The leading zero makes the name abstract: it lives as long as the socket, and leaves no file.
+  const std::size_t length = std::min(name.size(), sizeof address.sun_path - 1);
+  std::memcpy(address.sun_path + 1, name.data(), length);
+  const int socket_file = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
+  if (socket_file < 0 ||
+      bind(socket_file, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
+    if (socket_file >= 0) close(socket_file);
+    throw std::runtime_error(refusal);
+  }
+}
+
+}  // namespace cordis::node

@@ -1,0 +1,93 @@
+// node/status.cpp
+#include "node/status.h"
+
+#include <cstdio>
+
+#include <unistd.h>
+
+#include "node/node_main.h"
+#include "node/time.h"
+
+namespace cordis::node {
+namespace {
+
+constexpr auto kPeriod = std::chrono::milliseconds(500);
+constexpr auto kFarewell = std::chrono::milliseconds(300);
+
+double resident_bytes() {
+  std::FILE* file = std::fopen("/proc/self/statm", "r");
+  if (file == nullptr) return 0.0;
+  long total_pages = 0;
+  long resident_pages = 0;
+  const int read = std::fscanf(file, "%ld %ld", &total_pages, &resident_pages);
+  std::fclose(file);
+  return read == 2
+             ? static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE))
+             : 0.0;
+}
+
+}  // namespace
+
+StatusPublisher::StatusPublisher(dds::Participant& participant, const std::string& kind,
+                                 std::uint64_t run, Fill fill)
+    : writer_(participant, dds::Topic::kStatus),
+      fill_(std::move(fill)),
+      started_nsec_(monotonic_nsec()),
+      last_time_nsec_(started_nsec_) {
+  const std::string& name = participant.membership().node;
+  status_.node_id(id_of(name));
+  status_.node(name);
+  status_.kind(kind);
+  status_.run(run);
+  thread_ = std::thread([this] { loop(); });
+}
+
+StatusPublisher::~StatusPublisher() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+  publish();
+  writer_.wait_until_acknowledged(kFarewell);
+}
+
+void StatusPublisher::publish_now() {
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = true;
+  }
+  wake_.notify_one();
+}
+
+void StatusPublisher::loop() {
+  std::unique_lock lock(mutex_);
+  while (!ending_) {
+    wanted_ = false;
+    lock.unlock();
+    publish();
+    lock.lock();
+    wake_.wait_for(lock, kPeriod, [this] { return ending_ || wanted_; });
+  }
+}
+
+void StatusPublisher::publish() {
+  const std::int64_t now = monotonic_nsec();
+  fill_(status_);
+  const auto elapsed = static_cast<double>(now - last_time_nsec_) * 1e-9;
+  const auto lifetime = static_cast<double>(now - started_nsec_) * 1e-9;
+  // Between two close calls a rate would be noise: the last one stays.
+  if (elapsed > 0.1) {
+    status_.reached_rate_hz(static_cast<double>(status_.ticks() - last_ticks_) / elapsed);
+    last_ticks_ = status_.ticks();
+    last_time_nsec_ = now;
+  }
+  if (lifetime > 0.0) status_.mean_rate_hz(static_cast<double>(status_.ticks()) / lifetime);
+  status_.sequence_number(status_.sequence_number() + 1);
+  status_.time_nsec(now);
+  status_.memory_bytes(resident_bytes());
+  writer_.write(status_);
+}
+
+}  // namespace cordis::node
