@@ -1,0 +1,203 @@
+// tests/node/dds_test.cpp
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "idl/control.h"
+#include "idl/gesture.h"
+#include "idl/scene.h"
+#include "node/dds/reader.h"
+#include "node/dds/writer.h"
+#include "node/status.h"
+#include "tests/support/test_domain.h"
+
+namespace cordis::dds {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 20s;
+
+Membership member(const std::string& session, const std::string& node, bool lockstep = false) {
+  return {test::own_domain(), session, node, lockstep};
+}
+
+/// Waits for a condition; tests never sleep for a fixed time.
+bool eventually(const std::function<bool()>& condition) {
+  const auto limit = std::chrono::steady_clock::now() + kPatience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > limit) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+template <class Message>
+bool receive(Reader<Message>& reader, Message& message) {
+  return eventually(
+      [&] { return reader.take(message) || (reader.wait(100ms) && reader.take(message)); });
+}
+
+msg::GesturePositions sample_of(std::uint32_t device, std::uint64_t number) {
+  msg::GesturePositions sample;
+  sample.device_id(device);
+  sample.sample(number);
+  sample.axis_count(16);
+  for (std::size_t axis = 0; axis < 16; ++axis)
+    sample.position_m()[axis] = 0.001 * static_cast<double>(axis + 1);
+  return sample;
+}
+
+TEST(Dds, CarriesALockstepGestureWholeAndInOrder) {
+  Participant device(member("gesture", "keyboard", true));
+  Participant sim(member("gesture", "sim", true));
+  Writer<msg::GesturePositions> writer(device, Topic::kPositions);
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions);
+  ASSERT_TRUE(
+      eventually([&] { return writer.matched_count() == 1 && reader.matched_count() == 1; }));
+
+  for (std::uint64_t number = 1; number <= 200; ++number) {
+    msg::GesturePositions sent = sample_of(5, number);
+    ASSERT_TRUE(writer.write(sent));
+    msg::GesturePositions received;
+    ASSERT_TRUE(receive(reader, received)) << "sample " << number;
+    ASSERT_TRUE(received == sent);
+  }
+}
+
+TEST(Dds, KeepsTheNewestSampleOfEachDeviceForASlowReader) {
+  Participant device(member("newest", "keyboard"));
+  Participant sim(member("newest", "sim"));
+  Writer<msg::GesturePositions> writer(device, Topic::kPositions);
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions);
+  ASSERT_TRUE(
+      eventually([&] { return writer.matched_count() == 1 && reader.matched_count() == 1; }));
+
+  msg::GesturePositions received;
+  std::uint64_t newest_of_1 = 0;
+  std::uint64_t newest_of_2 = 0;
+  std::uint64_t number = 0;
+  // Best effort may lose a sample, so samples go on until the newest of both devices has been seen
+  // to advance.
+  ASSERT_TRUE(eventually([&] {
+    for (int i = 0; i < 10; ++i) {
+      ++number;
+      msg::GesturePositions first = sample_of(1, number);
+      msg::GesturePositions second = sample_of(2, number);
+      writer.write(first);
+      writer.write(second);
+    }
+    while (reader.take(received)) {
+      std::uint64_t& newest = received.device_id() == 1 ? newest_of_1 : newest_of_2;
+      EXPECT_GT(received.sample(), newest);
+      newest = received.sample();
+    }
+    return newest_of_1 > 20 && newest_of_2 > 20;
+  }));
+}
+
+TEST(Dds, SessionsInOneDomainDoNotHearEachOther) {
+  Participant here(member("here", "sim"));
+  Participant there(member("there", "sim"));
+  Writer<msg::SceneDescription> writer_here(here, Topic::kDescription);
+  Writer<msg::SceneDescription> writer_there(there, Topic::kDescription);
+  Participant viewer(member("there", "view"));
+  msg::SceneDescription description;
+  description.name("of here");
+  writer_here.write(description);
+  description.name("of there");
+  writer_there.write(description);
+  Reader<msg::SceneDescription> reader(viewer, Topic::kDescription);
+
+  msg::SceneDescription received;
+  ASSERT_TRUE(receive(reader, received));
+
+  EXPECT_EQ(received.name(), "of there");
+  EXPECT_EQ(reader.matched_count(), 1);
+  EXPECT_FALSE(reader.take(received));
+}
+
+TEST(Dds, KeepsTheDescriptionForLateJoiners) {
+  Participant sim(member("late", "sim"));
+  Writer<msg::SceneDescription> writer(sim, Topic::kDescription);
+  msg::SceneDescription description;
+  description.name("string");
+  description.link_ends({0, 1, 1, 2});
+  writer.write(description);
+
+  Participant viewer(member("late", "view"));
+  Reader<msg::SceneDescription> reader(viewer, Topic::kDescription);
+  msg::SceneDescription received;
+  ASSERT_TRUE(receive(reader, received));
+
+  EXPECT_TRUE(received == description);
+}
+
+TEST(Dds, CarriesAFrameOfAHundredThousandMats) {
+  Participant sim(member("large", "sim"));
+  Participant viewer(member("large", "view"));
+  Writer<msg::SceneFrame> writer(sim, Topic::kFrame);
+  Reader<msg::SceneFrame> reader(viewer, Topic::kFrame);
+  ASSERT_TRUE(
+      eventually([&] { return writer.matched_count() == 1 && reader.matched_count() == 1; }));
+  msg::SceneFrame frame;
+  frame.frame(1);
+  frame.position_m(std::vector<float>(300'000, 0.25f));
+
+  ASSERT_TRUE(writer.write(frame));
+
+  msg::SceneFrame received;
+  ASSERT_TRUE(receive(reader, received));
+  EXPECT_TRUE(received == frame);
+}
+
+TEST(Dds, WaitingEndsWhenInterrupted) {
+  Participant sim(member("interrupt", "sim"));
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions);
+  std::thread waker([&] { reader.interrupt(); });
+  EXPECT_FALSE(reader.wait(60s));
+  waker.join();
+}
+
+TEST(Dds, RefusesADomainOutOfRange) {
+  EXPECT_THROW(Participant({102, "s", "n", false}), std::runtime_error);
+  EXPECT_THROW(Participant({-1, "s", "n", false}), std::runtime_error);
+}
+
+TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
+  Participant viewer(member("status", "view"));
+  Reader<msg::NodeStatus> reader(viewer, Topic::kStatus);
+  Participant sim(member("status", "sim"));
+  std::optional<node::StatusPublisher> publisher;
+  std::atomic<const char*> phase = "running";
+  publisher.emplace(sim, "sim_node", 77, [&phase](msg::NodeStatus& status) {
+    status.phase(phase.load());
+    status.ticks(status.ticks() + 500);
+  });
+
+  msg::NodeStatus status;
+  ASSERT_TRUE(receive(reader, status));
+  EXPECT_EQ(status.node(), "sim");
+  EXPECT_EQ(status.kind(), "sim_node");
+  EXPECT_EQ(status.run(), 77u);
+  EXPECT_EQ(status.phase(), "running");
+  EXPECT_GT(status.memory_bytes(), 1e6);
+  const std::uint64_t first = status.sequence_number();
+  ASSERT_TRUE(receive(reader, status));
+  EXPECT_GT(status.sequence_number(), first);
+  EXPECT_GT(status.reached_rate_hz(), 0.0);
+
+  phase = "stopped";
+  publisher.reset();
+
+  ASSERT_TRUE(eventually([&] { return reader.take(status) && status.phase() == "stopped"; }));
+}
+
+}  // namespace
+}  // namespace cordis::dds

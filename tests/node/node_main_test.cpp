@@ -1,0 +1,110 @@
+// tests/node/node_main_test.cpp
+#include "node/node_main.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace cordis::node {
+namespace {
+
+/// A launch file in a folder of its own, gone with the object.
+class LaunchFile {
+ public:
+  explicit LaunchFile(const std::string& text) {
+    char folder[] = "/tmp/cordis-test-XXXXXX";
+    path_ = std::string(mkdtemp(folder)) + "/launch.yaml";
+    std::ofstream(path_) << text;
+  }
+  ~LaunchFile() { std::filesystem::remove_all(std::filesystem::path(path_).parent_path()); }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+const char* const kTwoDevices =
+    "cordis: 1\nsession: test\ndomain: 7\nclock: lockstep\nnodes:\n"
+    "  left: {node: device_node, device: a.yaml}\n"
+    "  right: {node: device_node, device: b.yaml}\n"
+    "  sim: {node: sim_node, scene: s.yaml}\n";
+
+NodeStart last_start;
+
+int remember(const NodeStart& start, config::Problems&) {
+  last_start = start;
+  last_start.node = last_start.launch.find(start.node->name);
+  return 0;
+}
+
+int run_main(std::vector<std::string> words, const std::string& kind,
+             int (*run)(const NodeStart&, config::Problems&) = remember) {
+  words.insert(words.begin(), kind);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  return node_main(static_cast<int>(arguments.size()), arguments.data(), kind, run);
+}
+
+TEST(NodeMain, FindsItsNodeOfTheLaunchFile) {
+  const LaunchFile file(kTwoDevices);
+
+  EXPECT_EQ(run_main({file.path(), "--name", "right", "right.driver=script"}, "device_node"), 0);
+
+  const dds::Membership membership = last_start.membership();
+  EXPECT_EQ(membership.node, "right");
+  EXPECT_EQ(membership.session, "test");
+  EXPECT_EQ(membership.domain, 7);
+  EXPECT_TRUE(membership.lockstep);
+  EXPECT_FALSE(last_start.check_only);
+  EXPECT_GT(last_start.run, 0u);
+}
+
+TEST(NodeMain, NeedsNoNameWhenThereIsOneOfItsKind) {
+  const LaunchFile file(kTwoDevices);
+  EXPECT_EQ(run_main({file.path(), "--check"}, "sim_node"), 0);
+  EXPECT_EQ(last_start.node->name, "sim");
+  EXPECT_TRUE(last_start.check_only);
+}
+
+TEST(NodeMain, EndsWith2ForBadUsageAndBadFiles) {
+  const LaunchFile file(kTwoDevices);
+  EXPECT_EQ(run_main({}, "sim_node"), 2);
+  EXPECT_EQ(run_main({file.path()}, "device_node"), 2) << "two devices: which?";
+  EXPECT_EQ(run_main({file.path(), "--name", "middle"}, "device_node"), 2);
+  EXPECT_EQ(run_main({file.path(), "--name"}, "device_node"), 2);
+  EXPECT_EQ(run_main({file.path(), "--verbose"}, "sim_node"), 2);
+  EXPECT_EQ(run_main({"/nonexistent/launch.yaml"}, "sim_node"), 2);
+  EXPECT_EQ(run_main({file.path(), "sim.nothing.at.all"}, "sim_node"), 2) << "not name.key=value";
+  EXPECT_EQ(run_main({"--help"}, "sim_node"), 0);
+}
+
+TEST(NodeMain, EndsWith1WhenTheNodeFails) {
+  const LaunchFile file(kTwoDevices);
+  EXPECT_EQ(
+      run_main({file.path()}, "sim_node",
+               [](const NodeStart&, config::Problems&) -> int { throw std::runtime_error("no"); }),
+      1);
+}
+
+TEST(Claim, IsHeldByOneProcessAtATimeAndLeavesNothing) {
+  const std::string name = "cordis/test/claim/" + std::to_string(getpid());
+  claim(name, "taken");
+
+  EXPECT_THROW(claim(name, "taken"), std::runtime_error);
+  EXPECT_NO_THROW(claim(name + "/other", "taken"));
+}
+
+TEST(IdOf, IsTheFnv1aHashOfTheName) {
+  // Published test vectors of FNV-1a, 32 bits.
+  EXPECT_EQ(id_of(""), 0x811c9dc5u);
+  EXPECT_EQ(id_of("a"), 0xe40c292cu);
+  EXPECT_EQ(id_of("foobar"), 0xbf9cf968u);
+}
+
+}  // namespace
+}  // namespace cordis::node

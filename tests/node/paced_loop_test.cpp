@@ -1,0 +1,51 @@
+// tests/node/paced_loop_test.cpp
+#include "node/paced_loop.h"
+
+#include <ctime>
+
+#include <gtest/gtest.h>
+
+#include "node/time.h"
+
+namespace cordis::node {
+namespace {
+
+void sleep_nsec(std::int64_t nsec) {
+  const timespec time{nsec / 1'000'000'000, nsec % 1'000'000'000};
+  nanosleep(&time, nullptr);
+}
+
+TEST(PacedLoop, NeverTicksBeforeItsDeadline) {
+  PacedLoop loop(2000.0);
+  loop.wait();
+  const std::int64_t start = monotonic_nsec();
+  std::uint64_t deadlines = 0;
+
+  for (int tick = 0; tick < 50; ++tick) deadlines += 1 + loop.wait();
+
+  // A busy machine may make it later, never earlier; 1 us for the time between the first tick and
+  // our clock reading.
+  EXPECT_GE(monotonic_nsec() - start, static_cast<std::int64_t>(deadlines) * 500'000 - 1'000);
+  EXPECT_EQ(loop.ticks(), 51u);
+}
+
+TEST(PacedLoop, SkipsAndCountsDeadlinesMissedInsteadOfCatchingUp) {
+  PacedLoop loop(1000.0);
+  loop.wait();
+  loop.wait();
+  const std::uint64_t overruns_before = loop.overruns();
+  sleep_nsec(20'500'000);
+
+  const std::uint64_t skipped = loop.wait();
+
+  EXPECT_GE(skipped, 19u);
+  EXPECT_EQ(loop.overruns(), overruns_before + 1);
+  const std::int64_t before = monotonic_nsec();
+  const std::uint64_t more = loop.wait();
+  // The next deadline lies ahead again: no burst.
+  EXPECT_GT(monotonic_nsec() - before + static_cast<std::int64_t>(more) * 1'000'000, 0);
+  EXPECT_LT(more, skipped);
+}
+
+}  // namespace
+}  // namespace cordis::node

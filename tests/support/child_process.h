@@ -1,0 +1,53 @@
+// tests/support/child_process.h -- a program started by a test, its output kept, ended for certain.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace cordis::test {
+
+/// A child process with stdout and stderr collected as one text. The destructor kills it when it
+/// still runs.
+class ChildProcess {
+ public:
+  /// Starts `words[0]` with the rest as arguments. @param environment  added to that of the test.
+  explicit ChildProcess(const std::vector<std::string>& words,
+                        const std::map<std::string, std::string>& environment = {});
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  pid_t id() const noexcept { return id_; }
+  void signal(int number) const noexcept;
+
+  /// Waits for the end, at most so long. The exit code, 128 + signal when it was killed, or -1 when
+  /// it still runs.
+  int wait(std::chrono::milliseconds at_most);
+
+  /// Waits until its output contains `text`; false when it ended without, or the time is over.
+  bool wait_for_output(const std::string& text, std::chrono::milliseconds at_most);
+
+  std::string output() const;
+
+ private:
+  void read_output();
+
+  pid_t id_ = -1;
+  int exit_code_ = -1;
+  bool ended_ = false;
+  int pipe_ = -1;
+  mutable std::mutex mutex_;
+  std::condition_variable more_;
+  std::string output_;
+  bool closed_ = false;
+  std::thread reader_;
+};
+
+}  // namespace cordis::test
