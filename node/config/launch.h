@@ -18,11 +18,11 @@ enum class Clock {
 
 /// One node of a launch file: a process.
 struct LaunchNode {
-  std::string name;     ///< unique within the session; also the name of the device for a device_node
-  std::string program;  ///< sim_node, device_node, viz_node or record_node
-  bool required = true; ///< whether the session ends when this node ends
-  Value section;        ///< its mapping without the keys `node` and `required`; the node reads it itself
-  Place place;          ///< of the name
+  std::string name;  ///< unique within the session; also the name of the device for a device_node
+  std::string program;   ///< sim_node, device_node, viz_node or record_node
+  bool required = true;  ///< whether the session ends when this node ends
+  Value section;  ///< its mapping without the keys `node` and `required`; the node reads it itself
+  Place place;    ///< of the name
 };
 
 /// What a launch file says, with the overrides of the command line laid on it.
@@ -32,15 +32,27 @@ struct Launch {
   std::string session;              ///< name of the session; DDS partition
   int domain = 0;                   ///< DDS domain, 0..101
   Clock clock = Clock::kRealtime;
-  std::vector<LaunchNode> nodes;    ///< in the order of the file
+  std::vector<LaunchNode> nodes;  ///< in the order of the file
 
-  const LaunchNode* find(const std::string& name) const noexcept;  ///< nullptr when there is none
-  std::filesystem::path resolve(const std::string& path) const;    ///< path relative to the launch file
+  /// nullptr when there is none.
+  const LaunchNode* find(const std::string& name) const noexcept;
+  /// A path of the file as this process can open it.
+  std::filesystem::path resolve(const std::string& path) const;
 };
 
-/// Reads a launch file.
-/// @param overrides  words `name.key=value` (key of a node, may be nested: hand.mass_kg) and `clock=`, `domain=`,
-///                   `session=` for the session itself; a word that fits nothing is a problem.
-Launch load_launch(const std::string& path, const std::vector<std::string>& overrides, Problems& problems);
+/// Reads a launch file. Every fault is a problem: unknown keys and programs, a domain beyond
+/// 0..101, a session name that is not of 1 to 64 letters, digits, '_' and '-', no node, two
+/// sim_nodes, names with the same name_hash. Without `session:` the session bears the name of the
+/// file. The sections of the nodes are not looked into.
+/// @param overrides  words `name.key=value` (key of a node, may be nested: hand.mass_kg) and
+///                   `clock=`, `domain=`, `session=` for the session itself, each value in YAML;
+///                   a word that fits nothing is a problem.
+/// @return what could be read; to be used only when `problems` has no errors.
+Launch load_launch(const std::string& path, const std::vector<std::string>& overrides,
+                   Problems& problems);
+
+/// The same for a file in memory; `name` stands for its path.
+Launch load_launch_text(const std::string& text, const std::string& name,
+                        const std::vector<std::string>& overrides, Problems& problems);
 
 }  // namespace cordis::config

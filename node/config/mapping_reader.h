@@ -1,7 +1,7 @@
-// node/config/mapping_reader.h -- reads the keys of one mapping, and notices all that is wrong with them.
+// node/config/mapping_reader.h -- reads the keys of one mapping and reports all that is wrong.
 #pragma once
 
-#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -21,16 +21,22 @@ struct Range {
   static Range between(double lowest, double highest) { return {lowest, highest, false}; }
 };
 
-/// Reads the keys of one mapping. Every call adds a problem when the key is missing, of the wrong kind, not finite
-/// or out of range, and then returns the fallback, so that reading goes on and all errors are found at once.
-/// Scalars must be written plainly: a number for a number, true or false for a truth value.
+/// Reads the keys of one mapping. Every call adds a problem when the key is missing, of the wrong
+/// kind, not finite or out of range, and then returns the fallback (of a required key: a value
+/// inside the range, an empty text, the first choice), so that reading goes on and all errors are
+/// found at once. Scalars must be written plainly: a number for a number, true or false for a truth
+/// value. A value that is no mapping is one problem; one that does not exist is none (whoever
+/// fetched it has spoken): then every key counts as absent and no key as missing.
 class MappingReader {
  public:
   /// @param what  what the mapping is, for messages: "port 'left'", "scene".
   MappingReader(Value value, std::string what, Problems& problems);
 
   bool has(const std::string& key) const;
-  Place place_of(const std::string& key) const;  ///< of the key's value; the mapping's own place when absent
+  /// Of the key's value; the mapping's own place when absent.
+  Place place_of(const std::string& key) const;
+  /// In the order of the file.
+  std::vector<std::string> present_keys() const;
 
   double required_number(const std::string& key, Range range = {});
   double optional_number(const std::string& key, double fallback, Range range = {});
@@ -41,11 +47,14 @@ class MappingReader {
   std::string optional_text(const std::string& key, std::string fallback);
   /// One word of `choices`; the message lists them and suggests the nearest.
   std::string required_choice(const std::string& key, const std::vector<std::string>& choices);
-  std::string optional_choice(const std::string& key, std::string fallback, const std::vector<std::string>& choices);
+  std::string optional_choice(const std::string& key, std::string fallback,
+                              const std::vector<std::string>& choices);
 
-  /// A sequence of finite numbers; a single number stands for a sequence of one. `length` 0 = any length but none.
+  /// A sequence of finite numbers; a single number stands for a sequence of one. `length` 0 = any
+  /// length but none.
   std::vector<double> required_numbers(const std::string& key, std::size_t length = 0);
-  std::vector<double> optional_numbers(const std::string& key, std::vector<double> fallback, std::size_t length = 0);
+  std::vector<double> optional_numbers(const std::string& key, std::vector<double> fallback,
+                                       std::size_t length = 0);
   std::vector<long> required_integers(const std::string& key, long lowest, long highest);
 
   /// The value as it stands; a problem when it is missing (required_) or of another kind.
@@ -58,8 +67,12 @@ class MappingReader {
 
   void error_at(const std::string& key, std::string message, std::string hint = {});
 
-  /// Reports every key that was never asked for as unknown, with the nearest known key. Call it last.
+  /// Reports every key that was never asked for as unknown, with the nearest known one. Call it
+  /// last.
   void finish();
+
+  /// Whether this reader has found no problem: what it returned is what the file says.
+  bool ok() const noexcept { return ok_; }
 
   const std::string& what() const noexcept { return what_; }
   const Place& place() const noexcept { return value_.place(); }
@@ -67,14 +80,37 @@ class MappingReader {
  private:
   Value take(const std::string& key);
   Value take_required(const std::string& key);
+  Value take_kind(const std::string& key, Value value, Value::Kind kind, const char* wanted);
+  void report(const Place& place, std::string message, std::string hint = {});
+  std::string name_of(const std::string& key) const;
+  double number_of(const Value& value, const std::string& key, double fallback, Range range);
+  long integer_of(const Value& value, const std::string& key, long fallback, long lowest,
+                  long highest);
+  std::string text_of(const Value& value, const std::string& key, std::string fallback);
+  std::string choice_of(const Value& value, const std::string& key, std::string fallback,
+                        const std::vector<std::string>& choices);
+  std::vector<double> numbers_of(const Value& value, const std::string& key, std::size_t length);
 
   Value value_;
   std::string what_;
   Problems& problems_;
   std::vector<std::string> known_;
+  bool readable_ = false;
+  bool ok_ = true;
 };
 
-/// A scalar as a finite number; a problem and the fallback otherwise. `what` names it in the message.
-double read_number(const Value& value, const std::string& what, double fallback, Range range, Problems& problems);
+/// A scalar as a finite number; a problem and the fallback otherwise. `what` names it in the
+/// message. A number is written as 3, -0.5 or 1e-3: not in quotes, not .inf or .nan, not beyond a
+/// double.
+double read_number(const Value& value, const std::string& what, double fallback, Range range,
+                   Problems& problems);
+
+/// A scalar as a whole number within the range, both ends included; a problem and the fallback
+/// otherwise.
+long read_integer(const Value& value, const std::string& what, long fallback, long lowest,
+                  long highest, Problems& problems);
+
+/// A number in the shortest form that reads back as itself, for messages.
+std::string number_text(double number);
 
 }  // namespace cordis::config

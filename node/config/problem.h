@@ -1,8 +1,10 @@
 // node/config/problem.h -- what is wrong in a file that a person wrote, and where.
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cordis::config {
@@ -11,7 +13,7 @@ namespace cordis::config {
 struct Place {
   std::string file;
   int line = 0;    ///< from 1; 0 when there is none
-  int column = 0;  ///< from 1
+  int column = 0;  ///< from 1, in characters
 };
 
 /// One thing that is wrong: `file:line:column: error: message`, the line with a caret, and a hint.
@@ -19,15 +21,18 @@ struct Problem {
   enum class Severity { kError, kWarning };
   Severity severity = Severity::kError;
   Place place;
-  std::string message;      ///< what is wrong and what was expected, one sentence without a full stop
-  std::string hint;         ///< "did you mean 'x'?", may be empty
+  std::string message;  ///< what is wrong and what was expected, one sentence without a full stop
+  std::string hint;     ///< "did you mean 'x'?", may be empty
   std::string source_line;  ///< the line of the file, may be empty
 
-  /// The problem as a person reads it; several lines, no trailing newline.
+  /// The problem as a person reads it; several lines, no trailing newline. Control characters that
+  /// came from the file are shown as '?', and only the part of a long line around the caret is
+  /// shown.
   std::string text() const;
 };
 
-/// Thrown once a file has been read to its end, with everything that is wrong in it.
+/// Thrown once a file has been read to its end, with everything that is wrong in it. what() is the
+/// text of all.
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::vector<Problem> problems);
@@ -38,8 +43,11 @@ class ConfigError : public std::runtime_error {
 };
 
 /// Collects problems while files are read, so that a person sees all of them at once.
+/// A problem that is there already is not added again; after kMostProblems the others are counted.
 class Problems {
  public:
+  static constexpr std::size_t kMostProblems = 100;
+
   void error(const Place& place, std::string message, std::string hint = {});
   void warning(const Place& place, std::string message, std::string hint = {});
 
@@ -47,9 +55,18 @@ class Problems {
   void remember_source(const std::string& file, const std::string& text);
 
   bool has_errors() const noexcept { return error_count_ > 0; }
+  /// Calls of error() so far. A reader compares it before and after a part to know whether the part
+  /// is sound.
+  std::size_t error_count() const noexcept { return error_count_; }
+  /// In the order they were found.
   const std::vector<Problem>& all() const noexcept { return problems_; }
+  /// In the order of the files and of the places in them.
+  std::vector<Problem> in_order() const;
+  /// All in_order() as a person reads them; empty when there is none.
+  std::string text() const;
 
-  /// @throws ConfigError with all problems, in the order of their places, when there is an error among them.
+  /// @throws ConfigError with all problems, in the order of their places, when there is an error
+  /// among them.
   void throw_if_any() const;
 
  private:
@@ -57,10 +74,15 @@ class Problems {
 
   std::vector<Problem> problems_;
   std::vector<std::pair<std::string, std::vector<std::string>>> sources_;  // file, its lines
-  int error_count_ = 0;
+  std::size_t error_count_ = 0;
+  std::size_t left_out_ = 0;
 };
 
-/// The word of `candidates` nearest to `word` when it is near enough to be a slip, else an empty string.
+/// The word of `candidates` nearest to `word` when it is near enough to be a slip, else an empty
+/// string. A word that differs only in its unit (mass_g or mass for mass_kg) is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
+
+/// "did you mean 'x'?" with the nearest word, or an empty string.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace cordis::config

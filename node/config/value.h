@@ -1,12 +1,10 @@
-// node/config/value.h -- a value of a YAML file that knows its place. No yaml-cpp type appears here.
+// node/config/value.h -- a value of a YAML file that knows its place, without any type of yaml-cpp.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "node/config/problem.h"
@@ -20,7 +18,8 @@ class Value {
   struct Entry;
 
   Value() = default;
-  static Value scalar(std::string text, Place place);
+  static Value nothing(Place place);  ///< a key without a value, or null
+  static Value scalar(std::string text, Place place, bool quoted = false);
   static Value sequence(std::vector<Value> items, Place place);
   static Value mapping(std::vector<Entry> entries, Place place);
 
@@ -28,10 +27,20 @@ class Value {
   const Place& place() const noexcept;
   bool exists() const noexcept { return data_ != nullptr; }
 
-  const std::string& text() const noexcept;            ///< of a scalar, else empty
-  const std::vector<Value>& items() const noexcept;    ///< of a sequence, else empty
-  const std::vector<Entry>& entries() const noexcept;  ///< of a mapping in the order of the file, else empty
-  Value find(std::string_view key) const noexcept;     ///< of a mapping; a Value that does not exist when absent
+  /// Of a scalar, else empty.
+  const std::string& text() const noexcept;
+  /// Whether a scalar stood in quotes or is a block of text: never a number.
+  bool quoted() const noexcept;
+  /// Of a sequence, else empty.
+  const std::vector<Value>& items() const noexcept;
+  /// Of a mapping, in the order of the file; else empty.
+  const std::vector<Entry>& entries() const noexcept;
+  /// Of a mapping; a Value that does not exist when absent.
+  Value find(std::string_view key) const noexcept;
+  /// Values in it with itself, where one that several aliases repeat counts several times.
+  std::size_t value_count() const noexcept;
+  /// What it is, for messages: nothing, 'its text', a sequence, a mapping.
+  std::string described() const;
 
  private:
   struct Data;
@@ -44,14 +53,24 @@ struct Value::Entry {
   Value value;
 };
 
-/// Reads one YAML file. Syntax errors, duplicate keys, a missing or unreadable file become problems; then the
-/// result does not exist. Anchors and aliases work.
-Value load_file(const std::string& path, Problems& problems);
+/// Reads one YAML file: one document of at most 16 MiB, 64 levels and a million values, in UTF-8.
+///
+/// A missing or unreadable file and faults of syntax become problems; then the result does not
+/// exist. A duplicate key is a problem too: its first value stays, so that the rest of the file can
+/// still be checked. Anchors, aliases and the merge key `<<` work; tags (!x) are a problem. An
+/// empty file is a Value that is nothing.
+/// @param referrer  where a person wrote the path, if in a file: a file that cannot be read is a
+/// problem of that place.
+Value load_file(const std::string& path, Problems& problems, const Place& referrer = {});
 
-/// Reads YAML from memory; `name` stands for the file in messages.
+/// Reads YAML from memory as load_file does; `name` stands for the file in messages.
 Value load_text(const std::string& text, const std::string& name, Problems& problems);
 
-/// `base` with the entries of mapping `over` laid on it, deeply: mappings merge, everything else is replaced.
+/// Reads a value from a word of the command line; every place in it is `name` without a line.
+Value load_word(const std::string& text, const std::string& name, Problems& problems);
+
+/// `base` with the entries of mapping `over` laid on it, deeply: mappings merge, everything else is
+/// replaced.
 Value overlay(const Value& base, const Value& over);
 
 /// `root` with the value at the dotted `path` (["nodes", "keyboard", "driver"]) replaced or added.

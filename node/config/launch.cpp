@@ -1,0 +1,192 @@
+#include "node/config/launch.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "node/config/mapping_reader.h"
+#include "node/config/name_hash.h"
+
+namespace cordis::config {
+
+namespace {
+
+constexpr long kHighestDomain =
+    101;  // the highest whose ports stay below 32768 by the rules of RTPS
+constexpr std::size_t kLongestName = 64;
+
+const std::vector<std::string>& programs() {
+  static const std::vector<std::string> kPrograms{"sim_node", "device_node", "viz_node",
+                                                  "record_node"};
+  return kPrograms;
+}
+
+bool is_name(const std::string& name) {
+  const auto fits = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  return !name.empty() && name.size() <= kLongestName &&
+         std::all_of(name.begin(), name.end(), fits);
+}
+
+std::vector<std::string> split_at_dots(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find('.', start), text.size());
+    parts.push_back(text.substr(start, end - start));
+    start = end + 1;
+  }
+  return parts;
+}
+
+/// Where in the launch file a word of the command line belongs; empty after a problem.
+std::vector<std::string> path_of_override(const Value& root, const std::string& target,
+                                          const Place& place, Problems& problems) {
+  std::vector<std::string> path = split_at_dots(target);
+  const std::string& first = path.front();
+  if (std::find(path.begin(), path.end(), std::string{}) != path.end()) {
+    problems.error(place, "expected name.key=value, got '" + target + "=...'");
+    return {};
+  }
+  if (path.size() == 1 && (first == "clock" || first == "domain" || first == "session"))
+    return path;
+
+  std::vector<std::string> names;
+  for (const Value::Entry& node : root.find("nodes").entries()) names.push_back(node.key);
+  if (std::find(names.begin(), names.end(), first) == names.end()) {
+    if (path.size() == 1) names.insert(names.end(), {"clock", "domain", "session"});
+    problems.error(place, "no node is named '" + first + "'", did_you_mean(first, names));
+    return {};
+  }
+  if (path.size() == 1) {
+    problems.error(place, "expected a key of node '" + first + "'",
+                   "write " + first + ".key=value");
+    return {};
+  }
+  path.insert(path.begin(), "nodes");
+  return path;
+}
+
+Value with_overrides(Value root, const std::vector<std::string>& overrides, Problems& problems) {
+  for (const std::string& word : overrides) {
+    const Place place{"'" + word + "' on the command line", 0, 0};
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) {
+      problems.error(place, "expected name.key=value");
+      continue;
+    }
+    const std::vector<std::string> path =
+        path_of_override(root, word.substr(0, equals), place, problems);
+    const Value value = load_word(word.substr(equals + 1), place.file, problems);
+    if (!path.empty() && value.exists()) root = with_value_at(root, path, value);
+  }
+  return root;
+}
+
+std::string read_session(MappingReader& reader, const std::filesystem::path& path) {
+  const std::string session = reader.optional_text("session", path.stem().string());
+  if (!is_name(session)) {
+    reader.error_at(
+        "session",
+        "the name of a session is 1 to 64 letters, digits, '_' and '-', got '" + session + "'",
+        reader.has("session") ? "" : "without 'session:' it is the name of the file");
+  }
+  return session;
+}
+
+Clock read_clock(MappingReader& reader) {
+  const std::string clock =
+      reader.optional_choice("clock", "realtime", {"realtime", "lockstep", "asap"});
+  if (clock == "lockstep") return Clock::kLockstep;
+  return clock == "asap" ? Clock::kAsap : Clock::kRealtime;
+}
+
+LaunchNode read_node(const Value::Entry& entry, Problems& problems) {
+  LaunchNode node;
+  node.name = entry.key;
+  node.place = entry.key_place;
+  MappingReader reader(entry.value, "node '" + entry.key + "'", problems);
+  if (!is_name(node.name)) {
+    problems.error(node.place, "the name of a node is 1 to 64 letters, digits, '_' and '-', got '" +
+                                   node.name + "'");
+  }
+  const bool sound = reader.ok();
+  node.program = reader.required_choice("node", programs());
+  if (!reader.ok()) node.program.clear();
+  node.required = reader.optional_truth("required", true);
+
+  std::vector<Value::Entry> rest;
+  for (const Value::Entry& key : entry.value.entries()) {
+    if (key.key != "node" && key.key != "required") rest.push_back(key);
+  }
+  if (sound) node.section = Value::mapping(std::move(rest), entry.value.place());
+  return node;
+}
+
+/// What only shows when all nodes are seen together.
+void check_nodes(const std::vector<LaunchNode>& nodes, Problems& problems) {
+  const LaunchNode* sim = nullptr;
+  std::map<std::uint32_t, const LaunchNode*> by_hash;
+  for (const LaunchNode& node : nodes) {
+    if (node.program == "sim_node" && sim != nullptr) {
+      problems.error(node.place,
+                     "a session has one sim_node, and '" + sim->name + "' is one already",
+                     "'" + sim->name + "' is at line " + std::to_string(sim->place.line));
+    }
+    if (node.program == "sim_node" && sim == nullptr) sim = &node;
+    const auto [other, is_new] = by_hash.emplace(name_hash(node.name), &node);
+    if (!is_new) {
+      problems.error(node.place,
+                     "'" + node.name + "' and '" + other->second->name + "' have the same hash",
+                     "rename one of them");
+    }
+  }
+}
+
+Launch read_launch(Value root, const std::string& path, const std::vector<std::string>& overrides,
+                   Problems& problems) {
+  Launch launch;
+  launch.file = path;
+  launch.directory = std::filesystem::path(path).parent_path();
+  if (!root.exists()) return launch;
+
+  if (root.kind() == Value::Kind::kMapping) root = with_overrides(root, overrides, problems);
+  MappingReader reader(root, "launch file", problems);
+  reader.required_integer("cordis", 1, 1);
+  launch.session = read_session(reader, path);
+  launch.domain = static_cast<int>(reader.optional_integer("domain", 0, 0, kHighestDomain));
+  launch.clock = read_clock(reader);
+  const Value nodes = reader.required_mapping("nodes");
+  for (const Value::Entry& entry : nodes.entries())
+    launch.nodes.push_back(read_node(entry, problems));
+  if (nodes.exists() && nodes.entries().empty())
+    reader.error_at("nodes", "a launch file needs at least one node");
+  check_nodes(launch.nodes, problems);
+  reader.finish();
+  return launch;
+}
+
+}  // namespace
+
+const LaunchNode* Launch::find(const std::string& name) const noexcept {
+  const auto found = std::find_if(nodes.begin(), nodes.end(),
+                                  [&](const LaunchNode& node) { return node.name == name; });
+  return found == nodes.end() ? nullptr : &*found;
+}
+
+std::filesystem::path Launch::resolve(const std::string& path) const {
+  return directory / path;
+}
+
+Launch load_launch(const std::string& path, const std::vector<std::string>& overrides,
+                   Problems& problems) {
+  return read_launch(load_file(path, problems), path, overrides, problems);
+}
+
+Launch load_launch_text(const std::string& text, const std::string& name,
+                        const std::vector<std::string>& overrides, Problems& problems) {
+  return read_launch(load_text(text, name, problems), name, overrides, problems);
+}
+
+}  // namespace cordis::config

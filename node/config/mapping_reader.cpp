@@ -1,0 +1,255 @@
+#include "node/config/mapping_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace cordis::config {
+
+namespace {
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// What a required number is taken for after a problem: in range, so that no second problem follows
+/// from it.
+double stand_in(const Range& range) {
+  const Range& r = range;
+  const auto fits = [&](double number) {
+    return (r.lowest_excluded ? number > r.lowest : number >= r.lowest) && number <= r.highest;
+  };
+  if (fits(0.0)) return 0.0;
+  return fits(1.0) ? 1.0 : r.highest;
+}
+
+}  // namespace
+
+MappingReader::MappingReader(Value value, std::string what, Problems& problems)
+    : value_(std::move(value)), what_(std::move(what)), problems_(problems) {
+  readable_ = value_.kind() == Value::Kind::kMapping;
+  ok_ = readable_ || !value_.exists();
+  if (!ok_)
+    problems_.error(value_.place(),
+                    what_ + " must be a mapping of keys, got " + value_.described());
+}
+
+bool MappingReader::has(const std::string& key) const {
+  return value_.find(key).exists();
+}
+
+Place MappingReader::place_of(const std::string& key) const {
+  const Value found = value_.find(key);
+  return found.exists() ? found.place() : value_.place();
+}
+
+std::vector<std::string> MappingReader::present_keys() const {
+  std::vector<std::string> keys;
+  for (const Value::Entry& entry : value_.entries()) keys.push_back(entry.key);
+  return keys;
+}
+
+double MappingReader::required_number(const std::string& key, Range range) {
+  const Value value = take_required(key);
+  return value.exists() ? number_of(value, key, stand_in(range), range) : stand_in(range);
+}
+
+double MappingReader::optional_number(const std::string& key, double fallback, Range range) {
+  const Value value = take(key);
+  return value.exists() ? number_of(value, key, fallback, range) : fallback;
+}
+
+long MappingReader::required_integer(const std::string& key, long lowest, long highest) {
+  const Value value = take_required(key);
+  return value.exists() ? integer_of(value, key, lowest, lowest, highest) : lowest;
+}
+
+long MappingReader::optional_integer(const std::string& key, long fallback, long lowest,
+                                     long highest) {
+  const Value value = take(key);
+  return value.exists() ? integer_of(value, key, fallback, lowest, highest) : fallback;
+}
+
+bool MappingReader::optional_truth(const std::string& key, bool fallback) {
+  const Value value = take(key);
+  if (!value.exists()) return fallback;
+  const std::string& word = value.text();
+  if (!value.quoted() && (word == "true" || word == "True" || word == "TRUE")) return true;
+  if (!value.quoted() && (word == "false" || word == "False" || word == "FALSE")) return false;
+  report(value.place(), name_of(key) + " must be true or false, got " + value.described());
+  return fallback;
+}
+
+std::string MappingReader::required_text(const std::string& key) {
+  const Value value = take_required(key);
+  if (!value.exists()) return {};
+  if (value.kind() == Value::Kind::kScalar && value.text().empty())
+    report(value.place(), name_of(key) + " must not be empty");
+  return text_of(value, key, {});
+}
+
+std::string MappingReader::optional_text(const std::string& key, std::string fallback) {
+  const Value value = take(key);
+  return value.exists() ? text_of(value, key, std::move(fallback)) : fallback;
+}
+
+std::string MappingReader::required_choice(const std::string& key,
+                                           const std::vector<std::string>& choices) {
+  const Value value = take_required(key);
+  return value.exists() ? choice_of(value, key, choices.front(), choices) : choices.front();
+}
+
+std::string MappingReader::optional_choice(const std::string& key, std::string fallback,
+                                           const std::vector<std::string>& choices) {
+  const Value value = take(key);
+  return value.exists() ? choice_of(value, key, std::move(fallback), choices) : fallback;
+}
+
+std::vector<double> MappingReader::required_numbers(const std::string& key, std::size_t length) {
+  const Value value = take_required(key);
+  const std::vector<double> numbers =
+      value.exists() ? numbers_of(value, key, length) : std::vector<double>{};
+  return numbers.empty() ? std::vector<double>(std::max<std::size_t>(length, 1)) : numbers;
+}
+
+std::vector<double> MappingReader::optional_numbers(const std::string& key,
+                                                    std::vector<double> fallback,
+                                                    std::size_t length) {
+  const Value value = take(key);
+  const std::vector<double> numbers =
+      value.exists() ? numbers_of(value, key, length) : std::vector<double>{};
+  return numbers.empty() ? fallback : numbers;
+}
+
+std::vector<long> MappingReader::required_integers(const std::string& key, long lowest,
+                                                   long highest) {
+  const Value value = take_required(key);
+  if (!value.exists()) return {lowest};
+  if (value.kind() != Value::Kind::kSequence)
+    return {integer_of(value, key, lowest, lowest, highest)};
+  if (value.items().empty()) report(value.place(), name_of(key) + " must not be empty");
+  std::vector<long> integers;
+  for (const Value& item : value.items())
+    integers.push_back(integer_of(item, key, lowest, lowest, highest));
+  return integers;
+}
+
+Value MappingReader::required_mapping(const std::string& key) {
+  return take_kind(key, take_required(key), Value::Kind::kMapping, "a mapping of keys");
+}
+
+Value MappingReader::optional_mapping(const std::string& key) {
+  return take_kind(key, take(key), Value::Kind::kMapping, "a mapping of keys");
+}
+
+Value MappingReader::required_sequence(const std::string& key) {
+  return take_kind(key, take_required(key), Value::Kind::kSequence, "a sequence");
+}
+
+Value MappingReader::optional_sequence(const std::string& key) {
+  return take_kind(key, take(key), Value::Kind::kSequence, "a sequence");
+}
+
+Value MappingReader::optional_value(const std::string& key) {
+  return take(key);
+}
+
+void MappingReader::error_at(const std::string& key, std::string message, std::string hint) {
+  report(place_of(key), std::move(message), std::move(hint));
+}
+
+void MappingReader::finish() {
+  constexpr std::size_t kMostListed = 12;
+  for (const Value::Entry& entry : value_.entries()) {
+    if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    if (problems_.all().size() >= Problems::kMostProblems) return;
+    std::string hint = did_you_mean(entry.key, known_);
+    if (hint.empty() && entry.key.find(':') != std::string::npos)
+      hint = "write a space after the ':'";
+    if (hint.empty() && known_.size() <= kMostListed) hint = "known keys: " + listed(known_);
+    report(entry.key_place, "unknown key '" + entry.key + "' in " + what_, hint);
+  }
+}
+
+Value MappingReader::take(const std::string& key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+  return value_.find(key);
+}
+
+Value MappingReader::take_required(const std::string& key) {
+  Value value = take(key);
+  if (!value.exists() && readable_) report(value_.place(), "missing key '" + key + "' in " + what_);
+  return value;
+}
+
+Value MappingReader::take_kind(const std::string& key, Value value, Value::Kind kind,
+                               const char* wanted) {
+  if (!value.exists() || value.kind() == kind) return value;
+  report(value.place(), name_of(key) + " must be " + wanted + ", got " + value.described());
+  return {};
+}
+
+void MappingReader::report(const Place& place, std::string message, std::string hint) {
+  ok_ = false;
+  problems_.error(place, std::move(message), std::move(hint));
+}
+
+std::string MappingReader::name_of(const std::string& key) const {
+  return "'" + key + "' in " + what_;
+}
+
+double MappingReader::number_of(const Value& value, const std::string& key, double fallback,
+                                Range range) {
+  const std::size_t errors_before = problems_.error_count();
+  const double number = read_number(value, name_of(key), fallback, range, problems_);
+  if (problems_.error_count() != errors_before) ok_ = false;
+  return number;
+}
+
+long MappingReader::integer_of(const Value& value, const std::string& key, long fallback,
+                               long lowest, long highest) {
+  const std::size_t errors_before = problems_.error_count();
+  const long number = read_integer(value, name_of(key), fallback, lowest, highest, problems_);
+  if (problems_.error_count() != errors_before) ok_ = false;
+  return number;
+}
+
+std::string MappingReader::text_of(const Value& value, const std::string& key,
+                                   std::string fallback) {
+  if (value.kind() == Value::Kind::kScalar) return value.text();
+  report(value.place(), name_of(key) + " must be a text, got " + value.described());
+  return fallback;
+}
+
+std::string MappingReader::choice_of(const Value& value, const std::string& key,
+                                     std::string fallback,
+                                     const std::vector<std::string>& choices) {
+  const std::string& word = value.text();
+  if (value.kind() == Value::Kind::kScalar &&
+      std::find(choices.begin(), choices.end(), word) != choices.end())
+    return word;
+  report(value.place(),
+         name_of(key) + " must be one of " + listed(choices) + ", got " + value.described(),
+         did_you_mean(word, choices));
+  return fallback;
+}
+
+std::vector<double> MappingReader::numbers_of(const Value& value, const std::string& key,
+                                              std::size_t length) {
+  const bool alone = value.kind() != Value::Kind::kSequence;
+  const std::vector<Value> items = alone ? std::vector<Value>{value} : value.items();
+  std::vector<double> numbers;
+  for (const Value& item : items) numbers.push_back(number_of(item, key, 0.0, {}));
+  if (length == 0 && items.empty()) {
+    report(value.place(), name_of(key) + " must not be empty");
+  } else if (length != 0 && numbers.size() != length) {
+    report(value.place(), name_of(key) + " must have " + std::to_string(length) +
+                              (length == 1 ? " number" : " numbers") + ", got " +
+                              std::to_string(numbers.size()));
+    return {};
+  }
+  return numbers;
+}
+
+}  // namespace cordis::config
