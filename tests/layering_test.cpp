@@ -1,0 +1,118 @@
+// tests/layering_test.cpp -- who may include whom, and which library's headers stand where.
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace cordis {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = CORDIS_SOURCE_DIR;
+const std::vector<std::string> kFolders = {"node", "sim_node", "device_node", "viz_node", "record_node", "cli"};
+
+struct Include {
+  std::string file;  // from the root
+  int line;
+  std::string target;
+  bool quoted;
+};
+
+std::vector<Include> includes_of(const fs::path& path) {
+  static const std::regex kDirective(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+  std::vector<Include> includes;
+  std::ifstream file(path);
+  std::string text;
+  for (int line = 1; std::getline(file, text); ++line) {
+    std::smatch match;
+    if (std::regex_search(text, match, kDirective)) {
+      includes.push_back({fs::relative(path, kRoot).string(), line, match[2], match[1] == "\""});
+    }
+  }
+  return includes;
+}
+
+std::vector<Include> all_includes() {
+  std::vector<Include> includes;
+  for (const std::string& folder : kFolders) {
+    if (!fs::exists(kRoot / folder)) continue;
+    for (auto entry = fs::recursive_directory_iterator(kRoot / folder); entry != fs::recursive_directory_iterator();
+         ++entry) {
+      if (entry->path().filename() == "node_modules") entry.disable_recursion_pending();
+      const std::string extension = entry->path().extension().string();
+      if (extension != ".h" && extension != ".cpp" && extension != ".inl") continue;
+      for (Include& include : includes_of(entry->path())) includes.push_back(std::move(include));
+    }
+  }
+  return includes;
+}
+
+bool begins_with_any(const std::string& text, const std::vector<std::string>& beginnings) {
+  for (const std::string& beginning : beginnings) {
+    if (text.starts_with(beginning)) return true;
+  }
+  return false;
+}
+
+/// Longest prefix first: the first that fits a file says what it may include, by prefix.
+const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
+    {"sim_node/engine/", {"sim_node/engine/"}},
+    {"sim_node/scene/", {"sim_node/scene/", "sim_node/engine/", "node/config/"}},
+    {"sim_node/plan/", {"sim_node/plan/", "sim_node/engine/"}},
+    {"node/config/", {"node/config/"}},
+    {"node/dds/", {"node/dds/", "idl/"}},
+    {"record_node/mcap/", {"record_node/mcap/"}},
+    {"viz_node/render/", {"viz_node/render/"}},
+    {"node/", {"node/", "idl/"}},
+    {"sim_node/", {"sim_node/", "node/", "idl/"}},
+    {"device_node/", {"device_node/", "node/", "idl/"}},
+    {"viz_node/", {"viz_node/", "node/", "idl/"}},
+    {"record_node/", {"record_node/", "node/", "idl/"}},
+    {"cli/", {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/", "record_node/mcap/", "viz_node/render/"}},
+};
+
+TEST(Layering, EveryIncludePointsToItsOwnLevelOrDownwards) {
+  const std::vector<Include> includes = all_includes();
+  ASSERT_GT(includes.size(), 100u) << "the tree was not found";
+  for (const Include& include : includes) {
+    if (!include.quoted) continue;
+    for (const auto& [folder, targets] : kAllowed) {
+      if (!include.file.starts_with(folder)) continue;
+      EXPECT_TRUE(begins_with_any(include.target, targets))
+          << include.file << ":" << include.line << " includes \"" << include.target << "\"";
+      break;
+    }
+  }
+}
+
+TEST(Layering, EveryQuotedIncludeIsSpelledFromTheRoot) {
+  for (const Include& include : all_includes()) {
+    if (!include.quoted || include.target.starts_with("idl/")) continue;  // idl/ is generated
+    EXPECT_TRUE(fs::exists(kRoot / include.target))
+        << include.file << ":" << include.line << " includes \"" << include.target << "\"";
+  }
+}
+
+TEST(Layering, HeadersOfAForeignLibraryStandInOnePlace) {
+  const std::map<std::string, std::vector<std::string>> homes = {
+      {"fastdds/", {"node/dds/"}},         {"fastrtps/", {"node/dds/"}},
+      {"fastcdr/", {"node/dds/"}},         {"yaml-cpp/", {"node/config/"}},
+      {"boost/", {"viz_node/web/server"}}, {"Eigen/", {"sim_node/engine/", "sim_node/plan/"}},
+      {"CLI/", {"cli/"}},
+  };
+  for (const Include& include : all_includes()) {
+    for (const auto& [library, places] : homes) {
+      if (!include.target.starts_with(library)) continue;
+      EXPECT_TRUE(begins_with_any(include.file, places))
+          << include.file << ":" << include.line << " includes <" << include.target << ">";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cordis
