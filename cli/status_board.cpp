@@ -1,0 +1,81 @@
+// cli/status_board.cpp
+#include "cli/status_board.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace cordis::cli {
+namespace {
+
+using Row = std::vector<std::string>;
+
+const Row kHeader{"node", "rate [Hz]", "wanted",      "overruns", "lost", "latency p50 [us]",
+                  "p99",  "max",       "energy drift"};
+
+std::string microseconds(double seconds) {
+  return fmt::format("{:.0f}", seconds * 1e6);
+}
+
+Row row_of(const std::string& node, const msg::NodeStatus* status) {
+  if (status == nullptr) return {node, "no status was received"};
+  Row row{node};
+  const bool paced = status->target_rate_hz() > 0.0;
+  const bool simulates = status->kind() == "sim_node";
+  row.push_back(paced || status->ticks() > 0 ? fmt::format("{:.1f}", status->mean_rate_hz()) : "-");
+  row.push_back(paced ? fmt::format("{:g}", status->target_rate_hz()) : "-");
+  row.push_back(paced ? std::to_string(status->overruns()) : "-");
+  row.push_back(std::to_string(status->dropped()));
+  const bool timed = status->latency_count() > 0;
+  row.push_back(timed ? microseconds(status->latency_p50_s()) : "-");
+  row.push_back(timed ? microseconds(status->latency_p99_s()) : "-");
+  row.push_back(timed ? microseconds(status->latency_max_s()) : "-");
+  row.push_back(simulates ? fmt::format("{:.2g}", status->energy_drift()) : "-");
+  return row;
+}
+
+std::string aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(kHeader.size(), 0);
+  for (const Row& row : rows) {
+    if (row.size() < kHeader.size()) continue;  // a sentence, not cells
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    text += fmt::format("{:<{}}", row[0], widths[0]);
+    for (std::size_t c = 1; c < row.size(); ++c) {
+      text += fmt::format("  {:>{}}", row[c], row.size() < kHeader.size() ? 0 : widths[c]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+bool StatusBoard::put(const msg::NodeStatus& status) {
+  if (status.run() < first_run_) return false;
+  newest_[status.node()] = status;
+  return true;
+}
+
+const msg::NodeStatus* StatusBoard::find(const std::string& node) const {
+  const auto found = newest_.find(node);
+  return found == newest_.end() ? nullptr : &found->second;
+}
+
+std::string status_table(const std::vector<std::string>& nodes, const StatusBoard& board) {
+  std::vector<Row> rows{kHeader};
+  std::string state;
+  for (const std::string& node : nodes) {
+    const msg::NodeStatus* status = board.find(node);
+    rows.push_back(row_of(node, status));
+    if (status != nullptr && status->kind() == "sim_node") {
+      state +=
+          fmt::format("state hash {:016x} after {} steps\n", status->state_hash(), status->step());
+    }
+  }
+  return aligned(rows) + state;
+}
+
+}  // namespace cordis::cli

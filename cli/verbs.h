@@ -1,0 +1,11 @@
+// cli/verbs.h -- the verbs of the `cordis` program; each has a file of its own, named after it.
+#pragma once
+
+#include "cli/command_line.h"
+
+namespace cordis::cli {
+
+void add_run_verb(CommandLine& line);
+void add_test_verb(CommandLine& line);
+
+}  // namespace cordis::cli
