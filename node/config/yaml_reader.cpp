@@ -275,12 +275,17 @@ std::string hint_for_fault(const SourceText& source, const TreeBuilder& builder,
   }
   const std::string_view line = source.line(line_index);
   if (const std::optional<Place> bracket = builder.open_bracket()) {
-    const bool index_follows = byte < line.size() && line[byte] == '[';
+    const bool index_follows =
+        byte > 0 && byte < line.size() && line[byte] == '[' &&
+        std::string_view(" ,[{").find(line[byte - 1]) == std::string_view::npos;
     if (index_follows)
       return "inside brackets, put quotes around a word with an index: \"name[3]\"";
-    const std::string opened = builder.open_bracket_is_mapping() ? "'{'" : "'['";
-    return "the " + opened + " at line " + std::to_string(bracket->line) + ", column " +
-           std::to_string(bracket->column) + " is still open";
+    std::string hint = builder.open_bracket_is_mapping() ? "the '{'" : "the '['";
+    if (bracket->line > 0) {
+      hint.append(" at line ").append(std::to_string(bracket->line));
+      hint.append(", column ").append(std::to_string(bracket->column));
+    }
+    return hint + " is still open";
   }
   if (byte < line.size() && line[byte] == ':')
     return "check the indentation; a text with a ':' in it needs quotes";
@@ -332,7 +337,7 @@ std::pair<std::string, std::string> bytes_or_reason(const std::string& path) {
   if (stream.bad()) return {{}, "reading failed"};
   bytes.resize(static_cast<std::size_t>(stream.gcount()));
   if (bytes.size() > kMostBytes) return {{}, "it is larger than 16 MiB"};
-  return {std::move(bytes), {}};
+  return {bytes, {}};
 }
 
 /// The file of the same folder whose name is nearest, for a hint.

@@ -1,0 +1,207 @@
+#include "node/config/launch.h"
+
+#include <gtest/gtest.h>
+
+namespace cordis::config {
+namespace {
+
+constexpr const char* kLaunch =
+    "cordis: 1\n"
+    "session: plucked_string\n"
+    "domain: 42\n"
+    "clock: lockstep\n"
+    "nodes:\n"
+    "  sim:      {node: sim_node, scene: scenes/plucked_string.yaml}\n"
+    "  keyboard: {node: device_node, device: devices/keyboard.yaml, driver: mock, hand: {mass_kg: "
+    "1}}\n"
+    "  view:     {node: viz_node, port: 8080, required: false}\n";
+
+TEST(Launch, ReadsSessionAndNodesInTheOrderOfTheFile) {
+  Problems problems;
+
+  const Launch launch = load_launch_text(kLaunch, "some/where/l.yaml", {}, problems);
+
+  ASSERT_EQ(problems.text(), "");
+  EXPECT_EQ(launch.session, "plucked_string");
+  EXPECT_EQ(launch.domain, 42);
+  EXPECT_EQ(launch.clock, Clock::kLockstep);
+  ASSERT_EQ(launch.nodes.size(), 3u);
+  EXPECT_EQ(launch.nodes[0].name, "sim");
+  EXPECT_EQ(launch.nodes[0].program, "sim_node");
+  EXPECT_EQ(launch.nodes[0].place.line, 6);
+  EXPECT_TRUE(launch.nodes[0].required);
+  EXPECT_FALSE(launch.nodes[2].required);
+  const LaunchNode* keyboard = launch.find("keyboard");
+  ASSERT_NE(keyboard, nullptr);
+  EXPECT_EQ(keyboard->section.find("driver").text(), "mock");
+  EXPECT_FALSE(keyboard->section.find("node").exists());
+  EXPECT_FALSE(launch.find("view")->section.find("required").exists());
+  EXPECT_EQ(launch.find("nobody"), nullptr);
+  EXPECT_EQ(launch.resolve("devices/keyboard.yaml").string(), "some/where/devices/keyboard.yaml");
+  EXPECT_EQ(launch.resolve("/devices/keyboard.yaml").string(), "/devices/keyboard.yaml");
+}
+
+TEST(Launch, HasDefaults) {
+  Problems problems;
+
+  const Launch launch = load_launch_text("cordis: 1\nnodes: {sim: {node: sim_node}}\n",
+                                         "first_try.yaml", {}, problems);
+
+  EXPECT_EQ(problems.text(), "");
+  EXPECT_EQ(launch.session, "first_try");
+  EXPECT_EQ(launch.domain, 0);
+  EXPECT_EQ(launch.clock, Clock::kRealtime);
+  EXPECT_EQ(launch.resolve("x.yaml").string(), "x.yaml");
+}
+
+TEST(Launch, TakesOverridesOfTheCommandLine) {
+  Problems problems;
+
+  const Launch launch = load_launch_text(
+      kLaunch, "l.yaml",
+      {"keyboard.driver=script", "keyboard.hand.mass_kg=0.5", "keyboard.keys=[1, 2]",
+       "view.title=a=b", "clock=asap", "domain=7", "session=mine"},
+      problems);
+
+  ASSERT_EQ(problems.text(), "");
+  const Value section = launch.find("keyboard")->section;
+  EXPECT_EQ(section.find("driver").text(), "script");
+  EXPECT_EQ(section.find("driver").place().file, "'keyboard.driver=script' on the command line");
+  EXPECT_EQ(section.find("device").text(), "devices/keyboard.yaml");
+  EXPECT_EQ(section.find("hand").find("mass_kg").text(), "0.5");
+  EXPECT_EQ(section.find("keys").items().size(), 2u);
+  EXPECT_EQ(launch.find("view")->section.find("title").text(), "a=b");
+  EXPECT_EQ(launch.clock, Clock::kAsap);
+  EXPECT_EQ(launch.domain, 7);
+  EXPECT_EQ(launch.session, "mine");
+}
+
+struct BadOverride {
+  const char* word;
+  const char* message;
+  const char* hint;
+};
+
+class BadOverrides : public testing::TestWithParam<BadOverride> {};
+
+TEST_P(BadOverrides, AreProblemsOfTheCommandLine) {
+  Problems problems;
+
+  load_launch_text(kLaunch, "l.yaml", {GetParam().word}, problems);
+
+  ASSERT_EQ(problems.all().size(), 1u) << problems.text();
+  const Problem& problem = problems.all()[0];
+  EXPECT_EQ(problem.place.file,
+            std::string("'").append(GetParam().word).append("' on the command line"));
+  EXPECT_EQ(problem.message, GetParam().message);
+  EXPECT_EQ(problem.hint, GetParam().hint);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Launch, BadOverrides,
+    testing::Values(
+        BadOverride{"keybord.driver=x", "no node is named 'keybord'", "did you mean 'keyboard'?"},
+        BadOverride{"clok=asap", "no node is named 'clok'", "did you mean 'clock'?"},
+        BadOverride{"clock=fast",
+                    "'clock' in launch file must be one of realtime, lockstep, asap, got 'fast'",
+                    ""},
+        BadOverride{"domain=102", "'domain' in launch file must be between 0 and 101, got 102", ""},
+        BadOverride{"session=a b",
+                    "the name of a session is 1 to 64 letters, digits, '_' and '-', got 'a b'", ""},
+        BadOverride{"sim=x", "expected a key of node 'sim'", "write sim.key=value"},
+        BadOverride{"sim", "expected name.key=value", ""},
+        BadOverride{"sim..x=1", "expected name.key=value, got 'sim..x=...'", ""},
+        BadOverride{"=1", "expected name.key=value, got '=...'", ""},
+        BadOverride{"sim.x=[1", "YAML syntax: expected ',' or ']'", "the '[' is still open"},
+        BadOverride{"sim.node=sin_node",
+                    "'node' in node 'sim' must be one of sim_node, device_node, viz_node, "
+                    "record_node, got 'sin_node'",
+                    "did you mean 'sim_node'?"}));
+
+struct BadLaunch {
+  const char* text;
+  const char* problem;  // place and message of the first
+  const char* hint;
+};
+
+class BadLaunches : public testing::TestWithParam<BadLaunch> {};
+
+TEST_P(BadLaunches, AreProblemsOfTheirPlace) {
+  Problems problems;
+
+  load_launch_text(GetParam().text, "l.yaml", {}, problems);
+
+  ASSERT_EQ(problems.in_order().size(), 1u) << problems.text();
+  const std::string text = problems.text();
+  EXPECT_EQ(text.substr(0, text.find('\n')), GetParam().problem);
+  EXPECT_EQ(problems.all()[0].hint, GetParam().hint);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Launch, BadLaunches,
+    testing::Values(
+        BadLaunch{"", "l.yaml:1:1: error: launch file must be a mapping of keys, got nothing", ""},
+        BadLaunch{"nodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:1:1: error: missing key 'cordis' in launch file", ""},
+        BadLaunch{"cordis: 2\nnodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:1:9: error: 'cordis' in launch file must be between 1 and 1, got 2", ""},
+        BadLaunch{"cordis: 1\n", "l.yaml:1:1: error: missing key 'nodes' in launch file", ""},
+        BadLaunch{"cordis: 1\nnodes: {}\n",
+                  "l.yaml:2:8: error: a launch file needs at least one node", ""},
+        BadLaunch{
+            "cordis: 1\nnodes: [sim]\n",
+            "l.yaml:2:8: error: 'nodes' in launch file must be a mapping of keys, got a sequence",
+            ""},
+        BadLaunch{"cordis: 1\nsession: \"*\"\nnodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:2:10: error: the name of a session is 1 to 64 letters, digits, '_' and "
+                  "'-', got '*'",
+                  ""},
+        BadLaunch{"cordis: 1\ndomain: -1\nnodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:2:9: error: 'domain' in launch file must be between 0 and 101, got -1",
+                  ""},
+        BadLaunch{"cordis: 1\nclok: asap\nnodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:2:1: error: unknown key 'clok' in launch file", "did you mean 'clock'?"},
+        BadLaunch{"cordis: 1\nnodes:\n  sim: {scene: x}\n",
+                  "l.yaml:3:8: error: missing key 'node' in node 'sim'", ""},
+        BadLaunch{"cordis: 1\nnodes:\n  sim: sim_node\n",
+                  "l.yaml:3:8: error: node 'sim' must be a mapping of keys, got 'sim_node'", ""},
+        BadLaunch{"cordis: 1\nnodes:\n  a b: {node: sim_node}\n",
+                  "l.yaml:3:3: error: the name of a node is 1 to 64 letters, digits, '_' and '-', "
+                  "got 'a b'",
+                  ""},
+        BadLaunch{"cordis: 1\nnodes:\n  view: {node: vis_node}\n",
+                  "l.yaml:3:16: error: 'node' in node 'view' must be one of sim_node, device_node, "
+                  "viz_node, record_node, got 'vis_node'",
+                  "did you mean 'viz_node'?"},
+        BadLaunch{"cordis: 1\nnodes:\n  a: {node: sim_node}\n  b: {node: sim_node}\n",
+                  "l.yaml:4:3: error: a session has one sim_node, and 'a' is one already",
+                  "'a' is at line 3"},
+        BadLaunch{"cordis: 1\nnodes:\n  a: {node: sim_node}\n  a: {node: viz_node}\n",
+                  "l.yaml:4:3: error: duplicate key 'a'", "first defined at line 3"},
+        BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, required: no}\n",
+                  "l.yaml:3:33: error: 'required' in node 'a' must be true or false, got 'no'",
+                  ""}));
+
+TEST(Launch, RefusesNodesWhoseNamesHaveTheSameHash) {
+  // two names of letters with the same FNV-1a value
+  Problems problems;
+
+  load_launch_text(
+      "cordis: 1\nnodes:\n  costarring: {node: viz_node}\n  liquid: {node: viz_node}\n", "l.yaml",
+      {}, problems);
+
+  ASSERT_EQ(problems.all().size(), 1u);
+  EXPECT_EQ(problems.all()[0].message, "'liquid' and 'costarring' have the same hash");
+}
+
+TEST(Launch, ThatIsMissingIsOneProblem) {
+  Problems problems;
+
+  const Launch launch = load_launch("no_such_file.yaml", {"sim.x=1"}, problems);
+
+  EXPECT_EQ(launch.nodes.size(), 0u);
+  EXPECT_EQ(problems.text(), "no_such_file.yaml: error: cannot be read: No such file or directory");
+}
+
+}  // namespace
+}  // namespace cordis::config
