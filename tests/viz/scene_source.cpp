@@ -1,0 +1,282 @@
+// tests/viz/scene_source.cpp -- stands for sim_node and a device before viz_node: a scene that
+// moves by formula.
+//
+// usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--bad-frames]
+//        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "idl/scene.h"
+#include "node/dds/participant.h"
+#include "node/dds/writer.h"
+#include "node/node_main.h"
+#include "node/paced_loop.h"
+#include "node/status.h"
+#include "node/stop.h"
+#include "node/time.h"
+#include "tests/support/test_domain.h"
+
+namespace cordis {
+namespace {
+
+constexpr double kStepRateHz = 1000.0;
+constexpr double kFrameRateHz = 25.0;
+constexpr std::uint32_t kStepsPerFrame = 40;
+constexpr std::uint8_t kMass = 0;
+constexpr std::uint8_t kFixed = 1;
+constexpr std::uint8_t kPort = 2;
+
+struct Options {
+  int domain = -1;
+  std::string session = "viz_test";
+  std::string scene = "string";
+  std::size_t mats = 60;
+  bool bad_frames = false;
+  bool hold_domain = false;
+};
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&]() -> std::string {
+      if (++i == argc) throw std::invalid_argument(word + " needs a value");
+      return argv[i];
+    };
+    if (word == "--domain") {
+      options.domain = std::stoi(value());
+    } else if (word == "--session") {
+      options.session = value();
+    } else if (word == "--scene") {
+      options.scene = value();
+    } else if (word == "--mats") {
+      options.mats = std::stoul(value());
+    } else if (word == "--bad-frames") {
+      options.bad_frames = true;
+    } else if (word == "--hold-domain") {
+      options.hold_domain = true;
+    } else {
+      throw std::invalid_argument("unknown option " + word);
+    }
+  }
+  return options;
+}
+
+/// A scene whose MATs swing along y: y(t) = sum of two modes at the place of each.
+struct MovingScene {
+  msg::SceneDescription description;
+  std::vector<float> rest_m;  // x, y, z of each MAT
+  std::vector<float> mode_a;  // share of the first mode
+  std::vector<float> mode_b;  // share of the second
+  double amplitude_m = 0.0;
+  std::uint32_t port_mat = 0;
+
+  double height(std::size_t mat, double t) const {
+    return amplitude_m * (mode_a[mat] * std::cos(2.0 * std::numbers::pi * 0.9 * t) +
+                          0.4 * mode_b[mat] * std::sin(2.0 * std::numbers::pi * 1.7 * t));
+  }
+};
+
+void add_mat(MovingScene& scene, double x, double z, std::uint8_t kind, float radius, double u,
+             double v) {
+  const double pi = std::numbers::pi;
+  scene.rest_m.insert(scene.rest_m.end(), {static_cast<float>(x), 0.0F, static_cast<float>(z)});
+  scene.description.mat_kind().push_back(kind);
+  scene.description.mat_radius_m().push_back(radius);
+  scene.description.mat_mass_kg().push_back(kind == kMass ? 0.001F : 0.0F);
+  scene.mode_a.push_back(static_cast<float>(std::sin(pi * u) * std::sin(pi * v)));
+  scene.mode_b.push_back(static_cast<float>(std::sin(2.0 * pi * u) * std::sin(pi * v)));
+}
+
+void join(MovingScene& scene, std::size_t a, std::size_t b) {
+  scene.description.link_ends().push_back(static_cast<std::uint32_t>(a));
+  scene.description.link_ends().push_back(static_cast<std::uint32_t>(b));
+}
+
+MovingScene string_scene(std::size_t count) {
+  MovingScene scene;
+  scene.description.space(2);
+  scene.amplitude_m = 0.03;
+  scene.port_mat = static_cast<std::uint32_t>(count / 5);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double u = static_cast<double>(i) / static_cast<double>(count - 1);
+    const bool end = i == 0 || i + 1 == count;
+    add_mat(scene, 0.65 * u - 0.325, 0.0, end ? kFixed : (i == scene.port_mat ? kPort : kMass),
+            0.0F, u, 0.5);
+    if (i > 0) join(scene, i - 1, i);
+  }
+  return scene;
+}
+
+MovingScene grid_scene(std::size_t count) {
+  MovingScene scene;
+  const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
+  const double pitch = 0.4 / static_cast<double>(side - 1);
+  scene.description.space(3);
+  scene.amplitude_m = 0.06;
+  scene.port_mat = static_cast<std::uint32_t>((side / 3) * side + side / 3);
+  for (std::size_t i = 0; i < side * side; ++i) {
+    const std::size_t row = i / side;
+    const std::size_t column = i % side;
+    const bool edge = row == 0 || column == 0 || row + 1 == side || column + 1 == side;
+    const double u = static_cast<double>(column) / static_cast<double>(side - 1);
+    const double v = static_cast<double>(row) / static_cast<double>(side - 1);
+    add_mat(scene, 0.4 * u - 0.2, 0.4 * v - 0.2,
+            edge ? kFixed : (i == scene.port_mat ? kPort : kMass), static_cast<float>(0.35 * pitch),
+            u, v);
+    if (column > 0) join(scene, i - 1, i);
+    if (row > 0) join(scene, i - side, i);
+  }
+  return scene;
+}
+
+void name_parts(MovingScene& scene, const std::string& name, std::uint64_t run) {
+  msg::SceneDescription& description = scene.description;
+  msg::NamedRange matter;
+  matter.name(name);
+  matter.count(static_cast<std::uint32_t>(description.mat_kind().size()));
+  description.matter({matter});
+  msg::PortDescription port;
+  port.name("finger");
+  port.device("keyboard");
+  port.device_id(node::id_of("keyboard"));
+  port.mat(scene.port_mat);
+  port.axes({0});
+  description.ports({port});
+  for (const auto& [signal, unit] :
+       {std::pair{"finger position", "m"}, {"finger force", "N"}, {"energy", "J"}}) {
+    msg::SignalDescription described;
+    described.name(signal);
+    described.unit(unit);
+    description.signals().push_back(described);
+  }
+  description.run(run);
+  description.version(1);
+  description.name(name);
+  description.scene_file("scenes/" + name + ".yaml");
+  description.step_rate_hz(kStepRateHz);
+  description.gesture_rate_hz(kStepRateHz);
+  description.frame_rate_hz(kFrameRateHz);
+}
+
+/// Everything that sim_node writes but the description.
+class Publisher {
+ public:
+  Publisher(dds::Participant& participant, MovingScene& scene)
+      : frame_writer_(participant, dds::Topic::kFrame),
+        signal_writer_(participant, dds::Topic::kSignals),
+        scene_(scene) {}
+
+  void publish_frame(std::uint64_t number, std::uint64_t step) {
+    const double t = static_cast<double>(step) / kStepRateHz;
+    frame_.run(scene_.description.run());
+    frame_.frame(number);
+    frame_.step(step);
+    frame_.simulated_s(t);
+    frame_.position_m(scene_.rest_m);
+    for (std::size_t i = 0; i < scene_.mode_a.size(); ++i) {
+      frame_.position_m()[3 * i + 1] = static_cast<float>(scene_.height(i, t));
+    }
+    frame_.time_nsec(node::monotonic_nsec());
+    frame_writer_.write(frame_);
+  }
+
+  void publish_bad_frame() {
+    frame_.position_m().pop_back();
+    frame_writer_.write(frame_);
+  }
+
+  void publish_signals(std::uint64_t batch, std::uint64_t first_step) {
+    signals_.run(scene_.description.run());
+    signals_.batch(batch);
+    signals_.first_step(first_step);
+    signals_.stride_steps(1);
+    signals_.signal_count(3);
+    signals_.value().clear();
+    for (std::uint32_t i = 0; i < kStepsPerFrame; ++i) {
+      const double t = static_cast<double>(first_step + i) / kStepRateHz;
+      const double y = scene_.height(scene_.port_mat, t);
+      const double force = -90.0 * y + 0.15 * std::sin(2.0 * std::numbers::pi * 140.0 * t);
+      signals_.value().insert(signals_.value().end(), {y, force, 0.012 * std::exp(-0.02 * t)});
+    }
+    signal_writer_.write(signals_);
+  }
+
+ private:
+  dds::Writer<msg::SceneFrame> frame_writer_;
+  dds::Writer<msg::SceneSignals> signal_writer_;
+  MovingScene& scene_;
+  msg::SceneFrame frame_;
+  msg::SceneSignals signals_;
+};
+
+int publish(const Options& options) {
+  const auto run = static_cast<std::uint64_t>(node::monotonic_nsec());
+  dds::Participant sim({options.domain, options.session, "sim", false});
+  dds::Participant keyboard({options.domain, options.session, "keyboard", false});
+  MovingScene scene =
+      options.scene == "grid" ? grid_scene(options.mats) : string_scene(options.mats);
+  name_parts(scene, options.scene, run);
+  dds::Writer<msg::SceneDescription> description_writer(sim, dds::Topic::kDescription);
+  description_writer.write(scene.description);
+
+  std::atomic<std::uint64_t> step{0};
+  const auto speak = [&step](msg::NodeStatus& status) {
+    status.phase(node::stop_requested() ? "stopped" : "running");
+    status.target_rate_hz(kStepRateHz);
+    status.ticks(step);
+    status.step(step);
+    status.overruns(3);
+    status.energy_j(0.012);
+    status.energy_drift(2.5e-9);
+  };
+  const node::StatusPublisher sim_status(sim, "sim_node", run, speak);
+  const node::StatusPublisher keyboard_status(keyboard, "device_node", run,
+                                              [&](msg::NodeStatus& status) {
+                                                speak(status);
+                                                status.latency_count(step);
+                                                status.latency_p50_s(92e-6);
+                                                status.latency_p99_s(310e-6);
+                                                status.latency_max_s(1.9e-3);
+                                              });
+
+  Publisher publisher(sim, scene);
+  node::PacedLoop loop(kFrameRateHz);
+  for (std::uint64_t frame = 1; !node::stop_requested(); ++frame) {
+    loop.wait();
+    step += kStepsPerFrame;
+    publisher.publish_frame(frame, step);
+    publisher.publish_signals(frame, step - kStepsPerFrame + 1);
+    if (options.bad_frames && frame % 5 == 0) publisher.publish_bad_frame();
+  }
+  return 0;
+}
+
+int hold_domain() {
+  std::printf("%d\n", test::own_domain());
+  std::fflush(stdout);
+  while (!node::wait_for_stop(std::chrono::hours(1))) {
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace cordis
+
+int main(int argc, char** argv) {
+  try {
+    const cordis::Options options = cordis::read_options(argc, argv);
+    cordis::node::install_stop_signals();
+    return options.hold_domain ? cordis::hold_domain() : cordis::publish(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "scene_source: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,97 @@
+// viz_node/frame_encoder.cpp
+#include "viz_node/frame_encoder.h"
+
+#include <bit>
+#include <cstring>
+
+namespace cordis::viz {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "the protocol is little endian, and positions are sent as they lie in memory");
+
+/// Writes values one behind the other; the caller has reserved the room.
+class Packer {
+ public:
+  explicit Packer(void* begin) noexcept : at_(static_cast<std::uint8_t*>(begin)) {}
+
+  template <class Value>
+  Packer& put(Value value) noexcept {
+    std::memcpy(at_, &value, sizeof value);
+    at_ += sizeof value;
+    return *this;
+  }
+
+  template <class Container>
+  Packer& put_all(const Container& values) noexcept {
+    const std::size_t bytes = values.size() * sizeof(typename Container::value_type);
+    if (bytes != 0) std::memcpy(at_, values.data(), bytes);
+    at_ += bytes;
+    return *this;
+  }
+
+  Packer& put_prefix(MessageType type, std::size_t header_bytes) noexcept {
+    return put(kMagic)
+        .put(kProtocolVersion)
+        .put(static_cast<std::uint8_t>(type))
+        .put(static_cast<std::uint16_t>(header_bytes));
+  }
+
+ private:
+  std::uint8_t* at_;
+};
+
+}  // namespace
+
+std::array<std::uint8_t, kFrameHeaderBytes> encode(const FrameHeader& header) noexcept {
+  std::array<std::uint8_t, kFrameHeaderBytes> bytes{};
+  Packer(bytes.data())
+      .put_prefix(MessageType::kFrame, kFrameHeaderBytes)
+      .put(header.sequence)
+      .put(header.scene)
+      .put(header.frame)
+      .put(header.step)
+      .put(header.taken_nsec)
+      .put(header.sent_nsec)
+      .put(header.simulated_s)
+      .put(header.mat_count)
+      .put(header.link_state_count)
+      .put(header.dropped);
+  return bytes;
+}
+
+std::string encode_signals(const msg::SceneSignals& signals, std::uint32_t scene,
+                           double step_rate_hz) {
+  const std::uint32_t columns = signals.signal_count();
+  const auto rows = static_cast<std::uint32_t>(signals.value().size() / columns);
+  std::string bytes(kSignalsHeaderBytes + signals.value().size() * sizeof(float), '\0');
+  Packer packer(bytes.data());
+  packer.put_prefix(MessageType::kSignals, kSignalsHeaderBytes)
+      .put(scene)
+      .put(columns)
+      .put(rows)
+      .put(std::uint32_t{signals.dropped_rows()})
+      .put(std::uint64_t{signals.first_step()})
+      .put(static_cast<double>(signals.first_step()) / step_rate_hz)
+      .put(static_cast<double>(signals.stride_steps()) / step_rate_hz);
+  for (const double value : signals.value()) packer.put(static_cast<float>(value));
+  return bytes;
+}
+
+std::string encode_topology(const msg::SceneDescription& description, std::uint32_t scene) {
+  const auto mats = static_cast<std::uint32_t>(description.mat_kind().size());
+  const auto links = static_cast<std::uint32_t>(description.link_ends().size() / 2);
+  std::string bytes(kTopologyHeaderBytes + 5 * std::size_t{mats} + 8 * std::size_t{links}, '\0');
+  Packer(bytes.data())
+      .put_prefix(MessageType::kTopology, kTopologyHeaderBytes)
+      .put(scene)
+      .put(mats)
+      .put(links)
+      .put(std::uint32_t{0})
+      .put_all(description.mat_radius_m())
+      .put_all(description.link_ends())
+      .put_all(description.mat_kind());
+  return bytes;
+}
+
+}  // namespace cordis::viz

@@ -1,0 +1,46 @@
+// viz_node/frame_encoder.h -- the binary messages of the page's protocol (viz_node/web/README.md).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "idl/scene.h"
+
+namespace cordis::viz {
+
+inline constexpr std::uint32_t kMagic = 0x31534443;  // the bytes "CDS1"
+inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::size_t kFrameHeaderBytes = 72;
+inline constexpr std::size_t kSignalsHeaderBytes = 48;
+inline constexpr std::size_t kTopologyHeaderBytes = 24;
+
+enum class MessageType : std::uint8_t { kFrame = 1, kSignals = 2, kTopology = 3 };
+
+/// What stands before the positions of a frame. Positions and link states follow as they came over
+/// DDS.
+struct FrameHeader {
+  std::uint32_t sequence = 0;  ///< of viz_node, +1 per frame; what a page acknowledges
+  std::uint32_t scene = 0;     ///< the description it belongs to
+  std::uint64_t frame = 0;     ///< of sim_node
+  std::uint64_t step = 0;
+  std::int64_t taken_nsec = 0;  ///< CLOCK_MONOTONIC when sim_node took it
+  std::int64_t sent_nsec = 0;   ///< CLOCK_MONOTONIC when viz_node sent it
+  double simulated_s = 0.0;
+  std::uint32_t mat_count = 0;
+  std::uint32_t link_state_count = 0;
+  std::uint32_t dropped = 0;  ///< frames that this client was not sent, since it came
+};
+
+std::array<std::uint8_t, kFrameHeaderBytes> encode(const FrameHeader& header) noexcept;
+
+/// A batch of signals: header, then rows x signals float32. The batch has been checked
+/// (scene_check.h).
+std::string encode_signals(const msg::SceneSignals& signals, std::uint32_t scene,
+                           double step_rate_hz);
+
+/// What a page needs once per scene: radii, link ends, kinds. The description has been checked.
+std::string encode_topology(const msg::SceneDescription& description, std::uint32_t scene);
+
+}  // namespace cordis::viz

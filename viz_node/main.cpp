@@ -1,0 +1,81 @@
+// viz_node/main.cpp -- shows a session: reads DDS, serves the page. Never in the loop: kill it and
+// start it again at will.
+#include <chrono>
+
+#include <spdlog/spdlog.h>
+
+#include "node/node_main.h"
+#include "node/status.h"
+#include "node/stop.h"
+#include "node/time.h"
+#include "viz_node/scene_listener.h"
+#include "viz_node/scene_mirror.h"
+#include "viz_node/viz_config.h"
+#include "viz_node/web/server.h"
+#include "viz_node/web/static_pages.h"
+
+namespace {
+
+using namespace cordis;
+
+constexpr std::int64_t kFreshNsec = 1'000'000'000;
+
+void fill(msg::NodeStatus& status, const viz::SceneMirror& mirror, const viz::WebServer& server,
+          double rate_hz) {
+  const viz::MirrorFigures seen = mirror.figures();
+  const viz::ServerFigures shown = server.figures();
+  const bool fresh =
+      seen.last_frame_nsec != 0 && node::monotonic_nsec() - seen.last_frame_nsec < kFreshNsec;
+  status.phase(fresh ? "running" : "waiting");
+  if (node::stop_requested()) status.phase("stopped");
+  status.text(server.url());
+  status.target_rate_hz(seen.frame_rate_hz > 0.0 ? std::min(rate_hz, seen.frame_rate_hz) : rate_hz);
+  status.ticks(seen.frames);
+  status.dropped(seen.refused + seen.lost);
+  status.latency_count(shown.drawn);
+  status.latency_p50_s(shown.latency_p50_s);
+  status.latency_p99_s(shown.latency_p99_s);
+  status.latency_max_s(shown.latency_max_s);
+}
+
+void warn_about(const viz::VizConfig& config, const viz::WebServer& server) {
+  if (!server.page_built())
+    spdlog::warn("page not built: run `npm ci` in viz_node/web and build again");
+  if (!config.address.starts_with("127.") && config.address != "::1")
+    spdlog::warn("{} is open to other machines, without a password", config.address);
+}
+
+int run(const node::NodeStart& start, config::Problems& problems) {
+  const viz::VizConfig config = viz::read_viz_config(*start.node, problems);
+  node::report(problems);
+  if (start.check_only) return 0;
+
+  const dds::Membership membership = start.membership();
+  node::claim("cordis/" + std::to_string(membership.domain) + "/" + membership.session + "/" +
+                  membership.node,
+              "session '" + membership.session + "' already has a node named '" + membership.node +
+                  "' in domain " + std::to_string(membership.domain));
+  dds::Participant participant(membership);
+  viz::SceneMirror mirror(config.rate_hz);
+  viz::WebServer server({.node = membership.node,
+                         .session = membership.session,
+                         .address = config.address,
+                         .port = config.port,
+                         .folder = viz::page_folder()},
+                        mirror);
+  const viz::SceneListener listener(participant, mirror);
+  const node::StatusPublisher publisher(
+      participant, "viz_node", start.run,
+      [&](msg::NodeStatus& status) { fill(status, mirror, server, config.rate_hz); });
+  warn_about(config, server);
+  spdlog::info("page at {}", server.url());
+  while (!node::wait_for_stop(std::chrono::hours(1))) {
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return cordis::node::node_main(argc, argv, "viz_node", run);
+}

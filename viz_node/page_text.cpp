@@ -1,0 +1,150 @@
+// viz_node/page_text.cpp
+#include "viz_node/page_text.h"
+
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "viz_node/frame_encoder.h"
+
+namespace cordis::viz {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kLongestText = 300;  // of a text that another process wrote
+constexpr std::size_t kMostNames = 2000;   // names of matter, links and ports that a page is told
+
+std::string clipped(const std::string& text) {
+  return text.substr(0, kLongestText);
+}
+
+/// Texts of other processes may be anything: what is not UTF-8 is replaced, a number that is not
+/// finite becomes null.
+std::string written(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Json ranges(const std::vector<msg::NamedRange>& named) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(named.size(), kMostNames); ++i) {
+    list.push_back({{"name", clipped(named[i].name())},
+                    {"first", named[i].first()},
+                    {"count", named[i].count()}});
+  }
+  return list;
+}
+
+Json ports(const std::vector<msg::PortDescription>& described) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(described.size(), kMostNames); ++i) {
+    const auto& port = described[i];
+    list.push_back({{"name", clipped(port.name())},
+                    {"device", clipped(port.device())},
+                    {"role", port.role() == 0 ? "mass" : "liaison"},
+                    {"mat", port.mat()},
+                    {"axes", port.axes()}});
+  }
+  return list;
+}
+
+std::string state_of(const HeardNode& node, std::int64_t now_nsec) {
+  const std::string& phase = node.status.phase();
+  if (phase == "stopped" || phase == "failed") return phase;
+  return now_nsec - node.heard_nsec > kLostAfterNsec ? "lost" : clipped(phase);
+}
+
+Json node_json(const HeardNode& node, std::int64_t now_nsec) {
+  const msg::NodeStatus& s = node.status;
+  return {{"name", clipped(s.node())},
+          {"kind", clipped(s.kind())},
+          {"run", std::to_string(s.run())},
+          {"state", state_of(node, now_nsec)},
+          {"text", clipped(s.text())},
+          {"heard_s", static_cast<double>(now_nsec - node.heard_nsec) * 1e-9},
+          {"target_rate_hz", s.target_rate_hz()},
+          {"reached_rate_hz", s.reached_rate_hz()},
+          {"mean_rate_hz", s.mean_rate_hz()},
+          {"ticks", s.ticks()},
+          {"overruns", s.overruns()},
+          {"dropped", s.dropped()},
+          {"latency_count", s.latency_count()},
+          {"latency_p50_s", s.latency_p50_s()},
+          {"latency_p99_s", s.latency_p99_s()},
+          {"latency_max_s", s.latency_max_s()},
+          {"energy_j", s.energy_j()},
+          {"energy_drift", s.energy_drift()},
+          {"step", s.step()},
+          {"memory_bytes", s.memory_bytes()}};
+}
+
+Json events_json(const HeardEvents& events) {
+  Json newest = Json::array();
+  for (const auto& event : events.newest) {
+    newest.push_back({{"step", event.step()},
+                      {"link", event.link()},
+                      {"from", event.from_state()},
+                      {"to", event.to_state()},
+                      {"energy_j", event.energy_j()}});
+  }
+  return {{"total", events.total}, {"lost", events.lost}, {"newest", std::move(newest)}};
+}
+
+}  // namespace
+
+std::string hello_text(const std::string& session, const std::string& node) {
+  return written({{"type", "hello"},
+                  {"protocol", kProtocolVersion},
+                  {"session", clipped(session)},
+                  {"node", clipped(node)}});
+}
+
+std::string description_text(const msg::SceneDescription& description, std::uint32_t scene) {
+  Json signals = Json::array();
+  for (const auto& signal : description.signals()) {
+    signals.push_back({{"name", clipped(signal.name())}, {"unit", clipped(signal.unit())}});
+  }
+  return written({{"type", "description"},
+                  {"scene", scene},
+                  {"run", std::to_string(description.run())},
+                  {"version", description.version()},
+                  {"name", clipped(description.name())},
+                  {"scene_file", clipped(description.scene_file())},
+                  {"space", description.space()},
+                  {"step_rate_hz", description.step_rate_hz()},
+                  {"gesture_rate_hz", description.gesture_rate_hz()},
+                  {"frame_rate_hz", description.frame_rate_hz()},
+                  {"mat_count", description.mat_kind().size()},
+                  {"link_count", description.link_ends().size() / 2},
+                  {"matter", ranges(description.matter())},
+                  {"links", ranges(description.links())},
+                  {"ports", ports(description.ports())},
+                  {"signals", std::move(signals)}});
+}
+
+std::string status_text(const std::vector<HeardNode>& nodes, const HeardEvents& events,
+                        const MirrorFigures& figures, std::uint32_t scene, std::int64_t now_nsec) {
+  Json list = Json::array();
+  for (const HeardNode& node : nodes) list.push_back(node_json(node, now_nsec));
+  return written(
+      {{"type", "status"},
+       {"scene", scene},
+       {"sent_nsec", now_nsec},
+       {"nodes", std::move(list)},
+       {"events", events_json(events)},
+       {"viz",
+        {{"frames", figures.frames}, {"refused", figures.refused}, {"lost", figures.lost}}}});
+}
+
+std::optional<Acknowledgement> read_acknowledgement(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || json.value("type", Json()) != "ack") return std::nullopt;
+  const Json sequence = json.value("sequence", Json());
+  const Json drawn = json.value("drawn", Json());
+  if (!sequence.is_number_unsigned() || !drawn.is_boolean()) return std::nullopt;
+  const auto number = sequence.get<std::uint64_t>();
+  if (number > std::numeric_limits<std::uint32_t>::max()) return std::nullopt;
+  return Acknowledgement{static_cast<std::uint32_t>(number), drawn.get<bool>()};
+}
+
+}  // namespace cordis::viz

@@ -1,0 +1,57 @@
+// viz_node/page_text.h -- the JSON messages of the page's protocol (viz_node/web/README.md).
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "idl/control.h"
+#include "idl/scene.h"
+
+namespace cordis::viz {
+
+/// What viz_node knows of one node.
+struct HeardNode {
+  msg::NodeStatus status;
+  std::int64_t heard_nsec = 0;  ///< CLOCK_MONOTONIC when its last status came
+};
+
+/// Changes of link states, as far as a page shows them.
+struct HeardEvents {
+  std::uint64_t total = 0;  ///< since the scene was described
+  std::uint64_t lost = 0;
+  std::deque<msg::LinkEvent> newest;  ///< at most kEventsShown, oldest first
+};
+inline constexpr std::size_t kEventsShown = 8;
+
+/// What viz_node says about its own work.
+struct MirrorFigures {
+  std::uint64_t frames = 0;          ///< handed to the pages
+  std::uint64_t refused = 0;         ///< messages that did not fit their description
+  std::uint64_t lost = 0;            ///< frames of sim_node that never came
+  double frame_rate_hz = 0.0;        ///< of the description; 0 without one
+  std::int64_t last_frame_nsec = 0;  ///< CLOCK_MONOTONIC when the newest came; 0: none yet
+};
+
+/// A node that was not heard for so long is lost, unless it said that it stops.
+inline constexpr std::int64_t kLostAfterNsec = 1'600'000'000;
+
+std::string hello_text(const std::string& session, const std::string& node);
+std::string description_text(const msg::SceneDescription& description, std::uint32_t scene);
+std::string status_text(const std::vector<HeardNode>& nodes, const HeardEvents& events,
+                        const MirrorFigures& figures, std::uint32_t scene, std::int64_t now_nsec);
+
+/// A page's word that it is done with all frames up to `sequence`; `drawn` when it has drawn that
+/// one.
+struct Acknowledgement {
+  std::uint32_t sequence = 0;
+  bool drawn = false;
+};
+
+/// Reads `{"type": "ack", "sequence": 12, "drawn": true}`; nothing when `text` is anything else.
+std::optional<Acknowledgement> read_acknowledgement(std::string_view text);
+
+}  // namespace cordis::viz

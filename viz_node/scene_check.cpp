@@ -1,0 +1,87 @@
+// viz_node/scene_check.cpp
+#include "viz_node/scene_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace cordis::viz {
+namespace {
+
+std::string count_fault(const char* what, std::size_t found, std::size_t expected) {
+  return std::string(what) + ": " + std::to_string(found) + ", expected " +
+         std::to_string(expected);
+}
+
+bool ranges_fit(const std::vector<msg::NamedRange>& ranges, std::size_t count) {
+  return std::ranges::all_of(ranges, [count](const msg::NamedRange& range) {
+    return std::size_t{range.first()} + range.count() <= count;
+  });
+}
+
+bool is_rate(double rate_hz) {
+  return std::isfinite(rate_hz) && rate_hz > 0.0;
+}
+
+std::string run_fault(const char* what, std::uint64_t run, std::uint64_t described) {
+  if (run == described) return {};
+  return std::string(what) + " of another run of sim_node than its description";
+}
+
+}  // namespace
+
+std::string fault_of(const msg::SceneDescription& description) {
+  const std::size_t mats = description.mat_kind().size();
+  const std::size_t ends = description.link_ends().size();
+  if (mats > kMostMats) return count_fault("too many MATs", mats, kMostMats);
+  if (ends > 2 * kMostLinks) return count_fault("too many links", ends / 2, kMostLinks);
+  if (description.signals().size() > kMostSignals)
+    return count_fault("too many signals", description.signals().size(), kMostSignals);
+  if (description.mat_radius_m().size() != mats)
+    return count_fault("radii in the description", description.mat_radius_m().size(), mats);
+  if (description.space() < 1 || description.space() > 3)
+    return "a space of " + std::to_string(description.space()) + " dimensions";
+  if (ends % 2 != 0) return "an odd number of link ends in the description";
+  if (std::ranges::any_of(description.link_ends(), [mats](auto mat) { return mat >= mats; }))
+    return "a link of the description joins a MAT that does not exist";
+  if (std::ranges::any_of(description.ports(), [mats](auto& port) { return port.mat() >= mats; }))
+    return "a port of the description is at a MAT that does not exist";
+  if (!ranges_fit(description.matter(), mats) || !ranges_fit(description.links(), ends / 2))
+    return "a name of the description reaches past the last MAT or link";
+  if (!is_rate(description.step_rate_hz()) || !is_rate(description.frame_rate_hz()))
+    return "a rate of the description is not a positive number";
+  if (!std::ranges::all_of(description.mat_radius_m(), [](float r) { return r >= 0.0F; }))
+    return "a radius of the description is not a number of 0 or more";
+  return {};
+}
+
+std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& description) {
+  const std::size_t coordinates = 3 * description.mat_kind().size();
+  const std::size_t links = description.link_ends().size() / 2;
+  std::string fault = run_fault("a frame", frame.run(), description.run());
+  if (!fault.empty()) return fault;
+  if (frame.position_m().size() != coordinates)
+    return count_fault("coordinates in a frame", frame.position_m().size(), coordinates);
+  if (!frame.link_state().empty() && frame.link_state().size() != links)
+    return count_fault("link states in a frame", frame.link_state().size(), links);
+  if (!std::isfinite(frame.simulated_s())) return "a frame without a simulated time";
+  if (!std::ranges::all_of(frame.position_m(), [](float x) { return std::isfinite(x); }))
+    return "a frame with a position that is not a finite number";
+  return {};
+}
+
+std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescription& description) {
+  const std::size_t columns = description.signals().size();
+  std::string fault = run_fault("signals", signals.run(), description.run());
+  if (!fault.empty()) return fault;
+  if (signals.signal_count() != columns || columns == 0)
+    return count_fault("signals in a batch", signals.signal_count(), columns);
+  if (signals.value().size() % columns != 0 || signals.value().size() > kMostBatchValues)
+    return std::to_string(signals.value().size()) + " values in a batch of " +
+           std::to_string(columns) + " signals";
+  if (signals.stride_steps() == 0) return "a batch of signals with no steps between its rows";
+  return {};
+}
+
+}  // namespace cordis::viz

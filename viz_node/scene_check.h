@@ -1,0 +1,29 @@
+// viz_node/scene_check.h -- whether what another process sent about a scene can be shown.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "idl/scene.h"
+
+namespace cordis::viz {
+
+inline constexpr std::size_t kMostMats = 2'000'000;
+inline constexpr std::size_t kMostLinks = 8'000'000;
+inline constexpr std::size_t kMostSignals = 256;
+inline constexpr std::size_t kMostBatchValues = 1'000'000;
+
+/// Each returns what is wrong, one sentence for a person, or an empty string when nothing is.
+/// A description is sound when its lengths agree, its indices exist and its rates are positive and
+/// finite.
+std::string fault_of(const msg::SceneDescription& description);
+
+/// A frame is sound when it belongs to the run of `description`, has its counts and only finite
+/// positions.
+std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& description);
+
+/// A batch is sound when it belongs to the run of `description` and holds whole rows of its
+/// signals. Values need not be finite: a signal may have none for a while.
+std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescription& description);
+
+}  // namespace cordis::viz

@@ -1,0 +1,92 @@
+// viz_node/scene_listener.cpp
+#include "viz_node/scene_listener.h"
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "node/dds/reader.h"
+#include "node/time.h"
+
+namespace cordis::viz {
+namespace {
+
+constexpr auto kLongestWait = std::chrono::seconds(1);
+
+/// A reader and the thread that follows it.
+template <class Message>
+class Follower {
+ public:
+  Follower(dds::Participant& participant, dds::Topic topic) : reader_(participant, topic) {}
+
+  ~Follower() {
+    ending_ = true;
+    reader_.interrupt();
+    if (thread_.joinable()) thread_.join();
+  }
+  Follower(const Follower&) = delete;
+  Follower& operator=(const Follower&) = delete;
+
+  /// @param use  takes a message and gives back what is wrong with it, or an empty string
+  template <class Use>
+  void follow(Use use) {
+    thread_ = std::thread([this, use] {
+      Message message;
+      std::string last_fault;
+      while (!ending_) {
+        if (!reader_.wait(kLongestWait)) continue;
+        while (!ending_ && reader_.take(message)) {
+          std::string fault = use(std::move(message));
+          message = Message();
+          if (fault.empty() || fault == last_fault) continue;
+          spdlog::warn("refused {}", fault);
+          last_fault = std::move(fault);
+        }
+      }
+    });
+  }
+
+ private:
+  dds::Reader<Message> reader_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace
+
+struct SceneListener::Impl {
+  explicit Impl(dds::Participant& participant)
+      : description(participant, dds::Topic::kDescription),
+        frame(participant, dds::Topic::kFrame),
+        signals(participant, dds::Topic::kSignals),
+        events(participant, dds::Topic::kEvents),
+        status(participant, dds::Topic::kStatus) {}
+
+  Follower<msg::SceneDescription> description;
+  Follower<msg::SceneFrame> frame;
+  Follower<msg::SceneSignals> signals;
+  Follower<msg::SceneEvents> events;
+  Follower<msg::NodeStatus> status;
+};
+
+SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror)
+    : impl_(std::make_unique<Impl>(participant)) {
+  impl_->description.follow([&mirror](auto&& message) { return mirror.take(std::move(message)); });
+  impl_->frame.follow([&mirror](auto&& message) {
+    return mirror.take(std::move(message), node::monotonic_nsec());
+  });
+  impl_->signals.follow([&mirror](auto&& message) { return mirror.take(std::move(message)); });
+  impl_->events.follow([&mirror](auto&& message) { return mirror.take(std::move(message)); });
+  impl_->status.follow([&mirror](auto&& message) {
+    mirror.take(std::move(message), node::monotonic_nsec());
+    return std::string();
+  });
+}
+
+SceneListener::~SceneListener() = default;
+
+}  // namespace cordis::viz

@@ -1,0 +1,178 @@
+// viz_node/scene_mirror.cpp
+#include "viz_node/scene_mirror.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "viz_node/frame_encoder.h"
+#include "viz_node/scene_check.h"
+
+namespace cordis::viz {
+namespace {
+
+// A page that comes late finds this much of the signals: 64 batches of 25 Hz are two and a half
+// seconds.
+constexpr std::size_t kBatchesKept = 64;
+constexpr std::size_t kBatchBytesKept = 16u << 20;
+constexpr std::size_t kMostNodes = 64;
+
+}  // namespace
+
+std::string SceneMirror::refuse(std::string fault) {
+  const std::lock_guard lock(mutex_);
+  ++figures_.refused;
+  return fault;
+}
+
+std::string SceneMirror::take(msg::SceneDescription&& description) {
+  std::string fault = fault_of(description);
+  if (!fault.empty()) return refuse(std::move(fault));
+  auto shown = std::make_shared<ShownScene>();
+  shown->scene = ++scene_count_;  // only the thread of descriptions comes here
+  shown->text = description_text(description, shown->scene);
+  shown->topology = encode_topology(description, shown->scene);
+  {
+    const std::lock_guard lock(mutex_);
+    const bool same_run = description_ != nullptr && description_->run() == description.run();
+    if (same_run && description.version() < description_->version()) return {};
+    if (!same_run) last_frame_number_ = 0;
+    figures_.frame_rate_hz = description.frame_rate_hz();
+    description_ = std::make_shared<const msg::SceneDescription>(std::move(description));
+    scene_ = std::move(shown);
+    frame_.reset();
+    signals_.clear();
+    signals_bytes_ = 0;
+    events_ = {};
+  }
+  if (changed_) changed_();
+  return {};
+}
+
+void SceneMirror::count_gap(const msg::SceneFrame& frame) {
+  if (last_frame_number_ != 0 && frame.frame() > last_frame_number_ + 1)
+    figures_.lost += frame.frame() - last_frame_number_ - 1;
+  last_frame_number_ = frame.frame();
+}
+
+std::string SceneMirror::take(msg::SceneFrame&& frame, std::int64_t now_nsec) {
+  std::shared_ptr<const msg::SceneDescription> description;
+  {
+    const std::lock_guard lock(mutex_);
+    description = description_;
+  }
+  if (description == nullptr) return {};
+  std::string fault = fault_of(frame, *description);
+  if (!fault.empty()) return refuse(std::move(fault));
+  auto shown = std::make_shared<ShownFrame>();
+  {
+    const std::lock_guard lock(mutex_);
+    if (description != description_) return {};  // described anew meanwhile
+    count_gap(frame);
+    figures_.last_frame_nsec = now_nsec;
+    if (!pace_.lets_through(now_nsec)) return {};
+    ++figures_.frames;
+    shown->sequence = ++frame_count_;
+    shown->scene = scene_->scene;
+    shown->frame = std::move(frame);
+    frame_ = std::move(shown);
+  }
+  if (changed_) changed_();
+  return {};
+}
+
+void SceneMirror::keep(std::shared_ptr<const ShownSignals> batch) {
+  signals_bytes_ += batch->bytes.size();
+  signals_.push_back(std::move(batch));
+  while (signals_.size() > kBatchesKept || signals_bytes_ > kBatchBytesKept) {
+    signals_bytes_ -= signals_.front()->bytes.size();
+    signals_.pop_front();
+  }
+}
+
+std::string SceneMirror::take(msg::SceneSignals&& signals) {
+  std::shared_ptr<const msg::SceneDescription> description;
+  std::uint32_t scene = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (description_ == nullptr) return {};
+    description = description_;
+    scene = scene_->scene;
+  }
+  std::string fault = fault_of(signals, *description);
+  if (!fault.empty()) return refuse(std::move(fault));
+  auto shown = std::make_shared<ShownSignals>();
+  shown->bytes = encode_signals(signals, scene, description->step_rate_hz());
+  {
+    const std::lock_guard lock(mutex_);
+    if (description != description_) return {};
+    shown->number = ++batch_count_;
+    keep(std::move(shown));
+  }
+  if (changed_) changed_();
+  return {};
+}
+
+std::string SceneMirror::take(msg::SceneEvents&& events) {
+  const std::lock_guard lock(mutex_);
+  if (description_ == nullptr) return {};
+  if (events.run() != description_->run()) {
+    ++figures_.refused;
+    return "events of another run of sim_node than its description";
+  }
+  events_.total += events.event().size();
+  events_.lost += events.lost();
+  for (const auto& event : events.event()) {
+    events_.newest.push_back(event);
+    if (events_.newest.size() > kEventsShown) events_.newest.pop_front();
+  }
+  return {};
+}
+
+void SceneMirror::take(msg::NodeStatus&& status, std::int64_t now_nsec) {
+  const std::lock_guard lock(mutex_);
+  const std::uint32_t node_id = status.node_id();
+  if (nodes_.size() >= kMostNodes && !nodes_.contains(node_id)) {
+    nodes_.erase(std::ranges::min_element(
+        nodes_, {}, [](const auto& entry) { return entry.second.heard_nsec; }));
+  }
+  nodes_[node_id] = {std::move(status), now_nsec};
+}
+
+std::shared_ptr<const ShownScene> SceneMirror::scene() const {
+  const std::lock_guard lock(mutex_);
+  return scene_;
+}
+
+std::shared_ptr<const ShownFrame> SceneMirror::frame() const {
+  const std::lock_guard lock(mutex_);
+  return frame_;
+}
+
+std::shared_ptr<const ShownSignals> SceneMirror::signals_after(std::uint64_t after) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::upper_bound(signals_, after, {},
+                                              [](const auto& batch) { return batch->number; });
+  return found == signals_.end() ? nullptr : *found;
+}
+
+std::string SceneMirror::status(std::int64_t now_nsec) const {
+  std::vector<HeardNode> nodes;
+  HeardEvents events;
+  MirrorFigures figures;
+  std::uint32_t scene = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, node] : nodes_) nodes.push_back(node);
+    events = events_;
+    figures = figures_;
+    if (scene_ != nullptr) scene = scene_->scene;
+  }
+  return status_text(nodes, events, figures, scene, now_nsec);
+}
+
+MirrorFigures SceneMirror::figures() const {
+  const std::lock_guard lock(mutex_);
+  return figures_;
+}
+
+}  // namespace cordis::viz

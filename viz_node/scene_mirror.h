@@ -1,0 +1,90 @@
+// viz_node/scene_mirror.h -- what is known of the scene, handed from the threads of DDS to the
+// server.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "viz_node/frame_pace.h"
+#include "viz_node/page_text.h"
+
+namespace cordis::viz {
+
+/// A description as pages get it.
+struct ShownScene {
+  std::uint32_t scene = 0;  ///< +1 per description within the life of viz_node, from 1
+  std::string text;         ///< JSON
+  std::string topology;     ///< binary
+};
+
+/// A frame as it came, numbered by viz_node.
+struct ShownFrame {
+  std::uint32_t sequence = 0;  ///< +1 per frame within the life of viz_node, from 1
+  std::uint32_t scene = 0;
+  msg::SceneFrame frame;
+};
+
+/// A batch of signals as pages get it.
+struct ShownSignals {
+  std::uint64_t number = 0;  ///< +1 per batch within the life of viz_node, from 1
+  std::string bytes;
+};
+
+/// The newest of everything that sim_node and the other nodes said. Its memory is bounded: one
+/// scene, one frame, the last batches of signals, 64 nodes. Any thread may call it; what it hands
+/// out never changes and is shared, not copied.
+///
+/// take() gives back what is wrong with a message that was refused, else an empty string. Refused
+/// messages are counted; what comes before the first description is passed over in silence.
+class SceneMirror {
+ public:
+  /// @param rate_hz  most frames per second that pages get, > 0
+  explicit SceneMirror(double rate_hz) noexcept : pace_(rate_hz) {}
+
+  /// Called from the taking threads, without a lock, when there is something new to send. Set it
+  /// before the first take(), and to an empty function after the last.
+  void on_change(std::function<void()> call) { changed_ = std::move(call); }
+
+  std::string take(msg::SceneDescription&& description);
+  std::string take(msg::SceneFrame&& frame, std::int64_t now_nsec);
+  std::string take(msg::SceneSignals&& signals);
+  std::string take(msg::SceneEvents&& events);
+  void take(msg::NodeStatus&& status, std::int64_t now_nsec);
+
+  std::shared_ptr<const ShownScene> scene() const;  ///< nullptr before the first description
+  std::shared_ptr<const ShownFrame> frame()
+      const;  ///< of the present scene; nullptr before its first
+  /// The oldest batch kept with a number above `after`; nullptr when there is none.
+  std::shared_ptr<const ShownSignals> signals_after(std::uint64_t after) const;
+  std::string status(std::int64_t now_nsec) const;  ///< JSON
+  MirrorFigures figures() const;
+
+ private:
+  std::string refuse(std::string fault);
+  void keep(std::shared_ptr<const ShownSignals> batch);
+  void count_gap(const msg::SceneFrame& frame);
+
+  std::function<void()> changed_;
+  mutable std::mutex mutex_;
+  FramePace pace_;
+  std::shared_ptr<const msg::SceneDescription> description_;
+  std::shared_ptr<const ShownScene> scene_;
+  std::shared_ptr<const ShownFrame> frame_;
+  std::deque<std::shared_ptr<const ShownSignals>> signals_;
+  std::size_t signals_bytes_ = 0;
+  std::map<std::uint32_t, HeardNode> nodes_;  // by node_id
+  HeardEvents events_;
+  MirrorFigures figures_;
+  std::uint64_t last_frame_number_ = 0;  // of sim_node, within the present run
+  std::uint32_t scene_count_ = 0;
+  std::uint32_t frame_count_ = 0;
+  std::uint64_t batch_count_ = 0;
+};
+
+}  // namespace cordis::viz

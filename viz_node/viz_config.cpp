@@ -1,0 +1,34 @@
+// viz_node/viz_config.cpp
+#include "viz_node/viz_config.h"
+
+#include <arpa/inet.h>
+
+#include "node/config/mapping_reader.h"
+
+namespace cordis::viz {
+namespace {
+
+bool is_address(const std::string& text) {
+  in6_addr room{};
+  return inet_pton(AF_INET, text.c_str(), &room) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), &room) == 1;
+}
+
+}  // namespace
+
+VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& problems) {
+  VizConfig viz;
+  config::MappingReader reader(node.section, "viz_node '" + node.name + "'", problems);
+  viz.address = reader.optional_text("address", viz.address);
+  viz.port = static_cast<int>(reader.optional_integer("port", viz.port, 0, 65535));
+  viz.rate_hz = reader.optional_number("rate_hz", viz.rate_hz, config::Range::between(1.0, 240.0));
+  if (!is_address(viz.address)) {
+    reader.error_at("address",
+                    "address must be an IP address of this machine, got '" + viz.address + "'",
+                    "127.0.0.1 for this machine alone, 0.0.0.0 for the whole network");
+  }
+  reader.finish();
+  return viz;
+}
+
+}  // namespace cordis::viz

@@ -1,0 +1,22 @@
+// viz_node/viz_config.h -- the section of a viz_node in a launch file.
+#pragma once
+
+#include <string>
+
+#include "node/config/launch.h"
+#include "node/config/problem.h"
+
+namespace cordis::viz {
+
+/// Where the page is served, and how often it is told what moved.
+struct VizConfig {
+  std::string address =
+      "127.0.0.1";        ///< IPv4 or IPv6 address to listen on; loopback keeps other machines out
+  int port = 8080;        ///< 0 takes any free port
+  double rate_hz = 25.0;  ///< most frames per second that pages get
+};
+
+/// Reads the keys port, address and rate_hz, all optional. What is wrong goes to `problems`.
+VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& problems);
+
+}  // namespace cordis::viz

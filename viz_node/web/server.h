@@ -1,0 +1,55 @@
+// viz_node/web/server.h -- serves the page and what it shows, over HTTP and WebSocket.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "viz_node/scene_mirror.h"
+
+namespace cordis::viz {
+
+struct ServerConfig {
+  std::string node = "viz";  ///< name of the node, for messages
+  std::string session;
+  std::string address = "127.0.0.1";
+  int port = 0;                  ///< 0 takes any free port
+  std::filesystem::path folder;  ///< the built page
+};
+
+/// What the server has done. Delays run from the moment sim_node took a frame until a page said
+/// that it has drawn it.
+struct ServerFigures {
+  std::uint64_t drawn = 0;  ///< frames drawn, over all pages
+  double latency_p50_s = 0.0;
+  double latency_p99_s = 0.0;
+  double latency_max_s = 0.0;
+};
+
+/// One thread of its own serves every client. A client gets the newest frame when it has credit
+/// (ClientCredit), one message at a time; a client that stalls costs nothing but its socket, and is
+/// let go when it answers no ping for half a minute.
+class WebServer {
+ public:
+  /// Begins to listen.
+  /// @param mirror  outlives the server; its on_change() is taken over
+  /// @throws std::runtime_error with what to type when the port is occupied or the address is not
+  /// to be had
+  WebServer(const ServerConfig& config, SceneMirror& mirror);
+
+  /// Closes all connections and joins the thread.
+  ~WebServer();
+  WebServer(const WebServer&) = delete;
+  WebServer& operator=(const WebServer&) = delete;
+
+  const std::string& url() const noexcept;  ///< "http://127.0.0.1:8080"
+  bool page_built() const noexcept;
+  ServerFigures figures() const;  ///< any thread
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cordis::viz
