@@ -1,0 +1,224 @@
+// tests/sim/device_exchange_test.cpp
+#include "sim_node/device_exchange.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+namespace cordis::sim {
+namespace {
+
+using engine::Vec3;
+
+constexpr std::uint32_t kDevice = 9;
+constexpr std::uint64_t kRun = 1000;
+constexpr double kStiffness = 50.0;  // [N/m]
+constexpr double kRate = 1000.0;     // [Hz]
+
+/// A port mass (0) held by a spring and a damper to a fixed point (1), along x, and a free mass (2).
+engine::World world_with_a_port(double viscosity = 0.0) {
+  engine::NetworkDescription network;
+  network.dimension = 3;
+  network.step = 1e-3;
+  network.mats.resize(3);
+  network.mats[0].kind = engine::MatKind::kPort;
+  network.mats[0].position = Vec3(1.0, 0.0, 0.0);
+  network.mats[1].kind = engine::MatKind::kFixed;
+  network.mats[2].mass = 0.5;
+  network.mats[2].position = Vec3(0.0, 1.0, 0.0);
+  network.links.push_back({0, 1, kStiffness, viscosity, 1.0});
+  return engine::World(std::make_shared<const engine::Network>(network));
+}
+
+DeviceExchange mass_exchange() {
+  return {"key", kDevice, Role::kMass, {{0, Vec3(1.0, 0.0, 0.0), {1}, {Vec3::UnitX()}}}, kRate, 77};
+}
+
+msg::GesturePositions sample_at(std::uint64_t number, double position) {
+  msg::GesturePositions sample;
+  sample.device_id(kDevice);
+  sample.run(kRun);
+  sample.sample(number);
+  sample.time_nsec(static_cast<std::int64_t>(number) * 1'000'000);
+  sample.axis_count(2);
+  sample.position_m().fill(0.0);
+  sample.position_m()[1] = position;
+  return sample;
+}
+
+/// Plays ticks in which the device repeats one position until it has taken over.
+std::uint64_t settle(DeviceExchange& exchange, engine::World& world, double position, int sub_steps = 1) {
+  std::uint64_t number = 0;
+  for (int tick = 0; tick < 150; ++tick) {
+    exchange.receive(sample_at(++number, position));
+    exchange.begin_tick();
+    for (int j = 1; j <= sub_steps; ++j) {
+      exchange.play(world, j, sub_steps);
+      world.step();
+    }
+  }
+  return number;
+}
+
+TEST(DeviceExchange, AnswersAPositionWithTheForceOfTheLinksAtThatPosition) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  const std::uint64_t number = settle(exchange, world, 0.02);
+
+  const msg::GestureForces& answer = exchange.answer_forces(world, true, 5);
+
+  // The spring is 0.02 m longer than at rest and pulls the port back: no delay, the force of this very position.
+  EXPECT_NEAR(answer.force_n()[1], -kStiffness * 0.02, 1e-12);
+  EXPECT_EQ(answer.force_n()[0], 0.0);
+  EXPECT_EQ(answer.device_id(), kDevice);
+  EXPECT_EQ(answer.run(), 77u);
+  EXPECT_EQ(answer.answered_run(), kRun);
+  EXPECT_EQ(answer.answered_sample(), number);
+  EXPECT_EQ(answer.answered_time_nsec(), static_cast<std::int64_t>(number) * 1'000'000);
+  EXPECT_EQ(answer.axis_count(), 2u);
+}
+
+TEST(DeviceExchange, RampsAPositionOverTheSubStepsAndAnswersAtItsEnd) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  const std::uint64_t number = settle(exchange, world, 0.0, 4);
+  exchange.receive(sample_at(number + 1, 0.004));
+  exchange.begin_tick();
+
+  for (int j = 1; j <= 4; ++j) {
+    exchange.play(world, j, 4);
+    world.step();
+    EXPECT_NEAR(world.position(0).x(), 1.0 + 0.001 * j, 1e-15);
+  }
+  EXPECT_NEAR(exchange.answer_forces(world, true, 0).force_n()[1], -kStiffness * 0.004, 1e-12);
+}
+
+TEST(DeviceExchange, KeepsTheWholeVirtualDampingOverSubSteps) {
+  constexpr double kViscosity = 2.0;  // [N s/m]
+  constexpr double kSpeed = 0.1;      // [m/s]
+  for (const int sub_steps : {1, 4}) {
+    engine::NetworkDescription network = world_with_a_port(kViscosity).network().description();
+    network.step = 1e-3 / sub_steps;
+    engine::World world(std::make_shared<const engine::Network>(network));
+    DeviceExchange exchange = mass_exchange();
+    std::uint64_t number = settle(exchange, world, 0.0, sub_steps);
+    double position = 0.0;
+    for (int tick = 0; tick < 10; ++tick) {
+      position += kSpeed * 1e-3;
+      exchange.receive(sample_at(++number, position));
+      exchange.begin_tick();
+      for (int j = 1; j <= sub_steps; ++j) {
+        exchange.play(world, j, sub_steps);
+        world.step();
+      }
+    }
+    EXPECT_NEAR(exchange.answer_forces(world, true, 0).force_n()[1], -kStiffness * position - kViscosity * kSpeed,
+                1e-9)
+        << sub_steps << " sub-steps";
+  }
+}
+
+TEST(DeviceExchange, GivesNoForceWhenTheSceneIsNotSafe) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  settle(exchange, world, 0.02);
+  for (const double force : exchange.answer_forces(world, false, 0).force_n()) EXPECT_EQ(force, 0.0);
+}
+
+TEST(DeviceExchange, TakesOverGraduallyFromADeviceThatWasAway) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  constexpr double kFar = 0.05;
+  double before = 0.0;
+  double largest_move = 0.0;
+  std::uint64_t number = 0;
+  for (int tick = 0; tick < 100; ++tick) {
+    exchange.receive(sample_at(++number, kFar));
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+    largest_move = std::max(largest_move, std::abs(world.position(0).x() - 1.0 - before));
+    before = world.position(0).x() - 1.0;
+  }
+  EXPECT_DOUBLE_EQ(before, kFar);
+  EXPECT_LT(largest_move, kFar / 99.0);  // 100 equal moves, not a jump
+}
+
+TEST(DeviceExchange, HoldsItsMatsWhenTheDeviceFallsSilent) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  settle(exchange, world, 0.02);
+  EXPECT_FALSE(exchange.is_lost());
+  for (int tick = 0; tick < 25; ++tick) {
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+  }
+  EXPECT_TRUE(exchange.is_lost());
+  EXPECT_DOUBLE_EQ(world.position(0).x(), 1.02);
+}
+
+TEST(DeviceExchange, LetsGoOfAMassWhenTheForceFallsSilent) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange("key", kDevice, Role::kLiaison, {{2, Vec3(0.0, 1.0, 0.0), {0}, {Vec3::UnitY()}}}, kRate, 77);
+  msg::GestureForces push;
+  push.device_id(kDevice);
+  push.run(kRun);
+  push.axis_count(1);
+  push.force_n().fill(0.0);
+  push.force_n()[0] = 3.0;
+  for (int tick = 1; tick <= 200; ++tick) {
+    push.sample(static_cast<std::uint64_t>(tick));
+    exchange.receive(push);
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+  }
+  const double speed = world.velocity(2).y();
+  EXPECT_GT(speed, 3.0 / 0.5 * 0.1);  // F/m for at least the 100 ticks after it has taken over
+  EXPECT_NEAR(exchange.answer_positions(world, true, 0).position_m()[0], world.position(2).y() - 1.0, 1e-15);
+
+  for (int tick = 0; tick < 25; ++tick) {
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+  }
+  const double speed_when_lost = world.velocity(2).y();
+  world.step();
+  EXPECT_NEAR(world.velocity(2).y(), speed_when_lost, 1e-12) << "no force acts any more";
+}
+
+TEST(DeviceExchange, RefusesWhatIsMalformedOrNotFinite) {
+  DeviceExchange exchange = mass_exchange();
+  using Reception = DeviceExchange::Reception;
+  msg::GesturePositions sample = sample_at(1, 0.0);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    sample.position_m()[1] = bad;
+    EXPECT_EQ(exchange.receive(sample), Reception::kRefused);
+  }
+  sample = sample_at(1, 0.0);
+  for (const std::uint32_t count : {0u, 1u, 17u, 4'000'000'000u}) {  // the port needs axis 1
+    sample.axis_count(count);
+    EXPECT_EQ(exchange.receive(sample), Reception::kRefused) << count;
+  }
+  EXPECT_EQ(exchange.refused_count(), 6u);
+  EXPECT_FALSE(exchange.was_heard());
+}
+
+TEST(DeviceExchange, TellsNewFromRepeatedAndOldSamples) {
+  DeviceExchange exchange = mass_exchange();
+  using Reception = DeviceExchange::Reception;
+  EXPECT_EQ(exchange.receive(sample_at(5, 0.0)), Reception::kNew);
+  EXPECT_EQ(exchange.receive(sample_at(5, 0.0)), Reception::kRepeated);
+  EXPECT_EQ(exchange.receive(sample_at(4, 0.0)), Reception::kRefused);
+  EXPECT_EQ(exchange.receive(sample_at(9, 0.0)), Reception::kNew);
+  EXPECT_EQ(exchange.missed_count(), 3u);
+  msg::GesturePositions of_a_new_run = sample_at(1, 0.0);
+  of_a_new_run.run(kRun + 1);
+  EXPECT_EQ(exchange.receive(of_a_new_run), Reception::kNew) << "the device was restarted";
+}
+
+}  // namespace
+}  // namespace cordis::sim
