@@ -8,7 +8,8 @@
 
 namespace cordis::engine {
 
-/// What a MAT is: a punctual mass, a point that never moves, or a mass whose position is imposed from outside.
+/// What a MAT is: a punctual mass, a point that never moves, or a mass whose position is imposed
+/// from outside.
 enum class MatKind : std::uint8_t { kMass = 0, kFixed = 1, kPort = 2 };
 
 /// One MAT of a description. [Luc90 III.2.1 Matter modelisation]
@@ -22,9 +23,10 @@ struct Mat {
 /// One linear LIA: spring (viscosity 0), damper (stiffness 0) or both in parallel.
 /// [Luc90 III.2.2 Modelisation of the material in its continuous behaviour]
 ///
-/// In 2 and 3 dimensions, with d the distance of the ends: pull = K (d - rest) + Z (d(n) - d(n-1)) / dt along the line
-/// of centres (the growth taken as the relative displacement projected on that line), no force while d is 0.
-/// In 1 dimension d is signed, d = x_b - x_a, and so is the rest length: ends may cross.
+/// In 2 and 3 dimensions, with d the distance of the ends: pull = K (d - rest) + Z (d(n) - d(n-1))
+/// / dt along the line of centres (the growth taken as the relative displacement projected on that
+/// line), no force while d is 0. In 1 dimension d is signed, d = x_b - x_a, and so is the rest
+/// length: ends may cross.
 struct Link {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
@@ -33,11 +35,12 @@ struct Link {
   double rest_length = 0.0;  ///< [m]; >= 0 in 2 and 3 dimensions
 };
 
-/// All that a Network is assembled from. Links are stepped, and their forces summed, in the order given.
+/// All that a Network is assembled from. Links are stepped, and their forces summed, in the order
+/// given.
 struct NetworkDescription {
   int dimension = 3;              ///< 1, 2 or 3
   double step = 0.0;              ///< dt [s], > 0
-  Vec3 gravity = Vec3::Zero();    ///< [m/s^2]
+  Vec3 gravity = Vec3::Zero();    ///< [m/s^2]; components beyond the dimension must be 0
   double medium_viscosity = 0.0;  ///< Z of the medium on every mass [N s/m], >= 0
   std::vector<Mat> mats;
   std::vector<Link> links;
@@ -47,8 +50,10 @@ struct NetworkDescription {
 /// [Luc90 IV Assembly]
 class Network {
  public:
-  /// @throws std::invalid_argument naming the first MAT or link that is out of range or not finite, or that joins a
-  ///         MAT to itself or to one that does not exist, or when no MAT is given.
+  /// @throws std::invalid_argument naming the first MAT or link that is out of range or not finite,
+  /// or that joins a
+  ///         MAT to itself or to one that does not exist; when no MAT is given; when a mass is so
+  ///         small, or a viscosity so large, that dt^2 / m or Z / dt is not a finite number.
   explicit Network(NetworkDescription description);
 
   const NetworkDescription& description() const noexcept { return description_; }
@@ -57,8 +62,13 @@ class Network {
   std::size_t mat_count() const noexcept { return description_.mats.size(); }
   std::size_t link_count() const noexcept { return description_.links.size(); }
 
+  /// 64-bit hash of the whole description: equal for networks assembled from the same values in the
+  /// same order.
+  std::uint64_t fingerprint() const noexcept { return fingerprint_; }
+
  private:
   NetworkDescription description_;
+  std::uint64_t fingerprint_;
 };
 
 }  // namespace cordis::engine

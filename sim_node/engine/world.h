@@ -5,73 +5,69 @@
 #include <memory>
 #include <vector>
 
+#include "sim_node/engine/energy.h"
 #include "sim_node/engine/network.h"
+#include "sim_node/engine/vector_width.h"
 
 namespace cordis::engine {
 
 /// What one step has to report. Everything is 0 when nothing is wrong.
 struct StepReport {
   std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
-};
-
-/// Energies of the present state and the account since step 0 [J].
-/// kinetic + elastic + gravity = initial + port_work - dissipated + residual
-struct Energy {
-  double kinetic = 0.0;     ///< of the half-step velocity (x(n) - x(n-1)) / dt before the present position
-  double elastic = 0.0;     ///< stored in the springs
-  double gravity = 0.0;     ///< potential in the uniform gravity, 0 at the origin
-  double dissipated = 0.0;  ///< taken by link and medium viscosity since step 0
-  double port_work = 0.0;   ///< brought in by imposed positions and external forces since step 0
-  double initial = 0.0;     ///< kinetic + elastic + gravity at step 0
-  double largest = 0.0;     ///< largest of the stored energies and exchanges seen, the scale for a relative residual
-
-  double total() const noexcept { return kinetic + elastic + gravity; }
-  double residual() const noexcept { return total() - initial - port_work + dissipated; }
+  std::uint32_t refused_inputs =
+      0;  ///< positions and forces from outside that were not finite, since the last step
 };
 
 /// Everything needed to go on later from the same state, bit for bit.
 struct Snapshot {
+  std::uint64_t network = 0;  ///< Network::fingerprint()
   std::uint64_t step = 0;
   std::vector<double> state;  ///< opaque
 };
 
 /// A network in motion.
 ///
-/// A step has two phases [Luc90 III Calculability]: all forces from the present positions, then all positions from
-/// these forces, x(n+1) = 2 x(n) - x(n-1) + (dt^2 / m) f(n). The delayed positions at step 0 are those of the
-/// half-step velocity v0 - a0 dt / 2, which keeps the start of second order.
-/// Results are the same bits on every run, optimisation level and vector width.
+/// A step has two phases [Luc90 III Calculability]: all forces from the present positions, then all
+/// positions from these forces, x(n+1) = 2 x(n) - x(n-1) + (dt^2 / m) f(n). The delayed positions
+/// at step 0 are those of the half-step velocity v0 - a0 dt / 2, which keeps the start of second
+/// order. Results are the same bits on every run, optimisation level and vector width.
 class World {
  public:
-  explicit World(std::shared_ptr<const Network> network);
+  /// @throws std::invalid_argument without a network, or when the processor lacks the vector
+  /// instructions.
+  explicit World(std::shared_ptr<const Network> network, VectorWidth width = best_vector_width());
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
   const Network& network() const noexcept;
+  VectorWidth vector_width() const noexcept;
 
-  /// Sets the position that a port mass takes at the beginning of the next step, before the forces are computed.
-  /// Without a new one it stays where it is. A position that is not finite is ignored and counted in the report.
+  /// Sets the position that a port mass takes at the beginning of the next step, before the forces
+  /// are computed. Without a new one it stays where it is. A position that is not finite is ignored
+  /// and counted in the report; components beyond the dimension of the network are ignored.
   /// Precondition: `mat` is a port mass. Real time: O(1).
   void impose_position(std::uint32_t mat, const Vec3& position) noexcept;
 
-  /// Sets the force from outside [N] that acts on a mass in every coming step until it is set again; 0 at first.
-  /// Precondition: `mat` is a mass. Real time: O(1).
+  /// Sets the force from outside [N] that acts on a mass in every coming step until it is set
+  /// again; 0 at first. A force that is not finite counts as 0 and in the report; components beyond
+  /// the dimension are ignored. Precondition: `mat` is a mass. Real time: O(1).
   void set_external_force(std::uint32_t mat, const Vec3& force) noexcept;
 
   /// One step. Real time: O(MATs + links), no allocation, never throws.
   StepReport step() noexcept;
 
-  std::uint64_t step_count() const noexcept;  ///< steps done since step 0
+  std::uint64_t step_count() const noexcept;        ///< steps done since step 0
   Vec3 position(std::uint32_t mat) const noexcept;  ///< x(n) [m]
   Vec3 velocity(std::uint32_t mat) const noexcept;  ///< (x(n) - x(n-1)) / dt [m/s]
   /// Sum of the forces that the links put on the MAT in the last step [N]; 0 before the first.
   Vec3 link_force(std::uint32_t mat) const noexcept;
   const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N
 
-  Energy energy() const noexcept;         ///< Real time: O(MATs + links), no allocation
-  Vec3 momentum() const noexcept;         ///< sum of m v over the masses [kg m/s]
-  Vec3 angular_momentum() const noexcept; ///< sum of m x(n-1) x v(n-1/2) about the origin [kg m^2/s]
+  Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
+  Vec3 momentum() const noexcept;  ///< sum of m v over the masses [kg m/s]
+  Vec3 angular_momentum()
+      const noexcept;  ///< sum of m x(n-1) x v(n-1/2) about the origin [kg m^2/s]
 
   /// 64-bit hash of step count, positions and delayed positions. Real time: O(MATs), no allocation.
   std::uint64_t state_hash() const noexcept;

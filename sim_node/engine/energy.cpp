@@ -1,0 +1,81 @@
+// sim_node/engine/energy.cpp
+#include "sim_node/engine/energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cordis::engine {
+namespace {
+
+double kinetic_energy(const NetworkDescription& network, const MatArray& mats) noexcept {
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    if (network.mats[i].kind != MatKind::kMass) continue;
+    sum += network.mats[i].mass * (mats.position(i) - mats.delayed(i)).squaredNorm();
+  }
+  return 0.5 * sum / (network.step * network.step);
+}
+
+double elastic_energy(const NetworkDescription& network, const MatArray& mats) noexcept {
+  const bool in_line = network.dimension == 1;
+  double sum = 0.0;
+  for (const Link& link : network.links) {
+    const Vec3 now = mats.position(link.mat_b) - mats.position(link.mat_a);
+    const Vec3 before = mats.delayed_at_rest(link.mat_b) - mats.delayed_at_rest(link.mat_a);
+    const double elongation = (in_line ? now.x() : now.norm()) - link.rest_length;
+    const double elongation_before = (in_line ? before.x() : before.norm()) - link.rest_length;
+    sum += link.stiffness * elongation * elongation_before;
+  }
+  return 0.5 * sum;
+}
+
+double gravity_energy(const NetworkDescription& network, const MatArray& mats) noexcept {
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    if (network.mats[i].kind != MatKind::kMass) continue;
+    sum -= network.mats[i].mass * network.gravity.dot(mats.position(i) + mats.delayed(i));
+  }
+  return 0.5 * sum;
+}
+
+}  // namespace
+
+void EnergyAccount::start(const NetworkDescription& network, const MatArray& mats) noexcept {
+  *this = EnergyAccount{};
+  initial_ =
+      kinetic_energy(network, mats) + elastic_energy(network, mats) + gravity_energy(network, mats);
+}
+
+void EnergyAccount::add(double dissipated, double port_work) noexcept {
+  dissipated_ += dissipated;
+  port_work_ += port_work;
+  largest_port_work_ = std::max(largest_port_work_, std::abs(port_work_));
+}
+
+Energy EnergyAccount::energy(const NetworkDescription& network, const MatArray& mats,
+                             double dissipated_since) const noexcept {
+  Energy energy;
+  energy.kinetic = kinetic_energy(network, mats);
+  energy.elastic = elastic_energy(network, mats);
+  energy.gravity = gravity_energy(network, mats);
+  energy.dissipated = dissipated_ + dissipated_since;
+  energy.port_work = port_work_;
+  energy.initial = initial_;
+  energy.largest =
+      std::max({energy.kinetic, std::abs(energy.elastic), std::abs(energy.gravity),
+                std::abs(energy.dissipated), largest_port_work_, std::abs(energy.initial)});
+  return energy;
+}
+
+void EnergyAccount::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), {initial_, dissipated_, port_work_, largest_port_work_});
+}
+
+const double* EnergyAccount::take_state(const double* state) noexcept {
+  for (double* value : {&initial_, &dissipated_, &port_work_, &largest_port_work_}) {
+    *value = *state++;
+  }
+  return state;
+}
+
+}  // namespace cordis::engine

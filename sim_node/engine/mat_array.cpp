@@ -1,0 +1,125 @@
+// sim_node/engine/mat_array.cpp
+#include "sim_node/engine/mat_array.h"
+
+#include <algorithm>
+
+namespace cordis::engine {
+namespace {
+
+void set_column(AlignedVector<double>& columns, std::size_t mat, const Vec3& value) noexcept {
+  std::copy_n(value.data(), 3, columns.data() + 4 * mat);
+}
+
+}  // namespace
+
+MatArray::MatArray(const NetworkDescription& description)
+    : position_(4 * description.mats.size(), 0.0),
+      delayed_(position_.size(), 0.0),
+      force_(position_.size(), 0.0),
+      dt2_over_mass_(description.mats.size(), 0.0),
+      persistence_(description.mats.size(), 1.0),
+      weight_step_(description.gravity * description.step * description.step),
+      medium_viscosity_over_dt_(description.medium_viscosity / description.step) {
+  const double dt = description.step;
+
+  for (std::size_t i = 0; i < description.mats.size(); ++i) {
+    const Mat& mat = description.mats[i];
+    set_column(position_, i, mat.position);
+    set_column(delayed_, i, mat.position - dt * mat.velocity);
+    if (mat.kind != MatKind::kMass) continue;
+
+    dt2_over_mass_[i] = dt * dt / mat.mass;
+    persistence_[i] = 1.0 - dt * description.medium_viscosity / mat.mass;
+    if (masses_.empty() || masses_.back().last != i) masses_.push_back({i, i});
+    masses_.back().last = i + 1;
+  }
+}
+
+void MatArray::start() noexcept {
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const auto mat = static_cast<std::uint32_t>(i);
+      const Vec3 moved = position(mat) - delayed(mat);  // v0 dt
+      const Vec3 pushed =                               // a0 dt^2
+          dt2_over_mass_[i] * force(mat) + weight_step_ - (1.0 - persistence_[i]) * moved;
+      set_column(delayed_, i, position(mat) - (moved - 0.5 * pushed));
+    }
+  }
+  clear_forces();
+}
+
+void MatArray::clear_forces() noexcept {
+  std::fill(force_.begin(), force_.end(), 0.0);
+}
+
+AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
+  const bool in_medium = medium_viscosity_over_dt_ > 0.0;
+  const Advance advance_row = in_medium ? kernel.advance_in_medium : kernel.advance;
+  MassColumns row{0,
+                  0,
+                  position_.data(),
+                  delayed_.data(),
+                  force_.data(),
+                  dt2_over_mass_.data(),
+                  persistence_.data(),
+                  {weight_step_.x(), weight_step_.y(), weight_step_.z(), 0.0}};
+  AdvanceReport report;
+  bool all_finite = true;
+
+  for (const Range& range : masses_) {
+    row.first = range.first;
+    row.last = range.last;
+    const AdvanceResult result = advance_row(row);
+    report.medium_work += 0.5 * medium_viscosity_over_dt_ * result.moved_product;
+    all_finite = all_finite && result.all_finite;
+  }
+  if (!all_finite) report.non_finite_mats = count_non_finite();
+  return report;
+}
+
+void MatArray::move_port(std::uint32_t mat, const Vec3& position) noexcept {
+  set_column(delayed_, mat, vector(position_, mat));
+  set_column(position_, mat, position);
+}
+
+void MatArray::set_force(std::uint32_t mat, const Vec3& force) noexcept {
+  set_column(force_, mat, force);
+}
+
+ForceColumns MatArray::force_columns() noexcept {
+  return {position_.data(), delayed_.data(), force_.data()};
+}
+
+void MatArray::append_state(std::vector<double>& state) const {
+  for (const auto* columns : {&position_, &delayed_, &force_}) {
+    state.insert(state.end(), columns->begin(), columns->end());
+  }
+}
+
+const double* MatArray::take_state(const double* state) noexcept {
+  for (auto* columns : {&position_, &delayed_, &force_}) {
+    std::copy_n(state, columns->size(), columns->data());
+    state += columns->size();
+  }
+  return state;
+}
+
+Columns MatArray::view(const AlignedVector<double>& columns) const noexcept {
+  return {columns.data(), 4, static_cast<Eigen::Index>(count())};
+}
+
+Vec3 MatArray::vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept {
+  return Vec3::Map(columns.data() + 4 * static_cast<std::size_t>(mat));
+}
+
+std::uint32_t MatArray::count_non_finite() const noexcept {
+  std::uint32_t found = 0;
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      if (!position(static_cast<std::uint32_t>(i)).allFinite()) ++found;
+    }
+  }
+  return found;
+}
+
+}  // namespace cordis::engine

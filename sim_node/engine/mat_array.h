@@ -1,0 +1,89 @@
+// sim_node/engine/mat_array.h -- the matter of a world.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/aligned_vector.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/step_kernel.h"
+
+namespace cordis::engine {
+
+/// What moving the masses by one step has to tell.
+struct AdvanceReport {
+  std::uint32_t non_finite_mats = 0;  ///< masses whose new position is not finite
+  double medium_work = 0.0;           ///< taken by the viscosity of the medium in this step [J]
+};
+
+/// The MATs of a network: force in, position out.
+///
+///     x(n+1) = 2 x(n) - x(n-1) + (dt^2 / m) (f(n) + m g - Z (x(n) - x(n-1)) / dt),   Z of the
+///     medium
+///
+/// Masses move by this law, fixed points never, port masses by move_port alone. Every array is 4 x
+/// N, column i belonging to MAT i, 32-byte aligned, its fourth value 0. Source: [Luc90 III.2.1
+/// Matter modelisation].
+class MatArray {
+ public:
+  /// Positions of step 0; delayed positions one period at the velocity v0 before them.
+  explicit MatArray(const NetworkDescription& description);
+
+  /// Takes the forces of step 0, computed with the delayed positions of the constructor, for a
+  /// start of second order: the delayed positions become those of the half-step velocity v0 - a0 dt
+  /// / 2. Clears the forces.
+  void start() noexcept;
+
+  void clear_forces() noexcept;
+
+  /// Moves every mass by one step. Real time: O(N), no allocation.
+  AdvanceReport advance(const StepKernel& kernel) noexcept;
+
+  /// Moves a port mass from where it is, its delayed position then. Precondition: `mat` is a port
+  /// mass.
+  void move_port(std::uint32_t mat, const Vec3& position) noexcept;
+
+  std::size_t count() const noexcept { return dt2_over_mass_.size(); }
+  Columns position() const noexcept { return view(position_); }  ///< x(n) [m]
+  Columns delayed() const noexcept { return view(delayed_); }    ///< x(n-1) [m]
+  Columns force() const noexcept { return view(force_); }        ///< f(n) [N]
+
+  Vec3 position(std::uint32_t mat) const noexcept { return vector(position_, mat); }
+  Vec3 delayed(std::uint32_t mat) const noexcept { return vector(delayed_, mat); }
+  Vec3 force(std::uint32_t mat) const noexcept { return vector(force_, mat); }
+  /// x(n-1) of a mass; of all else, which rests between two steps, x(n). [m]
+  Vec3 delayed_at_rest(std::uint32_t mat) const noexcept {
+    return vector(dt2_over_mass_[mat] > 0.0 ? delayed_ : position_, mat);
+  }
+  void set_force(std::uint32_t mat, const Vec3& force) noexcept;
+
+  /// Where the links find the positions and leave their forces.
+  ForceColumns force_columns() noexcept;
+
+  std::size_t state_size() const noexcept { return 3 * position_.size(); }
+  /// The state as a row of values: x(n), x(n-1), f(n).
+  void append_state(std::vector<double>& state) const;
+  /// Takes it back. @return one past the last value taken.
+  const double* take_state(const double* state) noexcept;
+
+ private:
+  struct Range {
+    std::size_t first;
+    std::size_t last;
+  };
+
+  Columns view(const AlignedVector<double>& columns) const noexcept;
+  static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;
+  std::uint32_t count_non_finite() const noexcept;
+
+  AlignedVector<double> position_;
+  AlignedVector<double> delayed_;
+  AlignedVector<double> force_;
+  AlignedVector<double> dt2_over_mass_;  // [s^2/kg], 0 unless a mass
+  AlignedVector<double> persistence_;    // 1 - dt Z / m
+  std::vector<Range> masses_;            // rows of neighbouring masses
+  Vec3 weight_step_;                     // gravity * dt^2 [m]
+  double medium_viscosity_over_dt_;      // Z / dt [N/m]
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,74 @@
+// sim_node/engine/spring_damper.cpp
+#include "sim_node/engine/spring_damper.h"
+
+#include <algorithm>
+
+namespace cordis::engine {
+namespace {
+
+// A row of padding joins MAT 0 to itself without stiffness or viscosity: its force is 0.
+std::size_t padded(std::size_t link_count) {
+  return (link_count + kLinkBatch - 1) / kLinkBatch * kLinkBatch;
+}
+
+}  // namespace
+
+SpringDamperArray::SpringDamperArray(const NetworkDescription& description)
+    : in_line_(description.dimension == 1),
+      column_a_(padded(description.links.size()), 0U),
+      column_b_(column_a_.size(), 0U),
+      stiffness_(column_a_.size(), 0.0),
+      viscosity_over_dt_(column_a_.size(), 0.0),
+      rest_length_(column_a_.size(), 0.0),
+      viscous_factor_(column_a_.size(), 0.0) {
+  for (std::size_t l = 0; l < description.links.size(); ++l) {
+    const Link& link = description.links[l];
+    column_a_[l] = 4 * link.mat_a;
+    column_b_[l] = 4 * link.mat_b;
+    stiffness_[l] = link.stiffness;
+    viscosity_over_dt_[l] = link.viscosity / description.step;
+    rest_length_[l] = link.rest_length;
+    viscous_ = viscous_ || link.viscosity > 0.0;
+  }
+}
+
+double SpringDamperArray::add_forces(const StepKernel& kernel,
+                                     const ForceColumns& columns) noexcept {
+  const LinkRows rows{column_a_.size(),      column_a_.data(),          column_b_.data(),
+                      stiffness_.data(),     viscosity_over_dt_.data(), rest_length_.data(),
+                      viscous_factor_.data()};
+  return 0.5 * choose(kernel)(rows, columns);
+}
+
+AddLinkForces SpringDamperArray::choose(const StepKernel& kernel) const noexcept {
+  if (in_line_) return viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
+  return viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
+}
+
+double SpringDamperArray::work_since_last_call(const MatArray& mats) const noexcept {
+  if (!viscous_) return 0.0;
+  double work = 0.0;
+  for (std::size_t l = 0; l < column_a_.size(); ++l) {
+    const std::uint32_t a = column_a_[l] / 4;
+    const std::uint32_t b = column_b_[l] / 4;
+    const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
+    const Vec3 moved = mats.position(b) - mats.position(a) - before;
+    work += 0.5 * viscous_factor_[l] * (in_line_ ? moved.x() : before.dot(moved));
+  }
+  return work;
+}
+
+void SpringDamperArray::start() noexcept {
+  std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
+}
+
+void SpringDamperArray::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), viscous_factor_.begin(), viscous_factor_.end());
+}
+
+const double* SpringDamperArray::take_state(const double* state) noexcept {
+  std::copy_n(state, viscous_factor_.size(), viscous_factor_.data());
+  return state + viscous_factor_.size();
+}
+
+}  // namespace cordis::engine

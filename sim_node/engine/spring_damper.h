@@ -1,0 +1,57 @@
+// sim_node/engine/spring_damper.h -- the linear links of a world.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/aligned_vector.h"
+#include "sim_node/engine/mat_array.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/step_kernel.h"
+
+namespace cordis::engine {
+
+/// Linear springs, dampers and spring-dampers: two positions in, two opposite forces out.
+///
+/// pull = K (d - rest) + Z (growth of the link along its axis during the last period) / dt; see
+/// Link for d. Source: [Luc90 III.2.2 Modelisation of the material in its continuous behaviour].
+class SpringDamperArray {
+ public:
+  explicit SpringDamperArray(const NetworkDescription& description);
+
+  /// Adds the force of every link to its two MATs, in link order.
+  /// @return the work [J] the viscosity of the links took with the forces of the last call, from
+  /// then to now, and with
+  ///         these, from the last call to now; half of each, as a force f(n) does in this scheme
+  ///         the work f(n) . (x(n+1) - x(n-1)) / 2.
+  /// Real time: O(links), no allocation.
+  double add_forces(const StepKernel& kernel, const ForceColumns& columns) noexcept;
+
+  /// The first half alone, for the forces of the last call up to the present positions [J].
+  /// Real time: O(links), no allocation.
+  double work_since_last_call(const MatArray& mats) const noexcept;
+
+  /// Forgets the viscous forces of the last call: those before step 0 take no work.
+  void start() noexcept;
+
+  std::size_t state_size() const noexcept { return viscous_factor_.size(); }
+  /// The state as a row of values: what the account remembers of the last call.
+  void append_state(std::vector<double>& state) const;
+  /// Takes it back. @return one past the last value taken.
+  const double* take_state(const double* state) noexcept;
+
+ private:
+  AddLinkForces choose(const StepKernel& kernel) const noexcept;
+
+  bool in_line_;                           // 1 dimension
+  bool viscous_ = false;                   // a link has viscosity
+  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
+  AlignedVector<std::uint32_t>
+      column_b_;                     // all arrays: one per link, padded to a multiple of kLinkBatch
+  AlignedVector<double> stiffness_;  // K [N/m]
+  AlignedVector<double> viscosity_over_dt_;  // Z / dt [N/m]
+  AlignedVector<double> rest_length_;        // [m]
+  AlignedVector<double> viscous_factor_;     // [N/m]; in 1 dimension the viscous pull itself [N]
+};
+
+}  // namespace cordis::engine
