@@ -1,0 +1,16 @@
+// device_node/dds_channel.h -- the force loop of a device over DDS.
+#pragma once
+
+#include <memory>
+
+#include "device_node/gesture_channel.h"
+#include "node/dds/participant.h"
+
+namespace cordis::device {
+
+/// The two gesture topics, in the direction that the role of the device gives them.
+/// @throws std::runtime_error when DDS refuses.
+std::unique_ptr<GestureChannel> make_dds_channel(dds::Participant& participant, Role role,
+                                                 std::uint32_t device_id);
+
+}  // namespace cordis::device

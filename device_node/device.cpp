@@ -1,0 +1,160 @@
+// device_node/device.cpp
+#include "device_node/device.h"
+
+#include <chrono>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "device_node/dds_channel.h"
+#include "node/paced_loop.h"
+#include "node/stop.h"
+#include "node/time.h"
+
+namespace cordis::device {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int kLoopPriority = 80;                      // SCHED_FIFO
+constexpr auto kLookAround = milliseconds(100);        // for a scene, while there is none
+constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
+constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
+constexpr int kBadInput = 2;
+
+}  // namespace
+
+Device::Device(LoadedDevice device, dds::Participant& participant, config::Clock clock,
+               std::uint64_t run)
+    : config_(std::move(device.config)),
+      driver_(std::move(device.driver)),
+      participant_(participant),
+      clock_(clock),
+      scenes_(participant, dds::Topic::kDescription),
+      series_{run, 0},
+      status_(participant, "device_node", run, [this](msg::NodeStatus& status) {
+        meter_.fill(status);
+        status.target_rate_hz(config_.layout.rate_hz);
+      }) {}
+
+int Device::live() {
+  spdlog::info("{} {}, driver {}, waiting for a scene that plays '{}'", config_.layout.count,
+               config_.layout.count == 1 ? "axis" : "axes", config_.driver, config_.name);
+  while (!node::stop_requested()) {
+    if (!part_.wanted) {
+      scenes_.wait(kLookAround);
+      hear_scene();
+      continue;
+    }
+    if (!part_.impossible.empty()) {
+      spdlog::error("{}", part_.impossible);
+      end(Phase::kFailed);
+      return kBadInput;
+    }
+    play();
+  }
+  end(Phase::kStopped);
+  return 0;
+}
+
+void Device::end(Phase phase) {
+  meter_.publish_latency();
+  meter_.set_phase(phase);
+}
+
+/// Takes what is said about scenes; true when the part of this device is no longer the same.
+bool Device::hear_scene() {
+  if (!scenes_.take_newest(scene_)) return false;
+  const ScenePart part = part_of(scene_, config_, *driver_);
+  const bool changed =
+      part.wanted != part_.wanted || part.role != part_.role || part.impossible != part_.impossible;
+  if (changed && !part.wanted) {
+    spdlog::info("scene '{}' does not play '{}'; waiting for one that does", scene_.name(),
+                 config_.name);
+  }
+  if (changed && part.wanted && part.impossible.empty()) {
+    spdlog::info("role {} in scene '{}'", name_of(part.role), scene_.name());
+  }
+  if (part.questionable != part_.questionable && !part.questionable.empty()) {
+    spdlog::warn("{}", part.questionable);
+  }
+  part_ = part;
+  return changed;
+}
+
+/// Plays one role until it changes or a stop is requested.
+void Device::play() {
+  const auto channel = make_dds_channel(participant_, part_.role, config_.device_id);
+  if (clock_ == config::Clock::kRealtime) ask_for_realtime();
+  const bool lockstep = clock_ == config::Clock::kLockstep;
+  Exchange exchange(config_, part_.role, series_, lockstep, *driver_, *channel, meter_,
+                    &node::monotonic_nsec);
+  noted_phase_ = Phase::kWaiting;
+  if (lockstep) {
+    play_in_lockstep(exchange);
+  } else {
+    play_paced(exchange);
+  }
+  series_.last_sample = exchange.last_sample();
+  meter_.set_phase(Phase::kWaiting);
+}
+
+void Device::ask_for_realtime() {
+  if (std::exchange(realtime_asked_, true)) return;
+  const node::RealtimeGrant grant = node::make_realtime(kLoopPriority);
+  spdlog::info("loop thread: {}, memory {}",
+               grant.fifo ? "realtime priority" : "no realtime priority (not permitted)",
+               grant.memory_locked ? "locked" : "not locked");
+}
+
+void Device::play_paced(Exchange& exchange) {
+  node::PacedLoop pace(config_.layout.rate_hz);
+  std::uint64_t overruns = 0;
+  while (!node::stop_requested()) {
+    exchange.send_sample();
+    pace.wait();
+    exchange.receive();
+    exchange.live();
+    meter_.add_overruns(pace.overruns() - std::exchange(overruns, pace.overruns()));
+    note_phase();
+    if (hear_scene()) return;
+  }
+}
+
+void Device::play_in_lockstep(Exchange& exchange) {
+  while (!node::stop_requested()) {
+    exchange.send_sample();
+    auto silent = milliseconds(0);
+    while (!exchange.await_answer(kRepeatAfter)) {
+      if (node::stop_requested() || hear_scene()) return;
+      silent += kRepeatAfter;
+      if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
+        meter_.set_phase(Phase::kLost);
+        note_phase();
+      }
+      exchange.repeat_sample();
+    }
+    exchange.live();
+    note_phase();
+    if (hear_scene()) return;
+  }
+}
+
+/// Tells of a change of phase, once.
+void Device::note_phase() {
+  const Phase phase = meter_.phase();
+  if (phase == noted_phase_) return;
+  if (phase == Phase::kLost) {
+    lost_since_nsec_ = node::monotonic_nsec();
+    spdlog::warn("no answer from the scene for more than {} ms: motors at zero",
+                 clock_ == config::Clock::kLockstep ? static_cast<double>(kLockstepPatience.count())
+                                                    : config_.force_guard.watchdog_s * 1e3);
+  } else if (noted_phase_ == Phase::kLost) {
+    spdlog::info("answers are back after {:.3f} s",
+                 static_cast<double>(node::monotonic_nsec() - lost_since_nsec_) * 1e-9);
+  }
+  noted_phase_ = phase;
+  status_.publish_now();
+}
+
+}  // namespace cordis::device

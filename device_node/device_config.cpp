@@ -1,0 +1,127 @@
+// device_node/device_config.cpp
+#include "device_node/device_config.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "device_node/drivers/driver_table.h"
+#include "node/config/mapping_reader.h"
+#include "node/node_main.h"
+
+namespace cordis::device {
+namespace {
+
+using config::number_text;
+using config::Range;
+
+/// The device file with the other keys of the section laid on it.
+config::Value merged(const config::Launch& launch, const config::LaunchNode& node,
+                     config::Problems& problems) {
+  config::MappingReader reader(node.section, "device_node '" + node.name + "'", problems);
+  const std::string path = reader.required_text("device");
+  if (path.empty()) return {};
+
+  std::vector<config::Value::Entry> others;
+  for (const config::Value::Entry& entry : node.section.entries()) {
+    if (entry.key != "device") others.push_back(entry);
+  }
+  const config::Value file = config::load_file(launch.resolve(path).string(), problems);
+  if (!file.exists()) return {};
+  return config::overlay(file, config::Value::mapping(std::move(others), node.section.place()));
+}
+
+AxisLayout read_layout(config::MappingReader& reader) {
+  AxisLayout layout;
+  layout.count = static_cast<int>(reader.required_integer("axes", 1, kMaxAxes));
+  const double travel_m = reader.optional_number("travel_m", 0.04, Range::between(0.001, 1.0));
+  const std::string rest = reader.optional_choice("rest", "top", {"top", "middle", "bottom"});
+  layout.lowest_m = rest == "top" ? -travel_m : rest == "middle" ? -travel_m / 2.0 : 0.0;
+  layout.highest_m = layout.lowest_m + travel_m;
+  layout.rate_hz = reader.optional_number("rate_hz", 1000.0, Range::between(1.0, 20000.0));
+  layout.force_limit_n = reader.optional_number("force_limit_n", 20.0, Range::positive());
+  return layout;
+}
+
+/// The watchdog must leave room for the life of an ordinary answer, up to three periods, and for
+/// bringing the largest force to zero at the slew rate.
+void check_watchdog(config::MappingReader& reader, const ForceGuardSettings& guard) {
+  const double ordinary_age_s = 3.0 * guard.period_s;
+  if (guard.watchdog_s <= ordinary_age_s) {
+    reader.error_at("watchdog_s", "watchdog_s must be more than three periods of rate_hz, " +
+                                      number_text(ordinary_age_s) + ", got " +
+                                      number_text(guard.watchdog_s));
+    return;
+  }
+  const double lowest_slew = guard.limit_n / (guard.watchdog_s - ordinary_age_s);
+  if (guard.slew_n_per_s < lowest_slew) {
+    reader.error_at("slew_limit_n_per_s",
+                    "slew_limit_n_per_s must be at least " + number_text(std::ceil(lowest_slew)) +
+                        " so that force_limit_n falls to zero within watchdog_s, got " +
+                        number_text(guard.slew_n_per_s));
+  }
+}
+
+void read_guards(config::MappingReader& reader, DeviceConfig& config) {
+  const AxisLayout& layout = config.layout;
+  ForceGuardSettings& force = config.force_guard;
+  force.period_s = 1.0 / layout.rate_hz;
+  force.limit_n = layout.force_limit_n;
+  force.watchdog_s =
+      reader.optional_number("watchdog_s", std::max(0.02, 6.0 * force.period_s), Range::positive());
+  force.ramp_s = reader.optional_number("start_ramp_s", 0.2, Range::between(0.0, 60.0));
+  force.slew_n_per_s = reader.optional_number(
+      "slew_limit_n_per_s", 5.0 * force.limit_n / force.watchdog_s, Range::positive());
+  if (reader.ok()) check_watchdog(reader, force);
+
+  PositionGuardSettings& position = config.position_guard;
+  position.lowest_m = layout.lowest_m;
+  position.highest_m = layout.highest_m;
+  position.speed_m_per_s = reader.optional_number("speed_limit_m_per_s", 2.0, Range::positive());
+  position.ramp_s = force.ramp_s;
+  position.watchdog_s = force.watchdog_s;
+  position.period_s = force.period_s;
+}
+
+/// Builds every driver that the file has a mapping for, and keeps the one in use.
+std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig& config,
+                                     config::Problems& problems) {
+  std::vector<std::string> names;
+  for (const DriverEntry& entry : driver_table()) names.emplace_back(entry.name);
+  config.driver = reader.optional_choice("driver", names.front(), names);
+
+  std::unique_ptr<Driver> chosen;
+  for (const DriverEntry& entry : driver_table()) {
+    const bool in_use = config.driver == entry.name;
+    const bool present = reader.has(entry.name);
+    config::Value section = reader.optional_mapping(entry.name);
+    if (!in_use && !present) continue;
+    if (!present) section = config::Value::mapping({}, reader.place());
+    auto driver = entry.make(section, config.layout, problems);
+    if (in_use) chosen = std::move(driver);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode& node,
+                         config::Problems& problems) {
+  LoadedDevice device;
+  const config::Value mapping = merged(launch, node, problems);
+  problems.throw_if_any();
+
+  config::MappingReader reader(mapping, "device '" + node.name + "'", problems);
+  device.config.name = node.name;
+  device.config.device_id = node::id_of(node.name);
+  reader.optional_integer("cordis", 1, 1, 1);
+  device.config.layout = read_layout(reader);
+  read_guards(reader, device.config);
+  device.driver = read_drivers(reader, device.config, problems);
+  reader.finish();
+  problems.throw_if_any();
+  return device;
+}
+
+}  // namespace cordis::device

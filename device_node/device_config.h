@@ -1,0 +1,38 @@
+// device_node/device_config.h -- a device as its file describes it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "device_node/axis.h"
+#include "device_node/drivers/driver.h"
+#include "device_node/force_guard.h"
+#include "device_node/position_guard.h"
+#include "node/config/launch.h"
+
+namespace cordis::device {
+
+/// What every device has, whoever drives it.
+struct DeviceConfig {
+  std::string name;  ///< the node's name in the launch file; ports of a scene refer to it
+  std::uint32_t device_id = 0;  ///< hash of the name
+  AxisLayout layout;
+  ForceGuardSettings force_guard;        ///< of role mass
+  PositionGuardSettings position_guard;  ///< of role liaison
+  std::string driver;                    ///< its name in the driver table
+};
+
+/// A device ready to run.
+struct LoadedDevice {
+  DeviceConfig config;
+  std::unique_ptr<Driver> driver;
+};
+
+/// Reads the device file that the node's section names (`device: FILE`), with the other keys of the
+/// section laid on it, and builds its driver. The mappings of all drivers in the file are checked,
+/// not only that of the driver in use.
+/// @throws config::ConfigError with everything that is wrong.
+LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode& node,
+                         config::Problems& problems);
+
+}  // namespace cordis::device

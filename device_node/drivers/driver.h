@@ -1,0 +1,39 @@
+// device_node/drivers/driver.h -- what the loop asks of a device, real or simulated.
+#pragma once
+
+#include "device_node/axis.h"
+
+namespace cordis::device {
+
+/// One device as its loop sees it: sensors to read, motors to write.
+///
+/// What the two carry depends on the role:
+///   role mass     read() gives positions [m], write() takes forces [N]
+///   role liaison  read() gives forces [N],    write() takes positions [m]
+/// Only the guard's output is ever written. No function blocks, allocates or throws: a driver that
+/// waits for its hardware does so on a thread of its own, and says here that it has none.
+class Driver {
+ public:
+  Driver() = default;
+  Driver(const Driver&) = delete;
+  Driver& operator=(const Driver&) = delete;
+  virtual ~Driver() = default;
+
+  /// Whether the device, as it is set up, can play the role at all.
+  virtual bool can_play(Role role) const noexcept = 0;
+
+  /// Begins a life in a role: motors off, a simulated device back at its beginning.
+  virtual void start(Role role) noexcept = 0;
+
+  /// What the sensors say now; false when the device does not answer.
+  virtual bool read(AxisValues& sensed) noexcept = 0;
+
+  /// Hands the motors what they hold for one period. A simulated device lives through that period
+  /// here, and no other clock moves it. False when the device does not answer.
+  virtual bool write(const AxisValues& commanded) noexcept = 0;
+
+  /// Motors off, at once. start() may follow.
+  virtual void stop() noexcept = 0;
+};
+
+}  // namespace cordis::device

@@ -1,0 +1,17 @@
+// device_node/drivers/driver_table.cpp
+#include "device_node/drivers/driver_table.h"
+
+#include "device_node/drivers/mock.h"
+#include "device_node/drivers/script.h"
+
+namespace cordis::device {
+
+std::span<const DriverEntry> driver_table() noexcept {
+  static constexpr DriverEntry kTable[] = {
+      {"mock", &make_mock},
+      {"script", &make_script},
+  };
+  return kTable;
+}
+
+}  // namespace cordis::device

@@ -1,0 +1,40 @@
+// device_node/drivers/hand.cpp
+#include "device_node/drivers/hand.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace cordis::device {
+
+Hand::Hand(const HandSettings& settings, Trajectory target)
+    : settings_(settings), target_(std::move(target)) {
+  const bool valid = settings.mass_kg > 0.0 && settings.stiffness_n_per_m > 0.0 &&
+                     settings.viscosity_n_s_per_m >= 0.0 && settings.finger_n_per_m > 0.0 &&
+                     settings.finger_viscosity_n_s_per_m >= 0.0;
+  if (!valid) throw std::invalid_argument("a setting of the hand is out of range");
+  start();
+}
+
+void Hand::start() noexcept {
+  position_ = target_.at(0.0);
+  speed_ = 0.0;
+}
+
+double Hand::force_on_key_n(double key_m, double key_m_per_s) const noexcept {
+  const double overlap = key_m - position_;  // of the finger pressed from above [m]
+  if (!settings_.holds && overlap <= 0.0) return 0.0;
+  const double press = settings_.finger_n_per_m * overlap +
+                       settings_.finger_viscosity_n_s_per_m * (key_m_per_s - speed_);
+  return settings_.holds ? -press : -std::max(0.0, press);
+}
+
+void Hand::advance(double time_s, double h_s, double force_n) noexcept {
+  const double pull = settings_.stiffness_n_per_m * (target_.at(time_s) - position_) +
+                      settings_.viscosity_n_s_per_m * target_.rate_at(time_s) + force_n;
+  speed_ = (settings_.mass_kg * speed_ + h_s * pull) /
+           (settings_.mass_kg + h_s * settings_.viscosity_n_s_per_m);
+  position_ += h_s * speed_;
+}
+
+}  // namespace cordis::device

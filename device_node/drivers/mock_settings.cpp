@@ -1,0 +1,135 @@
+// device_node/drivers/mock_settings.cpp -- the mapping `mock:` of a device file.
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "device_node/drivers/mock.h"
+#include "node/config/mapping_reader.h"
+
+namespace cordis::device {
+namespace {
+
+using config::Problems;
+using config::Range;
+
+KeySettings read_key(const config::Value& mapping, Problems& problems) {
+  config::MappingReader reader(mapping, "key", problems);
+  KeySettings key;
+  key.mass_kg = reader.optional_number("mass_kg", key.mass_kg, Range::between(1e-4, 100.0));
+  key.viscosity_n_s_per_m =
+      reader.optional_number("viscosity_n_s_per_m", key.viscosity_n_s_per_m, Range::not_negative());
+  key.friction_n = reader.optional_number("friction_n", key.friction_n, Range::not_negative());
+  key.return_n_per_m =
+      reader.optional_number("return_n_per_m", key.return_n_per_m, Range::not_negative());
+  key.stop_n_per_m = reader.optional_number("stop_n_per_m", key.stop_n_per_m, Range::positive());
+  key.stop_viscosity_n_s_per_m = reader.optional_number(
+      "stop_viscosity_n_s_per_m", key.stop_viscosity_n_s_per_m, Range::not_negative());
+  key.motor_limit_n = reader.optional_number("motor_limit_n", key.motor_limit_n, Range::positive());
+  reader.finish();
+
+  const double lowest = key.lowest_stop_viscosity();
+  if (key.stop_viscosity_n_s_per_m < lowest) {
+    reader.error_at("stop_viscosity_n_s_per_m",
+                    "stop_viscosity_n_s_per_m must be at least " + config::number_text(lowest) +
+                        " here, 1 % of critical damping, so that a bounce loses energy");
+    key.stop_viscosity_n_s_per_m = lowest;
+  }
+  return key;
+}
+
+std::vector<Trajectory::Move> read_moves(const config::Value& sequence, Problems& problems) {
+  std::vector<Trajectory::Move> moves;
+  double free_from_s = 0.0;
+  for (const config::Value& item : sequence.items()) {
+    config::MappingReader reader(item, "move", problems);
+    Trajectory::Move move;
+    move.begin_s = reader.required_number("at_s", Range::not_negative());
+    move.duration_s = reader.required_number("in_s", Range::not_negative());
+    move.to = reader.required_number("to_m", Range::between(-1.0, 1.0));
+    reader.finish();
+    if (move.begin_s < free_from_s) {
+      reader.error_at("at_s", "a move must not begin before the one before it has ended");
+      move.begin_s = free_from_s;
+    }
+    free_from_s = move.begin_s + move.duration_s;
+    moves.push_back(move);
+  }
+  return moves;
+}
+
+Trajectory read_gesture(config::MappingReader& hand, Problems& problems) {
+  const double start_m = hand.optional_number("start_m", 0.005, Range::between(-1.0, 1.0));
+  std::vector<Trajectory::Move> moves = read_moves(hand.optional_sequence("moves"), problems);
+  const double end_s = moves.empty() ? 0.0 : moves.back().begin_s + moves.back().duration_s;
+  double repeat_s = hand.optional_number("repeat_s", 0.0, Range::not_negative());
+  if (repeat_s != 0.0 && repeat_s < end_s) {
+    hand.error_at("repeat_s", "repeat_s must not be less than the end of the last move");
+    repeat_s = end_s;
+  }
+  return {start_m, std::move(moves), Trajectory::Shape::kMinimumJerk, repeat_s};
+}
+
+void read_finger(const config::Value& mapping, HandSettings& hand, Problems& problems) {
+  config::MappingReader reader(mapping, "finger", problems);
+  hand.finger_n_per_m =
+      reader.optional_number("stiffness_n_per_m", hand.finger_n_per_m, Range::positive());
+  hand.finger_viscosity_n_s_per_m = reader.optional_number(
+      "viscosity_n_s_per_m", hand.finger_viscosity_n_s_per_m, Range::not_negative());
+  hand.holds = reader.optional_truth("holds", hand.holds);
+  reader.finish();
+}
+
+/// The axes with a hand on them: all of them when nothing is said.
+std::vector<int> read_played(config::MappingReader& hand, const AxisLayout& layout) {
+  std::vector<int> played;
+  if (hand.has("axes")) {
+    for (const long axis : hand.required_integers("axes", 0, layout.count - 1)) {
+      const int number = static_cast<int>(axis);
+      if (std::find(played.begin(), played.end(), number) != played.end()) {
+        hand.error_at("axes", "axis " + std::to_string(number) + " stands here twice");
+      }
+      played.push_back(number);
+    }
+  } else {
+    for (int a = 0; a < layout.count; ++a) played.push_back(a);
+  }
+  return played;
+}
+
+void read_hand(const config::Value& mapping, const AxisLayout& layout, MockSettings& settings,
+               Problems& problems) {
+  config::MappingReader reader(mapping, "hand", problems);
+  HandSettings& hand = settings.hand;
+  hand.mass_kg = reader.optional_number("mass_kg", hand.mass_kg, Range::between(1e-4, 100.0));
+  hand.stiffness_n_per_m =
+      reader.optional_number("stiffness_n_per_m", hand.stiffness_n_per_m, Range::positive());
+  hand.viscosity_n_s_per_m = reader.optional_number("viscosity_n_s_per_m", hand.viscosity_n_s_per_m,
+                                                    Range::not_negative());
+  read_finger(reader.optional_mapping("finger"), hand, problems);
+  settings.gesture = read_gesture(reader, problems);
+  settings.played = read_played(reader, layout);
+  settings.stagger_s = reader.optional_number("stagger_s", 0.0, Range::not_negative());
+  reader.finish();
+}
+
+}  // namespace
+
+std::unique_ptr<Driver> make_mock(const config::Value& section, const AxisLayout& layout,
+                                  Problems& problems) {
+  config::MappingReader reader(section, "mock", problems);
+  MockSettings settings;
+  settings.key = read_key(reader.optional_mapping("key"), problems);
+  const config::Value hand = reader.optional_mapping("hand");
+  if (hand.exists()) read_hand(hand, layout, settings, problems);
+  reader.finish();
+  if (problems.has_errors()) return nullptr;
+  try {
+    return std::make_unique<Mock>(settings, layout);
+  } catch (const std::invalid_argument& error) {
+    problems.error(section.place(), "mock: " + std::string(error.what()));
+    return nullptr;
+  }
+}
+
+}  // namespace cordis::device

@@ -1,0 +1,110 @@
+// device_node/exchange.cpp
+#include "device_node/exchange.h"
+
+namespace cordis::device {
+
+Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep,
+                   Driver& driver, GestureChannel& channel, LoopMeter& meter, ClockFunction clock)
+    : config_(config),
+      role_(role),
+      lockstep_(lockstep),
+      driver_(driver),
+      channel_(channel),
+      meter_(meter),
+      clock_(clock),
+      force_guard_(config.force_guard),
+      position_guard_(config.position_guard),
+      first_sample_(series.last_sample + 1) {
+  sample_.run = series.run;
+  sample_.sample = series.last_sample;
+  sample_.axis_count = static_cast<std::uint32_t>(config.layout.count);
+  meter_.set_phase(Phase::kWaiting);
+  driver_.start(role_);
+  driver_.read(sensed_);
+}
+
+Exchange::~Exchange() {
+  driver_.stop();
+}
+
+void Exchange::send_sample() noexcept {
+  ++sample_.sample;
+  sample_.answered_run = used_.run;
+  sample_.answered_sample = used_.sample;
+  sample_.answered_time_nsec = used_.time_nsec;
+  sample_.value = sensed_;
+  sample_.time_nsec = clock_();
+  if (!channel_.send(sample_)) meter_.count_dropped();
+}
+
+void Exchange::repeat_sample() noexcept {
+  if (!channel_.send(sample_)) meter_.count_dropped();
+}
+
+void Exchange::receive() noexcept {
+  GestureMessage answer;
+  while (channel_.receive(answer, std::chrono::nanoseconds(0))) consider(answer);
+}
+
+bool Exchange::await_answer(std::chrono::nanoseconds silence) noexcept {
+  GestureMessage answer;
+  while (channel_.receive(answer, silence)) {
+    if (consider(answer) && used_.answered_sample == sample_.sample) return true;
+  }
+  return false;
+}
+
+/// Whether an answer is well formed, answers this process, and is newer than the one in use.
+/// A new run of the scene is recognised by what it answers alone.
+bool Exchange::consider(const GestureMessage& answer) noexcept {
+  if (answer.answered_run == 0) return false;  // the scene has not heard this device yet
+  const bool well_formed = answer.axis_count >= 1 && answer.axis_count <= kMaxAxes &&
+                           answer.answered_time_nsec <= clock_();
+  const bool answers_us = answer.answered_run == sample_.run &&
+                          answer.answered_sample >= first_sample_ &&
+                          answer.answered_sample <= sample_.sample;
+  // Between two samples of this device the scene may answer twice: the later answer counts.
+  const bool later = answer.run != used_.run || answer.sample > used_.sample;
+  const bool newer = !any_answer_ || answer.answered_sample > used_.answered_sample ||
+                     (answer.answered_sample == used_.answered_sample && later && !lockstep_);
+  if (!well_formed || !answers_us || !newer) {
+    meter_.count_dropped();
+    return false;
+  }
+  accept(answer);
+  return true;
+}
+
+void Exchange::accept(const GestureMessage& answer) noexcept {
+  if (!any_answer_ || answer.answered_sample > used_.answered_sample) {
+    meter_.record_latency(clock_() - answer.answered_time_nsec);
+  }
+  any_answer_ = true;
+  used_ = answer;
+  const bool finite = role_ == Role::kMass ? force_guard_.accept(answer.value)
+                                           : position_guard_.accept(answer.value);
+  if (!finite) meter_.count_dropped();
+}
+
+double Exchange::age_s() const noexcept {
+  if (lockstep_) {
+    return static_cast<double>(sample_.sample - used_.answered_sample) / config_.layout.rate_hz;
+  }
+  return static_cast<double>(clock_() - used_.answered_time_nsec) * 1e-9;
+}
+
+void Exchange::live() noexcept {
+  const double age = age_s();
+  const AxisValues& commanded =
+      role_ == Role::kMass ? force_guard_.tick(age) : position_guard_.tick(age);
+  const bool written = driver_.write(commanded);
+  const bool sensed = driver_.read(sensed_);
+  meter_.count_tick();
+
+  const bool present = written && sensed;
+  if (!present) force_guard_.start();  // a device that comes back is ramped up anew
+  const bool in_time = age < config_.force_guard.watchdog_s;
+  if (any_answer_) meter_.set_phase(present && in_time ? Phase::kRunning : Phase::kLost);
+}
+
+}  // namespace cordis::device

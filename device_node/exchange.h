@@ -1,0 +1,79 @@
+// device_node/exchange.h -- one device against one scene: sample out, answer in, motors, sensors.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "device_node/device_config.h"
+#include "device_node/gesture_channel.h"
+#include "device_node/loop_meter.h"
+
+namespace cordis::device {
+
+/// The force loop of a device in one role, without its pace. One period is
+///   send_sample();  receive() or await_answer();  live();
+/// in the realtime clock with a sleep before receive(), in lockstep with await_answer() until the
+/// very sample has its answer. Then live() guards what was answered, hands it to the driver, lets
+/// the driver live for a period and reads its sensors for the next sample.
+///
+/// In lockstep the age of what goes to the guard is counted in samples, and nothing depends on
+/// wall time. Otherwise the age counts from the moment the answered sample was sent, so that a
+/// scene that no longer hears this device counts as silent.
+class Exchange {
+ public:
+  using ClockFunction = std::int64_t (*)() noexcept;  ///< CLOCK_MONOTONIC [ns]
+
+  /// What identifies the samples of this process.
+  struct Series {
+    std::uint64_t run = 0;          ///< of this process
+    std::uint64_t last_sample = 0;  ///< number of the last sample sent before
+  };
+
+  /// Starts the driver in the role. What is referred to must outlive the exchange.
+  Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep, Driver& driver,
+           GestureChannel& channel, LoopMeter& meter, ClockFunction clock);
+
+  /// Stops the driver.
+  ~Exchange();
+  Exchange(const Exchange&) = delete;
+  Exchange& operator=(const Exchange&) = delete;
+
+  void send_sample() noexcept;    ///< the newest readings, under the next number
+  void repeat_sample() noexcept;  ///< the same message once more
+
+  /// Takes all answers that are there. Bad, foreign and outdated ones are counted as dropped.
+  void receive() noexcept;
+
+  /// Waits until the sample sent last is answered, or `silence` has passed since the newest
+  /// answer or call; true when it is answered.
+  bool await_answer(std::chrono::nanoseconds silence) noexcept;
+
+  /// Motors, one period, sensors. Sets the phase of the meter: waiting until the first answer,
+  /// running while answers come, lost when they are older than the watchdog or the driver has no
+  /// device.
+  void live() noexcept;
+
+  std::uint64_t last_sample() const noexcept { return sample_.sample; }
+
+ private:
+  bool consider(const GestureMessage& answer) noexcept;
+  void accept(const GestureMessage& answer) noexcept;
+  double age_s() const noexcept;
+
+  const DeviceConfig& config_;
+  Role role_;
+  bool lockstep_;
+  Driver& driver_;
+  GestureChannel& channel_;
+  LoopMeter& meter_;
+  ClockFunction clock_;
+  ForceGuard force_guard_;
+  PositionGuard position_guard_;
+  GestureMessage sample_;       // the sample sent last
+  GestureMessage used_;         // the newest good answer
+  AxisValues sensed_{};         // for the next sample
+  std::uint64_t first_sample_;  // of this exchange
+  bool any_answer_ = false;
+};
+
+}  // namespace cordis::device

@@ -1,0 +1,58 @@
+// device_node/loop_meter.cpp
+#include "device_node/loop_meter.h"
+
+namespace cordis::device {
+namespace {
+
+constexpr std::uint64_t kTicksPerPublication = 256;
+
+struct PhaseWords {
+  const char* phase;
+  const char* text;
+};
+
+PhaseWords words_of(Phase phase) noexcept {
+  switch (phase) {
+    case Phase::kWaiting:
+      return {"waiting", "waits for a scene that plays this device; motors off"};
+    case Phase::kRunning:
+      return {"running", ""};
+    case Phase::kLost:
+      return {"lost", "the scene no longer answers in time; motors at zero"};
+    case Phase::kStopped:
+      return {"stopped", ""};
+    case Phase::kFailed:
+      return {"failed", "cannot play what the scene wants of it"};
+  }
+  return {"", ""};
+}
+
+}  // namespace
+
+void LoopMeter::count_tick() noexcept {
+  const std::uint64_t ticks = ticks_.fetch_add(1, std::memory_order_relaxed) + 1;
+  if (ticks % kTicksPerPublication == 0) publish_latency();
+}
+
+void LoopMeter::publish_latency() noexcept {
+  latency_count_.store(latency_.count(), std::memory_order_relaxed);
+  latency_p50_s_.store(latency_.quantile_nsec(0.5) * 1e-9, std::memory_order_relaxed);
+  latency_p99_s_.store(latency_.quantile_nsec(0.99) * 1e-9, std::memory_order_relaxed);
+  latency_max_s_.store(static_cast<double>(latency_.largest_nsec()) * 1e-9,
+                       std::memory_order_relaxed);
+}
+
+void LoopMeter::fill(msg::NodeStatus& status) const {
+  const PhaseWords words = words_of(phase());
+  status.phase(words.phase);
+  status.text(words.text);
+  status.ticks(ticks());
+  status.overruns(overruns_.load(std::memory_order_relaxed));
+  status.dropped(dropped());
+  status.latency_count(latency_count_.load(std::memory_order_relaxed));
+  status.latency_p50_s(latency_p50_s_.load(std::memory_order_relaxed));
+  status.latency_p99_s(latency_p99_s_.load(std::memory_order_relaxed));
+  status.latency_max_s(latency_max_s_.load(std::memory_order_relaxed));
+}
+
+}  // namespace cordis::device

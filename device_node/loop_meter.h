@@ -1,0 +1,57 @@
+// device_node/loop_meter.h -- what the loop of a device counts, for node/status to tell.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "idl/control.h"
+#include "node/latency.h"
+
+namespace cordis::device {
+
+/// How a device stands with the scene.
+enum class Phase : std::uint8_t {
+  kWaiting,  ///< no scene names it yet, or no answer has come yet; motors off
+  kRunning,  ///< answers come in time
+  kLost,     ///< they no longer do; motors at zero
+  kStopped,  ///< the node is ending as it was asked to
+  kFailed    ///< the node is ending because it cannot play what the scene wants
+};
+
+/// Counters of one device. The loop thread writes; fill() may be called from another thread.
+class LoopMeter {
+ public:
+  void set_phase(Phase phase) noexcept { phase_.store(phase, std::memory_order_relaxed); }
+  Phase phase() const noexcept { return phase_.load(std::memory_order_relaxed); }
+
+  void count_tick() noexcept;
+  void count_dropped() noexcept { dropped_.fetch_add(1, std::memory_order_relaxed); }
+  void add_overruns(std::uint64_t count) noexcept {
+    overruns_.fetch_add(count, std::memory_order_relaxed);
+  }
+
+  /// From the sending of a sample to the arrival of its answer.
+  void record_latency(std::int64_t nsec) noexcept { latency_.record(nsec); }
+
+  /// Makes the latencies recorded so far visible to fill(); every 256th tick does so by itself.
+  void publish_latency() noexcept;
+
+  /// Phase, counters and latency. The text says in a sentence what the phase means.
+  void fill(msg::NodeStatus& status) const;
+
+  std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+  std::uint64_t ticks() const noexcept { return ticks_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<Phase> phase_{Phase::kWaiting};
+  std::atomic<std::uint64_t> ticks_{0};
+  std::atomic<std::uint64_t> overruns_{0};
+  std::atomic<std::uint64_t> dropped_{0};
+  node::LatencyHistogram latency_;  // of the loop thread alone
+  std::atomic<std::uint64_t> latency_count_{0};
+  std::atomic<double> latency_p50_s_{0.0};
+  std::atomic<double> latency_p99_s_{0.0};
+  std::atomic<double> latency_max_s_{0.0};
+};
+
+}  // namespace cordis::device

@@ -1,0 +1,49 @@
+// device_node/position_guard.h -- what stands between the loop and a motor that takes positions.
+#pragma once
+
+#include <cstdint>
+
+#include "device_node/axis.h"
+
+namespace cordis::device {
+
+/// What a guard allows. SI units.
+struct PositionGuardSettings {
+  double lowest_m = -0.04;     ///< lower end of travel
+  double highest_m = 0.0;      ///< upper end of travel
+  double speed_m_per_s = 2.0;  ///< largest speed at which a key is carried, > 0
+  double ramp_s = 0.2;         ///< over which that speed grows from nothing at the start, >= 0
+  double watchdog_s = 0.02;    ///< age at which a position is worth nothing, > 0
+  double period_s = 0.001;     ///< of the ticks, > 0
+};
+
+/// The last hand on every position that goes to a motor, for a device of role liaison. Whatever it
+/// is given, its output
+/// - never leaves the travel, and never moves by more than speed * period in one tick;
+/// - stays where it is once the newest position is watchdog_s old, and while the newest positions
+///   hold a NaN or an infinity;
+/// - moves slowly at first, at the start and after each time the watchdog has bitten.
+/// Time is counted in ticks and in the ages it is told; it knows no clock.
+class PositionGuard {
+ public:
+  /// @throws std::invalid_argument when a setting is out of range.
+  explicit PositionGuard(const PositionGuardSettings& settings);
+
+  void start() noexcept;  ///< forgets everything: at rest at position 0, or the end nearest to it
+
+  /// Takes over what is wanted from now on [m]; false when it is not finite: then it stays.
+  bool accept(const AxisValues& wanted_m) noexcept;
+
+  /// The positions for the end of the next period [m]. Real time: O(axes), no allocation.
+  /// @param age_s  of the newest positions accepted, >= 0; anything when there have been none
+  const AxisValues& tick(double age_s) noexcept;
+
+ private:
+  PositionGuardSettings settings_;
+  AxisValues wanted_{};  // [m]
+  AxisValues output_{};  // [m]
+  bool any_accepted_ = false;
+  std::uint64_t ticks_alive_ = 0;  // of the ramp
+};
+
+}  // namespace cordis::device

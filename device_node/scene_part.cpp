@@ -1,0 +1,65 @@
+// device_node/scene_part.cpp
+#include "device_node/scene_part.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace cordis::device {
+namespace {
+
+constexpr std::uint32_t kMassOnWire = 0;
+constexpr std::uint32_t kLiaisonOnWire = 1;
+
+std::string trouble_with(const msg::PortDescription& port, const DeviceConfig& device) {
+  if (port.role() != kMassOnWire && port.role() != kLiaisonOnWire) {
+    return fmt::format("port '{}' gives device '{}' the unknown role {}", port.name(), device.name,
+                       port.role());
+  }
+  for (const std::uint32_t axis : port.axes()) {
+    if (axis >= static_cast<std::uint32_t>(device.layout.count)) {
+      return fmt::format("port '{}' wants axis {} of device '{}', which has {} (axes 0 to {})",
+                         port.name(), axis, device.name, device.layout.count,
+                         device.layout.count - 1);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+ScenePart part_of(const msg::SceneDescription& scene, const DeviceConfig& device,
+                  const Driver& driver) {
+  ScenePart part;
+  for (const msg::PortDescription& port : scene.ports()) {
+    if (port.device_id() != device.device_id) continue;
+    part.impossible = trouble_with(port, device);
+    const Role role = port.role() == kLiaisonOnWire ? Role::kLiaison : Role::kMass;
+    if (part.impossible.empty() && part.wanted && role != part.role) {
+      part.impossible = fmt::format("port '{}' gives device '{}' role {}, another port role {}",
+                                    port.name(), device.name, name_of(role), name_of(part.role));
+    }
+    part.wanted = true;
+    part.role = role;
+    if (!part.impossible.empty()) break;
+  }
+  if (!part.wanted) return part;
+
+  if (part.impossible.empty() && !driver.can_play(part.role)) {
+    part.impossible =
+        fmt::format("device '{}' cannot play role {}: its driver '{}' has nothing to give in it",
+                    device.name, name_of(part.role), device.driver);
+  }
+  if (!part.impossible.empty()) {
+    part.impossible = fmt::format("scene '{}': {}", scene.name(), part.impossible);
+  }
+  const double rate_hz = device.layout.rate_hz;
+  if (std::abs(scene.gesture_rate_hz() - rate_hz) > 1e-9 * rate_hz) {
+    part.questionable =
+        fmt::format("scene '{}' counts on {} gestures per second, device '{}' gives {}",
+                    scene.name(), scene.gesture_rate_hz(), device.name, rate_hz);
+  }
+  return part;
+}
+
+}  // namespace cordis::device
