@@ -8,7 +8,7 @@
 
 #include "device_node/drivers/driver_table.h"
 #include "node/config/mapping_reader.h"
-#include "node/node_main.h"
+#include "node/config/name_hash.h"
 
 namespace cordis::device {
 namespace {
@@ -114,7 +114,7 @@ LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode&
 
   config::MappingReader reader(mapping, "device '" + node.name + "'", problems);
   device.config.name = node.name;
-  device.config.device_id = node::id_of(node.name);
+  device.config.device_id = config::name_hash(node.name);
   reader.optional_integer("cordis", 1, 1, 1);
   device.config.layout = read_layout(reader);
   read_guards(reader, device.config);

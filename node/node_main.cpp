@@ -96,12 +96,6 @@ dds::Membership NodeStart::membership() const {
   return {launch.domain, launch.session, node->name, launch.clock == config::Clock::kLockstep};
 }
 
-std::uint32_t id_of(const std::string& name) noexcept {
-  std::uint32_t hash = 2166136261u;
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
-  return hash;
-}
-
 int node_main(int argc, char** argv, const std::string& kind,
               int (*run)(const NodeStart&, config::Problems&)) {
   try {
@@ -130,6 +124,11 @@ int node_main(int argc, char** argv, const std::string& kind,
     std::fprintf(stderr, "%s: %s\n", kind.c_str(), error.what());
     return kRuntimeFailure;
   }
+}
+
+void report(const config::Problems& problems) {
+  problems.throw_if_any();
+  print_problems(problems.all());
 }
 
 void claim(const std::string& name, const std::string& refusal) {

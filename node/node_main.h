@@ -19,9 +19,6 @@ struct NodeStart {
   dds::Membership membership() const;
 };
 
-/// FNV-1a hash of a name: device_id and node_id on the wire.
-std::uint32_t id_of(const std::string& name) noexcept;
-
 /// Reads `LAUNCH.yaml --name NAME [--check] [name.key=value ...]`, installs log and stop signals,
 /// calls `run` and turns whatever it throws into one clear message: exit code 2 for a bad file or
 /// usage, 1 for a failure at run time.
@@ -30,6 +27,10 @@ std::uint32_t id_of(const std::string& name) noexcept;
 /// leave it
 int node_main(int argc, char** argv, const std::string& kind,
               int (*run)(const NodeStart&, config::Problems&));
+
+/// Ends the reading of files: logs the warnings.
+/// @throws ConfigError when there is an error among the problems
+void report(const config::Problems& problems);
 
 /// Claims a name on this machine until the process ends, whichever way: an abstract socket, so
 /// nothing is left behind.

@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-#include "node/node_main.h"
+#include "node/config/name_hash.h"
 #include "node/time.h"
 
 namespace cordis::node {
@@ -35,7 +35,7 @@ StatusPublisher::StatusPublisher(dds::Participant& participant, const std::strin
       started_nsec_(monotonic_nsec()),
       last_time_nsec_(started_nsec_) {
   const std::string& name = participant.membership().node;
-  status_.node_id(id_of(name));
+  status_.node_id(config::name_hash(name));
   status_.node(name);
   status_.kind(kind);
   status_.run(run);

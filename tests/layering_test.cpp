@@ -14,7 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kRoot = CORDIS_SOURCE_DIR;
-const std::vector<std::string> kFolders = {"node", "sim_node", "device_node", "viz_node", "record_node", "cli"};
+const std::vector<std::string> kFolders = {"node",     "sim_node",    "device_node",
+                                           "viz_node", "record_node", "cli"};
 
 struct Include {
   std::string file;  // from the root
@@ -41,8 +42,8 @@ std::vector<Include> all_includes() {
   std::vector<Include> includes;
   for (const std::string& folder : kFolders) {
     if (!fs::exists(kRoot / folder)) continue;
-    for (auto entry = fs::recursive_directory_iterator(kRoot / folder); entry != fs::recursive_directory_iterator();
-         ++entry) {
+    for (auto entry = fs::recursive_directory_iterator(kRoot / folder);
+         entry != fs::recursive_directory_iterator(); ++entry) {
       if (entry->path().filename() == "node_modules") entry.disable_recursion_pending();
       const std::string extension = entry->path().extension().string();
       if (extension != ".h" && extension != ".cpp" && extension != ".inl") continue;
@@ -73,7 +74,9 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
     {"device_node/", {"device_node/", "node/", "idl/"}},
     {"viz_node/", {"viz_node/", "node/", "idl/"}},
     {"record_node/", {"record_node/", "node/", "idl/"}},
-    {"cli/", {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/", "record_node/mcap/", "viz_node/render/"}},
+    {"cli/",
+     {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/", "record_node/mcap/",
+      "viz_node/render/"}},
 };
 
 TEST(Layering, EveryIncludePointsToItsOwnLevelOrDownwards) {
@@ -100,9 +103,12 @@ TEST(Layering, EveryQuotedIncludeIsSpelledFromTheRoot) {
 
 TEST(Layering, HeadersOfAForeignLibraryStandInOnePlace) {
   const std::map<std::string, std::vector<std::string>> homes = {
-      {"fastdds/", {"node/dds/"}},         {"fastrtps/", {"node/dds/"}},
-      {"fastcdr/", {"node/dds/"}},         {"yaml-cpp/", {"node/config/"}},
-      {"boost/", {"viz_node/web/server"}}, {"Eigen/", {"sim_node/engine/", "sim_node/plan/"}},
+      {"fastdds/", {"node/dds/"}},
+      {"fastrtps/", {"node/dds/"}},
+      {"fastcdr/", {"node/dds/"}},
+      {"yaml-cpp/", {"node/config/"}},
+      {"boost/", {"viz_node/web/server"}},
+      {"Eigen/", {"sim_node/engine/", "sim_node/plan/"}},
       {"CLI/", {"cli/"}},
   };
   for (const Include& include : all_includes()) {

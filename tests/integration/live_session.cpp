@@ -24,13 +24,17 @@ bool eventually(const std::function<bool()>& condition) {
   return true;
 }
 
-std::string program_path(const std::string& program) { return std::string(CORDIS_PROGRAM_DIR) + "/" + program; }
+std::string program_path(const std::string& program) {
+  return std::string(CORDIS_PROGRAM_DIR) + "/" + program;
+}
 
-LiveSession::LiveSession(const std::string& clock, const std::string& nodes, const std::string& session) {
+LiveSession::LiveSession(const std::string& clock, const std::string& nodes,
+                         const std::string& session) {
   std::string name = (std::filesystem::temp_directory_path() / "cordis-test-XXXXXX").string();
   folder_ = mkdtemp(name.data());
-  add_file("launch.yaml", "cordis: 1\nsession: " + session + "\ndomain: " + std::to_string(own_domain()) +
-                              "\nclock: " + clock + "\nnodes:\n" + nodes);
+  add_file("launch.yaml", "cordis: 1\nsession: " + session +
+                              "\ndomain: " + std::to_string(own_domain()) + "\nclock: " + clock +
+                              "\nnodes:\n" + nodes);
   participant_ = std::make_unique<dds::Participant>(
       dds::Membership{own_domain(), session, "observer", clock == "lockstep"});
 }
@@ -42,7 +46,8 @@ LiveSession::~LiveSession() {
     for (auto& [name, process] : processes_) {
       std::fprintf(stderr, "---- output of %s\n%s\n", name.c_str(), process->output().c_str());
     }
-    for (auto& process : ended_) std::fprintf(stderr, "---- of an ended one\n%s\n", process->output().c_str());
+    for (auto& process : ended_)
+      std::fprintf(stderr, "---- of an ended one\n%s\n", process->output().c_str());
   }
   processes_.clear();
   std::filesystem::remove_all(folder_);

@@ -14,19 +14,21 @@
 
 namespace cordis::test {
 
-constexpr auto kPatience = std::chrono::seconds(30);  // for things that take a fraction of a second on a free machine
+constexpr auto kPatience =
+    std::chrono::seconds(30);  // for things that take a fraction of a second on a free machine
 
 /// Waits until `condition` holds; false when patience ends. Tests never sleep for a fixed time.
 bool eventually(const std::function<bool()>& condition);
 
-/// A folder with a launch file and what belongs to it, the nodes of it that the test has started, and a DDS participant
-/// of the test itself in the same session. Everything ends with the object. When a test has failed, the destructor
-/// prints the output of every process.
+/// A folder with a launch file and what belongs to it, the nodes of it that the test has started,
+/// and a DDS participant of the test itself in the same session. Everything ends with the object.
+/// When a test has failed, the destructor prints the output of every process.
 class LiveSession {
  public:
   /// @param clock  realtime, lockstep or asap
   /// @param nodes  YAML text of the mapping `nodes:`, indented by two
-  explicit LiveSession(const std::string& clock, const std::string& nodes, const std::string& session = "test");
+  explicit LiveSession(const std::string& clock, const std::string& nodes,
+                       const std::string& session = "test");
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -34,7 +36,8 @@ class LiveSession {
   void add_file(const std::string& name, const std::string& text) const;
 
   /// Starts `program LAUNCH --name name words...`.
-  ChildProcess& start(const std::string& program, const std::string& name, const std::vector<std::string>& words = {});
+  ChildProcess& start(const std::string& program, const std::string& name,
+                      const std::vector<std::string>& words = {});
   /// Starts `cordis run LAUNCH words...`.
   ChildProcess& start_launcher(const std::vector<std::string>& words = {});
 
@@ -46,7 +49,8 @@ class LiveSession {
  private:
   std::filesystem::path folder_;
   std::map<std::string, std::unique_ptr<ChildProcess>> processes_;
-  std::vector<std::unique_ptr<ChildProcess>> ended_;  // replaced by a restart, kept for their output
+  std::vector<std::unique_ptr<ChildProcess>>
+      ended_;  // replaced by a restart, kept for their output
   std::unique_ptr<dds::Participant> participant_;
 };
 

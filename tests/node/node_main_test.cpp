@@ -99,12 +99,5 @@ TEST(Claim, IsHeldByOneProcessAtATimeAndLeavesNothing) {
   EXPECT_NO_THROW(claim(name + "/other", "taken"));
 }
 
-TEST(IdOf, IsTheFnv1aHashOfTheName) {
-  // Published test vectors of FNV-1a, 32 bits.
-  EXPECT_EQ(id_of(""), 0x811c9dc5u);
-  EXPECT_EQ(id_of("a"), 0xe40c292cu);
-  EXPECT_EQ(id_of("foobar"), 0xbf9cf968u);
-}
-
 }  // namespace
 }  // namespace cordis::node

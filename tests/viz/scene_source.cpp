@@ -16,7 +16,7 @@
 #include "idl/scene.h"
 #include "node/dds/participant.h"
 #include "node/dds/writer.h"
-#include "node/node_main.h"
+#include "node/config/name_hash.h"
 #include "node/paced_loop.h"
 #include "node/status.h"
 #include "node/stop.h"
@@ -146,7 +146,7 @@ void name_parts(MovingScene& scene, const std::string& name, std::uint64_t run) 
   msg::PortDescription port;
   port.name("finger");
   port.device("keyboard");
-  port.device_id(node::id_of("keyboard"));
+  port.device_id(config::name_hash("keyboard"));
   port.mat(scene.port_mat);
   port.axes({0});
   description.ports({port});

@@ -1,0 +1,79 @@
+// sim_node/describe.cpp
+#include "sim_node/describe.h"
+
+#include <vector>
+
+namespace cordis::sim {
+namespace {
+
+std::vector<msg::NamedRange> ranges_of(const std::vector<scene::NamedRange>& ranges) {
+  std::vector<msg::NamedRange> told(ranges.size());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    told[i].name(ranges[i].name);
+    told[i].first(ranges[i].first);
+    told[i].count(ranges[i].count);
+  }
+  return told;
+}
+
+msg::PortDescription port_of(const scene::Port& port) {
+  msg::PortDescription told;
+  told.name(port.name);
+  told.device(port.device);
+  told.device_id(port.device_id);
+  told.role(static_cast<std::uint32_t>(port.role));
+  told.mat(port.mat);
+  told.axes(port.axes);
+  return told;
+}
+
+void tell_network(const scene::Scene& scene, msg::SceneDescription& description) {
+  for (std::size_t i = 0; i < scene.network.mats.size(); ++i) {
+    const engine::Mat& mat = scene.network.mats[i];
+    description.mat_kind().push_back(static_cast<std::uint8_t>(mat.kind));
+    const double mass = mat.kind == engine::MatKind::kMass ? mat.mass : 0.0;
+    description.mat_mass_kg().push_back(static_cast<float>(mass));
+    description.mat_radius_m().push_back(static_cast<float>(scene.radius_m[i]));
+  }
+  for (const engine::Link& link : scene.network.links) {
+    description.link_ends().push_back(link.mat_a);
+    description.link_ends().push_back(link.mat_b);
+  }
+}
+
+}  // namespace
+
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run) {
+  msg::SceneDescription description;
+  description.run(run);
+  description.version(1);
+  description.name(scene.name);
+  description.space(static_cast<std::uint32_t>(scene.space()));
+  description.step_rate_hz(scene.step_rate_hz);
+  description.gesture_rate_hz(scene.gesture_rate_hz);
+  description.frame_rate_hz(scene.frame_rate_hz);
+  description.scene_file(scene.file);
+  description.matter(ranges_of(scene.matter));
+  description.links(ranges_of(scene.links));
+  tell_network(scene, description);
+  for (const scene::Port& port : scene.ports) description.ports().push_back(port_of(port));
+  for (const scene::Signal& signal : scene.signals.signals()) {
+    msg::SignalDescription told;
+    told.name(signal.name);
+    told.unit(signal.unit);
+    description.signals().push_back(told);
+  }
+  return description;
+}
+
+FramePublisher::Layout layout_of(const scene::Scene& scene) {
+  FramePublisher::Layout layout;
+  layout.dimension = scene.space();
+  for (const scene::LayoutPoint& point : scene.layout) {
+    layout.x_z.push_back(static_cast<float>(point.x));
+    layout.x_z.push_back(static_cast<float>(point.z));
+  }
+  return layout;
+}
+
+}  // namespace cordis::sim

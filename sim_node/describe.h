@@ -1,0 +1,16 @@
+// sim_node/describe.h -- a scene as other processes see it.
+#pragma once
+
+#include "idl/scene.h"
+#include "sim_node/frame_publisher.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// The scene/description of a scene.
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run);
+
+/// Where the MATs of a 1-D scene are shown; empty in 2 and 3 dimensions.
+FramePublisher::Layout layout_of(const scene::Scene& scene);
+
+}  // namespace cordis::sim

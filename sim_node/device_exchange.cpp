@@ -1,0 +1,138 @@
+// sim_node/device_exchange.cpp
+#include "sim_node/device_exchange.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cordis::sim {
+
+DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role role,
+                               std::vector<scene::Port> ports, double rate_hz, std::uint64_t run)
+    : device_(std::move(device)),
+      device_id_(device_id),
+      role_(role),
+      ports_(std::move(ports)),
+      run_(run),
+      lost_after_ticks_(std::max(3, static_cast<int>(std::lround(kLostAfter * rate_hz)))),
+      rejoin_ticks_(std::max(1, static_cast<int>(std::lround(kRejoin * rate_hz)))),
+      silent_ticks_(lost_after_ticks_ + 1) {
+  for (const scene::Port& port : ports_) {
+    for (const std::uint32_t axis : port.axes) axis_count_ = std::max(axis_count_, axis + 1);
+  }
+}
+
+template <class Sample, class Values>
+DeviceExchange::Reception DeviceExchange::receive(const Sample& sample,
+                                                  const Values& values) noexcept {
+  const auto count = static_cast<std::size_t>(sample.axis_count());
+  bool usable = sample.run() != 0 && count >= axis_count_ && count <= kMaxAxes;
+  for (std::size_t axis = 0; usable && axis < count; ++axis) usable = std::isfinite(values[axis]);
+  if (!usable) {
+    ++refused_count_;
+    return Reception::kRefused;
+  }
+  if (sample.run() == heard_run_ && sample.sample() <= heard_sample_) {
+    if (sample.sample() == heard_sample_) return Reception::kRepeated;
+    ++refused_count_;
+    return Reception::kRefused;
+  }
+  if (sample.run() == heard_run_) missed_count_ += sample.sample() - heard_sample_ - 1;
+  heard_run_ = sample.run();
+  heard_sample_ = sample.sample();
+  heard_time_nsec_ = sample.time_nsec();
+  std::copy_n(values.begin(), count, newest_.begin());
+  has_new_ = true;
+  return Reception::kNew;
+}
+
+DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample) noexcept {
+  return receive(sample, sample.position_m());
+}
+
+DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample) noexcept {
+  return receive(sample, sample.force_n());
+}
+
+void DeviceExchange::begin_tick() noexcept {
+  from_ = to_;
+  if (has_new_) {
+    if (is_lost()) rejoin_left_ = rejoin_ticks_;
+    silent_ticks_ = 0;
+  } else if (!is_lost()) {
+    ++silent_ticks_;
+  }
+  has_new_ = false;
+
+  if (is_lost()) {
+    // Positions are held where they are; the force of a hand that is gone is none.
+    if (role_ == Role::kLiaison) to_.fill(0.0);
+    return;
+  }
+  const double share = 1.0 / static_cast<double>(std::max(rejoin_left_, 1));
+  for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
+    to_[axis] += share * (newest_[axis] - to_[axis]);
+  if (rejoin_left_ <= 1) to_ = newest_;  // exactly, without rounding
+  rejoin_left_ = std::max(rejoin_left_ - 1, 0);
+}
+
+void DeviceExchange::play(engine::World& world, int number, int count) noexcept {
+  const double share = static_cast<double>(number) / static_cast<double>(count);
+  for (const scene::Port& port : ports_) {
+    engine::Vec3 value = role_ == Role::kMass ? port.rest : engine::Vec3(engine::Vec3::Zero());
+    for (std::size_t i = 0; i < port.axes.size(); ++i) {
+      const std::size_t axis = port.axes[i];
+      // A force is held over the period; a position is ramped.
+      const double now = role_ == Role::kMass && number < count
+                             ? from_[axis] + share * (to_[axis] - from_[axis])
+                             : to_[axis];
+      value += now * port.directions[i];
+    }
+    if (role_ == Role::kMass) {
+      world.impose_position(port.mat, value);
+    } else {
+      world.set_external_force(port.mat, value);
+    }
+  }
+}
+
+template <class Answer>
+void DeviceExchange::fill_header(Answer& answer, std::int64_t now_nsec) noexcept {
+  answer.device_id(device_id_);
+  answer.run(run_);
+  answer.sample(++answers_);
+  answer.answered_run(heard_run_);
+  answer.answered_sample(heard_sample_);
+  answer.answered_time_nsec(heard_time_nsec_);
+  answer.time_nsec(now_nsec);
+  answer.axis_count(axis_count_);
+}
+
+msg::GestureForces& DeviceExchange::answer_forces(const engine::World& world, bool safe,
+                                                  std::int64_t now_nsec) noexcept {
+  fill_header(forces_, now_nsec);
+  forces_.force_n().fill(0.0);
+  if (!safe) return forces_;
+  for (const scene::Port& port : ports_) {
+    const engine::Vec3 force = world.link_force(port.mat);
+    for (std::size_t i = 0; i < port.axes.size(); ++i) {
+      forces_.force_n()[port.axes[i]] = force.dot(port.directions[i]);
+    }
+  }
+  return forces_;
+}
+
+msg::GesturePositions& DeviceExchange::answer_positions(const engine::World& world, bool safe,
+                                                        std::int64_t now_nsec) noexcept {
+  fill_header(positions_, now_nsec);
+  if (!safe) return positions_;
+  for (const scene::Port& port : ports_) {
+    const engine::Vec3 moved = world.position(port.mat) - port.rest;
+    for (std::size_t i = 0; i < port.axes.size(); ++i) {
+      positions_.position_m()[port.axes[i]] = moved.dot(port.directions[i]);
+    }
+  }
+  return positions_;
+}
+
+}  // namespace cordis::sim

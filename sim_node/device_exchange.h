@@ -1,0 +1,106 @@
+// sim_node/device_exchange.h -- what sim_node exchanges with one device in a gesture period.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "idl/gesture.h"
+#include "sim_node/engine/world.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+using scene::Role;
+
+constexpr std::size_t kMaxAxes = 16;
+
+/// The ports of one device: takes its samples, moves or pushes the MATs over the sub-steps, and
+/// makes the answers.
+///
+/// A new position is reached in a ramp over the sub-steps of one period, and the answer holds the
+/// forces of the last sub-step, computed at the position of the sample itself: no virtual damping
+/// is lost, and no delay added. A device that was not heard for kLostAfter is lost: its MATs hold
+/// still, its forces count as 0. When it is heard again it takes over gradually, within kRejoin, so
+/// that neither side jumps. Both are counted in ticks. Real time: every function but the
+/// constructor is O(axes), allocates nothing and does not throw.
+class DeviceExchange {
+ public:
+  static constexpr double kLostAfter = 0.02;  ///< [s]
+  static constexpr double kRejoin = 0.1;      ///< [s]
+
+  /// @param rate_hz  ticks per second
+  /// @param run      of this sim_node; its messages carry it
+  DeviceExchange(std::string device, std::uint32_t device_id, Role role,
+                 std::vector<scene::Port> ports, double rate_hz, std::uint64_t run);
+
+  /// What became of a message of the device.
+  enum class Reception : std::uint8_t {
+    kNew,       ///< taken: it will be played in the next tick
+    kRepeated,  ///< the message answered last, sent again: the last answer is wanted again
+    kRefused    ///< malformed, not finite, or older than what is known
+  };
+  Reception receive(const msg::GesturePositions& sample) noexcept;  ///< precondition: role mass
+  Reception receive(const msg::GestureForces& sample) noexcept;     ///< precondition: role liaison
+
+  /// Begins a tick: takes over the newest sample.
+  void begin_tick() noexcept;
+
+  /// Imposes positions or forces for sub-step `number` of `count`, 1..count.
+  void play(engine::World& world, int number, int count) noexcept;
+
+  /// The answer after the last sub-step. Forces: what the links do to the port. All forces are 0
+  /// when `safe` is false.
+  msg::GestureForces& answer_forces(const engine::World& world, bool safe,
+                                    std::int64_t now_nsec) noexcept;
+  /// Positions: where the MATs at the ports are. The last ones are repeated when `safe` is false.
+  msg::GesturePositions& answer_positions(const engine::World& world, bool safe,
+                                          std::int64_t now_nsec) noexcept;
+
+  const std::string& device() const noexcept { return device_; }
+  std::uint32_t device_id() const noexcept { return device_id_; }
+  Role role() const noexcept { return role_; }
+  bool has_new_sample() const noexcept { return has_new_; }
+  bool is_lost() const noexcept { return silent_ticks_ > lost_after_ticks_; }
+  bool was_heard() const noexcept { return heard_run_ != 0; }
+  std::uint64_t refused_count() const noexcept { return refused_count_; }
+  std::uint64_t missed_count() const noexcept {
+    return missed_count_;
+  }  ///< samples of the device never seen
+
+ private:
+  template <class Sample, class Values>
+  Reception receive(const Sample& sample, const Values& values) noexcept;
+  template <class Answer>
+  void fill_header(Answer& answer, std::int64_t now_nsec) noexcept;
+
+  std::string device_;
+  std::uint32_t device_id_;
+  Role role_;
+  std::vector<scene::Port> ports_;
+  std::uint64_t run_;
+
+  // The newest sample, and the numbers of the one that the last answer took into account.
+  std::array<double, kMaxAxes> newest_{};
+  std::uint64_t heard_run_ = 0;
+  std::uint64_t heard_sample_ = 0;
+  std::int64_t heard_time_nsec_ = 0;
+  bool has_new_ = false;
+
+  std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick
+  std::array<double, kMaxAxes> to_{};    // and at its end
+  int lost_after_ticks_;
+  int rejoin_ticks_;
+  int silent_ticks_;
+  int rejoin_left_ = 0;
+
+  std::uint32_t axis_count_ = 1;  // of the device, as its samples tell
+  std::uint64_t answers_ = 0;
+  std::uint64_t refused_count_ = 0;
+  std::uint64_t missed_count_ = 0;
+  msg::GestureForces forces_;
+  msg::GesturePositions positions_;
+};
+
+}  // namespace cordis::sim

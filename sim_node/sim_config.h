@@ -1,0 +1,21 @@
+// sim_node/sim_config.h -- what a launch file says about a sim_node.
+#pragma once
+
+#include "node/config/launch.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// The keys of a sim_node's section in a launch file.
+struct SimConfig {
+  double duration_s =
+      0.0;  ///< `duration_s`: simulated time after which the node ends by itself [s]; 0 = never
+  scene::Scene scene;  ///< `scene`: what the file of that name says
+};
+
+/// Reads the section and the scene, and checks every port against the device files of the same
+/// launch. All that is wrong becomes a problem; the result is usable when there is none.
+SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,
+                          config::Problems& problems);
+
+}  // namespace cordis::sim

@@ -1,0 +1,86 @@
+// sim_node/simulation.cpp
+#include "sim_node/simulation.h"
+
+#include <cmath>
+#include <utility>
+
+namespace cordis::sim {
+namespace {
+
+std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_t run) {
+  std::vector<std::string> order;  // devices in the order of their first port
+  for (const scene::Port& port : scene.ports) {
+    bool known = false;
+    for (const std::string& device : order) known = known || device == port.device;
+    if (!known) order.push_back(port.device);
+  }
+  std::vector<DeviceExchange> exchanges;
+  for (const std::string& device : order) {
+    std::vector<scene::Port> ports;
+    scene::Role role = scene::Role::kMass;
+    std::uint32_t id = 0;
+    for (const scene::Port& port : scene.ports) {
+      if (port.device != device) continue;
+      ports.push_back(port);
+      role = port.role;
+      id = port.device_id;
+    }
+    exchanges.emplace_back(device, id, role, std::move(ports), scene.gesture_rate_hz, run);
+  }
+  return exchanges;
+}
+
+}  // namespace
+
+Simulation::Simulation(scene::Scene scene, std::uint64_t run)
+    : scene_(std::move(scene)),
+      world_(std::make_shared<const engine::Network>(scene_.network)),
+      devices_(exchanges_of(scene_, run)),
+      steps_per_tick_(static_cast<int>(std::lround(scene_.step_rate_hz / scene_.gesture_rate_hz))) {
+}
+
+void Simulation::tick(double* row) noexcept {
+  if (failed_) return;
+  for (DeviceExchange& device : devices_) device.begin_tick();
+  for (int number = 1; number <= steps_per_tick_; ++number) {
+    for (DeviceExchange& device : devices_) device.play(world_, number, steps_per_tick_);
+    if (world_.step().non_finite_mats > 0) {
+      failed_ = true;
+      return;
+    }
+  }
+  ++tick_count_;
+  scene_.signals.read(world_, row);
+}
+
+DeviceExchange* Simulation::find(std::uint32_t device_id) noexcept {
+  for (DeviceExchange& device : devices_) {
+    if (device.device_id() == device_id) return &device;
+  }
+  return nullptr;
+}
+
+double Simulation::simulated_s() const noexcept {
+  return static_cast<double>(world_.step_count()) * world_.network().step();
+}
+
+std::string Simulation::failure() const {
+  if (!failed_) return {};
+  std::string mat = "a MAT";
+  for (std::uint32_t index = 0; index < world_.network().mat_count(); ++index) {
+    if (world_.position(index).allFinite()) continue;
+    mat = "MAT " + std::to_string(index);
+    for (const scene::NamedRange& range : scene_.matter) {
+      if (index >= range.first && index < range.first + range.count) {
+        mat = "'" + range.name + "[" + std::to_string(index - range.first) + "]'";
+      }
+    }
+    break;
+  }
+  return "the scene diverged at step " + std::to_string(world_.step_count()) +
+         ": the position of " + mat + " is not a finite number; a step rate above " +
+         std::to_string(std::lround(scene_.step_rate_hz)) +
+         " Hz, or less stiffness or viscosity, may hold it";
+}
+
+}  // namespace cordis::sim
