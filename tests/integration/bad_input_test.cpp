@@ -1,0 +1,151 @@
+// tests/integration/bad_input_test.cpp -- bad input ends in one clear message and leaves nothing
+// running.
+#include <algorithm>
+#include <csignal>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+#include "tests/integration/status_watch.h"
+
+namespace cordis::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kLimit = 30s;
+
+/// The whole launcher against a scene and a key; what it says, and its exit code.
+struct Outcome {
+  int code;
+  std::string output;
+};
+
+Outcome run(const std::string& scene, const std::string& key,
+            const std::vector<std::string>& words = {}) {
+  LiveSession session("lockstep", kSimAndKey);
+  session.add_file("scene.yaml", scene);
+  session.add_file("key.yaml", key);
+  ChildProcess& launcher = session.start_launcher(words);
+  const int code = launcher.wait(kLimit);
+  return {code, launcher.output()};
+}
+
+std::string with(std::string scene, const std::string& old_text, const std::string& new_text) {
+  const std::size_t at = scene.find(old_text);
+  EXPECT_NE(at, std::string::npos) << old_text;
+  return scene.replace(at, old_text.size(), new_text);
+}
+
+void expect_bad_file(const Outcome& outcome, const std::string& place, const std::string& what) {
+  EXPECT_EQ(outcome.code, 2) << outcome.output;
+  EXPECT_NE(outcome.output.find(place), std::string::npos) << "wanted " << place << " in\n"
+                                                           << outcome.output;
+  EXPECT_NE(outcome.output.find(what), std::string::npos) << "wanted " << what << " in\n"
+                                                          << outcome.output;
+  EXPECT_EQ(outcome.output.find("terminate called"), std::string::npos) << outcome.output;
+}
+
+TEST(BadInput, WrongYamlIsToldWithItsPlace) {
+  expect_bad_file(run(with(wall_scene(1), "[key, ground]", "[key, ground"), steady_key(0, 0)),
+                  "scene.yaml:", "error");
+}
+
+TEST(BadInput, AnUnknownFileIsToldByName) {
+  LiveSession session("lockstep", kSimAndKey);
+  session.add_file("key.yaml", steady_key(0, 0));
+  ChildProcess& launcher = session.start_launcher();
+  EXPECT_EQ(launcher.wait(kLimit), 2);
+  EXPECT_NE(launcher.output().find("scene.yaml"), std::string::npos) << launcher.output();
+}
+
+TEST(BadInput, ADomainOutOfRangeIsRefused) {
+  expect_bad_file(run(wall_scene(1), steady_key(0, 0), {"domain=233"}), "domain", "101");
+}
+
+TEST(BadInput, ADeviceWithTooFewAxesIsToldAtThePort) {
+  expect_bad_file(run(with(wall_scene(1), "axes: [0]", "axes: [3]"), steady_key(0, 0)),
+                  "scene.yaml:10:", "wants axis 3 of the device 'keyboard', which has 1 axis");
+}
+
+TEST(BadInput, ASceneWithoutMatterIsRefused) {
+  expect_bad_file(
+      run("cordis: 1\nname: empty\nspace: 1\nstep: {rate_hz: 1000, integrator: cordis}\n",
+          steady_key(0, 0)),
+      "scene.yaml", "matter");
+}
+
+TEST(BadInput, NumbersThatAreNotFiniteAreRefused) {
+  for (const std::string bad : {".nan", "nan", ".inf", "1e999"}) {
+    expect_bad_file(
+        run(with(wall_scene(1), "mass_kg: 1,", "mass_kg: " + bad + ","), steady_key(0, 0)),
+        "scene.yaml:8:", "mass_kg");
+  }
+}
+
+TEST(BadInput, AllProblemsOfAllNodesAreToldAtOnce) {
+  const Outcome outcome =
+      run(with(wall_scene(1), "kind: spring", "kind: sprung"), "cordis: 1\naxes: 99\n");
+  expect_bad_file(outcome, "scene.yaml:6:", "spring");
+  expect_bad_file(outcome, "key.yaml:2:", "axes");
+}
+
+TEST(BadInput, ASecondSimOfASessionEndsAndTheFirstGoesOn) {
+  LiveSession session("realtime", kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(0, 0));
+  StatusWatch status(session.participant());
+  session.start("sim_node", "sim");
+  ASSERT_TRUE(status.wait_for("sim", [](const auto& told) { return told.ticks() > 0; }));
+
+  ChildProcess second({program_path("sim_node"), session.launch_file()});
+  EXPECT_EQ(second.wait(kLimit), 1);
+  const std::string said = second.output();
+  EXPECT_NE(said.find("another sim_node already runs the session 'test'"), std::string::npos)
+      << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_EQ(session.node("sim").wait(0ms), -1) << "the first still runs";
+}
+
+TEST(BadInput, AnOccupiedPortIsToldInOneLine) {
+  const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(listen(listener, 1), 0);
+  socklen_t size = sizeof address;
+  getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+
+  LiveSession session("realtime", "  view: {node: viz_node, port: " + port + "}\n");
+  ChildProcess& view = session.start("viz_node", "view");
+
+  EXPECT_EQ(view.wait(kLimit), 1);
+  EXPECT_NE(view.output().find(port), std::string::npos) << view.output();
+  EXPECT_NE(view.output().find("view.port="), std::string::npos) << view.output();
+  close(listener);
+}
+
+TEST(BadInput, ADivergingSceneStopsWithTheReasonAndNoForce) {
+  // K' = 1e9 (1/4000)^2 / 1 = 62: far beyond the limit of 4.
+  const std::string scene = with(with(wall_scene(1e9), "[key, ground]", "[bob, ground]"),
+                                 "at_m: [0.1]", "at_m: [0.1], velocity_m_per_s: [1]");
+  LiveSession session("lockstep", kSimAndKey);
+  session.add_file("scene.yaml", scene);
+  session.add_file("key.yaml", steady_key(0, 0));
+  session.start("device_node", "keyboard");
+  ChildProcess& sim = session.start("sim_node", "sim");
+
+  EXPECT_EQ(sim.wait(kLimit), 1) << sim.output();
+  EXPECT_NE(sim.output().find("diverged"), std::string::npos) << sim.output();
+  EXPECT_NE(sim.output().find("bob"), std::string::npos) << sim.output();
+}
+
+}  // namespace
+}  // namespace cordis::test

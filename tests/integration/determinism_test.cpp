@@ -1,0 +1,45 @@
+// tests/integration/determinism_test.cpp -- a lockstep run gives the same state, bit for bit.
+#include <regex>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string state_hash_of_a_run(const std::string& driver) {
+  const std::string configs = CORDIS_SOURCE_DIR "/launch_configs/";
+  LiveSession session("lockstep", "  sim: {node: sim_node, scene: '" + configs +
+                                      "scenes/plucked_string.yaml'}\n" +
+                                      "  keyboard: {node: device_node, device: '" + configs +
+                                      "devices/keyboard.yaml', driver: " + driver + "}\n");
+  ChildProcess& launcher = session.start_launcher({"--duration", "2s"});
+  EXPECT_EQ(launcher.wait(60s), 0);
+  const std::string output = launcher.output();
+  std::smatch match;
+  EXPECT_TRUE(std::regex_search(output, match,
+                                std::regex("state hash ([0-9a-f]{16}) after ([0-9]+) steps")))
+      << output;
+  return match.str();
+}
+
+TEST(Determinism, ALockstepRunGivesTheSameStateHashThreeTimes) {
+  for (const std::string driver : {"mock", "script"}) {
+    std::set<std::string> hashes;
+    for (int run = 0; run < 3; ++run) hashes.insert(state_hash_of_a_run(driver));
+    EXPECT_EQ(hashes.size(), 1u) << *hashes.begin() << " and " << *hashes.rbegin();
+  }
+}
+
+TEST(Determinism, AnotherGestureGivesAnotherState) {
+  EXPECT_NE(state_hash_of_a_run("mock"), state_hash_of_a_run("script"));
+}
+
+}  // namespace
+}  // namespace cordis::test

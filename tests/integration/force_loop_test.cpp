@@ -1,0 +1,151 @@
+// tests/integration/force_loop_test.cpp -- key to force and back, through real processes.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "idl/gesture.h"
+#include "node/dds/reader.h"
+#include "node/dds/writer.h"
+#include "node/node_main.h"
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+#include "tests/integration/status_watch.h"
+
+namespace cordis::test {
+namespace {
+
+class ForceLoop : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ForceLoop, AKeyOfRoleMassFeelsTheSpringItPresses) {
+  LiveSession session(GetParam(), kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard");
+
+  msg::GestureForces force;
+  ASSERT_TRUE(eventually([&] {
+    return forces.take(force) && std::abs(force.force_n()[0] - 200.0 * 0.01) < 1e-9;
+  })) << "last force "
+      << force.force_n()[0];
+
+  EXPECT_GT(force.answered_sample(), 200u);
+  EXPECT_EQ(force.axis_count(), 1u);
+}
+
+TEST_P(ForceLoop, AKeyOfRoleLiaisonMovesTheMassItPushes) {
+  LiveSession session(GetParam(), kSimAndKey);
+  session.add_file("scene.yaml", pushed_mass_scene());
+  session.add_file("key.yaml", steady_key(0.0, -1.5));
+  dds::Reader<msg::GesturePositions> positions(session.participant(), dds::Topic::kPositions);
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard");
+
+  msg::GesturePositions position;
+  ASSERT_TRUE(eventually([&] {
+    return positions.take(position) && std::abs(position.position_m()[0] + 1.5 / 100.0) < 1e-6;
+  })) << "last position "
+      << position.position_m()[0];
+  EXPECT_GT(position.answered_sample(), 200u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Clocks, ForceLoop, ::testing::Values("realtime", "lockstep"),
+                         [](const auto& info) { return std::string(info.param); });
+
+/// How deep the mock hand of the keyboard presses the key within 2 s of simulated time.
+double depth_of_press(double stiffness) {
+  LiveSession session("lockstep",
+                      std::string("  sim: {node: sim_node, scene: scene.yaml, duration_s: 2}\n") +
+                          "  keyboard: {node: device_node, device: '" CORDIS_SOURCE_DIR
+                          "/launch_configs/devices/keyboard.yaml', driver: mock}\n");
+  session.add_file("scene.yaml", wall_scene(stiffness));
+  dds::Reader<msg::GesturePositions> positions(session.participant(), dds::Topic::kPositions);
+  session.start("device_node", "keyboard");
+  ChildProcess& sim = session.start("sim_node", "sim");
+  double lowest = 0.0;
+  msg::GesturePositions position;
+  EXPECT_TRUE(eventually([&] {
+    while (positions.take(position)) lowest = std::min(lowest, position.position_m()[0]);
+    return sim.wait(std::chrono::milliseconds(0)) == 0;
+  }));
+  return -lowest;
+}
+
+TEST(ForceLoop, TheForceChangesTheMotionOfTheSimulatedHand) {
+  const double against_nothing = depth_of_press(0.001);
+  const double against_a_spring = depth_of_press(400.0);
+
+  EXPECT_GT(against_nothing, 0.015);
+  EXPECT_GT(against_a_spring, 0.0);
+  EXPECT_LT(against_a_spring, 0.7 * against_nothing) << "the spring is as stiff as the hand";
+}
+
+TEST(ForceLoop, SamplesThatAreNotFiniteAreRefusedAndTheLoopGoesOn) {
+  LiveSession session("realtime", kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  StatusWatch status(session.participant());
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  dds::Writer<msg::GesturePositions> rogue(session.participant(), dds::Topic::kPositions);
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard");
+  ASSERT_TRUE(status.wait_for_phase("sim", "running"));
+  msg::GestureForces force;
+  ASSERT_TRUE(
+      eventually([&] { return forces.take(force) && std::abs(force.force_n()[0] - 2.0) < 1e-9; }));
+  const std::uint64_t dropped_before = status.of("sim").dropped();
+
+  msg::GesturePositions bad;
+  bad.device_id(force.device_id());
+  bad.run(12345);
+  bad.axis_count(1);
+  bad.position_m().fill(std::nan(""));
+  ASSERT_TRUE(eventually([&] {
+    bad.sample(bad.sample() + 1);
+    rogue.write(bad);
+    while (forces.take(force)) EXPECT_TRUE(std::isfinite(force.force_n()[0]));
+    return status.wait_for("sim", [](const msg::NodeStatus&) { return true; }) &&
+           status.of("sim").dropped() > dropped_before;
+  }));
+
+  EXPECT_EQ(status.of("sim").phase(), "running");
+  ASSERT_TRUE(eventually([&] { return forces.take(force); }));
+  EXPECT_NEAR(force.force_n()[0], 2.0, 1e-9);
+}
+
+TEST(ForceLoop, ForcesThatAreNotFiniteNeverReachTheMotor) {
+  LiveSession session("realtime", kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  StatusWatch status(session.participant());
+  dds::Writer<msg::GestureForces> rogue(session.participant(), dds::Topic::kForces);
+  dds::Reader<msg::GesturePositions> positions(session.participant(), dds::Topic::kPositions);
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard");
+  ASSERT_TRUE(status.wait_for_phase("keyboard", "running"));
+  msg::GesturePositions position;
+  ASSERT_TRUE(eventually([&] { return positions.take(position); }));
+  const std::uint64_t dropped_before = status.of("keyboard").dropped();
+
+  msg::GestureForces bad;
+  bad.device_id(position.device_id());
+  bad.run(12345);
+  bad.axis_count(1);
+  bad.force_n().fill(std::nan(""));
+  ASSERT_TRUE(eventually([&] {
+    while (positions.take(position)) {
+    }
+    bad.sample(bad.sample() + 1);
+    bad.answered_run(position.run());
+    bad.answered_sample(position.sample());
+    rogue.write(bad);
+    return status.wait_for("keyboard", [](const msg::NodeStatus&) { return true; }) &&
+           status.of("keyboard").dropped() > dropped_before;
+  }));
+  EXPECT_EQ(status.of("keyboard").phase(), "running");
+}
+
+}  // namespace
+}  // namespace cordis::test

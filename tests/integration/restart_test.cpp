@@ -1,0 +1,112 @@
+// tests/integration/restart_test.cpp -- any node may die and be restarted while the others go on.
+#include <csignal>
+
+#include <gtest/gtest.h>
+
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+#include "tests/integration/status_watch.h"
+
+namespace cordis::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// sim, keyboard and view of one session, all running.
+class Restart : public ::testing::TestWithParam<const char*> {
+ protected:
+  Restart()
+      : session_(GetParam(), std::string(kSimAndKey) + "  view: {node: viz_node, port: 0}\n"),
+        status_(session_.participant()) {
+    session_.add_file("scene.yaml", wall_scene(200.0));
+    session_.add_file("key.yaml", steady_key(-0.01, 0.0));
+    session_.start("sim_node", "sim");
+    session_.start("device_node", "keyboard");
+    session_.start("viz_node", "view");
+  }
+
+  void SetUp() override {
+    ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+    ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+    ASSERT_TRUE(status_.wait_for("view", serves_a_page));
+  }
+
+  static bool serves_a_page(const msg::NodeStatus& status) {
+    return status.text().find("http://") != std::string::npos;
+  }
+
+  void kill_now(const std::string& name) {
+    session_.node(name).signal(SIGKILL);
+    ASSERT_EQ(session_.node(name).wait(10s), 128 + SIGKILL);
+  }
+
+  /// The node has done at least `more` ticks since now.
+  bool goes_on(const std::string& name, std::uint64_t more) {
+    const std::uint64_t sequence = status_.of(name).sequence_number();
+    if (!status_.wait_for(name,
+                          [&](const auto& status) { return status.sequence_number() > sequence; }))
+      return false;
+    const std::uint64_t ticks = status_.of(name).ticks();
+    return status_.wait_for(name,
+                            [&](const auto& status) { return status.ticks() > ticks + more; });
+  }
+
+  bool runs_anew(const std::string& name, std::uint64_t old_run) {
+    return status_.wait_for(name, [&](const auto& status) {
+      return status.run() != old_run && status.phase() == "running";
+    });
+  }
+
+  LiveSession session_;
+  StatusWatch status_;
+};
+
+TEST_P(Restart, OfSimLeavesTheDeviceWithoutForceUntilItIsBack) {
+  const std::uint64_t old_run = status_.of("sim").run();
+  kill_now("sim");
+
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", "lost"));
+
+  session_.start("sim_node", "sim");
+  ASSERT_TRUE(runs_anew("sim", old_run));
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+  EXPECT_TRUE(goes_on("sim", 100));
+  EXPECT_TRUE(goes_on("keyboard", 100));
+}
+
+TEST_P(Restart, OfTheDeviceFindsTheSceneStillThere) {
+  const std::uint64_t old_run = status_.of("keyboard").run();
+  const std::uint64_t sim_run = status_.of("sim").run();
+  kill_now("keyboard");
+  if (GetParam() == std::string("realtime")) {
+    ASSERT_TRUE(status_.wait_for_phase("sim", "waiting"));
+    EXPECT_TRUE(goes_on("sim", 100)) << "the scene goes on without a hand";
+  }
+
+  session_.start("device_node", "keyboard");
+
+  ASSERT_TRUE(runs_anew("keyboard", old_run));
+  ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+  EXPECT_TRUE(goes_on("sim", 100));
+  EXPECT_EQ(status_.of("sim").run(), sim_run);
+}
+
+TEST_P(Restart, OfTheDisplayDisturbsNobody) {
+  const std::uint64_t old_run = status_.of("view").run();
+  kill_now("view");
+  EXPECT_TRUE(goes_on("sim", 100));
+  EXPECT_TRUE(goes_on("keyboard", 100));
+
+  session_.start("viz_node", "view");
+
+  ASSERT_TRUE(status_.wait_for("view", [&](const auto& status) {
+    return status.run() != old_run && serves_a_page(status);
+  }));
+  EXPECT_EQ(status_.of("sim").phase(), "running");
+}
+
+INSTANTIATE_TEST_SUITE_P(Clocks, Restart, ::testing::Values("realtime", "lockstep"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace cordis::test
