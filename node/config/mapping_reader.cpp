@@ -155,6 +155,10 @@ Value MappingReader::optional_value(const std::string& key) {
   return take(key);
 }
 
+Value MappingReader::required_value(const std::string& key) {
+  return take_required(key);
+}
+
 void MappingReader::error_at(const std::string& key, std::string message, std::string hint) {
   report(place_of(key), std::move(message), std::move(hint));
 }

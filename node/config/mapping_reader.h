@@ -64,6 +64,7 @@ class MappingReader {
   Value optional_sequence(const std::string& key);
   /// Any kind; does not exist when absent. Marks the key as known.
   Value optional_value(const std::string& key);
+  Value required_value(const std::string& key);
 
   void error_at(const std::string& key, std::string message, std::string hint = {});
 

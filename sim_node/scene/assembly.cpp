@@ -1,0 +1,59 @@
+#include "sim_node/scene/assembly.h"
+
+#include <utility>
+
+#include "sim_node/scene/matter.h"
+
+namespace cordis::scene {
+
+using config::Value;
+
+void Assembly::read_liaisons(const Value& section) {
+  liaisons_.read_section(section, scene_.file, scene_.space());
+}
+
+bool Assembly::add(Piece piece, const config::Place& place) {
+  const std::size_t mats = scene_.network.mats.size() + piece.mats.size();
+  const std::size_t links = scene_.network.links.size() + piece.links.size();
+  if (mats > static_cast<std::size_t>(kMostMats) || links > kMostLinks) {
+    problems_.error(place, "the scene has more than " + std::to_string(kMostMats) + " MATs or " +
+                               std::to_string(kMostLinks) + " links");
+    return false;
+  }
+  const std::uint32_t first_mat = mat_count();
+  for (engine::Link& link : piece.links) {
+    link.mat_a += first_mat;
+    link.mat_b += first_mat;
+  }
+  scene_.radius_m.insert(scene_.radius_m.end(), piece.mats.size(), piece.radius_m);
+  scene_.network.mats.insert(scene_.network.mats.end(), piece.mats.begin(), piece.mats.end());
+  scene_.network.links.insert(scene_.network.links.end(), piece.links.begin(), piece.links.end());
+  scene_.layout.insert(scene_.layout.end(), piece.layout.begin(), piece.layout.end());
+  return true;
+}
+
+void Assembly::read_matter(const Value& section) {
+  for (const Value::Entry& entry : section.entries()) {
+    check_name(entry.key, entry.key_place, problems_);
+    const std::size_t errors_before = problems_.error_count();
+    config::MappingReader reader(entry.value, "matter '" + entry.key + "'", problems_);
+    Piece piece = read_piece(reader, liaisons_, scene_.space(), problems_);
+    const std::uint32_t first_mat = mat_count();
+    const std::uint32_t first_link = link_count();
+    const bool sound =
+        problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
+
+    names_.add(
+        {entry.key, Named::kMatter, first_mat, mat_count() - first_mat, sound, entry.key_place},
+        problems_);
+    scene_.matter.push_back({entry.key, first_mat, mat_count() - first_mat});
+    const std::string links = entry.key + ".links";
+    names_.add(
+        {links, Named::kLinks, first_link, link_count() - first_link, sound, entry.key_place},
+        problems_);
+    if (link_count() > first_link)
+      scene_.links.push_back({links, first_link, link_count() - first_link});
+  }
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,68 @@
+// sim_node/scene/assembly.h -- a scene while its file is read, section by section. [Luc90 IV
+// Assembly]
+#pragma once
+
+#include <vector>
+
+#include "node/config/mapping_reader.h"
+#include "sim_node/scene/liaison.h"
+#include "sim_node/scene/scene.h"
+#include "sim_node/scene/selection.h"
+
+namespace cordis::scene {
+
+/// MATs and links of one piece of matter; a link counts the MATs of its piece from 0.
+struct Piece {
+  std::vector<engine::Mat> mats;
+  std::vector<LayoutPoint> layout;  ///< per MAT in 1-D, else empty
+  std::vector<engine::Link> links;
+  double radius_m = 0.0;
+};
+
+inline constexpr std::size_t kMostLinks = 8'000'000;  ///< of a scene
+
+/// What the sections of a scene file add to, in the order matter, ports, links, signals.
+class Assembly {
+ public:
+  Assembly(Scene& scene, config::Problems& problems)
+      : scene_(scene), problems_(problems), liaisons_(problems) {}
+
+  void read_liaisons(const config::Value& section);
+  void read_matter(const config::Value& section);
+  void read_ports(const config::Value& section);
+  void read_links(const config::Value& section);
+  void read_signals(const config::Value& section);
+
+ private:
+  void read_port(const config::Value::Entry& entry);
+  void read_link(const config::Value& value);
+  void read_signal(const config::Value::Entry& entry, std::vector<Signal>& signals);
+  /// The direction of a position, velocity or force; a port of one axis needs no `axis`.
+  void read_direction_of_signal(config::MappingReader& reader, const Selection& of,
+                                Signal& signal) const;
+
+  /// Adds the links between two selections: one to one, or one to many. @return false after a
+  /// problem.
+  bool join(const Selection& from, const Selection& to, const LinkLaw& law,
+            const config::Place& place);
+
+  /// Adds the MATs and links of a piece. @return false when the scene would become too large, which
+  /// is a problem.
+  bool add(Piece piece, const config::Place& place);
+  void check_devices();
+  void lay_out_ports();
+  std::uint32_t mat_count() const noexcept {
+    return static_cast<std::uint32_t>(scene_.network.mats.size());
+  }
+  std::uint32_t link_count() const noexcept {
+    return static_cast<std::uint32_t>(scene_.network.links.size());
+  }
+
+  Scene& scene_;
+  config::Problems& problems_;
+  Liaisons liaisons_;
+  Names names_;
+  std::vector<std::uint32_t> ports_without_layout_;  // MATs of a 1-D scene
+};
+
+}  // namespace cordis::scene

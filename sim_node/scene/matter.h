@@ -1,0 +1,24 @@
+// sim_node/scene/matter.h -- the kinds of matter a scene can be made of.
+#pragma once
+
+#include "node/config/mapping_reader.h"
+#include "sim_node/scene/assembly.h"
+#include "sim_node/scene/liaison.h"
+
+namespace cordis::scene {
+
+inline constexpr long kMostMats = 1'000'000;  ///< of a scene
+
+/// Reads one piece of matter: its kind and what the kind wants. Whatever is wrong is a problem;
+/// then the piece is not to be used.
+Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int space,
+                 config::Problems& problems);
+
+/// Where the MATs of a 1-D scene are shown: `layout_at_m` [x, z] and `layout_spacing_m`.
+struct Layout {
+  LayoutPoint at;
+  double spacing = 0.02;  ///< [m]
+};
+Layout read_layout(config::MappingReader& reader);
+
+}  // namespace cordis::scene

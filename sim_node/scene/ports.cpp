@@ -1,0 +1,148 @@
+// The `ports:` section: MATs played by the axes of devices. [Luc90 V.1 Force feedback gestual
+// transducers]
+#include <map>
+#include <utility>
+
+#include "node/config/name_hash.h"
+#include "sim_node/scene/assembly.h"
+#include "sim_node/scene/point.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Range;
+using config::Value;
+using engine::Vec3;
+
+constexpr long kMostAxes = 16;
+
+const char* word_of(Role role) {
+  return role == Role::kMass ? "mass" : "liaison";
+}
+
+/// Whether no direction lies in the span of those before it.
+bool are_independent(const std::vector<Vec3>& directions) {
+  constexpr double kSmallestSine = 1.0e-6;
+  std::vector<Vec3> base;
+  for (Vec3 rest : directions) {
+    for (const Vec3& unit : base) rest -= unit.dot(rest) * unit;
+    if (rest.norm() < kSmallestSine) return false;
+    base.push_back(rest.normalized());
+  }
+  return true;
+}
+
+/// The directions of a port's axes: `along`, or the coordinate axes in their order. Empty after a
+/// problem.
+std::vector<Vec3> read_axis_directions(config::MappingReader& reader, std::size_t axis_count,
+                                       int space, config::Problems& problems) {
+  const Value along = reader.optional_value("along");
+  const std::string what = "'along' in " + reader.what();
+  std::vector<Vec3> directions;
+  if (!along.exists()) {
+    for (std::size_t axis = 0; axis < axis_count; ++axis)
+      directions.emplace_back(Vec3::Unit(static_cast<Eigen::Index>(axis)));
+    return directions;
+  }
+  const std::size_t errors_before = problems.error_count();
+  directions = read_directions(along, what, space, problems);
+  if (problems.error_count() != errors_before) return {};
+  if (directions.size() != axis_count) {
+    reader.error_at("along",
+                    what + " must have one direction per axis: " + std::to_string(axis_count) +
+                        ", got " + std::to_string(directions.size()));
+    return {};
+  }
+  if (!are_independent(directions)) {
+    reader.error_at("along", what + ": the directions depend on each other",
+                    "no two may be parallel, no three in one plane");
+    return {};
+  }
+  return directions;
+}
+
+}  // namespace
+
+void Assembly::read_ports(const Value& section) {
+  for (const Value::Entry& entry : section.entries()) read_port(entry);
+  check_devices();
+}
+
+void Assembly::read_port(const Value::Entry& entry) {
+  const int space = scene_.space();
+  check_name(entry.key, entry.key_place, problems_);
+  const std::size_t errors_before = problems_.error_count();
+  config::MappingReader reader(entry.value, "port '" + entry.key + "'", problems_);
+  Port port;
+  port.name = entry.key;
+  port.place = entry.key_place;
+  port.device = reader.required_text("device");
+  port.device_id = config::name_hash(port.device);
+  for (const long axis : reader.required_integers("axes", 0, kMostAxes - 1))
+    port.axes.push_back(static_cast<std::uint32_t>(axis));
+  port.role =
+      reader.required_choice("role", {"mass", "liaison"}) == "mass" ? Role::kMass : Role::kLiaison;
+  port.rest = space == 1 ? optional_point(reader, "at_m", Vec3::Zero(), 1)
+                         : required_point(reader, "at_m", space);
+
+  Piece piece;
+  piece.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
+  if (port.role == Role::kLiaison) {
+    piece.mats[0].kind = engine::MatKind::kMass;
+    piece.mats[0].mass = reader.required_number("mass_kg", Range::positive());
+  } else if (reader.optional_value("mass_kg").exists()) {
+    reader.error_at("mass_kg",
+                    "a port of role mass has no 'mass_kg': the device itself is the mass");
+  }
+  piece.radius_m = reader.optional_number("drawn_radius_m", 0.0, Range::not_negative());
+  if (space == 1) {
+    const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
+    piece.layout.push_back({at[0], at[1]});
+    if (!reader.has("layout_at_m")) ports_without_layout_.push_back(mat_count());
+  }
+  if (port.axes.size() > static_cast<std::size_t>(space)) {
+    reader.error_at("axes", reader.what() + " has " + std::to_string(port.axes.size()) +
+                                " axes, but a MAT moves in " + std::to_string(space) +
+                                (space == 1 ? " direction" : " directions") +
+                                " in a scene of space " + std::to_string(space));
+    reader.optional_value("along");
+  } else {
+    port.directions = read_axis_directions(reader, port.axes.size(), space, problems_);
+  }
+  reader.finish();
+
+  port.mat = mat_count();
+  const bool sound =
+      problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
+  names_.add({entry.key, Named::kPort, port.mat, 1, sound, entry.key_place}, problems_);
+  scene_.matter.push_back({entry.key, port.mat, 1});
+  scene_.ports.push_back(std::move(port));
+}
+
+void Assembly::check_devices() {
+  std::map<std::uint32_t, const Port*> first_of_device;
+  std::map<std::pair<std::string, std::uint32_t>, const Port*> port_of_axis;
+  for (const Port& port : scene_.ports) {
+    if (port.device.empty()) continue;
+    const Port* first = first_of_device.emplace(port.device_id, &port).first->second;
+    if (first->device != port.device) {
+      problems_.error(
+          port.place,
+          "the devices '" + port.device + "' and '" + first->device + "' have the same hash",
+          "rename one of them");
+    } else if (first->role != port.role) {
+      problems_.error(port.place, "all ports of a device have one role, and '" + port.device +
+                                      "' has the role " + word_of(first->role) + " in port '" +
+                                      first->name + "'");
+    }
+    for (const std::uint32_t axis : port.axes) {
+      const auto [other, is_free] = port_of_axis.emplace(std::pair(port.device, axis), &port);
+      if (is_free) continue;
+      problems_.error(port.place, "axis " + std::to_string(axis) + " of device '" + port.device +
+                                      "' is taken by port '" + other->second->name + "'");
+    }
+  }
+}
+
+}  // namespace cordis::scene

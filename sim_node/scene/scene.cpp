@@ -1,0 +1,138 @@
+#include "sim_node/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "sim_node/scene/assembly.h"
+#include "sim_node/scene/point.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Range;
+using config::Value;
+
+constexpr double kHighestStepRate = 1.0e6;
+constexpr double kHighestGestureRate = 1.0e5;
+constexpr double kHighestFrameRate = 1.0e3;
+
+/// The nearest rates that are integer multiples of the gesture rate.
+std::string nearest_multiples(double rate, double gesture_rate) {
+  const double below = std::floor(rate / gesture_rate) * gesture_rate;
+  const std::string above = config::number_text(below + gesture_rate);
+  return below > 0.0 ? config::number_text(below) + " or " + above : above;
+}
+
+void read_step(const Value& section, Scene& scene, config::Problems& problems) {
+  config::MappingReader reader(section, "step", problems);
+  reader.optional_choice("integrator", "cordis", {"cordis"});
+  scene.step_rate_hz = reader.required_number("rate_hz", Range::between(1.0, kHighestStepRate));
+  scene.gesture_rate_hz =
+      reader.optional_number("gesture_rate_hz", 1000.0, Range::between(1.0, kHighestGestureRate));
+  scene.frame_rate_hz =
+      reader.optional_number("frame_rate_hz", std::min(25.0, scene.gesture_rate_hz),
+                             Range::between(0.01, kHighestFrameRate));
+  scene.network.step = 1.0 / scene.step_rate_hz;
+  reader.finish();
+  if (!reader.ok() || !section.exists()) return;
+
+  const double steps = scene.step_rate_hz / scene.gesture_rate_hz;
+  constexpr double kRounding = 1.0e-9;
+  if (steps < 0.5 || std::abs(steps - std::round(steps)) > kRounding * steps) {
+    reader.error_at("rate_hz",
+                    "'rate_hz' must be an integer multiple of the gesture rate, " +
+                        config::number_text(scene.gesture_rate_hz) + " Hz, got " +
+                        config::number_text(scene.step_rate_hz),
+                    "take " + nearest_multiples(scene.step_rate_hz, scene.gesture_rate_hz) +
+                        ", or set 'gesture_rate_hz'");
+  }
+  if (scene.frame_rate_hz > scene.gesture_rate_hz) {
+    reader.error_at("frame_rate_hz", "'frame_rate_hz' must not exceed the gesture rate, " +
+                                         config::number_text(scene.gesture_rate_hz) + " Hz");
+  }
+}
+
+void read_world(const Value& section, Scene& scene, config::Problems& problems) {
+  config::MappingReader reader(section, "world", problems);
+  scene.network.gravity =
+      optional_point(reader, "gravity_m_per_s2", engine::Vec3::Zero(), scene.space());
+  scene.network.medium_viscosity =
+      reader.optional_number("viscosity_n_s_per_m", 0.0, Range::not_negative());
+  reader.finish();
+}
+
+bool has_mass(const Scene& scene) {
+  const auto is_mass = [](const engine::Mat& mat) { return mat.kind == engine::MatKind::kMass; };
+  return std::any_of(scene.network.mats.begin(), scene.network.mats.end(), is_mass);
+}
+
+/// The engine has the last word on what it can simulate.
+void check_by_engine(const Scene& scene, config::MappingReader& reader) {
+  try {
+    const engine::Network network(scene.network);
+  } catch (const std::invalid_argument& refusal) {
+    reader.error_at("matter", std::string("this cannot be simulated: ") + refusal.what());
+  }
+}
+
+/// The sections whose numbers depend on the space of the scene.
+void read_content(config::MappingReader& reader, Scene& scene, config::Problems& problems) {
+  const Value world = reader.optional_mapping("world");
+  const Value liaisons = reader.optional_mapping("liaisons");
+  const Value matter = reader.required_mapping("matter");
+  const Value ports = reader.optional_mapping("ports");
+  const Value links = reader.optional_sequence("links");
+  const Value signals = reader.optional_mapping("signals");
+  if (scene.space() == 0) return;  // nothing sure can be said about lengths
+
+  Assembly assembly(scene, problems);
+  read_world(world, scene, problems);
+  assembly.read_liaisons(liaisons);
+  assembly.read_matter(matter);
+  assembly.read_ports(ports);
+  assembly.read_links(links);
+  assembly.read_signals(signals);
+}
+
+Scene read_scene(const Value& root, const std::string& path, config::Problems& problems) {
+  Scene scene;
+  scene.file = path;
+  scene.network.dimension = 0;
+  if (!root.exists()) return scene;
+
+  const std::size_t errors_before = problems.error_count();
+  config::MappingReader reader(root, "scene", problems);
+  reader.required_integer("cordis", 1, 1);
+  scene.name = reader.optional_text("name", std::filesystem::path(path).stem().string());
+  const std::size_t errors_before_space = problems.error_count();
+  const long space = reader.required_integer("space", 1, 3);
+  if (problems.error_count() == errors_before_space)
+    scene.network.dimension = static_cast<int>(space);
+  read_step(reader.required_mapping("step"), scene, problems);
+  read_content(reader, scene, problems);
+  reader.finish();
+  if (problems.error_count() != errors_before) return scene;
+  if (has_mass(scene)) {
+    check_by_engine(scene, reader);
+  } else {
+    reader.error_at("matter", "the scene has no mass that can move");
+  }
+  return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, config::Problems& problems,
+                 const config::Place& referrer) {
+  return read_scene(config::load_file(path, problems, referrer), path, problems);
+}
+
+Scene load_scene_text(const std::string& text, const std::string& name,
+                      config::Problems& problems) {
+  return read_scene(config::load_text(text, name, problems), name, problems);
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,84 @@
+// sim_node/scene/scene.h -- what a scene file says, ready to be simulated.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "node/config/problem.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/scene/signal.h"
+
+namespace cordis::scene {
+
+/// A named run of consecutive MATs, or of consecutive links.
+struct NamedRange {
+  std::string name;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+/// The two roles of a device. [Luc90 V.1 Force feedback gestual transducers]
+enum class Role : std::uint8_t {
+  kMass = 0,    ///< it gives positions and receives forces
+  kLiaison = 1  ///< it gives forces and receives positions
+};
+
+/// A MAT played by axes of a device.
+///
+/// Role mass: an imposed position, rest + sum of axis position times direction; the force of an
+/// axis is the MAT's force along its direction. Role liaison: a mass on which the device puts the
+/// sum of axis force times direction; the position of an axis is the MAT's displacement from rest
+/// along its direction.
+struct Port {
+  std::string name;
+  std::string device;           ///< name of the device_node
+  std::uint32_t device_id = 0;  ///< its name_hash
+  Role role = Role::kMass;      ///< the same in all ports of one device
+  std::uint32_t mat =
+      0;  ///< the MAT at the port: MatKind::kPort in role mass, kMass in role liaison
+  engine::Vec3 rest = engine::Vec3::Zero();  ///< position of the MAT when all axes are at 0 [m]
+  std::vector<std::uint32_t> axes;  ///< axes of the device, each below 16, none twice in a scene
+  std::vector<engine::Vec3> directions;  ///< per axis, unit length, linearly independent
+  config::Place place;                   ///< of the port in the scene file
+};
+
+/// Where a MAT of a 1-D scene is shown; its displacement is shown along y.
+struct LayoutPoint {
+  double x = 0.0;  ///< [m]
+  double z = 0.0;  ///< [m]
+};
+
+/// A scene as it was read.
+struct Scene {
+  std::string name;
+  std::string file;              ///< path as it was given
+  double step_rate_hz = 0.0;     ///< an integer multiple of the gesture rate
+  double gesture_rate_hz = 0.0;  ///< exchanges with a device per second
+  double frame_rate_hz = 0.0;    ///< frames for the display per second, at most the gesture rate
+  engine::NetworkDescription network;  ///< its dimension is the `space` of the file
+  std::vector<NamedRange>
+      matter;  ///< names of MATs in the order of the indices; a port has one MAT
+  std::vector<NamedRange>
+      links;  ///< names of links in the order of the indices; see docs/language.md
+  std::vector<Port> ports;
+  SignalReader signals;
+  std::vector<double> radius_m;     ///< per MAT, as it is drawn; 0 for a point
+  std::vector<LayoutPoint> layout;  ///< per MAT in a 1-D scene, else empty
+
+  int space() const noexcept { return network.dimension; }
+};
+
+/// Reads a scene file and all it includes. Whatever is wrong becomes a problem of its place, all in
+/// one go. The language is described in docs/language.md.
+/// @param referrer  where a person wrote the path, if in a file
+/// @return what could be read; to be used only when `problems` has no errors. Then engine::Network
+/// takes it.
+Scene load_scene(const std::string& path, config::Problems& problems,
+                 const config::Place& referrer = {});
+
+/// The same for a scene in memory; `name` stands for its path, and its folder is where includes
+/// start.
+Scene load_scene_text(const std::string& text, const std::string& name, config::Problems& problems);
+
+}  // namespace cordis::scene

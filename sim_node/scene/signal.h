@@ -1,0 +1,64 @@
+// sim_node/scene/signal.h -- named scalars of a scene, read from its world after a step.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim_node/engine/world.h"
+
+namespace cordis::scene {
+
+/// What a signal tells. The first group is of a MAT, the second of a link, the third of the scene.
+enum class Quantity : std::uint8_t {
+  kPosition,  ///< of a MAT along a direction [m]
+  kVelocity,  ///< of a MAT along a direction, over the last step [m/s]
+  kForce,     ///< of all links on a MAT along a direction, in the last step [N]
+  kSpeed,     ///< length of the velocity of a MAT [m/s]
+
+  kDistance,    ///< of the ends of a link [m]; signed in 1-D
+  kElongation,  ///< distance less rest length [m]
+  kGrowth,      ///< growth of the distance per second, over the last step [m/s]
+  kPull,  ///< K elongation + Z growth, of the present positions; positive pulls the ends together
+          ///< [N]
+
+  kEnergy,            ///< kinetic + elastic + gravity [J]
+  kKineticEnergy,     ///< [J]
+  kElasticEnergy,     ///< [J]
+  kGravityEnergy,     ///< [J]
+  kDissipatedEnergy,  ///< taken by viscosity since step 0 [J]
+  kPortWork           ///< brought in through the ports since step 0 [J]
+};
+
+/// A signal, compiled: nothing is looked up by name any more.
+struct Signal {
+  std::string name;
+  std::string unit;  ///< m, m/s, N or J
+  Quantity quantity = Quantity::kEnergy;
+  std::uint32_t index = 0;                        ///< of the MAT or the link
+  engine::Vec3 direction = engine::Vec3::Zero();  ///< of a MAT's quantity, unit length
+  double offset = 0.0;                            ///< subtracted from a position [m]: a port's rest
+};
+
+/// Evaluates the signals of a scene.
+class SignalReader {
+ public:
+  SignalReader() = default;
+  explicit SignalReader(std::vector<Signal> signals);
+
+  std::size_t count() const noexcept { return signals_.size(); }
+  const std::vector<Signal>& signals() const noexcept { return signals_; }
+
+  /// The values of all signals in their order.
+  /// Real time: no allocation; O(signals), and O(MATs + links) more when an energy is among them.
+  /// @param world   of the network the signals were compiled for
+  /// @param values  room for count() values
+  void read(const engine::World& world, double* values) const noexcept;
+
+ private:
+  std::vector<Signal> signals_;
+  bool wants_energy_ = false;
+};
+
+}  // namespace cordis::scene

@@ -1,0 +1,139 @@
+// The `signals:` section: named scalars of MATs, ports, links and the scene.
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "sim_node/scene/assembly.h"
+#include "sim_node/scene/point.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Value;
+using engine::Vec3;
+
+enum class Owner { kMat, kLink, kScene };
+
+/// What a scene can ask for, of whom.
+struct QuantityWord {
+  const char* word;
+  Owner owner;
+  Quantity quantity;
+  const char* unit;
+  bool has_direction;
+};
+constexpr std::array<QuantityWord, 14> kWords{{
+    {"position", Owner::kMat, Quantity::kPosition, "m", true},
+    {"velocity", Owner::kMat, Quantity::kVelocity, "m/s", true},
+    {"force", Owner::kMat, Quantity::kForce, "N", true},
+    {"speed", Owner::kMat, Quantity::kSpeed, "m/s", false},
+    {"distance", Owner::kLink, Quantity::kDistance, "m", false},
+    {"elongation", Owner::kLink, Quantity::kElongation, "m", false},
+    {"speed", Owner::kLink, Quantity::kGrowth, "m/s", false},
+    {"force", Owner::kLink, Quantity::kPull, "N", false},
+    {"energy", Owner::kScene, Quantity::kEnergy, "J", false},
+    {"kinetic_energy", Owner::kScene, Quantity::kKineticEnergy, "J", false},
+    {"elastic_energy", Owner::kScene, Quantity::kElasticEnergy, "J", false},
+    {"gravity_energy", Owner::kScene, Quantity::kGravityEnergy, "J", false},
+    {"dissipated_energy", Owner::kScene, Quantity::kDissipatedEnergy, "J", false},
+    {"port_work", Owner::kScene, Quantity::kPortWork, "J", false},
+}};
+
+const char* name_of(Owner owner) {
+  if (owner == Owner::kScene) return "the scene";
+  return owner == Owner::kLink ? "a link" : "a MAT";
+}
+
+/// nullptr when the owner has no such quantity.
+const QuantityWord* find_quantity(Owner owner, const std::string& word) {
+  for (const QuantityWord& known : kWords) {
+    if (known.owner == owner && word == known.word) return &known;
+  }
+  return nullptr;
+}
+
+std::string list_of_quantities(Owner owner) {
+  std::string list;
+  for (const QuantityWord& known : kWords) {
+    if (known.owner == owner) list.append(list.empty() ? "" : ", ").append(known.word);
+  }
+  return list;
+}
+
+/// What `quantity` asks the owner for; nullptr after a problem.
+const QuantityWord* read_quantity(config::MappingReader& reader, Owner owner) {
+  const std::string word = reader.required_text("quantity");
+  const QuantityWord* quantity = find_quantity(owner, word);
+  if (quantity != nullptr || word.empty()) return quantity;
+  const bool of_something =
+      find_quantity(Owner::kMat, word) != nullptr || find_quantity(Owner::kLink, word) != nullptr;
+  const bool forgot_of = owner == Owner::kScene && of_something;
+  reader.error_at("quantity", std::string(name_of(owner)) + " has no quantity '" + word + "'",
+                  forgot_of ? "say whose it is: of: name[3]"
+                            : std::string("it has ") + list_of_quantities(owner));
+  return nullptr;
+}
+
+}  // namespace
+
+void Assembly::read_signals(const Value& section) {
+  std::vector<Signal> signals;
+  for (const Value::Entry& entry : section.entries()) read_signal(entry, signals);
+  scene_.signals = SignalReader(std::move(signals));
+}
+
+void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signals) {
+  check_name(entry.key, entry.key_place, problems_);
+  config::MappingReader reader(entry.value, "signal '" + entry.key + "'", problems_);
+  const Value of = reader.optional_value("of");
+  std::optional<Selection> picked;
+  if (of.exists()) {
+    picked = select(of, "'of' in " + reader.what(), true, names_, problems_);
+    if (!picked) return;  // whose signal it is decides what else it may say
+  }
+  if (picked && picked->count != 1) {
+    reader.error_at("of",
+                    "a signal is of one MAT or one link, and '" + of.text() + "' has " +
+                        std::to_string(picked->count),
+                    "pick one: " + picked->entry.name + "[0]");
+  }
+  Owner owner = Owner::kScene;
+  if (picked) owner = picked->entry.kind == Named::kLinks ? Owner::kLink : Owner::kMat;
+
+  Signal signal;
+  signal.name = entry.key;
+  signal.index = picked ? picked->first : 0;
+  const QuantityWord* quantity = read_quantity(reader, owner);
+  reader.optional_value("axis");
+  if (quantity != nullptr) {
+    signal.quantity = quantity->quantity;
+    signal.unit = quantity->unit;
+    if (quantity->has_direction) {
+      read_direction_of_signal(reader, *picked, signal);
+    } else if (reader.has("axis")) {
+      reader.error_at("axis", std::string("the quantity '") + quantity->word + "' has no axis");
+    }
+  }
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+void Assembly::read_direction_of_signal(config::MappingReader& reader, const Selection& of,
+                                        Signal& signal) const {
+  const std::vector<std::string> words = axis_words(scene_.space());
+  if (reader.has("axis")) {
+    signal.direction = Vec3::Unit(reader.required_choice("axis", words).front() - 'x');
+    return;
+  }
+  for (const Port& port : scene_.ports) {
+    if (port.name != of.entry.name || port.directions.size() != 1) continue;
+    signal.direction = port.directions.front();
+    if (signal.quantity == Quantity::kPosition) signal.offset = signal.direction.dot(port.rest);
+    return;
+  }
+  signal.direction = Vec3::UnitX();
+  if (scene_.space() > 1) reader.required_choice("axis", words);
+}
+
+}  // namespace cordis::scene
