@@ -2,13 +2,14 @@
 // of each width.
 //
 // `Lanes` is a type of an unnamed namespace, one for each width, and gives
-//   Batch      8 values with + - *;  load, store, zero, sqrt, sum (in the order of the lanes)
-//   Batch3     8 vectors x, y, z
-//   Column     the 4 values of one MAT with + - *;  load, store, broadcast, is_finite
-//   inverse_or_zero(square, length)    1 / length where square > 0, else 0
-//   difference(columns, a, b)          the 8 vectors from a to b, one below the other
-//   difference_1d(columns, a, b)       their first component
-//   add_pairs(force, a, b, pull)       one by one: += at a, -= at b
+//   kWidth     how many links one register holds: 2, 4 or 8
+//   Row        a register: one value of each of these links, with + - *;  load, store, zero, sqrt
+//   Row3       the vectors x, y, z of these links
+//   Column     the 4 values of one MAT, with + - *;  load_column, store_column, broadcast, unite,
+//   is_zero, sum_column inverse_or_zero(square, length)    1 / length, but 0 where square is 0
+//   difference(columns, a, b)          the vectors from a to b;  differences: those of two sets of
+//   columns difference_1d(columns, a, b)       their first components add_pairs(force, a, b, pull)
+//   one link after the other: += at a, -= at b;  add_pairs_1d likewise
 // so every function here belongs to the file that instantiates it, and is never shared between
 // widths. Each + - * is rounded by itself: no operation may be contracted or reordered.
 #pragma once
@@ -20,63 +21,90 @@ namespace cordis::engine {
 /// pull = K (b - a - rest) + Z (growth of b - a) / dt, signed; kViscous = false leaves the second
 /// term out.
 template <class Lanes, bool kViscous>
-double add_link_forces_1d(const LinkRows& links, const ForceColumns& columns) noexcept {
-  using Batch = typename Lanes::Batch;
-  Batch work = Lanes::zero();
+struct LinksInLine {
+  using Row = typename Lanes::Row;
 
-  for (std::size_t l = 0; l < links.count; l += kLinkBatch) {
+  static void add_forces(const LinkRows& links, const ForceColumns& columns, std::size_t l,
+                         Row& work) noexcept {
     const std::uint32_t* a = links.column_a + l;
     const std::uint32_t* b = links.column_b + l;
 
-    const Batch distance = Lanes::difference_1d(columns.position, a, b);
-    Batch pull = Lanes::load(links.stiffness + l) * (distance - Lanes::load(links.rest_length + l));
+    const Row distance = Lanes::difference_1d(columns.position, a, b);
+    Row pull = Lanes::load(links.stiffness + l) * (distance - Lanes::load(links.rest_length + l));
     if constexpr (kViscous) {
-      const Batch grown = distance - Lanes::difference_1d(columns.delayed, a, b);
-      const Batch viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
+      const Row grown = distance - Lanes::difference_1d(columns.delayed, a, b);
+      const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
       work = work + (viscous_pull + Lanes::load(links.viscous_factor + l)) * grown;
       Lanes::store(links.viscous_factor + l, viscous_pull);
       pull = pull + viscous_pull;
     }
     Lanes::add_pairs_1d(columns.force, a, b, pull);
   }
-  return Lanes::sum(work);
-}
+};
 
 /// pull = K (d - rest) + Z (growth of the link along its axis) / dt; none while d is 0, for lack of
 /// a direction.
 template <class Lanes, bool kViscous>
-double add_link_forces_3d(const LinkRows& links, const ForceColumns& columns) noexcept {
-  using Batch = typename Lanes::Batch;
-  using Batch3 = typename Lanes::Batch3;
-  Batch work = Lanes::zero();
+struct LinksInSpace {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
 
-  for (std::size_t l = 0; l < links.count; l += kLinkBatch) {
+  static void add_forces(const LinkRows& links, const ForceColumns& columns, std::size_t l,
+                         Row& work) noexcept {
     const std::uint32_t* a = links.column_a + l;
     const std::uint32_t* b = links.column_b + l;
 
-    const Batch3 along = Lanes::difference(columns.position, a, b);
-    const Batch square = along.x * along.x + along.y * along.y + along.z * along.z;
-    const Batch length = Lanes::sqrt(square);
-    const Batch inverse = Lanes::inverse_or_zero(square, length);
-    Batch factor =
+    Row3 along;
+    Row3 before;
+    if constexpr (kViscous) {
+      Lanes::differences(columns.position, columns.delayed, a, b, along, before);
+    } else {
+      along = Lanes::difference(columns.position, a, b);
+    }
+    const Row square = along.x * along.x + along.y * along.y + along.z * along.z;
+    const Row length = Lanes::sqrt(square);
+    const Row inverse = Lanes::inverse_or_zero(square, length);
+    Row factor =
         Lanes::load(links.stiffness + l) * (length - Lanes::load(links.rest_length + l)) * inverse;
     if constexpr (kViscous) {
-      const Batch3 before = Lanes::difference(columns.delayed, a, b);
-      const Batch moved_x = along.x - before.x;
-      const Batch moved_y = along.y - before.y;
-      const Batch moved_z = along.z - before.z;
-      const Batch grown = (along.x * moved_x + along.y * moved_y + along.z * moved_z) * inverse;
-      const Batch viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
-      const Batch before_moved = before.x * moved_x + before.y * moved_y + before.z * moved_z;
+      const Row moved_x = along.x - before.x;
+      const Row moved_y = along.y - before.y;
+      const Row moved_z = along.z - before.z;
+      const Row grown = (along.x * moved_x + along.y * moved_y + along.z * moved_z) * inverse;
+      const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
+      const Row before_moved = before.x * moved_x + before.y * moved_y + before.z * moved_z;
       work = work + (viscous_pull * grown + Lanes::load(links.viscous_factor + l) * before_moved);
-      const Batch viscous_factor = viscous_pull * inverse;
+      const Row viscous_factor = viscous_pull * inverse;
       Lanes::store(links.viscous_factor + l, viscous_factor);
       factor = factor + viscous_factor;
     }
     Lanes::add_pairs(columns.force, a, b,
-                     Batch3{along.x * factor, along.y * factor, along.z * factor});
+                     Row3{along.x * factor, along.y * factor, along.z * factor});
   }
-  return Lanes::sum(work);
+};
+
+/// A batch of 8 links at a time, in one register or in parts; the work is summed by the place in
+/// the batch.
+template <class Lanes, class Links>
+double add_link_forces(const LinkRows& links, const ForceColumns& columns) noexcept {
+  constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
+  typename Lanes::Row work[kParts];
+  for (std::size_t part = 0; part < kParts; ++part) work[part] = Lanes::zero();
+
+  for (std::size_t l = 0; l < links.count; l += kLinkBatch) {
+#pragma GCC unroll 4
+    for (std::size_t part = 0; part < kParts; ++part) {
+      Links::add_forces(links, columns, l + part * Lanes::kWidth, work[part]);
+    }
+  }
+
+  alignas(64) double lane[kLinkBatch];
+  for (std::size_t part = 0; part < kParts; ++part) {
+    Lanes::store(lane + part * Lanes::kWidth, work[part]);
+  }
+  double sum = 0.0;
+  for (const double value : lane) sum += value;
+  return sum;
 }
 
 template <class Lanes, bool kMedium>
@@ -106,9 +134,12 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
 
 template <class Lanes>
 constexpr StepKernel make_step_kernel() noexcept {
-  return StepKernel{add_link_forces_1d<Lanes, false>, add_link_forces_1d<Lanes, true>,
-                    add_link_forces_3d<Lanes, false>, add_link_forces_3d<Lanes, true>,
-                    advance_masses<Lanes, false>,     advance_masses<Lanes, true>};
+  return StepKernel{add_link_forces<Lanes, LinksInLine<Lanes, false>>,
+                    add_link_forces<Lanes, LinksInLine<Lanes, true>>,
+                    add_link_forces<Lanes, LinksInSpace<Lanes, false>>,
+                    add_link_forces<Lanes, LinksInSpace<Lanes, true>>,
+                    advance_masses<Lanes, false>,
+                    advance_masses<Lanes, true>};
 }
 
 }  // namespace cordis::engine

@@ -1,5 +1,4 @@
-// sim_node/engine/step_kernel_sse2.cpp -- a batch of 8 in four registers of 2: runs on every x86-64
-// processor.
+// sim_node/engine/step_kernel_sse2.cpp -- two links in a register: runs on every x86-64 processor.
 #include <emmintrin.h>
 
 #include "sim_node/engine/step_kernel_body.h"
@@ -7,143 +6,78 @@
 namespace cordis::engine {
 namespace {
 
-constexpr std::size_t kQuarters = 4;
-
-struct Batch {
-  __m128d quarter[kQuarters];  // lanes 2 q and 2 q + 1
-
-  friend Batch operator+(const Batch& u, const Batch& v) noexcept {
-    Batch w;
-    for (std::size_t q = 0; q < kQuarters; ++q)
-      w.quarter[q] = _mm_add_pd(u.quarter[q], v.quarter[q]);
-    return w;
-  }
-  friend Batch operator-(const Batch& u, const Batch& v) noexcept {
-    Batch w;
-    for (std::size_t q = 0; q < kQuarters; ++q)
-      w.quarter[q] = _mm_sub_pd(u.quarter[q], v.quarter[q]);
-    return w;
-  }
-  friend Batch operator*(const Batch& u, const Batch& v) noexcept {
-    Batch w;
-    for (std::size_t q = 0; q < kQuarters; ++q)
-      w.quarter[q] = _mm_mul_pd(u.quarter[q], v.quarter[q]);
-    return w;
-  }
-};
-
-struct Batch3 {
-  Batch x;
-  Batch y;
-  Batch z;
-};
-
 struct Column {
   __m128d xy;
   __m128d z;  // and the pad
 
   friend Column operator+(const Column& u, const Column& v) noexcept {
-    return {_mm_add_pd(u.xy, v.xy), _mm_add_pd(u.z, v.z)};
+    return {u.xy + v.xy, u.z + v.z};
   }
   friend Column operator-(const Column& u, const Column& v) noexcept {
-    return {_mm_sub_pd(u.xy, v.xy), _mm_sub_pd(u.z, v.z)};
+    return {u.xy - v.xy, u.z - v.z};
   }
   friend Column operator*(const Column& u, const Column& v) noexcept {
-    return {_mm_mul_pd(u.xy, v.xy), _mm_mul_pd(u.z, v.z)};
+    return {u.xy * v.xy, u.z * v.z};
   }
 };
 
 struct Sse2Lanes {
-  using Batch = engine::Batch;
-  using Batch3 = engine::Batch3;
+  using Row = __m128d;
   using Column = engine::Column;
+  struct Row3 {
+    Row x;
+    Row y;
+    Row z;
+  };
+  static constexpr std::size_t kWidth = 2;
 
-  static Batch zero() noexcept {
-    const __m128d none = _mm_setzero_pd();
-    return {{none, none, none, none}};
-  }
-  static Batch load(const double* values) noexcept {
-    Batch w;
-    for (std::size_t q = 0; q < kQuarters; ++q) w.quarter[q] = _mm_load_pd(values + 2 * q);
-    return w;
-  }
-  static void store(double* values, const Batch& v) noexcept {
-    for (std::size_t q = 0; q < kQuarters; ++q) _mm_store_pd(values + 2 * q, v.quarter[q]);
-  }
-  static Batch sqrt(const Batch& v) noexcept {
-    Batch w;
-    for (std::size_t q = 0; q < kQuarters; ++q) w.quarter[q] = _mm_sqrt_pd(v.quarter[q]);
-    return w;
-  }
-  static Batch inverse_or_zero(const Batch& square, const Batch& length) noexcept {
-    const __m128d one = _mm_set1_pd(1.0);
-    const __m128d none = _mm_setzero_pd();
-    Batch w;
-    for (std::size_t q = 0; q < kQuarters; ++q) {
-      w.quarter[q] =
-          _mm_and_pd(_mm_cmpneq_pd(square.quarter[q], none), _mm_div_pd(one, length.quarter[q]));
-    }
-    return w;
-  }
-  static double sum(const Batch& v) noexcept {
-    alignas(16) double lane[kLinkBatch];
-    store(lane, v);
-    double total = 0.0;
-    for (const double value : lane) total += value;
-    return total;
+  static Row zero() noexcept { return _mm_setzero_pd(); }
+  static Row load(const double* values) noexcept { return _mm_load_pd(values); }
+  static void store(double* values, Row v) noexcept { _mm_store_pd(values, v); }
+  static Row sqrt(Row v) noexcept { return _mm_sqrt_pd(v); }
+  static Row inverse_or_zero(Row square, Row length) noexcept {
+    return _mm_and_pd(_mm_cmpneq_pd(square, zero()), _mm_div_pd(_mm_set1_pd(1.0), length));
   }
 
-  static Batch3 difference(const double* columns, const std::uint32_t* a,
+  static Row3 difference(const double* columns, const std::uint32_t* a,
+                         const std::uint32_t* b) noexcept {
+    const Column u = load_column(columns + b[0]) - load_column(columns + a[0]);
+    const Column v = load_column(columns + b[1]) - load_column(columns + a[1]);
+    return {_mm_unpacklo_pd(u.xy, v.xy), _mm_unpackhi_pd(u.xy, v.xy), _mm_unpacklo_pd(u.z, v.z)};
+  }
+  static void differences(const double* columns_u, const double* columns_v, const std::uint32_t* a,
+                          const std::uint32_t* b, Row3& u, Row3& v) noexcept {
+    u = difference(columns_u, a, b);
+    v = difference(columns_v, a, b);
+  }
+  static Row difference_1d(const double* columns, const std::uint32_t* a,
                            const std::uint32_t* b) noexcept {
-    Batch3 w;
-    for (std::size_t q = 0; q < kQuarters; ++q) {
-      const Column u = load_column(columns + b[2 * q]) - load_column(columns + a[2 * q]);
-      const Column v = load_column(columns + b[2 * q + 1]) - load_column(columns + a[2 * q + 1]);
-      w.x.quarter[q] = _mm_unpacklo_pd(u.xy, v.xy);
-      w.y.quarter[q] = _mm_unpackhi_pd(u.xy, v.xy);
-      w.z.quarter[q] = _mm_unpacklo_pd(u.z, v.z);
-    }
-    return w;
+    return gather(columns, b) - gather(columns, a);
   }
-  static Batch difference_1d(const double* columns, const std::uint32_t* a,
-                             const std::uint32_t* b) noexcept {
-    Batch w;
-    for (std::size_t q = 0; q < kQuarters; ++q) {
-      w.quarter[q] =
-          _mm_sub_pd(_mm_loadh_pd(_mm_load_sd(columns + b[2 * q]), columns + b[2 * q + 1]),
-                     _mm_loadh_pd(_mm_load_sd(columns + a[2 * q]), columns + a[2 * q + 1]));
-    }
-    return w;
-  }
+
   static void add_pairs(double* force, const std::uint32_t* a, const std::uint32_t* b,
-                        const Batch3& pull) noexcept {
-    const __m128d none = _mm_setzero_pd();
-    for (std::size_t q = 0; q < kQuarters; ++q) {
-      const __m128d x = pull.x.quarter[q];
-      const __m128d y = pull.y.quarter[q];
-      const __m128d z = pull.z.quarter[q];
-      add_pair(force + a[2 * q], force + b[2 * q],
-               {_mm_unpacklo_pd(x, y), _mm_unpacklo_pd(z, none)});
-      add_pair(force + a[2 * q + 1], force + b[2 * q + 1],
-               {_mm_unpackhi_pd(x, y), _mm_unpackhi_pd(z, none)});
-    }
+                        const Row3& pull) noexcept {
+    add_pair(force + a[0], force + b[0],
+             {_mm_unpacklo_pd(pull.x, pull.y), _mm_unpacklo_pd(pull.z, zero())});
+    add_pair(force + a[1], force + b[1],
+             {_mm_unpackhi_pd(pull.x, pull.y), _mm_unpackhi_pd(pull.z, zero())});
   }
   static void add_pairs_1d(double* force, const std::uint32_t* a, const std::uint32_t* b,
-                           const Batch& pull) noexcept {
-    alignas(16) double lane[kLinkBatch];
+                           Row pull) noexcept {
+    alignas(16) double lane[kWidth];
     store(lane, pull);
-    for (std::size_t i = 0; i < kLinkBatch; ++i) {
+    for (std::size_t i = 0; i < kWidth; ++i) {
       force[a[i]] += lane[i];
       force[b[i]] -= lane[i];
     }
   }
 
   static Column load_column(const double* values) noexcept {
-    return {_mm_load_pd(values), _mm_load_pd(values + 2)};
+    return {load(values), load(values + 2)};
   }
   static void store_column(double* values, const Column& v) noexcept {
-    _mm_store_pd(values, v.xy);
-    _mm_store_pd(values + 2, v.z);
+    store(values, v.xy);
+    store(values + 2, v.z);
   }
   static Column broadcast(double value) noexcept {
     return {_mm_set1_pd(value), _mm_set1_pd(value)};
@@ -152,7 +86,7 @@ struct Sse2Lanes {
     return {_mm_or_pd(u.xy, v.xy), _mm_or_pd(u.z, v.z)};
   }
   static bool is_zero(const Column& v) noexcept {
-    return _mm_movemask_pd(_mm_cmpneq_pd(_mm_or_pd(v.xy, v.z), _mm_setzero_pd())) == 0;
+    return _mm_movemask_pd(_mm_cmpneq_pd(_mm_or_pd(v.xy, v.z), zero())) == 0;
   }
   static double sum_column(const Column& v) noexcept {
     alignas(16) double value[4];
@@ -161,6 +95,9 @@ struct Sse2Lanes {
   }
 
  private:
+  static Row gather(const double* columns, const std::uint32_t* offset) noexcept {
+    return _mm_loadh_pd(_mm_load_sd(columns + offset[0]), columns + offset[1]);
+  }
   static void add_pair(double* force_a, double* force_b, const Column& pull) noexcept {
     store_column(force_a, load_column(force_a) + pull);
     store_column(force_b, load_column(force_b) - pull);
