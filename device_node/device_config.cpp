@@ -106,15 +106,12 @@ std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig
 
 }  // namespace
 
-LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode& node,
+LoadedDevice read_device(const config::Value& mapping, const std::string& name,
                          config::Problems& problems) {
   LoadedDevice device;
-  const config::Value mapping = merged(launch, node, problems);
-  problems.throw_if_any();
-
-  config::MappingReader reader(mapping, "device '" + node.name + "'", problems);
-  device.config.name = node.name;
-  device.config.device_id = config::name_hash(node.name);
+  config::MappingReader reader(mapping, "device '" + name + "'", problems);
+  device.config.name = name;
+  device.config.device_id = config::name_hash(name);
   reader.optional_integer("cordis", 1, 1, 1);
   device.config.layout = read_layout(reader);
   read_guards(reader, device.config);
@@ -122,6 +119,13 @@ LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode&
   reader.finish();
   problems.throw_if_any();
   return device;
+}
+
+LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode& node,
+                         config::Problems& problems) {
+  const config::Value mapping = merged(launch, node, problems);
+  problems.throw_if_any();
+  return read_device(mapping, node.name, problems);
 }
 
 }  // namespace cordis::device

@@ -28,9 +28,14 @@ struct LoadedDevice {
   std::unique_ptr<Driver> driver;
 };
 
-/// Reads the device file that the node's section names (`device: FILE`), with the other keys of the
-/// section laid on it, and builds its driver. The mappings of all drivers in the file are checked,
-/// not only that of the driver in use.
+/// Reads a device from its mapping, and builds its driver. The mappings of all drivers in it are
+/// checked, not only that of the driver in use.
+/// @throws config::ConfigError with everything that is wrong.
+LoadedDevice read_device(const config::Value& mapping, const std::string& name,
+                         config::Problems& problems);
+
+/// The device of a node: the device file that its section names (`device: FILE`), with the other
+/// keys of the section laid on it.
 /// @throws config::ConfigError with everything that is wrong.
 LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode& node,
                          config::Problems& problems);

@@ -12,6 +12,7 @@ namespace {
 int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems) {
   cordis::device::LoadedDevice device =
       cordis::device::load_device(start.launch, *start.node, problems);
+  cordis::node::report(problems);
   if (start.check_only) return 0;
 
   const std::string& name = start.node->name;

@@ -9,7 +9,7 @@
 namespace cordis::device {
 namespace {
 
-constexpr int kMostSubSteps = 100;  // keeps 16 axes within 100 us per period
+constexpr double kHighestSubStepRate = 100e3;  // [1/s], keeps 16 axes within 5 % of a core
 
 /// Sub-steps per period at which the scheme is far inside its stability limit (K h^2/m + 2 Z h/m
 /// < 4), and an end stop or finger adds less than 0.25 % of energy per contact: K h^2/m <= 0.01,
@@ -34,10 +34,10 @@ Mock::Mock(const MockSettings& settings, const AxisLayout& layout) : layout_(lay
   const double period_s = 1.0 / layout.rate_hz;
   const HandSettings* hand = settings.played.empty() ? nullptr : &settings.hand;
   const double sub_steps = wanted_sub_steps(settings.key, hand, period_s);
-  if (!(sub_steps <= kMostSubSteps)) {
+  if (!(sub_steps * layout.rate_hz <= kHighestSubStepRate)) {
     throw std::invalid_argument(
-        "its mechanics are too fast for the rate of the device: larger masses, or softer and less "
-        "viscous stops and fingers are needed");
+        "its mechanics are too fast to be simulated: larger masses, or softer and less viscous "
+        "stops and fingers are needed");
   }
   sub_steps_ = static_cast<int>(sub_steps);
   sub_step_s_ = period_s / sub_steps_;

@@ -31,7 +31,7 @@ struct MockSettings {
 class Mock final : public Driver {
  public:
   /// @throws std::invalid_argument when a setting is out of range, or when its mechanics are too
-  ///         fast to be simulated at the rate of the device.
+  ///         fast to be simulated in real time.
   Mock(const MockSettings& settings, const AxisLayout& layout);
 
   bool can_play(Role role) const noexcept override;

@@ -43,10 +43,11 @@ Trajectory::Place Trajectory::locate(double time_s) const noexcept {
   if (next == moves_.begin()) return {first_from, first_from, 0.0, 1.0};
 
   const auto move = next - 1;
-  const double elapsed = std::max(0.0, local - move->begin_s);
+  const double elapsed = local - move->begin_s;
   if (elapsed + kTimeGrain >= move->duration_s) return {move->to, move->to, 0.0, 1.0};
   const double from = move == moves_.begin() ? first_from : (move - 1)->to;
-  return {from, move->to, move->duration_s, elapsed / move->duration_s};
+  const double share = elapsed <= kTimeGrain ? 0.0 : elapsed / move->duration_s;
+  return {from, move->to, move->duration_s, share};
 }
 
 double Trajectory::at(double time_s) const noexcept {

@@ -1,0 +1,148 @@
+#include "device_node/device_config.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "node/config/name_hash.h"
+
+namespace cordis::device {
+namespace {
+
+LoadedDevice device_of(const std::string& text) {
+  config::Problems problems;
+  return read_device(config::load_text(text, "device.yaml", problems), "keyboard", problems);
+}
+
+std::string problems_of(const std::string& text) {
+  try {
+    device_of(text);
+  } catch (const config::ConfigError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+/// The device of a launch file in launch_configs/, with words of the command line laid on it.
+LoadedDevice launched(const std::string& device_file, const std::vector<std::string>& words) {
+  config::Problems problems;
+  const config::Launch launch = config::load_launch_text(
+      "cordis: 1\nnodes: {keyboard: {node: device_node, device: devices/" + device_file + "}}\n",
+      CORDIS_SOURCE_DIR "/launch_configs/some.yaml", words, problems);
+  problems.throw_if_any();
+  return load_device(launch, *launch.find("keyboard"), problems);
+}
+
+TEST(DeviceConfig, NeedsNothingButItsAxes) {
+  const LoadedDevice device = device_of("axes: 3");
+
+  EXPECT_EQ(device.config.name, "keyboard");
+  EXPECT_EQ(device.config.device_id, config::name_hash("keyboard"));
+  EXPECT_EQ(device.config.layout.count, 3);
+  EXPECT_EQ(device.config.layout.lowest_m, -0.04);
+  EXPECT_EQ(device.config.layout.highest_m, 0.0);
+  EXPECT_EQ(device.config.layout.rate_hz, 1000.0);
+  EXPECT_EQ(device.config.force_guard.watchdog_s, 0.02);
+  EXPECT_EQ(device.config.driver, "mock");
+  EXPECT_NE(device.driver, nullptr);
+}
+
+TEST(DeviceConfig, GivesItsLimitsToBothGuards) {
+  const DeviceConfig config = device_of(
+                                  "{axes: 1, travel_m: 0.03, rest: middle, rate_hz: 500, "
+                                  "force_limit_n: 8, slew_limit_n_per_s: 900, "
+                                  "speed_limit_m_per_s: 0.7, watchdog_s: 0.04, start_ramp_s: 0.3}")
+                                  .config;
+
+  EXPECT_EQ(config.layout.lowest_m, -0.015);
+  EXPECT_EQ(config.layout.highest_m, 0.015);
+  EXPECT_EQ(config.layout.force_limit_n, 8.0);
+  EXPECT_EQ(config.force_guard.limit_n, 8.0);
+  EXPECT_EQ(config.force_guard.slew_n_per_s, 900.0);
+  EXPECT_EQ(config.force_guard.ramp_s, 0.3);
+  EXPECT_EQ(config.force_guard.watchdog_s, 0.04);
+  EXPECT_EQ(config.force_guard.period_s, 0.002);
+  EXPECT_EQ(config.position_guard.lowest_m, -0.015);
+  EXPECT_EQ(config.position_guard.highest_m, 0.015);
+  EXPECT_EQ(config.position_guard.speed_m_per_s, 0.7);
+  EXPECT_EQ(config.position_guard.ramp_s, 0.3);
+  EXPECT_EQ(config.position_guard.watchdog_s, 0.04);
+  EXPECT_EQ(config.position_guard.period_s, 0.002);
+}
+
+TEST(DeviceConfig, WatchdogOfASlowDeviceSpansItsPeriods) {
+  EXPECT_DOUBLE_EQ(device_of("{axes: 1, rate_hz: 25}").config.force_guard.watchdog_s, 6.0 / 25.0);
+}
+
+TEST(DeviceConfig, ShippedDevicesAreRightWithEveryDriver) {
+  EXPECT_EQ(launched("keyboard.yaml", {}).config.layout.count, 1);
+  EXPECT_EQ(launched("keyboard_16.yaml", {}).config.layout.count, 16);
+  for (const char* file : {"keyboard.yaml", "keyboard_16.yaml"}) {
+    const LoadedDevice script = launched(file, {"keyboard.driver=script"});
+    EXPECT_EQ(script.config.driver, "script");
+    EXPECT_TRUE(script.driver->can_play(Role::kMass));
+  }
+}
+
+TEST(DeviceConfig, LaysTheLaunchFileAndTheCommandLineOnTheDeviceFile) {
+  // A hand ten times stiffer presses the key deeper against the same force.
+  const auto depth_with = [](const std::vector<std::string>& words) {
+    const LoadedDevice device = launched("keyboard.yaml", words);
+    device.driver->start(Role::kMass);
+    AxisValues values{};
+    for (int n = 0; n < 1700; ++n) {
+      values.fill(2.0);
+      device.driver->write(values);
+      device.driver->read(values);
+    }
+    return values[0];
+  };
+
+  EXPECT_LT(depth_with({"keyboard.mock.hand.stiffness_n_per_m=4000"}), depth_with({}) - 0.002);
+  EXPECT_EQ(launched("keyboard.yaml", {"keyboard.travel_m=0.05"}).config.layout.lowest_m, -0.05);
+}
+
+struct BadDevice {
+  const char* text;
+  const char* problem;
+};
+
+class DeviceProblem : public testing::TestWithParam<BadDevice> {};
+
+TEST_P(DeviceProblem, IsToldWithItsPlace) {
+  const std::string problems = problems_of(GetParam().text);
+  EXPECT_NE(problems.find(GetParam().problem), std::string::npos) << problems;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, DeviceProblem,
+    testing::Values(
+        BadDevice{"travel_m: 0.03", "device.yaml:1:1: error: "},
+        BadDevice{"axes: 17", "device.yaml:1:7: error: 'axes' in device 'keyboard'"},
+        BadDevice{"{axes: 1, travel: 0.03}", "device.yaml:1:11: error: unknown key 'travel'"},
+        BadDevice{"{axes: 1, driver: moc}", "did you mean 'mock'?"},
+        BadDevice{"{axes: 1, driver: script}", "error: script needs positions or forces"},
+        BadDevice{"{axes: 1, watchdog_s: 0.003}",
+                  "device.yaml:1:23: error: watchdog_s must be more than three periods of rate_hz"},
+        BadDevice{"{axes: 1, slew_limit_n_per_s: 100}",
+                  "device.yaml:1:31: error: slew_limit_n_per_s must be at least 1177 so that "
+                  "force_limit_n falls to zero within watchdog_s, got 100"},
+        BadDevice{"axes: 1\nmock: {key: {stop_viscosity_n_s_per_m: 0.1}}",
+                  "device.yaml:2:40: error: stop_viscosity_n_s_per_m must be at least 0.63"},
+        BadDevice{"axes: 1\nmock: {hand: {moves: [{at_s: 0, in_s: 1, to_m: 0}, {at_s: 0.5, in_s: "
+                  "1, to_m: 0}]}}",
+                  "device.yaml:2:59: error: a move must not begin before the one before it has "
+                  "ended"},
+        BadDevice{"axes: 1\nmock: {hand: {repeat_s: 1, moves: [{at_s: 0, in_s: 2, to_m: 0}]}}",
+                  "device.yaml:2:25: error: repeat_s must not be less than the end of the last "
+                  "move"},
+        BadDevice{"axes: 2\nmock: {hand: {axes: [0, 2]}}", "device.yaml:2:25: error: "},
+        BadDevice{"axes: 2\nmock: {hand: {axes: [1, 1]}}", "axis 1 stands here twice"},
+        BadDevice{"axes: 1\nmock: {key: {mass_kg: 0.0001, stop_n_per_m: 1e9, "
+                  "stop_viscosity_n_s_per_m: 10}}",
+                  "device.yaml:2:7: error: mock: its mechanics are too fast"},
+        // the driver that is not in use is checked too
+        BadDevice{"axes: 1\nscript: {positions: 3}", "device.yaml:2:21: error: "}));
+
+}  // namespace
+}  // namespace cordis::device

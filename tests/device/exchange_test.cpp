@@ -1,0 +1,371 @@
+#include "device_node/exchange.h"
+
+#include <cmath>
+#include <deque>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace cordis::device {
+namespace {
+
+using std::chrono::nanoseconds;
+
+constexpr std::uint64_t kRun = 77;
+constexpr std::uint64_t kSceneRun = 5;
+constexpr std::int64_t kPeriod = 1'000'000;  // [ns]
+
+std::int64_t now_nsec = 0;
+std::int64_t now() noexcept {
+  return now_nsec;
+}
+
+/// A scene that answers what the test puts into it.
+class FakeChannel : public GestureChannel {
+ public:
+  bool send(const GestureMessage& sample) noexcept override {
+    sent.push_back(sample);
+    return works;
+  }
+  bool receive(GestureMessage& answer, nanoseconds) noexcept override {
+    if (waiting.empty()) return false;
+    answer = waiting.front();
+    waiting.pop_front();
+    return true;
+  }
+
+  std::vector<GestureMessage> sent;
+  std::deque<GestureMessage> waiting;
+  bool works = true;
+};
+
+/// A device whose sensors say how many periods it has lived, and that remembers its commands.
+class FakeDriver : public Driver {
+ public:
+  bool can_play(Role) const noexcept override { return true; }
+  void start(Role role) noexcept override { started_as = role; }
+  bool read(AxisValues& sensed) noexcept override {
+    sensed.fill(0.0);
+    sensed[0] = -0.001 * static_cast<double>(commands.size());
+    return present;
+  }
+  bool write(const AxisValues& commanded) noexcept override {
+    commands.push_back(commanded);
+    return present;
+  }
+  void stop() noexcept override { stopped = true; }
+
+  Role started_as = Role::kMass;
+  std::vector<AxisValues> commands;
+  bool present = true;
+  bool stopped = false;
+};
+
+DeviceConfig config_of_two_axes() {
+  DeviceConfig config;
+  config.name = "keyboard";
+  config.device_id = 4711;
+  config.layout.count = 2;
+  config.force_guard.ramp_s = 0.0;
+  config.position_guard.ramp_s = 0.0;
+  return config;
+}
+
+struct Rig {
+  explicit Rig(bool lockstep, Role role = Role::kMass, Exchange::Series series = {kRun, 0})
+      : config(config_of_two_axes()),
+        exchange(config, role, series, lockstep, driver, channel, meter, &now) {}
+
+  /// The scene's answer to the sample sent last.
+  GestureMessage answer(double value) {
+    const GestureMessage& sample = channel.sent.back();
+    GestureMessage message;
+    message.run = kSceneRun;
+    message.sample = ++scene_sample;
+    message.answered_run = sample.run;
+    message.answered_sample = sample.sample;
+    message.answered_time_nsec = sample.time_nsec;
+    message.time_nsec = now_nsec;
+    message.axis_count = 2;
+    message.value[0] = value;
+    message.value[1] = value;
+    return message;
+  }
+
+  /// One period of the realtime clock, with an answer or without.
+  double period(bool answered, double value = 0.0) {
+    exchange.send_sample();
+    if (answered) channel.waiting.push_back(answer(value));
+    now_nsec += kPeriod;
+    exchange.receive();
+    exchange.live();
+    return driver.commands.back()[0];
+  }
+
+  DeviceConfig config;
+  FakeDriver driver;
+  FakeChannel channel;
+  LoopMeter meter;
+  std::uint64_t scene_sample = 100;
+  Exchange exchange;
+};
+
+TEST(Exchange, NumbersItsSamplesAndEchoesTheAnswerInUse) {
+  now_nsec = 1000;
+  Rig rig(false);
+
+  rig.period(true, 2.0);
+  rig.period(false);
+  rig.exchange.send_sample();
+
+  ASSERT_EQ(rig.channel.sent.size(), 3u);
+  const GestureMessage& first = rig.channel.sent[0];
+  EXPECT_EQ(first.run, kRun);
+  EXPECT_EQ(first.sample, 1u);
+  EXPECT_EQ(first.answered_run, 0u);
+  EXPECT_EQ(first.answered_sample, 0u);
+  EXPECT_EQ(first.time_nsec, 1000);
+  EXPECT_EQ(first.axis_count, 2u);
+  EXPECT_EQ(first.value[0], 0.0);
+  const GestureMessage& third = rig.channel.sent[2];
+  EXPECT_EQ(third.sample, 3u);
+  EXPECT_EQ(third.answered_run, kSceneRun);
+  EXPECT_EQ(third.answered_sample, 101u);
+  EXPECT_EQ(third.answered_time_nsec, 1000);
+  EXPECT_EQ(third.value[0], -0.002);
+}
+
+TEST(Exchange, GoesOnWithTheNumbersOfItsProcess) {
+  Rig rig(false, Role::kLiaison, {kRun, 41});
+
+  rig.exchange.send_sample();
+
+  EXPECT_EQ(rig.driver.started_as, Role::kLiaison);
+  EXPECT_EQ(rig.channel.sent.back().sample, 42u);
+  EXPECT_EQ(rig.exchange.last_sample(), 42u);
+}
+
+TEST(Exchange, HandsTheNewestAnswerToTheMotorThroughTheGuard) {
+  Rig rig(false);
+
+  EXPECT_EQ(rig.period(true, 3.0), 3.0);
+  EXPECT_EQ(rig.period(true, 100.0), 8.0);  // 5 N per period at 5000 N/s
+  EXPECT_EQ(rig.period(true, 100.0), 13.0);
+  EXPECT_EQ(rig.period(true, 100.0), 18.0);
+  EXPECT_EQ(rig.period(true, 100.0), 20.0);  // the limit
+  EXPECT_EQ(rig.period(true, NAN), 15.0);    // on its way to zero
+  EXPECT_EQ(rig.meter.dropped(), 1u);
+}
+
+TEST(Exchange, CarriesToPositionsInRoleLiaison) {
+  Rig rig(false, Role::kLiaison);
+
+  EXPECT_EQ(rig.period(true, -0.001), -0.001);
+  EXPECT_NEAR(rig.period(true, -0.04), -0.003, 1e-15);  // 2 m/s
+}
+
+TEST(Exchange, ForceIsZeroOnceItsSampleIsAsOldAsTheWatchdog) {
+  Rig rig(false);
+  rig.period(true, 10.0);
+  rig.period(true, 10.0);
+  ASSERT_EQ(rig.period(true, 10.0), 10.0);
+  ASSERT_EQ(rig.meter.phase(), Phase::kRunning);
+
+  for (int n = 2; n <= 19; ++n) {
+    rig.period(false);
+    ASSERT_EQ(rig.meter.phase(), Phase::kRunning) << n;
+  }
+  EXPECT_EQ(rig.period(false), 0.0);  // 20 ms after the sample that was answered last
+  EXPECT_EQ(rig.meter.phase(), Phase::kLost);
+
+  EXPECT_GT(rig.period(true, 10.0), 0.0);
+  EXPECT_EQ(rig.meter.phase(), Phase::kRunning);
+}
+
+TEST(Exchange, ASceneThatTalksButDoesNotListenIsSilent) {
+  Rig rig(false);
+  rig.period(true, 4.0);
+  const GestureMessage old = rig.answer(4.0);
+
+  for (int n = 0; n < 25; ++n) {
+    GestureMessage again = old;
+    again.sample += static_cast<std::uint64_t>(n + 1);
+    rig.channel.waiting.push_back(again);
+    rig.period(false);
+  }
+
+  EXPECT_EQ(rig.driver.commands.back()[0], 0.0);
+  EXPECT_EQ(rig.meter.phase(), Phase::kLost);
+}
+
+TEST(Exchange, WaitsInPhaseWaitingForTheFirstAnswer) {
+  Rig rig(false);
+
+  for (int n = 0; n < 100; ++n) rig.period(false);
+
+  EXPECT_EQ(rig.meter.phase(), Phase::kWaiting);
+  EXPECT_EQ(rig.driver.commands.back(), AxisValues{});
+}
+
+TEST(Exchange, DropsWhatIsNotAnAnswerToIt) {
+  Rig rig(false);
+  rig.period(true, 1.0);
+  rig.period(true, 1.0);
+  const auto dropped_by = [&rig](auto change) {
+    GestureMessage message = rig.answer(9.0);
+    change(message);
+    const std::uint64_t before = rig.meter.dropped();
+    rig.channel.waiting.push_back(message);
+    rig.exchange.receive();
+    rig.exchange.live();
+    EXPECT_EQ(rig.driver.commands.back()[0], 1.0);
+    return rig.meter.dropped() - before;
+  };
+
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.axis_count = 0; }), 1u);
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.axis_count = 17; }), 1u);
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_run = kRun - 1; }), 1u);
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_sample += 1; }), 1u);
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_sample -= 1; }), 1u);
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_time_nsec = now_nsec + 1; }), 1u);
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.sample = 101; }), 1u);
+  // A scene that has not heard this device yet is no fault.
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_run = m.answered_sample = 0; }), 0u);
+}
+
+TEST(Exchange, DoesNotTakeAnswersToAnEarlierRole) {
+  Rig rig(false, Role::kMass, {kRun, 10});
+  rig.exchange.send_sample();
+  GestureMessage late = rig.answer(9.0);
+  late.answered_sample = 10;
+
+  rig.channel.waiting.push_back(late);
+  rig.exchange.receive();
+  rig.exchange.live();
+
+  EXPECT_EQ(rig.driver.commands.back(), AxisValues{});
+  EXPECT_EQ(rig.meter.dropped(), 1u);
+}
+
+TEST(Exchange, ANewRunOfTheSceneIsKnownByWhatItAnswers) {
+  for (const bool lockstep : {false, true}) {
+    Rig rig(lockstep);
+    rig.period(true, 1.0);
+    rig.exchange.send_sample();
+    GestureMessage fresh = rig.answer(2.0);
+    fresh.run = kSceneRun - 1;  // the number of a run says nothing about its age
+    fresh.sample = 1;
+
+    rig.channel.waiting.push_back(fresh);
+    rig.exchange.receive();
+    rig.exchange.live();
+
+    EXPECT_EQ(rig.driver.commands.back()[0], 2.0);
+    EXPECT_EQ(rig.meter.dropped(), 0u);
+  }
+}
+
+TEST(Exchange, MeasuresFromSendingToTakingTheAnswer) {
+  now_nsec = 0;
+  Rig rig(false);
+  for (int n = 0; n < 10; ++n) rig.period(true, 1.0);
+  rig.channel.waiting.push_back(rig.answer(1.0));  // a second answer to the same sample: no news
+  rig.exchange.receive();
+
+  rig.meter.publish_latency();
+  msg::NodeStatus status;
+  rig.meter.fill(status);
+
+  EXPECT_EQ(status.latency_count(), 10u);
+  EXPECT_NEAR(status.latency_p50_s(), 1e-3, 0.04e-3);  // bins of 3 %
+  EXPECT_DOUBLE_EQ(status.latency_max_s(), 1e-3);
+}
+
+TEST(Exchange, InLockstepTakesTheAnswerToItsOwnSampleAlone) {
+  Rig rig(true);
+  rig.exchange.send_sample();
+  const GestureMessage first = rig.answer(1.0);
+  rig.channel.waiting.push_back(first);
+  ASSERT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
+  rig.exchange.live();
+  rig.exchange.send_sample();
+
+  rig.channel.waiting.push_back(first);
+  EXPECT_FALSE(rig.exchange.await_answer(nanoseconds(1)));
+
+  rig.channel.waiting.push_back(first);
+  rig.channel.waiting.push_back(rig.answer(2.0));
+  EXPECT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
+  rig.exchange.live();
+  EXPECT_EQ(rig.driver.commands.back()[0], 2.0);
+  EXPECT_EQ(rig.meter.dropped(), 2u);
+}
+
+TEST(Exchange, InLockstepRepeatsTheVerySameSample) {
+  Rig rig(true);
+  rig.exchange.send_sample();
+  now_nsec += 100 * kPeriod;
+
+  rig.exchange.repeat_sample();
+
+  ASSERT_EQ(rig.channel.sent.size(), 2u);
+  EXPECT_EQ(rig.channel.sent[1].sample, rig.channel.sent[0].sample);
+  EXPECT_EQ(rig.channel.sent[1].time_nsec, rig.channel.sent[0].time_nsec);
+  EXPECT_EQ(rig.channel.sent[1].value, rig.channel.sent[0].value);
+}
+
+TEST(Exchange, InLockstepDoesNotDependOnTheClock) {
+  const auto commands_when_a_period_takes = [](std::int64_t nsec) {
+    now_nsec = 0;
+    Rig rig(true);
+    for (int n = 0; n < 50; ++n) {
+      rig.exchange.send_sample();
+      now_nsec += nsec;
+      rig.channel.waiting.push_back(rig.answer(std::sin(0.3 * n) * 30.0));
+      EXPECT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
+      rig.exchange.live();
+    }
+    return rig.driver.commands;
+  };
+
+  EXPECT_EQ(commands_when_a_period_takes(1), commands_when_a_period_takes(3'000'000'000));
+}
+
+TEST(Exchange, IsLostWhileItsDriverHasNoDevice) {
+  Rig rig(false);
+  rig.period(true, 15.0);
+  rig.period(true, 15.0);
+  rig.driver.present = false;
+
+  rig.period(true, 15.0);
+  EXPECT_EQ(rig.meter.phase(), Phase::kLost);
+
+  rig.driver.present = true;
+  EXPECT_EQ(rig.period(true, 15.0), 5.0);  // from zero again
+  EXPECT_EQ(rig.meter.phase(), Phase::kRunning);
+}
+
+TEST(Exchange, StopsItsDriverAtTheEnd) {
+  const DeviceConfig config = config_of_two_axes();
+  FakeDriver driver;
+  FakeChannel channel;
+  LoopMeter meter;
+  {
+    const Exchange exchange(config, Role::kMass, {kRun, 0}, false, driver, channel, meter, &now);
+    EXPECT_FALSE(driver.stopped);
+  }
+  EXPECT_TRUE(driver.stopped);
+}
+
+TEST(Exchange, CountsSamplesThatCouldNotBeSent) {
+  Rig rig(true);
+  rig.channel.works = false;
+
+  rig.exchange.send_sample();
+  rig.exchange.repeat_sample();
+
+  EXPECT_EQ(rig.meter.dropped(), 2u);
+}
+
+}  // namespace
+}  // namespace cordis::device

@@ -1,0 +1,59 @@
+#include "device_node/loop_meter.h"
+
+#include <gtest/gtest.h>
+
+namespace cordis::device {
+namespace {
+
+msg::NodeStatus status_of(const LoopMeter& meter) {
+  msg::NodeStatus status;
+  meter.fill(status);
+  return status;
+}
+
+TEST(LoopMeter, TellsWhatWasCounted) {
+  LoopMeter meter;
+  for (int n = 0; n < 5; ++n) meter.count_tick();
+  meter.count_dropped();
+  meter.count_dropped();
+  meter.add_overruns(3);
+
+  const msg::NodeStatus status = status_of(meter);
+
+  EXPECT_EQ(status.ticks(), 5u);
+  EXPECT_EQ(status.dropped(), 2u);
+  EXPECT_EQ(status.overruns(), 3u);
+}
+
+TEST(LoopMeter, TellsItsPhase) {
+  LoopMeter meter;
+  EXPECT_EQ(status_of(meter).phase(), "waiting");
+  meter.set_phase(Phase::kRunning);
+  EXPECT_EQ(status_of(meter).phase(), "running");
+  EXPECT_EQ(status_of(meter).text(), "");
+  meter.set_phase(Phase::kLost);
+  EXPECT_EQ(status_of(meter).phase(), "lost");
+  EXPECT_NE(status_of(meter).text(), "");
+  meter.set_phase(Phase::kStopped);
+  EXPECT_EQ(status_of(meter).phase(), "stopped");
+  meter.set_phase(Phase::kFailed);
+  EXPECT_EQ(status_of(meter).phase(), "failed");
+}
+
+TEST(LoopMeter, ShowsLatenciesEvery256Ticks) {
+  LoopMeter meter;
+  for (int n = 0; n < 99; ++n) meter.record_latency(100'000);
+  meter.record_latency(5'000'000);
+
+  EXPECT_EQ(status_of(meter).latency_count(), 0u);
+  for (int n = 0; n < 256; ++n) meter.count_tick();
+  const msg::NodeStatus status = status_of(meter);
+
+  EXPECT_EQ(status.latency_count(), 100u);
+  EXPECT_NEAR(status.latency_p50_s(), 100e-6, 4e-6);  // bins are 3 % wide
+  EXPECT_NEAR(status.latency_p99_s(), 100e-6, 4e-6);
+  EXPECT_DOUBLE_EQ(status.latency_max_s(), 5e-3);
+}
+
+}  // namespace
+}  // namespace cordis::device
