@@ -1,0 +1,28 @@
+// Bundles the page into the folder given: node build_page.mjs OUT_FOLDER
+import { build } from 'esbuild';
+import { copyFile, mkdir } from 'node:fs/promises';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const sources = join(dirname(fileURLToPath(import.meta.url)), 'page');
+const out = process.argv[2];
+if (!out) {
+  console.error('usage: node build_page.mjs OUT_FOLDER');
+  process.exit(2);
+}
+
+await mkdir(out, { recursive: true });
+await build({
+  entryPoints: [
+    { in: join(sources, 'main.ts'), out: 'page' },
+    { in: join(sources, 'page.css'), out: 'page' },
+  ],
+  outdir: out,
+  bundle: true,
+  minify: true,
+  format: 'esm',
+  target: 'es2022',
+  legalComments: 'inline',
+  logLevel: 'warning',
+});
+await copyFile(join(sources, 'index.html'), join(out, 'index.html'));

@@ -1,0 +1,160 @@
+// The eye: orbit, pan and zoom by mouse, presets and fit by key; orthographic for flat scenes.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+export type Preset = 'front' | 'side' | 'top' | 'free';
+
+const DIRECTIONS: Record<Preset, THREE.Vector3> = {
+  front: new THREE.Vector3(0, 0, 1),
+  side: new THREE.Vector3(1, 0, 0),
+  top: new THREE.Vector3(0, 1, 1e-4), // not quite along the up axis, which would leave the view undetermined
+  free: new THREE.Vector3(0.75, 0.6, 1).normalize(),
+};
+
+const FIELD_OF_VIEW = 40; // [degrees], vertical
+const ROOM = 1.12; // of a fitted scene, all around
+
+export class CameraRig {
+  orthographic: boolean;
+  private readonly first: Preset;
+  private readonly perspectiveCamera = new THREE.PerspectiveCamera(FIELD_OF_VIEW);
+  private readonly flatCamera = new THREE.OrthographicCamera();
+  private readonly controls: OrbitControls;
+  private width = 1;
+  private height = 1;
+  private home = new THREE.Box3();
+
+  constructor(
+    element: HTMLElement,
+    space: number,
+    private readonly changed: () => void,
+  ) {
+    this.orthographic = space < 3;
+    this.first = space < 3 ? 'front' : 'free';
+    this.flatCamera.position.set(0, 0, 1);
+    this.perspectiveCamera.position.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, element);
+    this.controls.zoomToCursor = true;
+    if (space < 3) {
+      // A flat scene is moved rather than turned.
+      this.controls.mouseButtons = { LEFT: THREE.MOUSE.PAN, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.ROTATE };
+    }
+    this.controls.addEventListener('change', changed);
+  }
+
+  get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
+    return this.orthographic ? this.flatCamera : this.perspectiveCamera;
+  }
+
+  get target(): THREE.Vector3 {
+    return this.controls.target;
+  }
+
+  /** The preset that the eye looks along now; 'free' when it is none. */
+  get preset(): Preset {
+    const direction = this.camera.position.clone().sub(this.target).normalize();
+    const presets = Object.keys(DIRECTIONS) as Preset[];
+    return presets.find((name) => DIRECTIONS[name].angleTo(direction) < 1e-3) ?? 'free';
+  }
+
+  /** Length of one CSS pixel at the target [m]. */
+  get metresPerPixel(): number {
+    if (this.orthographic) return (this.flatCamera.top - this.flatCamera.bottom) / this.flatCamera.zoom / this.height;
+    const distance = this.camera.position.distanceTo(this.target);
+    return (2 * distance * Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2))) / this.height;
+  }
+
+  start(box: THREE.Box3): void {
+    this.look(this.first, box);
+  }
+
+  fit(box: THREE.Box3): void {
+    const direction = this.camera.position.clone().sub(this.target).normalize();
+    this.place(direction, box);
+  }
+
+  look(preset: Preset, box: THREE.Box3 = this.home): void {
+    this.place(DIRECTIONS[preset], box);
+  }
+
+  toggleProjection(): void {
+    const direction = this.camera.position.clone().sub(this.target);
+    const scale = this.metresPerPixel;
+    this.orthographic = !this.orthographic;
+    this.controls.object = this.camera;
+    if (this.orthographic) {
+      this.camera.position.copy(this.target).add(direction);
+      this.setFlatScale(scale);
+    } else {
+      const distance = (scale * this.height) / (2 * Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2)));
+      this.camera.position.copy(this.target).addScaledVector(direction.normalize(), distance);
+    }
+    this.setDepth();
+    this.changed();
+  }
+
+  resize(width: number, height: number): void {
+    const scale = this.metresPerPixel;
+    this.width = Math.max(1, width);
+    this.height = Math.max(1, height);
+    this.perspectiveCamera.aspect = this.width / this.height;
+    this.perspectiveCamera.updateProjectionMatrix();
+    this.setFlatScale(Number.isFinite(scale) ? scale : 1);
+  }
+
+  update(): void {
+    this.controls.update();
+  }
+
+  dispose(): void {
+    this.controls.dispose();
+  }
+
+  /** Looks at the middle of `box` from `direction`, from so far that all of it is seen. */
+  private place(direction: THREE.Vector3, box: THREE.Box3): void {
+    const centre = box.getCenter(new THREE.Vector3());
+    const corners = box.getSize(new THREE.Vector3()).multiplyScalar(0.5);
+    const extent = Math.max(corners.length(), 1e-9);
+    const right = new THREE.Vector3().crossVectors(new THREE.Vector3(0, 1, 0), direction).normalize();
+    const up = new THREE.Vector3().crossVectors(direction, right).normalize();
+    const reach = (axis: THREE.Vector3) =>
+      Math.abs(axis.x) * corners.x + Math.abs(axis.y) * corners.y + Math.abs(axis.z) * corners.z;
+    const scale = Math.max(
+      (2 * ROOM * reach(right)) / this.width,
+      (2 * ROOM * reach(up)) / this.height,
+      (0.02 * extent) / this.width,
+    );
+    const half = Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2));
+    const distance = (scale * this.height) / (2 * half) + reach(direction);
+    this.target.copy(centre);
+    for (const camera of [this.flatCamera, this.perspectiveCamera]) {
+      camera.position.copy(centre).addScaledVector(direction, Math.max(distance, 2 * extent * 1e-3));
+      camera.lookAt(centre);
+    }
+    this.setFlatScale(scale);
+    this.home = box;
+    this.setDepth();
+    this.changed();
+  }
+
+  private setFlatScale(metresPerPixel: number): void {
+    const camera = this.flatCamera;
+    camera.zoom = 1;
+    camera.right = 0.5 * this.width * metresPerPixel;
+    camera.left = -camera.right;
+    camera.top = 0.5 * this.height * metresPerPixel;
+    camera.bottom = -camera.top;
+    camera.updateProjectionMatrix();
+  }
+
+  /** Near and far planes for a scene of this size, wherever the eye goes. */
+  private setDepth(): void {
+    const extent = Math.max(this.home.getSize(new THREE.Vector3()).length(), 1e-6);
+    this.perspectiveCamera.near = extent / 200;
+    this.perspectiveCamera.far = extent * 50;
+    this.flatCamera.near = -50 * extent;
+    this.flatCamera.far = 50 * extent;
+    this.perspectiveCamera.updateProjectionMatrix();
+    this.flatCamera.updateProjectionMatrix();
+  }
+}

@@ -1,0 +1,77 @@
+// The WebSocket to viz_node: opens again by itself, and acknowledges frames.
+import { decodeBinary, type Message } from './protocol.ts';
+
+const FIRST_PAUSE_MS = 250;
+const LONGEST_PAUSE_MS = 2000;
+// viz_node speaks four times a second, whatever the scene does.
+const SILENCE_MS = 4000;
+
+export interface Listener {
+  message(message: Message): void;
+  opened(): void;
+  closed(): void;
+  failed(error: unknown): void;
+}
+
+export class Connection {
+  private socket: WebSocket | null = null;
+  private pauseMs = FIRST_PAUSE_MS;
+  private watchdog = 0;
+
+  constructor(
+    private readonly url: string,
+    private readonly listener: Listener,
+  ) {
+    this.open();
+  }
+
+  get isOpen(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  /** Says that every frame up to `sequence` is done with, and whether that one was drawn while it was new. */
+  acknowledge(sequence: number, drawn: boolean): void {
+    if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'ack', sequence, drawn }));
+  }
+
+  private open(): void {
+    const socket = new WebSocket(this.url);
+    socket.binaryType = 'arraybuffer';
+    this.socket = socket;
+    socket.onopen = () => {
+      this.pauseMs = FIRST_PAUSE_MS;
+      this.listener.opened();
+    };
+    socket.onmessage = (event) => this.receive(socket, event.data as string | ArrayBuffer);
+    socket.onclose = () => this.reopen(socket);
+    this.watch(socket);
+  }
+
+  private receive(socket: WebSocket, data: string | ArrayBuffer): void {
+    if (socket !== this.socket) return;
+    this.watch(socket);
+    try {
+      this.listener.message(typeof data === 'string' ? (JSON.parse(data) as Message) : decodeBinary(data));
+    } catch (error) {
+      this.listener.failed(error);
+    }
+  }
+
+  /** A connection that falls silent (a laptop that slept, a tunnel that broke) is given up and opened anew. */
+  private watch(socket: WebSocket): void {
+    clearTimeout(this.watchdog);
+    this.watchdog = window.setTimeout(() => {
+      socket.close();
+      this.reopen(socket);
+    }, SILENCE_MS);
+  }
+
+  private reopen(socket: WebSocket): void {
+    if (socket !== this.socket) return;
+    this.socket = null;
+    clearTimeout(this.watchdog);
+    this.listener.closed();
+    window.setTimeout(() => this.open(), this.pauseMs);
+    this.pauseMs = Math.min(2 * this.pauseMs, LONGEST_PAUSE_MS);
+  }
+}

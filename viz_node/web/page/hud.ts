@@ -1,0 +1,196 @@
+// The figures that are always on screen, the state of every node, and the banner when something is amiss.
+import { count, duration, joined, NONE, plain, rate, withUnit } from './format.ts';
+import type { Description, LinkEvent, NodeState, Status } from './protocol.ts';
+
+// After this time without a frame the picture is called old, whatever the nodes say.
+const OLD_AFTER_S = 1.5;
+const GONE = ['lost', 'stopped', 'failed'];
+
+/** What the page itself measures. */
+export interface Measured {
+  connected: boolean;
+  held: boolean; // a person stopped the picture
+  simulatedS: number;
+  realTimeFactor: number;
+  lagS: number;
+  dropped: number;
+  sinceFrameS: number; // since the newest frame came
+}
+
+function element(id: string): HTMLElement {
+  const found = document.getElementById(id);
+  if (found === null) throw new Error(`the page has no element '${id}'`);
+  return found;
+}
+
+function set(id: string, text: string, level: 'good' | 'warn' | 'bad' | '' = ''): void {
+  const target = element(id);
+  if (target.textContent !== text) target.textContent = text;
+  target.dataset.level = level;
+}
+
+export class Hud {
+  private status: Status | null = null;
+  private description: Description | null = null;
+
+  setSession(session: string): void {
+    set('session', session);
+    document.title = `${session} · Cordis`;
+  }
+
+  setDescription(description: Description | null): void {
+    this.description = description;
+    if (description === null) return;
+    set('scene', `${description.name} · ${count(description.mat_count)} MATs`);
+    element('scene').title = `${description.scene_file}, ${count(description.link_count)} links`;
+  }
+
+  setStatus(status: Status): void {
+    this.status = status;
+    this.writeNodes(status.nodes);
+    this.writeEvents(status.events.total, status.events.lost, status.events.newest);
+  }
+
+  get nodes(): NodeState[] {
+    return this.status?.nodes ?? [];
+  }
+
+  /** Writes all figures anew; a few times a second. */
+  refresh(measured: Measured): void {
+    const sim = this.alive('sim_node');
+    this.writeLoop(sim);
+    this.writeForceLoop();
+    this.writeEnergy(sim);
+    const fresh = measured.sinceFrameS < OLD_AFTER_S;
+    set('time', Number.isFinite(measured.simulatedS) ? measured.simulatedS.toFixed(2) : NONE);
+    set('time-more', Number.isFinite(measured.simulatedS) ? 's' : '');
+    const factor = fresh && sim !== undefined ? measured.realTimeFactor : Number.NaN;
+    set('factor', Number.isFinite(factor) ? `×${factor.toFixed(2)}` : NONE, factor < 0.98 ? 'warn' : '');
+    const lag = fresh ? measured.lagS : measured.sinceFrameS;
+    set('lag', Number.isFinite(lag) ? (1000 * lag).toFixed(0) : NONE, lag > 0.5 ? 'bad' : lag > 0.15 ? 'warn' : '');
+    set('dropped', count(measured.dropped), '');
+    const before = (this.status?.viz.lost ?? 0) + (this.status?.viz.refused ?? 0);
+    element('dropped').title = `frames not sent to this page because it was busy; ${count(before)} more never came to it or did not fit`;
+    this.writeBanner(measured);
+  }
+
+  private alive(kind: string): NodeState | undefined {
+    return this.nodes.find((node) => node.kind === kind && !GONE.includes(node.state));
+  }
+
+  private writeLoop(sim: NodeState | undefined): void {
+    set('loop', rate(sim?.reached_rate_hz));
+    if (sim === undefined) {
+      for (const id of ['loop-more', 'overruns', 'overruns-more']) set(id, id === 'overruns' ? NONE : '');
+      return;
+    }
+    const target = sim.target_rate_hz ?? 0;
+    const short = target > 0 && (sim.reached_rate_hz ?? 0) < 0.98 * target;
+    set('loop', rate(sim.reached_rate_hz), short ? 'warn' : '');
+    set('loop-more', target > 0 ? `/ ${plainRate(target)} Hz` : 'Hz, no target');
+    const share = sim.ticks > 0 ? sim.overruns / sim.ticks : 0;
+    set('overruns', count(sim.overruns), share > 0.001 ? 'warn' : '');
+    set('overruns-more', `${(100 * share).toFixed(3)} %`);
+  }
+
+  private writeForceLoop(): void {
+    const devices = this.nodes.filter((n) => n.kind === 'device_node' && !GONE.includes(n.state) && n.latency_count > 0);
+    // Of several devices the slowest is shown.
+    const worst = devices.sort((a, b) => (b.latency_p99_s ?? 0) - (a.latency_p99_s ?? 0))[0];
+    set('latency', worst ? joined(withUnit(worst.latency_p50_s, 's')) : NONE);
+    set('latency-p99', worst ? joined(withUnit(worst.latency_p99_s, 's')) : NONE);
+    set('latency-max', worst ? joined(withUnit(worst.latency_max_s, 's')) : NONE);
+    set('latency-device', worst ? `· ${worst.name}` : '');
+  }
+
+  private writeEnergy(sim: NodeState | undefined): void {
+    set('energy', joined(withUnit(sim?.energy_j, 'J')));
+    const drift = sim?.energy_drift;
+    set('energy-more', typeof drift === 'number' ? `drift ${plain(drift)}` : '');
+  }
+
+  private writeNodes(nodes: NodeState[]): void {
+    const order = ['sim_node', 'device_node', 'viz_node', 'record_node'];
+    const sorted = [...nodes].sort((a, b) => order.indexOf(a.kind) - order.indexOf(b.kind) || a.name.localeCompare(b.name));
+    element('nodes').replaceChildren(...sorted.map(rowOf));
+  }
+
+  private writeEvents(total: number, lost: number, newest: LinkEvent[]): void {
+    element('events').hidden = total === 0;
+    if (total === 0) return;
+    set('events-total', `${count(total)}${lost > 0 ? `, ${count(lost)} lost` : ''}`);
+    const period = 1 / (this.description?.step_rate_hz ?? 1);
+    const lines = [...newest].reverse().map((event) => {
+      const line = document.createElement('li');
+      line.textContent = `${(event.step * period).toFixed(3)} s  ${this.linkName(event.link)}  state ${event.from} → ${event.to}`;
+      return line;
+    });
+    element('events-list').replaceChildren(...lines);
+  }
+
+  private linkName(link: number): string {
+    const range = this.description?.links.find((r) => link >= r.first && link < r.first + r.count);
+    return range ? `${range.name}[${link - range.first}]` : `link ${link}`;
+  }
+
+  private writeBanner(measured: Measured): void {
+    const [title, text, level] = this.alarm(measured);
+    element('banner').hidden = title === '';
+    element('stage').classList.toggle('stale', level === 'bad');
+    set('banner-title', title);
+    set('banner-text', text);
+    element('banner').dataset.level = level;
+  }
+
+  /** The one thing that a person should know first: [title, what it means, level]. */
+  private alarm(measured: Measured): [string, string, 'bad' | 'warn' | ''] {
+    if (!measured.connected) return ['viz_node does not answer', 'The session may be running all the same. Trying again …', 'bad'];
+    const sims = this.nodes.filter((node) => node.kind === 'sim_node');
+    if (!sims.some((node) => !GONE.includes(node.state))) {
+      const last = sims.sort((a, b) => a.heard_s - b.heard_s)[0];
+      return ['waiting for sim_node', last ? fate(last) : 'No simulation has been heard in this session yet.', 'bad'];
+    }
+    if (this.description === null) return ['waiting for the scene', 'sim_node has not described its scene yet.', 'warn'];
+    if (!(measured.sinceFrameS < OLD_AFTER_S)) {
+      const since = Number.isFinite(measured.sinceFrameS) ? `for ${duration(measured.sinceFrameS)}` : 'yet';
+      return ['no frames', `sim_node is there, but no frame has come ${since}.`, 'bad'];
+    }
+    const amiss = this.nodes.filter((node) => node.state === 'lost' || node.state === 'failed');
+    if (amiss.length > 0) {
+      const device = amiss.some((node) => node.kind === 'device_node');
+      return [amiss.map((n) => `${n.name} is ${n.state}`).join(', '), amiss.map(fate).join(' ') + (device ? ' Its forces are zero meanwhile.' : ''), 'warn'];
+    }
+    if (measured.held) return ['picture held', 'The simulation goes on. Space lets the picture go on too.', 'warn'];
+    return ['', '', ''];
+  }
+}
+
+/** A target rate: without decimals when it has none. */
+function plainRate(value: number): string {
+  return Number.isInteger(value) ? String(value) : rate(value);
+}
+
+function fate(node: NodeState): string {
+  const since = `${duration(node.heard_s)} ago`;
+  const reason = node.text !== '' ? `: ${node.text}` : '';
+  if (node.state === 'lost') return `${node.name} was last heard ${since}.`;
+  return `${node.name} ${node.state} ${since}${reason}.`;
+}
+
+function rowOf(node: NodeState): HTMLElement {
+  const row = document.createElement('tr');
+  const cell = (text: string, kind = '') => {
+    const data = document.createElement('td');
+    data.textContent = text;
+    data.className = kind;
+    row.append(data);
+  };
+  row.dataset.state = node.state;
+  row.title = node.text;
+  cell(node.name, 'name');
+  cell(node.state, 'state');
+  cell(GONE.includes(node.state) ? NONE : rate(node.reached_rate_hz) + ' Hz');
+  cell(node.dropped > 0 ? `${count(node.dropped)} lost` : '');
+  cell(joined(withUnit(node.memory_bytes, 'B')));
+  return row;
+}

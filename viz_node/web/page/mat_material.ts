@@ -1,0 +1,187 @@
+// The matter: one vertex per MAT, drawn as a sphere by intersecting it with the ray of each pixel.
+import * as THREE from 'three';
+import { KIND_FIXED } from './protocol.ts';
+
+const SHOWN_FIXED_POINT = 3;
+
+const SPEED_COLOUR = /* glsl */ `
+  // Dark blue, teal, yellow: readable for colour-blind eyes, and on a projector.
+  vec3 speed_colour(float s) {
+    s = clamp(s, 0.0, 1.0);
+    vec3 slow = vec3(0.20, 0.32, 0.62);
+    vec3 middle = vec3(0.13, 0.66, 0.62);
+    vec3 fast = vec3(0.99, 0.88, 0.30);
+    return s < 0.5 ? mix(slow, middle, 2.0 * s) : mix(middle, fast, 2.0 * s - 1.0);
+  }
+`;
+
+const MAT_VERTEX = /* glsl */ `
+  precision highp float;
+  in vec3 position;   // [m]
+  in vec3 previous;   // one frame before [m]
+  in float radius;    // [m]
+  in float kind;      // 0 mass, 1 fixed ball, 2 port, 3 fixed point
+  uniform mat4 modelViewMatrix;
+  uniform mat4 projectionMatrix;
+  uniform float pixels_per_unit;   // of the plane at clip w = 1
+  uniform vec4 least_pixels;       // smallest radius on the screen, by kind
+  uniform float speed_scale;       // 1 / full scale, per metre moved; 0: colour by kind
+  out vec3 centre;
+  out float size;
+  out vec3 colour;
+  flat out int shape;
+  ${SPEED_COLOUR}
+
+  void main() {
+    int k = int(kind + 0.5);
+    vec4 eye = modelViewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * eye;
+    float pixels = pixels_per_unit / gl_Position.w;
+    size = max(radius, least_pixels[k] / pixels);
+    // A square where a punctual MAT is fixed; a sphere with a halo where a hand is.
+    shape = k == 3 ? 1 : (k == 2 ? 2 : 0);
+    centre = eye.xyz;
+    gl_PointSize = 2.0 * size * pixels * (shape == 2 ? 1.9 : 1.0) * MARGIN;
+    colour = k == 0 ? vec3(0.42, 0.72, 0.98) : (k == 2 ? vec3(1.0, 0.68, 0.26) : vec3(0.60, 0.65, 0.72));
+  #ifndef SPHERES
+    // Without shading neighbours would run together: each gets a brightness of its own.
+    colour *= 0.7 + 0.3 * float((gl_VertexID * 40503) & 255) / 255.0;
+  #endif
+    // The halo of a port is seen through everything.
+    if (shape == 2) gl_Position.z = -0.999 * gl_Position.w;
+    if (speed_scale > 0.0 && k == 0) colour = speed_colour(length(position - previous) * speed_scale);
+  }
+`;
+
+const MAT_FRAGMENT = /* glsl */ `
+  precision highp float;
+  in vec3 centre;
+  in float size;
+  in vec3 colour;
+  flat in int shape;
+  uniform mat4 projectionMatrix;
+  uniform bool orthographic;
+  out vec4 pixel;
+
+  // Lit from above the left shoulder, a little from below.
+  vec3 lit(vec3 normal) {
+    float key = max(dot(normal, normalize(vec3(-0.45, 0.75, 0.6))), 0.0);
+    float fill = 0.5 + 0.5 * normal.y;
+    float shine = pow(max(dot(normal, normalize(vec3(-0.3, 0.5, 0.9))), 0.0), 32.0);
+    return colour * (0.38 + 0.18 * fill + 0.52 * key) + vec3(0.22 * shine);
+  }
+
+  void main() {
+    vec2 at = (gl_PointCoord * 2.0 - 1.0) * vec2(1.0, -1.0) * MARGIN;
+    if (shape == 1) {
+      float edge = max(abs(at.x), abs(at.y));
+      if (edge > 1.0) discard;
+      pixel = vec4(edge > 0.62 ? colour : colour * 0.35, 1.0);
+    #ifdef SPHERES
+      gl_FragDepth = gl_FragCoord.z;
+    #endif
+      return;
+    }
+    if (shape == 2) {
+      at *= 1.9;
+      float away = length(at);
+      if (away > 1.9) discard;
+      if (away > 1.0) {
+        if (away < 1.5) discard;
+        pixel = vec4(colour, 1.0);
+    #ifdef SPHERES
+        gl_FragDepth = gl_FragCoord.z;
+    #endif
+        return;
+      }
+    }
+    #ifdef SPHERES
+      // From the eye through the pixel to the sphere; its distance from the axis of the ray by subtraction of vectors,
+      // which stays exact for small spheres far away.
+      vec3 on_plane = centre + vec3(at * size, 0.0);
+      vec3 along = orthographic ? vec3(0.0, 0.0, -1.0) : normalize(on_plane);
+      vec3 from = orthographic ? vec3(on_plane.xy, 0.0) : vec3(0.0);
+      float reach = dot(centre - from, along);
+      vec3 aside = from + along * reach - centre;
+      float inside = size * size - dot(aside, aside);
+      if (inside < 0.0) discard;
+      vec3 hit = from + along * (reach - sqrt(inside));
+      pixel = vec4(lit((hit - centre) / size), 1.0);
+      vec4 clip = projectionMatrix * vec4(hit, 1.0);
+      gl_FragDepth = 0.5 * clip.z / clip.w + 0.5;
+    #else
+      pixel = vec4(colour, 1.0);
+    #endif
+  }
+`;
+
+const LINK_VERTEX = /* glsl */ `
+  precision highp float;
+  in vec3 position;
+  in vec3 previous;
+  uniform mat4 modelViewMatrix;
+  uniform mat4 projectionMatrix;
+  uniform float speed_scale;
+  uniform vec3 link_colour;
+  out vec3 colour;
+  ${SPEED_COLOUR}
+
+  void main() {
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    colour = speed_scale > 0.0 ? 0.8 * speed_colour(length(position - previous) * speed_scale) : link_colour;
+  }
+`;
+
+const LINK_FRAGMENT = /* glsl */ `
+  precision mediump float;
+  in vec3 colour;
+  out vec4 pixel;
+  void main() { pixel = vec4(colour, 1.0); }
+`;
+
+/** Uniforms that both materials share. */
+export interface SceneUniforms {
+  [name: string]: THREE.IUniform;
+  pixels_per_unit: { value: number };
+  least_pixels: { value: THREE.Vector4 };
+  speed_scale: { value: number };
+  orthographic: { value: boolean };
+  link_colour: { value: THREE.Color };
+}
+
+export function sceneUniforms(): SceneUniforms {
+  return {
+    pixels_per_unit: { value: 1 },
+    least_pixels: { value: new THREE.Vector4(3, 3, 6, 5) },
+    speed_scale: { value: 0 },
+    orthographic: { value: false },
+    link_colour: { value: new THREE.Color(0.4, 0.53, 0.67) },
+  };
+}
+
+/** Kinds as the shader tells them apart: a fixed point without a radius is no ball. */
+export function shownKinds(kinds: Uint8Array, radii: Float32Array): Uint8Array {
+  return kinds.map((kind, i) => (kind === KIND_FIXED && radii[i] === 0 ? SHOWN_FIXED_POINT : kind));
+}
+
+export function matMaterial(uniforms: SceneUniforms, spheres: boolean): THREE.RawShaderMaterial {
+  // In perspective the outline of a sphere is a little larger than its radius.
+  const defines: Record<string, string> = { MARGIN: spheres ? '1.08' : '1.0' };
+  if (spheres) defines.SPHERES = '1';
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    uniforms,
+    defines,
+    vertexShader: MAT_VERTEX,
+    fragmentShader: MAT_FRAGMENT,
+  });
+}
+
+export function linkMaterial(uniforms: SceneUniforms): THREE.RawShaderMaterial {
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    uniforms,
+    vertexShader: LINK_VERTEX,
+    fragmentShader: LINK_FRAGMENT,
+  });
+}

@@ -1,0 +1,210 @@
+// Messages between viz_node and the page; ../README.md says what each field is.
+
+export const MAGIC = 0x31534443; // the bytes "CDS1"
+export const VERSION = 1;
+
+const TYPE_FRAME = 1;
+const TYPE_SIGNALS = 2;
+const TYPE_TOPOLOGY = 3;
+
+export interface Frame {
+  type: 'frame';
+  sequence: number;
+  scene: number;
+  frame: number;
+  step: number;
+  takenNsec: number;
+  sentNsec: number;
+  simulatedS: number;
+  matCount: number;
+  dropped: number;
+  positions: Float32Array<ArrayBuffer>; // x, y, z of each MAT [m]
+  linkStates: Uint8Array<ArrayBuffer>; // per link, or empty
+}
+
+export interface Signals {
+  type: 'signals';
+  scene: number;
+  signalCount: number;
+  rowCount: number;
+  droppedRows: number;
+  firstStep: number;
+  firstS: number;
+  rowPeriodS: number;
+  values: Float32Array<ArrayBuffer>; // row after row
+}
+
+export interface Topology {
+  type: 'topology';
+  scene: number;
+  matCount: number;
+  linkCount: number;
+  radii: Float32Array<ArrayBuffer>; // [m]
+  linkEnds: Uint32Array<ArrayBuffer>; // two per link
+  kinds: Uint8Array<ArrayBuffer>; // KIND_*
+}
+
+export const KIND_MASS = 0;
+export const KIND_FIXED = 1;
+export const KIND_PORT = 2;
+
+export interface NamedRange {
+  name: string;
+  first: number;
+  count: number;
+}
+
+export interface Port {
+  name: string;
+  device: string;
+  role: 'mass' | 'liaison';
+  mat: number;
+  axes: number[];
+}
+
+export interface Hello {
+  type: 'hello';
+  protocol: number;
+  session: string;
+  node: string;
+}
+
+export interface Description {
+  type: 'description';
+  scene: number;
+  run: string;
+  version: number;
+  name: string;
+  scene_file: string;
+  space: 1 | 2 | 3;
+  step_rate_hz: number;
+  gesture_rate_hz: number;
+  frame_rate_hz: number;
+  mat_count: number;
+  link_count: number;
+  matter: NamedRange[];
+  links: NamedRange[];
+  ports: Port[];
+  signals: { name: string; unit: string }[];
+}
+
+/** A number that was not finite in the node comes as null. */
+type Figure = number | null;
+
+export interface NodeState {
+  name: string;
+  kind: string;
+  run: string;
+  state: string; // starting, waiting, running, lost, stopped, failed
+  text: string;
+  heard_s: number;
+  target_rate_hz: Figure;
+  reached_rate_hz: Figure;
+  mean_rate_hz: Figure;
+  ticks: number;
+  overruns: number;
+  dropped: number;
+  latency_count: number;
+  latency_p50_s: Figure;
+  latency_p99_s: Figure;
+  latency_max_s: Figure;
+  energy_j: Figure;
+  energy_drift: Figure;
+  step: number;
+  memory_bytes: Figure;
+}
+
+export interface LinkEvent {
+  step: number;
+  link: number;
+  from: number;
+  to: number;
+  energy_j: Figure;
+}
+
+export interface Status {
+  type: 'status';
+  scene: number;
+  sent_nsec: number;
+  nodes: NodeState[];
+  events: { total: number; lost: number; newest: LinkEvent[] };
+  viz: { frames: number; refused: number; lost: number };
+}
+
+export type Message = Frame | Signals | Topology | Hello | Description | Status;
+
+/** Reads a binary message. Throws an Error when it is none of this protocol, or shorter than it says. */
+export function decodeBinary(buffer: ArrayBuffer): Frame | Signals | Topology {
+  const view = new DataView(buffer);
+  if (buffer.byteLength < 8 || view.getUint32(0, true) !== MAGIC) throw new Error('not a message of viz_node');
+  if (view.getUint8(4) !== VERSION) throw new Error(`protocol version ${view.getUint8(4)}: reload the page`);
+  const header = view.getUint16(6, true);
+  switch (view.getUint8(5)) {
+    case TYPE_FRAME:
+      return decodeFrame(view, header);
+    case TYPE_SIGNALS:
+      return decodeSignals(view, header);
+    case TYPE_TOPOLOGY:
+      return decodeTopology(view, header);
+    default:
+      throw new Error(`unknown message type ${view.getUint8(5)}`);
+  }
+}
+
+const u64 = (view: DataView, at: number) => Number(view.getBigUint64(at, true));
+
+function checkLength(view: DataView, expected: number): void {
+  if (view.byteLength !== expected) throw new Error(`message of ${view.byteLength} bytes, expected ${expected}`);
+}
+
+function decodeFrame(view: DataView<ArrayBuffer>, header: number): Frame {
+  const matCount = view.getUint32(56, true);
+  const linkStates = view.getUint32(60, true);
+  checkLength(view, header + 12 * matCount + linkStates);
+  return {
+    type: 'frame',
+    sequence: view.getUint32(8, true),
+    scene: view.getUint32(12, true),
+    frame: u64(view, 16),
+    step: u64(view, 24),
+    takenNsec: u64(view, 32),
+    sentNsec: u64(view, 40),
+    simulatedS: view.getFloat64(48, true),
+    matCount,
+    dropped: view.getUint32(64, true),
+    positions: new Float32Array(view.buffer, header, 3 * matCount),
+    linkStates: new Uint8Array(view.buffer, header + 12 * matCount, linkStates),
+  };
+}
+
+function decodeSignals(view: DataView<ArrayBuffer>, header: number): Signals {
+  const signalCount = view.getUint32(12, true);
+  const rowCount = view.getUint32(16, true);
+  checkLength(view, header + 4 * signalCount * rowCount);
+  return {
+    type: 'signals',
+    scene: view.getUint32(8, true),
+    signalCount,
+    rowCount,
+    droppedRows: view.getUint32(20, true),
+    firstStep: u64(view, 24),
+    firstS: view.getFloat64(32, true),
+    rowPeriodS: view.getFloat64(40, true),
+    values: new Float32Array(view.buffer, header, signalCount * rowCount),
+  };
+}
+
+function decodeTopology(view: DataView<ArrayBuffer>, header: number): Topology {
+  const matCount = view.getUint32(12, true);
+  const linkCount = view.getUint32(16, true);
+  checkLength(view, header + 5 * matCount + 8 * linkCount);
+  return {
+    type: 'topology',
+    scene: view.getUint32(8, true),
+    matCount,
+    linkCount,
+    radii: new Float32Array(view.buffer, header, matCount),
+    linkEnds: new Uint32Array(view.buffer, header + 4 * matCount, 2 * linkCount),
+    kinds: new Uint8Array(view.buffer, header + 4 * matCount + 8 * linkCount, matCount),
+  };
+}

@@ -1,0 +1,222 @@
+// The picture of the scene. Positions go from the message straight into a GPU buffer that matter and links share.
+import * as THREE from 'three';
+import { Ground } from './ground.ts';
+import { linkMaterial, matMaterial, sceneUniforms, shownKinds } from './mat_material.ts';
+import type { Frame, Topology } from './protocol.ts';
+import type { Quality } from './quality.ts';
+import { CameraRig } from './camera_rig.ts';
+
+THREE.ColorManagement.enabled = false; // colours are chosen as they are shown
+const BACKGROUND = 0x0d1117;
+// More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
+const SAMPLE = 4000;
+
+export class SceneView {
+  readonly rig: CameraRig;
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private readonly ground = new Ground();
+  private readonly uniforms = sceneUniforms();
+  private readonly geometry = new THREE.BufferGeometry();
+  private readonly linkGeometry = new THREE.BufferGeometry();
+  private newest: THREE.BufferAttribute;
+  private before: THREE.BufferAttribute;
+  private newestS = Number.NaN;
+  private shownForS = Number.NaN; // simulated time between the last two frames
+  private fastest = 0; // [m/s], falls slowly
+  private framed = false;
+  private speeds = false;
+
+  constructor(
+    private readonly container: HTMLElement,
+    private readonly topology: Topology,
+    private readonly space: number,
+    readonly quality: Quality,
+    private readonly changed: () => void,
+  ) {
+    this.renderer = new THREE.WebGLRenderer({ antialias: quality.antialias, powerPreference: 'high-performance' });
+    this.renderer.setPixelRatio(quality.pixelRatio);
+    this.renderer.setClearColor(BACKGROUND);
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+    container.prepend(this.renderer.domElement);
+    this.rig = new CameraRig(this.renderer.domElement, space, changed);
+
+    const coordinates = 3 * topology.matCount;
+    this.newest = new THREE.BufferAttribute(new Float32Array(coordinates), 3).setUsage(THREE.DynamicDrawUsage);
+    this.before = new THREE.BufferAttribute(new Float32Array(coordinates), 3).setUsage(THREE.DynamicDrawUsage);
+    this.buildMatter();
+    if (quality.links && topology.linkCount > 0) this.buildLinks();
+    this.scene.add(this.ground.group);
+    this.resize();
+  }
+
+  private buildMatter(): void {
+    this.geometry.setAttribute('radius', new THREE.BufferAttribute(this.topology.radii.slice(), 1));
+    this.geometry.setAttribute('kind', new THREE.BufferAttribute(shownKinds(this.topology.kinds, this.topology.radii), 1));
+    const few = this.topology.matCount <= 3000;
+    const least = this.uniforms.least_pixels.value.set(few ? 3.2 : 1.2, few ? 3.2 : 1.2, few ? 6 : 5, few ? 5 : 2);
+    least.multiplyScalar(this.quality.pixelRatio);
+    const points = new THREE.Points(this.geometry, matMaterial(this.uniforms, this.quality.spheres));
+    points.frustumCulled = false;
+    this.scene.add(points);
+  }
+
+  private buildLinks(): void {
+    this.linkGeometry.setIndex(new THREE.BufferAttribute(this.topology.linkEnds, 1));
+    const links = new THREE.LineSegments(this.linkGeometry, linkMaterial(this.uniforms));
+    links.frustumCulled = false;
+    this.scene.add(links);
+  }
+
+  /** Takes a frame; draw() shows it. */
+  show(frame: Frame): void {
+    const first = Number.isNaN(this.newestS);
+    [this.newest, this.before] = [this.before, this.newest];
+    this.newest.array = frame.positions;
+    this.newest.needsUpdate = true;
+    if (first) {
+      this.before.array = frame.positions.slice();
+      this.before.needsUpdate = true;
+      this.sizePoints();
+    }
+    for (const geometry of [this.geometry, this.linkGeometry]) {
+      geometry.setAttribute('position', this.newest);
+      geometry.setAttribute('previous', this.before);
+    }
+    this.shownForS = frame.simulatedS - this.newestS;
+    this.measureSpeed(this.shownForS);
+    this.newestS = frame.simulatedS;
+    if (!this.framed) {
+      this.framed = true;
+      this.rig.start(this.bounds());
+      this.ground.lay(this.bounds(), this.space);
+    }
+  }
+
+  draw(): void {
+    this.rig.update();
+    const camera = this.rig.camera;
+    const height = this.renderer.domElement.height;
+    this.uniforms.pixels_per_unit.value = 0.5 * height * camera.projectionMatrix.elements[5]!;
+    this.uniforms.orthographic.value = this.rig.orthographic;
+    this.renderer.render(this.scene, camera);
+  }
+
+  resize(): void {
+    const { clientWidth, clientHeight } = this.container;
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.rig.resize(clientWidth, clientHeight);
+    this.changed();
+  }
+
+  fit(): void {
+    this.rig.fit(this.bounds());
+  }
+
+  toggleGround(): void {
+    this.ground.group.visible = !this.ground.group.visible;
+    this.changed();
+  }
+
+  colourBySpeed(wanted: boolean): void {
+    this.speeds = wanted;
+    this.measureSpeed(this.shownForS);
+    this.changed();
+  }
+
+  get fastestSpeed(): number {
+    return this.fastest;
+  }
+
+  /** Where MAT `index` is on the page [CSS pixels]. */
+  project(index: number): { x: number; y: number } {
+    const at = new THREE.Vector3().fromArray(this.newest.array, 3 * index).project(this.rig.camera);
+    const box = this.renderer.domElement.getBoundingClientRect();
+    return { x: box.left + (0.5 + 0.5 * at.x) * box.width, y: box.top + (0.5 - 0.5 * at.y) * box.height };
+  }
+
+  /** Colour of one pixel of the picture as it is drawn now, 0..255; a place on the page [CSS pixels]. */
+  pixelAt(x: number, y: number): number[] {
+    this.draw();
+    const gl = this.renderer.getContext();
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const ratio = this.quality.pixelRatio;
+    const colour = new Uint8Array(4);
+    const row = Math.floor((box.bottom - y) * ratio);
+    gl.readPixels(Math.floor((x - box.left) * ratio), row, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, colour);
+    return [...colour.slice(0, 3)];
+  }
+
+  picture(): Promise<Blob | null> {
+    this.draw();
+    return new Promise((resolve) => this.renderer.domElement.toBlob(resolve));
+  }
+
+  dispose(): void {
+    this.rig.dispose();
+    this.geometry.dispose();
+    this.linkGeometry.dispose();
+    this.ground.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.renderer.domElement.remove();
+  }
+
+  private bounds(): THREE.Box3 {
+    const box = new THREE.Box3();
+    const at = new THREE.Vector3();
+    const stride = Math.max(1, Math.floor(this.topology.matCount / SAMPLE));
+    for (let i = 0; i < this.topology.matCount; i += stride) {
+      at.fromArray(this.newest.array, 3 * i);
+      box.expandByPoint(at);
+    }
+    return box;
+  }
+
+  /** Punctual MATs get a size to be seen: a share of the usual length of a link. */
+  private sizePoints(): void {
+    const { linkEnds, linkCount, radii } = this.topology;
+    const positions = this.newest.array;
+    const extent = this.bounds().getSize(new THREE.Vector3()).length() || 1;
+    const lengths: number[] = [];
+    const stride = Math.max(1, Math.floor(linkCount / SAMPLE));
+    for (let l = 0; l < linkCount; l += stride) {
+      const a = 3 * linkEnds[2 * l]!;
+      const b = 3 * linkEnds[2 * l + 1]!;
+      lengths.push(
+        Math.hypot(
+          positions[a]! - positions[b]!,
+          positions[a + 1]! - positions[b + 1]!,
+          positions[a + 2]! - positions[b + 2]!,
+        ),
+      );
+    }
+    lengths.sort((a, b) => a - b);
+    const usual = lengths[Math.floor(lengths.length / 2)] ?? extent / 100;
+    const shown = Math.min(Math.max(0.3 * usual, extent / 2000), extent / 80);
+    const sizes = this.geometry.getAttribute('radius') as THREE.BufferAttribute;
+    for (let i = 0; i < radii.length; ++i) sizes.array[i] = radii[i] || shown;
+    sizes.needsUpdate = true;
+  }
+
+  /** The full scale of the colours follows the fastest MAT, at once upwards and slowly down. */
+  private measureSpeed(elapsedS: number): void {
+    if (!this.speeds) {
+      this.uniforms.speed_scale.value = 0;
+      return;
+    }
+    if (!(elapsedS > 0)) return;
+    let longest = 0;
+    const stride = Math.max(1, Math.floor(this.topology.matCount / SAMPLE));
+    const now = this.newest.array;
+    const then = this.before.array;
+    for (let i = 0; i < this.topology.matCount; i += stride) {
+      const dx = now[3 * i]! - then[3 * i]!;
+      const dy = now[3 * i + 1]! - then[3 * i + 1]!;
+      const dz = now[3 * i + 2]! - then[3 * i + 2]!;
+      longest = Math.max(longest, dx * dx + dy * dy + dz * dz);
+    }
+    this.fastest = Math.max(Math.sqrt(longest) / elapsedS, 0.985 * this.fastest);
+    this.uniforms.speed_scale.value = this.fastest > 0 ? 1 / (this.fastest * elapsedS) : 1;
+  }
+}

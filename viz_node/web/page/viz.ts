@@ -1,0 +1,85 @@
+// window.viz: what the page knows, for tests and for the curious.
+import type { Page } from './main.ts';
+import type { NodeState } from './protocol.ts';
+
+export interface Viz {
+  readonly connected: boolean;
+  readonly framesReceived: number;
+  readonly framesDrawn: number;
+  readonly lastFrame: { sequence: number; frame: number; step: number; simulatedS: number; matCount: number } | null;
+  readonly lag_s: number;
+  readonly dropped: number;
+  readonly nodes: NodeState[];
+  readonly errors: string[];
+  readonly scene: { name: string; space: number; matCount: number; linkCount: number } | null;
+  readonly camera: { preset: string; orthographic: boolean; target: number[]; metresPerPixel: number } | null;
+  readonly signals: { count: number; rows: number; gaps: number; newestS: number } | null;
+  readonly quality: { software: boolean; spheres: boolean; links: boolean } | null;
+  /** Coordinates of MAT `index` in the frame drawn last [m]. */
+  position(index: number): number[] | null;
+  /** Where MAT `index` is on the page [CSS pixels]. */
+  project(index: number): { x: number; y: number } | null;
+  /** Red, green and blue of the picture at a place on the page, 0..255. */
+  pixelAt(x: number, y: number): number[] | null;
+}
+
+declare global {
+  interface Window {
+    viz: Viz;
+  }
+}
+
+export function exposeViz(page: Page): void {
+  window.viz = {
+    get connected() {
+      return page.connection.isOpen;
+    },
+    get framesReceived() {
+      return page.framesReceived;
+    },
+    get framesDrawn() {
+      return page.framesDrawn;
+    },
+    get lastFrame() {
+      if (page.lastFrame === null) return null;
+      const { sequence, frame, step, simulatedS, matCount } = page.lastFrame;
+      return { sequence, frame, step, simulatedS, matCount };
+    },
+    get lag_s() {
+      return page.lagS;
+    },
+    get dropped() {
+      return page.dropped;
+    },
+    get nodes() {
+      return page.hud.nodes;
+    },
+    get errors() {
+      return page.errors;
+    },
+    get scene() {
+      const scene = page.description;
+      return scene && { name: scene.name, space: scene.space, matCount: scene.mat_count, linkCount: scene.link_count };
+    },
+    get camera() {
+      const rig = page.view?.rig;
+      if (!rig) return null;
+      return {
+        preset: rig.preset,
+        orthographic: rig.orthographic,
+        target: rig.target.toArray(),
+        metresPerPixel: rig.metresPerPixel,
+      };
+    },
+    get signals() {
+      const store = page.store;
+      return store && { count: store.signalCount, rows: store.rowCount, gaps: store.gaps, newestS: store.newestS };
+    },
+    get quality() {
+      return page.view?.quality ?? null;
+    },
+    position: (index) => (page.lastFrame ? [...page.lastFrame.positions.slice(3 * index, 3 * index + 3)] : null),
+    project: (index) => page.view?.project(index) ?? null,
+    pixelAt: (x, y) => page.view?.pixelAt(x, y) ?? null,
+  };
+}
