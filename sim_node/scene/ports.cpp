@@ -117,7 +117,7 @@ void Assembly::read_port(const Value::Entry& entry) {
       problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
   names_.add({entry.key, Named::kPort, port.mat, 1, sound, entry.key_place}, problems_);
   scene_.matter.push_back({entry.key, port.mat, 1});
-  scene_.ports.push_back(std::move(port));
+  if (sound) scene_.ports.push_back(std::move(port));
 }
 
 void Assembly::check_devices() {
