@@ -40,7 +40,7 @@ std::chrono::nanoseconds parse_duration(const std::string& text) {
   const auto [rest, error] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
   if (error != std::errc() || !(number < kLongest * 1e3)) number = -1.0;
   const double seconds = number * seconds_of(text, std::string_view(rest, end));
-  if (!(seconds > 0.0)) refuse(text, "it must be longer than 0");
+  if (!(seconds >= 1e-9)) refuse(text, "it must be longer than 0");
   if (seconds > kLongest) refuse(text, "10000h is the longest");
   return std::chrono::nanoseconds(std::llround(seconds * 1e9));
 }

@@ -1,0 +1,142 @@
+// tests/cli/fake_node.cpp -- stands in the place of a node, and does what the environment says.
+//
+// FAKE_NAME (with --check: FAKE_CHECK_NAME) holds commands with `;` between them, done one after
+// the other:
+//   say TEXT      a line on stdout            error TEXT   a line on stderr
+//   begin TEXT    TEXT without a newline      words        its own command line as a line
+//   pid           a line `pid N`              child        starts a process that only SIGKILL ends;
+//   a line `pid N` deaf          ignores SIGINT and SIGTERM  flood        a line on stdout, again
+//   and again, without end exit N        ends                        die N        is killed by
+//   signal N run TEXT      publishes node/status: phase running, text TEXT, some figures
+// At the end it waits for SIGINT or SIGTERM, says `stopped`, and ends with exit code 0.
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "node/config/launch.h"
+#include "node/status.h"
+#include "node/time.h"
+
+namespace {
+
+using namespace cordis;
+
+struct Self {
+  std::string launch_file;
+  std::string name;
+  std::string kind;
+  std::string words;
+  bool check = false;
+};
+
+Self read_words(int argc, char** argv) {
+  Self self;
+  const std::string program = argv[0];
+  self.kind = program.substr(program.rfind('/') + 1);
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    self.words += (i > 1 ? " " : "") + word;
+    if (i == 1) self.launch_file = word;
+    if (word == "--name" && i + 1 < argc) self.name = argv[i + 1];
+    if (word == "--check") self.check = true;
+  }
+  return self;
+}
+
+/// Says what a node says of itself, as long as it lives.
+class FakeStatus {
+ public:
+  FakeStatus(const Self& self, const std::string& text) : participant_(membership(self)) {
+    const auto run = static_cast<std::uint64_t>(node::monotonic_nsec());
+    publisher_ = std::make_unique<node::StatusPublisher>(participant_, self.kind, run,
+                                                         [text](msg::NodeStatus& status) {
+                                                           status.phase("running");
+                                                           status.text(text);
+                                                           status.target_rate_hz(1000);
+                                                           status.ticks(status.ticks() + 1);
+                                                           status.step(4711);
+                                                           status.state_hash(0x0123456789abcdefull);
+                                                         });
+  }
+
+ private:
+  static dds::Membership membership(const Self& self) {
+    config::Problems problems;
+    const config::Launch launch = config::load_launch(self.launch_file, {}, problems);
+    return {launch.domain, launch.session, self.name, false};
+  }
+
+  dds::Participant participant_;
+  std::unique_ptr<node::StatusPublisher> publisher_;
+};
+
+void start_deaf_child() {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGTERM, SIG_IGN);
+    std::signal(SIGINT, SIG_IGN);
+    for (;;) pause();
+  }
+  std::cout << "pid " << child << std::endl;
+}
+
+void wait_for(std::initializer_list<int> numbers) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int number : numbers) sigaddset(&signals, number);
+  int arrived = 0;
+  sigwait(&signals, &arrived);
+}
+
+bool asked_to_stop() {
+  sigset_t waiting;
+  sigpending(&waiting);
+  return sigismember(&waiting, SIGTERM) == 1;
+}
+
+void obey(const std::string& command, const Self& self, std::unique_ptr<FakeStatus>& status) {
+  std::istringstream words(command);
+  std::string verb;
+  std::string rest;
+  words >> verb;
+  std::getline(words >> std::ws, rest);
+  if (verb == "say") std::cout << rest << std::endl;
+  if (verb == "error") std::cerr << rest << std::endl;
+  if (verb == "begin") std::cout << rest << std::flush;
+  if (verb == "words") std::cout << self.words << std::endl;
+  if (verb == "pid") std::cout << "pid " << getpid() << std::endl;
+  if (verb == "child") start_deaf_child();
+  while (verb == "deaf") pause();
+  while (verb == "flood" && !asked_to_stop()) std::cout << "drop of a flood\n";
+  if (verb == "await") wait_for({SIGUSR1});
+  if (verb == "exit") std::exit(std::stoi(rest));
+  if (verb == "die") raise(std::stoi(rest));
+  if (verb == "run") status = std::make_unique<FakeStatus>(self, rest);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Self self = read_words(argc, argv);
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int number : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, number);
+  sigprocmask(SIG_BLOCK, &signals, nullptr);
+
+  const std::string variable = (self.check ? "FAKE_CHECK_" : "FAKE_") + self.name;
+  const char* commands = std::getenv(variable.c_str());
+  std::unique_ptr<FakeStatus> status;
+  std::istringstream script(commands != nullptr ? commands : "");
+  for (std::string command; std::getline(script, command, ';');) obey(command, self, status);
+  if (self.check) return 0;
+
+  wait_for({SIGINT, SIGTERM});
+  std::cout << "stopped" << std::endl;
+  return 0;
+}

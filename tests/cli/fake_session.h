@@ -1,0 +1,123 @@
+// tests/cli/fake_session.h -- `cordis run` with fake nodes, as a test wants them to behave.
+#pragma once
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/support/child_process.h"
+#include "tests/support/test_domain.h"
+
+namespace cordis::test {
+
+/// Longer than anything here can take; only a test that fails waits for so long.
+inline constexpr std::chrono::seconds kPatience{30};
+
+/// A launch file with the nodes sim, key, view (not required) and tape, and how each behaves.
+class FakeSession {
+ public:
+  FakeSession() {
+    directory_ =
+        std::filesystem::path(testing::TempDir()) / ("cordis run " + std::to_string(getpid()));
+    std::filesystem::create_directories(directory_);
+  }
+  ~FakeSession() { std::filesystem::remove_all(directory_); }
+  FakeSession(const FakeSession&) = delete;
+  FakeSession& operator=(const FakeSession&) = delete;
+
+  /// @param commands  see fake_node.cpp
+  void node(const std::string& name, const std::string& commands) {
+    environment_["FAKE_" + name] = commands;
+  }
+  void check(const std::string& name, const std::string& commands) {
+    environment_["FAKE_CHECK_" + name] = commands;
+  }
+  /// Every node says `pid N` once it listens to signals.
+  void announce() {
+    for (const char* name : {"sim", "key", "view", "tape"}) node(name, "pid");
+  }
+  void clock(const std::string& clock) { clock_ = clock; }
+
+  std::filesystem::path directory() const { return directory_; }
+  std::string launch_file() const { return directory_ / "launch.yaml"; }
+  static std::string cordis() { return CORDIS_FAKE_SESSION "/cordis"; }
+
+  std::unique_ptr<ChildProcess> start(const std::vector<std::string>& more_words = {}) {
+    std::vector<std::string> words{cordis(), "run", launch_file()};
+    words.insert(words.end(), more_words.begin(), more_words.end());
+    return start_words(words);
+  }
+
+  std::unique_ptr<ChildProcess> start_words(const std::vector<std::string>& words) {
+    std::ofstream(launch_file())
+        << "cordis: 1\nsession: fake\ndomain: " << own_domain() << "\nclock: " << clock_
+        << "\nnodes:\n  tape: {node: record_node}\n  view: {node: viz_node, required: false}\n"
+           "  key: {node: device_node}\n  sim: {node: sim_node}\n";
+    return std::make_unique<ChildProcess>(words, environment_);
+  }
+
+ private:
+  std::filesystem::path directory_;
+  std::string clock_ = "realtime";
+  std::map<std::string, std::string> environment_;
+};
+
+/// Numbers N of all lines `... pid N` in the output.
+inline std::vector<pid_t> pids_in(const std::string& output) {
+  std::vector<pid_t> pids;
+  for (std::size_t at = 0; (at = output.find("pid ", at)) != std::string::npos; ++at) {
+    pids.push_back(std::stoi(output.substr(at + 4)));
+  }
+  return pids;
+}
+
+/// Waits for the end of the run and of its output. @return its exit code
+inline int end_of(ChildProcess& run) {
+  const int code = run.wait(kPatience);
+  run.wait_for_output("(a line that nobody writes)", kPatience);  // returns when all is read
+  return code;
+}
+
+/// Waits until all nodes of a session that announces them listen to signals.
+inline bool wait_for_all(ChildProcess& run) {
+  for (const char* line : {"sim    | pid", "key    | pid", "view   | pid", "tape   | pid"}) {
+    if (!run.wait_for_output(line, kPatience)) return false;
+  }
+  return true;
+}
+
+/// Lets a node go on that awaits it.
+inline void release(const ChildProcess& run, const std::string& node) {
+  const std::string output = run.output();
+  kill(pids_in(output.substr(output.find(node + " ")))[0], SIGUSR1);
+}
+
+/// Whether the process runs; one that has ended and waits for its parent to notice does not.
+inline bool is_running(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  return !text.empty() && text.find(") Z ") == std::string::npos &&
+         text.find(") X ") == std::string::npos;
+}
+
+/// Waits until the process does not run any more.
+inline bool is_gone(pid_t pid) {
+  const auto limit = std::chrono::steady_clock::now() + kPatience;
+  while (is_running(pid)) {
+    if (std::chrono::steady_clock::now() > limit) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return true;
+}
+
+}  // namespace cordis::test

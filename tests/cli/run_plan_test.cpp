@@ -1,0 +1,136 @@
+// tests/cli/run_plan_test.cpp
+#include "cli/run_plan.h"
+
+#include <gtest/gtest.h>
+
+#include "cli/command_line.h"
+
+namespace cordis::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+config::Launch launch_of(config::Clock clock) {
+  config::Launch launch;
+  launch.file = "dir/l.yaml";
+  launch.clock = clock;
+  const std::vector<std::pair<std::string, std::string>> nodes{{"memory", "record_node"},
+                                                               {"view", "viz_node"},
+                                                               {"left", "device_node"},
+                                                               {"right", "device_node"},
+                                                               {"sim", "sim_node"}};
+  for (const auto& [name, program] : nodes) {
+    config::LaunchNode node;
+    node.name = name;
+    node.program = program;
+    node.required = program != "viz_node";
+    launch.nodes.push_back(node);
+  }
+  return launch;
+}
+
+Words names_of(const RunPlan& plan) {
+  Words names;
+  for (const PlannedNode& node : plan.nodes) names.push_back(node.name);
+  return names;
+}
+
+TEST(RunPlan, StartsSimDevicesDisplaysRecordersInThisOrder) {
+  const RunPlan plan = plan_run(launch_of(config::Clock::kRealtime), {}, "/bin dir");
+
+  EXPECT_EQ(names_of(plan), (Words{"sim", "left", "right", "view", "memory"}));
+  EXPECT_EQ(plan.nodes[1].command.words,
+            (Words{"/bin dir/device_node", "dir/l.yaml", "--name", "left"}));
+  EXPECT_TRUE(plan.nodes[0].required);
+  EXPECT_FALSE(plan.nodes[3].required);
+}
+
+TEST(RunPlan, StopsDevicesFirstThenDisplaysSimAndRecorders) {
+  const RunPlan plan = plan_run(launch_of(config::Clock::kRealtime), {}, "/bin");
+
+  const auto stage = [&](std::size_t i) { return plan.nodes[i].command.stop_stage; };
+  EXPECT_EQ(stage(1), stage(2));  // left, right
+  EXPECT_LT(stage(1), stage(3));  // devices, view
+  EXPECT_LT(stage(3), stage(0));  // view, sim
+  EXPECT_LT(stage(0), stage(4));  // sim, memory
+}
+
+TEST(RunPlan, GivesEveryNodeTheSameOverrides) {
+  RunOptions options;
+  options.overrides = {"left.driver=script", "domain=7"};
+
+  for (const PlannedNode& node :
+       plan_run(launch_of(config::Clock::kRealtime), options, "/bin").nodes) {
+    EXPECT_EQ(Words(node.command.words.begin() + 4, node.command.words.end()), options.overrides)
+        << node.name;
+  }
+}
+
+TEST(RunPlan, MeasuresADurationInWallTimeInARealtimeSession) {
+  RunOptions options;
+  options.duration = std::chrono::seconds(10);
+
+  const RunPlan plan = plan_run(launch_of(config::Clock::kRealtime), options, "/bin");
+
+  EXPECT_EQ(plan.wall_duration, options.duration);
+  EXPECT_EQ(plan.nodes[0].command.words.size(), 4u);
+}
+
+TEST(RunPlan, LeavesADurationOfSimulatedTimeToTheSimulation) {
+  RunOptions options;
+  options.duration = std::chrono::milliseconds(2500);
+  for (const config::Clock clock : {config::Clock::kLockstep, config::Clock::kAsap}) {
+    const RunPlan plan = plan_run(launch_of(clock), options, "/bin");
+
+    EXPECT_FALSE(plan.wall_duration);
+    for (const PlannedNode& node : plan.nodes) {
+      EXPECT_EQ(node.command.words.back(), "sim.duration_s=2.5") << node.name;
+    }
+  }
+}
+
+TEST(RunPlan, EndsWithTheSimulationThatHasADurationEvenIfItIsNotRequired) {
+  config::Launch launch = launch_of(config::Clock::kAsap);
+  for (config::LaunchNode& node : launch.nodes) node.required = false;
+  RunOptions options;
+  options.duration = std::chrono::seconds(1);
+
+  EXPECT_TRUE(plan_run(launch, options, "/bin").nodes[0].required);
+}
+
+TEST(RunPlan, MeasuresWallTimeWhenTheSimulationIsNotAmongTheNodes) {
+  RunOptions options;
+  options.duration = std::chrono::seconds(1);
+  options.only = {"left"};
+
+  const RunPlan plan = plan_run(launch_of(config::Clock::kLockstep), options, "/bin");
+
+  EXPECT_EQ(plan.wall_duration, options.duration);
+}
+
+TEST(RunPlan, KeepsToTheNodesAskedFor) {
+  RunOptions options;
+  options.only = {"view", "sim"};
+
+  EXPECT_EQ(names_of(plan_run(launch_of(config::Clock::kRealtime), options, "/bin")),
+            (Words{"sim", "view"}));
+}
+
+TEST(RunPlan, RefusesANodeThatTheLaunchDoesNotHave) {
+  RunOptions options;
+  options.only = {"sim", "veiw"};
+  try {
+    plan_run(launch_of(config::Clock::kRealtime), options, "/bin");
+    FAIL() << "a node that does not exist was taken";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "--only: dir/l.yaml has no node 'veiw', did you mean 'view'?");
+  }
+}
+
+TEST(ShellLine, QuotesWhatAShellWouldTakeApart) {
+  EXPECT_EQ(shell_line({"/a/b", "x.y=[1,2]", "it's", "", "plain-1.5"}),
+            "/a/b 'x.y=[1,2]' 'it'\\''s' '' plain-1.5");
+}
+
+}  // namespace
+}  // namespace cordis::cli

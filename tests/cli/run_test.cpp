@@ -1,0 +1,219 @@
+// tests/cli/run_test.cpp -- what `cordis run` starts, shows and returns.
+#include <fstream>
+#include <sstream>
+
+#include "tests/cli/fake_session.h"
+
+namespace cordis::test {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST(Run, StartsEveryNodeWithItsNameAndPrefixesItsLines) {
+  FakeSession session;
+  session.node("sim", "words;error of the sim");
+  session.node("key", "words");
+  session.node("view", "begin no newline;exit 0");
+  const auto run = session.start({"key.x=1"});
+  for (const char* text : {"--name sim", "of the sim", "--name key", "no newline"}) {
+    ASSERT_TRUE(run->wait_for_output(text, kPatience));
+  }
+
+  run->signal(SIGTERM);
+
+  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_TRUE(
+      contains(run->output(), "sim    | " + session.launch_file() + " --name sim key.x=1\n"));
+  EXPECT_TRUE(
+      contains(run->output(), "key    | " + session.launch_file() + " --name key key.x=1\n"));
+  EXPECT_TRUE(contains(run->output(), "sim    | of the sim\n"));
+  EXPECT_TRUE(contains(run->output(), "view   | no newline\n"));
+}
+
+TEST(Run, PrintsTheCommandsOfADryRunAndStartsNothing) {
+  FakeSession session;
+  session.node("sim", "say started");
+  session.check("sim", "say started");
+  const auto run = session.start({"--dry-run", "--only", "sim,view", "sim.title=a b"});
+
+  EXPECT_EQ(end_of(*run), 0);
+  const std::string bin = CORDIS_FAKE_SESSION;
+  EXPECT_EQ(run->output(), bin + "/sim_node '" + session.launch_file() +
+                               "' --name sim 'sim.title=a b'\n" + bin + "/viz_node '" +
+                               session.launch_file() + "' --name view 'sim.title=a b'\n");
+}
+
+TEST(Run, RefusesALaunchFileThatIsWrongOrMissing) {
+  FakeSession session;
+  const auto unknown_clock = session.start({"clock=sundial"});
+  EXPECT_EQ(end_of(*unknown_clock), 2);
+  EXPECT_TRUE(contains(unknown_clock->output(), "sundial"));
+
+  const auto missing = session.start_words({FakeSession::cordis(), "run", "/nowhere/launch.yaml"});
+  EXPECT_EQ(end_of(*missing), 2);
+  EXPECT_TRUE(contains(missing->output(), "/nowhere/launch.yaml"));
+}
+
+TEST(Run, RefusesAMisspelledWord) {
+  FakeSession session;
+  const auto run = session.start({"--duration", "3"});
+  EXPECT_EQ(end_of(*run), 2);
+  EXPECT_TRUE(contains(run->output(), "'3' is not a duration"));
+}
+
+TEST(Run, ShowsWhatAllNodesObjectToAndStartsNone) {
+  FakeSession session;
+  session.check("sim", "error scene.yaml:3:1: error: no mass;exit 2");
+  session.check("key", "error device.yaml:7:2: error: no axis;exit 2");
+  session.node("view", "say started");
+  const auto run = session.start();
+
+  EXPECT_EQ(end_of(*run), 2);
+  EXPECT_EQ(run->output(), "scene.yaml:3:1: error: no mass\ndevice.yaml:7:2: error: no axis\n");
+}
+
+TEST(Run, FailsWhenACheckItselfFails) {
+  FakeSession session;
+  session.check("sim", "error scene.yaml:3:1: error: no mass;exit 2");
+  session.check("key", "die 11");
+  session.node("view", "say started");
+  const auto run = session.start();
+
+  EXPECT_EQ(end_of(*run), 1);
+  EXPECT_TRUE(contains(run->output(), "no mass"));
+  EXPECT_TRUE(contains(run->output(), "key could not check its files: killed by signal 11"));
+  EXPECT_FALSE(contains(run->output(), "started"));
+}
+
+TEST(Run, EndsWithTheExitCodeOfTheRequiredNodeThatFailed) {
+  FakeSession session;
+  session.announce();
+  session.node("key", "pid;await;exit 3");
+  const auto run = session.start();
+  ASSERT_TRUE(wait_for_all(*run));
+
+  release(*run, "key");
+
+  EXPECT_EQ(end_of(*run), 3);
+  EXPECT_TRUE(contains(run->output(), "cordis | key: exit code 3; stopping the others\n"));
+  EXPECT_TRUE(contains(run->output(), "sim    | stopped\n"));
+}
+
+TEST(Run, EndsWellWhenARequiredNodeEndsWell) {
+  FakeSession session;
+  session.announce();
+  session.node("sim", "pid;await;exit 0");
+  const auto run = session.start();
+  ASSERT_TRUE(wait_for_all(*run));
+
+  release(*run, "sim");
+
+  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_TRUE(contains(run->output(), "cordis | sim: has ended; stopping the others\n"));
+  EXPECT_TRUE(contains(run->output(), "tape   | stopped\n"));
+}
+
+TEST(Run, NamesTheSignalThatKilledARequiredNode) {
+  FakeSession session;
+  session.node("sim", "die 9");
+  const auto run = session.start();
+
+  EXPECT_EQ(end_of(*run), 128 + 9);
+  EXPECT_TRUE(
+      contains(run->output(), "cordis | sim: killed by signal 9 (Killed); stopping the others\n"));
+}
+
+TEST(Run, GoesOnWithoutANodeThatIsNotRequired) {
+  FakeSession session;
+  session.node("view", "die 9");
+  const auto run = session.start();
+
+  ASSERT_TRUE(run->wait_for_output("cordis | view: killed by signal 9 (Killed); the others go on\n",
+                                   kPatience));
+  EXPECT_EQ(run->wait(std::chrono::milliseconds(0)), -1);
+  EXPECT_FALSE(contains(run->output(), "stopped"));
+  run->signal(SIGTERM);
+  EXPECT_EQ(end_of(*run), 0);
+}
+
+TEST(Run, StartsOnlyTheNodesAskedFor) {
+  FakeSession session;
+  session.node("key", "say started");
+  session.node("view", "say started;exit 0");
+  session.node("sim", "say started;exit 0");
+  const auto run = session.start({"--only", "sim"});
+
+  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_TRUE(contains(run->output(), "sim    | started\n"));
+  EXPECT_FALSE(contains(run->output(), "key"));
+  EXPECT_FALSE(contains(run->output(), "view"));
+}
+
+TEST(Run, ShowsThePageAndEndsWithATable) {
+  FakeSession session;
+  session.node("sim", "run");
+  session.node("view", "run http://127.0.0.1:8123");
+  const auto run = session.start();
+
+  ASSERT_TRUE(run->wait_for_output("cordis | page of view: http://127.0.0.1:8123\n", kPatience));
+  run->signal(SIGINT);
+  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_TRUE(contains(run->output(), "\nnode  rate [Hz]  wanted  overruns"));
+  EXPECT_TRUE(contains(run->output(), "\nstate hash 0123456789abcdef after 4711 steps\n"));
+  EXPECT_TRUE(contains(run->output(), "\nkey   no status was received\n"));
+}
+
+TEST(Run, EndsByItselfOnceAllNodesHaveRunForTheDuration) {
+  FakeSession session;
+  for (const char* name : {"sim", "key", "view", "tape"}) session.node(name, "run");
+  const auto run = session.start({"--duration", "100ms"});
+
+  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_TRUE(contains(run->output(), "state hash"));
+  EXPECT_FALSE(contains(run->output(), "not all nodes run"));
+}
+
+TEST(Run, LeavesSimulatedTimeToTheSimulation) {
+  FakeSession session;
+  session.clock("lockstep");
+  session.node("sim", "words;exit 0");
+  const auto run = session.start({"--duration", "2500ms"});
+
+  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_TRUE(contains(run->output(), "--name sim sim.duration_s=2.5\n"));
+}
+
+TEST(Run, WritesTheLinesOfEveryNodeIntoItsFile) {
+  FakeSession session;
+  session.announce();
+  session.node("sim", "say one;error two;pid");
+  const auto logs = session.directory() / "new" / "logs";
+  const auto run = session.start({"--log-dir", logs});
+  ASSERT_TRUE(wait_for_all(*run));
+
+  run->signal(SIGTERM);
+
+  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_TRUE(contains(text_of(logs / "sim.log"), " one\n"));
+  EXPECT_TRUE(contains(text_of(logs / "sim.log"), " two\n"));
+  EXPECT_TRUE(contains(text_of(logs / "view.log"), " stopped\n"));
+}
+
+TEST(Run, FailsInOneLineWhenALogCannotBeWritten) {
+  FakeSession session;
+  const auto run = session.start({"--log-dir", "/proc/none"});
+
+  EXPECT_EQ(end_of(*run), 1);
+  EXPECT_EQ(run->output(), "cordis run: cannot write /proc/none/sim.log\n");
+}
+
+}  // namespace
+}  // namespace cordis::test

@@ -1,0 +1,161 @@
+#!/bin/bash
+# tests/cli/script_test.sh SOURCE_DIRECTORY -- runs ./cordis with every tool that it calls replaced by this file, which
+# notes the call in $PLACE/calls and does as little as it can. Files in $PLACE say what is the matter: offline,
+# broken, cmake-changed.
+set -euo pipefail
+
+note() { printf '%s\n' "$*" >>"$PLACE/calls"; }
+
+fake_apt_get() {
+  note "apt-get $*"
+  [[ ! -e $PLACE/offline ]] || exit 100
+  [[ $1 == install ]] || return 0
+  for word in "$@"; do printf '%s\n' "$word" >>"$PLACE/installed"; done
+  [[ " $* " != *" npm "* ]] || ln -sf "$PLACE/fake" "$PLACE/tools/npm"
+}
+
+fake_ninja() {  # -C TREE, then -n or -j N, then targets
+  local tree=$2 targets=${*:5}
+  [[ $3 != -n ]] || targets=${*:4}
+  local built="$tree/built ${targets//\//-}"
+  if [[ $3 == -n ]]; then
+    [[ ! -e $PLACE/cmake-changed ]] || printf '[0/1] Re-running CMake...\n'
+    [[ ! -e $built ]] || printf 'ninja: no work to do.\n'
+    return
+  fi
+  note "ninja ${tree##*/}: $targets"
+  [[ ! -e $PLACE/broken ]] || { printf 'error: broken code\n'; exit 1; }
+  mkdir -p "$tree/bin"
+  ln -sf "$PLACE/fake" "$tree/bin/cordis"
+  printf x >"$built"
+}
+
+fake_cmake() {  # -S SOURCE --preset PRESET
+  note "cmake $4"
+  local cache=$2/build/$4/CMakeCache.txt
+  [[ ! -e $cache || $(<"$cache") == "$2" ]] || exit 1  # as the real one, which refuses a cache of another folder
+  mkdir -p "${cache%/*}"
+  printf '%s\n' "$2" >"$cache"
+}
+
+case ${0##*/} in
+  apt-get) fake_apt_get "$@"; exit ;;
+  cmake) fake_cmake "$@"; exit ;;
+  cordis) printf 'program:'; printf ' [%s]' "$@"; printf '\n'; exit 7 ;;
+  dpkg-query) while read -r package; do printf '=installed=%s=' "$package"; done <"$PLACE/installed"; exit ;;
+  ninja) fake_ninja "$@"; exit ;;
+  npm) note "npm $1"; [[ ! -e $PLACE/offline ]] || exit 1; mkdir -p "$3/node_modules"; printf x >"$3/node_modules/.package-lock.json"; exit ;;
+  sudo) while [[ $1 == -n || $1 == *=* ]]; do shift; done; exec "$@" ;;
+esac
+
+PLACE=$(mktemp -d "${TMPDIR:-/tmp}/cordis script test XXXXXX")
+export PLACE
+trap 'rm -rf "$PLACE"' EXIT
+tree="$PLACE/a tree"
+mkdir -p "$tree/viz_node/web" "$PLACE/tools"
+cp "$1/cordis" "$1/packages.txt" "$tree"
+touch -d '1 hour ago' "$tree/CMakePresets.json" "$tree/viz_node/web/package-lock.json"
+touch "$PLACE/installed" "$PLACE/calls"
+cp "$0" "$PLACE/fake"
+chmod +x "$PLACE/fake"
+for name in apt-get cmake dpkg-query ninja sudo; do ln -s "$PLACE/fake" "$PLACE/tools/$name"; done
+for name in bash cksum dirname env find flock ln mkdir nproc readlink rm tail; do
+  ln -s "$(type -P "$name")" "$PLACE/tools/$name"
+done
+
+# call WORD...: ./cordis from another folder; its output, exit code and calls of tools go to $output, $code and $calls.
+call() {
+  : >"$PLACE/calls"
+  code=0
+  output=$(cd / && PATH=$PLACE/tools "$tree/cordis" "$@" 2>&1 </dev/null) || code=$?
+  calls=$(<"$PLACE/calls")
+}
+
+failures=0
+# expect WHAT ACTUAL PATTERN
+expect() {
+  # shellcheck disable=SC2053  # a pattern on purpose
+  [[ $2 == $3 ]] && return
+  printf 'FAILED: %s\n--- expected\n%s\n--- got\n%s\n' "$1" "$3" "$2"
+  failures=$((failures + 1))
+}
+
+touch "$PLACE/offline"
+call run 'a b'
+expect 'without network it builds all the same' "$output" "cordis: installing Debian packages: g++ *
+cordis: these packages could not be installed (build/packages-build.log); going on without: g++ *
+cordis: installing Debian packages: *
+cordis: these packages could not be installed (build/packages-page.log); going on without: * npm *
+cordis: there will be no page: npm is missing
+cordis: configuring (release)
+cordis: building (release)*
+program: \[run\] \[a b\]"
+expect 'the exit code is that of the program' "$code" 7
+
+call run
+expect 'what failed a moment ago is not tried again' "$calls" ""
+
+rm "$PLACE/offline"
+rm "$tree"/build/.failed-*
+call run
+expect 'with network it installs, fetches the page and configures anew' "$output" "cordis: installing Debian packages: g++ *
+cordis: installing Debian packages: *npm*
+cordis: fetching the packages of the page with npm
+cordis: configuring (release)
+program: \[run\]"
+expect 'asks nothing' "$calls" "apt-get update
+apt-get install -y * g++ *"
+
+call run
+expect 'a second call says nothing' "$output" 'program: \[run\]'
+expect 'a second call touches nothing' "$calls" ''
+
+touch "$PLACE/cmake-changed"
+call run
+expect 'a change in a CMakeLists.txt is not overlooked' "$calls" 'ninja release: all'
+rm "$PLACE/cmake-changed"
+
+touch "$tree/viz_node/web/package-lock.json" -d 'next hour'
+touch "$PLACE/offline"
+call run
+expect 'a page that cannot be fetched is no reason to stop' "$output" "cordis: fetching the packages of the page with npm
+cordis: there will be no page: npm ci failed (build/npm.log)
+program: \[run\]"
+rm "$PLACE/offline"
+touch "$tree/viz_node/web/package-lock.json" -d '1 hour ago'
+
+call test -R 'a b'
+expect 'test builds the tests and the sanitized ones, and hands its words on' "$output" "cordis: installing Debian packages: *chromium*
+cordis: configuring (release)
+cordis: building (release)*
+cordis: configuring (asan)
+cordis: building (asan)*
+cordis: configuring (tsan)
+cordis: building (tsan)*
+program: \[test\] \[-R\] \[a b\]
+cordis: building and testing took 0 min * s"
+expect 'tests are built only for test' "$calls" "*
+ninja release: all tests/all
+*
+ninja asan: tests/all
+*
+ninja tsan: tests/all"
+expect 'one CTest covers all' "$(<"$tree/build/CTestTestfile.cmake")" 'subdirs(release asan tsan)'
+expect 'the exit code is that of the tests' "$code" 7
+
+mv "$tree" "$PLACE/moved tree"
+tree="$PLACE/moved tree"
+call run
+expect 'a tree that was moved is configured anew' "$output" "cordis: configuring (release)
+program: \[run\]"
+
+rm "$tree"/build/release/built*
+touch "$PLACE/broken"
+call run
+expect 'a failed build shows its errors' "$output" "cordis: building (release)*
+error: broken code
+cordis: failed; the whole output is in build/build-release.log"
+expect 'and ends with 1' "$code" 1
+
+((failures == 0)) && printf 'all well\n'
+exit $((failures > 0))
