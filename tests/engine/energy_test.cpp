@@ -1,0 +1,171 @@
+// tests/engine/energy_test.cpp -- the account closes.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+using engine::Energy;
+
+// In 1 dimension the account is exact: what is left is rounding.
+constexpr double kRounding = 1e-11;
+
+/// A string of 20 masses in 1 dimension between fixed ends, plucked.
+NetworkDescription string_in_line(double viscosity, double medium_viscosity) {
+  NetworkDescription scene = string_in_space(20, viscosity, 2e-4);
+  scene.dimension = 1;
+  scene.medium_viscosity = medium_viscosity;
+  for (Mat& mat : scene.mats) mat.position = Vec3(mat.position.y(), 0, 0);
+  for (Link& link : scene.links) link.rest_length = 0.0;
+  return scene;
+}
+
+double largest_relative_residual(World& world, int step_count) {
+  double largest = 0.0;
+  for (int n = 0; n < step_count; ++n) {
+    world.step();
+    if (n % 7 != 0) continue;
+    const Energy energy = world.energy();
+    largest = std::max(largest, std::abs(energy.residual()) / energy.largest);
+  }
+  return largest;
+}
+
+TEST(Energy, IsKeptByAnUndampedStringForAHundredThousandSteps) {
+  World world = make_world(string_in_line(0.0, 0.0));
+
+  EXPECT_LT(largest_relative_residual(world, 100'000), kRounding);
+  EXPECT_EQ(world.energy().dissipated, 0.0);
+  EXPECT_EQ(world.energy().port_work, 0.0);
+}
+
+TEST(Energy, IsKeptUpToTheLimitOfStability) {
+  NetworkDescription scene = string_in_line(0.0, 0.0);
+  scene.step = 0.99 * std::sqrt(0.001 / 400.0);  // K' = 0.98, of 1 for a string
+  World world = make_world(scene);
+
+  EXPECT_LT(largest_relative_residual(world, 100'000), kRounding);
+}
+
+TEST(Energy, OfADampedStringIsAllDissipated) {
+  World world = make_world(string_in_line(0.05, 0.002));
+
+  EXPECT_LT(largest_relative_residual(world, 60'000), kRounding);
+  const Energy energy = world.energy();
+  EXPECT_LT(energy.total(), 1e-9 * energy.initial);
+  EXPECT_NEAR(energy.dissipated, energy.initial, 1e-8 * energy.initial);
+}
+
+TEST(Energy, OfAnOscillatorIsThatOfItsExactMotion) {
+  // the account does not only close: each part is right, to first order in dt as the scheme is
+  const double mass_kg = 0.25;
+  const double stiffness = 4.0;
+  const double viscosity = 0.1;
+  World world = make_world(oscillator(mass_kg, stiffness, viscosity, 0.01, 0.0, 1e-5));
+  const double s = viscosity / (2.0 * mass_kg);
+  const double w = std::sqrt(stiffness / mass_kg - s * s);
+
+  run(world, 70'000);
+
+  const double t = 0.7;
+  const double x = 0.01 * std::exp(-s * t) * (std::cos(w * t) + s / w * std::sin(w * t));
+  const double v = -0.01 * std::exp(-s * t) * stiffness / mass_kg / w * std::sin(w * t);
+  const Energy energy = world.energy();
+  const double all = 0.5 * stiffness * 0.01 * 0.01;
+  EXPECT_NEAR(energy.initial, all, 1e-4 * all);
+  EXPECT_NEAR(energy.kinetic, 0.5 * mass_kg * v * v, 1e-4 * all);
+  EXPECT_NEAR(energy.elastic, 0.5 * stiffness * x * x, 1e-4 * all);
+  EXPECT_NEAR(energy.dissipated, all - 0.5 * mass_kg * v * v - 0.5 * stiffness * x * x, 1e-4 * all);
+}
+
+TEST(Energy, CountsTheFallIntoGravity) {
+  NetworkDescription scene;
+  scene.step = 0.01;
+  scene.gravity = Vec3(0, -10.0, 0);
+  scene.medium_viscosity = 0.1;
+  scene.mats = {mass(0.5, Vec3(0, 2, 0), Vec3(1, 0, 0))};
+  World world = make_world(scene);
+
+  EXPECT_NEAR(world.energy().gravity, 0.5 * 10.0 * 2.0, 0.01);
+  EXPECT_LT(largest_relative_residual(world, 1000), kRounding);
+  EXPECT_GT(world.energy().dissipated, 1.0);
+}
+
+TEST(Energy, CountsTheWorkOfAPort) {
+  NetworkDescription scene = string_in_line(0.01, 0.0);
+  scene.mats[9].kind = MatKind::kPort;
+  scene.mats[15].kind = MatKind::kPort;
+  World world = make_world(scene);
+
+  for (int n = 0; n < 20'000; ++n) {
+    world.impose_position(9, Vec3(0.02 * std::sin(0.013 * n), 0, 0));
+    if (n % 500 == 0) world.impose_position(15, Vec3(n % 1000 == 0 ? 0.01 : -0.01, 0, 0));  // jumps
+    world.step();
+    const Energy energy = world.energy();
+    ASSERT_LT(std::abs(energy.residual()), kRounding * energy.largest) << "step " << n;
+  }
+  EXPECT_GT(world.energy().port_work, 10.0 * world.energy().initial);
+}
+
+TEST(Energy, CountsTheFirstPushOfAPortAgainstABentSpring) {
+  NetworkDescription scene = oscillator(0.1, 50.0, 0.3, 0.2, 0.5, 1e-3);
+  scene.mats[0].kind = MatKind::kPort;
+  World world = make_world(scene);
+
+  world.impose_position(0, Vec3(0.1, 0, 0));
+
+  EXPECT_LT(largest_relative_residual(world, 100), kRounding);
+}
+
+TEST(Energy, CountsTheWorkOfAnExternalForce) {
+  World world = make_world(string_in_line(0.01, 0.001));
+
+  for (int n = 0; n < 5'000; ++n) {
+    if (n % 100 == 0) world.set_external_force(5, Vec3(n % 200 == 0 ? 0.9 : -0.3, 0, 0));
+    if (n == 777) world.set_external_force(12, Vec3(0.2, 0, 0));
+    world.step();
+    const Energy energy = world.energy();
+    ASSERT_LT(std::abs(energy.residual()), kRounding * energy.largest) << "step " << n;
+  }
+  EXPECT_GT(world.energy().port_work, world.energy().initial);
+}
+
+double residual_in_space(double step, double viscosity, bool pushed) {
+  NetworkDescription scene = string_in_space(20, viscosity, step);
+  scene.gravity = Vec3(0, 0, -9.81);
+  scene.mats[7].kind = pushed ? MatKind::kPort : MatKind::kMass;
+  World world = make_world(scene);
+  double largest = 0.0;
+  const int step_count = static_cast<int>(std::lround(2.0 / step));
+  for (int n = 0; n < step_count; ++n) {
+    const double t = n * step;
+    if (pushed) {
+      world.impose_position(7, scene.mats[7].position +
+                                   Vec3(0, 0.01 * std::sin(30.0 * t), 0.005 * std::sin(17.0 * t)));
+    }
+    world.step();
+    const Energy energy = world.energy();
+    largest = std::max(largest, std::abs(energy.residual()) / energy.largest);
+  }
+  return largest;
+}
+
+TEST(Energy, ClosesInSpaceToSecondOrder) {
+  for (const double viscosity : {0.0, 0.02}) {
+    for (const bool pushed : {false, true}) {
+      const double coarse = residual_in_space(4e-4, viscosity, pushed);
+      const double fine = residual_in_space(2e-4, viscosity, pushed);
+
+      EXPECT_LT(coarse, 1e-2) << "Z = " << viscosity << ", pushed " << pushed;
+      EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.3)
+          << "Z = " << viscosity << ", pushed " << pushed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cordis::test
