@@ -26,18 +26,18 @@ RealtimeGrant make_realtime(int priority) noexcept {
   return grant;
 }
 
-PacedLoop::PacedLoop(double rate_hz) noexcept : rate_hz_(rate_hz) {}
+PacedLoop::PacedLoop(double rate_hz, double phase) noexcept : rate_hz_(rate_hz), phase_(phase) {}
 
-std::int64_t PacedLoop::deadline(std::uint64_t index) const noexcept {
-  return first_deadline_ + std::llround(static_cast<double>(index) * 1e9 / rate_hz_);
+std::int64_t PacedLoop::deadline(std::int64_t index) const noexcept {
+  return std::llround((static_cast<double>(index) + phase_) * 1e9 / rate_hz_);
 }
 
 std::uint64_t PacedLoop::wait() noexcept {
   const auto period = static_cast<std::int64_t>(1e9 / rate_hz_);
   ++ticks_;
   if (ticks_ == 1) {
-    first_deadline_ = monotonic_nsec();
-    return 0;
+    const double periods = static_cast<double>(monotonic_nsec()) * rate_hz_ / 1e9 - phase_;
+    deadline_index_ = static_cast<std::int64_t>(periods);  // the present or the last one
   }
   ++deadline_index_;
   const std::int64_t due = deadline(deadline_index_);
@@ -48,9 +48,9 @@ std::uint64_t PacedLoop::wait() noexcept {
   lateness_.record(late);
   if (late < period) return 0;
   ++overruns_;
-  const auto skipped = static_cast<std::uint64_t>(late / period);
+  const std::int64_t skipped = late / period;
   deadline_index_ += skipped;
-  return skipped;
+  return static_cast<std::uint64_t>(skipped);
 }
 
 }  // namespace cordis::node

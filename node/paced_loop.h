@@ -20,13 +20,18 @@ RealtimeGrant make_realtime(int priority) noexcept;
 
 /// Ticks at a fixed rate against absolute deadlines of CLOCK_MONOTONIC.
 ///
+/// The deadlines are the whole multiples of the period, shifted by a phase: two processes of one
+/// host that pace the same rate with different phases take turns, always in the same order and
+/// distance.
+///
 /// A tick that begins one period or more after its deadline is an overrun. The deadlines missed
 /// meanwhile are skipped and counted, never caught up in a burst, so that a stall does not end in a
 /// spiral.
 class PacedLoop {
  public:
   /// @param rate_hz  ticks per second, > 0
-  explicit PacedLoop(double rate_hz) noexcept;
+  /// @param phase    share of a period by which the deadlines follow its multiples, 0..1
+  explicit PacedLoop(double rate_hz, double phase = 0.0) noexcept;
 
   /// Sleeps until the next deadline. Ends early when a signal arrives. Returns the number of
   /// deadlines skipped.
@@ -43,13 +48,13 @@ class PacedLoop {
 
  private:
   double rate_hz_;
-  std::int64_t first_deadline_ = 0;  // [ns]
-  std::uint64_t deadline_index_ = 0;
+  double phase_;
+  std::int64_t deadline_index_ = 0;  // periods since the clock was 0
   std::uint64_t ticks_ = 0;
   std::uint64_t overruns_ = 0;
   LatencyHistogram lateness_;
 
-  std::int64_t deadline(std::uint64_t index) const noexcept;
+  std::int64_t deadline(std::int64_t index) const noexcept;
 };
 
 }  // namespace cordis::node

@@ -71,6 +71,7 @@ void FramePublisher::loop() {
     if (busy_.load(std::memory_order_acquire)) {
       publish(buffers_[1 - filling_]);
       busy_.store(false, std::memory_order_release);
+      busy_.notify_one();
     }
     if (ending_.load()) return;
   }

@@ -44,6 +44,10 @@ class FramePublisher {
   /// Loop: a frame is due. @return false when it was left out because the thread is still busy.
   bool offer_frame(const engine::World& world, double simulated_s, std::int64_t now_nsec) noexcept;
 
+  /// Loop without real time: waits until the thread has finished with the last frame, so that none
+  /// is left out.
+  void wait_until_free() const noexcept { busy_.wait(true, std::memory_order_acquire); }
+
   std::uint64_t frames_left_out() const noexcept {
     return frames_left_out_.load(std::memory_order_relaxed);
   }

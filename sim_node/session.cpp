@@ -18,6 +18,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kLoopPriority = 80;
+// Devices of this host sample at the beginning of a period: in its middle their samples have
+// arrived, and the answer has until the next beginning to travel. Without it the phases are left to
+// chance, and the delay is up to two periods.
+constexpr double kPhase = 0.5;
 constexpr auto kLockstepPatience =
     50ms;  // how long a wait for a sample may keep the loop from seeing a stop
 
@@ -84,7 +88,7 @@ void Session::run_realtime() {
   spdlog::info("real-time priority {}, memory {}",
                grant.fifo ? "granted" : "not permitted, going on without",
                grant.memory_locked ? "locked" : "not locked");
-  node::PacedLoop loop(simulation_.scene().gesture_rate_hz);
+  node::PacedLoop loop(simulation_.scene().gesture_rate_hz, kPhase);
   while (!finished()) {
     loop.wait();
     overruns_.store(loop.overruns(), std::memory_order_relaxed);
@@ -157,6 +161,7 @@ void Session::tick() {
   const std::uint64_t count = simulation_.tick_count();
   ticks_.store(count, std::memory_order_relaxed);
   if (count % ticks_per_frame_ == 0) {
+    if (start_.launch.clock != config::Clock::kRealtime) frames_.wait_until_free();
     frames_.offer_frame(simulation_.world(), simulation_.simulated_s(), node::monotonic_nsec());
     note_state();
   }

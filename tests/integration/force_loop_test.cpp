@@ -52,7 +52,7 @@ TEST_P(ForceLoop, AKeyOfRoleLiaisonMovesTheMassItPushes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Clocks, ForceLoop, ::testing::Values("realtime", "lockstep"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& instance) { return std::string(instance.param); });
 
 /// How deep the mock hand of the keyboard presses the key within 2 s of simulated time.
 double depth_of_press(double stiffness) {

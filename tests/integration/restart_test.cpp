@@ -106,7 +106,7 @@ TEST_P(Restart, OfTheDisplayDisturbsNobody) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Clocks, Restart, ::testing::Values("realtime", "lockstep"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& instance) { return std::string(instance.param); });
 
 }  // namespace
 }  // namespace cordis::test
