@@ -1,6 +1,7 @@
 // device_node/device.cpp
 #include "device_node/device.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -20,6 +21,7 @@ constexpr int kLoopPriority = 80;                      // SCHED_FIFO
 constexpr auto kLookAround = milliseconds(100);        // for a scene, while there is none
 constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
+constexpr double kLooksPerSecond = 50.0;               // for a change of scene, while one is played
 constexpr int kBadInput = 2;
 
 }  // namespace
@@ -117,7 +119,7 @@ void Device::play_paced(Exchange& exchange) {
     exchange.live();
     meter_.add_overruns(pace.overruns() - std::exchange(overruns, pace.overruns()));
     note_phase();
-    if (hear_scene()) return;
+    if (look_around()) return;
   }
 }
 
@@ -136,8 +138,15 @@ void Device::play_in_lockstep(Exchange& exchange) {
     }
     exchange.live();
     note_phase();
-    if (hear_scene()) return;
+    if (look_around()) return;
   }
+}
+
+/// hear_scene() now and then, for it would be a good part of a tick.
+bool Device::look_around() {
+  const auto ticks_per_look =
+      static_cast<std::uint64_t>(std::max(1.0, config_.layout.rate_hz / kLooksPerSecond));
+  return meter_.ticks() % ticks_per_look == 0 && hear_scene();
 }
 
 /// Tells of a change of phase, once.

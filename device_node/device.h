@@ -31,6 +31,7 @@ class Device {
 
  private:
   bool hear_scene();
+  bool look_around();
   void play();
   void play_paced(Exchange& exchange);
   void play_in_lockstep(Exchange& exchange);
