@@ -70,7 +70,7 @@ TEST(BadInput, ADomainOutOfRangeIsRefused) {
 
 TEST(BadInput, ADeviceWithTooFewAxesIsToldAtThePort) {
   expect_bad_file(run(with(wall_scene(1), "axes: [0]", "axes: [3]"), steady_key(0, 0)),
-                  "scene.yaml:10:", "wants axis 3 of the device 'keyboard', which has 1 axis");
+                  "scene.yaml:11:", "wants axis 3 of the device 'keyboard', which has 1 axis");
 }
 
 TEST(BadInput, ASceneWithoutMatterIsRefused) {
@@ -84,7 +84,7 @@ TEST(BadInput, NumbersThatAreNotFiniteAreRefused) {
   for (const std::string bad : {".nan", "nan", ".inf", "1e999"}) {
     expect_bad_file(
         run(with(wall_scene(1), "mass_kg: 1,", "mass_kg: " + bad + ","), steady_key(0, 0)),
-        "scene.yaml:8:", "mass_kg");
+        "scene.yaml:9:", "mass_kg");
   }
 }
 
