@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "idl/scene.h"
+#include "node/config/name_hash.h"
 #include "node/dds/participant.h"
 #include "node/dds/writer.h"
-#include "node/config/name_hash.h"
 #include "node/paced_loop.h"
 #include "node/status.h"
 #include "node/stop.h"
@@ -228,10 +228,10 @@ int publish(const Options& options) {
   description_writer.write(scene.description);
 
   std::atomic<std::uint64_t> step{0};
-  const auto speak = [&step](msg::NodeStatus& status) {
+  const auto speak = [&step, run](msg::NodeStatus& status) {
     status.phase(node::stop_requested() ? "stopped" : "running");
     status.target_rate_hz(kStepRateHz);
-    status.ticks(step);
+    status.ticks((static_cast<std::uint64_t>(node::monotonic_nsec()) - run) / 1000000);
     status.step(step);
     status.overruns(3);
     status.energy_j(0.012);

@@ -5,11 +5,14 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
@@ -245,7 +248,8 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
   void read() {
     parser_.emplace();
     parser_->header_limit(kLongestRequest);
-    parser_->body_limit(boost::none);  // a body is never read
+    parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // none is read; 1.74 refuses
+                                                                     // all with "no limit"
     stream_.expires_after(kRequestTimeout);
     http::async_read_header(stream_, buffer_, *parser_,
                             [self = shared_from_this()](ErrorCode error, std::size_t) {

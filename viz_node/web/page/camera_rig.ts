@@ -4,6 +4,14 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 export type Preset = 'front' | 'side' | 'top' | 'free';
 
+/** Where the eye stands and how: enough to stand there again. */
+export interface Pose {
+  orthographic: boolean;
+  target: THREE.Vector3;
+  offset: THREE.Vector3; // of the eye from the target
+  metresPerPixel: number;
+}
+
 const DIRECTIONS: Record<Preset, THREE.Vector3> = {
   front: new THREE.Vector3(0, 0, 1),
   side: new THREE.Vector3(1, 0, 0),
@@ -66,6 +74,22 @@ export class CameraRig {
 
   start(box: THREE.Box3): void {
     this.look(this.first, box);
+  }
+
+  get pose(): Pose {
+    const offset = this.camera.position.clone().sub(this.target);
+    return { orthographic: this.orthographic, target: this.target.clone(), offset, metresPerPixel: this.metresPerPixel };
+  }
+
+  /** Stands where `pose` says, before a scene of this size. */
+  resume(pose: Pose, box: THREE.Box3): void {
+    this.look(this.first, box);
+    this.orthographic = pose.orthographic;
+    this.controls.object = this.camera;
+    this.target.copy(pose.target);
+    this.camera.position.copy(pose.target).add(pose.offset);
+    if (this.orthographic) this.setFlatScale(pose.metresPerPixel);
+    this.changed();
   }
 
   fit(box: THREE.Box3): void {

@@ -1,5 +1,6 @@
 // The page: takes messages, draws the newest frame, and says so.
 import { ClockOffset, RealTimeFactor } from './clock.ts';
+import type { Pose } from './camera_rig.ts';
 import { Connection } from './connection.ts';
 import { roundLength } from './ground.ts';
 import { joined, withUnit } from './format.ts';
@@ -43,6 +44,7 @@ class Page {
   private pending: Frame | null = null;
   private pendingIsLate = false; // it came, or waited, while nobody could see the page
   private frameMs = Number.NaN; // when the newest frame came
+  private pose: Pose | null = null; // of the eye, for the next view
   private drawAsked = false;
   private speeds = false;
   private plotsMs = 0;
@@ -111,24 +113,29 @@ class Page {
     this.askToDraw();
   }
 
+  /** A scene that is told again, by a viz_node that was started anew, goes on where it was. */
   private describe(description: Description): void {
+    const last = this.description;
+    const isSame = last !== null && last.run === description.run && last.version === description.version;
+    const looksAlike = last !== null && last.name === description.name && last.space === description.space;
     this.description = description;
     this.pending = null;
     this.factor.clear();
     this.hud.setDescription(description);
+    if (isSame) return;
+    this.pose = looksAlike && this.view !== null ? this.view.rig.pose : null;
+    this.view?.dispose();
+    this.view = null;
     this.store = this.plots.describe(description);
   }
 
   private build(topology: Topology): void {
-    if (topology.scene !== this.description?.scene) return;
-    this.view?.dispose();
-    this.view = null;
-    if (this.renderer === null) return;
+    if (topology.scene !== this.description?.scene || this.view !== null || this.renderer === null) return;
     const size = Math.max(topology.matCount, topology.linkCount / 2);
     const quality = chooseQuality(this.renderer.software, size, window.devicePixelRatio);
     this.say(quality.note);
     const space = this.description?.space ?? 3;
-    this.view = new SceneView(this.stage, topology, space, quality, () => this.askToDraw());
+    this.view = new SceneView(this.stage, topology, space, quality, this.pose, () => this.askToDraw());
     this.view.colourBySpeed(this.speeds);
   }
 

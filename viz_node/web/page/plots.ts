@@ -113,7 +113,7 @@ function optionsOf(unit: string, seriesCount: number): uPlot.Options {
     padding: [6, 10, 0, 0],
     scales: { x: { time: false, auto: false }, y: { range: (_chart, low, high) => rangeOf(low, high) } },
     axes: [
-      { ...axis, size: 22, space: 50, values: (_chart, ticks) => ticks.map((t) => `${+t.toFixed(3)} s`) },
+      { ...axis, size: 22, space: 50, values: (_chart, ticks) => ticks.map((t) => (t < 0 ? '' : `${+t.toFixed(3)} s`)) },
       { ...axis, size: 58, space: 26, values: (_chart, ticks) => labelsOf(ticks, unit) },
     ],
     series: [

@@ -4,7 +4,7 @@ import { Ground } from './ground.ts';
 import { linkMaterial, matMaterial, sceneUniforms, shownKinds } from './mat_material.ts';
 import type { Frame, Topology } from './protocol.ts';
 import type { Quality } from './quality.ts';
-import { CameraRig } from './camera_rig.ts';
+import { CameraRig, type Pose } from './camera_rig.ts';
 
 THREE.ColorManagement.enabled = false; // colours are chosen as they are shown
 const BACKGROUND = 0x0d1117;
@@ -32,6 +32,7 @@ export class SceneView {
     private readonly topology: Topology,
     private readonly space: number,
     readonly quality: Quality,
+    private readonly pose: Pose | null, // where the eye stood before, if it shall stay
     private readonly changed: () => void,
   ) {
     this.renderer = new THREE.WebGLRenderer({ antialias: quality.antialias, powerPreference: 'high-performance' });
@@ -88,7 +89,8 @@ export class SceneView {
     this.newestS = frame.simulatedS;
     if (!this.framed) {
       this.framed = true;
-      this.rig.start(this.bounds());
+      if (this.pose === null) this.rig.start(this.bounds());
+      else this.rig.resume(this.pose, this.bounds());
       this.ground.lay(this.bounds(), this.space);
     }
   }

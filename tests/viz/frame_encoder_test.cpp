@@ -1,0 +1,85 @@
+// tests/viz/frame_encoder_test.cpp
+#include "viz_node/frame_encoder.h"
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "tests/viz/scenes_for_tests.h"
+
+namespace cordis::viz {
+namespace {
+
+template <class Value, class Bytes>
+Value at(const Bytes& bytes, std::size_t offset) {
+  Value value{};
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+template <class Bytes>
+void expect_prefix(const Bytes& bytes, MessageType type, std::size_t header_bytes) {
+  EXPECT_EQ(std::memcmp(bytes.data(), "CDS1", 4), 0);
+  EXPECT_EQ(at<std::uint8_t>(bytes, 4), 1);
+  EXPECT_EQ(at<std::uint8_t>(bytes, 5), static_cast<std::uint8_t>(type));
+  EXPECT_EQ(at<std::uint16_t>(bytes, 6), header_bytes);
+}
+
+TEST(FrameEncoder, PutsTheFieldsOfAFrameWhereTheProtocolSays) {
+  const auto bytes = encode({.sequence = 1,
+                             .scene = 2,
+                             .frame = 3,
+                             .step = 4,
+                             .taken_nsec = -5,
+                             .sent_nsec = 6,
+                             .simulated_s = 7.5,
+                             .mat_count = 8,
+                             .link_state_count = 9,
+                             .dropped = 10});
+
+  expect_prefix(bytes, MessageType::kFrame, 72);
+  ASSERT_EQ(bytes.size(), 72u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 8), 1u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 12), 2u);
+  EXPECT_EQ(at<std::uint64_t>(bytes, 16), 3u);
+  EXPECT_EQ(at<std::uint64_t>(bytes, 24), 4u);
+  EXPECT_EQ(at<std::int64_t>(bytes, 32), -5);
+  EXPECT_EQ(at<std::int64_t>(bytes, 40), 6);
+  EXPECT_EQ(at<double>(bytes, 48), 7.5);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 56), 8u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 60), 9u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 64), 10u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 68), 0u);
+}
+
+TEST(FrameEncoder, PutsSignalsRowAfterRowWithTheTimeOfTheFirst) {
+  const std::string bytes =
+      encode_signals(signals_of_three(/*first_step=*/500, /*rows=*/3), 7, 2000.0);
+
+  expect_prefix(bytes, MessageType::kSignals, 48);
+  ASSERT_EQ(bytes.size(), 48u + 3 * 2 * 4);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 8), 7u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 12), 2u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 16), 3u);
+  EXPECT_EQ(at<std::uint64_t>(bytes, 24), 500u);
+  EXPECT_EQ(at<double>(bytes, 32), 0.25);   // 500 steps at 2000 Hz
+  EXPECT_EQ(at<double>(bytes, 40), 0.001);  // 2 steps at 2000 Hz
+  EXPECT_EQ(at<float>(bytes, 48 + 2 * 8), 2.0F);
+  EXPECT_EQ(at<float>(bytes, 48 + 2 * 8 + 4), -2.0F);
+}
+
+TEST(FrameEncoder, PutsRadiiEndsAndKindsIntoTheTopology) {
+  const std::string bytes = encode_topology(row_of_three(), 9);
+
+  expect_prefix(bytes, MessageType::kTopology, 24);
+  ASSERT_EQ(bytes.size(), 24u + 3 * 4 + 4 * 4 + 3);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 8), 9u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 12), 3u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 16), 2u);
+  EXPECT_EQ(at<float>(bytes, 24 + 4), 0.25F);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 36 + 12), 2u);
+  EXPECT_EQ(at<std::uint8_t>(bytes, 52 + 2), 2);
+}
+
+}  // namespace
+}  // namespace cordis::viz

@@ -1,0 +1,220 @@
+// The real page in headless Chromium, before a real viz_node: what it draws, what it says, and that it comes back by itself.
+// Never how fast it is: that depends on the machine.
+import assert from 'node:assert/strict';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { need, out, pageIsBuilt, runCases, Session, skip, until } from './session.mjs';
+
+const CHROMIUM = '/usr/bin/chromium';
+const FLAGS = [
+  '--headless',
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
+const [MIDDLE, PORT] = [29, 12]; // MATs of the string of scene_source.cpp
+
+const { chromium } = need('playwright-core');
+if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed`);
+if (!pageIsBuilt()) throw new Error('the packages are there, but the page was not built');
+
+/** What window.viz says of `name`. */
+const viz = (page, name) => page.evaluate((key) => window.viz[key], name);
+
+async function drawn(page, count) {
+  const begin = await viz(page, 'framesDrawn');
+  await until(`${count} more frames were drawn`, async () => (await viz(page, 'framesDrawn')) >= begin + count);
+}
+
+/** Place of a MAT on the page and the colours there and elsewhere, all of one frame. */
+const look = (page, mat, elsewhere = []) =>
+  page.evaluate(
+    ([index, places]) => {
+      const at = window.viz.project(index);
+      return { at, colour: window.viz.pixelAt(at.x, at.y), others: places.map(({ x, y }) => window.viz.pixelAt(x, y)) };
+    },
+    [mat, elsewhere],
+  );
+
+const textOf = (page, selector) => page.locator(selector).textContent();
+const isDark = ([r, g, b]) => r + g + b < 190;
+
+async function banner(page, title) {
+  await until(`the banner says "${title}"`, async () => (await textOf(page, '#banner-title')) === title);
+}
+
+const cases = {
+  'the string is drawn where it is, and moves': async ({ page }) => {
+    await drawn(page, 10);
+    const scene = await viz(page, 'scene');
+    assert.deepEqual([scene.name, scene.space, scene.matCount, scene.linkCount], ['string', 2, 60, 59]);
+
+    const first = await look(page, MIDDLE);
+    assert.ok(first.colour[2] > 130 && first.colour[2] > first.colour[0] + 30, `a mass is blue: ${first.colour}`);
+    const port = await look(page, PORT);
+    assert.ok(port.colour[0] > 130 && port.colour[0] > port.colour[2] + 60, `a port is amber: ${port.colour}`);
+
+    const later = await until('the middle has moved by 30 pixels', async () => {
+      const now = await look(page, MIDDLE, [first.at]);
+      return Math.abs(now.at.y - first.at.y) > 30 && now;
+    });
+    assert.ok(later.colour[2] > 130, `it is drawn at its new place: ${later.colour}`);
+    assert.ok(isDark(later.others[0]), `and no longer at the old one: ${later.others[0]}`);
+  },
+
+  'the whole string fits into the first view, seen from the front': async ({ page }) => {
+    const camera = await viz(page, 'camera');
+    assert.equal(camera.preset, 'front');
+    assert.ok(camera.orthographic);
+    const stage = await page.locator('#stage').boundingBox();
+    const [left, right] = [await look(page, 0), await look(page, 59)];
+    assert.ok(left.at.x > stage.x && right.at.x < stage.x + stage.width);
+    assert.ok(right.at.x - left.at.x > 0.7 * stage.width);
+  },
+
+  'every figure is there, and true': async ({ page, url }) => {
+    await until('real time is known', async () => /^×\d/.test(await textOf(page, '#factor')));
+    const figures = {
+      session: /^viz_test$/,
+      scene: /^string · 60 MATs$/,
+      loop: /^\d+\.\d$/,
+      'loop-more': /^\/ 1000 Hz$/,
+      overruns: /^3$/,
+      'overruns-more': /^\d\.\d{3} %$/,
+      latency: /^92\.0\sµs$/,
+      'latency-p99': /^310\sµs$/,
+      'latency-max': /^1\.90\sms$/,
+      'latency-device': /keyboard/,
+      energy: /^12\.0\smJ$/,
+      'energy-more': /^drift 2\.5e-9$/,
+      time: /^\d+\.\d\d$/,
+      lag: /^\d+$/,
+      dropped: /^\d+$/,
+    };
+    for (const [id, pattern] of Object.entries(figures)) assert.match(await textOf(page, `#${id}`), pattern, id);
+    const rows = await page.locator('#nodes tr').allTextContents();
+    assert.deepEqual(rows.map((row) => row.match(/^(sim|keyboard|view)/)[0]), ['sim', 'keyboard', 'view']);
+    const view = (await viz(page, 'nodes')).find((node) => node.kind === 'viz_node');
+    assert.equal(view.text, url);
+    await page.screenshot({ path: join(out, 'page_string.png') });
+  },
+
+  'the picture keeps up, and signals come at full rate': async ({ page }) => {
+    await drawn(page, 25);
+    const lag = await viz(page, 'lag_s');
+    assert.ok(lag >= 0 && lag < 2, `lag ${lag} s`);
+    const signals = await viz(page, 'signals');
+    assert.equal(signals.count, 3);
+    const last = await viz(page, 'lastFrame');
+    assert.ok(Math.abs(signals.newestS - last.simulatedS) < 2);
+    await until('500 more rows came', async () => (await viz(page, 'signals')).rows >= signals.rows + 500);
+    assert.equal((await viz(page, 'signals')).gaps, 0);
+    assert.ok((await page.locator('#plots canvas').count()) === 3, 'one plot per unit');
+    assert.match(await textOf(page, '.plot:first-child .series b'), /^-?\d.*m$/);
+  },
+
+  'keys turn the camera, colour by speed, hold the picture': async ({ page }) => {
+    await page.keyboard.press('3');
+    assert.equal((await viz(page, 'camera')).preset, 'top');
+    await page.keyboard.press('o');
+    assert.equal((await viz(page, 'camera')).orthographic, false);
+    await page.keyboard.press('o');
+    await page.keyboard.press('1');
+    await page.mouse.move(400, 300);
+    const before = (await viz(page, 'camera')).metresPerPixel;
+    await page.mouse.wheel(0, -400);
+    await until('the wheel has zoomed', async () => (await viz(page, 'camera')).metresPerPixel < 0.95 * before);
+    await page.keyboard.press('f');
+    await until('the scene fits again', async () => (await viz(page, 'camera')).metresPerPixel > 0.97 * before);
+
+    await page.keyboard.press('c');
+    await drawn(page, 5);
+    await until('a slow place is not the blue of a mass', async () => (await look(page, MIDDLE)).colour[2] < 240);
+    assert.match(await textOf(page, '#speed-most'), /m\/s$/);
+    await page.keyboard.press('c');
+
+    await page.keyboard.press(' ');
+    await banner(page, 'picture held');
+    const held = await viz(page, 'framesDrawn');
+    const came = await viz(page, 'framesReceived');
+    await until('frames still come', async () => (await viz(page, 'framesReceived')) > came + 5);
+    assert.equal(await viz(page, 'framesDrawn'), held);
+    await page.keyboard.press(' ');
+    await drawn(page, 3);
+  },
+
+  'a second page shows the same': async ({ browser, url, page }) => {
+    const second = await browser.newPage();
+    await second.goto(url);
+    await until('it draws', async () => (await viz(second, 'framesDrawn')) > 5);
+    await second.close();
+    await page.bringToFront();
+    await drawn(page, 5);
+  },
+
+  'it finds viz_node again after a kill': async (session) => {
+    const { page } = session;
+    const { port } = new URL(session.url);
+    await session.view.end('SIGKILL');
+    await banner(page, 'viz_node does not answer');
+    assert.equal(await viz(page, 'connected'), false);
+    session.view = session.viz(`view.port=${port}`);
+    await session.view.says(/page at (\S+)/);
+    await drawn(page, 10);
+    await banner(page, '');
+  },
+
+  'it says when the simulation or a device is gone, and goes on with the next one': async (session) => {
+    const { page } = session;
+    await session.source.end('SIGKILL');
+    await banner(page, 'waiting for sim_node');
+    assert.match(await textOf(page, '#banner-text'), /sim was last heard/);
+    assert.equal(await textOf(page, '#loop'), '–');
+    await page.screenshot({ path: join(out, 'page_waiting.png') });
+    session.source = session.scene('--scene', 'grid', '--mats', '900');
+    await until('the new scene is drawn', async () => (await viz(page, 'lastFrame')).matCount === 900);
+    await drawn(page, 10);
+    await banner(page, '');
+    const camera = await viz(page, 'camera');
+    assert.equal(camera.orthographic, false);
+    await page.screenshot({ path: join(out, 'page_grid.png') });
+  },
+
+  'nothing went wrong in the page': async ({ page, pageErrors }) => {
+    assert.deepEqual(await viz(page, 'errors'), []);
+    assert.deepEqual(pageErrors, []);
+  },
+};
+
+async function open() {
+  const session = await Session.open();
+  session.source = session.scene();
+  session.view = session.viz();
+  session.url = await session.view.says(/page at (\S+)/);
+
+  const profile = mkdtempSync(join(tmpdir(), 'cordis-chromium-'));
+  session.browser = await chromium.launchPersistentContext(profile, {
+    executablePath: CHROMIUM,
+    args: FLAGS,
+    viewport: { width: 1280, height: 720 },
+  });
+  const closePrograms = session.close.bind(session);
+  session.close = async () => {
+    await session.browser.close();
+    await closePrograms();
+    rmSync(profile, { recursive: true, force: true });
+  };
+  session.pageErrors = [];
+  session.page = session.browser.pages()[0] ?? (await session.browser.newPage());
+  session.page.on('pageerror', (error) => session.pageErrors.push(String(error)));
+  await session.page.goto(session.url);
+  await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0), 40_000);
+  return session;
+}
+
+await runCases(cases, open, 170_000);

@@ -1,0 +1,373 @@
+// A client that draws nothing speaks with a real viz_node: what it sends, to whom, and what a stalled client costs the others.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { request } from 'node:http';
+import { connect } from 'node:net';
+import { need, pause, runCases, Session, until } from './session.mjs';
+
+const WebSocket = need('ws');
+
+const MAGIC = 'CDS1';
+const [FRAME, SIGNALS, TOPOLOGY] = [1, 2, 3];
+const MATS = 60;
+
+/** Status, headers and text of one request, its path sent as it stands. */
+function ask(url, path, { method = 'GET', headers = {}, body } = {}) {
+  return new Promise((resolve, reject) => {
+    const { hostname, port } = new URL(url);
+    const asked = request({ hostname, port, path, method, headers, agent: false }, (answer) => {
+      let text = '';
+      answer.on('data', (part) => (text += part));
+      answer.on('end', () => resolve({ status: answer.statusCode, headers: answer.headers, text }));
+    });
+    asked.on('error', reject);
+    asked.end(body);
+  });
+}
+
+/** Status of an upgrade that is refused, or 101. */
+function upgrade(url, path, headers) {
+  return new Promise((resolve, reject) => {
+    const socket = new WebSocket(url.replace('http', 'ws') + path, { headers });
+    socket.on('open', () => {
+      socket.terminate();
+      resolve(101);
+    });
+    socket.on('unexpected-response', (_request, answer) => {
+      answer.destroy();
+      resolve(answer.statusCode);
+    });
+    socket.on('error', reject);
+  });
+}
+
+class Client {
+  texts = [];
+  frames = []; // {sequence, scene, frame, mats, links, dropped, bytes, buffer}
+  signals = [];
+  topologies = [];
+  acknowledging = true;
+  closeCode = null;
+
+  constructor(url) {
+    this.socket = new WebSocket(url.replace('http', 'ws') + '/live');
+    this.socket.on('message', (data, isBinary) => this.take(data, isBinary));
+    this.socket.on('close', (code) => (this.closeCode = code));
+    this.socket.on('error', () => {});
+  }
+
+  take(data, isBinary) {
+    if (!isBinary) return void this.texts.push(JSON.parse(data.toString()));
+    assert.equal(data.toString('latin1', 0, 4), MAGIC);
+    assert.equal(data[4], 1);
+    const header = data.readUInt16LE(6);
+    if (data[5] === FRAME) this.takeFrame(data, header);
+    else if (data[5] === SIGNALS) this.takeSignals(data, header);
+    else if (data[5] === TOPOLOGY) this.takeTopology(data, header);
+    else assert.fail(`type ${data[5]}`);
+  }
+
+  takeFrame(data, header) {
+    const frame = {
+      sequence: data.readUInt32LE(8),
+      scene: data.readUInt32LE(12),
+      frame: Number(data.readBigUInt64LE(16)),
+      step: Number(data.readBigUInt64LE(24)),
+      taken: data.readBigInt64LE(32),
+      sent: data.readBigInt64LE(40),
+      simulated: data.readDoubleLE(48),
+      mats: data.readUInt32LE(56),
+      linkStates: data.readUInt32LE(60),
+      dropped: data.readUInt32LE(64),
+    };
+    assert.equal(header, 72);
+    assert.equal(data.length, header + 12 * frame.mats + frame.linkStates);
+    frame.xyz = (i) => [0, 4, 8].map((offset) => data.readFloatLE(header + 12 * i + offset));
+    this.frames.push(frame);
+    if (this.acknowledging) this.acknowledge(frame.sequence);
+  }
+
+  takeSignals(data, header) {
+    const batch = {
+      scene: data.readUInt32LE(8),
+      columns: data.readUInt32LE(12),
+      rows: data.readUInt32LE(16),
+      firstStep: Number(data.readBigUInt64LE(24)),
+      firstS: data.readDoubleLE(32),
+      periodS: data.readDoubleLE(40),
+    };
+    assert.equal(header, 48);
+    assert.equal(data.length, header + 4 * batch.columns * batch.rows);
+    this.signals.push(batch);
+  }
+
+  takeTopology(data, header) {
+    const [mats, links] = [data.readUInt32LE(12), data.readUInt32LE(16)];
+    assert.equal(header, 24);
+    assert.equal(data.length, header + 5 * mats + 8 * links);
+    const kinds = [...data.subarray(header + 4 * mats + 8 * links)];
+    const ends = Array.from({ length: 2 * links }, (_, i) => data.readUInt32LE(header + 4 * mats + 4 * i));
+    this.topologies.push({ scene: data.readUInt32LE(8), mats, links, kinds, ends });
+  }
+
+  acknowledge(sequence, drawn = true) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ type: 'ack', sequence, drawn }));
+  }
+
+  newest(type) {
+    return this.texts.findLast((text) => text.type === type);
+  }
+
+  close() {
+    this.socket.terminate();
+  }
+}
+
+async function withClients(url, count, use) {
+  const clients = Array.from({ length: count }, () => new Client(url));
+  try {
+    await use(...clients);
+  } finally {
+    for (const client of clients) client.close();
+  }
+}
+
+const residentMB = (id) => (Number(readFileSync(`/proc/${id}/statm`, 'utf8').split(' ')[1]) * 4096) / 1e6;
+
+const cases = {
+  'a page is served, with what a browser needs to be careful': async ({ url }) => {
+    const { status, headers } = await ask(url, '/');
+    assert.equal(status, 200);
+    assert.match(headers['content-type'], /^text\/html/);
+    assert.match(headers['content-security-policy'], /default-src 'self'/);
+    assert.equal((await ask(url, '/?a=b')).status, 200);
+    assert.equal((await ask(url, '/none.js')).status, 404);
+  },
+
+  'no path leads out of the page': async ({ url }) => {
+    const paths = ['/../../../../etc/passwd', '/..%2f..%2fetc/passwd', '/%2e%2e/etc/passwd', '/..\\etc', '//etc/passwd', '/./etc/passwd'];
+    for (const path of paths) {
+      const { status, text } = await ask(url, path);
+      assert.ok(status === 403 || status === 404, `${path}: ${status}`);
+      assert.doesNotMatch(text, /root:/);
+    }
+  },
+
+  'nothing but GET is answered': async ({ url }) => {
+    for (const method of ['POST', 'PUT', 'DELETE', 'OPTIONS']) {
+      const { status, headers } = await ask(url, '/', { method, body: 'x'.repeat(3000) });
+      assert.equal(status, 405, method);
+      assert.equal(headers.allow, 'GET');
+    }
+  },
+
+  'a page of another site gets nothing': async ({ url }) => {
+    const { host } = new URL(url);
+    assert.equal(await upgrade(url, '/live', { Origin: 'http://elsewhere.example' }), 403);
+    assert.equal(await upgrade(url, '/live', { Origin: 'null' }), 403);
+    assert.equal(await upgrade(url, '/live', { Origin: 'http://127.0.0.1:1' }), 403);
+    assert.equal(await upgrade(url, '/live', { Origin: 'http://elsewhere.example', Host: 'elsewhere.example' }), 403);
+    assert.equal(await upgrade(url, '/live', { Origin: `http://${host}` }), 101);
+    assert.equal((await ask(url, '/', { headers: { Host: 'elsewhere.example' } })).status, 403);
+    assert.equal(await upgrade(url, '/other', {}), 404);
+    assert.equal((await ask(url, '/live')).status, 426);
+  },
+
+  'a client is told the scene, then every frame and every row of the signals': async ({ url }) => {
+    await withClients(url, 1, async (client) => {
+      await until('20 frames came', () => client.frames.length >= 20);
+      assert.equal(client.texts[0].type, 'hello');
+      assert.equal(client.texts[0].session, 'viz_test');
+      const description = client.newest('description');
+      assert.equal(description.name, 'string');
+      assert.equal(description.mat_count, MATS);
+      assert.deepEqual(description.signals[0], { name: 'finger position', unit: 'm' });
+      const topology = client.topologies[0];
+      assert.equal(topology.links, MATS - 1);
+      assert.deepEqual(topology.ends.slice(0, 4), [0, 1, 1, 2]);
+      assert.deepEqual([topology.kinds[0], topology.kinds[1], topology.kinds[12]], [1, 0, 2]);
+      checkFrames(client.frames, description.scene);
+      checkSignals(client.signals);
+    });
+  },
+
+  'the status names every node, and viz_node says where its page is': async ({ url }) => {
+    await withClients(url, 1, async (client) => {
+      const status = await until('three nodes are heard', () => {
+        const newest = client.newest('status');
+        return newest?.nodes.length === 3 && newest;
+      });
+      const by = Object.fromEntries(status.nodes.map((node) => [node.kind, node]));
+      assert.equal(by.sim_node.state, 'running');
+      assert.equal(by.sim_node.target_rate_hz, 1000);
+      assert.equal(by.device_node.name, 'keyboard');
+      assert.ok(by.device_node.latency_p50_s > 0);
+      assert.equal(by.viz_node.text, url);
+      await until('drawn frames are counted', () => {
+        const viz = client.newest('status').nodes.find((node) => node.kind === 'viz_node');
+        return viz.latency_count > 0 && viz.latency_p50_s > 0 && viz.latency_p50_s < 5;
+      });
+    });
+  },
+
+  'a client that acknowledges nothing has two frames, and then the newest': async ({ url }) => {
+    await withClients(url, 1, async (client) => {
+      client.acknowledging = false;
+      await until('two frames came', () => client.frames.length === 2);
+      const batches = client.signals.length;
+      await until('a second of signals came', () => client.signals.length >= batches + 25);
+      assert.equal(client.frames.length, 2);
+      client.acknowledge(client.frames[1].sequence, false);
+      await until('frames come again', () => client.frames.length === 4);
+      const gap = client.frames[2].sequence - client.frames[1].sequence - 1;
+      assert.ok(gap >= 20, `${gap} frames passed by`);
+      assert.equal(client.frames[2].dropped, gap);
+    });
+  },
+
+  'what is no acknowledgement is ignored, what is too long ends that client alone': async ({ url }) => {
+    await withClients(url, 2, async (odd, other) => {
+      await until('frames came', () => odd.frames.length > 3);
+      const words = ['', 'ack', '[]', '{"type":"ack"}', '{"type":"ack","sequence":-1,"drawn":true}', '{"type":"ack","sequence":1e30,"drawn":1}'];
+      for (const text of words) odd.socket.send(text);
+      odd.socket.send(Buffer.from([1, 2, 3]));
+      const count = odd.frames.length;
+      await until('it goes on', () => odd.frames.length > count + 5);
+      odd.socket.send('x'.repeat(5000));
+      await until('it is closed', () => odd.closeCode !== null);
+      assert.equal(odd.closeCode, 1009);
+      const others = other.frames.length;
+      await until('the other goes on', () => other.frames.length > others + 5);
+    });
+  },
+
+  'connections above the limit are turned away, and make room again': async ({ url }) => {
+    const { hostname, port } = new URL(url);
+    const idle = Array.from({ length: 80 }, () => connect(Number(port), hostname).on('error', () => {}));
+    try {
+      await until('some are closed', () => idle.filter((socket) => socket.readableEnded || socket.destroyed).length >= 16);
+    } finally {
+      for (const socket of idle) socket.destroy();
+    }
+    await until('there is room again', async () => (await ask(url, '/').catch(() => ({}))).status === 200);
+  },
+
+  'frames that do not fit their scene are counted and not shown': async (session) => {
+    await session.source.end();
+    session.source = session.scene('--bad-frames');
+    await withClients(session.url, 1, async (client) => {
+      await until('something was refused', () => client.newest('status')?.viz.refused > 2);
+      for (const frame of client.frames) assert.equal(frame.mats, MATS);
+    });
+    assert.match(session.view.log, /refused coordinates in a frame: 179, expected 180/);
+  },
+
+  'another life of sim_node is another scene': async (session) => {
+    await withClients(session.url, 1, async (client) => {
+      await until('frames came', () => client.frames.length > 3);
+      const before = client.newest('description').scene;
+      await session.source.end('SIGKILL');
+      await until('sim_node is lost', () => client.newest('status').nodes.find((n) => n.name === 'sim').state === 'lost');
+      session.source = session.scene();
+      await until('its frames came', () => client.frames.at(-1).scene > before);
+      assert.equal(client.newest('description').scene, client.frames.at(-1).scene);
+      assert.equal(client.topologies.at(-1).scene, client.frames.at(-1).scene);
+      await until('sim_node is back', () => client.newest('status').nodes.find((n) => n.name === 'sim').state === 'running');
+    });
+  },
+
+  'a client that stops reading large frames slows nobody, and memory stays flat': async (session) => {
+    await session.source.end();
+    session.source = session.scene('--scene', 'grid', '--mats', '100000');
+    await withClients(session.url, 3, async (stalled, deaf, reading) => {
+      deaf.acknowledging = false;
+      await until('large frames came to all', () => [stalled, deaf, reading].every((c) => c.frames.at(-1)?.mats > 90_000));
+      stalled.acknowledging = false;
+      stalled.socket._socket.pause();
+      const before = residentMB(session.view.id);
+      const first = reading.frames.at(-1);
+      await until('75 frames were taken', () => reading.frames.at(-1).sequence >= first.sequence + 75, 60_000);
+      const passed = reading.frames.at(-1).dropped - first.dropped;
+      assert.ok(passed < 50, `${passed} of 75 frames passed the reading client by`);
+      assert.ok(deaf.frames.filter((f) => f.mats > 90_000).length <= 2);
+      const grown = residentMB(session.view.id) - before;
+      assert.ok(grown < 30, `${grown} MB more after 75 frames of 1.2 MB`);
+    });
+  },
+
+  'an occupied port, a name taken and a wrong key each end in one clear line': async (session) => {
+    const { port } = new URL(session.url);
+    const occupied = session.vizOf(session.launchFile(`port: ${port}`, 'other'));
+    assert.equal(await occupied.ended, 1);
+    assert.match(occupied.log, new RegExp(`port ${port} on 127.0.0.1 is occupied.*view.port=${Number(port) + 1}`));
+    assert.equal(occupied.log.trim().split('\n').length, 1);
+
+    const twin = session.viz();
+    assert.equal(await twin.ended, 1);
+    assert.match(twin.log, /already has a node named 'view'/);
+
+    const wrong = session.vizOf(session.launchFile('prt: 1, address: here, rate_hz: 0', 'wrong'));
+    assert.equal(await wrong.ended, 2);
+    for (const place of [/wrong\.yaml:6:\d+.*prt/, /wrong\.yaml:6:\d+.*IP address/, /wrong\.yaml:6:\d+.*rate_hz/]) {
+      assert.match(wrong.log, place);
+    }
+
+    const checked = session.vizOf(session.launchFile(), '--check');
+    assert.equal(await checked.ended, 0);
+  },
+
+  'it stops when asked, with clients connected': async (session) => {
+    await withClients(session.url, 1, async (client) => {
+      await until('it is connected', () => client.texts.length > 0);
+      assert.equal(await session.view.end('SIGINT'), 0);
+    });
+    session.view = session.viz();
+    await session.view.says(/page at (\S+)/);
+    await pause(200);
+    assert.equal(await session.view.end('SIGTERM'), 0);
+  },
+};
+
+/** How scene_source.cpp moves MAT `i` of its string. */
+function heightOf(i, t) {
+  const u = (Math.PI * i) / (MATS - 1);
+  const [first, second] = [Math.cos(2 * Math.PI * 0.9 * t), Math.sin(2 * Math.PI * 1.7 * t)];
+  return 0.03 * (Math.sin(u) * first + 0.4 * Math.sin(2 * u) * second);
+}
+
+function checkFrames(frames, scene) {
+  for (let i = 0; i < frames.length; ++i) {
+    const frame = frames[i];
+    assert.equal(frame.scene, scene);
+    assert.equal(frame.mats, MATS);
+    assert.equal(frame.linkStates, 0);
+    assert.ok(frame.sent >= frame.taken);
+    assert.equal(frame.simulated, frame.step / 1000);
+    const [x, y, z] = frame.xyz(0);
+    assert.ok(Math.abs(x + 0.325) < 1e-6 && Math.abs(y) < 1e-6 && z === 0, 'the fixed end stays');
+    assert.ok(Math.abs(frame.xyz(29)[1] - heightOf(29, frame.simulated)) < 1e-6, 'as scene_source moves it');
+    if (i === 0) continue;
+    assert.ok(frame.sequence > frames[i - 1].sequence);
+    assert.ok(frame.step > frames[i - 1].step);
+    assert.equal(frame.dropped - frames[i - 1].dropped, frame.sequence - frames[i - 1].sequence - 1);
+  }
+}
+
+function checkSignals(signals) {
+  for (let i = 0; i < signals.length; ++i) {
+    const batch = signals[i];
+    assert.deepEqual([batch.columns, batch.rows, batch.periodS], [3, 40, 0.001]);
+    assert.ok(Math.abs(batch.firstS - batch.firstStep / 1000) < 1e-9);
+    if (i > 0) assert.equal(batch.firstStep, signals[i - 1].firstStep + 40, 'no row is lost');
+  }
+}
+
+async function open() {
+  const session = await Session.open();
+  session.source = session.scene();
+  session.view = session.viz();
+  session.url = await session.view.says(/page at (\S+)/);
+  return session;
+}
+
+await runCases(cases, open, 150_000);

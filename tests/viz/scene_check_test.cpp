@@ -1,0 +1,92 @@
+// tests/viz/scene_check_test.cpp
+#include "viz_node/scene_check.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/viz/scenes_for_tests.h"
+
+namespace cordis::viz {
+namespace {
+
+TEST(SceneCheck, FindsNothingWrongWithASoundScene) {
+  EXPECT_EQ(fault_of(row_of_three()), "");
+  EXPECT_EQ(fault_of(frame_of_three(1), row_of_three()), "");
+  EXPECT_EQ(fault_of(signals_of_three(1, 5), row_of_three()), "");
+}
+
+TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
+  const std::vector<std::pair<const char*, std::function<void(msg::SceneDescription&)>>> faults = {
+      {"radii", [](auto& d) { d.mat_radius_m().pop_back(); }},
+      {"radius", [](auto& d) { d.mat_radius_m()[1] = -1.0F; }},
+      {"radius", [](auto& d) { d.mat_radius_m()[1] = std::nanf(""); }},
+      {"dimensions", [](auto& d) { d.space(4); }},
+      {"odd number", [](auto& d) { d.link_ends().pop_back(); }},
+      {"joins a MAT", [](auto& d) { d.link_ends()[3] = 3; }},
+      {"port",
+       [](auto& d) {
+         d.ports().resize(1);
+         d.ports()[0].mat(3);
+       }},
+      {"name",
+       [](auto& d) {
+         d.matter().resize(1);
+         d.matter()[0].first(1);
+         d.matter()[0].count(3);
+       }},
+      {"name",
+       [](auto& d) {
+         d.links().resize(1);
+         d.links()[0].first(0xffffffff);
+         d.links()[0].count(2);  // would wrap round in 32 bits
+       }},
+      {"rate", [](auto& d) { d.step_rate_hz(0.0); }},
+      {"rate", [](auto& d) { d.frame_rate_hz(std::numeric_limits<double>::infinity()); }},
+      {"too many signals", [](auto& d) { d.signals().resize(kMostSignals + 1); }},
+  };
+  for (const auto& [word, spoil] : faults) {
+    msg::SceneDescription description = row_of_three();
+    spoil(description);
+    EXPECT_NE(fault_of(description).find(word), std::string::npos)
+        << word << ": '" << fault_of(description) << "'";
+  }
+}
+
+TEST(SceneCheck, FindsFramesThatDoNotFitTheirDescription) {
+  const std::vector<std::pair<const char*, std::function<void(msg::SceneFrame&)>>> faults = {
+      {"another run", [](auto& f) { f.run(1); }},
+      {"coordinates", [](auto& f) { f.position_m().pop_back(); }},
+      {"coordinates", [](auto& f) { f.position_m().clear(); }},
+      {"link states", [](auto& f) { f.link_state({0}); }},
+      {"finite", [](auto& f) { f.position_m()[8] = std::numeric_limits<float>::infinity(); }},
+      {"simulated time", [](auto& f) { f.simulated_s(std::nan("")); }},
+  };
+  for (const auto& [word, spoil] : faults) {
+    msg::SceneFrame frame = frame_of_three(1);
+    spoil(frame);
+    EXPECT_NE(fault_of(frame, row_of_three()).find(word), std::string::npos) << word;
+  }
+}
+
+TEST(SceneCheck, FindsBatchesThatAreNoWholeRows) {
+  const std::vector<std::pair<const char*, std::function<void(msg::SceneSignals&)>>> faults = {
+      {"another run", [](auto& s) { s.run(1); }},
+      {"signals", [](auto& s) { s.signal_count(3); }},
+      {"values", [](auto& s) { s.value().pop_back(); }},
+      {"values", [](auto& s) { s.value().resize(kMostBatchValues + 2); }},
+      {"no steps", [](auto& s) { s.stride_steps(0); }},
+  };
+  for (const auto& [word, spoil] : faults) {
+    msg::SceneSignals signals = signals_of_three(1, 5);
+    spoil(signals);
+    EXPECT_NE(fault_of(signals, row_of_three()).find(word), std::string::npos) << word;
+  }
+}
+
+}  // namespace
+}  // namespace cordis::viz

@@ -1,0 +1,193 @@
+// tests/viz/scene_mirror_test.cpp
+#include "viz_node/scene_mirror.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/viz/scenes_for_tests.h"
+
+namespace cordis::viz {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::int64_t kFrameNsec = 40'000'000;
+
+std::int64_t arrival(std::uint64_t number) {
+  return 2'000'000'000 + static_cast<std::int64_t>(number) * kFrameNsec;
+}
+
+msg::NodeStatus status_of(std::uint32_t node_id, const std::string& name) {
+  msg::NodeStatus status;
+  status.node_id(node_id);
+  status.node(name);
+  status.kind("sim_node");
+  status.phase("running");
+  return status;
+}
+
+class SceneMirrorTest : public testing::Test {
+ protected:
+  void SetUp() override { mirror_.take(row_of_three()); }
+
+  std::string take_frame(std::uint64_t number) {
+    return mirror_.take(frame_of_three(number), arrival(number));
+  }
+
+  SceneMirror mirror_{25.0};
+};
+
+TEST_F(SceneMirrorTest, HandsOutTheNewestFrameWithItsPositionsAsTheyCame) {
+  take_frame(1);
+  take_frame(2);
+
+  const auto frame = mirror_.frame();
+  ASSERT_NE(frame, nullptr);
+  EXPECT_EQ(frame->sequence, 2u);
+  EXPECT_EQ(frame->scene, mirror_.scene()->scene);
+  EXPECT_EQ(frame->frame.position_m(), frame_of_three(2).position_m());
+}
+
+TEST_F(SceneMirrorTest, KeepsWhatItHandedOutUnchanged) {
+  take_frame(1);
+  const auto first = mirror_.frame();
+  take_frame(2);
+  mirror_.take(row_of_three());
+
+  EXPECT_EQ(first->frame.frame(), 1u);
+  EXPECT_EQ(first->frame.position_m().size(), 9u);
+}
+
+TEST_F(SceneMirrorTest, CountsWhatDoesNotFitAndShowsItToNobody) {
+  msg::SceneFrame bad = frame_of_three(1);
+  bad.position_m().pop_back();
+  EXPECT_NE(mirror_.take(std::move(bad), arrival(1)), "");
+  msg::SceneSignals odd = signals_of_three(1, 2);
+  odd.value().pop_back();
+  EXPECT_NE(mirror_.take(std::move(odd)), "");
+
+  EXPECT_EQ(mirror_.frame(), nullptr);
+  EXPECT_EQ(mirror_.signals_after(0), nullptr);
+  EXPECT_EQ(mirror_.figures().refused, 2u);
+}
+
+TEST(SceneMirror, PassesOverInSilenceWhatComesBeforeTheFirstDescription) {
+  SceneMirror mirror(25.0);
+  EXPECT_EQ(mirror.take(frame_of_three(1), arrival(1)), "");
+  EXPECT_EQ(mirror.take(signals_of_three(1, 2)), "");
+
+  EXPECT_EQ(mirror.scene(), nullptr);
+  EXPECT_EQ(mirror.frame(), nullptr);
+  EXPECT_EQ(mirror.figures().refused, 0u);
+}
+
+TEST_F(SceneMirrorTest, CountsFramesThatNeverCame) {
+  take_frame(1);
+  take_frame(5);
+  take_frame(6);
+  EXPECT_EQ(mirror_.figures().lost, 3u);
+}
+
+TEST_F(SceneMirrorTest, StartsAnewWithAnotherRun) {
+  take_frame(900);
+  msg::SceneDescription next = row_of_three();
+  next.run(kRun + 1);
+  mirror_.take(std::move(next));
+  EXPECT_EQ(mirror_.frame(), nullptr) << "a frame of the run before";
+
+  msg::SceneFrame frame = frame_of_three(1);
+  frame.run(kRun + 1);
+  EXPECT_EQ(mirror_.take(std::move(frame), arrival(901)), "");
+  EXPECT_EQ(mirror_.frame()->sequence, 2u) << "the sequence goes on: clients count by it";
+  EXPECT_EQ(mirror_.frame()->scene, 2u);
+  EXPECT_EQ(mirror_.figures().lost, 0u);
+  EXPECT_NE(take_frame(902), "") << "a frame of the run before, late";
+}
+
+TEST_F(SceneMirrorTest, IgnoresAnOlderVersionOfTheSameScene) {
+  msg::SceneDescription newer = row_of_three();
+  newer.version(2);
+  newer.name("newer");
+  mirror_.take(std::move(newer));
+  mirror_.take(row_of_three());
+
+  EXPECT_EQ(Json::parse(mirror_.scene()->text)["name"], "newer");
+}
+
+TEST_F(SceneMirrorTest, HandsOutEveryBatchInOrderAndKeepsABoundedNumber) {
+  for (std::uint64_t batch = 0; batch < 1000; ++batch) {
+    mirror_.take(signals_of_three(1 + 80 * batch, 40));
+  }
+
+  std::uint64_t last = 0;
+  int count = 0;
+  while (const auto batch = mirror_.signals_after(last)) {
+    EXPECT_GT(batch->number, last);
+    last = batch->number;
+    ++count;
+  }
+  EXPECT_EQ(last, 1000u);
+  EXPECT_EQ(count, 64);
+}
+
+TEST_F(SceneMirrorTest, BoundsTheBytesOfItsBatchesToo) {
+  for (int batch = 0; batch < 64; ++batch) mirror_.take(signals_of_three(1, 250'000));
+
+  std::size_t bytes = 0;
+  for (auto batch = mirror_.signals_after(0); batch; batch = mirror_.signals_after(batch->number)) {
+    bytes += batch->bytes.size();
+  }
+  EXPECT_GT(bytes, 0u);
+  EXPECT_LE(bytes, 16u << 20);
+}
+
+TEST_F(SceneMirrorTest, TellsWhoeverWaitsAboutEveryNewThing) {
+  int calls = 0;
+  mirror_.on_change([&calls] { ++calls; });
+  mirror_.take(row_of_three());
+  take_frame(1);
+  mirror_.take(signals_of_three(1, 2));
+  EXPECT_EQ(calls, 3);
+
+  msg::SceneFrame bad = frame_of_three(2);
+  bad.position_m().clear();
+  mirror_.take(std::move(bad), arrival(2));
+  EXPECT_EQ(calls, 3);
+}
+
+TEST_F(SceneMirrorTest, PassesNoMoreFramesOnThanItsRate) {
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    mirror_.take(frame_of_three(i + 1), 2'000'000'000 + static_cast<std::int64_t>(i) * 4'000'000);
+  }
+  EXPECT_NEAR(static_cast<double>(mirror_.figures().frames), 100.0, 1.0);  // 4 s at 25 Hz
+  EXPECT_EQ(mirror_.figures().lost, 0u);
+}
+
+TEST_F(SceneMirrorTest, KeepsTheNewestStatusOfEachNodeAndAtMost64Nodes) {
+  for (std::uint32_t i = 0; i < 200; ++i) mirror_.take(status_of(i, "ghost"), i);
+  mirror_.take(status_of(199, "newest"), 1000);
+
+  const Json nodes = Json::parse(mirror_.status(1000))["nodes"];
+  EXPECT_EQ(nodes.size(), 64u);
+  EXPECT_EQ(nodes.back()["name"], "newest");
+}
+
+TEST_F(SceneMirrorTest, CountsEventsAndKeepsTheLast) {
+  msg::SceneEvents events;
+  events.run(kRun);
+  events.lost(2);
+  for (std::uint64_t step = 0; step < 100; ++step) {
+    events.event().emplace_back();
+    events.event().back().step(step);
+  }
+  mirror_.take(std::move(events));
+
+  const Json shown = Json::parse(mirror_.status(0))["events"];
+  EXPECT_EQ(shown["total"], 100);
+  EXPECT_EQ(shown["lost"], 2);
+  EXPECT_EQ(shown["newest"].size(), kEventsShown);
+  EXPECT_EQ(shown["newest"].back()["step"], 99);
+}
+
+}  // namespace
+}  // namespace cordis::viz

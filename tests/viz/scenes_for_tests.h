@@ -1,0 +1,60 @@
+// tests/viz/scenes_for_tests.h -- a small scene that is sound, to be made unsound by the tests.
+#pragma once
+
+#include <string>
+
+#include "idl/scene.h"
+
+namespace cordis::viz {
+
+inline constexpr std::uint64_t kRun = 1234567890123456789u;
+
+/// Three MATs in a row (fixed, mass, port), two links, two signals.
+inline msg::SceneDescription row_of_three() {
+  msg::SceneDescription description;
+  description.run(kRun);
+  description.version(1);
+  description.name("row");
+  description.space(2);
+  description.step_rate_hz(2000.0);
+  description.gesture_rate_hz(1000.0);
+  description.frame_rate_hz(25.0);
+  description.mat_kind({1, 0, 2});
+  description.mat_mass_kg({0.0F, 0.5F, 0.0F});
+  description.mat_radius_m({0.0F, 0.25F, 0.125F});
+  description.link_ends({0, 1, 1, 2});
+  for (const std::string name : {"height", "force"}) {
+    msg::SignalDescription signal;
+    signal.name(name);
+    signal.unit(name == "force" ? "N" : "m");
+    description.signals().push_back(signal);
+  }
+  return description;
+}
+
+inline msg::SceneFrame frame_of_three(std::uint64_t number) {
+  msg::SceneFrame frame;
+  frame.run(kRun);
+  frame.frame(number);
+  frame.step(80 * number);
+  frame.time_nsec(static_cast<std::int64_t>(1'000'000'000 + 40'000'000 * number));
+  frame.simulated_s(0.04 * static_cast<double>(number));
+  frame.position_m({0.0F, 0.0F, 0.0F, 1.0F, 0.5F, 0.0F, 2.0F, 0.0F, 0.0F});
+  return frame;
+}
+
+/// Rows of (row, -row), every second step.
+inline msg::SceneSignals signals_of_three(std::uint64_t first_step, std::size_t rows) {
+  msg::SceneSignals signals;
+  signals.run(kRun);
+  signals.first_step(first_step);
+  signals.stride_steps(2);
+  signals.signal_count(2);
+  for (std::size_t row = 0; row < rows; ++row) {
+    signals.value().push_back(static_cast<double>(row));
+    signals.value().push_back(-static_cast<double>(row));
+  }
+  return signals;
+}
+
+}  // namespace cordis::viz

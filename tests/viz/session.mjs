@@ -1,0 +1,166 @@
+// What the page and protocol tests share: programs started and ended by id, their logs, checks, and the reason to skip.
+import { spawn } from 'node:child_process';
+import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { parseArgs } from 'node:util';
+
+const SKIPPED = 77;
+
+const { values: options } = parseArgs({
+  options: {
+    'viz-node': { type: 'string' },
+    'scene-source': { type: 'string' },
+    web: { type: 'string' }, // the folder with node_modules
+    out: { type: 'string' }, // where pictures and launch files go
+  },
+});
+mkdirSync(options.out, { recursive: true });
+export const { out, web } = options;
+
+/** A package of the page's node_modules; the test is skipped when they are not installed. */
+export function need(name) {
+  try {
+    return createRequire(join(options.web, 'package.json'))(name);
+  } catch (error) {
+    if (error.code !== 'MODULE_NOT_FOUND') throw error;
+    return skip(`${name} is not installed: run npm ci in ${options.web}`);
+  }
+}
+
+export function skip(reason) {
+  console.log(`skipped: ${reason}`);
+  process.exit(SKIPPED);
+}
+
+export const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+/** Waits until `condition` gives something true, and gives that back; an Error with `what` when it takes too long. */
+export async function until(what, condition, atMostMs = 20_000) {
+  const end = Date.now() + atMostMs;
+  for (;;) {
+    const value = await condition();
+    if (value) return value;
+    if (Date.now() > end) throw new Error(`waited ${atMostMs / 1000} s in vain until ${what}`);
+    await pause(30);
+  }
+}
+
+class Program {
+  constructor(name, file, words) {
+    this.name = name;
+    this.log = '';
+    this.child = spawn(file, words, { stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, NO_COLOR: '1' } });
+    for (const stream of [this.child.stdout, this.child.stderr]) stream.on('data', (text) => (this.log += text));
+    this.ended = new Promise((resolve) => {
+      this.child.on('error', (error) => resolve(`not started: ${error.message}`));
+      this.child.on('exit', (code, signal) => resolve(signal ?? code));
+    });
+    this.running = true;
+    void this.ended.then(() => (this.running = false));
+  }
+
+  get id() {
+    return this.child.pid;
+  }
+
+  /** Exit code, or the name of the signal that ended it. */
+  async end(signal = 'SIGTERM') {
+    if (this.running) this.child.kill(signal);
+    const late = setTimeout(() => this.child.kill('SIGKILL'), 5000);
+    const result = await this.ended;
+    clearTimeout(late);
+    return result;
+  }
+
+  /** The first group of `pattern` in its output. */
+  async says(pattern) {
+    return until(`${this.name} says ${pattern}`, () => {
+      const found = pattern.exec(this.log);
+      if (!found && !this.running) throw new Error(`${this.name} ended without saying ${pattern}`);
+      return found && (found[1] ?? found[0]);
+    });
+  }
+}
+
+/** The programs of one test, in a DDS domain of their own. */
+export class Session {
+  programs = [];
+  folder = mkdtempSync(join(tmpdir(), 'cordis-viz-'));
+
+  static async open() {
+    const session = new Session();
+    const holder = session.start('domain', options['scene-source'], ['--hold-domain']);
+    session.domain = await holder.says(/^(\d+)\n/);
+    return session;
+  }
+
+  start(name, file, words) {
+    const program = new Program(name, file, words);
+    this.programs.push(program);
+    return program;
+  }
+
+  scene(...words) {
+    return this.start('scene_source', options['scene-source'], ['--domain', this.domain, ...words]);
+  }
+
+  launchFile(section = 'port: 0', name = 'viz_test') {
+    const file = join(this.folder, `${name}.yaml`);
+    const nodes = `nodes:\n  view: {node: viz_node, ${section}}\n`;
+    writeFileSync(file, `cordis: 1\nsession: ${name}\ndomain: ${this.domain}\nclock: realtime\n${nodes}`);
+    return file;
+  }
+
+  viz(...words) {
+    return this.start('viz_node', options['viz-node'], [this.launchFile(), ...words]);
+  }
+
+  vizOf(file, ...words) {
+    return this.start('viz_node', options['viz-node'], [file, ...words]);
+  }
+
+  async close() {
+    for (const program of this.programs.reverse()) await program.end();
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+
+  logs() {
+    return this.programs.map((p) => `--- ${p.name} (${p.running ? 'running' : 'ended'})\n${p.log}`).join('\n');
+  }
+}
+
+/** Runs the cases one after the other; ends the process with 0 or 1. A case that fails prints the log of every program. */
+export async function runCases(cases, openSession, atMostMs) {
+  let session = null;
+  let failed = 0;
+  const watchdog = setTimeout(() => {
+    console.error(`the test took longer than ${atMostMs / 1000} s\n${session?.logs() ?? ''}`);
+    for (const program of session?.programs ?? []) program.child.kill('SIGKILL');
+    process.exit(1);
+  }, atMostMs);
+  try {
+    session = await openSession();
+    for (const [name, run] of Object.entries(cases)) {
+      const begin = Date.now();
+      try {
+        await run(session);
+        console.log(`ok      ${name} (${Date.now() - begin} ms)`);
+      } catch (error) {
+        ++failed;
+        console.error(`FAILED  ${name}\n${error.stack}\n${session.logs()}`);
+      }
+    }
+  } catch (error) {
+    ++failed;
+    console.error(`${error.stack}\n${session?.logs() ?? ''}`);
+  } finally {
+    await session?.close();
+    clearTimeout(watchdog);
+  }
+  console.log(`${Object.keys(cases).length} cases, ${failed} failed`);
+  process.exit(failed === 0 ? 0 : 1);
+}
+
+export const pageIsBuilt = () => existsSync(join(options['viz-node'], '../../share/cordis/page/index.html'));

@@ -1,0 +1,63 @@
+// tests/viz/static_pages_test.cpp
+#include "viz_node/web/static_pages.h"
+
+#include <cstdlib>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+namespace cordis::viz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StaticPagesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "cordis-pages-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    root_ = name;
+    fs::create_directory(root_ / "page");
+    write(root_ / "secret.txt", "secret");
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  static void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+  fs::path root_;
+};
+
+TEST_F(StaticPagesTest, ServesTheFilesOfItsFolderWithTheirTypes) {
+  write(root_ / "page" / "index.html", "<p>");
+  write(root_ / "page" / "page.js", "1");
+  const StaticPages pages(root_ / "page");
+
+  EXPECT_TRUE(pages.built());
+  ASSERT_NE(pages.find("/"), nullptr);
+  EXPECT_EQ(pages.find("/")->content, "<p>");
+  EXPECT_EQ(pages.find("/")->type, "text/html; charset=utf-8");
+  ASSERT_NE(pages.find("/page.js"), nullptr);
+  EXPECT_EQ(pages.find("/page.js")->type, "text/javascript; charset=utf-8");
+}
+
+TEST_F(StaticPagesTest, FindsNothingOutsideItsFolder) {
+  write(root_ / "page" / "index.html", "<p>");
+  const StaticPages pages(root_ / "page");
+
+  for (const char* path : {"/../secret.txt", "/./index.html", "/page/../../secret.txt",
+                           "//index.html", "index.html", "", "/secret.txt"}) {
+    EXPECT_EQ(pages.find(path), nullptr) << path;
+  }
+}
+
+TEST_F(StaticPagesTest, SaysHowToBuildThePageWhereThereIsNone) {
+  for (const fs::path& folder : {root_ / "page", root_ / "nowhere"}) {
+    const StaticPages pages(folder);
+    EXPECT_FALSE(pages.built());
+    ASSERT_NE(pages.find("/"), nullptr);
+    EXPECT_NE(pages.find("/")->content.find("page not built: run `npm ci`"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace cordis::viz

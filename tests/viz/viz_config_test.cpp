@@ -1,0 +1,49 @@
+// tests/viz/viz_config_test.cpp
+#include "viz_node/viz_config.h"
+
+#include <gtest/gtest.h>
+
+namespace cordis::viz {
+namespace {
+
+VizConfig read(const std::string& section, config::Problems& problems) {
+  config::LaunchNode node;
+  node.name = "view";
+  node.program = "viz_node";
+  node.section = config::load_text(section, "launch.yaml", problems);
+  return read_viz_config(node, problems);
+}
+
+TEST(VizConfig, ServesThisMachineAloneUnlessToldOtherwise) {
+  config::Problems problems;
+  const VizConfig viz = read("{}", problems);
+
+  EXPECT_FALSE(problems.has_errors());
+  EXPECT_EQ(viz.address, "127.0.0.1");
+  EXPECT_EQ(viz.port, 8080);
+  EXPECT_EQ(viz.rate_hz, 25.0);
+}
+
+TEST(VizConfig, ReadsItsKeys) {
+  config::Problems problems;
+  const VizConfig viz = read("{address: '::1', port: 0, rate_hz: 50}", problems);
+
+  EXPECT_FALSE(problems.has_errors());
+  EXPECT_EQ(viz.address, "::1");
+  EXPECT_EQ(viz.port, 0);
+  EXPECT_EQ(viz.rate_hz, 50.0);
+}
+
+TEST(VizConfig, FindsAllThatIsWrongAtOnceAndWhere) {
+  config::Problems problems;
+  read("address: lab\nport: 65536\nrate_hz: 0.5\nprot: 1\n", problems);
+
+  ASSERT_EQ(problems.all().size(), 4u);
+  for (const auto& problem : problems.all()) {
+    EXPECT_EQ(problem.place.file, "launch.yaml");
+    EXPECT_GE(problem.place.line, 1);
+  }
+}
+
+}  // namespace
+}  // namespace cordis::viz
