@@ -12,7 +12,7 @@ constexpr int kSteps = 10000;
 // 1e-14 kg m/s of each of the 50 masses at random: 1e-14 * sqrt(50 * 10000) = 7e-12, and as much of
 // angular momentum at distances of 1 m. The masses drift some metres away meanwhile, which costs
 // another decimal.
-constexpr double kDrift = 2e-10;
+constexpr double kDrift = 5e-11;
 
 class FreeNetwork : public testing::TestWithParam<VectorWidth> {};
 
