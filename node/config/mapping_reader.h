@@ -111,7 +111,7 @@ double read_number(const Value& value, const std::string& what, double fallback,
 long read_integer(const Value& value, const std::string& what, long fallback, long lowest,
                   long highest, Problems& problems);
 
-/// A number in the shortest form that reads back as itself, for messages.
+/// A number in a short form that reads back as itself, for messages.
 std::string number_text(double number);
 
 }  // namespace cordis::config

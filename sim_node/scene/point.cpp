@@ -68,14 +68,19 @@ std::optional<Vec3> read_direction(const Value& value, const std::string& what, 
   return std::nullopt;
 }
 
-/// Whether a sequence lists several points or directions instead of being one: items that are not
-/// plain numbers.
+/// Whether a sequence lists several points or directions, instead of being the numbers of one.
 bool is_list(const Value& value, int space) {
   if (value.kind() != Value::Kind::kSequence) return false;
-  if (space == 1) return true;
-  return std::any_of(value.items().begin(), value.items().end(), [](const Value& item) {
-    return item.kind() == Value::Kind::kSequence || axis_of_word(item.text()).has_value();
-  });
+  return space == 1 ||
+         std::any_of(value.items().begin(), value.items().end(),
+                     [](const Value& item) { return item.kind() == Value::Kind::kSequence; });
+}
+
+/// The same for directions, which may be words.
+bool is_list_of_directions(const Value& value, int space) {
+  return is_list(value, space) ||
+         std::any_of(value.items().begin(), value.items().end(),
+                     [](const Value& item) { return axis_of_word(item.text()).has_value(); });
 }
 
 }  // namespace
@@ -116,7 +121,7 @@ std::vector<Vec3> required_points(config::MappingReader& reader, const std::stri
 
 std::vector<Vec3> read_directions(const Value& value, const std::string& what, int space,
                                   Problems& problems) {
-  const bool list = is_list(value, space);
+  const bool list = is_list_of_directions(value, space);
   std::vector<Vec3> directions;
   for (const Value& item : list ? value.items() : std::vector<Value>{value}) {
     const std::optional<Vec3> direction = read_direction(item, what, space, problems);

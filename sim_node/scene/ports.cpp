@@ -62,6 +62,35 @@ std::vector<Vec3> read_axis_directions(config::MappingReader& reader, std::size_
   return directions;
 }
 
+/// The role; without a known one, that which the other keys speak for.
+Role read_role(config::MappingReader& reader, config::Problems& problems) {
+  const std::size_t errors_before = problems.error_count();
+  const std::string role = reader.required_choice("role", {"mass", "liaison"});
+  if (problems.error_count() != errors_before) {
+    return reader.has("mass_kg") ? Role::kLiaison : Role::kMass;
+  }
+  return role == "mass" ? Role::kMass : Role::kLiaison;
+}
+
+/// The one MAT of a port.
+Piece read_port_mat(config::MappingReader& reader, const Port& port, int space) {
+  Piece piece;
+  piece.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
+  if (port.role == Role::kLiaison) {
+    piece.mats[0].kind = engine::MatKind::kMass;
+    piece.mats[0].mass = reader.required_number("mass_kg", Range::positive());
+  } else if (reader.optional_value("mass_kg").exists()) {
+    reader.error_at("mass_kg",
+                    "a port of role mass has no 'mass_kg': the device itself is the mass");
+  }
+  piece.radius_m = reader.optional_number("drawn_radius_m", 0.0, Range::not_negative());
+  if (space == 1) {
+    const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
+    piece.layout.push_back({at[0], at[1]});
+  }
+  return piece;
+}
+
 }  // namespace
 
 void Assembly::read_ports(const Value& section) {
@@ -81,26 +110,11 @@ void Assembly::read_port(const Value::Entry& entry) {
   port.device_id = config::name_hash(port.device);
   for (const long axis : reader.required_integers("axes", 0, kMostAxes - 1))
     port.axes.push_back(static_cast<std::uint32_t>(axis));
-  port.role =
-      reader.required_choice("role", {"mass", "liaison"}) == "mass" ? Role::kMass : Role::kLiaison;
+  port.role = read_role(reader, problems_);
   port.rest = space == 1 ? optional_point(reader, "at_m", Vec3::Zero(), 1)
                          : required_point(reader, "at_m", space);
-
-  Piece piece;
-  piece.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
-  if (port.role == Role::kLiaison) {
-    piece.mats[0].kind = engine::MatKind::kMass;
-    piece.mats[0].mass = reader.required_number("mass_kg", Range::positive());
-  } else if (reader.optional_value("mass_kg").exists()) {
-    reader.error_at("mass_kg",
-                    "a port of role mass has no 'mass_kg': the device itself is the mass");
-  }
-  piece.radius_m = reader.optional_number("drawn_radius_m", 0.0, Range::not_negative());
-  if (space == 1) {
-    const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
-    piece.layout.push_back({at[0], at[1]});
-    if (!reader.has("layout_at_m")) ports_without_layout_.push_back(mat_count());
-  }
+  Piece piece = read_port_mat(reader, port, space);
+  if (space == 1 && !reader.has("layout_at_m")) ports_without_layout_.push_back(mat_count());
   if (port.axes.size() > static_cast<std::size_t>(space)) {
     reader.error_at("axes", reader.what() + " has " + std::to_string(port.axes.size()) +
                                 " axes, but a MAT moves in " + std::to_string(space) +

@@ -106,6 +106,10 @@ std::optional<Selection> select(const config::Value& value, const std::string& w
     return std::nullopt;
   }
   if (!entry->sound) return std::nullopt;
+  if (entry->count == 0) {
+    problems.error(value.place(), "'" + name + "' has no " + kind_of(*entry));
+    return std::nullopt;
+  }
   if (indices && indices->last >= entry->count) {
     problems.error(value.place(), "'" + name + "' has the " + kind_of(*entry) + " 0 to " +
                                       std::to_string(entry->count - 1) + ", got " +

@@ -1,0 +1,170 @@
+#include "tests/scene/bad_scene.h"
+
+namespace cordis::scene {
+namespace {
+
+class BadMatter : public BadScenes {};
+
+TEST_P(BadMatter, HasOneProblemAtItsPlace) {
+  expect_only_problem(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Matter, BadMatter,
+    testing::Values(
+        BadScene{kHead2, "matter:\n  a: ^{kind: mass, at_m: [0, 0]}\n",
+                 "missing key 'mass_kg' in matter 'a'", ""},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, mass_kg: 1, ^mass_g: 3, at_m: [0, 0]}\n",
+                 "unknown key 'mass_g' in matter 'a'", "did you mean 'mass_kg'?"},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, mass_kg: ^0, at_m: [0, 0]}\n",
+                 "'mass_kg' in matter 'a' must be > 0, got 0", ""},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, mass_kg: ^.nan, at_m: [0, 0]}\n",
+                 "'mass_kg' in matter 'a' must be a finite number, got .nan", ""},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, mass_kg: ^\"1\", at_m: [0, 0]}\n",
+                 "'mass_kg' in matter 'a' must be a number, got '1'", "write it without quotes"},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, mass_kg: ^5 g, at_m: [0, 0]}\n",
+                 "'mass_kg' in matter 'a' must be a number, got '5 g'",
+                 "write the number alone; its unit stands in the key"},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, ^nan]}\n",
+                 "'at_m' in matter 'a' must be a finite number, got nan", ""},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: ^[0, 0, 0]}\n",
+                 "'at_m' in matter 'a' must be 2 numbers [x, y] in a scene of space 2, got 3", ""},
+        BadScene{kHead3, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0, 0], ^[0, 0]]}\n",
+                 "'at_m' in matter 'a' must be 3 numbers [x, y, z] in a scene of space 3, got 2",
+                 ""},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], ^1]}\n",
+                 "'at_m' in matter 'a' must be 2 numbers [x, y] in a scene of space 2, got '1'",
+                 ""},
+        BadScene{kHead1, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [^[0, 0]]}\n",
+                 "'at_m' in matter 'a' must be one number in a scene of space 1, got 2", ""},
+        BadScene{kHead1, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: ^[]}\n",
+                 "'at_m' in matter 'a' must not be empty", ""},
+        BadScene{kHead1, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: ^1e7}\n",
+                 "'at_m' in matter 'a' must be between -1000000 and 1000000, got 1e7", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^3}\n",
+                 "'velocity_m_per_s' in matter 'a' must have 2 numbers, got 1", ""},
+        BadScene{kHead2, "matter:\n  a: {kind: ^mas, mass_kg: 1, at: 0}\n",
+                 "'kind' in matter 'a' must be one of mass, fixed, chain, ring, grid, got 'mas'",
+                 "did you mean 'mass'?"},
+        BadScene{kHead2, "matter:\n  a: ^{mass_kg: 1, at_m: [0, 0]}\n",
+                 "missing key 'kind' in matter 'a'", ""},
+        BadScene{kHead2, "matter:\n  a: ^3\n", "matter 'a' must be a mapping of keys, got '3'", ""},
+        BadScene{kHead2, "matter:\n  ^3a: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n",
+                 "a name is of letters, digits, '_' and '-' and begins with a letter, got '3a'",
+                 ""},
+        BadScene{kHead2, "matter:\n  a: {kind: fixed, at_m: [0, 0], ^mass_kg: 1}\n",
+                 "unknown key 'mass_kg' in matter 'a'", "known keys: kind, at_m, drawn_radius_m"},
+        BadScene{kHead2, "matter:\n  a: {kind: fixed, at_m: [0, 0], ^layout_at_m: [1, 2]}\n",
+                 "unknown key 'layout_at_m' in matter 'a'",
+                 "known keys: kind, at_m, drawn_radius_m"},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: ^1, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "stiffness_n_per_m: 1}\n",
+                 "'count' in matter 'a' must be between 2 and 1000000, got 1", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: ^2.5, mass_kg: 1, from_m: [0, 0], to_m: [1, "
+                 "0], stiffness_n_per_m: 1}\n",
+                 "'count' in matter 'a' must be a whole number, got '2.5'", ""},
+        BadScene{
+            kHead2,
+            "matter:\n  a: ^{kind: chain, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0]}\n",
+            "missing key 'stiffness_n_per_m' in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: ^{kind: chain, count: 2, mass_kg: 1, to_m: [1, 0], "
+                 "stiffness_n_per_m: 1}\n",
+                 "missing key 'from_m' in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: 2, mass_kg: 1, from_m: ^[0, 2e6], to_m: [1, "
+                 "0], stiffness_n_per_m: 1}\n",
+                 "'from_m' in matter 'a' is farther than 1e6 m away", ""},
+        BadScene{
+            kHead2,
+            "matter:\n  a: {kind: chain, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+            "stiffness_n_per_m: 1, ends: ^fixd}\n",
+            "'ends' in matter 'a' must be one of free, fixed, first_fixed, last_fixed, got 'fixd'",
+            "did you mean 'fixed'?"},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "stiffness_n_per_m: 10, tension_n: ^6}\n",
+                 "'tension_n' in matter 'a' asks for a negative rest length",
+                 "with this stiffness and these distances it is at most 5 N"},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "stiffness_n_per_m: 10, tension_n: ^1, rest_m: 1}\n",
+                 "either 'tension_n' or 'rest_m' can be given in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "stiffness_n_per_m: 0, tension_n: ^1}\n",
+                 "'tension_n' in matter 'a' needs a stiffness > 0", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "stiffness_n_per_m: 10, rest_m: ^-1}\n",
+                 "'rest_m' in matter 'a' must be >= 0, got -1", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "liaison: ^steel}\n",
+                 "no liaison is named 'steel'", ""},
+        BadScene{
+            kHead2,
+            "liaisons: {d: {kind: damper, viscosity_n_s_per_m: 1}}\nmatter:\n  a: {kind: chain, "
+            "count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: d, tension_n: ^1}\n",
+            "a damper has no 'tension_n'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: ring, count: ^2, mass_kg: 1, center_m: [0, 0], radius_m: 1, "
+                 "stiffness_n_per_m: 1}\n",
+                 "'count' in matter 'a' must be between 3 and 1000000, got 2", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: ^0, "
+                 "stiffness_n_per_m: 1}\n",
+                 "'radius_m' in matter 'a' must be > 0 and <= 1000000, got 0", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: 1, "
+                 "stiffness_n_per_m: 1, ^plane: xz}\n",
+                 "unknown key 'plane' in matter 'a'",
+                 "known keys: kind, count, mass_kg, center_m, radius_m, liaison, "
+                 "stiffness_n_per_m, viscosity_n_s_per_m, rest_m, tension_n, drawn_radius_m"},
+        BadScene{kHead3,
+                 "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0, 0], radius_m: "
+                 "1, stiffness_n_per_m: 1, plane: ^zx}\n",
+                 "'plane' in matter 'a' must be one of xy, xz, yz, got 'zx'", "did you mean 'xz'?"},
+        BadScene{kHead1,
+                 "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, ^radius_m: 1, "
+                 "stiffness_n_per_m: 1}\n",
+                 "unknown key 'radius_m' in matter 'a'",
+                 "known keys: kind, count, mass_kg, at_m, liaison, stiffness_n_per_m, "
+                 "viscosity_n_s_per_m, rest_m, tension_n, layout_at_m, layout_spacing_m, "
+                 "drawn_radius_m"},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: grid, rows: ^1, columns: 2, mass_kg: 1, corner_m: [0, 0], "
+                 "spacing_m: 1, stiffness_n_per_m: 1}\n",
+                 "'rows' in matter 'a' must be between 2 and 500000, got 1", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: grid, rows: ^2000, columns: 2000, mass_kg: 1, corner_m: [0, "
+                 "0], spacing_m: 1, stiffness_n_per_m: 1}\n",
+                 "matter 'a' has more than 1000000 MATs", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], "
+                 "spacing_m: ^[1, 2, 3], stiffness_n_per_m: 1}\n",
+                 "'spacing_m' in matter 'a' must be one number > 0, or two: between columns, "
+                 "between rows",
+                 ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], "
+                 "spacing_m: ^-1, stiffness_n_per_m: 1}\n",
+                 "'spacing_m' in matter 'a' must be one number > 0, or two: between columns, "
+                 "between rows",
+                 ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], "
+                 "spacing_m: 1, stiffness_n_per_m: 1, border: ^none}\n",
+                 "'border' in matter 'a' must be one of free, fixed, corners, got 'none'", ""},
+        BadScene{kHead1, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: 0, layout_at_m: ^1}\n",
+                 "'layout_at_m' in matter 'a' must have 2 numbers, got 1", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: chain, count: 1000000, mass_kg: 1, from_m: [0, 0], to_m: "
+                 "[1, 0], stiffness_n_per_m: 1}\n  ^b: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n",
+                 "the scene has more than 1000000 MATs or 8000000 links", ""}));
+
+}  // namespace
+}  // namespace cordis::scene

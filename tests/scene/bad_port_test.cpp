@@ -1,0 +1,112 @@
+#include "tests/scene/bad_scene.h"
+
+namespace cordis::scene {
+namespace {
+
+class BadPorts : public BadScenes {};
+class BadSignals : public BadScenes {};
+
+TEST_P(BadPorts, HaveOneProblemAtItsPlace) {
+  expect_only_problem(GetParam());
+}
+TEST_P(BadSignals, HaveOneProblemAtItsPlace) {
+  expect_only_problem(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ports, BadPorts,
+    testing::Values(
+        BadScene{kLinked, "ports:\n  ^a: {device: k, axes: [0], role: mass, at_m: [0, 0]}\n",
+                 "the name 'a' is used twice", "first used at line 8"},
+        BadScene{kLinked, "ports:\n  p: ^{axes: [0], role: mass, at_m: [0, 0]}\n",
+                 "missing key 'device' in port 'p'", ""},
+        BadScene{kLinked, "ports:\n  p: ^{device: k, axes: [0], at_m: [0, 0]}\n",
+                 "missing key 'role' in port 'p'", ""},
+        BadScene{kLinked, "ports:\n  p: ^{device: k, axes: [0], at_m: [0, 0], mass_kg: 1}\n",
+                 "missing key 'role' in port 'p'", ""},
+        BadScene{kLinked, "ports:\n  p: {device: k, axes: [0], role: ^mas, at_m: [0, 0]}\n",
+                 "'role' in port 'p' must be one of mass, liaison, got 'mas'",
+                 "did you mean 'mass'?"},
+        BadScene{kLinked, "ports:\n  p: ^{device: k, axes: [0], role: mass}\n",
+                 "missing key 'at_m' in port 'p'", ""},
+        BadScene{kLinked, "ports:\n  p: ^{device: k, axes: [0], role: liaison, at_m: [0, 0]}\n",
+                 "missing key 'mass_kg' in port 'p'", ""},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], mass_kg: ^1}\n",
+                 "a port of role mass has no 'mass_kg': the device itself is the mass", ""},
+        BadScene{kLinked, "ports:\n  p: {device: k, axes: ^[], role: mass, at_m: [0, 0]}\n",
+                 "'axes' in port 'p' must not be empty", ""},
+        BadScene{kLinked, "ports:\n  p: {device: k, axes: [^16], role: mass, at_m: [0, 0]}\n",
+                 "'axes' in port 'p' must be between 0 and 15, got 16", ""},
+        BadScene{kLinked, "ports:\n  p: {device: k, axes: [^-1], role: mass, at_m: [0, 0]}\n",
+                 "'axes' in port 'p' must be between 0 and 15, got -1", ""},
+        BadScene{kLinked, "ports:\n  p: {device: k, axes: ^[0, 1, 2], role: mass, at_m: [0, 0]}\n",
+                 "port 'p' has 3 axes, but a MAT moves in 2 directions in a scene of space 2", ""},
+        BadScene{kLinked, "ports:\n  ^p: {device: k, axes: [0, 0], role: mass, at_m: [0, 0]}\n",
+                 "axis 0 of device 'k' is taken by port 'p'", ""},
+        BadScene{kLinked,
+                 "ports: {p: {device: k, axes: [0], role: mass, at_m: [0, 0]},\n  ^q: {device: k, "
+                 "axes: [0], role: mass, at_m: [0, 0]}}\n",
+                 "axis 0 of device 'k' is taken by port 'p'", ""},
+        BadScene{kLinked,
+                 "ports: {p: {device: k, axes: [0], role: mass, at_m: [0, 0]},\n  ^q: {device: k, "
+                 "axes: [1], role: liaison, mass_kg: 1, at_m: [0, 0]}}\n",
+                 "all ports of a device have one role, and 'k' has the role mass in port 'p'", ""},
+        BadScene{kLinked,
+                 "ports: {p: {device: costarring, axes: [0], role: mass, at_m: [0, 0]},\n  ^q: "
+                 "{device: liquid, axes: [1], role: mass, at_m: [0, 0]}}\n",
+                 "the devices 'liquid' and 'costarring' have the same hash", "rename one of them"},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], along: ^z}\n",
+                 "'along' in port 'p': a scene of space 2 has no direction 'z'", ""},
+        BadScene{
+            kLinked, "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], along: ^up}\n",
+            "'along' in port 'p' must be 2 numbers [x, y] in a scene of space 2, got 'up'", ""},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], along: ^[0, 0]}\n",
+                 "'along' in port 'p' must not be zero", ""},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], along: ^[x, y]}\n",
+                 "'along' in port 'p' must have one direction per axis: 1, got 2", ""},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0, 1], role: mass, at_m: [0, 0], along: ^[x, "
+                 "[-3, 0]]}\n",
+                 "'along' in port 'p': the directions depend on each other",
+                 "no two may be parallel, no three in one plane"},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], ^coupling: 1}\n",
+                 "unknown key 'coupling' in port 'p'",
+                 "known keys: device, axes, role, at_m, mass_kg, drawn_radius_m, along"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Signals, BadSignals,
+    testing::Values(
+        BadScene{kLinked, "signals:\n  s: ^{of: \"a[0]\", axis: x}\n",
+                 "missing key 'quantity' in signal 's'", ""},
+        BadScene{kLinked, "signals:\n  s: ^{of: \"a[0]\", quantity: position}\n",
+                 "missing key 'axis' in signal 's'", ""},
+        BadScene{kLinked, "signals:\n  s: {of: \"a[0]\", quantity: position, axis: ^z}\n",
+                 "'axis' in signal 's' must be one of x, y, got 'z'", ""},
+        BadScene{kLinked, "signals:\n  s: {of: \"a[0]\", quantity: speed, axis: ^x}\n",
+                 "the quantity 'speed' has no axis", ""},
+        BadScene{kLinked, "signals:\n  s: {of: \"a[0]\", quantity: ^elongation}\n",
+                 "a MAT has no quantity 'elongation'", "it has position, velocity, force, speed"},
+        BadScene{kLinked, "signals:\n  s: {quantity: ^elongation}\n",
+                 "the scene has no quantity 'elongation'", "say whose it is: of: name[3]"},
+        BadScene{kLinked, "signals:\n  s: {quantity: ^heat}\n", "the scene has no quantity 'heat'",
+                 "it has energy, kinetic_energy, elastic_energy, gravity_energy, "
+                 "dissipated_energy, port_work"},
+        BadScene{kLinked, "signals:\n  s: {of: ^a, quantity: position, axis: x}\n",
+                 "a signal is of one MAT or one link, and 'a' has 3", "pick one: a[0]"},
+        BadScene{kLinked, "signals:\n  s: {of: ^aa, quantity: position, axis: x}\n",
+                 "no matter, port or links are named 'aa'", ""},
+        BadScene{kLinked, "signals:\n  s: {of: ^\"a.links[0]\", quantity: position}\n",
+                 "'a.links' has no links", ""},
+        BadScene{kLinked, "signals:\n  s: {of: \"a[0]\", quantity: speed, ^unit: m}\n",
+                 "unknown key 'unit' in signal 's'", "known keys: of, quantity, axis"},
+        BadScene{kLinked, "signals:\n  ^s s: {quantity: energy}\n",
+                 "a name is of letters, digits, '_' and '-' and begins with a letter, got 's s'",
+                 ""}));
+
+}  // namespace
+}  // namespace cordis::scene

@@ -1,0 +1,176 @@
+#include "tests/scene/bad_scene.h"
+
+namespace cordis::scene {
+namespace {
+
+TEST_P(BadScenes, HaveOneProblemAtItsPlace) {
+  expect_only_problem(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Whole, BadScenes,
+    testing::Values(
+        BadScene{kNothing, "^", "scene must be a mapping of keys, got nothing", ""},
+        BadScene{kNothing, "^[1]\n", "scene must be a mapping of keys, got a sequence", ""},
+        BadScene{
+            kNothing,
+            "^space: 1\nstep: {rate_hz: 1000}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+            "missing key 'cordis' in scene", ""},
+        BadScene{
+            kNothing,
+            "^cordis: 1\nstep: {rate_hz: 1000}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+            "missing key 'space' in scene", ""},
+        BadScene{kNothing,
+                 "cordis: 1\nspace: ^4\nstep: {rate_hz: 1000}\nmatter: {a: {kind: mass, mass_kg: "
+                 "1, at_m: 0}}\n",
+                 "'space' in scene must be between 1 and 3, got 4", ""},
+        BadScene{kNothing, "^cordis: 1\nspace: 1\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 "missing key 'step' in scene", ""},
+        BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: ^1500}\nmatter: {a: {kind: mass, mass_kg: "
+                 "1, at_m: 0}}\n",
+                 "'rate_hz' must be an integer multiple of the gesture rate, 1000 Hz, got 1500",
+                 "take 1000 or 2000, or set 'gesture_rate_hz'"},
+        BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: ^500}\nmatter: {a: {kind: mass, mass_kg: 1, "
+                 "at_m: 0}}\n",
+                 "'rate_hz' must be an integer multiple of the gesture rate, 1000 Hz, got 500",
+                 "take 1000, or set 'gesture_rate_hz'"},
+        BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, frame_rate_hz: ^999, gesture_rate_hz: "
+                 "500}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 "'frame_rate_hz' must not exceed the gesture rate, 500 Hz", ""},
+        BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: ^0}\nmatter: {a: {kind: mass, mass_kg: 1, "
+                 "at_m: 0}}\n",
+                 "'rate_hz' in step must be between 1 and 1000000, got 0", ""},
+        BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^euler}\nmatter: {a: "
+                 "{kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 "'integrator' in step must be one of cordis, got 'euler'", ""},
+        BadScene{kHead1, "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nworld: {^viscosity: 1}\n",
+                 "unknown key 'viscosity' in world", "did you mean 'viscosity_n_s_per_m'?"},
+        BadScene{
+            kHead1,
+            "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nworld: {viscosity_n_s_per_m: ^-1}\n",
+            "'viscosity_n_s_per_m' in world must be >= 0, got -1", ""},
+        BadScene{kHead2,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\nworld: {gravity_m_per_s2: "
+                 "^-9.81}\n",
+                 "'gravity_m_per_s2' in world must have 2 numbers, got 1", ""},
+        BadScene{kHead2, "matter: ^{a: {kind: fixed, at_m: [0, 0]}}\n",
+                 "the scene has no mass that can move", ""},
+        BadScene{kHead2, "matter: ^{}\n", "the scene has no mass that can move", ""},
+        BadScene{kHead2,
+                 "matter: ^{}\nports: {p: {device: d, axes: 0, role: mass, at_m: [0, 0]}}\n",
+                 "the scene has no mass that can move", ""},
+        BadScene{kHead2,
+                 "matter: ^{a: {kind: chain, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "ends: fixed, stiffness_n_per_m: 1}}\n",
+                 "the scene has no mass that can move", ""},
+        BadScene{kHead2, "matter: ^{a: {kind: mass, mass_kg: 1.0e-320, at_m: [0, 0]}}\n",
+                 "this cannot be simulated: MAT 0: mass must be large enough for the step", ""}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Liaisons, BadScenes,
+    testing::Values(
+        BadScene{
+            kHead1,
+            "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: ^{kind: spring}\n",
+            "missing key 'stiffness_n_per_m' in liaison 's'", ""},
+        BadScene{kHead1,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: ^{kind: "
+                 "spring_damper, stiffness_n_per_m: 1}\n",
+                 "missing key 'viscosity_n_s_per_m' in liaison 's'", ""},
+        BadScene{kHead1,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: "
+                 "^{stiffness_n_per_m: 1}\n",
+                 "missing key 'kind' in liaison 's'", ""},
+        BadScene{kHead1,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: ^sprng}\n",
+                 "'kind' in liaison 's' must be one of spring, damper, spring_damper, got 'sprng'",
+                 "did you mean 'spring'?"},
+        BadScene{kHead1,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: spring, "
+                 "stiffness_n_per_m: ^-2}\n",
+                 "'stiffness_n_per_m' in liaison 's' must be >= 0, got -2", ""},
+        BadScene{kHead1,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: damper, "
+                 "viscosity_n_s_per_m: 1, rest_m: ^1}\n",
+                 "a damper has no 'rest_m'", ""},
+        BadScene{kHead1,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: spring, "
+                 "stiffness_n_per_m: 1, ^colour: red}\n",
+                 "unknown key 'colour' in liaison 's'",
+                 "known keys: kind, stiffness_n_per_m, rest_m, viscosity_n_s_per_m"},
+        BadScene{kHead1,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  include: [^[x]]\n",
+                 "'include' must be the path of a file, got a sequence", ""},
+        BadScene{kHead2,
+                 "matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\nliaisons:\n  s: {kind: "
+                 "spring, stiffness_n_per_m: 1, rest_m: ^-1}\n",
+                 "'rest_m' in liaison 's' must be >= 0, got -1", ""}));
+
+TEST(BadScene, TellsAllItsProblemsInOneGoAndNoneThatFollowsFromAnother) {
+  config::Problems problems;
+
+  load_scene_text(
+      "cordis: 1\n"
+      "space: 2\n"
+      "step: {rate_khz: 1, rate_hz: 1000}\n"
+      "liaisons:\n"
+      "  soft: {kind: spring, stiffness: 3}\n"
+      "matter:\n"
+      "  string: {kind: chain, count: 0, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: soft}\n"
+      "  nail: {kind: fixed, at_m: [0, x]}\n"
+      "ports:\n"
+      "  key: {device: k, axes: [77], role: mass, at_m: [0, 0]}\n"
+      "links:\n"
+      "  - {liaison: soft, between: [key, \"string[20]\"]}\n"
+      "  - {liaison: sift, name: held, between: [nail, \"string[99]\"]}\n"
+      "signals:\n"
+      "  f: {of: key, quantity: force, axis: y}\n"
+      "  g: {of: held, quantity: force}\n"
+      "  h: {of: string.links, quantity: elongation}\n"
+      "  i: {of: strin, quantity: elongation}\n",
+      "t", problems);
+
+  std::string places;
+  for (const config::Problem& problem : problems.in_order()) {
+    places += std::to_string(problem.place.line) + ':' + std::to_string(problem.place.column) + ' ';
+  }
+  EXPECT_EQ(places, "3:8 5:9 5:24 7:32 8:33 10:27 13:15 18:11 ") << problems.text();
+}
+
+TEST(BadScene, IsPrintedWithItsLineAndACaret) {
+  config::Problems problems;
+  load_scene_text(
+      scene_head(2) +
+          "matter:\n  string:\n    kind: chain\n    count: 40\n    mass_g: 20\n    from_m: [0, "
+          "0]\n    to_m: [1, 0]\n    stiffness_n_per_m: 1\n    mass_kg: -0.1\n",
+      "scenes/bow.yaml", problems);
+  EXPECT_EQ(problems.text(),
+            "scenes/bow.yaml:8:5: error: unknown key 'mass_g' in matter 'string'\n"
+            "    mass_g: 20\n"
+            "    ^\n"
+            "  hint: did you mean 'mass_kg'?\n"
+            "scenes/bow.yaml:12:14: error: 'mass_kg' in matter 'string' must be > 0, got -0.1\n"
+            "    mass_kg: -0.1\n"
+            "             ^");
+}
+
+TEST(LoadScene, OfAMissingFileIsOneProblem) {
+  config::Problems problems;
+  load_scene("no_such.yaml", problems);
+  EXPECT_EQ(problems.text(), "no_such.yaml: error: cannot be read: No such file or directory");
+
+  config::Problems of_launch;
+  of_launch.remember_source("l.yaml", "scene: no_such.yaml");
+  load_scene("no_such.yaml", of_launch, {"l.yaml", 1, 8});
+  EXPECT_EQ(of_launch.text(),
+            "l.yaml:1:8: error: cannot read 'no_such.yaml': No such file or directory\nscene: "
+            "no_such.yaml\n       ^");
+}
+
+}  // namespace
+}  // namespace cordis::scene

@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include "node/config/name_hash.h"
+#include "tests/scene/scene_text.h"
+
+namespace cordis::scene {
+namespace {
+
+using engine::Vec3;
+
+TEST(Port, OfRoleMassIsAMatWhosePositionIsImposed) {
+  const Scene scene = scene_with_bob(2, "",
+                                     "ports:\n  key: {device: keyboard, axes: [3], role: mass, "
+                                     "at_m: [1, 2], along: y, drawn_radius_m: 0.5}\n");
+
+  ASSERT_EQ(scene.ports.size(), 1u);
+  const Port& port = scene.ports[0];
+  EXPECT_EQ(port.name, "key");
+  EXPECT_EQ(port.device, "keyboard");
+  EXPECT_EQ(port.device_id, config::name_hash("keyboard"));
+  EXPECT_EQ(port.role, Role::kMass);
+  EXPECT_EQ(port.mat, 1u);
+  EXPECT_EQ(port.rest, Vec3(1, 2, 0));
+  EXPECT_EQ(port.axes, (std::vector<std::uint32_t>{3}));
+  EXPECT_EQ(port.directions, (std::vector<Vec3>{Vec3::UnitY()}));
+  EXPECT_EQ(port.place.line, 7);
+  EXPECT_EQ(scene.network.mats[1].kind, engine::MatKind::kPort);
+  EXPECT_EQ(scene.network.mats[1].position, Vec3(1, 2, 0));
+  EXPECT_EQ(scene.radius_m[1], 0.5);
+  EXPECT_EQ(scene.matter[1].name, "key");
+  EXPECT_EQ(scene.matter[1].first, 1u);
+}
+
+TEST(Port, OfRoleLiaisonIsAMassThatTheDevicePushes) {
+  const Scene scene = sound_scene(3,
+                                  "matter:\n  a: {kind: fixed, at_m: [0, 0, 0]}\n"
+                                  "ports:\n  thimble: {device: left, axes: [0, 1, 2], role: "
+                                  "liaison, at_m: [1, 2, 3], mass_kg: 0.1}\n");
+  EXPECT_EQ(scene.ports[0].role, Role::kLiaison);
+  EXPECT_EQ(scene.network.mats[1].kind, engine::MatKind::kMass);
+  EXPECT_EQ(scene.network.mats[1].mass, 0.1);
+  EXPECT_EQ(scene.ports[0].directions,
+            (std::vector<Vec3>{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}));
+}
+
+TEST(Port, DirectionsAreUnitVectorsHoweverTheyAreWritten) {
+  const auto directions = [](int space, const std::string& along) {
+    const std::string at = space == 1 ? "" : space == 2 ? ", at_m: [0, 0]" : ", at_m: [0, 0, 0]";
+    const std::size_t axes = space == 1 || along.find("[[") == std::string::npos ? 1 : 2;
+    return scene_with_bob(
+               space, "",
+               "ports:\n  p: {device: d, axes: " + std::string(axes == 1 ? "[0]" : "[0, 1]") +
+                   ", role: mass" + at + ", along: " + along + "}\n")
+        .ports.at(0)
+        .directions;
+  };
+  EXPECT_EQ(directions(2, "-y")[0], Vec3(0, -1, 0));
+  EXPECT_EQ(directions(2, "[3, 4]")[0], Vec3(0.6, 0.8, 0));
+  EXPECT_EQ(directions(3, "[z]")[0], Vec3(0, 0, 1));
+  EXPECT_EQ(directions(2, "[[0, 2], [-5, 0]]"), (std::vector<Vec3>{Vec3(0, 1, 0), Vec3(-1, 0, 0)}));
+  EXPECT_EQ(directions(1, "-2")[0], Vec3(-1, 0, 0));
+  EXPECT_EQ(directions(1, "[-2]")[0], Vec3(-1, 0, 0));
+}
+
+TEST(Port, SeveralPortsShareADevice) {
+  const Scene scene = scene_with_bob(
+      2, "",
+      "ports:\n  left: {device: thimbles, axes: [0, 1], role: mass, at_m: [0, 0]}\n"
+      "  right: {device: thimbles, axes: [2, 3], role: mass, at_m: [1, 0]}\n"
+      "  key: {device: keyboard, axes: 0, role: liaison, at_m: [1, 0], mass_kg: 1}\n");
+  EXPECT_EQ(scene.ports.size(), 3u);
+  EXPECT_EQ(scene.ports[1].mat, 2u);
+}
+
+TEST(Port, IsShownBesideTheFirstMatItIsLinkedToInOneDimension) {
+  const Scene scene = sound_scene(1,
+                                  "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1}\n"
+                                  "matter:\n  a: {kind: chain, count: 5, mass_kg: 1, "
+                                  "stiffness_n_per_m: 1, layout_spacing_m: 1}\n"
+                                  "ports:\n  p: {device: d, axes: [0], role: mass}\n  q: {device: "
+                                  "d, axes: [1], role: mass, layout_at_m: [7, 8]}\n"
+                                  "links:\n  - {liaison: s, between: [p, \"a[3]\"]}\n  - {liaison: "
+                                  "s, between: [q, \"a[3]\"]}\n");
+  EXPECT_EQ(scene.layout[5].x, 3.0);
+  EXPECT_EQ(scene.layout[6].x, 7.0);
+  EXPECT_EQ(scene.layout[6].z, 8.0);
+}
+
+}  // namespace
+}  // namespace cordis::scene
