@@ -15,7 +15,6 @@ PositionGuard::PositionGuard(const PositionGuardSettings& settings) : settings_(
 
 void PositionGuard::start() noexcept {
   output_.fill(std::clamp(0.0, settings_.lowest_m, settings_.highest_m));
-  wanted_ = output_;
   any_accepted_ = false;
   ticks_alive_ = 0;
 }
@@ -32,7 +31,6 @@ bool PositionGuard::accept(const AxisValues& wanted_m) noexcept {
 
 const AxisValues& PositionGuard::tick(double age_s) noexcept {
   if (!any_accepted_ || !(age_s < settings_.watchdog_s)) {
-    wanted_ = output_;
     any_accepted_ = false;
     ticks_alive_ = 0;
     return output_;

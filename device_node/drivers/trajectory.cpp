@@ -33,9 +33,10 @@ Trajectory::Place Trajectory::locate(double time_s) const noexcept {
   if (moves_.empty()) return {start_, start_, 0.0, 1.0};
   double local = std::max(time_s, 0.0);
   bool repeated = false;
-  if (period_s_ > 0.0 && local + kTimeGrain >= period_s_) {
-    local = std::max(0.0, local - std::floor((local + kTimeGrain) / period_s_) * period_s_);
-    repeated = true;
+  if (period_s_ > 0.0) {
+    const double repetitions = std::floor((local + kTimeGrain) / period_s_);
+    local = std::max(0.0, local - repetitions * period_s_);
+    repeated = repetitions > 0.0;
   }
   const auto next = std::upper_bound(moves_.begin(), moves_.end(), local + kTimeGrain,
                                      [](double t, const Move& move) { return t < move.begin_s; });

@@ -85,7 +85,7 @@ struct Rig {
     message.answered_run = sample.run;
     message.answered_sample = sample.sample;
     message.answered_time_nsec = sample.time_nsec;
-    message.time_nsec = now_nsec;
+    message.time_nsec = now_nsec + 500;
     message.axis_count = 2;
     message.value[0] = value;
     message.value[1] = value;
@@ -131,7 +131,7 @@ TEST(Exchange, NumbersItsSamplesAndEchoesTheAnswerInUse) {
   EXPECT_EQ(third.sample, 3u);
   EXPECT_EQ(third.answered_run, kSceneRun);
   EXPECT_EQ(third.answered_sample, 101u);
-  EXPECT_EQ(third.answered_time_nsec, 1000);
+  EXPECT_EQ(third.answered_time_nsec, 1500);
   EXPECT_EQ(third.value[0], -0.002);
 }
 
@@ -263,6 +263,20 @@ TEST(Exchange, ANewRunOfTheSceneIsKnownByWhatItAnswers) {
     EXPECT_EQ(rig.driver.commands.back()[0], 2.0);
     EXPECT_EQ(rig.meter.dropped(), 0u);
   }
+}
+
+TEST(Exchange, ANewRunOfTheSceneMayAnswerWhatAnEarlierOneHasAnswered) {
+  Rig rig(false);
+  rig.period(true, 1.0);
+  GestureMessage fresh = rig.answer(2.0);
+  fresh.run = kSceneRun + 1;
+  fresh.sample = 1;
+
+  rig.channel.waiting.push_back(fresh);
+  rig.exchange.receive();
+  rig.exchange.live();
+
+  EXPECT_EQ(rig.driver.commands.back()[0], 2.0);
 }
 
 TEST(Exchange, MeasuresFromSendingToTakingTheAnswer) {

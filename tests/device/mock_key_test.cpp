@@ -29,16 +29,16 @@ void launch(MockKey& key, const KeySettings& settings, double speed_m_per_s) {
   key.advance(h, settings.mass_kg * speed_m_per_s / h, 0.0);
 }
 
-/// Speed after the first bounce, for a key sent upward at 0.5 m/s.
-double speed_after_bounce(double damping_ratio, double h) {
+/// Speed left after the first bounce, for a key sent upward (1) or downward (-1) at 0.5 m/s.
+double speed_after_bounce(double damping_ratio, double h, double direction) {
   const KeySettings settings = bare_key(damping_ratio);
   MockKey key(settings);
-  launch(key, settings, 0.5);
+  launch(key, settings, direction * 0.5);
   for (double t = 0.0; t < 2.0; t += h) {
     key.advance(h, 0.0, 0.0);
-    if (key.position_m() < 0.19 && key.speed_m_per_s() < 0.0) break;
+    if (std::abs(key.position_m()) < 0.19 && direction * key.speed_m_per_s() < 0.0) break;
   }
-  return -key.speed_m_per_s();
+  return -direction * key.speed_m_per_s();
 }
 
 /// Share of the speed left by a bounce at a spring-damper that does not pull: with w = 1,
@@ -51,15 +51,18 @@ double restitution(double z) {
 }
 
 TEST(MockKey, BouncesOffAStopLikeADampedOscillatorThatDoesNotPull) {
-  for (const double damping_ratio : {0.02, 0.1, 0.3, 0.5}) {
-    const double expected = 0.5 * restitution(damping_ratio);
+  for (const double direction : {1.0, -1.0}) {
+    for (const double damping_ratio : {0.02, 0.1, 0.3, 0.5}) {
+      const double expected = 0.5 * restitution(damping_ratio);
 
-    const double coarse = speed_after_bounce(damping_ratio, 1e-4) - expected;  // w h = 0.01
-    const double fine = speed_after_bounce(damping_ratio, 1e-5) - expected;
+      const double coarse = speed_after_bounce(damping_ratio, 1e-4, direction) - expected;
+      const double fine = speed_after_bounce(damping_ratio, 1e-5, direction) - expected;
 
-    // First order: the damper sees the speed of half a sub-step before; relative error 2 zeta w h.
-    EXPECT_LT(std::abs(coarse), 0.5 * 2.0 * damping_ratio * 0.01 + 1e-4) << damping_ratio;
-    EXPECT_LT(std::abs(fine), std::abs(coarse) / 3.0) << damping_ratio;
+      // First order: the damper sees the speed of half a sub-step before. Relative error
+      // 2 zeta w h, with w h = 0.01.
+      EXPECT_LT(std::abs(coarse), 0.5 * 2.0 * damping_ratio * 0.01 + 1e-4) << damping_ratio;
+      EXPECT_LT(std::abs(fine), std::abs(coarse) / 3.0) << damping_ratio;
+    }
   }
 }
 

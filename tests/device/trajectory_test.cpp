@@ -70,11 +70,14 @@ TEST(Trajectory, RepeatsFromWhereItsLastMoveEnded) {
 
 TEST(Trajectory, JumpsInTheVerySampleItsTimeNames) {
   // 0.1 and 0.3 have no exact binary form, and the sum of ten tenths is not 1.
-  const Trajectory path(0.0, {{0.1, 0.0, 1.0}, {0.2, 0.0, 0.0}}, Shape::kLinear, 0.3);
+  const Trajectory first(0.0, {{0.0, 0.0, 1.0}, {0.1, 0.0, 0.0}}, Shape::kLinear, 0.3);
+  const Trajectory second(0.0, {{0.1, 0.0, 1.0}, {0.2, 0.0, 0.0}}, Shape::kLinear, 0.3);
+  const Trajectory short_one(0.0, {{0.0, 0.0, 1.0}, {0.05, 0.0, 0.0}}, Shape::kLinear, 0.1);
 
   for (int n = 0; n < 300000; ++n) {
-    const double expected = n % 3 == 1 ? 1.0 : 0.0;
-    ASSERT_EQ(path.at(n / 10.0), expected) << n;
+    ASSERT_EQ(first.at(n / 10.0), n % 3 == 0 ? 1.0 : 0.0) << n;
+    ASSERT_EQ(second.at(n / 10.0), n % 3 == 1 ? 1.0 : 0.0) << n;
+    ASSERT_EQ(short_one.at(n / 100.0), n % 10 < 5 ? 1.0 : 0.0) << n;
   }
 }
 
