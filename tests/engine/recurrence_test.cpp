@@ -18,7 +18,8 @@ double starting_speed(double stiffness, double viscosity, double x0, double x_be
 class Recurrence : public testing::TestWithParam<VectorWidth> {};
 
 TEST_P(Recurrence, IsFollowedToRoundingInOneDimension) {
-  for (const auto& given : reference("R02_cordis_discrete_exact")["cases"]) {
+  const nlohmann::json problem = reference("R02_cordis_discrete_exact");
+  for (const auto& given : problem["cases"]) {
     const double stiffness = number(given["Kp"]);
     const double viscosity = number(given["Zp"]);
     const double x0 = number(given["x0"]);
@@ -38,8 +39,8 @@ TEST_P(Recurrence, IsFollowedToRoundingInOneDimension) {
 TEST_P(Recurrence, IsFollowedToRoundingAlongADirectionInSpace) {
   const Vec3 direction(1.0 / 3.0, 2.0 / 3.0, -2.0 / 3.0);
   const double rest = 8.0;  // longer than any swing, so that the link never turns round
-
-  for (const auto& given : reference("R02_cordis_discrete_exact")["cases"]) {
+  const nlohmann::json problem = reference("R02_cordis_discrete_exact");
+  for (const auto& given : problem["cases"]) {
     const double stiffness = number(given["Kp"]);
     const double viscosity = number(given["Zp"]);
     const double x0 = number(given["x0"]);

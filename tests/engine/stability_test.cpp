@@ -31,7 +31,8 @@ NetworkDescription normalised(double stiffness, double viscosity) {
 }
 
 TEST(Stability, EndsForOneMassWhereItsReferenceSays) {
-  for (const auto& sample : reference("R21_stability_boundaries")["cordis_samples"]) {
+  const nlohmann::json problem = reference("R21_stability_boundaries");
+  for (const auto& sample : problem["cordis_samples"]) {
     const double largest =
         largest_excursion(normalised(sample[0].get<double>(), sample[1].get<double>()));
 
