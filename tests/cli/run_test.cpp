@@ -83,13 +83,13 @@ TEST(Run, ShowsWhatAllNodesObjectToAndStartsNone) {
 TEST(Run, FailsWhenACheckItselfFails) {
   FakeSession session;
   session.check("sim", "error scene.yaml:3:1: error: no mass;exit 2");
-  session.check("key", "die 11");
+  session.check("key", "die 9");
   session.node("view", "say started");
   const auto run = session.start();
 
   EXPECT_EQ(end_of(*run), 1);
   EXPECT_TRUE(contains(run->output(), "no mass"));
-  EXPECT_TRUE(contains(run->output(), "key could not check its files: killed by signal 11"));
+  EXPECT_TRUE(contains(run->output(), "key could not check its files: killed by signal 9"));
   EXPECT_FALSE(contains(run->output(), "started"));
 }
 
