@@ -8,8 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/allocation_guard.h"
-
 namespace cordis::device {
 namespace {
 
@@ -122,22 +120,6 @@ TEST(Mock, SameForcesGiveTheSamePositionsToTheLastBit) {
     }
     one.write(force);
     other.write(force);
-  }
-}
-
-TEST(Mock, LivesWithoutAllocating) {
-  for (const Role role : {Role::kMass, Role::kLiaison}) {
-    Mock mock(played_by_a_hand(-0.03, 16), layout_of(16));
-    mock.start(role);
-    AxisValues values{};
-
-    const test::AllocationGuard guard;
-    for (int n = 0; n < 1000; ++n) {
-      mock.write(values);
-      mock.read(values);
-      for (double& value : values) value *= 0.5;
-    }
-    EXPECT_EQ(guard.count(), 0u);
   }
 }
 
