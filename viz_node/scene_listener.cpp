@@ -75,13 +75,16 @@ struct SceneListener::Impl {
 
 SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror)
     : impl_(std::make_unique<Impl>(participant)) {
-  impl_->description.follow([&mirror](auto&& message) { return mirror.take(std::move(message)); });
-  impl_->frame.follow([&mirror](auto&& message) {
+  impl_->description.follow(
+      [&mirror](msg::SceneDescription&& message) { return mirror.take(std::move(message)); });
+  impl_->frame.follow([&mirror](msg::SceneFrame&& message) {
     return mirror.take(std::move(message), node::monotonic_nsec());
   });
-  impl_->signals.follow([&mirror](auto&& message) { return mirror.take(std::move(message)); });
-  impl_->events.follow([&mirror](auto&& message) { return mirror.take(std::move(message)); });
-  impl_->status.follow([&mirror](auto&& message) {
+  impl_->signals.follow(
+      [&mirror](msg::SceneSignals&& message) { return mirror.take(std::move(message)); });
+  impl_->events.follow(
+      [&mirror](msg::SceneEvents&& message) { return mirror.take(std::move(message)); });
+  impl_->status.follow([&mirror](msg::NodeStatus&& message) {
     mirror.take(std::move(message), node::monotonic_nsec());
     return std::string();
   });

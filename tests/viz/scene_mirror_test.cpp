@@ -28,31 +28,31 @@ msg::NodeStatus status_of(std::uint32_t node_id, const std::string& name) {
 
 class SceneMirrorTest : public testing::Test {
  protected:
-  void SetUp() override { mirror_.take(row_of_three()); }
+  void SetUp() override { mirror.take(row_of_three()); }
 
   std::string take_frame(std::uint64_t number) {
-    return mirror_.take(frame_of_three(number), arrival(number));
+    return mirror.take(frame_of_three(number), arrival(number));
   }
 
-  SceneMirror mirror_{25.0};
+  SceneMirror mirror{25.0};
 };
 
 TEST_F(SceneMirrorTest, HandsOutTheNewestFrameWithItsPositionsAsTheyCame) {
   take_frame(1);
   take_frame(2);
 
-  const auto frame = mirror_.frame();
+  const auto frame = mirror.frame();
   ASSERT_NE(frame, nullptr);
   EXPECT_EQ(frame->sequence, 2u);
-  EXPECT_EQ(frame->scene, mirror_.scene()->scene);
+  EXPECT_EQ(frame->scene, mirror.scene()->scene);
   EXPECT_EQ(frame->frame.position_m(), frame_of_three(2).position_m());
 }
 
 TEST_F(SceneMirrorTest, KeepsWhatItHandedOutUnchanged) {
   take_frame(1);
-  const auto first = mirror_.frame();
+  const auto first = mirror.frame();
   take_frame(2);
-  mirror_.take(row_of_three());
+  mirror.take(row_of_three());
 
   EXPECT_EQ(first->frame.frame(), 1u);
   EXPECT_EQ(first->frame.position_m().size(), 9u);
@@ -61,14 +61,14 @@ TEST_F(SceneMirrorTest, KeepsWhatItHandedOutUnchanged) {
 TEST_F(SceneMirrorTest, CountsWhatDoesNotFitAndShowsItToNobody) {
   msg::SceneFrame bad = frame_of_three(1);
   bad.position_m().pop_back();
-  EXPECT_NE(mirror_.take(std::move(bad), arrival(1)), "");
+  EXPECT_NE(mirror.take(std::move(bad), arrival(1)), "");
   msg::SceneSignals odd = signals_of_three(1, 2);
   odd.value().pop_back();
-  EXPECT_NE(mirror_.take(std::move(odd)), "");
+  EXPECT_NE(mirror.take(std::move(odd)), "");
 
-  EXPECT_EQ(mirror_.frame(), nullptr);
-  EXPECT_EQ(mirror_.signals_after(0), nullptr);
-  EXPECT_EQ(mirror_.figures().refused, 2u);
+  EXPECT_EQ(mirror.frame(), nullptr);
+  EXPECT_EQ(mirror.signals_after(0), nullptr);
+  EXPECT_EQ(mirror.figures().refused, 2u);
 }
 
 TEST(SceneMirror, PassesOverInSilenceWhatComesBeforeTheFirstDescription) {
@@ -85,22 +85,22 @@ TEST_F(SceneMirrorTest, CountsFramesThatNeverCame) {
   take_frame(1);
   take_frame(5);
   take_frame(6);
-  EXPECT_EQ(mirror_.figures().lost, 3u);
+  EXPECT_EQ(mirror.figures().lost, 3u);
 }
 
 TEST_F(SceneMirrorTest, StartsAnewWithAnotherRun) {
   take_frame(900);
   msg::SceneDescription next = row_of_three();
   next.run(kRun + 1);
-  mirror_.take(std::move(next));
-  EXPECT_EQ(mirror_.frame(), nullptr) << "a frame of the run before";
+  mirror.take(std::move(next));
+  EXPECT_EQ(mirror.frame(), nullptr) << "a frame of the run before";
 
   msg::SceneFrame frame = frame_of_three(1);
   frame.run(kRun + 1);
-  EXPECT_EQ(mirror_.take(std::move(frame), arrival(901)), "");
-  EXPECT_EQ(mirror_.frame()->sequence, 2u) << "the sequence goes on: clients count by it";
-  EXPECT_EQ(mirror_.frame()->scene, 2u);
-  EXPECT_EQ(mirror_.figures().lost, 0u);
+  EXPECT_EQ(mirror.take(std::move(frame), arrival(901)), "");
+  EXPECT_EQ(mirror.frame()->sequence, 2u) << "the sequence goes on: clients count by it";
+  EXPECT_EQ(mirror.frame()->scene, 2u);
+  EXPECT_EQ(mirror.figures().lost, 0u);
   EXPECT_NE(take_frame(902), "") << "a frame of the run before, late";
 }
 
@@ -108,20 +108,20 @@ TEST_F(SceneMirrorTest, IgnoresAnOlderVersionOfTheSameScene) {
   msg::SceneDescription newer = row_of_three();
   newer.version(2);
   newer.name("newer");
-  mirror_.take(std::move(newer));
-  mirror_.take(row_of_three());
+  mirror.take(std::move(newer));
+  mirror.take(row_of_three());
 
-  EXPECT_EQ(Json::parse(mirror_.scene()->text)["name"], "newer");
+  EXPECT_EQ(Json::parse(mirror.scene()->text)["name"], "newer");
 }
 
 TEST_F(SceneMirrorTest, HandsOutEveryBatchInOrderAndKeepsABoundedNumber) {
   for (std::uint64_t batch = 0; batch < 1000; ++batch) {
-    mirror_.take(signals_of_three(1 + 80 * batch, 40));
+    mirror.take(signals_of_three(1 + 80 * batch, 40));
   }
 
   std::uint64_t last = 0;
   int count = 0;
-  while (const auto batch = mirror_.signals_after(last)) {
+  while (const auto batch = mirror.signals_after(last)) {
     EXPECT_GT(batch->number, last);
     last = batch->number;
     ++count;
@@ -131,10 +131,10 @@ TEST_F(SceneMirrorTest, HandsOutEveryBatchInOrderAndKeepsABoundedNumber) {
 }
 
 TEST_F(SceneMirrorTest, BoundsTheBytesOfItsBatchesToo) {
-  for (int batch = 0; batch < 64; ++batch) mirror_.take(signals_of_three(1, 250'000));
+  for (int batch = 0; batch < 64; ++batch) mirror.take(signals_of_three(1, 250'000));
 
   std::size_t bytes = 0;
-  for (auto batch = mirror_.signals_after(0); batch; batch = mirror_.signals_after(batch->number)) {
+  for (auto batch = mirror.signals_after(0); batch; batch = mirror.signals_after(batch->number)) {
     bytes += batch->bytes.size();
   }
   EXPECT_GT(bytes, 0u);
@@ -143,31 +143,31 @@ TEST_F(SceneMirrorTest, BoundsTheBytesOfItsBatchesToo) {
 
 TEST_F(SceneMirrorTest, TellsWhoeverWaitsAboutEveryNewThing) {
   int calls = 0;
-  mirror_.on_change([&calls] { ++calls; });
-  mirror_.take(row_of_three());
+  mirror.on_change([&calls] { ++calls; });
+  mirror.take(row_of_three());
   take_frame(1);
-  mirror_.take(signals_of_three(1, 2));
+  mirror.take(signals_of_three(1, 2));
   EXPECT_EQ(calls, 3);
 
   msg::SceneFrame bad = frame_of_three(2);
   bad.position_m().clear();
-  mirror_.take(std::move(bad), arrival(2));
+  mirror.take(std::move(bad), arrival(2));
   EXPECT_EQ(calls, 3);
 }
 
 TEST_F(SceneMirrorTest, PassesNoMoreFramesOnThanItsRate) {
   for (std::uint64_t i = 0; i < 1000; ++i) {
-    mirror_.take(frame_of_three(i + 1), 2'000'000'000 + static_cast<std::int64_t>(i) * 4'000'000);
+    mirror.take(frame_of_three(i + 1), 2'000'000'000 + static_cast<std::int64_t>(i) * 4'000'000);
   }
-  EXPECT_NEAR(static_cast<double>(mirror_.figures().frames), 100.0, 1.0);  // 4 s at 25 Hz
-  EXPECT_EQ(mirror_.figures().lost, 0u);
+  EXPECT_NEAR(static_cast<double>(mirror.figures().frames), 100.0, 1.0);  // 4 s at 25 Hz
+  EXPECT_EQ(mirror.figures().lost, 0u);
 }
 
 TEST_F(SceneMirrorTest, KeepsTheNewestStatusOfEachNodeAndAtMost64Nodes) {
-  for (std::uint32_t i = 0; i < 200; ++i) mirror_.take(status_of(i, "ghost"), i);
-  mirror_.take(status_of(199, "newest"), 1000);
+  for (std::uint32_t i = 0; i < 200; ++i) mirror.take(status_of(i, "ghost"), i);
+  mirror.take(status_of(199, "newest"), 1000);
 
-  const Json nodes = Json::parse(mirror_.status(1000))["nodes"];
+  const Json nodes = Json::parse(mirror.status(1000))["nodes"];
   EXPECT_EQ(nodes.size(), 64u);
   EXPECT_EQ(nodes.back()["name"], "newest");
 }
@@ -180,9 +180,9 @@ TEST_F(SceneMirrorTest, CountsEventsAndKeepsTheLast) {
     events.event().emplace_back();
     events.event().back().step(step);
   }
-  mirror_.take(std::move(events));
+  mirror.take(std::move(events));
 
-  const Json shown = Json::parse(mirror_.status(0))["events"];
+  const Json shown = Json::parse(mirror.status(0))["events"];
   EXPECT_EQ(shown["total"], 100);
   EXPECT_EQ(shown["lost"], 2);
   EXPECT_EQ(shown["newest"].size(), kEventsShown);

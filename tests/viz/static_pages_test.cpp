@@ -16,21 +16,21 @@ class StaticPagesTest : public testing::Test {
   void SetUp() override {
     std::string name = (fs::temp_directory_path() / "cordis-pages-XXXXXX").string();
     ASSERT_NE(mkdtemp(name.data()), nullptr);
-    root_ = name;
-    fs::create_directory(root_ / "page");
-    write(root_ / "secret.txt", "secret");
+    root = name;
+    fs::create_directory(root / "page");
+    write(root / "secret.txt", "secret");
   }
-  void TearDown() override { fs::remove_all(root_); }
+  void TearDown() override { fs::remove_all(root); }
 
   static void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
-  fs::path root_;
+  fs::path root;
 };
 
 TEST_F(StaticPagesTest, ServesTheFilesOfItsFolderWithTheirTypes) {
-  write(root_ / "page" / "index.html", "<p>");
-  write(root_ / "page" / "page.js", "1");
-  const StaticPages pages(root_ / "page");
+  write(root / "page" / "index.html", "<p>");
+  write(root / "page" / "page.js", "1");
+  const StaticPages pages(root / "page");
 
   EXPECT_TRUE(pages.built());
   ASSERT_NE(pages.find("/"), nullptr);
@@ -41,8 +41,8 @@ TEST_F(StaticPagesTest, ServesTheFilesOfItsFolderWithTheirTypes) {
 }
 
 TEST_F(StaticPagesTest, FindsNothingOutsideItsFolder) {
-  write(root_ / "page" / "index.html", "<p>");
-  const StaticPages pages(root_ / "page");
+  write(root / "page" / "index.html", "<p>");
+  const StaticPages pages(root / "page");
 
   for (const char* path : {"/../secret.txt", "/./index.html", "/page/../../secret.txt",
                            "//index.html", "index.html", "", "/secret.txt"}) {
@@ -51,7 +51,7 @@ TEST_F(StaticPagesTest, FindsNothingOutsideItsFolder) {
 }
 
 TEST_F(StaticPagesTest, SaysHowToBuildThePageWhereThereIsNone) {
-  for (const fs::path& folder : {root_ / "page", root_ / "nowhere"}) {
+  for (const fs::path& folder : {root / "page", root / "nowhere"}) {
     const StaticPages pages(folder);
     EXPECT_FALSE(pages.built());
     ASSERT_NE(pages.find("/"), nullptr);
