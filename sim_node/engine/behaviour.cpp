@@ -12,16 +12,16 @@ std::string quoted(const std::string& kind, std::size_t index, const std::string
   return kind + " " + std::to_string(index) + (label.empty() ? "" : " '" + label + "'");
 }
 
-/// Marks the slots of a program as used.
-void take_slots(const Program& program, std::vector<bool>& used, const std::string& name) {
+/// The slots of a program, one for each use.
+std::vector<std::uint32_t> slot_uses(const Program& program) {
+  std::vector<std::uint32_t> slots;
   for (const Instruction& instruction : program.code) {
-    if (instruction.operation != Operation::kRising &&
-        instruction.operation != Operation::kFalling) {
-      continue;
+    if (instruction.operation == Operation::kRising ||
+        instruction.operation == Operation::kFalling) {
+      slots.push_back(instruction.slot);
     }
-    require(!used[instruction.slot], name + ": slot", "used once among the exits of a state");
-    used[instruction.slot] = true;
   }
+  return slots;
 }
 
 void check_exit(const Behaviour& behaviour, const Exit& exit, const std::string& name) {
@@ -31,6 +31,8 @@ void check_exit(const Behaviour& behaviour, const Exit& exit, const std::string&
           "a known quantity");
   if (exit.rest == RestRule::kExpression) {
     check_program(exit.rest_length, name + ": rest length");
+    require(slot_uses(exit.rest_length).empty(), name + ": rest length",
+            "without `rising` and `falling`");
   } else {
     require(exit.rest_length.empty(), name + ": expression of the rest length",
             "left out unless its rule asks for it");
@@ -47,10 +49,11 @@ void check_state(const Behaviour& behaviour, const LinkState& state, const std::
           name + ": exits", "a range of the exits of the behaviour");
   std::vector<bool> used(kMaxSlots, false);
   for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
-    const std::string exit_name = name + ": exit " + std::to_string(e);
-    check_exit(behaviour, behaviour.exits[e], exit_name);
-    take_slots(behaviour.exits[e].when, used, exit_name);
-    take_slots(behaviour.exits[e].rest_length, used, exit_name);
+    for (const std::uint32_t slot : slot_uses(behaviour.exits[e].when)) {
+      require(!used[slot], name + ": slot " + std::to_string(slot),
+              "used once among the exits of the state");
+      used[slot] = true;
+    }
   }
 }
 
@@ -59,8 +62,10 @@ void check_state(const Behaviour& behaviour, const LinkState& state, const std::
 void check_behaviour(const Behaviour& behaviour, const std::string& name) {
   require(!behaviour.states.empty(), name + ": number of states", "at least 1");
   require(behaviour.states.size() <= kMaxStates, name + ": number of states", "at most 64");
-  require(behaviour.start < behaviour.states.size(), name + ": start",
-          "a state of the behaviour");
+  require(behaviour.start < behaviour.states.size(), name + ": start", "a state of the behaviour");
+  for (std::size_t e = 0; e < behaviour.exits.size(); ++e) {
+    check_exit(behaviour, behaviour.exits[e], name + ": exit " + std::to_string(e));
+  }
   for (std::size_t s = 0; s < behaviour.states.size(); ++s) {
     const LinkState& state = behaviour.states[s];
     check_state(behaviour, state, name + ": " + quoted("state", s, state.name));

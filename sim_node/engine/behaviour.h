@@ -44,7 +44,7 @@ struct Exit {
   Program when;
   std::uint32_t target = 0;  ///< a state of the behaviour; may be the state itself
   RestRule rest = RestRule::kKeep;
-  Program rest_length;                    ///< of RestRule::kExpression, otherwise empty
+  Program rest_length;                     ///< of RestRule::kExpression, otherwise empty
   Quantity fired = Quantity::kElongation;  ///< the one an event shows: the first of the condition
 };
 

@@ -17,8 +17,7 @@ void check_table(const Table& table, const std::string& name) {
     require(i == 0 || table.at[i - 1] < table.at[i], name + ": points of the table",
             "strictly ascending");
     if (i == 0) continue;
-    const double slope =
-        (table.value[i] - table.value[i - 1]) / (table.at[i] - table.at[i - 1]);
+    const double slope = (table.value[i] - table.value[i - 1]) / (table.at[i] - table.at[i - 1]);
     require(std::isfinite(slope), name + ": slope of the table", "finite");
   }
 }
@@ -34,8 +33,7 @@ void check_power(const Law& law, const std::string& name) {
 
 void check_lennard_jones(const Law& law, const std::string& name) {
   require(is_finite_and_at_least_zero(law.depth), name + ": depth", "finite and >= 0");
-  require(std::isfinite(law.diameter) && law.diameter > 0.0, name + ": diameter",
-          "finite and > 0");
+  require(std::isfinite(law.diameter) && law.diameter > 0.0, name + ": diameter", "finite and > 0");
   require(is_finite_and_at_least_zero(law.cut), name + ": cut", "finite and >= 0");
   const double cube = law.diameter * law.diameter * law.diameter;
   const double twelfth = cube * cube * cube * cube;

@@ -12,7 +12,8 @@ namespace cordis::engine {
 inline constexpr std::uint32_t kNoLink = std::numeric_limits<std::uint32_t>::max();
 
 struct LinkEvent {
-  std::uint64_t step = 0;  ///< in which it happened: the step that began at World::step_count() = step
+  std::uint64_t step =
+      0;  ///< in which it happened: the step that began at World::step_count() = step
   std::uint32_t link = kNoLink;  ///< index in state_links
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;

@@ -3,25 +3,17 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "sim_node/engine/state_hash.h"
+#include "sim_node/engine/fingerprint.h"
+#include "sim_node/engine/require.h"
 
 namespace cordis::engine {
 namespace {
 
 // The step addresses the columns of 4 values with 32-bit offsets.
 constexpr std::size_t kMaxMatCount = std::numeric_limits<std::uint32_t>::max() / 4;
-
-void require(bool condition, const std::string& what, const char* expected) {
-  if (!condition) throw std::invalid_argument(what + " must be " + expected);
-}
-
-bool is_finite_and_at_least_zero(double value) {
-  return std::isfinite(value) && value >= 0.0;
-}
 
 bool stays_within(const Vec3& value, int dimension) {
   for (int axis = dimension; axis < 3; ++axis) {
@@ -49,11 +41,16 @@ void check_mat(const NetworkDescription& description, const Mat& mat, const std:
           "large enough for the viscosity of the medium");
 }
 
-void check_link(const NetworkDescription& description, const Link& link, const std::string& name) {
+template <class Joint>
+void check_ends(const NetworkDescription& description, const Joint& link, const std::string& name) {
   const std::size_t mat_count = description.mats.size();
   require(link.mat_a < mat_count && link.mat_b < mat_count, name + ": both ends",
           "MATs of the network");
   require(link.mat_a != link.mat_b, name + ": its ends", "two different MATs");
+}
+
+void check_link(const NetworkDescription& description, const Link& link, const std::string& name) {
+  check_ends(description, link, name);
   require(is_finite_and_at_least_zero(link.stiffness), name + ": stiffness", "finite and >= 0");
   require(is_finite_and_at_least_zero(link.viscosity), name + ": viscosity", "finite and >= 0");
   require(std::isfinite(link.viscosity / description.step), name + ": viscosity",
@@ -61,6 +58,68 @@ void check_link(const NetworkDescription& description, const Link& link, const s
   require(std::isfinite(link.rest_length), name + ": rest length", "finite");
   require(description.dimension == 1 || link.rest_length >= 0.0, name + ": rest length",
           ">= 0 in 2 and 3 dimensions");
+}
+
+void check_states(const NetworkDescription& description, std::uint32_t behaviour,
+                  const std::string& name) {
+  require(behaviour < description.behaviours.size(), name + ": behaviour", "one of the network");
+  for (const LinkState& state : description.behaviours[behaviour].states) {
+    require(std::isfinite(state.viscosity / description.step), name + ": viscosity",
+            "small enough for the step");
+  }
+}
+
+void check_state_link(const NetworkDescription& description, const StateLink& link,
+                      const std::string& name) {
+  check_ends(description, link, name);
+  check_states(description, link.behaviour, name);
+  require(std::isfinite(link.rest_length), name + ": rest length", "finite");
+}
+
+void check_maxwell_link(const NetworkDescription& description, const MaxwellLink& link,
+                        const std::string& name) {
+  check_ends(description, link, name);
+  require(std::isfinite(link.stiffness) && link.stiffness > 0.0, name + ": stiffness",
+          "finite and > 0");
+  require(std::isfinite(link.viscosity) && link.viscosity > 0.0, name + ": viscosity",
+          "finite and > 0");
+  require(std::isfinite(link.viscosity / description.step), name + ": viscosity",
+          "small enough for the step");
+}
+
+void check_set(const NetworkDescription& description, const SetLiaison& set,
+               const std::string& name) {
+  check_states(description, set.behaviour, name);
+  require(!set.set_p.empty(), name + ": set P", "one of at least 1 MAT");
+  require(std::isfinite(set.range) && set.range > 0.0, name + ": range", "finite and > 0");
+  require(std::isfinite(set.rest_length), name + ": rest length", "finite");
+  require(set.rest_length >= 0.0 || !description.radius.empty(), name + ": rest length",
+          ">= 0 unless the MATs have radii");
+  std::vector<bool> taken(description.mats.size(), false);
+  for (const std::vector<std::uint32_t>* half : {&set.set_p, &set.set_q}) {
+    for (const std::uint32_t mat : *half) {
+      require(mat < taken.size(), name + ": each member", "a MAT of the network");
+      require(!taken[mat], name + ": MAT " + std::to_string(mat), "in one set, once");
+      taken[mat] = true;
+    }
+  }
+}
+
+template <class Item, class Check>
+void check_each(const NetworkDescription& description, const std::vector<Item>& items,
+                const char* kind, Check check_one) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    check_one(description, items[i], kind + (' ' + std::to_string(i)));
+  }
+}
+
+void check_balls(const NetworkDescription& description) {
+  require(description.radius.empty() || description.radius.size() == description.mats.size(),
+          "number of radii", "0 or that of the MATs");
+  for (std::size_t i = 0; i < description.radius.size(); ++i) {
+    require(is_finite_and_at_least_zero(description.radius[i]),
+            "MAT " + std::to_string(i) + ": radius", "finite and >= 0");
+  }
 }
 
 void check(const NetworkDescription& description) {
@@ -71,39 +130,17 @@ void check(const NetworkDescription& description) {
           "finite and >= 0");
   require(!description.mats.empty(), "number of MATs", "at least 1");
   require(description.mats.size() <= kMaxMatCount, "number of MATs", "below 2^30");
-  for (std::size_t i = 0; i < description.mats.size(); ++i) {
-    check_mat(description, description.mats[i], "MAT " + std::to_string(i));
+  check_each(description, description.mats, "MAT", check_mat);
+  check_each(description, description.links, "link", check_link);
+  check_balls(description);
+  for (std::size_t b = 0; b < description.behaviours.size(); ++b) {
+    const Behaviour& behaviour = description.behaviours[b];
+    check_behaviour(behaviour, "behaviour " + std::to_string(b) +
+                                   (behaviour.name.empty() ? "" : " '" + behaviour.name + "'"));
   }
-  for (std::size_t l = 0; l < description.links.size(); ++l) {
-    check_link(description, description.links[l], "link " + std::to_string(l));
-  }
-}
-
-void add(StateHash& hash, const Vec3& value) {
-  for (const double component : value) hash.add(component);
-}
-
-std::uint64_t fingerprint_of(const NetworkDescription& description) {
-  StateHash hash;
-  hash.add(static_cast<std::uint64_t>(description.dimension));
-  hash.add(description.step);
-  add(hash, description.gravity);
-  hash.add(description.medium_viscosity);
-  hash.add(static_cast<std::uint64_t>(description.mats.size()));
-  for (const Mat& mat : description.mats) {
-    hash.add(static_cast<std::uint64_t>(mat.kind));
-    hash.add(mat.mass);
-    add(hash, mat.position);
-    add(hash, mat.velocity);
-  }
-  for (const Link& link : description.links) {
-    hash.add(static_cast<std::uint64_t>(link.mat_a));
-    hash.add(static_cast<std::uint64_t>(link.mat_b));
-    hash.add(link.stiffness);
-    hash.add(link.viscosity);
-    hash.add(link.rest_length);
-  }
-  return hash.value();
+  check_each(description, description.state_links, "state link", check_state_link);
+  check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
+  check_each(description, description.sets, "set", check_set);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/behaviour.h"
 #include "sim_node/engine/vec.h"
 
 namespace cordis::engine {
@@ -35,8 +36,40 @@ struct Link {
   double rest_length = 0.0;  ///< [m]; >= 0 in 2 and 3 dimensions
 };
 
-/// All that a Network is assembled from. Links are stepped, and their forces summed, in the order
-/// given.
+/// One LIA with states: between the two MATs, as its behaviour says. Distance, direction and growth
+/// are those of Link. Any number of LIAs may stand in parallel between the same two MATs.
+struct StateLink {
+  std::uint32_t mat_a = 0;
+  std::uint32_t mat_b = 0;
+  std::uint32_t behaviour = 0;  ///< index in NetworkDescription::behaviours
+  double rest_length = 0.0;     ///< at step 0 [m]; any finite value
+};
+
+/// One Maxwell element, a spring and a damper in series: one internal force F and no rest length.
+///
+///     F(n) = a F(n-1) + Z (1 - a) (growth of the link in the last period) / dt,  a = e^(-K dt / Z)
+///
+/// exact while the growth is steady; F is 0 before step 0. A Maxwell element and a Link in parallel
+/// are a standard linear solid.
+struct MaxwellLink {
+  std::uint32_t mat_a = 0;
+  std::uint32_t mat_b = 0;
+  double stiffness = 0.0;  ///< K [N/m], > 0
+  double viscosity = 0.0;  ///< Z [N s/m], > 0
+};
+
+/// One liaison between the sets P and Q, or within the set P: between each two of their MATs nearer
+/// than `range`, as its behaviour says. [Luc90 III.2.3 a formalism for inter-connection]
+struct SetLiaison {
+  std::uint32_t behaviour = 0;       ///< index in NetworkDescription::behaviours
+  std::vector<std::uint32_t> set_p;  ///< MATs, each once
+  std::vector<std::uint32_t> set_q;  ///< MATs, none of them in P; empty: within P
+  double range = 0.0;                ///< distance from which on there is no force [m], > 0
+  double rest_length = 0.0;          ///< of a pair [m]; < 0: the sum of the radii of its two MATs
+};
+
+/// All that a Network is assembled from. Forces are summed in a fixed order: links; state links, by
+/// behaviour and within one in the order given; Maxwell links; sets.
 struct NetworkDescription {
   int dimension = 3;              ///< 1, 2 or 3
   double step = 0.0;              ///< dt [s], > 0
@@ -44,14 +77,19 @@ struct NetworkDescription {
   double medium_viscosity = 0.0;  ///< Z of the medium on every mass [N s/m], >= 0
   std::vector<Mat> mats;
   std::vector<Link> links;
+  std::vector<double> radius;  ///< [m], >= 0, one per MAT, or none at all
+  std::vector<Behaviour> behaviours;
+  std::vector<StateLink> state_links;
+  std::vector<MaxwellLink> maxwell_links;
+  std::vector<SetLiaison> sets;
 };
 
 /// A network of MATs (its nodes) and LIAs (its arcs), checked and laid out for stepping; immutable.
 /// [Luc90 IV Assembly]
 class Network {
  public:
-  /// @throws std::invalid_argument naming the first MAT or link that is out of range or not finite,
-  /// or that joins a
+  /// @throws std::invalid_argument naming the first MAT, link, behaviour or set that is out of
+  /// range or not finite, or that joins a
   ///         MAT to itself or to one that does not exist; when no MAT is given; when a mass is so
   ///         small, or a viscosity so large, that dt^2 / m or Z / dt is not a finite number.
   explicit Network(NetworkDescription description);
@@ -63,7 +101,7 @@ class Network {
   std::size_t link_count() const noexcept { return description_.links.size(); }
 
   /// 64-bit hash of the whole description: equal for networks assembled from the same values in the
-  /// same order.
+  /// same order. Of a LinkFunction it knows only that there is one.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
  private:

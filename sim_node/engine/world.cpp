@@ -122,6 +122,10 @@ StepReport World::step() noexcept {
   return state_->step();
 }
 
+std::span<const LinkEvent> World::events() const noexcept {
+  return {};
+}
+
 std::uint64_t World::step_count() const noexcept {
   return state_->step_count;
 }

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "sim_node/engine/energy.h"
+#include "sim_node/engine/link_event.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/vector_width.h"
 
@@ -16,6 +18,7 @@ struct StepReport {
   std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
   std::uint32_t refused_inputs =
       0;  ///< positions and forces from outside that were not finite, since the last step
+  std::uint32_t lost_events = 0;  ///< changes of state that found no room in events()
 };
 
 /// Everything needed to go on later from the same state, bit for bit.
@@ -54,6 +57,16 @@ class World {
   /// the dimension are ignored. Precondition: `mat` is a mass. Real time: O(1).
   void set_external_force(std::uint32_t mat, const Vec3& force) noexcept;
 
+  /// Puts a state link into a state: its change in the next step, whatever its exits say, with the
+  /// rest length kept. Precondition: the link and the state exist. Real time: O(1).
+  void force_state(std::uint32_t state_link, std::uint32_t state) noexcept;
+
+  /// Gives the liaisons of a behaviour other parameters between two steps; each link stays in its
+  /// state. What their energy changes by counts as switching. Not in real time: allocates.
+  /// @throws std::invalid_argument when the network has no such behaviour, when the new one is not
+  ///         well-formed, or has not the same number of states.
+  void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
+
   /// One step. Real time: O(MATs + links), no allocation, never throws.
   StepReport step() noexcept;
 
@@ -64,12 +77,25 @@ class World {
   Vec3 link_force(std::uint32_t mat) const noexcept;
   const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N
 
+  /// The changes of state of the last step, in the order of the force sums. There is room for as
+  /// many as there are state links, and for at least 1024; those beyond are counted in the report.
+  std::span<const LinkEvent> events() const noexcept;
+
+  std::uint32_t state_of(std::uint32_t state_link) const noexcept;
+  double rest_length_of(std::uint32_t state_link) const noexcept;  ///< [m]
+  /// Pull of the link in the last step [N], positive pulls the ends together; 0 before the first.
+  double pull_of(std::uint32_t state_link) const noexcept;
+  /// How often links of a behaviour went from one state to another since step 0, over all of them.
+  std::uint64_t change_count(std::uint32_t behaviour, std::uint32_t from,
+                             std::uint32_t to) const noexcept;
+
   Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
   Vec3 momentum() const noexcept;  ///< sum of m v over the masses [kg m/s]
   Vec3 angular_momentum()
       const noexcept;  ///< sum of m x(n-1) x v(n-1/2) about the origin [kg m^2/s]
 
-  /// 64-bit hash of step count, positions and delayed positions. Real time: O(MATs), no allocation.
+  /// 64-bit hash of step count, positions and delayed positions, and of the states, rest lengths
+  /// and internal forces of links that have them. Real time: O(MATs + links), no allocation.
   std::uint64_t state_hash() const noexcept;
 
   Snapshot snapshot() const;
