@@ -18,8 +18,8 @@ void sleep_nsec(std::int64_t nsec) {
 
 TEST(PacedLoop, NeverTicksBeforeItsDeadline) {
   PacedLoop loop(2000.0);
-  loop.wait();
   const std::int64_t start = monotonic_nsec();
+  loop.wait();
   std::uint64_t deadlines = 0;
 
   for (int tick = 0; tick < 50; ++tick) deadlines += 1 + loop.wait();
