@@ -8,7 +8,8 @@ target_compile_options(cordis_options INTERFACE
 
 if(CORDIS_SANITIZE)
   target_compile_options(cordis_options INTERFACE
-    -fsanitize=${CORDIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    -fsanitize=${CORDIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
+    -Wno-maybe-uninitialized)  # g++ 12 gives false alarms about the standard library under sanitizers
   target_link_options(cordis_options INTERFACE -fsanitize=${CORDIS_SANITIZE})
 endif()
 
