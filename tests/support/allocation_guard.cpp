@@ -20,7 +20,7 @@ std::size_t rounded_up(std::size_t size, std::size_t alignment) noexcept {
 
 }  // namespace
 
-// The array and nothrow forms of the standard library end in these.
+// The array forms of the standard library end in these; so do the nothrow forms, unless a sanitizer brings its own.
 void* operator new(std::size_t size) {
   return counted(std::malloc(size == 0 ? 1 : size));
 }
@@ -30,7 +30,15 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
   return counted(std::aligned_alloc(bytes, rounded_up(size == 0 ? 1 : size, bytes)));
 }
 
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  ++allocation_count;
+  return std::malloc(size == 0 ? 1 : size);
+}
+
 void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
   std::free(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
