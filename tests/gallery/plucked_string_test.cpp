@@ -1,0 +1,25 @@
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/gallery/stage.h"
+
+namespace cordis::test {
+namespace {
+
+TEST(PluckedString, SwingsOnWhenTheHandHasLetGo) {
+  Stage stage("plucked_string.yaml");
+  double highest_force = 0.0;
+  stage.play_until(
+      1.9, [&] { highest_force = std::max(highest_force, std::abs(stage.signal("key_force"))); });
+  EXPECT_GT(highest_force, 0.5);
+
+  double swing = 0.0;
+  stage.play_until(2.2);
+  stage.play_until(3.2, [&] { swing = std::max(swing, std::abs(stage.signal("middle_y"))); });
+  EXPECT_GT(swing, 0.002);
+}
+
+}  // namespace
+}  // namespace cordis::test

@@ -1,0 +1,184 @@
+// tests/gallery/stage.cpp
+#include "tests/gallery/stage.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace cordis::test {
+namespace {
+
+using device::GestureMessage;
+using scene::Role;
+
+constexpr std::uint64_t kSimRun = 1;
+constexpr std::uint64_t kDeviceRun = 2;
+
+std::int64_t no_time() noexcept {
+  return 0;
+}
+
+template <class Message>
+void fill_header(const GestureMessage& from, std::uint32_t device_id, Message& to) {
+  to.device_id(device_id);
+  to.run(from.run);
+  to.sample(from.sample);
+  to.answered_run(from.answered_run);
+  to.answered_sample(from.answered_sample);
+  to.axis_count(from.axis_count);
+}
+
+template <class Message>
+GestureMessage header_of(const Message& from) {
+  GestureMessage to;
+  to.run = from.run();
+  to.sample = from.sample();
+  to.answered_run = from.answered_run();
+  to.answered_sample = from.answered_sample();
+  to.axis_count = from.axis_count();
+  return to;
+}
+
+/// Hands the messages of a device to its exchange in the simulation, and the answers back.
+class DirectChannel final : public device::GestureChannel {
+ public:
+  explicit DirectChannel(sim::DeviceExchange& exchange) : exchange_(exchange) {}
+
+  bool send(const GestureMessage& sample) noexcept override {
+    if (exchange_.role() == Role::kMass) {
+      msg::GesturePositions positions;
+      fill_header(sample, exchange_.device_id(), positions);
+      positions.position_m(sample.value);
+      return exchange_.receive(positions) == sim::DeviceExchange::Reception::kNew;
+    }
+    msg::GestureForces forces;
+    fill_header(sample, exchange_.device_id(), forces);
+    forces.force_n(sample.value);
+    return exchange_.receive(forces) == sim::DeviceExchange::Reception::kNew;
+  }
+
+  void take_answer(const engine::World& world) noexcept {
+    if (exchange_.role() == Role::kMass) {
+      const msg::GestureForces& forces = exchange_.answer_forces(world, true, 0);
+      answer_ = header_of(forces);
+      answer_.value = forces.force_n();
+    } else {
+      const msg::GesturePositions& positions = exchange_.answer_positions(world, true, 0);
+      answer_ = header_of(positions);
+      answer_.value = positions.position_m();
+    }
+    has_answer_ = true;
+  }
+
+  bool receive(GestureMessage& answer, std::chrono::nanoseconds) noexcept override {
+    if (!has_answer_) return false;
+    answer = answer_;
+    has_answer_ = false;
+    return true;
+  }
+
+ private:
+  sim::DeviceExchange& exchange_;
+  GestureMessage answer_;
+  bool has_answer_ = false;
+};
+
+scene::NamedRange range_of(const std::vector<scene::NamedRange>& ranges, const std::string& name) {
+  for (const scene::NamedRange& range : ranges) {
+    if (range.name == name) return range;
+  }
+  throw std::out_of_range("the scene has no '" + name + "'");
+}
+
+}  // namespace
+
+/// One device of the stage.
+class Stage::Player {
+ public:
+  Player(device::LoadedDevice device, sim::DeviceExchange& simulated)
+      : device_(std::move(device)),
+        channel_(simulated),
+        exchange_(device_.config,
+                  simulated.role() == Role::kMass ? device::Role::kMass : device::Role::kLiaison,
+                  {kDeviceRun, 0}, true, *device_.driver, channel_, meter_, &no_time) {}
+
+  void speak() noexcept { exchange_.send_sample(); }
+  void hear(const engine::World& world) {
+    channel_.take_answer(world);
+    if (!exchange_.await_answer(std::chrono::nanoseconds(0))) {
+      throw std::runtime_error("'" + device_.config.name + "' refused the answer of the scene");
+    }
+    exchange_.live();
+  }
+
+ private:
+  device::LoadedDevice device_;
+  DirectChannel channel_;
+  device::LoopMeter meter_;
+  device::Exchange exchange_;
+};
+
+Stage::Stage(const std::string& launch_file, const std::vector<std::string>& overrides) {
+  config::Problems problems;
+  const config::Launch launch = config::load_launch(
+      std::string(CORDIS_SOURCE_DIR) + "/launch_configs/" + launch_file, overrides, problems);
+  for (const config::LaunchNode& node : launch.nodes) {
+    if (node.program != "sim_node") continue;
+    sim::SimConfig config = sim::read_sim_config(launch, node, problems);
+    if (problems.has_errors()) break;
+    simulation_ = std::make_unique<sim::Simulation>(std::move(config.scene), kSimRun);
+  }
+  if (problems.has_errors() || !simulation_) throw std::runtime_error(problems.text());
+
+  for (const config::LaunchNode& node : launch.nodes) {
+    if (node.program != "device_node") continue;
+    device::LoadedDevice loaded = device::load_device(launch, node, problems);
+    sim::DeviceExchange* simulated = simulation_->find(loaded.config.device_id);
+    if (simulated == nullptr) continue;  // no port is its
+    players_.push_back(std::make_unique<Player>(std::move(loaded), *simulated));
+  }
+  row_.resize(scene().signals.count());
+}
+
+Stage::~Stage() = default;
+
+void Stage::play_until(double time_s, const std::function<void()>& after_tick) {
+  const double half_a_step = 0.5 * world().network().step();
+  while (this->time_s() < time_s - half_a_step) {
+    for (const auto& player : players_) player->speak();
+    simulation_->tick(row_.data());
+    if (simulation_->failed()) throw std::runtime_error(simulation_->failure());
+    for (const auto& player : players_) player->hear(world());
+    if (after_tick) after_tick();
+  }
+}
+
+scene::NamedRange Stage::mats(const std::string& name) const {
+  return range_of(scene().matter, name);
+}
+
+scene::NamedRange Stage::links(const std::string& name) const {
+  return range_of(scene().links, name);
+}
+
+engine::Vec3 Stage::position(const std::string& name, std::uint32_t index) const {
+  return world().position(mats(name).first + index);
+}
+
+engine::Vec3 Stage::velocity(const std::string& name, std::uint32_t index) const {
+  return world().velocity(mats(name).first + index);
+}
+
+double Stage::signal(const std::string& name) const {
+  const std::vector<scene::Signal>& signals = scene().signals.signals();
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (signals[i].name == name) return row_[i];
+  }
+  throw std::out_of_range("the scene has no signal '" + name + "'");
+}
+
+double Stage::energy_residual() const {
+  const engine::Energy energy = world().energy();
+  return energy.residual() / energy.largest;
+}
+
+}  // namespace cordis::test
