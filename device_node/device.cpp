@@ -29,7 +29,7 @@ constexpr int kBadInput = 2;
 Device::Device(LoadedDevice device, dds::Participant& participant, config::Clock clock,
                std::uint64_t run)
     : config_(std::move(device.config)),
-      driver_(std::move(device.driver)),
+      driver_(traced(std::move(device.driver), config_.trace, config_.layout)),
       participant_(participant),
       clock_(clock),
       scenes_(participant, dds::Topic::kDescription),

@@ -63,7 +63,37 @@ void check_watchdog(config::MappingReader& reader, const ForceGuardSettings& gua
   }
 }
 
-void read_guards(config::MappingReader& reader, DeviceConfig& config) {
+/// What the device is known to be made of, and what follows from it for the energy monitor.
+void read_passivity(config::MappingReader& reader, const AxisLayout& layout,
+                    ForceGuardSettings& force, config::Problems& problems) {
+  PassivitySettings& passivity = force.passivity;
+  passivity.period_s = force.period_s;
+  passivity.travel_m = layout.highest_m - layout.lowest_m;
+  passivity.mass_kg = reader.optional_number("moving_mass_kg", 0.05, Range::between(1e-4, 100.0));
+  passivity.viscosity_n_s_per_m =
+      reader.optional_number("viscosity_n_s_per_m", 0.0, Range::not_negative());
+  const bool known = passivity.viscosity_n_s_per_m > 0.0;
+  config::MappingReader section(reader.optional_mapping("passivity"), "passivity", problems);
+  passivity.active = section.optional_truth("active", known);
+  if (passivity.active && !known) {
+    section.error_at("active", "the passivity controller needs viscosity_n_s_per_m of the device");
+  }
+  passivity.budget_j = section.optional_number("budget_j", 0.001, Range::not_negative());
+  const double stored_j = layout.count * force.limit_n * passivity.travel_m;
+  passivity.tank_j = section.optional_number("tank_j", stored_j, Range::positive());
+  section.finish();
+}
+
+/// Where to keep what the motors were given, if anywhere.
+void read_trace(config::MappingReader& reader, TraceSettings& trace, config::Problems& problems) {
+  if (!reader.has("trace")) return;
+  config::MappingReader section(reader.optional_mapping("trace"), "trace", problems);
+  trace.file = section.required_text("file");
+  trace.last_s = section.optional_number("last_s", 10.0, Range::between(0.001, 3600.0));
+  section.finish();
+}
+
+void read_guards(config::MappingReader& reader, DeviceConfig& config, config::Problems& problems) {
   const AxisLayout& layout = config.layout;
   ForceGuardSettings& force = config.force_guard;
   force.period_s = 1.0 / layout.rate_hz;
@@ -74,11 +104,14 @@ void read_guards(config::MappingReader& reader, DeviceConfig& config) {
   force.slew_n_per_s = reader.optional_number(
       "slew_limit_n_per_s", 5.0 * force.limit_n / force.watchdog_s, Range::positive());
   if (reader.ok()) check_watchdog(reader, force);
+  read_passivity(reader, layout, force, problems);
 
   PositionGuardSettings& position = config.position_guard;
   position.lowest_m = layout.lowest_m;
   position.highest_m = layout.highest_m;
   position.speed_m_per_s = reader.optional_number("speed_limit_m_per_s", 2.0, Range::positive());
+  force.power_w = reader.optional_number("power_limit_w", force.limit_n * position.speed_m_per_s,
+                                         Range::positive());
   position.ramp_s = force.ramp_s;
   position.watchdog_s = force.watchdog_s;
   position.period_s = force.period_s;
@@ -114,7 +147,8 @@ LoadedDevice read_device(const config::Value& mapping, const std::string& name,
   device.config.device_id = config::name_hash(name);
   reader.optional_integer("cordis", 1, 1, 1);
   device.config.layout = read_layout(reader);
-  read_guards(reader, device.config);
+  read_guards(reader, device.config, problems);
+  read_trace(reader, device.config.trace, problems);
   device.driver = read_drivers(reader, device.config, problems);
   reader.finish();
   problems.throw_if_any();

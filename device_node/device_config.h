@@ -8,6 +8,7 @@
 #include "device_node/drivers/driver.h"
 #include "device_node/force_guard.h"
 #include "device_node/position_guard.h"
+#include "device_node/traced_driver.h"
 #include "node/config/launch.h"
 
 namespace cordis::device {
@@ -19,7 +20,8 @@ struct DeviceConfig {
   AxisLayout layout;
   ForceGuardSettings force_guard;        ///< of role mass
   PositionGuardSettings position_guard;  ///< of role liaison
-  std::string driver;                    ///< its name in the driver table
+  TraceSettings trace;
+  std::string driver;  ///< its name in the driver table
 };
 
 /// A device ready to run.

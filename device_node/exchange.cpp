@@ -20,7 +20,8 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
   sample_.axis_count = static_cast<std::uint32_t>(config.layout.count);
   meter_.set_phase(Phase::kWaiting);
   driver_.start(role_);
-  driver_.read(sensed_);
+  if (driver_.read(sensed_) && all_finite(sensed_, kMaxAxes)) last_sensed_ = sensed_;
+  sensed_ = last_sensed_;
 }
 
 Exchange::~Exchange() {
@@ -96,13 +97,16 @@ double Exchange::age_s() const noexcept {
 void Exchange::live() noexcept {
   const double age = age_s();
   const AxisValues& commanded =
-      role_ == Role::kMass ? force_guard_.tick(age) : position_guard_.tick(age);
+      role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
   const bool written = driver_.write(commanded);
-  const bool sensed = driver_.read(sensed_);
+  const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);
+  if (!sensed) sensed_ = last_sensed_;  // a hand does not jump
+  last_sensed_ = sensed_;
   meter_.count_tick();
+  if (role_ == Role::kMass) meter_.note_energy(force_guard_.energy());
 
   const bool present = written && sensed;
-  if (!present) force_guard_.start();  // a device that comes back is ramped up anew
+  if (!present) force_guard_.let_go();  // a device that comes back is ramped up anew
   const bool in_time = age < config_.force_guard.watchdog_s;
   if (any_answer_) meter_.set_phase(present && in_time ? Phase::kRunning : Phase::kLost);
 }

@@ -72,6 +72,7 @@ class Exchange {
   GestureMessage sample_;       // the sample sent last
   GestureMessage used_;         // the newest good answer
   AxisValues sensed_{};         // for the next sample
+  AxisValues last_sensed_{};    // all finite
   std::uint64_t first_sample_;  // of this exchange
   bool any_answer_ = false;
 };

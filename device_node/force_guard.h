@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "device_node/axis.h"
+#include "device_node/energy_monitor.h"
 
 namespace cordis::device {
 
@@ -14,6 +15,8 @@ struct ForceGuardSettings {
   double ramp_s = 0.2;           ///< over which forces grow from nothing at the start, >= 0
   double watchdog_s = 0.02;      ///< age at which a force is worth nothing, > 0
   double period_s = 0.001;       ///< of the ticks, > 0
+  double power_w = 40.0;         ///< most that a motor may give to one moving axis, > 0
+  PassivitySettings passivity;
 };
 
 /// The last hand on every force that goes to a motor. Whatever it is given, its output
@@ -22,7 +25,9 @@ struct ForceGuardSettings {
 ///   takes limit / slew;
 /// - fades to 0 when the newest forces hold a NaN or an infinity, and stays there until good ones
 ///   come;
-/// - grows over ramp_s at the start and after each time the watchdog has bitten.
+/// - grows over ramp_s at the start and after each time the watchdog has bitten;
+/// - drives an axis with no more than power_w / speed, as soon as the slew limit allows;
+/// - is braked by the energy monitor when the loop makes energy.
 /// Should the ticks themselves stop for longer than the watchdog, the next one is 0 at once.
 /// Time is counted in ticks and in the ages it is told; it knows no clock.
 class ForceGuard {
@@ -32,20 +37,31 @@ class ForceGuard {
 
   void start() noexcept;  ///< forgets everything: force 0, ramp at its beginning
 
+  /// start(), and the next tick is 0 whatever is accepted until then: for a device that has been
+  /// away.
+  void let_go() noexcept;
+
   /// Takes over what is wanted from now on [N]; false when it is not finite and counts as 0.
   bool accept(const AxisValues& wanted_n) noexcept;
 
   /// The forces for the next period [N]. Real time: O(axes), no allocation.
-  /// @param age_s  of the newest forces accepted, >= 0; anything when there have been none
-  const AxisValues& tick(double age_s) noexcept;
+  /// @param age_s       of the newest forces accepted, >= 0; anything when there have been none
+  /// @param position_m  of the axes now
+  const AxisValues& tick(double age_s, const AxisValues& position_m) noexcept;
+
+  const EnergyMonitor& energy() const noexcept { return energy_; }
 
  private:
+  double within_power(double force_n, double speed_m_per_s) const noexcept;
+
   ForceGuardSettings settings_;
   double largest_change_n_;  // per tick
   AxisValues wanted_{};      // [N]
   AxisValues output_{};      // [N]
   bool any_accepted_ = false;
+  bool let_go_ = false;
   std::uint64_t ticks_alive_ = 0;  // of the ramp
+  EnergyMonitor energy_;
 };
 
 }  // namespace cordis::device

@@ -34,6 +34,11 @@ void LoopMeter::count_tick() noexcept {
   if (ticks % kTicksPerPublication == 0) publish_latency();
 }
 
+void LoopMeter::note_energy(const EnergyMonitor& energy) noexcept {
+  given_j_.store(energy.given_j(), std::memory_order_relaxed);
+  if (energy.braking()) braked_ticks_.fetch_add(1, std::memory_order_relaxed);
+}
+
 void LoopMeter::publish_latency() noexcept {
   latency_count_.store(latency_.count(), std::memory_order_relaxed);
   latency_p50_s_.store(latency_.quantile_nsec(0.5) * 1e-9, std::memory_order_relaxed);
@@ -49,6 +54,8 @@ void LoopMeter::fill(msg::NodeStatus& status) const {
   status.ticks(ticks());
   status.overruns(overruns_.load(std::memory_order_relaxed));
   status.dropped(dropped());
+  status.port_energy_j(given_j_.load(std::memory_order_relaxed));
+  status.braked_ticks(braked_ticks_.load(std::memory_order_relaxed));
   status.latency_count(latency_count_.load(std::memory_order_relaxed));
   status.latency_p50_s(latency_p50_s_.load(std::memory_order_relaxed));
   status.latency_p99_s(latency_p99_s_.load(std::memory_order_relaxed));

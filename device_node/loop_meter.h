@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "device_node/energy_monitor.h"
 #include "idl/control.h"
 #include "node/latency.h"
 
@@ -30,6 +31,9 @@ class LoopMeter {
     overruns_.fetch_add(count, std::memory_order_relaxed);
   }
 
+  /// What the monitor says after a tick: the energy given to the hand, and whether it brakes.
+  void note_energy(const EnergyMonitor& energy) noexcept;
+
   /// From the sending of a sample to the arrival of its answer.
   void record_latency(std::int64_t nsec) noexcept { latency_.record(nsec); }
 
@@ -47,6 +51,8 @@ class LoopMeter {
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<std::uint64_t> overruns_{0};
   std::atomic<std::uint64_t> dropped_{0};
+  std::atomic<double> given_j_{0.0};
+  std::atomic<std::uint64_t> braked_ticks_{0};
   node::LatencyHistogram latency_;  // of the loop thread alone
   std::atomic<std::uint64_t> latency_count_{0};
   std::atomic<double> latency_p50_s_{0.0};

@@ -59,7 +59,7 @@ TEST(Guards, TickWithoutAllocating) {
     wanted.fill(n % 7 - 3.0);
     force_guard.accept(wanted);
     position_guard.accept(wanted);
-    force_guard.tick(n % 40 * 0.001);
+    force_guard.tick(n % 40 * 0.001, {});
     position_guard.tick(n % 40 * 0.001);
   }
   EXPECT_EQ(guard.count(), 0u);

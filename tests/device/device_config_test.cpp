@@ -70,6 +70,24 @@ TEST(DeviceConfig, GivesItsLimitsToBothGuards) {
   EXPECT_EQ(config.position_guard.period_s, 0.002);
 }
 
+TEST(DeviceConfig, BrakesOnlyADeviceWhoseViscosityIsKnown) {
+  EXPECT_FALSE(device_of("axes: 1").config.force_guard.passivity.active);
+  EXPECT_EQ(device_of("axes: 1").config.force_guard.power_w, 40.0);
+  const ForceGuardSettings guard =
+      device_of(
+          "{axes: 2, force_limit_n: 10, viscosity_n_s_per_m: 0.8, moving_mass_kg: 0.2, "
+          "power_limit_w: 5, passivity: {budget_j: 0.05}}")
+          .config.force_guard;
+  EXPECT_TRUE(guard.passivity.active);
+  EXPECT_EQ(guard.passivity.viscosity_n_s_per_m, 0.8);
+  EXPECT_EQ(guard.passivity.mass_kg, 0.2);
+  EXPECT_EQ(guard.passivity.budget_j, 0.05);
+  EXPECT_DOUBLE_EQ(guard.passivity.tank_j, 2 * 10 * 0.04);
+  EXPECT_EQ(guard.power_w, 5.0);
+  EXPECT_NE(problems_of("{axes: 1, passivity: {active: true}}").find("needs viscosity_n_s_per_m"),
+            std::string::npos);
+}
+
 TEST(DeviceConfig, WatchdogOfASlowDeviceSpansItsPeriods) {
   EXPECT_DOUBLE_EQ(device_of("{axes: 1, rate_hz: 25}").config.force_guard.watchdog_s, 6.0 / 25.0);
 }

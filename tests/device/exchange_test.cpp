@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <deque>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -46,7 +47,7 @@ class FakeDriver : public Driver {
   void start(Role role) noexcept override { started_as = role; }
   bool read(AxisValues& sensed) noexcept override {
     sensed.fill(0.0);
-    sensed[0] = -0.001 * static_cast<double>(commands.size());
+    sensed[0] = lies ? std::nan("") : -0.001 * static_cast<double>(commands.size());
     return present;
   }
   bool write(const AxisValues& commanded) noexcept override {
@@ -58,6 +59,7 @@ class FakeDriver : public Driver {
   Role started_as = Role::kMass;
   std::vector<AxisValues> commands;
   bool present = true;
+  bool lies = false;
   bool stopped = false;
 };
 
@@ -355,6 +357,7 @@ TEST(Exchange, IsLostWhileItsDriverHasNoDevice) {
   EXPECT_EQ(rig.meter.phase(), Phase::kLost);
 
   rig.driver.present = true;
+  EXPECT_EQ(rig.period(true, 15.0), 0.0);
   EXPECT_EQ(rig.period(true, 15.0), 5.0);  // from zero again
   EXPECT_EQ(rig.meter.phase(), Phase::kRunning);
 }
@@ -379,6 +382,34 @@ TEST(Exchange, CountsSamplesThatCouldNotBeSent) {
   rig.exchange.repeat_sample();
 
   EXPECT_EQ(rig.meter.dropped(), 2u);
+}
+
+TEST(Exchange, TenThousandAnswersOfAnyKindNeverReachTheDriverAboveLimitOrSlew) {
+  now_nsec = 1000;
+  std::mt19937_64 random(1990);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  Rig rig(false);
+  double before = 0.0;
+  int pushed = 0;
+
+  for (int n = 0; n < 10000; ++n) {
+    const double kind = share(random);
+    double force = std::pow(10.0, 320.0 * share(random)) * (share(random) < 0.5 ? -1.0 : 1.0);
+    if (kind < 0.05) force = std::nan("");
+    if (kind > 0.5) force = 60.0 * share(random) - 30.0;
+    rig.driver.present = kind > 0.001;
+    rig.driver.lies = kind > 0.98;  // a sensor that is no number
+    const double now = rig.period(share(random) < (n % 1000 < 900 ? 0.7 : 0.0), force);
+
+    ASSERT_LE(std::abs(now), rig.config.force_guard.limit_n) << n;
+    if (now != 0.0) {                                      // off is allowed at once
+      ASSERT_LE(std::abs(now - before), 5.0 + 1e-9) << n;  // 5000 N/s
+    }
+    pushed += now != 0.0;
+    before = now;
+  }
+
+  EXPECT_GT(pushed, 3000);
 }
 
 }  // namespace

@@ -32,36 +32,36 @@ AxisValues all(double force) {
 TEST(ForceGuard, GivesNothingBeforeTheFirstForces) {
   ForceGuard guard(settings());
 
-  EXPECT_EQ(guard.tick(0.0), AxisValues{});
+  EXPECT_EQ(guard.tick(0.0, {}), AxisValues{});
 }
 
 TEST(ForceGuard, LetsThroughWhatIsAllowed) {
   ForceGuard guard(settings());
 
   guard.accept(all(3.0));
-  EXPECT_EQ(guard.tick(0.001), all(3.0));
+  EXPECT_EQ(guard.tick(0.001, {}), all(3.0));
   guard.accept(all(-1.5));
-  EXPECT_EQ(guard.tick(0.001), all(-1.5));
+  EXPECT_EQ(guard.tick(0.001, {}), all(-1.5));
 }
 
 TEST(ForceGuard, LimitsTheForce) {
   ForceGuard guard(settings());
 
   guard.accept(all(1e300));
-  for (int n = 0; n < 10; ++n) guard.tick(0.0);
+  for (int n = 0; n < 10; ++n) guard.tick(0.0, {});
 
-  EXPECT_EQ(guard.tick(0.0), all(20.0));
+  EXPECT_EQ(guard.tick(0.0, {}), all(20.0));
 }
 
 TEST(ForceGuard, LimitsTheChange) {
   ForceGuard guard(settings());
   guard.accept(all(12.0));
 
-  EXPECT_DOUBLE_EQ(guard.tick(0.0)[0], 5.0);
-  EXPECT_DOUBLE_EQ(guard.tick(0.0)[0], 10.0);
-  EXPECT_DOUBLE_EQ(guard.tick(0.0)[0], 12.0);
+  EXPECT_DOUBLE_EQ(guard.tick(0.0, {})[0], 5.0);
+  EXPECT_DOUBLE_EQ(guard.tick(0.0, {})[0], 10.0);
+  EXPECT_DOUBLE_EQ(guard.tick(0.0, {})[0], 12.0);
   guard.accept(all(-12.0));
-  EXPECT_DOUBLE_EQ(guard.tick(0.0)[0], 7.0);
+  EXPECT_DOUBLE_EQ(guard.tick(0.0, {})[0], 7.0);
 }
 
 TEST(ForceGuard, RampsForcesUpFromTheStart) {
@@ -71,18 +71,18 @@ TEST(ForceGuard, RampsForcesUpFromTheStart) {
   guard.accept(all(10.0));
 
   for (int n = 1; n <= 200; ++n) {
-    ASSERT_NEAR(guard.tick(0.0)[3], std::min(0.1 * n, 10.0), kRounding) << n;
+    ASSERT_NEAR(guard.tick(0.0, {})[3], std::min(0.1 * n, 10.0), kRounding) << n;
   }
 }
 
 TEST(ForceGuard, FadesOutSoAsToBeAtZeroWhenTheWatchdogBites) {
   ForceGuard guard(settings());
   guard.accept(all(20.0));
-  for (int n = 0; n < 10; ++n) guard.tick(0.0);
+  for (int n = 0; n < 10; ++n) guard.tick(0.0, {});
 
   double before = 20.0;
   for (int n = 1; n <= 20; ++n) {
-    const double force = guard.tick(n * 0.001)[0];
+    const double force = guard.tick(n * 0.001, {})[0];
     ASSERT_LE(before - force, 5.0 + kRounding) << n;
     if (n <= 16) {
       ASSERT_NEAR(force, 20.0, kRounding) << n;  // 4 ms suffice for 20 N
@@ -95,10 +95,10 @@ TEST(ForceGuard, FadesOutSoAsToBeAtZeroWhenTheWatchdogBites) {
 TEST(ForceGuard, IsAtZeroAtOnceWhenItsTicksHadStopped) {
   ForceGuard guard(settings());
   guard.accept(all(20.0));
-  for (int n = 0; n < 10; ++n) guard.tick(0.0);
+  for (int n = 0; n < 10; ++n) guard.tick(0.0, {});
 
-  EXPECT_EQ(guard.tick(0.5), AxisValues{});
-  EXPECT_EQ(guard.tick(std::numeric_limits<double>::quiet_NaN()), AxisValues{});
+  EXPECT_EQ(guard.tick(0.5, {}), AxisValues{});
+  EXPECT_EQ(guard.tick(std::numeric_limits<double>::quiet_NaN(), {}), AxisValues{});
 }
 
 TEST(ForceGuard, RampsUpAnewAfterTheWatchdogHasBitten) {
@@ -106,28 +106,28 @@ TEST(ForceGuard, RampsUpAnewAfterTheWatchdogHasBitten) {
   ramped.ramp_s = 0.01;
   ForceGuard guard(ramped);
   guard.accept(all(10.0));
-  for (int n = 0; n < 20; ++n) guard.tick(0.0);
-  guard.tick(1.0);
+  for (int n = 0; n < 20; ++n) guard.tick(0.0, {});
+  guard.tick(1.0, {});
 
-  EXPECT_EQ(guard.tick(0.0), AxisValues{});  // the old forces do not come back
+  EXPECT_EQ(guard.tick(0.0, {}), AxisValues{});  // the old forces do not come back
   guard.accept(all(10.0));
-  EXPECT_DOUBLE_EQ(guard.tick(0.0)[0], 1.0);
+  EXPECT_DOUBLE_EQ(guard.tick(0.0, {})[0], 1.0);
 }
 
 TEST(ForceGuard, FadesToZeroWhenAnyForceIsNotANumber) {
   for (const double bad : {std::nan(""), kInfinity, -kInfinity}) {
     ForceGuard guard(settings());
     ASSERT_TRUE(guard.accept(all(8.0)));
-    guard.tick(0.0);
-    guard.tick(0.0);
+    guard.tick(0.0, {});
+    guard.tick(0.0, {});
     AxisValues values = all(8.0);
     values[15] = bad;
 
     EXPECT_FALSE(guard.accept(values));
 
-    EXPECT_DOUBLE_EQ(guard.tick(0.0)[0], 3.0);
-    EXPECT_EQ(guard.tick(0.0), AxisValues{});
-    EXPECT_EQ(guard.tick(0.0), AxisValues{});
+    EXPECT_DOUBLE_EQ(guard.tick(0.0, {})[0], 3.0);
+    EXPECT_EQ(guard.tick(0.0, {}), AxisValues{});
+    EXPECT_EQ(guard.tick(0.0, {}), AxisValues{});
   }
 }
 
@@ -146,8 +146,10 @@ TEST(ForceGuard, HoldsWhateverItIsGiven) {
   };
   ForceGuardSettings guarded = settings();
   guarded.ramp_s = 0.05;
+  guarded.passivity.active = true;
   ForceGuard guard(guarded);
   AxisValues before{};
+  AxisValues position{};
   double age = 0.0;
   int zeros_by_age = 0;
   int forces = 0;
@@ -163,7 +165,8 @@ TEST(ForceGuard, HoldsWhateverItIsGiven) {
     } else {
       age += guarded.period_s;
     }
-    const AxisValues& now = guard.tick(age);
+    for (double& at : position) at = 0.04 * share(random);  // a hand that jumps, up to 40 m/s
+    const AxisValues& now = guard.tick(age, position);
     for (std::size_t a = 0; a < now.size(); ++a) {
       ASSERT_LE(std::abs(now[a]), 20.0) << n;
       ASSERT_LE(std::abs(now[a] - before[a]), 5.0 + kRounding) << n;
@@ -177,6 +180,25 @@ TEST(ForceGuard, HoldsWhateverItIsGiven) {
   }
   EXPECT_GT(zeros_by_age, 100);
   EXPECT_GT(forces, 1000);
+}
+
+TEST(ForceGuard, GivesAMovingAxisNoMoreThanItsPower) {
+  ForceGuardSettings weak = settings();
+  weak.power_w = 2.0;
+  ForceGuard guard(weak);
+  guard.accept(all(8.0));
+  AxisValues position{};
+  AxisValues force{};
+
+  for (int n = 0; n < 10; ++n) {
+    force = guard.tick(0.0, position);
+    position[0] += 0.001;  // 1 m/s along the force
+    position[1] -= 0.001;  // and against it
+  }
+
+  EXPECT_NEAR(force[0], 2.0, kRounding);
+  EXPECT_NEAR(force[1], 8.0, kRounding);
+  EXPECT_NEAR(force[2], 8.0, kRounding);
 }
 
 TEST(ForceGuard, RefusesSettingsOutOfRange) {

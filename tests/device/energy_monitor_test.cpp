@@ -1,0 +1,204 @@
+#include "device_node/energy_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <random>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "device_node/force_guard.h"
+
+namespace cordis::device {
+namespace {
+
+constexpr double kPeriod = 0.001;   // T [s]
+constexpr double kMass = 0.05;      // m [kg]
+constexpr double kViscosity = 1.0;  // b [N s/m]
+
+/// Largest stiffness that is passive for every hand with a delay of d periods (Colgate and
+/// Schenkel 1997 for d = 0).
+double passive_stiffness(int delay) {
+  return kViscosity / (kPeriod * (0.5 + delay));
+}
+
+ForceGuardSettings guarded(bool active) {
+  ForceGuardSettings settings;
+  settings.limit_n = 20.0;
+  settings.slew_n_per_s = 1e5;
+  settings.ramp_s = 0.0;
+  settings.passivity.active = active;
+  settings.passivity.mass_kg = kMass;
+  settings.passivity.viscosity_n_s_per_m = kViscosity;
+  return settings;
+}
+
+/// A key of mass m and viscosity b under forces held over a period: exact, m v' = f - b v.
+struct Key {
+  double position = 0.0;
+  double speed = 0.0;
+
+  void live(double force) {
+    const double decay = std::exp(-kViscosity * kPeriod / kMass);
+    const double end = force / kViscosity;  // the speed it tends to
+    const double tau = kMass / kViscosity;
+    position += end * kPeriod + (speed - end) * tau * (1.0 - decay);
+    speed = end + (speed - end) * decay;
+  }
+};
+
+/// The key before a wall that pushes back from 0 downwards, as it was `delay` periods ago.
+struct Loop {
+  Loop(double stiffness, int delay, bool active)
+      : stiffness_(stiffness),
+        guard(guarded(active)),
+        past_(static_cast<std::size_t>(delay) + 1, 0.0) {}
+
+  void period(double hand_n) {
+    past_.push_back(key.position);
+    past_.pop_front();
+    AxisValues wanted{};
+    wanted[0] = past_.front() < 0.0 ? -stiffness_ * past_.front() : 0.0;
+    guard.accept(wanted);
+    AxisValues position{};
+    position[0] = key.position;
+    key.live(guard.tick(0.0, position)[0] + hand_n);
+    braked += guard.energy().braking();
+  }
+
+ private:
+  double stiffness_;
+
+ public:
+  Key key;
+  ForceGuard guard;
+  int braked = 0;
+
+ private:
+  std::deque<double> past_;
+};
+
+class Delays : public ::testing::TestWithParam<int> {};
+
+TEST_P(Delays, APassiveWallIsNeverBraked) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> force(-0.4, 1.5);
+  Loop loop(0.99 * passive_stiffness(GetParam()), GetParam(), true);
+
+  double deepest = 0.0;
+  double hand = 0.0;
+  for (int n = 0; n < 60000; ++n) {
+    if (n % 20 == 0) hand = force(random);
+    loop.period(hand);
+    deepest = std::min(deepest, loop.key.position);
+  }
+
+  EXPECT_EQ(loop.braked, 0);
+  EXPECT_LT(deepest, -0.002) << "the hand has pressed the wall";
+}
+
+/// Half of the range of positions in the last of six seconds under a hand of 1 N.
+double swing(Loop& loop) {
+  double lowest = 0.0;
+  double highest = -1.0;
+  for (int n = 0; n < 6000; ++n) {
+    loop.period(-1.0);
+    if (n < 5000) continue;
+    lowest = std::min(lowest, loop.key.position);
+    highest = std::max(highest, loop.key.position);
+  }
+  return 0.5 * (highest - lowest);
+}
+
+TEST_P(Delays, TheControllerEndsALimitCycleUpToTenTimesTheLimit) {
+  for (const double times : {2.0, 5.0, 10.0}) {
+    Loop unguarded(times * passive_stiffness(GetParam()), GetParam(), false);
+    Loop guarded(times * passive_stiffness(GetParam()), GetParam(), true);
+
+    const double before = swing(unguarded);
+    const double after = swing(guarded);
+
+    EXPECT_GT(before, 0.5e-3) << times << ": without it the key shakes";
+    EXPECT_LT(after, 0.04e-3) << times << ", before " << before;
+    EXPECT_GT(guarded.braked, 0) << times;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EnergyMonitor, Delays, ::testing::Values(0, 1, 2, 3));
+
+TEST(EnergyMonitor, SumsForceTimesTheWayThatFollowedIt) {
+  EnergyMonitor monitor{PassivitySettings{}};
+  monitor.observe({}, {});
+
+  monitor.observe({2.0, -1.0}, {0.003, 0.001});   // 6 mJ - 1 mJ
+  monitor.observe({2.0, -1.0}, {0.001, -0.001});  // -4 mJ + 2 mJ
+
+  EXPECT_NEAR(monitor.given_j(), 0.003, 1e-15);
+  monitor.start();
+  EXPECT_EQ(monitor.given_j(), 0.0);
+}
+
+TEST(EnergyMonitor, BrakesAgainstTheMotionAndNeverBeyondItsCap) {
+  PassivitySettings settings;
+  settings.active = true;
+  settings.budget_j = 0.0;
+  settings.mass_kg = 0.1;
+  EnergyMonitor monitor(settings);
+  monitor.observe({}, {});
+
+  monitor.observe({100.0}, {0.001});  // 0.1 J from nothing at 1 m/s
+
+  ASSERT_TRUE(monitor.braking());
+  EXPECT_DOUBLE_EQ(monitor.brake_n(0), 0.5 * 0.1 / 0.001 * 1.0);  // m/(2T) v
+  EXPECT_EQ(monitor.brake_n(1), 0.0);
+}
+
+TEST(EnergyMonitor, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
+  ForceGuardSettings settings = guarded(true);
+  settings.ramp_s = 0.2;
+  settings.passivity.budget_j = 0.0;
+  ForceGuard guard(settings);
+  const double stiffness = 500.0;
+  double position = -0.02;
+  int braked = 0;
+
+  // Held in the spring while the forces grow, then led out of it: the hand takes all that it holds.
+  for (int n = 0; n < 1000; ++n) {
+    if (n > 300) position = std::min(0.0, position + 0.0001);
+    AxisValues wanted{};
+    wanted[0] = -stiffness * position;
+    guard.accept(wanted);
+    AxisValues at{};
+    at[0] = position;
+    guard.tick(0.0, at);
+    braked += guard.energy().braking();
+  }
+
+  EXPECT_GT(guard.energy().given_j(), 0.09);  // K x^2 / 2 = 0.1 J
+  EXPECT_EQ(braked, 0);
+}
+
+TEST(EnergyMonitor, DoesNotSaveMoreThanItsTank) {
+  PassivitySettings settings;
+  settings.active = true;
+  settings.budget_j = 0.0;
+  settings.tank_j = 0.005;
+  EnergyMonitor monitor(settings);
+  monitor.observe({}, {});
+
+  monitor.observe({-10.0}, {0.01});  // takes 100 mJ
+  monitor.observe({1.0}, {0.014});   // gives 4 mJ
+  EXPECT_FALSE(monitor.braking());
+  monitor.observe({1.0}, {0.018});  // and 4 mJ more
+  EXPECT_TRUE(monitor.braking());
+}
+
+TEST(EnergyMonitor, RefusesSettingsOutOfRange) {
+  PassivitySettings bad;
+  bad.mass_kg = 0.0;
+  EXPECT_THROW(EnergyMonitor{bad}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cordis::device

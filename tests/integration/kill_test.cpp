@@ -1,0 +1,84 @@
+// tests/integration/kill_test.cpp -- what a hand feels when the scene dies under it.
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "idl/gesture.h"
+#include "node/dds/reader.h"
+#include "node/time.h"
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+#include "tests/integration/status_watch.h"
+
+namespace cordis::test {
+namespace {
+
+struct Row {
+  std::int64_t time_nsec;
+  double commanded;
+};
+
+std::vector<Row> read_trace(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "time_nsec,commanded_0,sensed_0");
+  std::vector<Row> rows;
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    Row row{};
+    char comma = 0;
+    cells >> row.time_nsec >> comma >> row.commanded;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(Kill, TheForceIsZeroWithinTheWatchdogTimeWhenSimNodeIsKilled) {
+  constexpr std::int64_t kWatchdog = 20'000'000;  // of the device, by default [ns]
+  constexpr std::int64_t kPeriod = 1'000'000;
+  LiveSession session("realtime", kSimAndKey);
+  const std::filesystem::path trace = session.folder() / "trace.csv";
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml",
+                   steady_key(-0.01, 0.0) + "trace: {file: " + trace.string() + ", last_s: 60}\n");
+  StatusWatch status(session.participant());
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  ChildProcess& sim = session.start("sim_node", "sim");
+  ChildProcess& device = session.start("device_node", "keyboard");
+  msg::GestureForces force;
+  ASSERT_TRUE(eventually([&] {
+    return forces.take(force) && std::abs(force.force_n()[0] - 2.0) < 1e-9 &&
+           force.answered_sample() > 500;
+  }));
+
+  sim.signal(SIGKILL);
+  ASSERT_EQ(sim.wait(kPatience), 128 + SIGKILL);
+  const std::int64_t dead_nsec = node::monotonic_nsec();
+  ASSERT_TRUE(status.wait_for_phase("keyboard", "lost"));
+  device.signal(SIGTERM);
+  ASSERT_EQ(device.wait(kPatience), 0);
+
+  const std::vector<Row> rows = read_trace(trace);
+  double pressed = 0.0;
+  std::int64_t last_force_nsec = 0;
+  double before = 0.0;
+  for (const Row& row : rows) {
+    if (row.time_nsec < dead_nsec) pressed = row.commanded;
+    if (row.commanded != 0.0) last_force_nsec = row.time_nsec;
+    if (row.time_nsec >= dead_nsec + kWatchdog + kPeriod) {
+      EXPECT_EQ(row.commanded, 0.0) << row.time_nsec - dead_nsec << " ns after";
+    }
+    EXPECT_LE(std::abs(row.commanded - before), 5.0 + 1e-9) << "slew limit of 5000 N/s";
+    before = row.commanded;
+  }
+  EXPECT_GT(std::abs(pressed), 0.0) << "the key was pressed when the scene died";
+  std::printf("last force at the driver %.2f ms after the death of sim_node, was %.3f N\n",
+              static_cast<double>(last_force_nsec - dead_nsec) * 1e-6, pressed);
+}
+
+}  // namespace
+}  // namespace cordis::test
