@@ -88,26 +88,29 @@ struct BehaviourRows {
   // [kImpulse] and [kRestLength] are the arrays below.
   const double* quantity[kQuantityCount] = {};
   const double* growth = nullptr;  // of the row along its line of centres in this period [m]
+  double dt = 0.0;                 // [s]
   double rate = 0.0;               // 1 / dt [1/s]
   double now = 0.0;                // step count
+  std::uint32_t still = 0;         // bit i: row i has no direction, hence no pull
+  bool frozen = false;             // no exit is tested: before step 0
   // given, and changed
   StateIndex* state = nullptr;
-  double* rest_length = nullptr;      // [m]
-  double* elongation = nullptr;       // distance - rest length [m]
-  double* pull = nullptr;             // of the last step, then of this one [N]
-  double* impulse = nullptr;          // since entry, this step included [N s]
-  double* entered = nullptr;          // step count at the entry of the present state
-  double* memory = nullptr;           // of slot s: memory[s * memory_stride], 8 values
-  std::size_t memory_stride = 0;      // NaN: no value yet
-  std::uint32_t* forced = nullptr;    // target state or kNotForced, then kNotForced; may be null
+  double* rest_length = nullptr;  // [m]
+  double* elongation = nullptr;   // distance - rest length [m]
+  double* pull = nullptr;         // of the last step, then of this one [N]
+  double* impulse = nullptr;      // since entry, this step included [N s]; may be null
+  double* entered = nullptr;      // step count at the entry of the present state
+  double* memory = nullptr;       // of slot s: memory[8 * s], 8 values; NaN: none yet
+  std::size_t memory_slots = 0;
+  std::uint32_t* forced = nullptr;  // target state or kNotForced, then kNotForced; may be null
   // found
-  double* elastic = nullptr;   // the part of the pull that stores energy [N]
+  double* elastic = nullptr;         // the part of the pull that stores energy [N]
   double* elastic_before = nullptr;  // that of the state before the change; valid where one changed
   std::uint32_t changed = 0;         // bit i: row i has changed
   StateIndex from[kBehaviourBatch];  // valid where changed:
-  std::uint32_t exit[kBehaviourBatch];   // number among the exits of `from`, or kNotForced
-  double fired_value[kBehaviourBatch];   // of the quantity that fired
-  double rest_before[kBehaviourBatch];   // [m]
+  std::uint32_t exit[kBehaviourBatch];  // number among the exits of `from`, or kNotForced
+  double fired_value[kBehaviourBatch];  // of the quantity that fired
+  double rest_before[kBehaviourBatch];  // [m]
 };
 
 /// One step of the behaviours of 8 rows: exits of the present state in order, at most one change a
@@ -115,9 +118,54 @@ struct BehaviourRows {
 /// changed, the dampers see no growth.
 using StepBehaviours = void (*)(const StateTerm* states, BehaviourRows& rows) noexcept;
 
+/// State links, one row each; arrays 64-byte aligned, padded to a multiple of 8 with rows that join
+/// MAT 0 to itself in a state of no force.
+struct StateLinkRows {
+  std::size_t count = 0;                    // rows, padding included
+  const std::uint32_t* column_a = nullptr;  // 4 * MAT index
+  const std::uint32_t* column_b = nullptr;
+  const double* mass_a = nullptr;  // [kg]
+  const double* mass_b = nullptr;
+  const StateTerm* states = nullptr;
+  StateIndex* state = nullptr;
+  double* rest_length = nullptr;  // as in BehaviourRows, all of these
+  double* pull = nullptr;
+  double* impulse = nullptr;
+  double* entered = nullptr;
+  double* memory = nullptr;  // of row l, slot s: memory[(l / 8 * memory_slots + s) * 8 + l % 8]
+  std::size_t memory_slots = 0;
+  std::uint32_t* forced = nullptr;
+  double* elastic_factor = nullptr;  // elastic force of the last call = factor * vector from a to
+  double* viscous_factor = nullptr;  // b; the rest of the force; both [N/m], in 1 dimension [N]
+  double dt = 0.0;                   // [s]
+  double rate = 0.0;                 // 1 / dt [1/s]
+  double now = 0.0;                  // step count
+  bool frozen = false;               // no exit is tested
+  bool needs_velocity = false;       // some program asks for it, or for the slip
+  bool needs_age = false;
+  void (*on_change)(void* owner, std::size_t first_row, const BehaviourRows& rows) noexcept =
+      nullptr;  // called after a batch in which rows have changed
+  void* owner = nullptr;
+};
+
+/// Twice the works [J] that the links took, as AddLinkForces counts them: of the elastic parts of
+/// the pulls, and of the rest.
+struct StateLinkWork {
+  double elastic = 0.0;
+  double dissipated = 0.0;
+};
+
+struct ForceColumns;
+
+/// Steps the behaviours of all links and adds their forces, in link order.
+using AddStateLinkForces = StateLinkWork (*)(const StateLinkRows& links,
+                                             const ForceColumns& columns) noexcept;
+
 /// The loops of one width.
 struct BehaviourKernel {
   StepBehaviours step = nullptr;
+  AddStateLinkForces state_links_1d = nullptr;
+  AddStateLinkForces state_links_3d = nullptr;  // for 2 dimensions too
 };
 
 extern const BehaviourKernel kBehaviourKernelSse2;

@@ -40,39 +40,47 @@ double gravity_energy(const NetworkDescription& network, const MatArray& mats) n
 
 }  // namespace
 
-void EnergyAccount::start(const NetworkDescription& network, const MatArray& mats) noexcept {
+void EnergyAccount::start(const NetworkDescription& network, const MatArray& mats, double stored,
+                          double since) noexcept {
   *this = EnergyAccount{};
-  initial_ =
-      kinetic_energy(network, mats) + elastic_energy(network, mats) + gravity_energy(network, mats);
+  stored_ = stored;
+  initial_ = kinetic_energy(network, mats) + (elastic_energy(network, mats) + (stored + since)) +
+             gravity_energy(network, mats);
 }
 
-void EnergyAccount::add(double dissipated, double port_work) noexcept {
-  dissipated_ += dissipated;
-  port_work_ += port_work;
+void EnergyAccount::add(const StepEnergy& step) noexcept {
+  stored_ += step.elastic + step.switching;
+  dissipated_ += step.dissipated;
+  switching_ += step.switching;
+  port_work_ += step.port_work;
   largest_port_work_ = std::max(largest_port_work_, std::abs(port_work_));
 }
 
 Energy EnergyAccount::energy(const NetworkDescription& network, const MatArray& mats,
-                             double dissipated_since) const noexcept {
+                             const StepEnergy& since, double stored) const noexcept {
   Energy energy;
   energy.kinetic = kinetic_energy(network, mats);
-  energy.elastic = elastic_energy(network, mats);
+  energy.elastic = elastic_energy(network, mats) + (stored_ + since.elastic);
   energy.gravity = gravity_energy(network, mats);
-  energy.dissipated = dissipated_ + dissipated_since;
+  energy.dissipated = dissipated_ + since.dissipated;
   energy.port_work = port_work_;
+  energy.switching = switching_;
   energy.initial = initial_;
-  energy.largest =
-      std::max({energy.kinetic, std::abs(energy.elastic), std::abs(energy.gravity),
-                std::abs(energy.dissipated), largest_port_work_, std::abs(energy.initial)});
+  energy.elastic_error = stored_ - stored;
+  energy.largest = std::max({energy.kinetic, std::abs(energy.elastic), std::abs(energy.gravity),
+                             std::abs(energy.dissipated), std::abs(energy.switching),
+                             largest_port_work_, std::abs(energy.initial)});
   return energy;
 }
 
 void EnergyAccount::append_state(std::vector<double>& state) const {
-  state.insert(state.end(), {initial_, dissipated_, port_work_, largest_port_work_});
+  state.insert(state.end(),
+               {initial_, dissipated_, port_work_, largest_port_work_, stored_, switching_});
 }
 
 const double* EnergyAccount::take_state(const double* state) noexcept {
-  for (double* value : {&initial_, &dissipated_, &port_work_, &largest_port_work_}) {
+  for (double* value :
+       {&initial_, &dissipated_, &port_work_, &largest_port_work_, &stored_, &switching_}) {
     *value = *state++;
   }
   return state;

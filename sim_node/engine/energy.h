@@ -11,50 +11,81 @@ namespace cordis::engine {
 
 /// Energies of the present state and the account since step 0 [J].
 ///
-///     kinetic + elastic + gravity = initial + port_work - dissipated + residual
+///     kinetic + elastic + gravity = initial + port_work + switching - dissipated + residual
 ///
 /// All of them belong to the middle of the last period, between x(n-1) and x(n), where this scheme
 /// keeps its account: a force f(n) changes the kinetic energy of the half-step velocities by
 /// exactly f(n) . (x(n+1) - x(n-1)) / 2, and dissipated and port_work are these exact works.
-/// Against them elastic changes
-/// - in 1 dimension by exactly the work of the springs: the residual is rounding alone, for every
-/// step that is stable;
+///
+/// Of linear links, elastic is the product that the scheme keeps, K e(n) e(n-1) / 2. It changes
+/// - in 1 dimension by exactly the work of the springs: no residual but rounding, for every step
+///   that is stable;
 /// - in 2 and 3 dimensions by that work up to third order in dt a step, from the turning of the
-/// links: the residual
-///   is of order dt^2.
+///   links: the residual is of order dt^2.
+/// Of all other links, elastic is what they stored at first, and the exact works of their elastic
+/// forces and the energies of their changes of state since: no residual but rounding, whatever the
+/// law. What they should store by the closed form of their laws differs from this by elastic_error.
 /// A port that has moved counts up to its present position, and rests there until the next step.
 struct Energy {
   double kinetic =
       0.0;  ///< of the half-step velocity (x(n) - x(n-1)) / dt before the present position
-  double elastic =
-      0.0;  ///< in the springs, sum of K e(n) e(n-1) / 2, e the elongation: the product that the
-            ///< scheme keeps; below 0 for a moment where a link passes its rest length
-  double gravity = 0.0;     ///< potential in the uniform gravity, 0 at the origin
-  double dissipated = 0.0;  ///< taken by link and medium viscosity since step 0
+  double elastic = 0.0;  ///< in the links; below 0 for a moment where a link passes its rest length
+  double gravity = 0.0;  ///< potential in the uniform gravity, 0 at the origin
+  double dissipated = 0.0;  ///< taken since step 0 by the viscosity of links and medium, and by all
+                            ///< else of the pull of a link that is not the slope of a potential:
+                            ///< a force limit, the cutting off of a clamped one, a function
   double port_work = 0.0;   ///< brought in by imposed positions and external forces since step 0
+  double switching = 0.0;   ///< brought in by changes of state and of parameters since step 0: the
+                            ///< sum of LinkEvent::energy
   double initial = 0.0;     ///< kinetic + elastic + gravity at step 0
+  double elastic_error = 0.0;  ///< part of elastic that a finite step has put there, above what the
+                               ///< laws of the links store: of order dt^2, 0 for linear links and
+                               ///< states in 1 dimension
   double largest = 0.0;  ///< largest magnitude among the fields above, and that port_work ever had:
                          ///< the scale for a relative residual
 
   double total() const noexcept { return kinetic + elastic + gravity; }
-  double residual() const noexcept { return total() - initial - port_work + dissipated; }
+  double residual() const noexcept {
+    return total() - initial - port_work - switching + dissipated;
+  }
+};
+
+/// What one step does to the account [J].
+struct StepEnergy {
+  double elastic = 0.0;     ///< work that went into links other than linear ones
+  double dissipated = 0.0;  ///< work that viscosity took
+  double switching = 0.0;   ///< brought into links by changes of state
+  double port_work = 0.0;
+
+  StepEnergy& operator+=(const StepEnergy& other) noexcept {
+    elastic += other.elastic;
+    dissipated += other.dissipated;
+    switching += other.switching;
+    port_work += other.port_work;
+    return *this;
+  }
 };
 
 /// Gathers the work of every step.
 class EnergyAccount {
  public:
   /// Opens the account with the energies of step 0.
-  void start(const NetworkDescription& network, const MatArray& mats) noexcept;
+  /// @param stored  by links other than linear ones, at the delayed positions [J]
+  /// @param since   work of their forces from there to the present positions [J]
+  void start(const NetworkDescription& network, const MatArray& mats, double stored,
+             double since) noexcept;
 
-  /// Enters the work [J] of one step.
-  void add(double dissipated, double port_work) noexcept;
+  /// Enters one step, or a change between two.
+  void add(const StepEnergy& step) noexcept;
 
-  /// @param dissipated_since  taken by viscous forces since the last entry, up to the present
-  /// positions [J] Real time: O(MATs + links), no allocation.
-  Energy energy(const NetworkDescription& network, const MatArray& mats,
-                double dissipated_since) const noexcept;
+  /// @param since   works of the forces of the last step up to the present positions
+  /// @param stored  what links other than linear ones should store, by the closed forms of their
+  ///                laws, where the forces of the last step were computed [J]
+  /// Real time: O(MATs + links), no allocation.
+  Energy energy(const NetworkDescription& network, const MatArray& mats, const StepEnergy& since,
+                double stored) const noexcept;
 
-  static constexpr std::size_t kStateSize = 4;
+  static constexpr std::size_t kStateSize = 6;
   /// The state as a row of values.
   void append_state(std::vector<double>& state) const;
   /// Takes it back. @return one past the last value taken.
@@ -65,6 +96,8 @@ class EnergyAccount {
   double dissipated_ = 0.0;
   double port_work_ = 0.0;
   double largest_port_work_ = 0.0;
+  double stored_ = 0.0;  // in links other than linear ones, when the last forces were computed
+  double switching_ = 0.0;
 };
 
 }  // namespace cordis::engine

@@ -28,6 +28,28 @@ struct Avx2Lanes {
   static Row load(const double* values) noexcept { return _mm256_load_pd(values); }
   static void store(double* values, Row v) noexcept { _mm256_store_pd(values, v); }
   static Row sqrt(Row v) noexcept { return _mm256_sqrt_pd(v); }
+  static Row every(double value) noexcept { return _mm256_set1_pd(value); }
+  static Row minimum(Row u, Row v) noexcept { return _mm256_min_pd(u, v); }
+  static Row maximum(Row u, Row v) noexcept { return _mm256_max_pd(u, v); }
+  static Row magnitude(Row v) noexcept { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), v); }
+
+  using Mask = __m256d;
+  static Mask less(Row u, Row v) noexcept { return _mm256_cmp_pd(u, v, _CMP_LT_OQ); }
+  static Mask less_or_equal(Row u, Row v) noexcept { return _mm256_cmp_pd(u, v, _CMP_LE_OQ); }
+  static Mask equal(Row u, Row v) noexcept { return _mm256_cmp_pd(u, v, _CMP_EQ_OQ); }
+  static Mask not_equal(Row u, Row v) noexcept { return _mm256_cmp_pd(u, v, _CMP_NEQ_UQ); }
+  static Mask both(Mask m, Mask n) noexcept { return _mm256_and_pd(m, n); }
+  static Mask either(Mask m, Mask n) noexcept { return _mm256_or_pd(m, n); }
+  static Row select(Mask m, Row u, Row v) noexcept { return _mm256_blendv_pd(v, u, m); }
+  static std::uint32_t bits(Mask m) noexcept {
+    return static_cast<std::uint32_t>(_mm256_movemask_pd(m));
+  }
+  static Mask mask(std::uint32_t bits) noexcept {
+    const __m256i place = _mm256_set_epi64x(8, 4, 2, 1);
+    const __m256i chosen = _mm256_and_si256(_mm256_set1_epi64x(bits), place);
+    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(chosen, place));
+  }
+
   static Row inverse_or_zero(Row square, Row length) noexcept {
     return _mm256_and_pd(_mm256_cmp_pd(square, zero(), _CMP_NEQ_UQ),
                          _mm256_div_pd(_mm256_set1_pd(1.0), length));

@@ -28,6 +28,22 @@ struct Avx512Lanes {
   static Row load(const double* values) noexcept { return _mm512_load_pd(values); }
   static void store(double* values, Row v) noexcept { _mm512_store_pd(values, v); }
   static Row sqrt(Row v) noexcept { return _mm512_sqrt_pd(v); }
+  static Row every(double value) noexcept { return _mm512_set1_pd(value); }
+  static Row minimum(Row u, Row v) noexcept { return _mm512_min_pd(u, v); }
+  static Row maximum(Row u, Row v) noexcept { return _mm512_max_pd(u, v); }
+  static Row magnitude(Row v) noexcept { return _mm512_abs_pd(v); }
+
+  using Mask = __mmask8;
+  static Mask less(Row u, Row v) noexcept { return _mm512_cmp_pd_mask(u, v, _CMP_LT_OQ); }
+  static Mask less_or_equal(Row u, Row v) noexcept { return _mm512_cmp_pd_mask(u, v, _CMP_LE_OQ); }
+  static Mask equal(Row u, Row v) noexcept { return _mm512_cmp_pd_mask(u, v, _CMP_EQ_OQ); }
+  static Mask not_equal(Row u, Row v) noexcept { return _mm512_cmp_pd_mask(u, v, _CMP_NEQ_UQ); }
+  static Mask both(Mask m, Mask n) noexcept { return static_cast<Mask>(m & n); }
+  static Mask either(Mask m, Mask n) noexcept { return static_cast<Mask>(m | n); }
+  static Row select(Mask m, Row u, Row v) noexcept { return _mm512_mask_blend_pd(m, v, u); }
+  static std::uint32_t bits(Mask m) noexcept { return m; }
+  static Mask mask(std::uint32_t bits) noexcept { return static_cast<Mask>(bits); }
+
   static Row inverse_or_zero(Row square, Row length) noexcept {
     const __mmask8 has_direction = _mm512_cmp_pd_mask(square, zero(), _CMP_NEQ_UQ);
     return _mm512_maskz_div_pd(has_direction, _mm512_set1_pd(1.0), length);

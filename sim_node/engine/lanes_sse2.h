@@ -42,6 +42,29 @@ struct Sse2Lanes {
   static Row load(const double* values) noexcept { return _mm_load_pd(values); }
   static void store(double* values, Row v) noexcept { _mm_store_pd(values, v); }
   static Row sqrt(Row v) noexcept { return _mm_sqrt_pd(v); }
+  static Row every(double value) noexcept { return _mm_set1_pd(value); }
+  static Row minimum(Row u, Row v) noexcept { return _mm_min_pd(u, v); }
+  static Row maximum(Row u, Row v) noexcept { return _mm_max_pd(u, v); }
+  static Row magnitude(Row v) noexcept { return _mm_andnot_pd(_mm_set1_pd(-0.0), v); }
+
+  using Mask = __m128d;
+  static Mask less(Row u, Row v) noexcept { return _mm_cmplt_pd(u, v); }
+  static Mask less_or_equal(Row u, Row v) noexcept { return _mm_cmple_pd(u, v); }
+  static Mask equal(Row u, Row v) noexcept { return _mm_cmpeq_pd(u, v); }
+  static Mask not_equal(Row u, Row v) noexcept { return _mm_cmpneq_pd(u, v); }
+  static Mask both(Mask m, Mask n) noexcept { return _mm_and_pd(m, n); }
+  static Mask either(Mask m, Mask n) noexcept { return _mm_or_pd(m, n); }
+  static Row select(Mask m, Row u, Row v) noexcept {
+    return _mm_or_pd(_mm_and_pd(m, u), _mm_andnot_pd(m, v));
+  }
+  static std::uint32_t bits(Mask m) noexcept {
+    return static_cast<std::uint32_t>(_mm_movemask_pd(m));
+  }
+  static Mask mask(std::uint32_t bits) noexcept {
+    return _mm_castsi128_pd(_mm_set_epi64x(-static_cast<std::int64_t>(bits >> 1 & 1U),
+                                           -static_cast<std::int64_t>(bits & 1U)));
+  }
+
   static Row inverse_or_zero(Row square, Row length) noexcept {
     return _mm_and_pd(_mm_cmpneq_pd(square, zero()), _mm_div_pd(_mm_set1_pd(1.0), length));
   }

@@ -2,20 +2,27 @@
 #include "sim_node/engine/world.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include "sim_node/engine/behaviour_kernel.h"
+#include "sim_node/engine/event_log.h"
 #include "sim_node/engine/mat_array.h"
 #include "sim_node/engine/outside.h"
 #include "sim_node/engine/spring_damper.h"
 #include "sim_node/engine/state_hash.h"
+#include "sim_node/engine/state_links.h"
+#include "sim_node/engine/state_table.h"
 #include "sim_node/engine/step_kernel.h"
 
 namespace cordis::engine {
 namespace {
+
+constexpr std::size_t kLeastEventRoom = 1024;
 
 std::shared_ptr<const Network> require(std::shared_ptr<const Network> network) {
   if (!network) throw std::invalid_argument("a world needs a network");
@@ -37,60 +44,130 @@ struct World::State {
       : network(require(std::move(network_of_world))),
         width(require(width_of_step)),
         kernel(step_kernel(width)),
+        behaviours(behaviour_kernel(width)),
         mats(network->description()),
         positions(mats.position()),
         links(network->description()),
+        table(network->description().behaviours, network->step()),
+        state_links(network->description(), table),
+        log(table, std::max(kLeastEventRoom, network->description().state_links.size())),
         outside(network->description()) {}
 
   void start() noexcept;
   StepReport step() noexcept;
+  void restore(const Snapshot& snapshot);
+  void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
   std::size_t state_size_before_outside() const noexcept {
-    return mats.state_size() + links.state_size() + EnergyAccount::kStateSize;
+    return mats.state_size() + links.state_size() + state_links.state_size() + log.state_size() +
+           EnergyAccount::kStateSize;
   }
 
   std::shared_ptr<const Network> network;
   VectorWidth width;
   const StepKernel& kernel;
+  const BehaviourKernel& behaviours;
   MatArray mats;
   Columns positions;  // of mats
   SpringDamperArray links;
+  StateTable table;
+  StateLinkArray state_links;
+  EventLog log;
   Outside outside;
   EnergyAccount account;
   std::uint64_t step_count = 0;
+  bool replaced = false;  // a behaviour is no longer that of the network
 };
 
 void World::State::start() noexcept {
   links.add_forces(kernel, mats.force_columns());
+  state_links.add_forces_before_start(behaviours, table, mats.force_columns());
   mats.start();
 
-  // The account of the ports begins with the springs as they were one period ago, when nothing is
-  // known to have moved.
+  // The account of ports and state links begins with the links as they were one period ago, when
+  // nothing is known to have moved.
   ForceColumns one_period_ago = mats.force_columns();
   one_period_ago.position = one_period_ago.delayed;
   links.add_forces(kernel, one_period_ago);
+  state_links.add_forces_before_start(behaviours, table, one_period_ago);
   outside.start(mats);
   mats.clear_forces();
   links.start();
-  account.start(network->description(), mats);
+  state_links.start();
+  account.start(network->description(), mats, state_links.stored_energy(table, mats),
+                state_links.work_since_last_call(mats).elastic);
 }
 
 StepReport World::State::step() noexcept {
   StepReport report;
   report.refused_inputs = outside.take_refused();
+  log.begin_step();
 
-  double port_work = outside.move_ports(mats);
+  StepEnergy energy;
+  energy.port_work = outside.move_ports(mats);
   mats.clear_forces();
-  const double link_work = links.add_forces(kernel, mats.force_columns());
-  port_work += outside.work_at_ports(mats);
+  energy.dissipated = links.add_forces(kernel, mats.force_columns());
+  if (!state_links.empty()) {
+    energy += state_links.add_forces(behaviours, table, mats.force_columns(), step_count, log);
+  }
+  energy.port_work += outside.work_at_ports(mats);
 
-  port_work += outside.push(mats);
+  energy.port_work += outside.push(mats);
   const AdvanceReport advance = mats.advance(kernel);
-  port_work += outside.release(mats);
+  energy.port_work += outside.release(mats);
 
-  account.add(link_work + advance.medium_work, port_work);
+  energy.dissipated += advance.medium_work;
+  account.add(energy);
   ++step_count;
   report.non_finite_mats = advance.non_finite_mats;
+  report.lost_events = log.lost();
   return report;
+}
+
+void World::State::replace_behaviour(std::uint32_t index, const Behaviour& behaviour) {
+  if (index >= table.behaviours().size()) {
+    throw std::invalid_argument("behaviour " + std::to_string(index) + " does not exist");
+  }
+  check_behaviour(behaviour, "behaviour " + std::to_string(index));
+  if (behaviour.states.size() != table.behaviours()[index].states.size()) {
+    throw std::invalid_argument("a behaviour is replaced by one of as many states");
+  }
+  for (const LinkState& state : behaviour.states) {
+    if (!std::isfinite(state.viscosity / network->step())) {
+      throw std::invalid_argument("a viscosity is too large for the step");
+    }
+  }
+  const double before = state_links.stored_energy(table, mats);
+  table.replace(index, behaviour);
+  state_links.adopt(table);
+  StepEnergy change;
+  change.switching = state_links.stored_energy(table, mats) - before;
+  account.add(change);
+  replaced = true;
+}
+
+void World::State::restore(const Snapshot& snapshot) {
+  if (snapshot.network != network->fingerprint()) {
+    throw std::invalid_argument("the snapshot is of another network");
+  }
+  const std::vector<Behaviour>& own = network->description().behaviours;
+  StateTable table_of_snapshot(snapshot.behaviours.empty() ? own : snapshot.behaviours,
+                               network->step());
+  StateLinkArray links_of_snapshot(network->description(), table_of_snapshot);
+  std::swap(table, table_of_snapshot);
+  std::swap(state_links, links_of_snapshot);
+  if (!outside.is_end_of_state(snapshot.state, state_size_before_outside())) {
+    std::swap(table, table_of_snapshot);
+    std::swap(state_links, links_of_snapshot);
+    throw std::invalid_argument("the snapshot is not complete");
+  }
+  step_count = snapshot.step;
+  replaced = !snapshot.behaviours.empty();
+  const double* next = mats.take_state(snapshot.state.data());
+  next = links.take_state(next);
+  next = state_links.take_state(next);
+  next = log.take_state(next);
+  next = account.take_state(next);
+  outside.take_state(next);
 }
 
 World::World(std::shared_ptr<const Network> network, VectorWidth width)
@@ -122,8 +199,33 @@ StepReport World::step() noexcept {
   return state_->step();
 }
 
+void World::force_state(std::uint32_t state_link, std::uint32_t state) noexcept {
+  state_->state_links.force_state(state_->table, state_link, state);
+}
+
+void World::replace_behaviour(std::uint32_t index, const Behaviour& behaviour) {
+  state_->replace_behaviour(index, behaviour);
+}
+
 std::span<const LinkEvent> World::events() const noexcept {
-  return {};
+  return state_->log.events();
+}
+
+std::uint32_t World::state_of(std::uint32_t state_link) const noexcept {
+  return state_->state_links.state_of(state_->table, state_link);
+}
+
+double World::rest_length_of(std::uint32_t state_link) const noexcept {
+  return state_->state_links.rest_length(state_link);
+}
+
+double World::pull_of(std::uint32_t state_link) const noexcept {
+  return state_->state_links.pull(state_link);
+}
+
+std::uint64_t World::change_count(std::uint32_t behaviour, std::uint32_t from,
+                                  std::uint32_t to) const noexcept {
+  return state_->log.change_count(behaviour, from, to);
 }
 
 std::uint64_t World::step_count() const noexcept {
@@ -148,8 +250,11 @@ const Columns& World::positions() const noexcept {
 }
 
 Energy World::energy() const noexcept {
-  return state_->account.energy(state_->network->description(), state_->mats,
-                                state_->links.work_since_last_call(state_->mats));
+  const State& state = *state_;
+  StepEnergy since = state.state_links.work_since_last_call(state.mats);
+  since.dissipated += state.links.work_since_last_call(state.mats);
+  return state.account.energy(state.network->description(), state.mats, since,
+                              state.state_links.stored_energy(state.table, state.mats));
 }
 
 Vec3 World::momentum() const noexcept {
@@ -179,30 +284,24 @@ std::uint64_t World::state_hash() const noexcept {
       for (Eigen::Index axis = 0; axis < 3; ++axis) hash.add(columns(axis, i));
     }
   }
+  state_->state_links.add_to(hash);
   return hash.value();
 }
 
 Snapshot World::snapshot() const {
-  Snapshot snapshot{state_->network->fingerprint(), state_->step_count, {}};
+  Snapshot snapshot{state_->network->fingerprint(), state_->step_count, {}, {}};
+  if (state_->replaced) snapshot.behaviours = state_->table.behaviours();
   state_->mats.append_state(snapshot.state);
   state_->links.append_state(snapshot.state);
+  state_->state_links.append_state(snapshot.state);
+  state_->log.append_state(snapshot.state);
   state_->account.append_state(snapshot.state);
   state_->outside.append_state(snapshot.state);
   return snapshot;
 }
 
 void World::restore(const Snapshot& snapshot) {
-  if (snapshot.network != state_->network->fingerprint()) {
-    throw std::invalid_argument("the snapshot is of another network");
-  }
-  if (!state_->outside.is_end_of_state(snapshot.state, state_->state_size_before_outside())) {
-    throw std::invalid_argument("the snapshot is not complete");
-  }
-  state_->step_count = snapshot.step;
-  const double* next = state_->mats.take_state(snapshot.state.data());
-  next = state_->links.take_state(next);
-  next = state_->account.take_state(next);
-  state_->outside.take_state(next);
+  state_->restore(snapshot);
 }
 
 }  // namespace cordis::engine

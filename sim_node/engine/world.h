@@ -25,7 +25,8 @@ struct StepReport {
 struct Snapshot {
   std::uint64_t network = 0;  ///< Network::fingerprint()
   std::uint64_t step = 0;
-  std::vector<double> state;  ///< opaque
+  std::vector<double> state;          ///< opaque
+  std::vector<Behaviour> behaviours;  ///< all of them, if one has been replaced; otherwise none
 };
 
 /// A network in motion.

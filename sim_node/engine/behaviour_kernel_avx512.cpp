@@ -1,0 +1,10 @@
+// sim_node/engine/behaviour_kernel_avx512.cpp -- eight rows in a register. Compiled with -mavx512f,
+// without contraction.
+#include "sim_node/engine/lanes_avx512.h"
+#include "sim_node/engine/state_link_kernel_body.h"
+
+namespace cordis::engine {
+
+const BehaviourKernel kBehaviourKernelAvx512 = make_behaviour_kernel<Avx512Lanes>();
+
+}  // namespace cordis::engine

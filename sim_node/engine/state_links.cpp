@@ -1,0 +1,215 @@
+// sim_node/engine/state_links.cpp
+#include "sim_node/engine/state_links.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace cordis::engine {
+namespace {
+
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+
+std::size_t padded(std::size_t link_count) {
+  return (link_count + kBehaviourBatch - 1) / kBehaviourBatch * kBehaviourBatch;
+}
+
+double mass_of(const Mat& mat) {
+  return mat.kind == MatKind::kMass ? mat.mass : 0.0;
+}
+
+/// Takes as many values as there are. @return one past the last.
+template <class Values>
+const double* take(const double* from, Values& values) noexcept {
+  for (auto& value : values) value = static_cast<typename Values::value_type>(*from++);
+  return from;
+}
+
+}  // namespace
+
+StateLinkArray::StateLinkArray(const NetworkDescription& description, const StateTable& table)
+    : in_line_(description.dimension == 1),
+      dt_(description.step),
+      link_count_(description.state_links.size()),
+      column_a_(padded(link_count_), 0U),
+      column_b_(column_a_.size(), 0U),
+      mass_a_(column_a_.size(), 0.0),
+      mass_b_(column_a_.size(), 0.0),
+      behaviour_(column_a_.size(), 0U),
+      state_(column_a_.size(), table.padding_state()),
+      rest_length_(column_a_.size(), 0.0),
+      pull_(column_a_.size(), 0.0),
+      impulse_(column_a_.size(), 0.0),
+      entered_(column_a_.size(), 0.0),
+      forced_(column_a_.size(), kNotForced),
+      elastic_factor_(column_a_.size(), 0.0),
+      viscous_factor_(column_a_.size(), 0.0) {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    const StateLink& link = description.state_links[l];
+    column_a_[l] = 4 * link.mat_a;
+    column_b_[l] = 4 * link.mat_b;
+    mass_a_[l] = mass_of(description.mats[link.mat_a]);
+    mass_b_[l] = mass_of(description.mats[link.mat_b]);
+    behaviour_[l] = link.behaviour;
+    state_[l] = table.start_state(link.behaviour);
+    rest_length_[l] = link.rest_length;
+  }
+  adopt(table);
+}
+
+StateLinkRows StateLinkArray::rows(const StateTable& table) noexcept {
+  StateLinkRows rows;
+  rows.count = column_a_.size();
+  rows.column_a = column_a_.data();
+  rows.column_b = column_b_.data();
+  rows.mass_a = mass_a_.data();
+  rows.mass_b = mass_b_.data();
+  rows.states = table.terms();
+  rows.state = state_.data();
+  rows.rest_length = rest_length_.data();
+  rows.pull = pull_.data();
+  rows.impulse = table.needs(Quantity::kImpulse) ? impulse_.data() : nullptr;
+  rows.entered = entered_.data();
+  rows.memory = memory_.data();
+  rows.memory_slots = slot_count_;
+  rows.forced = any_forced_ ? forced_.data() : nullptr;
+  rows.elastic_factor = elastic_factor_.data();
+  rows.viscous_factor = viscous_factor_.data();
+  rows.dt = dt_;
+  rows.rate = 1.0 / dt_;
+  rows.needs_age = table.needs(Quantity::kAge);
+  for (const Quantity quantity :
+       {Quantity::kSpeedX, Quantity::kSpeedY, Quantity::kSpeedZ, Quantity::kSlip}) {
+    rows.needs_velocity = rows.needs_velocity || table.needs(quantity);
+  }
+  return rows;
+}
+
+void StateLinkArray::add_forces_before_start(const BehaviourKernel& kernel, const StateTable& table,
+                                             const ForceColumns& columns) noexcept {
+  StateLinkRows links = rows(table);
+  links.frozen = true;
+  links.impulse = nullptr;
+  (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns);
+}
+
+void StateLinkArray::start() noexcept {
+  std::fill(pull_.begin(), pull_.end(), 0.0);
+  std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
+}
+
+StepEnergy StateLinkArray::add_forces(const BehaviourKernel& kernel, const StateTable& table,
+                                      const ForceColumns& columns, std::uint64_t step,
+                                      EventLog& log) noexcept {
+  struct Entry {
+    const StateLinkArray* links;
+    const StateTable* table;
+    EventLog* log;
+    std::uint64_t step;
+    double switching;  // [J]
+  };
+  Entry entry{this, &table, &log, step, 0.0};
+  StateLinkRows links = rows(table);
+  links.now = static_cast<double>(step);
+  links.owner = &entry;
+  links.on_change = [](void* owner, std::size_t first, const BehaviourRows& rows) noexcept {
+    auto& to = *static_cast<Entry*>(owner);
+    for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
+      if ((rows.changed >> i & 1U) == 0) continue;
+      const std::size_t l = first + i;
+      const StateIndex first_state = to.table->first_state(to.links->behaviour_[l]);
+      const double energy = to.table->change_energy(rows, i);
+      to.switching += energy;
+      to.log->add({to.step, static_cast<std::uint32_t>(l), to.links->column_a_[l] / 4,
+                   to.links->column_b_[l] / 4, to.links->behaviour_[l], rows.from[i] - first_state,
+                   rows.state[i] - first_state, to.table->fired(rows.from[i], rows.exit[i]),
+                   rows.fired_value[i], energy});
+    }
+  };
+  const StateLinkWork work =
+      (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns);
+  any_forced_ = false;
+  return {0.5 * work.elastic, 0.5 * work.dissipated, entry.switching, 0.0};
+}
+
+StepEnergy StateLinkArray::work_since_last_call(const MatArray& mats) const noexcept {
+  StepEnergy work;
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    const std::uint32_t a = column_a_[l] / 4;
+    const std::uint32_t b = column_b_[l] / 4;
+    const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
+    const Vec3 moved = mats.position(b) - mats.position(a) - before;
+    const double product = 0.5 * (in_line_ ? moved.x() : before.dot(moved));
+    work.elastic += elastic_factor_[l] * product;
+    work.dissipated += viscous_factor_[l] * product;
+  }
+  return work;
+}
+
+double StateLinkArray::distance_at_last_call(const MatArray& mats,
+                                             std::size_t link) const noexcept {
+  const Vec3 along =
+      mats.delayed_at_rest(column_b_[link] / 4) - mats.delayed_at_rest(column_a_[link] / 4);
+  return in_line_ ? along.x() : along.norm();
+}
+
+double StateLinkArray::stored_energy(const StateTable& table, const MatArray& mats) const noexcept {
+  double sum = 0.0;
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    sum += table.stored_energy(state_[l], distance_at_last_call(mats, l), rest_length_[l]);
+  }
+  return sum;
+}
+
+void StateLinkArray::force_state(const StateTable& table, std::uint32_t link,
+                                 std::uint32_t state) noexcept {
+  forced_[link] = table.first_state(behaviour_[link]) + state;
+  any_forced_ = true;
+}
+
+void StateLinkArray::adopt(const StateTable& table) {
+  if (memory_.empty() || slot_count_ < table.slot_count()) {
+    slot_count_ = table.slot_count();
+    memory_.assign(slot_count_ * column_a_.size(), kNoValue);
+  }
+}
+
+std::uint32_t StateLinkArray::state_of(const StateTable& table, std::uint32_t link) const noexcept {
+  return state_[link] - table.first_state(behaviour_[link]);
+}
+
+void StateLinkArray::add_to(StateHash& hash) const noexcept {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    hash.add(static_cast<std::uint64_t>(state_[l]));
+    for (const double value : {rest_length_[l], pull_[l], impulse_[l], entered_[l]}) {
+      hash.add(value);
+    }
+  }
+}
+
+std::size_t StateLinkArray::state_size() const noexcept {
+  constexpr std::size_t kArrays = 8;
+  return kArrays * column_a_.size() + memory_.size();
+}
+
+void StateLinkArray::append_state(std::vector<double>& state) const {
+  for (const auto* values : {&state_, &forced_}) {
+    state.insert(state.end(), values->begin(), values->end());
+  }
+  for (const auto* values : {&rest_length_, &pull_, &impulse_, &entered_, &elastic_factor_,
+                             &viscous_factor_, &memory_}) {
+    state.insert(state.end(), values->begin(), values->end());
+  }
+}
+
+const double* StateLinkArray::take_state(const double* state) noexcept {
+  for (auto* values : {&state_, &forced_}) state = take(state, *values);
+  for (auto* values : {&rest_length_, &pull_, &impulse_, &entered_, &elastic_factor_,
+                       &viscous_factor_, &memory_}) {
+    state = take(state, *values);
+  }
+  any_forced_ = std::any_of(forced_.begin(), forced_.end(),
+                            [](std::uint32_t target) { return target != kNotForced; });
+  return state;
+}
+
+}  // namespace cordis::engine
