@@ -2,6 +2,7 @@
 #include "sim_node/engine/state_links.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace cordis::engine {
@@ -162,6 +163,7 @@ double StateLinkArray::stored_energy(const StateTable& table, const MatArray& ma
 
 void StateLinkArray::force_state(const StateTable& table, std::uint32_t link,
                                  std::uint32_t state) noexcept {
+  assert(link < link_count_ && state < table.behaviours()[behaviour_[link]].states.size());
   forced_[link] = table.first_state(behaviour_[link]) + state;
   any_forced_ = true;
 }

@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/many_states.h"
 #include "tests/engine/scenes.h"
 
 namespace cordis::test {
@@ -98,6 +99,13 @@ World pushed_net(VectorWidth width) {
   return world;
 }
 
+/// 3 dimensions: links of every law, changing state under every kind of condition.
+World changing_links(VectorWidth width) {
+  World world = make_world(network_of_many_states(3), width);
+  stir(world, 2000);
+  return world;
+}
+
 /// Reads "name: 0x..." lines, the part of YAML that tests/golden/hashes.yaml keeps to.
 std::map<std::string, std::uint64_t> golden_hashes() {
   std::ifstream file(std::string(CORDIS_GOLDEN_DIR) + "/hashes.yaml");
@@ -136,6 +144,10 @@ TEST_P(GoldenHash, OfATurningRingStays) {
 
 TEST_P(GoldenHash, OfAPushedNetStays) {
   expect(pushed_net(GetParam()), "pushed_net");
+}
+
+TEST_P(GoldenHash, OfChangingLinksStays) {
+  expect(changing_links(GetParam()), "changing_links");
 }
 
 TEST_P(GoldenHash, GoesWithTheSameEnergyAccountOnEveryWidth) {

@@ -1,0 +1,117 @@
+// tests/engine/many_states.h -- a network in which links of every kind change state all the time.
+#pragma once
+
+#include <cstdint>
+
+#include "tests/engine/programs.h"
+#include "tests/engine/scenes.h"
+
+namespace cordis::test {
+
+/// 30 e + 100 e^3 + (m_a + m_b) v.
+class CubicFunction : public engine::LinkFunction {
+ public:
+  double operator()(double, double elongation, double speed, double mass_a,
+                    double mass_b) const noexcept override {
+    return 30.0 * elongation + 100.0 * elongation * elongation * elongation +
+           (mass_a + mass_b) * speed;
+  }
+};
+
+inline engine::Law table_law() {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kTable;
+  law.table = {{-0.2, -0.05, 0.0, 0.1, 0.3}, {-9.0, -1.0, 0.0, 2.5, 3.0}};
+  return law;
+}
+
+inline engine::Law power_law(double coefficient, double exponent) {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kPower;
+  law.coefficient = coefficient;
+  law.exponent = exponent;
+  return law;
+}
+
+inline engine::Law lennard_jones_law(double depth, double diameter, double cut) {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kLennardJones;
+  law.depth = depth;
+  law.diameter = diameter;
+  law.cut = cut;
+  return law;
+}
+
+inline engine::Law ring_law() {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kRings;
+  law.rings = {{40.0, 0.2}, {-15.0, 0.4}};
+  return law;
+}
+
+inline engine::Law function_law() {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kFunction;
+  law.function = std::make_shared<const CubicFunction>();
+  return law;
+}
+
+/// Six states, one law each, left for the next one after conditions of different kinds.
+inline Behaviour behaviour_of_many_states() {
+  const auto with = [](engine::Law elasticity, engine::Law dissipation = {}) {
+    LinkState state;
+    state.viscosity = 0.05;
+    state.elasticity = std::move(elasticity);
+    state.dissipation = std::move(dissipation);
+    return state;
+  };
+  LinkState thread = with(power_law(200.0, 1.5), power_law(0.02, 2.0));
+  thread.pushes = false;
+  LinkState limited = with(function_law());
+  limited.force_limit = 4.0;
+  return Behaving()
+      .state(20.0, 0.1)
+      .exit(q(Quantity::kAge) > 0.02 + q(Quantity::kMassA) * 0.1, 1)
+      .state(with(table_law(), table_law()))
+      .exit(both(q(Quantity::kAge) > 0.01,
+                 one(Operation::kRising, size(q(Quantity::kSpeed)) + q(Quantity::kSlip), 1)),
+            2, RestRule::kHere)
+      .exit(size(q(Quantity::kForce)) > 8.0, 3)
+      .state(thread)
+      .exit_to_rest(q(Quantity::kImpulse) > 0.003, 3,
+                    q(Quantity::kRestLength) + 0.5 * q(Quantity::kElongation))
+      .exit(q(Quantity::kAge) > 0.03, 4)
+      .state(limited)
+      .exit(one(Operation::kFalling, q(Quantity::kSpeed), 0), 4)
+      .state(with(lennard_jones_law(1e-3, 0.1, 0.4)))
+      .exit(q(Quantity::kAge) > 0.015, 5)
+      .state(with(ring_law()))
+      .exit(either(q(Quantity::kSpeedX) > q(Quantity::kSpeedY) * 2.0, q(Quantity::kAge) > 0.02), 0,
+            RestRule::kHere)
+      .behaviour;
+}
+
+/// 20 masses, joined by 75 links of many states, by linear ones, and by a damper; a port stirs.
+inline NetworkDescription network_of_many_states(int dimension) {
+  NetworkDescription scene = free_cluster(20, 95, 0.1, dimension);
+  scene.medium_viscosity = 0.2;  // takes what the changes of state bring in
+  scene.mats.push_back(port(Vec3::Zero()));
+  scene.behaviours = {behaviour_of_many_states(), Behaving().state(0.0, 0.3).behaviour};
+  for (std::size_t l = 20; l < 95; ++l) {
+    const Link& link = scene.links[l];
+    scene.state_links.push_back({link.mat_a, link.mat_b, l % 9 == 0 ? 1U : 0U, link.rest_length});
+  }
+  scene.links.resize(20);
+  scene.state_links.push_back({20, 3, 0, 0.2});
+  return scene;
+}
+
+inline void stir(World& world, int step_count) {
+  for (int n = 0; n < step_count; ++n) {
+    const auto phase = static_cast<double>(world.step_count() % 200) / 200.0;
+    world.impose_position(20, Vec3(phase * (1.0 - phase), 0.1 * phase, 0.0));
+    world.step();
+  }
+}
+
+}  // namespace cordis::test

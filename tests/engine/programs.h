@@ -1,0 +1,119 @@
+// tests/engine/programs.h -- programs and behaviours, written as a person would.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "sim_node/engine/behaviour.h"
+
+namespace cordis::test {
+
+using engine::Behaviour;
+using engine::Exit;
+using engine::LinkState;
+using engine::Operation;
+using engine::Program;
+using engine::Quantity;
+using engine::RestRule;
+
+/// A program under construction: `q(Quantity::kElongation) > 0.1`.
+struct Term {
+  Program program;
+
+  Term(double value) {  // NOLINT(google-explicit-constructor): a number is a term
+    program.code.push_back({Operation::kConstant, Quantity::kDistance, value, 0});
+  }
+  explicit Term(Quantity quantity) {
+    program.code.push_back({Operation::kQuantity, quantity, 0.0, 0});
+  }
+};
+
+inline Term q(Quantity quantity) {
+  return Term(quantity);
+}
+
+inline Term one(Operation operation, Term value, std::uint32_t slot = 0) {
+  value.program.code.push_back({operation, Quantity::kDistance, 0.0, slot});
+  return value;
+}
+
+inline Term two(Operation operation, Term left, const Term& right) {
+  left.program.code.insert(left.program.code.end(), right.program.code.begin(),
+                           right.program.code.end());
+  return one(operation, std::move(left));
+}
+
+inline Term operator+(Term u, const Term& v) {
+  return two(Operation::kAdd, std::move(u), v);
+}
+inline Term operator-(Term u, const Term& v) {
+  return two(Operation::kSubtract, std::move(u), v);
+}
+inline Term operator*(Term u, const Term& v) {
+  return two(Operation::kMultiply, std::move(u), v);
+}
+inline Term operator/(Term u, const Term& v) {
+  return two(Operation::kDivide, std::move(u), v);
+}
+inline Term operator<(Term u, const Term& v) {
+  return two(Operation::kLess, std::move(u), v);
+}
+inline Term operator>(Term u, const Term& v) {
+  return two(Operation::kGreater, std::move(u), v);
+}
+inline Term operator<=(Term u, const Term& v) {
+  return two(Operation::kLessOrEqual, std::move(u), v);
+}
+inline Term operator>=(Term u, const Term& v) {
+  return two(Operation::kGreaterOrEqual, std::move(u), v);
+}
+inline Term both(Term u, const Term& v) {
+  return two(Operation::kAnd, std::move(u), v);
+}
+inline Term either(Term u, const Term& v) {
+  return two(Operation::kOr, std::move(u), v);
+}
+inline Term size(Term u) {
+  return one(Operation::kAbs, std::move(u));
+}
+
+/// A behaviour under construction.
+struct Behaving {
+  Behaviour behaviour;
+
+  /// Adds a state; the exits added next are its own.
+  Behaving& state(LinkState state) {
+    state.first_exit = static_cast<std::uint32_t>(behaviour.exits.size());
+    state.last_exit = state.first_exit;
+    behaviour.states.push_back(std::move(state));
+    return *this;
+  }
+  Behaving& state(double stiffness, double viscosity = 0.0) {
+    LinkState state;
+    state.stiffness = stiffness;
+    state.viscosity = viscosity;
+    return this->state(state);
+  }
+  Behaving& exit(Term when, std::uint32_t target, RestRule rest = RestRule::kKeep) {
+    Exit exit;
+    exit.when = std::move(when.program);
+    exit.target = target;
+    exit.rest = rest;
+    for (const engine::Instruction& instruction : exit.when.code) {
+      if (instruction.operation != Operation::kQuantity) continue;
+      exit.fired = instruction.quantity;
+      break;
+    }
+    behaviour.exits.push_back(std::move(exit));
+    ++behaviour.states.back().last_exit;
+    return *this;
+  }
+  /// With the value of an expression as the new rest length.
+  Behaving& exit_to_rest(Term when, std::uint32_t target, Term rest_length) {
+    exit(std::move(when), target, RestRule::kExpression);
+    behaviour.exits.back().rest_length = std::move(rest_length.program);
+    return *this;
+  }
+};
+
+}  // namespace cordis::test
