@@ -25,7 +25,10 @@ bool Assembly::add(Piece piece, const config::Place& place) {
     link.mat_a += first_mat;
     link.mat_b += first_mat;
   }
-  scene_.radius_m.insert(scene_.radius_m.end(), piece.mats.size(), piece.radius_m);
+  scene_.radius_m.insert(scene_.radius_m.end(), piece.drawn_radius_m.begin(),
+                         piece.drawn_radius_m.end());
+  scene_.network.radius.insert(scene_.network.radius.end(), piece.radius_m.begin(),
+                               piece.radius_m.end());
   scene_.network.mats.insert(scene_.network.mats.end(), piece.mats.begin(), piece.mats.end());
   scene_.network.links.insert(scene_.network.links.end(), piece.links.begin(), piece.links.end());
   scene_.layout.insert(scene_.layout.end(), piece.layout.begin(), piece.layout.end());

@@ -16,7 +16,8 @@ struct Piece {
   std::vector<engine::Mat> mats;
   std::vector<LayoutPoint> layout;  ///< per MAT in 1-D, else empty
   std::vector<engine::Link> links;
-  double radius_m = 0.0;
+  std::vector<double> radius_m;        ///< per MAT; 0 for a punctual mass
+  std::vector<double> drawn_radius_m;  ///< per MAT
 };
 
 inline constexpr std::size_t kMostLinks = 8'000'000;  ///< of a scene

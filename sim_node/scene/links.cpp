@@ -42,29 +42,28 @@ void Assembly::read_link(const Value& value) {
                problems_);
   }
   if (link_count() > first_link)
-    scene_.links.push_back({name, first_link, link_count() - first_link});
+    scene_.links.push_back({names_.full(name), first_link, link_count() - first_link});
 }
 
 bool Assembly::join(const Selection& from, const Selection& to, const LinkLaw& law,
                     const config::Place& place) {
-  if (from.count != to.count && from.count != 1 && to.count != 1) {
+  if (from.count() != to.count() && from.count() != 1 && to.count() != 1) {
     problems_.error(
         place,
-        std::to_string(from.count) + " MATs cannot be joined with " + std::to_string(to.count),
+        std::to_string(from.count()) + " MATs cannot be joined with " + std::to_string(to.count()),
         "join equally many, or one with many");
     return false;
   }
-  const std::uint32_t count = std::max(from.count, to.count);
+  const std::uint32_t count = std::max(from.count(), to.count());
   if (link_count() + count > kMostLinks) {
     problems_.error(place, "the scene has more than " + std::to_string(kMostLinks) + " links");
     return false;
   }
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t a = from.first + (from.count == 1 ? 0 : i);
-    const std::uint32_t b = to.first + (to.count == 1 ? 0 : i);
+    const std::uint32_t a = from.indices[from.count() == 1 ? 0 : i];
+    const std::uint32_t b = to.indices[to.count() == 1 ? 0 : i];
     if (a == b) {
-      problems_.error(place, "the link joins '" + from.entry.name + "[" +
-                                 std::to_string(a - from.entry.first) + "]' to itself");
+      problems_.error(place, "the link joins '" + names_.word_of(a, false) + "' to itself");
       return false;
     }
     const auto& mats = scene_.network.mats;

@@ -21,4 +21,7 @@ struct Layout {
 };
 Layout read_layout(config::MappingReader& reader);
 
+/// What the eye sees of the MATs of a piece: balls as they are, others as `drawn_radius_m` says.
+void read_drawing(config::MappingReader& reader, Piece& piece);
+
 }  // namespace cordis::scene

@@ -1,10 +1,12 @@
 // The `ports:` section: MATs played by the axes of devices. [Luc90 V.1 Force feedback gestual
 // transducers]
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "node/config/name_hash.h"
 #include "sim_node/scene/assembly.h"
+#include "sim_node/scene/matter/source.h"
 #include "sim_node/scene/point.h"
 
 namespace cordis::scene {
@@ -73,17 +75,23 @@ Role read_role(config::MappingReader& reader, config::Problems& problems) {
 }
 
 /// The one MAT of a port.
-Piece read_port_mat(config::MappingReader& reader, const Port& port, int space) {
+Piece read_port_mat(config::MappingReader& reader, const Port& port, int space,
+                    config::Problems& problems) {
   Piece piece;
+  const bool is_mass = port.role == Role::kMass;
+  const std::optional<Grain> ball = optional_ball(reader, !is_mass, problems);
   piece.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
-  if (port.role == Role::kLiaison) {
+  piece.radius_m.push_back(ball.value_or(Grain{}).radius);
+  if (!is_mass) {
     piece.mats[0].kind = engine::MatKind::kMass;
-    piece.mats[0].mass = reader.required_number("mass_kg", Range::positive());
-  } else if (reader.optional_value("mass_kg").exists()) {
-    reader.error_at("mass_kg",
-                    "a port of role mass has no 'mass_kg': the device itself is the mass");
+    piece.mats[0].mass = ball ? ball->mass : reader.required_number("mass_kg", Range::positive());
   }
-  piece.radius_m = reader.optional_number("drawn_radius_m", 0.0, Range::not_negative());
+  if ((is_mass || ball) && reader.optional_value("mass_kg").exists()) {
+    reader.error_at("mass_kg",
+                    is_mass ? "a port of role mass has no 'mass_kg': the device itself is the mass"
+                            : "either 'mass_kg' or 'ball' can be given in " + reader.what());
+  }
+  read_drawing(reader, piece);
   if (space == 1) {
     const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
     piece.layout.push_back({at[0], at[1]});
@@ -113,7 +121,7 @@ void Assembly::read_port(const Value::Entry& entry) {
   port.role = read_role(reader, problems_);
   port.rest = space == 1 ? optional_point(reader, "at_m", Vec3::Zero(), 1)
                          : required_point(reader, "at_m", space);
-  Piece piece = read_port_mat(reader, port, space);
+  Piece piece = read_port_mat(reader, port, space, problems_);
   if (space == 1 && !reader.has("layout_at_m")) ports_without_layout_.push_back(mat_count());
   if (port.axes.size() > static_cast<std::size_t>(space)) {
     reader.error_at("axes", reader.what() + " has " + std::to_string(port.axes.size()) +

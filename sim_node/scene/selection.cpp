@@ -2,22 +2,22 @@
 
 #include <algorithm>
 #include <charconv>
-#include <utility>
+#include <string_view>
+#include <unordered_set>
 
 namespace cordis::scene {
 
 namespace {
 
-bool is_letter(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
-}
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 struct Indices {
   std::uint32_t first = 0;
   std::uint32_t last = 0;
+};
+
+/// What stands between two dots: a name or *, and perhaps indices.
+struct Segment {
+  std::string name;
+  std::optional<Indices> indices;
 };
 
 std::optional<std::uint32_t> index_of(std::string_view text) {
@@ -37,87 +37,195 @@ std::optional<Indices> indices_of(std::string_view text) {
   return Indices{*first, *last};
 }
 
-std::string kind_of(const NameEntry& entry) {
-  return entry.kind == Named::kLinks ? "links" : "MATs";
+/// Empty when the text is no selection.
+std::vector<Segment> segments_of(std::string_view text) {
+  std::vector<Segment> segments;
+  while (true) {
+    const std::size_t name_end = text.find_first_of(".[");
+    Segment segment{std::string(text.substr(0, name_end)), std::nullopt};
+    if (segment.name.empty()) return {};
+    text.remove_prefix(std::min(name_end, text.size()));
+    if (!text.empty() && text[0] == '[') {
+      const std::size_t close = text.find(']');
+      if (close == std::string_view::npos || segment.name == "*") return {};
+      segment.indices = indices_of(text.substr(1, close - 1));
+      if (!segment.indices) return {};
+      text.remove_prefix(close + 1);
+    }
+    segments.push_back(std::move(segment));
+    if (text.empty()) return segments;
+    if (text[0] != '.') return {};
+    text.remove_prefix(1);
+  }
 }
+
+/// Finds what one selection picks; whatever is wrong is a problem of its place.
+class Picker {
+ public:
+  Picker(const std::string& what, bool with_links, const Names& names, config::Problems& problems)
+      : what_(what), with_links_(with_links), names_(names), problems_(problems) {}
+
+  /// Adds what a text picks. @return whether all of it was found.
+  bool pick(const config::Value& value, Selection& selection) {
+    value_ = value;
+    const std::vector<Segment> segments = segments_of(value_.text());
+    if (segments.empty()) {
+      problems_.error(value_.place(), what_ + " must be name, name[3], name[2..5] or name.*, got " +
+                                          value_.described());
+      return false;
+    }
+    std::vector<std::string> around{""};
+    for (std::size_t s = 0; s + 1 < segments.size(); ++s) {
+      std::vector<std::string> inside;
+      for (const std::string& prefix : around) {
+        if (!enter(prefix, segments[s], inside)) return false;
+      }
+      around = std::move(inside);
+    }
+    return std::all_of(around.begin(), around.end(), [&](const std::string& prefix) {
+      return take(prefix, segments.back(), selection);
+    });
+  }
+
+ private:
+  /// Appends the prefixes of the names in what the segment picks.
+  bool enter(const std::string& prefix, const Segment& segment, std::vector<std::string>& inside) {
+    if (segment.name == "*") {
+      for (const NameEntry* child : children(prefix))
+        append_copies(*child, prefix, 0, child->copies, inside);
+      return !inside.empty();
+    }
+    const NameEntry* entry = find(prefix + segment.name, false);
+    if (entry == nullptr || !entry->sound) return false;
+    if (!segment.indices) {
+      append_copies(*entry, prefix, 0, entry->copies, inside);
+      return true;
+    }
+    if (entry->copies == 0) {
+      problems_.error(value_.place(), "'" + prefix + segment.name + "' is not repeated",
+                      "write it without an index");
+      return false;
+    }
+    if (!is_inside(*entry, prefix + segment.name, *segment.indices)) return false;
+    append_copies(*entry, prefix, segment.indices->first, segment.indices->last + 1, inside);
+    return true;
+  }
+
+  void append_copies(const NameEntry& entry, const std::string& prefix, std::uint32_t first,
+                     std::uint32_t end, std::vector<std::string>& inside) {
+    const std::size_t local = entry.name.rfind('.') + 1;  // 0 without a dot
+    const std::string name = prefix + entry.name.substr(local);
+    if (entry.copies == 0) inside.push_back(name + ".");
+    for (std::uint32_t copy = first; copy < end; ++copy)
+      inside.push_back(name + "[" + std::to_string(copy) + "].");
+  }
+
+  /// Adds what the last segment picks.
+  bool take(const std::string& prefix, const Segment& segment, Selection& selection) {
+    if (segment.name == "*") {
+      const std::vector<const NameEntry*> all = children(prefix);
+      for (const NameEntry* child : all) {
+        if (!child->sound || !append(*child, child->first, child->count, selection)) return false;
+      }
+      return !all.empty();
+    }
+    const std::string name = prefix + segment.name;
+    const NameEntry* entry = find(name, with_links_);
+    if (entry == nullptr || !entry->sound) return false;
+    if (entry->count == 0) {
+      problems_.error(value_.place(), "'" + name + "' has no " + kind_of(*entry));
+      return false;
+    }
+    if (!segment.indices) return append(*entry, entry->first, entry->count, selection);
+    if (!is_inside(*entry, name, *segment.indices)) return false;
+    const std::uint32_t each = entry->per_index();
+    const std::uint32_t count = segment.indices->last - segment.indices->first + 1;
+    return append(*entry, entry->first + segment.indices->first * each, count * each, selection);
+  }
+
+  bool append(const NameEntry& entry, std::uint32_t first, std::uint32_t count,
+              Selection& selection) {
+    if (selection.indices.empty()) selection.kind = entry.kind;
+    const bool is_link = entry.kind == Named::kLinks;
+    if (is_link != (selection.kind == Named::kLinks)) {
+      problems_.error(value_.place(), what_ + " must be MATs or links, not both");
+      return false;
+    }
+    for (std::uint32_t index = first; index < first + count; ++index) {
+      if (!taken_.insert(index).second) {
+        const std::string word = names_.word_of(index, is_link);
+        problems_.error(value_.place(), "'" + word + "' is picked twice");
+        return false;
+      }
+      selection.indices.push_back(index);
+    }
+    return true;
+  }
+
+  std::vector<const NameEntry*> children(const std::string& prefix) {
+    const std::string name = prefix.substr(0, prefix.size() - (prefix.empty() ? 0 : 1));
+    const std::vector<const NameEntry*> found = names_.children(name);
+    const bool told = !name.empty() && find(name, false) == nullptr;
+    if (found.empty() && !told && !names_.is_in_unsound(prefix)) {
+      problems_.error(value_.place(), "'" + name + "' is no part: it has no names in it",
+                      "write " + name + " for all its MATs");
+    }
+    return found;
+  }
+
+  const NameEntry* find(const std::string& name, bool with_links) {
+    const NameEntry* entry = names_.find(name);
+    if (entry == nullptr && names_.is_in_unsound(name)) return nullptr;
+    if (entry == nullptr) {
+      const std::string searched =
+          with_links ? "no matter, port or links are named '" : "no matter or port is named '";
+      problems_.error(value_.place(), searched + name + "'",
+                      config::did_you_mean(name, names_.words(with_links)));
+    } else if (entry->kind == Named::kLinks && !with_links) {
+      problems_.error(value_.place(), what_ + " must be MATs, and '" + name + "' are links");
+      return nullptr;
+    }
+    return entry;
+  }
+
+  bool is_inside(const NameEntry& entry, const std::string& name, const Indices& indices) {
+    if (!entry.sound) return false;
+    if (indices.last < entry.index_count()) return true;
+    problems_.error(value_.place(), "'" + name + "' has the " + kind_of(entry) + " 0 to " +
+                                        std::to_string(entry.index_count() - 1) + ", got " +
+                                        std::to_string(indices.last));
+    return false;
+  }
+
+  static std::string kind_of(const NameEntry& entry) {
+    if (entry.copies > 0) return "copies";
+    return entry.kind == Named::kLinks ? "links" : "MATs";
+  }
+
+  const std::string& what_;
+  bool with_links_;
+  const Names& names_;
+  config::Problems& problems_;
+  config::Value value_;  // the text that is read
+  std::unordered_set<std::uint32_t> taken_;
+};
 
 }  // namespace
 
-bool check_name(const std::string& name, const config::Place& place, config::Problems& problems) {
-  const auto fits = [](char c) { return is_letter(c) || is_digit(c) || c == '-'; };
-  if (!name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), fits))
-    return true;
-  problems.error(
-      place,
-      "a name is of letters, digits, '_' and '-' and begins with a letter, got '" + name + "'");
-  return false;
-}
-
-void Names::add(NameEntry entry, config::Problems& problems) {
-  const NameEntry* known = find(entry.name);
-  if (known == nullptr) {
-    entries_.push_back(std::move(entry));
-    return;
-  }
-  problems.error(entry.place, "the name '" + entry.name + "' is used twice",
-                 "first used at line " + std::to_string(known->place.line));
-}
-
-const NameEntry* Names::find(const std::string& name) const noexcept {
-  const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                  [&](const NameEntry& entry) { return entry.name == name; });
-  return found == entries_.end() ? nullptr : &*found;
-}
-
-std::vector<std::string> Names::words(bool with_links) const {
-  std::vector<std::string> words;
-  for (const NameEntry& entry : entries_) {
-    if (with_links || entry.kind != Named::kLinks) words.push_back(entry.name);
-  }
-  return words;
-}
-
 std::optional<Selection> select(const config::Value& value, const std::string& what,
                                 bool with_links, const Names& names, config::Problems& problems) {
-  const std::string& text = value.text();
-  const std::size_t bracket = text.find('[');
-  const std::string name = text.substr(0, bracket);
-  std::optional<Indices> indices;
-  if (bracket != std::string::npos && text.back() == ']') {
-    indices = indices_of(std::string_view(text).substr(bracket + 1, text.size() - bracket - 2));
-  }
-  if (value.kind() != config::Value::Kind::kScalar || name.empty() ||
-      (bracket != std::string::npos && !indices)) {
-    problems.error(value.place(),
-                   what + " must be name, name[3] or name[2..5], got " + value.described());
+  const bool is_list = value.kind() == config::Value::Kind::kSequence;
+  if (is_list && value.items().empty()) {
+    problems.error(value.place(), what + " must not be an empty list");
     return std::nullopt;
   }
-
-  const NameEntry* entry = names.find(name);
-  if (entry == nullptr) {
-    const std::string searched =
-        with_links ? "no matter, port or links are named '" : "no matter or port is named '";
-    problems.error(value.place(), searched + name + "'",
-                   config::did_you_mean(name, names.words(with_links)));
-    return std::nullopt;
-  }
-  if (entry->kind == Named::kLinks && !with_links) {
-    problems.error(value.place(), what + " must be MATs, and '" + name + "' are links");
-    return std::nullopt;
-  }
-  if (!entry->sound) return std::nullopt;
-  if (entry->count == 0) {
-    problems.error(value.place(), "'" + name + "' has no " + kind_of(*entry));
-    return std::nullopt;
-  }
-  if (indices && indices->last >= entry->count) {
-    problems.error(value.place(), "'" + name + "' has the " + kind_of(*entry) + " 0 to " +
-                                      std::to_string(entry->count - 1) + ", got " +
-                                      std::to_string(indices->last));
-    return std::nullopt;
-  }
-  if (!indices) return Selection{*entry, entry->first, entry->count};
-  return Selection{*entry, entry->first + indices->first, indices->last - indices->first + 1};
+  Selection selection;
+  Picker picker(what, with_links, names, problems);
+  bool found = true;
+  for (const config::Value& item : is_list ? value.items() : std::vector<config::Value>{value})
+    found = picker.pick(item, selection) && found;
+  if (!found) return std::nullopt;
+  return selection;
 }
 
 }  // namespace cordis::scene

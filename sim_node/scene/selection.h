@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +15,8 @@ namespace cordis::scene {
 /// What a name of a scene stands for.
 enum class Named : std::uint8_t { kMatter, kPort, kLinks };
 
-/// A name and the consecutive MATs or links it stands for.
+/// A name and the consecutive MATs or links it stands for. What belongs to a part is called
+/// part.name, and a copy of a repeated part is called part[2].
 struct NameEntry {
   std::string name;
   Named kind = Named::kMatter;
@@ -23,31 +25,65 @@ struct NameEntry {
   bool sound =
       true;  ///< false: its description has a problem, so that nothing is said about its indices
   config::Place place;
+  std::uint32_t copies = 0;  ///< of a repeated part: an index counts copies instead of MATs
+
+  std::uint32_t index_count() const noexcept { return copies == 0 ? count : copies; }
+  std::uint32_t per_index() const noexcept { return copies == 0 ? 1 : count / copies; }
 };
 
-/// MATs or links picked by a selection; `entry` is the name behind it.
+/// MATs or links picked by a selection, in the order it tells them, none twice; never empty.
 struct Selection {
-  NameEntry entry;
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
+  Named kind = Named::kMatter;  ///< of the name that was written first
+  std::vector<std::uint32_t> indices;
+
+  std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(indices.size()); }
 };
 
 /// The names of a scene. Matter, ports and named links share one list: no name stands for two
-/// things.
+/// things. While a part is read its scope is entered: names in it are those of the part.
 class Names {
  public:
-  /// Adds a name; one that is taken is a problem of the entry's place.
+  /// Enters a scope as long as it lives.
+  class Scope {
+   public:
+    Scope(Names& names, const std::string& name) : names_(names), outer_(names.scope_) {
+      names_.scope_ += name + ".";
+    }
+    ~Scope() { names_.scope_ = outer_; }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    Names& names_;
+    std::string outer_;
+  };
+
+  /// Adds a name to the present scope; one that is taken is a problem of the entry's place.
   void add(NameEntry entry, config::Problems& problems);
 
+  /// The name as it is called from outside of all parts.
+  std::string full(const std::string& name) const { return scope_ + name; }
+
+  /// An entry of the present scope; nullptr when there is none.
   const NameEntry* find(const std::string& name) const noexcept;
+  /// What stands directly in the entry of this name, in the order of the indices; links do not.
+  std::vector<const NameEntry*> children(const std::string& name) const;
+  /// Whether the name belongs to a part whose description has a problem.
+  bool is_in_unsound(const std::string& name) const noexcept;
   std::vector<std::string> words(bool with_links) const;  ///< for "did you mean"
 
+  /// A MAT or a link as a selection writes it: string[3].
+  std::string word_of(std::uint32_t index, bool is_link) const;
+
  private:
-  std::vector<NameEntry> entries_;
+  std::map<std::string, NameEntry> entries_;  // by full name
+  std::string scope_;
 };
 
-/// Reads `name`, `name[3]` or `name[2..5]` (both ends included, from 0). Whatever is wrong is a
-/// problem of the value's place, unless it follows from a problem told before.
+/// Reads `name`, `name[3]`, `name[2..5]` (both ends included, from 0), `part.name`, `part[1].name`,
+/// `part.*` (all matter in it), or a list of these. A repeated part without an index stands for all
+/// its copies. Whatever is wrong is a problem of the value's place, unless it follows from a
+/// problem told before.
 /// @param what        names the value in messages
 /// @param with_links  whether names of links may be picked, or MATs alone
 std::optional<Selection> select(const config::Value& value, const std::string& what,

@@ -92,18 +92,20 @@ void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signa
     picked = select(of, "'of' in " + reader.what(), true, names_, problems_);
     if (!picked) return;  // whose signal it is decides what else it may say
   }
-  if (picked && picked->count != 1) {
+  const bool is_link = picked && picked->kind == Named::kLinks;
+  if (picked && picked->count() != 1) {
     reader.error_at("of",
-                    "a signal is of one MAT or one link, and '" + of.text() + "' has " +
-                        std::to_string(picked->count),
-                    "pick one: " + picked->entry.name + "[0]");
+                    "a signal is of one MAT or one link, and " +
+                        (of.text().empty() ? "this list" : "'" + of.text() + "'") + " has " +
+                        std::to_string(picked->count()),
+                    "pick one: " + names_.word_of(picked->indices[0], is_link));
   }
   Owner owner = Owner::kScene;
-  if (picked) owner = picked->entry.kind == Named::kLinks ? Owner::kLink : Owner::kMat;
+  if (picked) owner = is_link ? Owner::kLink : Owner::kMat;
 
   Signal signal;
   signal.name = entry.key;
-  signal.index = picked ? picked->first : 0;
+  signal.index = picked ? picked->indices[0] : 0;
   const QuantityWord* quantity = read_quantity(reader, owner);
   reader.optional_value("axis");
   if (quantity != nullptr) {
@@ -127,7 +129,7 @@ void Assembly::read_direction_of_signal(config::MappingReader& reader, const Sel
     return;
   }
   for (const Port& port : scene_.ports) {
-    if (port.name != of.entry.name || port.directions.size() != 1) continue;
+    if (port.mat != of.indices[0] || port.directions.size() != 1) continue;
     signal.direction = port.directions.front();
     if (signal.quantity == Quantity::kPosition) signal.offset = signal.direction.dot(port.rest);
     return;

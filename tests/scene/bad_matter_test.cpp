@@ -45,7 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^3}\n",
                  "'velocity_m_per_s' in matter 'a' must have 2 numbers, got 1", ""},
         BadScene{kHead2, "matter:\n  a: {kind: ^mas, mass_kg: 1, at: 0}\n",
-                 "'kind' in matter 'a' must be one of mass, fixed, chain, ring, grid, got 'mas'",
+                 "'kind' in matter 'a' must be one of mass, fixed, string, ring, grid, lattice, "
+                 "pack, got 'mas'",
                  "did you mean 'mass'?"},
         BadScene{kHead2, "matter:\n  a: ^{mass_kg: 1, at_m: [0, 0]}\n",
                  "missing key 'kind' in matter 'a'", ""},
@@ -54,60 +55,62 @@ INSTANTIATE_TEST_SUITE_P(
                  "a name is of letters, digits, '_' and '-' and begins with a letter, got '3a'",
                  ""},
         BadScene{kHead2, "matter:\n  a: {kind: fixed, at_m: [0, 0], ^mass_kg: 1}\n",
-                 "unknown key 'mass_kg' in matter 'a'", "known keys: kind, at_m, drawn_radius_m"},
+                 "unknown key 'mass_kg' in matter 'a'",
+                 "known keys: kind, at_m, ball, drawn_radius_m"},
         BadScene{kHead2, "matter:\n  a: {kind: fixed, at_m: [0, 0], ^layout_at_m: [1, 2]}\n",
                  "unknown key 'layout_at_m' in matter 'a'",
-                 "known keys: kind, at_m, drawn_radius_m"},
+                 "known keys: kind, at_m, ball, drawn_radius_m"},
+        BadScene{
+            kHead2,
+            "matter:\n  a: {kind: string, count: ^1, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+            "stiffness_n_per_m: 1}\n",
+            "'count' in matter 'a' must be between 2 and 1000000, got 1", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: ^1, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-                 "stiffness_n_per_m: 1}\n",
-                 "'count' in matter 'a' must be between 2 and 1000000, got 1", ""},
-        BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: ^2.5, mass_kg: 1, from_m: [0, 0], to_m: [1, "
+                 "matter:\n  a: {kind: string, count: ^2.5, mass_kg: 1, from_m: [0, 0], to_m: [1, "
                  "0], stiffness_n_per_m: 1}\n",
                  "'count' in matter 'a' must be a whole number, got '2.5'", ""},
         BadScene{
             kHead2,
-            "matter:\n  a: ^{kind: chain, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0]}\n",
+            "matter:\n  a: ^{kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0]}\n",
             "missing key 'stiffness_n_per_m' in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: ^{kind: chain, count: 2, mass_kg: 1, to_m: [1, 0], "
+                 "matter:\n  a: ^{kind: string, count: 2, mass_kg: 1, to_m: [1, 0], "
                  "stiffness_n_per_m: 1}\n",
                  "missing key 'from_m' in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: 2, mass_kg: 1, from_m: ^[0, 2e6], to_m: [1, "
+                 "matter:\n  a: {kind: string, count: 2, mass_kg: 1, from_m: ^[0, 2e6], to_m: [1, "
                  "0], stiffness_n_per_m: 1}\n",
                  "'from_m' in matter 'a' is farther than 1e6 m away", ""},
         BadScene{
             kHead2,
-            "matter:\n  a: {kind: chain, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+            "matter:\n  a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
             "stiffness_n_per_m: 1, ends: ^fixd}\n",
             "'ends' in matter 'a' must be one of free, fixed, first_fixed, last_fixed, got 'fixd'",
             "did you mean 'fixed'?"},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
                  "stiffness_n_per_m: 10, tension_n: ^6}\n",
                  "'tension_n' in matter 'a' asks for a negative rest length",
                  "with this stiffness and these distances it is at most 5 N"},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
                  "stiffness_n_per_m: 10, tension_n: ^1, rest_m: 1}\n",
                  "either 'tension_n' or 'rest_m' can be given in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
                  "stiffness_n_per_m: 0, tension_n: ^1}\n",
                  "'tension_n' in matter 'a' needs a stiffness > 0", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
                  "stiffness_n_per_m: 10, rest_m: ^-1}\n",
                  "'rest_m' in matter 'a' must be >= 0, got -1", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
                  "liaison: ^steel}\n",
                  "no liaison is named 'steel'", ""},
         BadScene{
             kHead2,
-            "liaisons: {d: {kind: damper, viscosity_n_s_per_m: 1}}\nmatter:\n  a: {kind: chain, "
+            "liaisons: {d: {kind: damper, viscosity_n_s_per_m: 1}}\nmatter:\n  a: {kind: string, "
             "count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: d, tension_n: ^1}\n",
             "a damper has no 'tension_n'", ""},
         BadScene{kHead2,
@@ -122,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: 1, "
                  "stiffness_n_per_m: 1, ^plane: xz}\n",
                  "unknown key 'plane' in matter 'a'",
-                 "known keys: kind, count, mass_kg, center_m, radius_m, liaison, "
+                 "known keys: kind, count, mass_kg, ball, center_m, radius_m, liaison, "
                  "stiffness_n_per_m, viscosity_n_s_per_m, rest_m, tension_n, drawn_radius_m"},
         BadScene{kHead3,
                  "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0, 0], radius_m: "
@@ -131,10 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead1,
                  "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, ^radius_m: 1, "
                  "stiffness_n_per_m: 1}\n",
-                 "unknown key 'radius_m' in matter 'a'",
-                 "known keys: kind, count, mass_kg, at_m, liaison, stiffness_n_per_m, "
-                 "viscosity_n_s_per_m, rest_m, tension_n, layout_at_m, layout_spacing_m, "
-                 "drawn_radius_m"},
+                 "unknown key 'radius_m' in matter 'a'", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: grid, rows: ^1, columns: 2, mass_kg: 1, corner_m: [0, 0], "
                  "spacing_m: 1, stiffness_n_per_m: 1}\n",
@@ -162,9 +162,124 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead1, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: 0, layout_at_m: ^1}\n",
                  "'layout_at_m' in matter 'a' must have 2 numbers, got 1", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: chain, count: 1000000, mass_kg: 1, from_m: [0, 0], to_m: "
+                 "matter:\n  a: {kind: string, count: 1000000, mass_kg: 1, from_m: [0, 0], to_m: "
                  "[1, 0], stiffness_n_per_m: 1}\n  ^b: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n",
                  "the scene has more than 1000000 MATs or 8000000 links", ""}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Balls, BadMatter,
+    testing::Values(
+        BadScene{kHead2, "matter:\n  a: {kind: mass, at_m: [0, 0], ball: ^{mass_kg: 1}}\n",
+                 "missing key 'radius_m' in 'ball' of matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: mass, at_m: [0, 0], ball: {mass_kg: 1, radius_m: ^0}}\n",
+                 "'radius_m' in 'ball' of matter 'a' must be > 0 and <= 1000000, got 0", ""},
+        BadScene{kHead2, "matter:\n  a: {kind: mass, at_m: [0, 0], ball: ^3}\n",
+                 "'ball' in matter 'a' must be a mapping of keys, got '3'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: mass, at_m: [0, 0], mass_kg: ^1, ball: {mass_kg: 1, "
+                 "radius_m: 0.1}}\n",
+                 "either 'mass_kg' or 'ball' can be given in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: mass, at_m: [0, 0], drawn_radius_m: ^1, ball: {mass_kg: 1, "
+                 "radius_m: 0.1}}\n",
+                 "a ball is drawn with its own radius", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: mass, at_m: [0, 0], ball: {mass_kg: 1, radius_m: 0.1}}\n  "
+                 "b: {kind: fixed, at_m: [0, 0], ball: {^mass_kg: 1, radius_m: 1}}\n",
+                 "unknown key 'mass_kg' in 'ball' of matter 'b'", "known keys: radius_m"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Lattice, BadMatter,
+    testing::Values(
+        BadScene{kHead1, "matter:\n  a: {kind: ^lattice, structure: square}\n",
+                 "a lattice needs a scene of space 2 or 3, this one has 1", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: lattice, structure: ^fcc, corner_m: [0, 0], counts: [2, 2], "
+                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "a fcc lattice needs a scene of space 3, this one has 2", ""},
+        BadScene{
+            kHead2,
+            "matter:\n  a: {kind: lattice, structure: ^bcc, corner_m: [0, 0], counts: [2, 2], "
+            "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+            "'structure' in matter 'a' must be one of square, triangular, cubic, fcc, got 'bcc'",
+            "did you mean 'fcc'?"},
+        BadScene{kHead2,
+                 "matter:\n  a: ^{kind: lattice, structure: square, corner_m: [0, 0], counts: [2, "
+                 "2], mass_kg: 1}\n",
+                 "missing key 'spacing_m' in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: lattice, structure: square, corner_m: [0, 0], counts: ^[2, "
+                 "2, 2], ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "'counts' in matter 'a' must have 2 numbers, got 3", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: lattice, structure: square, corner_m: [0, 0], counts: "
+                 "^[2000, 2000], ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "matter 'a' has more than 1000000 MATs", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: lattice, structure: square, region: ^{from_m: [0, 0], to_m: "
+                 "[1e4, 1e4]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "matter 'a' has more than 1000000 MATs", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: lattice, structure: square, region: ^{from_m: [0, 0], to_m: "
+                 "[1, 0.1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "no ball of matter 'a' fits into the region", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: lattice, structure: square, counts: ^[1, 1], region: "
+                 "{from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "either 'region' or 'counts' can be given in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: lattice, structure: square, region: ^{to_m: [1, 1]}, ball: "
+                 "{mass_kg: 1, radius_m: 0.1}}\n",
+                 "missing key 'from_m' in 'region' of matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: ^{kind: lattice, structure: square, corner_m: [0, 0], counts: [2, "
+                 "2], viscosity_n_s_per_m: 1, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "missing key 'stiffness_n_per_m' in matter 'a'", ""}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Pack, BadMatter,
+    testing::Values(
+        BadScene{kHead2,
+                 "matter:\n  a: ^{kind: pack, count: 2, region: {from_m: [0, 0], to_m: [1, 1]}}\n",
+                 "missing key 'ball' in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: ^{kind: pack, region: {from_m: [0, 0], to_m: [1, 1]}, ball: "
+                 "{mass_kg: 1, radius_m: 0.1}}\n",
+                 "missing key 'count' in matter 'a'", "give 'count' or 'fill'"},
+        BadScene{kHead2,
+                 "matter:\n  a: ^{kind: pack, count: 2, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "missing key 'region' in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: pack, fill: 0.5, count: ^2, region: {from_m: [0, 0], to_m: "
+                 "[1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "either 'count' or 'fill' can be given in matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: pack, fill: ^1.5, region: {from_m: [0, 0], to_m: [1, 1]}, "
+                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "'fill' in matter 'a' must be > 0 and <= 1, got 1.5", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: pack, fill: ^0.001, region: {from_m: [0, 0], to_m: [1, 1]}, "
+                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "'fill' in matter 'a' asks for 0 balls, which must be between 1 and 1000000", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: pack, count: 30, region: ^{from_m: [0, 0], to_m: [1, 1]}, "
+                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "30 balls of matter 'a' do not fit into the region",
+                 "they are 94 % of it; without order, at most about 84 % of an area can be filled, "
+                 "less at its border"},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: pack, count: 28, region: ^{from_m: [0, 0], to_m: [1, 1]}, "
+                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "28 balls of matter 'a' do not fit into the region",
+                 "they are 88 % of it; without order, at most about 84 % of an area can be filled, "
+                 "less at its border"},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: pack, count: 1, region: ^{from_m: [0, 0], to_m: [9, 0.1]}, "
+                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 "1 ball of matter 'a' does not fit into the region",
+                 "they are 3 % of it; without order, at most about 84 % of an area can be filled, "
+                 "less at its border"}));
 
 }  // namespace
 }  // namespace cordis::scene

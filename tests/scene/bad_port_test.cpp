@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kLinked,
                  "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], ^coupling: 1}\n",
                  "unknown key 'coupling' in port 'p'",
-                 "known keys: device, axes, role, at_m, mass_kg, drawn_radius_m, along"}));
+                 "known keys: device, axes, role, at_m, ball, mass_kg, drawn_radius_m, along"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Signals, BadSignals,

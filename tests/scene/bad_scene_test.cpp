@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter: ^{}\nports: {p: {device: d, axes: 0, role: mass, at_m: [0, 0]}}\n",
                  "the scene has no mass that can move", ""},
         BadScene{kHead2,
-                 "matter: ^{a: {kind: chain, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "matter: ^{a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
                  "ends: fixed, stiffness_n_per_m: 1}}\n",
                  "the scene has no mass that can move", ""},
         BadScene{kHead2, "matter: ^{a: {kind: mass, mass_kg: 1.0e-320, at_m: [0, 0]}}\n",
@@ -121,7 +121,8 @@ TEST(BadScene, TellsAllItsProblemsInOneGoAndNoneThatFollowsFromAnother) {
       "liaisons:\n"
       "  soft: {kind: spring, stiffness: 3}\n"
       "matter:\n"
-      "  string: {kind: chain, count: 0, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: soft}\n"
+      "  string: {kind: string, count: 0, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: "
+      "soft}\n"
       "  nail: {kind: fixed, at_m: [0, x]}\n"
       "ports:\n"
       "  key: {device: k, axes: [77], role: mass, at_m: [0, 0]}\n"
@@ -139,14 +140,14 @@ TEST(BadScene, TellsAllItsProblemsInOneGoAndNoneThatFollowsFromAnother) {
   for (const config::Problem& problem : problems.in_order()) {
     places += std::to_string(problem.place.line) + ':' + std::to_string(problem.place.column) + ' ';
   }
-  EXPECT_EQ(places, "3:8 5:9 5:24 7:32 8:33 10:27 13:15 18:11 ") << problems.text();
+  EXPECT_EQ(places, "3:8 5:9 5:24 7:33 8:33 10:27 13:15 18:11 ") << problems.text();
 }
 
 TEST(BadScene, IsPrintedWithItsLineAndACaret) {
   config::Problems problems;
   load_scene_text(
       scene_head(2) +
-          "matter:\n  string:\n    kind: chain\n    count: 40\n    mass_g: 20\n    from_m: [0, "
+          "matter:\n  string:\n    kind: string\n    count: 40\n    mass_g: 20\n    from_m: [0, "
           "0]\n    to_m: [1, 0]\n    stiffness_n_per_m: 1\n    mass_kg: -0.1\n",
       "scenes/bow.yaml", problems);
   EXPECT_EQ(problems.text(),

@@ -72,7 +72,7 @@ TEST(Matter, FixedNeverMoves) {
 TEST(Matter, NamesTheRangesInTheOrderOfTheFile) {
   const Scene scene = sound_scene(2,
                                   "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-                                  "  b: {kind: chain, count: 3, mass_kg: 1, from_m: [0, 1], to_m: "
+                                  "  b: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: "
                                   "[2, 1], stiffness_n_per_m: 1}\n");
   ASSERT_EQ(scene.matter.size(), 2u);
   EXPECT_EQ(scene.matter[1].name, "b");
@@ -88,7 +88,7 @@ TEST(Matter, NamesTheRangesInTheOrderOfTheFile) {
 TEST(Matter, ChainStandsEvenlyBetweenItsEnds) {
   const Scene scene = sound_scene(
       3,
-      "matter:\n  a: {kind: chain, count: 5, mass_kg: 0.1, from_m: [0, 1, 2], to_m: [4, 1, 5], "
+      "matter:\n  a: {kind: string, count: 5, mass_kg: 0.1, from_m: [0, 1, 2], to_m: [4, 1, 5], "
       "stiffness_n_per_m: 7, viscosity_n_s_per_m: 0.5}\n");
 
   ASSERT_EQ(scene.network.mats.size(), 5u);
@@ -110,7 +110,7 @@ TEST(Matter, ChainStandsEvenlyBetweenItsEnds) {
 TEST(Matter, ChainIsFixedAtTheEndsItNames) {
   const auto ends_of = [](const std::string& ends) {
     const Scene scene = scene_with_bob(2,
-                                       "  a: {kind: chain, count: 4, mass_kg: 1, from_m: [0, 0], "
+                                       "  a: {kind: string, count: 4, mass_kg: 1, from_m: [0, 0], "
                                        "to_m: [3, 0], stiffness_n_per_m: 1" +
                                            ends + "}\n");
     const std::vector<Mat> mats = mats_of_first(scene);
@@ -127,7 +127,7 @@ TEST(Matter, ChainIsFixedAtTheEndsItNames) {
 
 TEST(Matter, TensionStretchesTheLinks) {
   const Scene scene = sound_scene(2,
-                                  "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, "
+                                  "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, "
                                   "0], to_m: [2, 0], stiffness_n_per_m: 100, tension_n: 20}\n");
   // 100 N/m times (1 m - rest) = 20 N
   EXPECT_DOUBLE_EQ(scene.network.links[0].rest_length, 0.8);
@@ -135,7 +135,7 @@ TEST(Matter, TensionStretchesTheLinks) {
 
 TEST(Matter, RestLengthCanBeWritten) {
   const Scene scene = sound_scene(2,
-                                  "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: [0, "
+                                  "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, "
                                   "0], to_m: [2, 0], stiffness_n_per_m: 100, rest_m: 0.3}\n");
   EXPECT_EQ(scene.network.links[1].rest_length, 0.3);
 }
@@ -220,14 +220,14 @@ TEST(Matter, GridIsFixedAtTheBorderItNames) {
 }
 
 TEST(Matter, TakesItsLinksFromALiaison) {
-  const Scene scene =
-      sound_scene(2,
-                  "liaisons:\n  steel: {kind: spring_damper, stiffness_n_per_m: 5, "
-                  "viscosity_n_s_per_m: 6, rest_m: 0.7}\n"
-                  "matter:\n  a: {kind: chain, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-                  "liaison: steel}\n"
-                  "  b: {kind: chain, count: 2, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], liaison: "
-                  "steel, viscosity_n_s_per_m: 8, tension_n: 1}\n");
+  const Scene scene = sound_scene(
+      2,
+      "liaisons:\n  steel: {kind: spring_damper, stiffness_n_per_m: 5, "
+      "viscosity_n_s_per_m: 6, rest_m: 0.7}\n"
+      "matter:\n  a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+      "liaison: steel}\n"
+      "  b: {kind: string, count: 2, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], liaison: "
+      "steel, viscosity_n_s_per_m: 8, tension_n: 1}\n");
   EXPECT_EQ(scene.network.links[0].stiffness, 5.0);
   EXPECT_EQ(scene.network.links[0].viscosity, 6.0);
   EXPECT_EQ(scene.network.links[0].rest_length, 0.7);
@@ -238,7 +238,7 @@ TEST(Matter, TakesItsLinksFromALiaison) {
 TEST(Matter, InOneDimensionGeneratorsRestAtOneDisplacementAndAreLaidOut) {
   const Scene scene = sound_scene(1,
                                   "matter:\n"
-                                  "  a: {kind: chain, count: 3, mass_kg: 1, stiffness_n_per_m: 1, "
+                                  "  a: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, "
                                   "layout_at_m: [1, 2], layout_spacing_m: 0.5}\n"
                                   "  b: {kind: grid, rows: 2, columns: 2, mass_kg: 1, at_m: 3, "
                                   "stiffness_n_per_m: 1, layout_spacing_m: 0.1}\n"
@@ -262,7 +262,7 @@ TEST(Matter, InOneDimensionGeneratorsRestAtOneDisplacementAndAreLaidOut) {
 
 TEST(Matter, InOneDimensionAChainMayStretchAlongItsDisplacement) {
   const Scene scene = sound_scene(1,
-                                  "matter:\n  a: {kind: chain, count: 3, mass_kg: 1, from_m: 2, "
+                                  "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: 2, "
                                   "to_m: 0, stiffness_n_per_m: 1}\n");
   EXPECT_EQ(scene.network.mats[1].position.x(), 1.0);
   EXPECT_EQ(scene.network.links[0].rest_length, -1.0);  // signed

@@ -75,7 +75,7 @@ TEST(Port, SeveralPortsShareADevice) {
 TEST(Port, IsShownBesideTheFirstMatItIsLinkedToInOneDimension) {
   const Scene scene = sound_scene(1,
                                   "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1}\n"
-                                  "matter:\n  a: {kind: chain, count: 5, mass_kg: 1, "
+                                  "matter:\n  a: {kind: string, count: 5, mass_kg: 1, "
                                   "stiffness_n_per_m: 1, layout_spacing_m: 1}\n"
                                   "ports:\n  p: {device: d, axes: [0], role: mass}\n  q: {device: "
                                   "d, axes: [1], role: mass, layout_at_m: [7, 8]}\n"

@@ -137,7 +137,7 @@ TEST(SignalReader, TellsTheAccountOfEnergy) {
 TEST(SignalReader, ReadsWithoutAllocating) {
   Observed run(
       sound_scene(2,
-                  "matter:\n  a: {kind: chain, count: 9, mass_kg: 1, from_m: [0, 0], to_m: [1, "
+                  "matter:\n  a: {kind: string, count: 9, mass_kg: 1, from_m: [0, 0], to_m: [1, "
                   "0], stiffness_n_per_m: 10}\n"
                   "signals:\n  x: {of: \"a[3]\", quantity: position, axis: x}\n  f: {of: "
                   "\"a.links[2]\", quantity: force}\n"

@@ -1,0 +1,118 @@
+// A grid: rows and columns in a plane.
+#include <algorithm>
+
+#include "sim_node/scene/matter/generators.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using engine::Vec3;
+
+/// The numbers a grid is described by; MAT (row, column) has the index row * columns + column.
+struct GridShape {
+  long rows = 2;
+  long columns = 2;
+  Vec3 corner = Vec3::Zero();
+  Vec3 column_step = Vec3::Zero();
+  Vec3 row_step = Vec3::Zero();
+  Layout layout;
+
+  std::uint32_t index(long row, long column) const {
+    return static_cast<std::uint32_t>(row * columns + column);
+  }
+};
+
+GridShape read_grid_shape(Source& source) {
+  GridShape shape;
+  config::MappingReader& reader = source.reader;
+  shape.rows = reader.required_integer("rows", 2, kMostMats / 2);
+  shape.columns = reader.required_integer("columns", 2, kMostMats / 2);
+  if (reader.ok() && shape.rows * shape.columns > kMostMats) {
+    reader.error_at("rows",
+                    reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
+  }
+  if (source.space == 1) {
+    shape.corner = optional_point(reader, "at_m", Vec3::Zero(), 1);
+    shape.layout = read_layout(reader);
+    return shape;
+  }
+  shape.corner = required_point(reader, "corner_m", source.space);
+  const std::vector<double> spacing = reader.required_numbers("spacing_m");
+  const double between_columns = spacing.front();
+  const double between_rows = spacing.back();
+  if (spacing.size() > 2 || between_columns <= 0.0 || between_rows <= 0.0 ||
+      std::max(between_columns, between_rows) > kFarthest) {
+    reader.error_at("spacing_m",
+                    "'spacing_m' in " + reader.what() +
+                        " must be one number > 0, or two: between columns, between rows");
+  }
+  const Plane plane = read_plane(source);
+  shape.column_step = between_columns * plane.across;
+  shape.row_step = between_rows * plane.along;
+  return shape;
+}
+
+void place_grid(Piece& piece, const GridShape& shape, const Grain& grain, const std::string& border,
+                int space) {
+  for (long row = 0; row < shape.rows; ++row) {
+    for (long column = 0; column < shape.columns; ++column) {
+      const auto r = static_cast<double>(row);
+      const auto c = static_cast<double>(column);
+      add_mass(piece, grain, shape.corner + c * shape.column_step + r * shape.row_step);
+      const bool on_row_end = column == 0 || column == shape.columns - 1;
+      const bool on_column_end = row == 0 || row == shape.rows - 1;
+      if (border == "fixed" && (on_row_end || on_column_end)) fix(piece.mats.back());
+      if (border == "corners" && on_row_end && on_column_end) fix(piece.mats.back());
+      if (space == 1) {
+        piece.layout.push_back({shape.layout.at.x + c * shape.layout.spacing,
+                                shape.layout.at.z + r * shape.layout.spacing});
+      }
+    }
+  }
+}
+
+/// Along the rows, then along the columns.
+std::vector<Joint> sides_of(const GridShape& shape) {
+  std::vector<Joint> joints;
+  for (long row = 0; row < shape.rows; ++row) {
+    for (long column = 0; column + 1 < shape.columns; ++column)
+      joints.emplace_back(shape.index(row, column), shape.index(row, column + 1));
+  }
+  for (long row = 0; row + 1 < shape.rows; ++row) {
+    for (long column = 0; column < shape.columns; ++column)
+      joints.emplace_back(shape.index(row, column), shape.index(row + 1, column));
+  }
+  return joints;
+}
+
+std::vector<Joint> diagonals_of(const GridShape& shape) {
+  std::vector<Joint> joints;
+  for (long row = 0; row + 1 < shape.rows; ++row) {
+    for (long column = 0; column + 1 < shape.columns; ++column) {
+      joints.emplace_back(shape.index(row, column), shape.index(row + 1, column + 1));
+      joints.emplace_back(shape.index(row, column + 1), shape.index(row + 1, column));
+    }
+  }
+  return joints;
+}
+
+}  // namespace
+
+Piece read_grid(Source& source) {
+  Piece piece;
+  config::MappingReader& reader = source.reader;
+  const GridShape shape = read_grid_shape(source);
+  const Grain grain = read_grain(source);
+  const std::string border = reader.optional_choice("border", "free", {"free", "fixed", "corners"});
+  const std::optional<LinkLaw> law = read_neighbour_law(source);
+  const std::optional<LinkLaw> shear = read_shear_law(reader);
+  if (!law || !reader.ok()) return piece;
+
+  place_grid(piece, shape, grain, border, source.space);
+  join_all(source, piece, *law, sides_of(shape));
+  if (shear) join_all(source, piece, *shear, diagonals_of(shape));
+  return piece;
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,80 @@
+// A pack: equal balls that fill a region without order and without overlap.
+#include <cmath>
+#include <numbers>
+
+#include "sim_node/scene/matter/generators.h"
+#include "sim_node/scene/matter/packing.h"
+
+namespace cordis::scene {
+
+namespace {
+
+/// Area of a disc or volume of a ball.
+double measure_of_ball(double radius, int space) {
+  constexpr double kPi = std::numbers::pi;
+  return space == 2 ? kPi * radius * radius : 4.0 / 3.0 * kPi * radius * radius * radius;
+}
+
+/// `count`, or `fill` of the region. 0 after a problem.
+std::size_t read_count(Source& source, const Region& region, double ball) {
+  config::MappingReader& reader = source.reader;
+  if (!reader.optional_value("fill").exists()) {
+    if (reader.has("count"))
+      return static_cast<std::size_t>(reader.required_integer("count", 1, kMostMats));
+    reader.error_at("count", "missing key 'count' in " + reader.what(), "give 'count' or 'fill'");
+    return 0;
+  }
+  const double fill = reader.required_number("fill", {0.0, 1.0, true});
+  if (reader.optional_value("count").exists())
+    reader.error_at("count", "either 'count' or 'fill' can be given in " + reader.what());
+  if (!reader.ok()) return 0;
+  const double count = std::round(fill * region.measure() / ball);
+  if (count >= 1.0 && count <= static_cast<double>(kMostMats))
+    return static_cast<std::size_t>(count);
+  reader.error_at("fill", "'fill' in " + reader.what() + " asks for " + config::number_text(count) +
+                              " balls, which must be between 1 and " + std::to_string(kMostMats));
+  return 0;
+}
+
+void report_no_room(Source& source, const Region& region, double ball, std::size_t count) {
+  const bool flat = source.space == 2;
+  const double share = static_cast<double>(count) * ball / region.measure();
+  const double percent = std::round(100.0 * share);
+  source.reader.error_at(
+      "region",
+      std::to_string(count) + (count == 1 ? " ball of " : " balls of ") + source.reader.what() +
+          (count == 1 ? " does" : " do") + " not fit into the region",
+      "they are " + config::number_text(percent) + " % of it; without order, at most about " +
+          (flat ? "84 % of an area" : "64 % of a volume") + " can be filled, less at its border");
+}
+
+}  // namespace
+
+Piece read_pack(Source& source) {
+  Piece piece;
+  config::MappingReader& reader = source.reader;
+  const std::size_t errors_before = source.problems.error_count();
+  if (!reader.has("ball")) reader.required_value("ball");
+  const std::optional<Grain> ball = optional_ball(reader, true, source.problems);
+  const Region region = read_region(reader.required_mapping("region"), source);
+  const long seed = reader.optional_integer("seed", 1, 0, 1'000'000'000);
+  const bool sound = ball && source.problems.error_count() == errors_before;
+  const double measure = measure_of_ball(sound ? ball->radius : 1.0, source.space);
+  const std::size_t count = read_count(source, region, measure);
+  if (!sound || !reader.ok()) return piece;
+
+  // no packing at all is denser than the triangular lattice, or than fcc
+  const double densest = source.space == 2 ? 0.9069 : 0.7405;
+  std::optional<std::vector<engine::Vec3>> centers;
+  if (static_cast<double>(count) * measure <= densest * region.measure()) {
+    centers = pack_balls(region, ball->radius, count, static_cast<std::uint64_t>(seed));
+  }
+  if (!centers) {
+    report_no_room(source, region, measure, count);
+    return piece;
+  }
+  for (const engine::Vec3& center : *centers) add_mass(piece, *ball, center);
+  return piece;
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,23 @@
+// sim_node/scene/matter/packing.h -- equal balls without order that do not overlap.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "sim_node/scene/matter/region.h"
+
+namespace cordis::scene {
+
+/// Centres of `count` balls of `radius` [m] that lie wholly in the region and do not overlap.
+///
+/// The centres are thrown at random, then every two that overlap are pushed apart along their line
+/// of centres, again and again, until none do: the packing that random close packing is defined by,
+/// which ends near 0.84 of an area and 0.64 of a volume. It computes with + - * / and std::sqrt
+/// alone and in one order, so that a seed means the same balls on every machine.
+/// Cost: O(count) per round; 10,000 balls take a fraction of a second.
+/// @return nothing when there is no end to it: the balls do not fit, or only in order.
+std::optional<std::vector<engine::Vec3>> pack_balls(const Region& region, double radius,
+                                                    std::size_t count, std::uint64_t seed);
+
+}  // namespace cordis::scene

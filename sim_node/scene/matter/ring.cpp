@@ -1,0 +1,42 @@
+// A ring: a string that closes in a circle.
+#include <cmath>
+#include <numbers>
+
+#include "sim_node/scene/matter/generators.h"
+
+namespace cordis::scene {
+
+using engine::Vec3;
+
+Piece read_ring(Source& source) {
+  Piece piece;
+  config::MappingReader& reader = source.reader;
+  const long count = reader.required_integer("count", 3, kMostMats);
+  const Grain grain = read_grain(source);
+  const bool flat = source.space == 1;  // all at one displacement; the circle is only the layout
+  const Vec3 center = flat ? optional_point(reader, "at_m", Vec3::Zero(), 1)
+                           : required_point(reader, "center_m", source.space);
+  const double radius = flat ? 0.0 : reader.required_number("radius_m", {0.0, kFarthest, true});
+  const Plane plane = read_plane(source);
+  const std::optional<LinkLaw> law = read_neighbour_law(source);
+  const Layout layout = flat ? read_layout(reader) : Layout{};
+  if (!law || !reader.ok()) return piece;
+
+  const double layout_radius =
+      static_cast<double>(count) * layout.spacing / (2.0 * std::numbers::pi);
+  std::vector<Joint> joints;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double angle =
+        2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    const double x = std::cos(angle);
+    const double y = std::sin(angle);
+    add_mass(piece, grain, flat ? center : center + radius * (x * plane.across + y * plane.along));
+    if (flat)
+      piece.layout.push_back({layout.at.x + layout_radius * x, layout.at.z + layout_radius * y});
+    joints.emplace_back(i, static_cast<std::uint32_t>((i + 1) % count));
+  }
+  join_all(source, piece, *law, joints);
+  return piece;
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,116 @@
+#include "sim_node/scene/matter/source.h"
+
+#include <algorithm>
+
+namespace cordis::scene {
+
+using config::Range;
+using engine::MatKind;
+using engine::Vec3;
+
+std::optional<Grain> optional_ball(config::MappingReader& reader, bool with_mass,
+                                   config::Problems& problems) {
+  const config::Value section = reader.optional_mapping("ball");
+  if (!section.exists()) return std::nullopt;
+  config::MappingReader ball(section, "'ball' of " + reader.what(), problems);
+  Grain grain;
+  if (with_mass) grain.mass = ball.required_number("mass_kg", Range::positive());
+  grain.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
+  ball.finish();
+  return grain;
+}
+
+Grain read_grain(Source& source) {
+  config::MappingReader& reader = source.reader;
+  const config::Value mass = reader.optional_value("mass_kg");
+  const std::optional<Grain> ball = optional_ball(reader, true, source.problems);
+  if (!reader.has("ball")) return {reader.required_number("mass_kg", Range::positive()), 0.0};
+  if (mass.exists()) {
+    reader.error_at("mass_kg", "either 'mass_kg' or 'ball' can be given in " + reader.what());
+  }
+  return ball.value_or(Grain{});
+}
+
+void add_mass(Piece& piece, const Grain& grain, const Vec3& position) {
+  piece.mats.push_back({MatKind::kMass, grain.mass, position, Vec3::Zero()});
+  piece.radius_m.push_back(grain.radius);
+}
+
+void fix(engine::Mat& mat) {
+  mat.kind = MatKind::kFixed;
+  mat.mass = 0.0;
+}
+
+void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Joint>& joints) {
+  bool possible = true;
+  double shortest = kFarthest;
+  for (const auto& [a, b] : joints) {
+    const Vec3& position_a = piece.mats[a].position;
+    const Vec3& position_b = piece.mats[b].position;
+    piece.links.push_back(make_link(law, a, b, position_a, position_b, source.space));
+    possible = possible && (source.space == 1 || piece.links.back().rest_length >= 0.0);
+    shortest = std::min(shortest, (position_b - position_a).norm());
+  }
+  if (possible) return;
+  source.reader.error_at(
+      "tension_n", "'tension_n' in " + source.reader.what() + " asks for a negative rest length",
+      "with this stiffness and these distances it is at most " +
+          config::number_text(shortest * law.stiffness) + " N");
+}
+
+std::optional<LinkLaw> read_neighbour_law(Source& source) {
+  return read_law(source.reader, LawPlace::kMatter, source.liaisons, source.space);
+}
+
+std::optional<LinkLaw> optional_neighbour_law(Source& source) {
+  const std::vector<std::string> keys = source.reader.present_keys();
+  const bool written = std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
+    return key == "liaison" || key == "stiffness_n_per_m" || key == "viscosity_n_s_per_m" ||
+           key == "rest_m" || key == "tension_n";
+  });
+  if (written) return read_neighbour_law(source);
+  for (const char* key :
+       {"liaison", "stiffness_n_per_m", "viscosity_n_s_per_m", "rest_m", "tension_n"})
+    source.reader.optional_value(key);  // known, for the hints to unknown ones
+  return std::nullopt;
+}
+
+std::optional<LinkLaw> read_shear_law(config::MappingReader& reader) {
+  LinkLaw law;
+  law.stiffness = reader.optional_number("shear_stiffness_n_per_m", 0.0, Range::not_negative());
+  law.viscosity = reader.optional_number("shear_viscosity_n_s_per_m", 0.0, Range::not_negative());
+  if (law.stiffness > 0.0 || law.viscosity > 0.0) return law;
+  return std::nullopt;
+}
+
+std::vector<LayoutPoint> row_layout(Source& source, std::size_t count) {
+  std::vector<LayoutPoint> points;
+  if (source.space != 1) return points;
+  const Layout layout = read_layout(source.reader);
+  for (std::size_t i = 0; i < count; ++i) {
+    points.push_back({layout.at.x + static_cast<double>(i) * layout.spacing, layout.at.z});
+  }
+  return points;
+}
+
+Vec3 read_place(Source& source, const char* key) {
+  if (source.space == 1) return optional_point(source.reader, key, Vec3::Zero(), 1);
+  return required_point(source.reader, key, source.space);
+}
+
+Plane read_plane(Source& source) {
+  Plane plane;
+  if (source.space != 3) return plane;
+  const std::string word = source.reader.optional_choice("plane", "xy", {"xy", "xz", "yz"});
+  if (word == "xz") plane.along = Vec3::UnitZ();
+  if (word == "yz") plane = {Vec3::UnitY(), Vec3::UnitZ()};
+  return plane;
+}
+
+FixedEnds read_ends(config::MappingReader& reader) {
+  const std::string ends =
+      reader.optional_choice("ends", "free", {"free", "fixed", "first_fixed", "last_fixed"});
+  return {ends == "fixed" || ends == "first_fixed", ends == "fixed" || ends == "last_fixed"};
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,80 @@
+// sim_node/scene/matter/source.h -- what a kind of matter is read from, and the keys that several
+// kinds share.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "node/config/mapping_reader.h"
+#include "sim_node/scene/assembly.h"
+#include "sim_node/scene/liaison.h"
+#include "sim_node/scene/matter.h"
+#include "sim_node/scene/point.h"
+
+namespace cordis::scene {
+
+/// What a kind of matter is read from.
+struct Source {
+  config::MappingReader& reader;
+  const Liaisons& liaisons;
+  int space;
+  config::Problems& problems;
+};
+
+/// One MAT as a generator repeats it: a punctual mass or a ball.
+struct Grain {
+  double mass = 0.0;    ///< [kg]
+  double radius = 0.0;  ///< [m]; 0 for a punctual mass
+};
+
+/// `mass_kg` of punctual masses, or `ball: {mass_kg, radius_m}`.
+Grain read_grain(Source& source);
+
+/// `ball: {mass_kg, radius_m}`; the mass is not asked for where something else decides on it.
+/// @return nothing when there is no such key.
+std::optional<Grain> optional_ball(config::MappingReader& reader, bool with_mass,
+                                   config::Problems& problems);
+
+/// Adds a mass to a piece.
+void add_mass(Piece& piece, const Grain& grain, const engine::Vec3& position);
+/// Makes a mass a point that never moves.
+void fix(engine::Mat& mat);
+
+/// Two MATs of a piece.
+using Joint = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Joins MATs of the piece by a law; a negative rest length where there is none is a problem.
+void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Joint>& joints);
+
+/// The law of the links between neighbours; nothing after a problem.
+std::optional<LinkLaw> read_neighbour_law(Source& source);
+/// The same for a kind whose MATs need not be joined: nothing, too, when no law is written.
+std::optional<LinkLaw> optional_neighbour_law(Source& source);
+/// `shear_stiffness_n_per_m` and `shear_viscosity_n_s_per_m`: the links between second neighbours.
+/// Nothing when neither is written.
+std::optional<LinkLaw> read_shear_law(config::MappingReader& reader);
+
+/// Layout of MATs one beside the other in 1-D; empty beyond.
+std::vector<LayoutPoint> row_layout(Source& source, std::size_t count);
+
+/// Positions of a generator: required beyond 1-D, where all may rest at the same displacement.
+engine::Vec3 read_place(Source& source, const char* key);
+
+/// The two directions of a plane; in 2-D x and y.
+struct Plane {
+  engine::Vec3 across = engine::Vec3::UnitX();
+  engine::Vec3 along = engine::Vec3::UnitY();
+};
+/// `plane`: xy, xz or yz in 3-D.
+Plane read_plane(Source& source);
+
+/// `ends` of a string or a beam: which of the two never move.
+struct FixedEnds {
+  bool first = false;
+  bool last = false;
+};
+FixedEnds read_ends(config::MappingReader& reader);
+
+}  // namespace cordis::scene

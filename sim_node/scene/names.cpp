@@ -1,0 +1,89 @@
+// The names of a scene: what a selection is looked up in.
+#include <algorithm>
+#include <utility>
+
+#include "sim_node/scene/selection.h"
+
+namespace cordis::scene {
+
+namespace {
+
+bool is_letter(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
+}
+
+bool is_part_of_name(char c) {
+  return is_letter(c) || (c >= '0' && c <= '9') || c == '-';
+}
+
+}  // namespace
+
+bool check_name(const std::string& name, const config::Place& place, config::Problems& problems) {
+  if (!name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), is_part_of_name))
+    return true;
+  problems.error(
+      place,
+      "a name is of letters, digits, '_' and '-' and begins with a letter, got '" + name + "'");
+  return false;
+}
+
+void Names::add(NameEntry entry, config::Problems& problems) {
+  const std::string local = entry.name;
+  entry.name = full(local);
+  const auto [known, is_new] = entries_.try_emplace(entry.name, entry);
+  if (is_new) return;
+  problems.error(entry.place, "the name '" + local + "' is used twice",
+                 "first used at line " + std::to_string(known->second.place.line));
+}
+
+const NameEntry* Names::find(const std::string& name) const noexcept {
+  const auto found = entries_.find(full(name));
+  return found == entries_.end() ? nullptr : &found->second;
+}
+
+std::vector<const NameEntry*> Names::children(const std::string& name) const {
+  const std::string prefix = name.empty() ? scope_ : full(name) + ".";
+  std::vector<const NameEntry*> children;
+  for (auto it = entries_.lower_bound(prefix);
+       it != entries_.end() && it->first.starts_with(prefix); ++it) {
+    const bool is_child = it->first.find_first_of(".[", prefix.size()) == std::string::npos;
+    if (is_child && it->second.kind != Named::kLinks) children.push_back(&it->second);
+  }
+  std::stable_sort(children.begin(), children.end(),
+                   [](const NameEntry* a, const NameEntry* b) { return a->first < b->first; });
+  return children;
+}
+
+bool Names::is_in_unsound(const std::string& name) const noexcept {
+  for (std::size_t end = name.find_first_of(".["); end != std::string::npos;
+       end = name.find_first_of(".[", end + 1)) {
+    const NameEntry* around = find(name.substr(0, end));
+    if (around != nullptr && !around->sound) return true;
+  }
+  return false;
+}
+
+std::vector<std::string> Names::words(bool with_links) const {
+  std::vector<std::string> words;
+  for (const auto& [name, entry] : entries_) {
+    if ((with_links || entry.kind != Named::kLinks) && name.starts_with(scope_))
+      words.push_back(name.substr(scope_.size()));
+  }
+  return words;
+}
+
+std::string Names::word_of(std::uint32_t index, bool is_link) const {
+  const NameEntry* nearest = nullptr;
+  for (const auto& [name, entry] : entries_) {
+    if ((entry.kind == Named::kLinks) != is_link || index < entry.first ||
+        index - entry.first >= entry.count)
+      continue;
+    if (nearest == nullptr || entry.count < nearest->count) nearest = &entry;
+  }
+  if (nearest == nullptr) return std::to_string(index);
+  std::string word = nearest->name;
+  if (word.starts_with(scope_)) word.erase(0, scope_.size());
+  return word.append("[").append(std::to_string(index - nearest->first)).append("]");
+}
+
+}  // namespace cordis::scene
