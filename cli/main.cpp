@@ -5,11 +5,13 @@ int main(int argc, char** argv) {
   cordis::cli::CommandLine line(
       "cordis", "Physical objects that you can build from parts, touch and see.", CORDIS_VERSION);
   cordis::cli::add_run_verb(line);
+  cordis::cli::add_ctl_verb(line);
   cordis::cli::add_test_verb(line);
   line.examples(
       "`cordis VERB --help` explains a verb.\n\n"
       "Examples:\n"
       "  cordis run launch_configs/plucked_string.yaml\n"
+      "  cordis ctl launch_configs/plucked_string.yaml pause\n"
       "  cordis test\n");
   return line.run({argv + 1, argv + argc});
 }

@@ -5,6 +5,7 @@
 
 namespace cordis::cli {
 
+void add_ctl_verb(CommandLine& line);
 void add_run_verb(CommandLine& line);
 void add_test_verb(CommandLine& line);
 

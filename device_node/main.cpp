@@ -4,6 +4,7 @@
 
 #include "device_node/device.h"
 #include "device_node/device_config.h"
+#include "node/command_listener.h"
 #include "node/dds/participant.h"
 #include "node/node_main.h"
 
@@ -21,6 +22,11 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
       "a node named '" + name + "' already runs in session '" + start.launch.session +
           "' of domain " + std::to_string(start.launch.domain));
   cordis::dds::Participant participant(start.membership());
+  cordis::node::CommandListener commands(
+      participant, "device_node", [](const cordis::msg::ControlCommand& command) {
+        return cordis::node::nothing_to_do(command, "device_node");
+      });
+  commands.start();
   return cordis::device::Device(std::move(device), participant, start.launch.clock, start.run)
       .live();
 }

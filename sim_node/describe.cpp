@@ -43,10 +43,11 @@ void tell_network(const scene::Scene& scene, msg::SceneDescription& description)
 
 }  // namespace
 
-msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run) {
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
+                               std::uint64_t version) {
   msg::SceneDescription description;
   description.run(run);
-  description.version(1);
+  description.version(version);
   description.name(scene.name);
   description.space(static_cast<std::uint32_t>(scene.space()));
   description.step_rate_hz(scene.step_rate_hz);
@@ -66,8 +67,8 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run) {
   return description;
 }
 
-FramePublisher::Layout layout_of(const scene::Scene& scene) {
-  FramePublisher::Layout layout;
+FrameLayout layout_of(const scene::Scene& scene) {
+  FrameLayout layout;
   layout.dimension = scene.space();
   for (const scene::LayoutPoint& point : scene.layout) {
     layout.x_z.push_back(static_cast<float>(point.x));

@@ -2,15 +2,16 @@
 #pragma once
 
 #include "idl/scene.h"
-#include "sim_node/frame_publisher.h"
+#include "sim_node/frame_store.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
 
-/// The scene/description of a scene.
-msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run);
+/// The scene/description of a scene. @param version  tells one scene of the run from the next
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
+                               std::uint64_t version);
 
 /// Where the MATs of a 1-D scene are shown; empty in 2 and 3 dimensions.
-FramePublisher::Layout layout_of(const scene::Scene& scene);
+FrameLayout layout_of(const scene::Scene& scene);
 
 }  // namespace cordis::sim

@@ -22,6 +22,33 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
   }
 }
 
+void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexcept {
+  heard_run_ = before.heard_run_;
+  heard_sample_ = before.heard_sample_;
+  heard_time_nsec_ = before.heard_time_nsec_;
+  answers_ = before.answers_;
+  refused_count_ = before.refused_count_;
+  missed_count_ = before.missed_count_;
+  if (role_ != before.role_) return;
+  newest_ = before.newest_;
+  has_new_ = before.has_new_;
+  if (!at_once) return;
+  from_ = before.from_;
+  to_ = before.to_;
+  silent_ticks_ = before.silent_ticks_;
+  rejoin_left_ = before.rejoin_left_;
+}
+
+void DeviceExchange::let_go() noexcept {
+  has_new_ = false;
+  silent_ticks_ = lost_after_ticks_ + 1;
+}
+
+double DeviceExchange::force_share() const noexcept {
+  if (is_lost()) return 0.0;
+  return 1.0 - static_cast<double>(rejoin_left_) / static_cast<double>(rejoin_ticks_);
+}
+
 template <class Sample, class Values>
 DeviceExchange::Reception DeviceExchange::receive(const Sample& sample,
                                                   const Values& values) noexcept {
@@ -112,11 +139,12 @@ msg::GestureForces& DeviceExchange::answer_forces(const engine::World& world, bo
                                                   std::int64_t now_nsec) noexcept {
   fill_header(forces_, now_nsec);
   forces_.force_n().fill(0.0);
-  if (!safe) return forces_;
+  const double share = force_share();
+  if (!safe || share == 0.0) return forces_;
   for (const scene::Port& port : ports_) {
     const engine::Vec3 force = world.link_force(port.mat);
     for (std::size_t i = 0; i < port.axes.size(); ++i) {
-      forces_.force_n()[port.axes[i]] = force.dot(port.directions[i]);
+      forces_.force_n()[port.axes[i]] = share * force.dot(port.directions[i]);
     }
   }
   return forces_;

@@ -22,9 +22,10 @@ constexpr std::size_t kMaxAxes = 16;
 /// A new position is reached in a ramp over the sub-steps of one period, and the answer holds the
 /// forces of the last sub-step, computed at the position of the sample itself: no virtual damping
 /// is lost, and no delay added. A device that was not heard for kLostAfter is lost: its MATs hold
-/// still, its forces count as 0. When it is heard again it takes over gradually, within kRejoin, so
-/// that neither side jumps. Both are counted in ticks. Real time: every function but the
-/// constructor is O(axes), allocates nothing and does not throw.
+/// still, its forces count as 0, and it is given none. When it is heard again it takes over
+/// gradually, within kRejoin, and so do the forces it is given: neither side jumps. Both are counted
+/// in ticks. Real time: every function but the constructor is O(axes), allocates nothing and does
+/// not throw.
 class DeviceExchange {
  public:
   static constexpr double kLostAfter = 0.02;  ///< [s]
@@ -34,6 +35,14 @@ class DeviceExchange {
   /// @param run      of this sim_node; its messages carry it
   DeviceExchange(std::string device, std::uint32_t device_id, Role role,
                  std::vector<scene::Port> ports, double rate_hz, std::uint64_t run);
+
+  /// Goes on where the exchange of the same device was in the scene before, so that neither side
+  /// takes a message twice or for one of another. The device takes over gradually as after a
+  /// loss; with `at_once` it plays on as it did, when its role is the same.
+  void take_over(const DeviceExchange& before, bool at_once) noexcept;
+
+  /// Lets go of the device as if it were lost: until its next sample that begin_tick() finds.
+  void let_go() noexcept;
 
   /// What became of a message of the device.
   enum class Reception : std::uint8_t {
@@ -50,8 +59,8 @@ class DeviceExchange {
   /// Imposes positions or forces for sub-step `number` of `count`, 1..count.
   void play(engine::World& world, int number, int count) noexcept;
 
-  /// The answer after the last sub-step. Forces: what the links do to the port. All forces are 0
-  /// when `safe` is false.
+  /// The answer after the last sub-step. Forces: what the links do to the port, as far as the device
+  /// has taken over. All forces are 0 when `safe` is false.
   msg::GestureForces& answer_forces(const engine::World& world, bool safe,
                                     std::int64_t now_nsec) noexcept;
   /// Positions: where the MATs at the ports are. The last ones are repeated when `safe` is false.
@@ -70,6 +79,7 @@ class DeviceExchange {
   }  ///< samples of the device never seen
 
  private:
+  double force_share() const noexcept;
   template <class Sample, class Values>
   Reception receive(const Sample& sample, const Values& values) noexcept;
   template <class Answer>

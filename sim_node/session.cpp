@@ -24,11 +24,8 @@ constexpr int kLoopPriority = 80;
 constexpr double kPhase = 0.5;
 constexpr auto kLockstepPatience =
     50ms;  // how long a wait for a sample may keep the loop from seeing a stop
-
-std::uint64_t ticks_per_frame(const scene::Scene& scene) {
-  return static_cast<std::uint64_t>(
-      std::max(1.0, std::round(scene.gesture_rate_hz / scene.frame_rate_hz)));
-}
+constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene stands still
+constexpr std::uint64_t kRestsPerFrame = 8;
 
 }  // namespace
 
@@ -36,29 +33,30 @@ Session::Session(const node::NodeStart& start, SimConfig config)
     : start_(start),
       duration_s_(config.duration_s),
       participant_(start.membership()),
-      simulation_(std::move(config.scene), start.run),
-      ticks_per_frame_(ticks_per_frame(simulation_.scene())),
+      player_(std::make_unique<Stage>(std::make_shared<const scene::Scene>(std::move(config.scene)),
+                                      start.run, 1),
+              start.launch.clock == config::Clock::kLockstep),
       position_reader_(participant_, dds::Topic::kPositions),
       force_reader_(participant_, dds::Topic::kForces),
       position_writer_(participant_, dds::Topic::kPositions),
       force_writer_(participant_, dds::Topic::kForces),
       description_writer_(participant_, dds::Topic::kDescription),
-      frames_(participant_, start.run, simulation_.world().network().mat_count(),
-              simulation_.scene().signals.count(), static_cast<std::size_t>(ticks_per_frame_),
-              static_cast<std::uint32_t>(simulation_.steps_per_tick()),
-              layout_of(simulation_.scene())),
+      frames_(participant_, start.run),
       status_(participant_, "sim_node", start.run,
-              [this](msg::NodeStatus& status) { fill(status); }) {}
+              [this](msg::NodeStatus& status) { fill(status); }),
+      director_(
+          orders_, player_.simulation().shared_scene(), start.run,
+          [this](const std::string& path, config::Problems& problems) {
+            return load_checked_scene(start_.launch, path, {}, problems);
+          },
+          [this](const scene::Scene& scene, std::uint64_t version) { tell(scene, version); }),
+      commands_(participant_, "sim_node",
+                [this](const msg::ControlCommand& command) { return director_.obey(command); }) {}
 
 int Session::run() {
-  msg::SceneDescription description = describe(simulation_.scene(), start_.run);
-  description_writer_.write(description);
-  spdlog::info("scene '{}': {} MATs, {} links, {} steps per second, {} per gesture",
-               simulation_.scene().name, simulation_.world().network().mat_count(),
-               simulation_.world().network().link_count(), simulation_.scene().step_rate_hz,
-               simulation_.steps_per_tick());
-  set_phase(simulation_.devices().empty() ? "running" : "waiting");
+  tell(player_.simulation().scene(), 1);
   note_state();
+  commands_.start();
 
   switch (start_.launch.clock) {
     case config::Clock::kRealtime:
@@ -71,15 +69,17 @@ int Session::run() {
       run_asap();
       break;
   }
+  orders_.close();
   note_state();
-  if (simulation_.failed()) {
+  const Simulation& simulation = player_.simulation();
+  if (simulation.failed()) {
     set_phase("failed");
-    spdlog::error("{}", simulation_.failure());
+    spdlog::error("{}", simulation.failure());
     return 1;
   }
   set_phase("stopped");
-  spdlog::info("state hash {:016x} after {} steps", simulation_.world().state_hash(),
-               simulation_.world().step_count());
+  spdlog::info("state hash {:016x} after {} steps", simulation.world().state_hash(),
+               simulation.world().step_count());
   return 0;
 }
 
@@ -88,52 +88,85 @@ void Session::run_realtime() {
   spdlog::info("real-time priority {}, memory {}",
                grant.fifo ? "granted" : "not permitted, going on without",
                grant.memory_locked ? "locked" : "not locked");
-  node::PacedLoop loop(simulation_.scene().gesture_rate_hz, kPhase);
+  node::PacedLoop loop(player_.simulation().scene().gesture_rate_hz, kPhase);
+  std::uint64_t earlier_overruns = 0;
   while (!finished()) {
     loop.wait();
-    overruns_.store(loop.overruns(), std::memory_order_relaxed);
-    receive();
-    tick();
-    for (DeviceExchange& device : simulation_.devices()) {
-      if (device.was_heard()) answer(device);
+    overruns_.store(earlier_overruns + loop.overruns(), std::memory_order_relaxed);
+    obey();
+    if (loop.rate_hz() != player_.simulation().scene().gesture_rate_hz) {
+      earlier_overruns += loop.overruns();
+      loop = node::PacedLoop(player_.simulation().scene().gesture_rate_hz, kPhase);
     }
+    receive();
+    advance();
+    answer_all();
   }
 }
 
 void Session::run_lockstep() {
-  if (simulation_.devices().empty()) return run_asap();
   while (!finished()) {
-    if (!receive_lockstep()) continue;
-    tick();
-    for (DeviceExchange& device : simulation_.devices()) answer(device);
+    if (!obey_or_rest()) continue;
+    if (player_.simulation().is_between_ticks() && !receive_lockstep()) continue;
+    if (!advance()) continue;
+    for (DeviceExchange& device : player_.simulation().devices()) answer(device);
   }
 }
 
 void Session::run_asap() {
   while (!finished()) {
+    if (!obey_or_rest()) {
+      receive();
+      player_.hold();
+      answer_all();
+      continue;
+    }
     receive();
     std::array<bool, kMaxAxes>
         fresh{};  // whether a device waits for an answer; more devices than this are answered late
     std::size_t index = 0;
-    for (const DeviceExchange& device : simulation_.devices()) {
+    for (const DeviceExchange& device : player_.simulation().devices()) {
       if (index < fresh.size()) fresh[index++] = device.has_new_sample();
     }
-    tick();
+    advance();
     index = 0;
-    for (DeviceExchange& device : simulation_.devices()) {
+    for (DeviceExchange& device : player_.simulation().devices()) {
       if (index < fresh.size() && fresh[index++]) answer(device);
     }
   }
 }
 
+void Session::obey() {
+  Order* order = orders_.waiting();
+  if (order == nullptr) return;
+  const bool new_stage = order->kind == Order::Kind::kRestart;
+  if (new_stage && frames_.is_busy()) return;  // for a few turns at most: none is offered meanwhile
+  player_.obey(*order);
+  orders_.tell_steps_left(player_.steps_left());
+  orders_.obeyed();
+  if (new_stage) offer_frame();
+  note_state();
+}
+
+bool Session::obey_or_rest() {
+  obey();
+  if (player_.moves()) return true;
+  orders_.wait(kRest);
+  if (++turns_ % kRestsPerFrame == 0) offer_frame();
+  return false;
+}
+
 void Session::receive() {
   const auto take = [this](auto& reader, auto& sample, Role role) {
     while (reader.take(sample)) {
-      DeviceExchange* device = simulation_.find(sample.device_id());
+      DeviceExchange* device = player_.simulation().find(sample.device_id());
       // The other direction of the same topic is our own, or that of a device the scene has no port
       // for.
       if (device == nullptr || device->role() != role || sample.run() == start_.run) continue;
-      if (device->receive(sample) == DeviceExchange::Reception::kRepeated) answer(*device);
+      const bool repeated = device->receive(sample) == DeviceExchange::Reception::kRepeated;
+      // What is still to be played has no answer yet.
+      const bool played = !device->has_new_sample() && player_.simulation().is_between_ticks();
+      if (repeated && played) answer(*device);
     }
   };
   take(position_reader_, position_sample_, Role::kMass);
@@ -142,7 +175,7 @@ void Session::receive() {
 
 bool Session::receive_lockstep() {
   receive();
-  for (const DeviceExchange& device : simulation_.devices()) {
+  for (const DeviceExchange& device : player_.simulation().devices()) {
     if (device.has_new_sample()) continue;
     if (device.role() == Role::kMass) {
       position_reader_.wait(kLockstepPatience);
@@ -154,58 +187,81 @@ bool Session::receive_lockstep() {
   return true;
 }
 
-void Session::tick() {
-  const std::uint64_t step =
-      simulation_.world().step_count() + static_cast<std::uint64_t>(simulation_.steps_per_tick());
-  simulation_.tick(frames_.next_row(step));
-  const std::uint64_t count = simulation_.tick_count();
-  ticks_.store(count, std::memory_order_relaxed);
-  if (count % ticks_per_frame_ == 0) {
-    if (start_.launch.clock != config::Clock::kRealtime) frames_.wait_until_free();
-    frames_.offer_frame(simulation_.world(), simulation_.simulated_s(), node::monotonic_nsec());
-    note_state();
+bool Session::advance() {
+  const bool complete = player_.advance();
+  orders_.tell_steps_left(player_.steps_left());
+  const Simulation& simulation = player_.simulation();
+  Stage& stage = player_.stage();
+  if (complete) {
+    simulation.read_signals(stage.frames.next_row(simulation.world().step_count()));
+    ticks_.store(++tick_count_, std::memory_order_relaxed);
+  }
+  const std::uint64_t turns = complete ? simulation.tick_count() : ++turns_;
+  if ((complete || player_.is_paused()) && turns % stage.ticks_per_frame == 0) offer_frame();
+  return complete;
+}
+
+void Session::offer_frame() {
+  if (start_.launch.clock != config::Clock::kRealtime) frames_.wait_until_free();
+  const Order* order = orders_.waiting();
+  // A change of stage waits until no frame is on its way.
+  if (order == nullptr || order->kind != Order::Kind::kRestart) {
+    const Simulation& simulation = player_.simulation();
+    frames_.offer(player_.stage().frames, simulation.world(), simulation.simulated_s(),
+                  node::monotonic_nsec());
+  }
+  note_state();
+}
+
+void Session::answer_all() {
+  for (DeviceExchange& device : player_.simulation().devices()) {
+    if (device.was_heard()) answer(device);
   }
 }
 
 void Session::answer(DeviceExchange& device) {
-  const bool safe = !simulation_.failed();
+  const bool safe = !player_.simulation().failed();
   const std::int64_t now = node::monotonic_nsec();
   if (device.role() == Role::kMass) {
-    force_writer_.write(device.answer_forces(simulation_.world(), safe, now));
+    force_writer_.write(device.answer_forces(player_.simulation().world(), safe, now));
   } else {
-    position_writer_.write(device.answer_positions(simulation_.world(), safe, now));
+    position_writer_.write(device.answer_positions(player_.simulation().world(), safe, now));
   }
 }
 
 void Session::note_state() {
   std::uint64_t dropped = frames_.frames_left_out();
-  bool heard = simulation_.devices().empty();
-  for (const DeviceExchange& device : simulation_.devices()) {
+  Simulation& simulation = player_.simulation();
+  bool heard = simulation.devices().empty();
+  for (const DeviceExchange& device : simulation.devices()) {
     dropped += device.refused_count() + device.missed_count();
     heard = heard || !device.is_lost();
   }
   dropped_.store(dropped, std::memory_order_relaxed);
-  phase_.store(heard ? "running" : "waiting", std::memory_order_relaxed);
+  set_phase(player_.is_paused() ? "paused" : heard ? "running" : "waiting");
+  const bool realtime = start_.launch.clock == config::Clock::kRealtime;
+  target_rate_hz_.store(realtime ? simulation.scene().gesture_rate_hz : 0.0,
+                        std::memory_order_relaxed);
 
   // The status thread holds the lock for a copy at most; the loop never waits for it.
   const std::unique_lock lock(shown_mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
-  shown_.energy = simulation_.world().energy();
-  shown_.step = simulation_.world().step_count();
-  shown_.state_hash = simulation_.world().state_hash();
+  shown_.energy = simulation.world().energy();
+  shown_.step = simulation.world().step_count();
+  shown_.state_hash = simulation.world().state_hash();
 }
 
 bool Session::finished() const noexcept {
   // Half a step of tolerance: the sum of steps is not exactly the duration.
-  const double reached = simulation_.simulated_s() + 0.5 * simulation_.world().network().step();
-  return node::stop_requested() || simulation_.failed() ||
+  const Simulation& simulation = player_.simulation();
+  const double reached = player_.played_s() + 0.5 * simulation.world().network().step();
+  return node::stop_requested() || simulation.failed() ||
          (duration_s_ > 0.0 && reached >= duration_s_);
 }
 
 void Session::fill(msg::NodeStatus& status) {
   status.phase(phase_.load());
-  const bool realtime = start_.launch.clock == config::Clock::kRealtime;
-  status.target_rate_hz(realtime ? simulation_.scene().gesture_rate_hz : 0.0);
+  status.target_rate_hz(target_rate_hz_.load());
   status.ticks(ticks_.load());
   status.overruns(overruns_.load());
   status.dropped(dropped_.load());
@@ -216,6 +272,14 @@ void Session::fill(msg::NodeStatus& status) {
                                                   : 0.0);
   status.step(shown_.step);
   status.state_hash(shown_.state_hash);
+}
+
+void Session::tell(const scene::Scene& scene, std::uint64_t version) {
+  msg::SceneDescription description = describe(scene, start_.run, version);
+  description_writer_.write(description);
+  spdlog::info("scene '{}': {} MATs, {} links, {} steps per second, {} per gesture", scene.name,
+               scene.network.mats.size(), scene.network.links.size(), scene.step_rate_hz,
+               std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
 }
 
 void Session::set_phase(const char* phase) noexcept {

@@ -6,20 +6,23 @@
 #include <cstdint>
 #include <mutex>
 
+#include "node/command_listener.h"
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
 #include "node/node_main.h"
 #include "node/paced_loop.h"
 #include "node/status.h"
+#include "sim_node/director.h"
 #include "sim_node/frame_publisher.h"
+#include "sim_node/order.h"
+#include "sim_node/player.h"
 #include "sim_node/sim_config.h"
-#include "sim_node/simulation.h"
 
 namespace cordis::sim {
 
 /// Runs a scene under the clock of its session until a stop is asked for, its duration is over or
-/// it diverges.
+/// it diverges; obeys commands meanwhile.
 class Session {
  public:
   Session(const node::NodeStart& start, SimConfig config);
@@ -32,21 +35,30 @@ class Session {
   void run_lockstep();
   void run_asap();
 
-  /// Takes what the devices have sent. @return whether a repeated sample wants its answer again
+  /// Obeys the order that waits, if any, unless it has to wait for the frames.
+  void obey();
+  /// Without real time: obeys, and spends a while when the scene stands still.
+  /// @return whether it moves
+  bool obey_or_rest();
+  /// Takes what the devices have sent, and answers again what was asked again.
   void receive();
-  bool receive_lockstep();  ///< false when it is time to stop
-  void tick();
+  bool receive_lockstep();  ///< false when a sample is still missing
+  /// One turn of the player, and what follows from it. @return whether a tick is complete
+  bool advance();
   void answer(DeviceExchange& device);
+  void answer_all();
+  void offer_frame();
   void note_state();
   bool finished() const noexcept;
   void fill(msg::NodeStatus& status);
+  void tell(const scene::Scene& scene, std::uint64_t version);
   void set_phase(const char* phase) noexcept;
 
   const node::NodeStart& start_;
   double duration_s_;
   dds::Participant participant_;
-  Simulation simulation_;
-  std::uint64_t ticks_per_frame_;
+  Player player_;
+  OrderBox orders_;
   dds::Reader<msg::GesturePositions> position_reader_;
   dds::Reader<msg::GestureForces> force_reader_;
   dds::Writer<msg::GesturePositions> position_writer_;
@@ -55,6 +67,8 @@ class Session {
   msg::GesturePositions position_sample_;
   msg::GestureForces force_sample_;
   FramePublisher frames_;
+  std::uint64_t turns_ = 0;       // of the loop, for the pace of frames while the scene stands still
+  std::uint64_t tick_count_ = 0;  // over all stages
 
   // What the loop tells the status thread.
   struct Shown {
@@ -68,7 +82,10 @@ class Session {
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<std::uint64_t> overruns_{0};
   std::atomic<std::uint64_t> dropped_{0};
+  std::atomic<double> target_rate_hz_{0.0};
   node::StatusPublisher status_;
+  Director director_;
+  node::CommandListener commands_;  // last: its thread uses what stands above
 };
 
 }  // namespace cordis::sim

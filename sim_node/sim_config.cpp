@@ -63,9 +63,15 @@ SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode
   reader.finish();
   if (scene_file.empty()) return sim;
 
-  sim.scene = scene::load_scene(launch.resolve(scene_file).string(), problems, scene_place);
-  if (!problems.has_errors()) check_devices(launch, sim.scene, problems);
+  sim.scene = load_checked_scene(launch, scene_file, scene_place, problems);
   return sim;
+}
+
+scene::Scene load_checked_scene(const config::Launch& launch, const std::string& path,
+                                const config::Place& referrer, config::Problems& problems) {
+  scene::Scene scene = scene::load_scene(launch.resolve(path).string(), problems, referrer);
+  if (!problems.has_errors()) check_devices(launch, scene, problems);
+  return scene;
 }
 
 }  // namespace cordis::sim

@@ -18,4 +18,9 @@ struct SimConfig {
 SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,
                           config::Problems& problems);
 
+/// Reads a scene and checks every port against the device files of the launch.
+/// @param path  as a person wrote it; relative to the launch file
+scene::Scene load_checked_scene(const config::Launch& launch, const std::string& path,
+                                const config::Place& referrer, config::Problems& problems);
+
 }  // namespace cordis::sim

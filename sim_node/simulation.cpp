@@ -1,6 +1,7 @@
 // sim_node/simulation.cpp
 #include "sim_node/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -32,25 +33,31 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
 
 }  // namespace
 
-Simulation::Simulation(scene::Scene scene, std::uint64_t run)
+Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t run)
     : scene_(std::move(scene)),
-      world_(std::make_shared<const engine::Network>(scene_.network)),
-      devices_(exchanges_of(scene_, run)),
-      steps_per_tick_(static_cast<int>(std::lround(scene_.step_rate_hz / scene_.gesture_rate_hz))) {
-}
+      world_(std::make_shared<const engine::Network>(scene_->network)),
+      devices_(exchanges_of(*scene_, run)),
+      steps_per_tick_(
+          static_cast<int>(std::lround(scene_->step_rate_hz / scene_->gesture_rate_hz))) {}
 
-void Simulation::tick(double* row) noexcept {
-  if (failed_) return;
-  for (DeviceExchange& device : devices_) device.begin_tick();
-  for (int number = 1; number <= steps_per_tick_; ++number) {
-    for (DeviceExchange& device : devices_) device.play(world_, number, steps_per_tick_);
+bool Simulation::advance(int steps) noexcept {
+  if (failed_) return false;
+  if (is_between_ticks()) {
+    for (DeviceExchange& device : devices_) device.begin_tick();
+  }
+  const int last = std::min(steps_in_tick_ + steps, steps_per_tick_);
+  while (steps_in_tick_ < last) {
+    ++steps_in_tick_;
+    for (DeviceExchange& device : devices_) device.play(world_, steps_in_tick_, steps_per_tick_);
     if (world_.step().non_finite_mats > 0) {
       failed_ = true;
-      return;
+      return false;
     }
   }
+  if (steps_in_tick_ < steps_per_tick_) return false;
+  steps_in_tick_ = 0;
   ++tick_count_;
-  scene_.signals.read(world_, row);
+  return true;
 }
 
 DeviceExchange* Simulation::find(std::uint32_t device_id) noexcept {
@@ -70,7 +77,7 @@ std::string Simulation::failure() const {
   for (std::uint32_t index = 0; index < world_.network().mat_count(); ++index) {
     if (world_.position(index).allFinite()) continue;
     mat = "MAT " + std::to_string(index);
-    for (const scene::NamedRange& range : scene_.matter) {
+    for (const scene::NamedRange& range : scene_->matter) {
       if (index >= range.first && index < range.first + range.count) {
         mat = "'" + range.name + "[" + std::to_string(index - range.first) + "]'";
       }
@@ -79,7 +86,7 @@ std::string Simulation::failure() const {
   }
   return "the scene diverged at step " + std::to_string(world_.step_count()) +
          ": the position of " + mat + " is not a finite number; a step rate above " +
-         std::to_string(std::lround(scene_.step_rate_hz)) +
+         std::to_string(std::lround(scene_->step_rate_hz)) +
          " Hz, or less stiffness or viscosity, may hold it";
 }
 

@@ -18,20 +18,27 @@ namespace cordis::sim {
 class Simulation {
  public:
   /// @param run  of this sim_node
-  Simulation(scene::Scene scene, std::uint64_t run);
+  Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t run);
 
-  /// One gesture period. @param row  room for one value per signal of the scene, taken after the
-  /// last step. Real time: as steps_per_tick() steps; allocates nothing, does not throw. Does
-  /// nothing once failed().
-  void tick(double* row) noexcept;
+  /// Does the next steps of a tick, at most so many. Real time: allocates nothing, does not throw.
+  /// Does nothing once failed(). @return whether the tick is complete.
+  bool advance(int steps) noexcept;
+
+  /// @param row  room for one value per signal of the scene
+  void read_signals(double* row) const noexcept { scene_->signals.read(world_, row); }
 
   /// The exchange of a device, nullptr when no port of the scene is its.
   DeviceExchange* find(std::uint32_t device_id) noexcept;
   std::vector<DeviceExchange>& devices() noexcept { return devices_; }
 
-  const scene::Scene& scene() const noexcept { return scene_; }
+  const scene::Scene& scene() const noexcept { return *scene_; }
+  const std::shared_ptr<const scene::Scene>& shared_scene() const noexcept { return scene_; }
   const engine::World& world() const noexcept { return world_; }
+  engine::World& world() noexcept { return world_; }
   int steps_per_tick() const noexcept { return steps_per_tick_; }
+  /// Steps that the present tick still wants; steps_per_tick() between two ticks.
+  int steps_left_in_tick() const noexcept { return steps_per_tick_ - steps_in_tick_; }
+  bool is_between_ticks() const noexcept { return steps_in_tick_ == 0; }
   std::uint64_t tick_count() const noexcept { return tick_count_; }
   double simulated_s() const noexcept;
 
@@ -41,10 +48,11 @@ class Simulation {
   std::string failure() const;
 
  private:
-  scene::Scene scene_;
+  std::shared_ptr<const scene::Scene> scene_;
   engine::World world_;
   std::vector<DeviceExchange> devices_;
   int steps_per_tick_;
+  int steps_in_tick_ = 0;  // done in the present tick
   std::uint64_t tick_count_ = 0;
   bool failed_ = false;
 };

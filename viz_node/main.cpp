@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "node/command_listener.h"
 #include "node/node_main.h"
 #include "node/status.h"
 #include "node/stop.h"
@@ -67,6 +68,10 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   const node::StatusPublisher publisher(
       participant, "viz_node", start.run,
       [&](msg::NodeStatus& status) { fill(status, mirror, server, config.rate_hz); });
+  node::CommandListener commands(participant, "viz_node", [](const msg::ControlCommand& command) {
+    return node::nothing_to_do(command, "viz_node");
+  });
+  commands.start();
   warn_about(config, server);
   spdlog::info("page at {}", server.url());
   while (!node::wait_for_stop(std::chrono::hours(1))) {

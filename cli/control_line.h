@@ -1,0 +1,46 @@
+// cli/control_line.h -- speaks to the nodes of a running session and hears their replies.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "idl/control.h"
+#include "node/dds/participant.h"
+#include "node/dds/reader.h"
+#include "node/dds/writer.h"
+
+namespace cordis::cli {
+
+class ControlLine {
+ public:
+  /// @throws std::runtime_error when DDS refuses.
+  ControlLine(int domain, const std::string& session);
+
+  /// Sends a command until every addressed node that is there has answered, at most so long.
+  /// @param target  a node, a kind of node, or "*"
+  /// @return the replies, one per node
+  std::vector<msg::ControlReply> ask(const std::string& target, const std::string& verb,
+                                     const std::string& argument,
+                                     std::chrono::nanoseconds at_most);
+
+  /// The nodes heard so far that have not said that they stop.
+  std::vector<std::string> present() const;
+  /// How many of them a target addresses.
+  std::size_t addressed_count(const std::string& target) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void listen();
+
+  dds::Participant participant_;
+  dds::Writer<msg::ControlCommand> commands_;
+  dds::Reader<msg::ControlReply> replies_;
+  dds::Reader<msg::NodeStatus> statuses_;
+  std::map<std::string, msg::NodeStatus> nodes_;  // the newest status, by name
+};
+
+}  // namespace cordis::cli

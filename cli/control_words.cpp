@@ -1,0 +1,62 @@
+// cli/control_words.cpp
+#include "cli/control_words.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "cli/command_line.h"
+#include "node/config/problem.h"
+#include "node/control_verbs.h"
+
+namespace cordis::cli {
+namespace {
+
+/// A text as YAML that reads back as just this text.
+std::string quoted(const std::string& text) {
+  std::string yaml = "'";
+  for (const char c : text) yaml += c == '\'' ? std::string("''") : std::string(1, c);
+  return yaml + "'";
+}
+
+const node::ControlVerb& verb_named(const std::string& name) {
+  for (const node::ControlVerb& verb : node::control_verbs()) {
+    if (name == verb.name) return verb;
+  }
+  const std::string near = config::nearest_word(name, node::control_verb_names());
+  throw UsageError("there is no command '" + name + "'" +
+                   (near.empty() ? "" : ", did you mean '" + near + "'?"));
+}
+
+[[noreturn]] void refuse(const node::ControlVerb& verb) {
+  throw UsageError(std::string("write: ") + verb.name + (*verb.words == '\0' ? "" : " ") +
+                   verb.words);
+}
+
+std::string path_argument(const std::string& path) {
+  return quoted(std::filesystem::exists(path) ? std::filesystem::absolute(path).string() : path);
+}
+
+}  // namespace
+
+ControlWords read_control_words(const std::string& name, const std::vector<std::string>& words) {
+  const node::ControlVerb& verb = verb_named(name);
+  const bool optional = *verb.words == '[';
+  const bool needs_a_word = *verb.words != '\0' && !optional;
+  if ((needs_a_word && words.empty()) || (*verb.words == '\0' && !words.empty())) refuse(verb);
+  if (words.empty()) return {name, ""};
+  if (words.size() > 1) refuse(verb);
+  if (name == "step") return {name, words.front()};
+  return {name, path_argument(words.front())};
+}
+
+std::string control_verb_list() {
+  std::string text;
+  for (const node::ControlVerb& verb : node::control_verbs()) {
+    text += fmt::format("  {:<28}{}\n", fmt::format("{} {}", verb.name, verb.words), verb.summary);
+  }
+  return text;
+}
+
+}  // namespace cordis::cli

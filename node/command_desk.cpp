@@ -1,0 +1,39 @@
+// node/command_desk.cpp
+#include "node/command_desk.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace cordis::node {
+
+CommandDesk::CommandDesk(std::string node, std::string kind, Obey obey)
+    : node_(std::move(node)), kind_(std::move(kind)), obey_(std::move(obey)) {}
+
+std::optional<msg::ControlReply> CommandDesk::take(const msg::ControlCommand& command) {
+  const std::string& target = command.target();
+  if (target != "*" && target != node_ && target != kind_) return std::nullopt;
+
+  const auto known = std::ranges::find_if(given_, [&command](const msg::ControlReply& reply) {
+    return reply.command_id() == command.command_id() && reply.sender() == command.sender();
+  });
+  if (known != given_.end()) return *known;
+
+  Answer answer;
+  try {
+    answer = obey_(command);
+  } catch (const std::exception& failure) {
+    answer = {false, failure.what()};
+  }
+  msg::ControlReply reply;
+  reply.command_id(command.command_id());
+  reply.sender(command.sender());
+  reply.node(node_);
+  reply.accepted(answer.accepted);
+  reply.text(std::move(answer.text));
+  given_.push_back(reply);
+  if (given_.size() > kRemembered) given_.pop_front();
+  return reply;
+}
+
+}  // namespace cordis::node

@@ -1,0 +1,43 @@
+// node/command_listener.cpp
+#include "node/command_listener.h"
+
+#include <chrono>
+#include <utility>
+
+namespace cordis::node {
+namespace {
+
+constexpr auto kLongestWait = std::chrono::seconds(1);
+
+}  // namespace
+
+CommandListener::CommandListener(dds::Participant& participant, const std::string& kind, Obey obey)
+    : reader_(participant, dds::Topic::kCommand),
+      writer_(participant, dds::Topic::kReply),
+      desk_(participant.membership().node, kind, std::move(obey)) {}
+
+CommandListener::~CommandListener() {
+  ending_ = true;
+  reader_.interrupt();
+  if (thread_.joinable()) thread_.join();
+}
+
+void CommandListener::start() {
+  thread_ = std::thread([this] { loop(); });
+}
+
+void CommandListener::loop() {
+  msg::ControlCommand command;
+  while (!ending_) {
+    while (!ending_ && reader_.take(command)) {
+      if (auto reply = desk_.take(command)) writer_.write(*reply);
+    }
+    if (!ending_) reader_.wait(kLongestWait);
+  }
+}
+
+Answer nothing_to_do(const msg::ControlCommand& command, const std::string& kind) {
+  return {command.target() == "*", "a " + kind + " has nothing to do at '" + command.verb() + "'"};
+}
+
+}  // namespace cordis::node

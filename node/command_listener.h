@@ -1,0 +1,42 @@
+// node/command_listener.h -- a node's ear for control/command, and its voice on control/reply.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "node/command_desk.h"
+#include "node/dds/participant.h"
+#include "node/dds/reader.h"
+#include "node/dds/writer.h"
+
+namespace cordis::node {
+
+/// Obeys and answers the commands for a node, one after the other, in a thread of its own. Create
+/// it before raising the priority of any thread.
+class CommandListener {
+ public:
+  /// @param kind  "sim_node", "device_node", "viz_node" or "record_node"
+  CommandListener(dds::Participant& participant, const std::string& kind, Obey obey);
+  /// Waits until the command being obeyed, if any, is done.
+  ~CommandListener();
+  CommandListener(const CommandListener&) = delete;
+  CommandListener& operator=(const CommandListener&) = delete;
+
+  /// From now on commands are obeyed. Those that came before wait for it. Once.
+  void start();
+
+ private:
+  void loop();
+
+  dds::Reader<msg::ControlCommand> reader_;
+  dds::Writer<msg::ControlReply> writer_;
+  CommandDesk desk_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+/// For nodes that have nothing to obey: says so, as a refusal unless all nodes were addressed.
+Answer nothing_to_do(const msg::ControlCommand& command, const std::string& kind);
+
+}  // namespace cordis::node

@@ -1,0 +1,51 @@
+// sim_node/director.h -- obeys commands: prepares what they want and hands it to the loop.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "node/command_desk.h"
+#include "sim_node/command.h"
+#include "sim_node/order.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// The side of live change that may take its time: reads scenes, makes stages, and frees what the
+/// loop has done with. Lives in the thread of the commands.
+class Director {
+ public:
+  static constexpr std::chrono::milliseconds kPatience{1000};
+
+  /// Reads the scene of a path; whatever is wrong becomes a problem.
+  using Load = std::function<scene::Scene(const std::string& path, config::Problems& problems)>;
+  /// Tells the other processes of a scene that is played now.
+  using Tell = std::function<void(const scene::Scene& scene, std::uint64_t version)>;
+
+  /// @param scene  the one that is played at first, version 1
+  /// @param run    of this sim_node
+  Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, std::uint64_t run,
+           Load load, Tell tell);
+
+  /// Returns when the loop has done what was wanted; of single steps that take longer than
+  /// kPatience, when they have begun.
+  node::Answer obey(const msg::ControlCommand& command);
+
+ private:
+  node::Answer restart(std::shared_ptr<const scene::Scene> scene, const std::string& done);
+  node::Answer step(std::uint64_t count);
+  node::Answer load(const std::string& path);
+  node::Answer give(Order& order, const std::string& done);
+
+  OrderBox& orders_;
+  std::shared_ptr<const scene::Scene> scene_;
+  std::uint64_t run_;
+  std::uint64_t version_ = 1;
+  Load load_;
+  Tell tell_;
+};
+
+}  // namespace cordis::sim

@@ -1,0 +1,35 @@
+// sim_node/stage.cpp
+#include "sim_node/stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim_node/describe.h"
+
+namespace cordis::sim {
+namespace {
+
+std::size_t ticks_per_frame_of(const scene::Scene& scene) {
+  return static_cast<std::size_t>(
+      std::max(1.0, std::round(scene.gesture_rate_hz / scene.frame_rate_hz)));
+}
+
+FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
+  const scene::Scene& scene = simulation.scene();
+  return {.version = version,
+          .mat_count = scene.network.mats.size(),
+          .signal_count = scene.signals.count(),
+          .rows_per_frame = ticks_per_frame_of(scene),
+          .stride_steps = static_cast<std::uint32_t>(simulation.steps_per_tick()),
+          .layout = layout_of(scene)};
+}
+
+}  // namespace
+
+Stage::Stage(std::shared_ptr<const scene::Scene> scene, std::uint64_t run, std::uint64_t version)
+    : simulation(std::move(scene), run),
+      frames(shape_of(simulation, version)),
+      ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}
+
+}  // namespace cordis::sim

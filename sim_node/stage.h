@@ -1,0 +1,23 @@
+// sim_node/stage.h -- a scene ready to be played, made away from the loop.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "sim_node/frame_store.h"
+#include "sim_node/simulation.h"
+
+namespace cordis::sim {
+
+/// A simulation and the room for its frames: all that changes hands when another scene is played.
+struct Stage {
+  /// @param run      of this sim_node
+  /// @param version  of the description that its frames belong to
+  Stage(std::shared_ptr<const scene::Scene> scene, std::uint64_t run, std::uint64_t version);
+
+  Simulation simulation;
+  FrameStore frames;
+  std::uint64_t ticks_per_frame;
+};
+
+}  // namespace cordis::sim
