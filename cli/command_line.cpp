@@ -178,7 +178,8 @@ int CommandLine::dispatch(const std::vector<std::string>& words) {
     verb.handed_on->assign(words.begin() + 1, words.end());
     return verb.act();
   }
-  program.parse(reversed);
+  reversed.pop_back();
+  verb.app->parse(reversed);  // by itself: its words may be names of other verbs
   refuse_leftovers(*verb.app);
   for (const auto& [placeholder, value] : verb.required) {
     if (value->empty()) throw UsageError(placeholder + " is missing");

@@ -16,6 +16,7 @@ constexpr auto kRepeatAfter = 250ms;
 constexpr auto kLook = 5ms;
 // Whoever is there says so within this time, twice over.
 constexpr auto kLongestDiscovery = 2s;
+constexpr auto kUsualDiscovery = 600ms;  // after which nobody is missed when all are addressed
 
 }  // namespace
 
@@ -42,7 +43,7 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const
     listen();
     const std::size_t addressed = addressed_count(target);
     if (addressed == 0 && now > began + kLongestDiscovery) break;
-    if (addressed > 0 && now >= send_at && commands_.matched_count() > 0) {
+    if (addressed > replies.size() && now >= send_at && commands_.matched_count() > 0) {
       commands_.write(command);
       send_at = now + kRepeatAfter;
     }
@@ -52,7 +53,8 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const
       if (reply.command_id() == command.command_id() && reply.sender() == command.sender())
         replies[reply.node()] = reply;
     }
-    if (addressed > 0 && replies.size() >= addressed) break;
+    const bool all_known = target != "*" || now > began + kUsualDiscovery;
+    if (addressed > 0 && replies.size() >= addressed && all_known) break;
   }
   std::vector<msg::ControlReply> heard;
   for (auto& [node, reply] : replies) heard.push_back(std::move(reply));
@@ -74,10 +76,9 @@ void ControlLine::listen() {
 
 std::size_t ControlLine::addressed_count(const std::string& target) const {
   const std::vector<std::string> names = present();
-  return static_cast<std::size_t>(
-      std::ranges::count_if(names, [&](const std::string& name) {
-        return target == "*" || target == name || target == nodes_.at(name).kind();
-      }));
+  return static_cast<std::size_t>(std::ranges::count_if(names, [&](const std::string& name) {
+    return target == "*" || target == name || target == nodes_.at(name).kind();
+  }));
 }
 
 }  // namespace cordis::cli

@@ -23,8 +23,7 @@ class ControlLine {
   /// @param target  a node, a kind of node, or "*"
   /// @return the replies, one per node
   std::vector<msg::ControlReply> ask(const std::string& target, const std::string& verb,
-                                     const std::string& argument,
-                                     std::chrono::nanoseconds at_most);
+                                     const std::string& argument, std::chrono::nanoseconds at_most);
 
   /// The nodes heard so far that have not said that they stop.
   std::vector<std::string> present() const;

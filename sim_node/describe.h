@@ -8,8 +8,7 @@
 namespace cordis::sim {
 
 /// The scene/description of a scene. @param version  tells one scene of the run from the next
-msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
-                               std::uint64_t version);
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run, std::uint64_t version);
 
 /// Where the MATs of a 1-D scene are shown; empty in 2 and 3 dimensions.
 FrameLayout layout_of(const scene::Scene& scene);

@@ -23,9 +23,9 @@ constexpr std::size_t kMaxAxes = 16;
 /// forces of the last sub-step, computed at the position of the sample itself: no virtual damping
 /// is lost, and no delay added. A device that was not heard for kLostAfter is lost: its MATs hold
 /// still, its forces count as 0, and it is given none. When it is heard again it takes over
-/// gradually, within kRejoin, and so do the forces it is given: neither side jumps. Both are counted
-/// in ticks. Real time: every function but the constructor is O(axes), allocates nothing and does
-/// not throw.
+/// gradually, within kRejoin, and so do the forces it is given: neither side jumps. Both are
+/// counted in ticks. Real time: every function but the constructor is O(axes), allocates nothing
+/// and does not throw.
 class DeviceExchange {
  public:
   static constexpr double kLostAfter = 0.02;  ///< [s]
@@ -59,8 +59,8 @@ class DeviceExchange {
   /// Imposes positions or forces for sub-step `number` of `count`, 1..count.
   void play(engine::World& world, int number, int count) noexcept;
 
-  /// The answer after the last sub-step. Forces: what the links do to the port, as far as the device
-  /// has taken over. All forces are 0 when `safe` is false.
+  /// The answer after the last sub-step. Forces: what the links do to the port, as far as the
+  /// device has taken over. All forces are 0 when `safe` is false.
   msg::GestureForces& answer_forces(const engine::World& world, bool safe,
                                     std::int64_t now_nsec) noexcept;
   /// Positions: where the MATs at the ports are. The last ones are repeated when `safe` is false.

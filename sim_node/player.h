@@ -14,9 +14,9 @@ namespace cordis::sim {
 ///
 /// Time stands still in a paused scene. Where the devices are the clock (lockstep) it stands still
 /// for them too, and the pause leaves no trace in the result. Elsewhere the devices live on: they
-/// are let go of, so that their MATs hold still and their forces are 0, and they take over gradually
-/// when the scene goes on.
-/// Real time: everything but the constructor allocates and frees nothing, and does not throw.
+/// are let go of, so that their MATs hold still and their forces are 0, and they take over
+/// gradually when the scene goes on. Real time: everything but the constructor allocates and frees
+/// nothing, and does not throw.
 class Player {
  public:
   /// @param devices_wait  whether devices wait for the scene, as in lockstep
@@ -29,8 +29,8 @@ class Player {
   /// Whether this turn of the loop has something to do.
   bool moves() const noexcept { return !paused_ || steps_left_ > 0; }
 
-  /// One turn: the rest of the tick, or the single steps still wanted of it; nothing while the scene
-  /// stands still. @return whether a tick is complete, and its answers are due.
+  /// One turn: the rest of the tick, or the single steps still wanted of it; nothing while the
+  /// scene stands still. @return whether a tick is complete, and its answers are due.
   bool advance() noexcept;
 
   /// A turn without steps: the devices are let go of.

@@ -23,7 +23,7 @@ constexpr int kLoopPriority = 80;
 // chance, and the delay is up to two periods.
 constexpr double kPhase = 0.5;
 constexpr auto kLockstepPatience =
-    50ms;  // how long a wait for a sample may keep the loop from seeing a stop
+    50ms;                    // how long a wait for a sample may keep the loop from seeing a stop
 constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene stands still
 constexpr std::uint64_t kRestsPerFrame = 8;
 

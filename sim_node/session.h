@@ -67,7 +67,7 @@ class Session {
   msg::GesturePositions position_sample_;
   msg::GestureForces force_sample_;
   FramePublisher frames_;
-  std::uint64_t turns_ = 0;       // of the loop, for the pace of frames while the scene stands still
+  std::uint64_t turns_ = 0;  // of the loop, for the pace of frames while the scene stands still
   std::uint64_t tick_count_ = 0;  // over all stages
 
   // What the loop tells the status thread.

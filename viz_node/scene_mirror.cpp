@@ -16,6 +16,13 @@ constexpr std::size_t kBatchesKept = 64;
 constexpr std::size_t kBatchBytesKept = 16u << 20;
 constexpr std::size_t kMostNodes = 64;
 
+/// Whether a message belongs to the scene that sim_node played before, or to the one that it has
+/// not described yet: for a moment around a change of scene, both come.
+template <class Message>
+bool is_of_another_scene(const Message& message, const msg::SceneDescription& description) {
+  return message.run() == description.run() && message.version() != description.version();
+}
+
 }  // namespace
 
 std::string SceneMirror::refuse(std::string fault) {
@@ -35,7 +42,7 @@ std::string SceneMirror::take(msg::SceneDescription&& description) {
     const std::lock_guard lock(mutex_);
     const bool same_run = description_ != nullptr && description_->run() == description.run();
     if (same_run && description.version() < description_->version()) return {};
-    if (!same_run) last_frame_number_ = 0;
+    last_frame_number_ = 0;  // frames before a description are passed over, not lost
     figures_.frame_rate_hz = description.frame_rate_hz();
     description_ = std::make_shared<const msg::SceneDescription>(std::move(description));
     scene_ = std::move(shown);
@@ -60,7 +67,7 @@ std::string SceneMirror::take(msg::SceneFrame&& frame, std::int64_t now_nsec) {
     const std::lock_guard lock(mutex_);
     description = description_;
   }
-  if (description == nullptr) return {};
+  if (description == nullptr || is_of_another_scene(frame, *description)) return {};
   std::string fault = fault_of(frame, *description);
   if (!fault.empty()) return refuse(std::move(fault));
   auto shown = std::make_shared<ShownFrame>();
@@ -98,6 +105,7 @@ std::string SceneMirror::take(msg::SceneSignals&& signals) {
     description = description_;
     scene = scene_->scene;
   }
+  if (is_of_another_scene(signals, *description)) return {};
   std::string fault = fault_of(signals, *description);
   if (!fault.empty()) return refuse(std::move(fault));
   auto shown = std::make_shared<ShownSignals>();
@@ -119,6 +127,7 @@ std::string SceneMirror::take(msg::SceneEvents&& events) {
     ++figures_.refused;
     return "events of another run of sim_node than its description";
   }
+  if (is_of_another_scene(events, *description_)) return {};
   events_.total += events.event().size();
   events_.lost += events.lost();
   for (const auto& event : events.event()) {

@@ -41,7 +41,8 @@ struct ShownSignals {
 /// out never changes and is shared, not copied.
 ///
 /// take() gives back what is wrong with a message that was refused, else an empty string. Refused
-/// messages are counted; what comes before the first description is passed over in silence.
+/// messages are counted; what comes before the description it belongs to, or after the next one, is
+/// passed over in silence.
 class SceneMirror {
  public:
   /// @param rate_hz  most frames per second that pages get, > 0

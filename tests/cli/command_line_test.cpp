@@ -48,6 +48,13 @@ struct Program {
   }
 };
 
+TEST(CommandLine, TakesAWordThatIsAlsoAVerb) {
+  Program program;
+  ASSERT_EQ(program({"run", "test", "run"}), 0);
+  EXPECT_EQ(program.file, "test");
+  EXPECT_EQ(program.more, Words{"run"});
+}
+
 TEST(CommandLine, FillsInWhatWasTyped) {
   Program program;
   ASSERT_EQ(program({"run", "a.yaml", "sim.x=-1", "--duration", "3s", "key.y=a b", "--only",

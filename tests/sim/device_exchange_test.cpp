@@ -161,6 +161,57 @@ TEST(DeviceExchange, TakesOverGraduallyFromADeviceThatWasAway) {
   EXPECT_LT(largest_move, kFar / 99.0);  // 100 equal moves, not a jump
 }
 
+TEST(DeviceExchange, GivesItsForcesGraduallyToADeviceThatWasAway) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  std::uint64_t number = settle(exchange, world, 0.02);
+  exchange.let_go();
+  EXPECT_EQ(exchange.answer_forces(world, true, 0).force_n()[1], 0.0);
+
+  double before = 0.0;
+  double largest_change = 0.0;
+  for (int tick = 0; tick < 100; ++tick) {
+    exchange.receive(sample_at(++number, 0.02));
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+    const double force = exchange.answer_forces(world, true, 0).force_n()[1];
+    largest_change = std::max(largest_change, std::abs(force - before));
+    before = force;
+  }
+
+  EXPECT_NEAR(before, -kStiffness * 0.02, 1e-12);
+  EXPECT_LT(largest_change, kStiffness * 0.02 / 99.0);  // 100 equal changes of a force of 1 N
+}
+
+TEST(DeviceExchange, GoesOnWithTheNumbersOfTheSceneBefore) {
+  engine::World world = world_with_a_port();
+  DeviceExchange before = mass_exchange();
+  const std::uint64_t number = settle(before, world, 0.02);
+  before.receive(sample_at(number + 1, 0.03));
+  const std::uint64_t answers = before.answer_forces(world, true, 0).sample();
+  DeviceExchange now = mass_exchange();
+  now.take_over(before, /*at_once=*/false);
+
+  EXPECT_TRUE(now.has_new_sample());
+  EXPECT_EQ(now.receive(sample_at(number, 0.0)), DeviceExchange::Reception::kRefused);
+  now.begin_tick();
+  const msg::GestureForces& answer = now.answer_forces(world, true, 0);
+  EXPECT_EQ(answer.sample(), answers + 1);
+  EXPECT_EQ(answer.answered_sample(), number + 1);
+  EXPECT_LT(std::abs(answer.force_n()[1]), 0.02 * kStiffness / 50.0) << "it takes over gradually";
+}
+
+TEST(DeviceExchange, PlaysOnAtOnceWhenTheSceneIsTheSame) {
+  engine::World world = world_with_a_port();
+  DeviceExchange before = mass_exchange();
+  settle(before, world, 0.02);
+  DeviceExchange now = mass_exchange();
+  now.take_over(before, /*at_once=*/true);
+
+  EXPECT_NEAR(now.answer_forces(world, true, 0).force_n()[1], -kStiffness * 0.02, 1e-12);
+}
+
 TEST(DeviceExchange, HoldsItsMatsWhenTheDeviceFallsSilent) {
   engine::World world = world_with_a_port();
   DeviceExchange exchange = mass_exchange();

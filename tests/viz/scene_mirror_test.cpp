@@ -114,6 +114,28 @@ TEST_F(SceneMirrorTest, IgnoresAnOlderVersionOfTheSameScene) {
   EXPECT_EQ(Json::parse(mirror.scene()->text)["name"], "newer");
 }
 
+TEST_F(SceneMirrorTest, PassesOverWhatBelongsToTheSceneBeforeOrAfter) {
+  msg::SceneDescription next = row_of_three();
+  next.version(2);
+  next.mat_kind().pop_back();
+  next.mat_radius_m().pop_back();
+  next.link_ends({0, 1});
+  take_frame(1);
+  msg::SceneFrame early = frame_of_three(2);
+  early.version(2);
+  early.position_m().resize(6);
+  EXPECT_EQ(mirror.take(std::move(early), arrival(2)), "");
+  EXPECT_EQ(mirror.frame()->frame.frame(), 1u) << "not described yet";
+
+  mirror.take(std::move(next));
+  EXPECT_EQ(take_frame(3), "") << "late, of the scene before";
+  EXPECT_EQ(mirror.take(signals_of_three(1, 2)), "");
+  EXPECT_EQ(mirror.frame(), nullptr);
+  EXPECT_EQ(mirror.signals_after(0), nullptr);
+  EXPECT_EQ(mirror.figures().refused, 0u);
+  EXPECT_EQ(mirror.figures().lost, 0u);
+}
+
 TEST_F(SceneMirrorTest, HandsOutEveryBatchInOrderAndKeepsABoundedNumber) {
   for (std::uint64_t batch = 0; batch < 1000; ++batch) {
     mirror.take(signals_of_three(1 + 80 * batch, 40));
@@ -175,6 +197,7 @@ TEST_F(SceneMirrorTest, KeepsTheNewestStatusOfEachNodeAndAtMost64Nodes) {
 TEST_F(SceneMirrorTest, CountsEventsAndKeepsTheLast) {
   msg::SceneEvents events;
   events.run(kRun);
+  events.version(1);
   events.lost(2);
   for (std::uint64_t step = 0; step < 100; ++step) {
     events.event().emplace_back();

@@ -177,6 +177,7 @@ class Publisher {
   void publish_frame(std::uint64_t number, std::uint64_t step) {
     const double t = static_cast<double>(step) / kStepRateHz;
     frame_.run(scene_.description.run());
+    frame_.version(scene_.description.version());
     frame_.frame(number);
     frame_.step(step);
     frame_.simulated_s(t);
@@ -195,6 +196,7 @@ class Publisher {
 
   void publish_signals(std::uint64_t batch, std::uint64_t first_step) {
     signals_.run(scene_.description.run());
+    signals_.version(scene_.description.version());
     signals_.batch(batch);
     signals_.first_step(first_step);
     signals_.stride_steps(1);

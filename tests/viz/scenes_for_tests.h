@@ -35,6 +35,7 @@ inline msg::SceneDescription row_of_three() {
 inline msg::SceneFrame frame_of_three(std::uint64_t number) {
   msg::SceneFrame frame;
   frame.run(kRun);
+  frame.version(1);
   frame.frame(number);
   frame.step(80 * number);
   frame.time_nsec(static_cast<std::int64_t>(1'000'000'000 + 40'000'000 * number));
@@ -47,6 +48,7 @@ inline msg::SceneFrame frame_of_three(std::uint64_t number) {
 inline msg::SceneSignals signals_of_three(std::uint64_t first_step, std::size_t rows) {
   msg::SceneSignals signals;
   signals.run(kRun);
+  signals.version(1);
   signals.first_step(first_step);
   signals.stride_steps(2);
   signals.signal_count(2);

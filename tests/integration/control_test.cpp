@@ -1,0 +1,287 @@
+// tests/integration/control_test.cpp -- a session is changed while it runs.
+#include <cmath>
+#include <csignal>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "idl/control.h"
+#include "idl/gesture.h"
+#include "idl/scene.h"
+#include "node/dds/reader.h"
+#include "node/dds/writer.h"
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+#include "tests/integration/status_watch.h"
+#include "tests/support/test_domain.h"
+
+namespace cordis::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Outcome {
+  int code;
+  std::string output;
+};
+
+/// A session of sim and keyboard that runs, and `cordis ctl` for it.
+class Control : public ::testing::TestWithParam<const char*> {
+ protected:
+  explicit Control(const std::string& clock = GetParam())
+      : session_(clock, kSimAndKey), status_(session_.participant()) {
+    session_.add_file("scene.yaml", wall_scene(200.0));
+    session_.add_file("stiff.yaml", wall_scene(400.0));
+    session_.add_file("bad.yaml", "cordis: 1\nspace: 7\n");
+    session_.add_file("key.yaml", steady_key(-0.01, 0.0));
+  }
+
+  void start() {
+    session_.start("sim_node", "sim");
+    session_.start("device_node", "keyboard");
+    ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+    ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+  }
+
+  Outcome ctl(const std::vector<std::string>& words) {
+    std::vector<std::string> command{program_path("cordis"), "ctl", session_.launch_file()};
+    command.insert(command.end(), words.begin(), words.end());
+    ChildProcess process(command);
+    const int code = process.wait(30s);
+    return {code, process.output()};
+  }
+
+  void expect_done(const std::vector<std::string>& words, const std::string& text) {
+    const Outcome outcome = ctl(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_NE(outcome.output.find(text), std::string::npos) << outcome.output;
+  }
+
+  void expect_refused(const std::vector<std::string>& words, const std::string& text) {
+    const Outcome outcome = ctl(words);
+    EXPECT_EQ(outcome.code, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(text), std::string::npos) << outcome.output;
+  }
+
+  /// The step of the newest frame from now on.
+  std::uint64_t step_shown() {
+    dds::Reader<msg::SceneFrame> frames(session_.participant(), dds::Topic::kFrame);
+    msg::SceneFrame frame;
+    EXPECT_TRUE(eventually([&] { return frames.take(frame); }));
+    return frame.step();
+  }
+
+  LiveSession session_;
+  StatusWatch status_;
+};
+
+TEST_P(Control, PausesStepsAndResumes) {
+  start();
+  expect_done({"pause"}, "sim: paused at step ");
+  ASSERT_TRUE(status_.wait_for_phase("sim", "paused"));
+  const std::uint64_t step = step_shown();
+  EXPECT_EQ(step_shown(), step) << "pictures go on, the scene does not";
+
+  expect_done({"step"}, "paused at step " + std::to_string(step + 1) + "\n");
+  expect_done({"step", "7"}, "paused at step " + std::to_string(step + 8) + "\n");
+  EXPECT_EQ(step_shown(), step + 8);
+
+  expect_done({"resume"}, "goes on at step " + std::to_string(step + 8));
+  ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+  EXPECT_TRUE(status_.wait_for(
+      "sim", [&](const msg::NodeStatus& status) { return status.step() > step + 1000; }));
+}
+
+TEST_P(Control, ResetBeginsTheSceneAnewUnderANewVersion) {
+  start();
+  dds::Reader<msg::SceneDescription> descriptions(session_.participant(),
+                                                  dds::Topic::kDescription);
+  msg::SceneDescription description;
+  ASSERT_TRUE(eventually([&] { return descriptions.take(description); }));
+  EXPECT_EQ(description.version(), 1u);
+  ASSERT_TRUE(status_.wait_for(
+      "sim", [](const msg::NodeStatus& status) { return status.step() > 2000; }));
+  expect_done({"pause"}, "paused");
+  expect_done({"reset"}, "'wall' begins anew, paused");
+
+  ASSERT_TRUE(eventually([&] { return descriptions.take(description); }));
+  EXPECT_EQ(description.version(), 2u);
+  EXPECT_EQ(step_shown(), 0u);
+  expect_done({"resume"}, "goes on at step 0");
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+}
+
+TEST_P(Control, LoadPlaysAnotherSceneAndTheKeyFeelsIt) {
+  start();
+  dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
+  msg::GestureForces force;
+  const auto feels = [&](double wanted) {
+    return eventually(
+        [&] { return forces.take(force) && std::abs(force.force_n()[0] - wanted) < 1e-9; });
+  };
+  ASSERT_TRUE(feels(2.0));
+  const std::uint64_t before = force.sample();
+
+  expect_done({"load", "stiff.yaml"}, "'wall' begins; the scene before ended at step ");
+
+  ASSERT_TRUE(feels(4.0));
+  EXPECT_GT(force.sample(), before) << "the numbers of the answers go on";
+  EXPECT_EQ(status_.of("keyboard").phase(), "running");
+}
+
+TEST_P(Control, ASceneWithErrorsIsRefusedWithThemAllAndTheOldOneGoesOn) {
+  start();
+  expect_refused({"load", "bad.yaml"}, "bad.yaml:2:8: error: 'space' in scene must be between 1 and 3, got 7");
+  expect_refused({"load", "nowhere.yaml"}, "cannot be read");
+  EXPECT_EQ(status_.of("sim").phase(), "running");
+  EXPECT_TRUE(status_.wait_for(
+      "sim", [](const msg::NodeStatus& status) { return status.step() > 1000; }));
+}
+
+INSTANTIATE_TEST_SUITE_P(Clocks, Control, ::testing::Values("realtime", "lockstep"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+class ControlWithoutDevices : public Control {
+ protected:
+  ControlWithoutDevices() : Control("asap") {
+    session_.add_file("scene.yaml",
+                      "cordis: 1\nname: free\nspace: 1\nstep: {rate_hz: 1000}\n"
+                      "matter:\n  bob: {kind: mass, mass_kg: 1, at_m: 0}\n");
+  }
+};
+
+TEST_F(ControlWithoutDevices, AScenePlayedAsFastAsCanBeObeysJustTheSame) {
+  session_.start("sim_node", "sim");
+  ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+  expect_done({"pause"}, "sim: paused at step ");
+  expect_done({"reset"}, "'free' begins anew, paused");
+  EXPECT_EQ(step_shown(), 0u);
+  expect_done({"step", "1000000"}, "paused at step 1000000\n");
+  EXPECT_EQ(step_shown(), 1000000u);
+  expect_done({"load", "scene.yaml"}, "'free' begins, paused");
+  expect_done({"resume"}, "goes on at step 0");
+  ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+}
+
+class ControlInRealtime : public Control {
+ protected:
+  ControlInRealtime() : Control("realtime") {}
+};
+
+TEST_F(ControlInRealtime, TheKeyFeelsNothingWhileTheScenePausesAndComesBackGradually) {
+  start();
+  dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
+  msg::GestureForces force;
+  ASSERT_TRUE(
+      eventually([&] { return forces.take(force) && std::abs(force.force_n()[0] - 2.0) < 1e-9; }));
+
+  expect_done({"pause"}, "paused");
+  while (forces.take(force)) {
+  }
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_TRUE(eventually([&] { return forces.take(force); }));
+    EXPECT_EQ(force.force_n()[0], 0.0);
+  }
+  EXPECT_EQ(status_.of("keyboard").phase(), "running") << "it is answered all the time";
+
+  expect_done({"resume"}, "goes on");
+  double before = 0.0;
+  std::uint64_t sample = force.sample();
+  ASSERT_TRUE(eventually([&] {
+    while (forces.take(force)) {
+      // 100 equal parts of the force in 100 answers, of which some may be lost on the way.
+      const auto answers = static_cast<double>(force.sample() - sample);
+      EXPECT_LE(force.force_n()[0] - before, answers * 2.0 / 99.0);
+      before = force.force_n()[0];
+      sample = force.sample();
+    }
+    return std::abs(before - 2.0) < 1e-9;
+  }));
+}
+
+TEST_F(ControlInRealtime, EveryNodeAnswersACommandForAllJustOnce) {
+  start();
+  dds::Writer<msg::ControlCommand> commands(session_.participant(), dds::Topic::kCommand);
+  dds::Reader<msg::ControlReply> replies(session_.participant(), dds::Topic::kReply);
+  ASSERT_TRUE(eventually(
+      [&] { return commands.matched_count() == 2 && replies.matched_count() == 2; }));
+  std::map<std::string, int> answers;
+  msg::ControlReply reply;
+  const auto take_all = [&](std::uint64_t id) {
+    while (replies.take(reply)) {
+      EXPECT_EQ(reply.command_id(), id);
+      ++answers[reply.node()];
+    }
+  };
+  msg::ControlCommand command;
+  command.sender("test");
+  command.target("*");
+  command.verb("pause");
+  command.command_id(1);
+  commands.write(command);
+  ASSERT_TRUE(eventually([&] {
+    take_all(1);
+    return answers.size() == 2;
+  }));
+  EXPECT_EQ(answers, (std::map<std::string, int>{{"keyboard", 1}, {"sim", 1}}));
+
+  // Sent again, it is answered again and not obeyed again.
+  command.verb("resume");
+  commands.write(command);
+  ASSERT_TRUE(eventually([&] {
+    take_all(1);
+    return answers["sim"] == 2;
+  }));
+  EXPECT_EQ(reply.text().find("goes on"), std::string::npos);
+  ASSERT_TRUE(status_.wait_for_phase("sim", "paused"));
+}
+
+TEST_F(ControlInRealtime, WhoHasNothingToDoSaysSo) {
+  start();
+  expect_refused({"pause", "--node", "keyboard"},
+                 "keyboard: a device_node has nothing to do at 'pause'");
+  expect_done({"pause", "--node", "*"}, "sim: paused at step ");
+}
+
+TEST_F(ControlInRealtime, WithoutASimulationTheCommandEndsInOneClearMessage) {
+  Outcome outcome = ctl({"pause"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.output.find("nobody is in session 'test' of domain " +
+                                std::to_string(own_domain())),
+            std::string::npos)
+      << outcome.output;
+
+  session_.start("device_node", "keyboard");
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", "waiting"));
+  outcome = ctl({"pause"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.output.find("no sim_node is in session 'test'"), std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("only 'keyboard'"), std::string::npos) << outcome.output;
+}
+
+TEST_F(ControlInRealtime, ASessionIsFoundByItsNameToo) {
+  start();
+  ChildProcess process(
+      {program_path("cordis"), "ctl", "test", "pause", "--domain", std::to_string(own_domain())});
+  EXPECT_EQ(process.wait(30s), 0) << process.output();
+  ASSERT_TRUE(status_.wait_for_phase("sim", "paused"));
+}
+
+TEST_F(ControlInRealtime, BadWordsAreRefusedBeforeAnythingIsSent) {
+  expect_refused({"paws"}, "there is no command 'paws', did you mean 'pause'?");
+  expect_refused({"load"}, "write: load SCENE");
+  expect_refused({"pause", "--timeout", "soon"}, "soon");
+  expect_refused({"pause", "--domain", "500"}, "domain");
+}
+
+TEST_F(ControlInRealtime, AStopEndsAPausedScene) {
+  start();
+  expect_done({"pause"}, "paused");
+  session_.node("sim").signal(SIGTERM);
+  EXPECT_EQ(session_.node("sim").wait(10s), 0);
+}
+
+}  // namespace
+}  // namespace cordis::test

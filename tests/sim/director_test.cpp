@@ -1,0 +1,133 @@
+// tests/sim/director_test.cpp
+#include "sim_node/director.h"
+
+#include <atomic>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/player.h"
+#include "tests/sim/stages.h"
+
+namespace cordis::sim {
+namespace {
+
+/// A director and a loop in another thread that plays for it as fast as it can.
+class DirectorTest : public ::testing::Test {
+ protected:
+  DirectorTest()
+      : player_(stage_of(swing_text()), false),
+        director_(
+            orders_, player_.simulation().shared_scene(), kRunOfSim,
+            [](const std::string& path, config::Problems& problems) {
+              return scene::load_scene_text(path == "other.yaml" ? swing_text("other") : "cordis: 2",
+                                            path, problems);
+            },
+            [this](const scene::Scene& scene, std::uint64_t version) {
+              told_.push_back(scene.name + " " + std::to_string(version));
+            }),
+        loop_([this] { play(); }) {}
+
+  ~DirectorTest() override { end_loop(); }
+
+  void end_loop() {
+    ending_ = true;
+    if (loop_.joinable()) loop_.join();
+  }
+
+  node::Answer obey(const std::string& verb, const std::string& argument = "") {
+    msg::ControlCommand command;
+    command.verb(verb);
+    command.argument(argument);
+    return director_.obey(command);
+  }
+
+  void play() {
+    while (!ending_) {
+      if (Order* order = orders_.waiting()) {
+        player_.obey(*order);
+        orders_.tell_steps_left(player_.steps_left());
+        orders_.obeyed();
+      }
+      player_.advance();
+      orders_.tell_steps_left(player_.steps_left());
+    }
+    orders_.close();
+  }
+
+  OrderBox orders_;
+  Player player_;
+  std::vector<std::string> told_;
+  Director director_;
+  std::atomic<bool> ending_{false};
+  std::thread loop_;
+};
+
+TEST_F(DirectorTest, PausesAndResumes) {
+  const node::Answer paused = obey("pause");
+  EXPECT_TRUE(paused.accepted);
+  EXPECT_EQ(paused.text.find("paused at step "), 0u) << paused.text;
+  EXPECT_EQ(obey("pause").text.find("was paused already at step "), 0u);
+  EXPECT_EQ(obey("resume").text.find("goes on at step "), 0u);
+  EXPECT_EQ(obey("resume").text.find("was running already at step "), 0u);
+}
+
+TEST_F(DirectorTest, AnswersWhenTheSingleStepsAreDone) {
+  obey("pause");
+  obey("reset");
+  EXPECT_EQ(obey("step").text, "paused at step 1");
+  EXPECT_EQ(obey("step", "9").text, "paused at step 10");
+  end_loop();
+  EXPECT_EQ(player_.simulation().world().step_count(), 10u);
+}
+
+TEST_F(DirectorTest, BeginsTheSceneAnew) {
+  obey("pause");
+  const node::Answer answer = obey("reset");
+  EXPECT_TRUE(answer.accepted);
+  EXPECT_EQ(answer.text.find("'swing' begins anew, paused; the scene before ended at step "), 0u)
+      << answer.text;
+  end_loop();
+  EXPECT_EQ(player_.simulation().world().step_count(), 0u);
+  EXPECT_EQ(told_, std::vector<std::string>{"swing 2"});
+}
+
+TEST_F(DirectorTest, LoadsAnotherSceneAndTellsOfIt) {
+  const node::Answer answer = obey("load", "other.yaml");
+  EXPECT_TRUE(answer.accepted);
+  EXPECT_EQ(answer.text.find("'other' begins; the scene before ended at step "), 0u) << answer.text;
+  obey("reset");
+  end_loop();
+  EXPECT_EQ(player_.simulation().scene().name, "other");
+  EXPECT_EQ(player_.stage().frames.shape().version, 3u);
+  EXPECT_EQ(told_, (std::vector<std::string>{"other 2", "other 3"}));
+}
+
+TEST_F(DirectorTest, RefusesASceneWithErrorsAndGoesOn) {
+  const node::Answer answer = obey("load", "bad.yaml");
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_EQ(answer.text.find("'bad.yaml' cannot be played ("), 0u) << answer.text;
+  EXPECT_NE(answer.text.find("bad.yaml:1:9: error"), std::string::npos) << answer.text;
+  end_loop();
+  EXPECT_EQ(player_.simulation().scene().name, "swing");
+  EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(DirectorTest, RefusesWhatItDoesNotUnderstand) {
+  EXPECT_FALSE(obey("jump").accepted);
+  EXPECT_FALSE(obey("step", "-1").accepted);
+}
+
+TEST_F(DirectorTest, SaysSoWhenTheLoopHasEnded) {
+  end_loop();
+  for (const char* verb : {"pause", "step", "reset"}) {
+    const node::Answer answer = obey(verb);
+    EXPECT_FALSE(answer.accepted) << verb;
+    EXPECT_EQ(answer.text, "too late, the simulation is ending") << verb;
+  }
+}
+
+}  // namespace
+}  // namespace cordis::sim

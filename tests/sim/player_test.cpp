@@ -1,0 +1,162 @@
+// tests/sim/player_test.cpp
+#include "sim_node/player.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/stages.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cordis::sim {
+namespace {
+
+Order order_of(Order::Kind kind, std::uint64_t steps = 0) {
+  Order order;
+  order.kind = kind;
+  order.steps = steps;
+  return order;
+}
+
+void obey(Player& player, Order order) {
+  player.obey(order);
+}
+
+/// A turn in which the key sends a position.
+bool turn(Player& player, std::uint64_t number, double position_m) {
+  DeviceExchange& key = player.simulation().devices().front();
+  key.receive(key_sample(number, position_m));
+  return player.advance();
+}
+
+double force_of_key(Player& player) {
+  DeviceExchange& key = player.simulation().devices().front();
+  return key.answer_forces(player.simulation().world(), true, 0).force_n()[0];
+}
+
+std::uint64_t steps_of(const Player& player) {
+  return player.simulation().world().step_count();
+}
+
+TEST(Player, PlaysATickPerTurn) {
+  Player player(stage_of(swing_text()), false);
+  EXPECT_TRUE(player.advance());
+  EXPECT_EQ(steps_of(player), 4u);
+}
+
+TEST(Player, StandsStillWhilePausedAndGoesOnWhereItWas) {
+  Player straight(stage_of(swing_text()), true);
+  Player paused(stage_of(swing_text()), true);
+  for (std::uint64_t n = 1; n <= 50; ++n) turn(straight, n, 0.001);
+  for (std::uint64_t n = 1; n <= 25; ++n) turn(paused, n, 0.001);
+
+  obey(paused, order_of(Order::Kind::kPause));
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(paused.advance());
+  EXPECT_EQ(steps_of(paused), 100u);
+  obey(paused, order_of(Order::Kind::kResume));
+  for (std::uint64_t n = 26; n <= 50; ++n) turn(paused, n, 0.001);
+
+  EXPECT_EQ(paused.simulation().world().state_hash(), straight.simulation().world().state_hash())
+      << "in lockstep a pause leaves no trace";
+}
+
+TEST(Player, DoesJustTheSingleStepsWanted) {
+  Player player(stage_of(swing_text()), true);
+  turn(player, 1, 0.0);
+  obey(player, order_of(Order::Kind::kStep, 6));
+
+  EXPECT_TRUE(turn(player, 2, 0.0));
+  EXPECT_EQ(steps_of(player), 8u);
+  EXPECT_FALSE(turn(player, 3, 0.0)) << "the tick is not complete";
+  EXPECT_EQ(steps_of(player), 10u);
+  EXPECT_FALSE(player.moves());
+  EXPECT_FALSE(player.advance());
+  EXPECT_EQ(steps_of(player), 10u);
+}
+
+TEST(Player, CompletesATickBegunInSingleStepsAsIfItHadNotBeenInterrupted) {
+  Player straight(stage_of(swing_text()), true);
+  Player stepped(stage_of(swing_text()), true);
+  for (std::uint64_t n = 1; n <= 40; ++n) {
+    turn(straight, n, 1e-4 * static_cast<double>(n));
+    DeviceExchange& key = stepped.simulation().devices().front();
+    key.receive(key_sample(n, 1e-4 * static_cast<double>(n)));
+    obey(stepped, order_of(Order::Kind::kStep, 1));
+    EXPECT_FALSE(stepped.advance());
+    obey(stepped, order_of(Order::Kind::kStep, 2));
+    EXPECT_FALSE(stepped.advance());
+    obey(stepped, order_of(Order::Kind::kResume));
+    EXPECT_TRUE(stepped.advance());
+  }
+  EXPECT_EQ(stepped.simulation().world().state_hash(), straight.simulation().world().state_hash());
+}
+
+TEST(Player, GivesNoForceWhilePausedAndGivesItBackGradually) {
+  Player player(stage_of(swing_text()), /*devices_wait=*/false);
+  std::uint64_t number = 0;
+  for (int i = 0; i < 300; ++i) turn(player, ++number, -0.01);
+  ASSERT_GT(std::abs(force_of_key(player)), 0.1);
+
+  obey(player, order_of(Order::Kind::kPause));
+  turn(player, ++number, -0.01);
+  EXPECT_EQ(force_of_key(player), 0.0);
+  for (int i = 0; i < 50; ++i) turn(player, ++number, -0.03);
+  EXPECT_EQ(force_of_key(player), 0.0);
+
+  obey(player, order_of(Order::Kind::kResume));
+  turn(player, ++number, -0.03);
+  EXPECT_LT(std::abs(force_of_key(player)), 100.0 * 0.03 / 20.0) << "a hundredth of the force";
+  for (int i = 0; i < 300; ++i) turn(player, ++number, -0.03);
+  EXPECT_GT(std::abs(force_of_key(player)), 0.5);
+}
+
+TEST(Player, BeginsAnotherStageAndHandsTheOldOneBack) {
+  Player player(stage_of(swing_text()), false);
+  for (std::uint64_t n = 1; n <= 200; ++n) turn(player, n, -0.01);
+  const Stage* before = &player.stage();
+  Order order = order_of(Order::Kind::kRestart);
+  order.stage = stage_of(swing_text("other", 500.0), 2);
+  const Stage* next = order.stage.get();
+
+  player.obey(order);
+
+  EXPECT_EQ(&player.stage(), next);
+  EXPECT_EQ(order.stage.get(), before);
+  EXPECT_EQ(order.step, 800u);
+  EXPECT_EQ(steps_of(player), 0u);
+  EXPECT_NEAR(player.played_s(), 0.2, 1e-12) << "the time played goes on";
+  EXPECT_EQ(force_of_key(player), 0.0);
+  turn(player, 201, -0.01);
+  EXPECT_NEAR(player.played_s(), 0.202, 1e-12);
+}
+
+TEST(Player, StaysPausedWithAnotherStage) {
+  Player player(stage_of(swing_text()), false);
+  obey(player, order_of(Order::Kind::kPause));
+  Order order = order_of(Order::Kind::kRestart);
+  order.stage = stage_of(swing_text(), 2);
+  player.obey(order);
+  EXPECT_TRUE(order.was_paused);
+  EXPECT_FALSE(player.advance());
+  EXPECT_EQ(steps_of(player), 0u);
+}
+
+TEST(Player, AllocatesNothingWhatever) {
+  Player player(stage_of(swing_text()), false);
+  Order restart = order_of(Order::Kind::kRestart);
+  restart.stage = stage_of(swing_text("other"), 2);
+  Order pause = order_of(Order::Kind::kPause);
+  Order step = order_of(Order::Kind::kStep, 5);
+  Order resume = order_of(Order::Kind::kResume);
+
+  const test::AllocationGuard guard;
+  for (Order* order : {&pause, &step, &restart, &resume}) {
+    player.obey(*order);
+    player.advance();
+    player.advance();
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace cordis::sim
