@@ -41,6 +41,7 @@ void Assembly::read_matter(const Value& section) {
     const std::size_t errors_before = problems_.error_count();
     config::MappingReader reader(entry.value, "matter '" + entry.key + "'", problems_);
     Piece piece = read_piece(reader, liaisons_, scene_.space(), problems_);
+    const std::vector<NamedRange> inner_names = piece.names;
     const std::uint32_t first_mat = mat_count();
     const std::uint32_t first_link = link_count();
     const bool sound =
@@ -49,6 +50,11 @@ void Assembly::read_matter(const Value& section) {
     names_.add(
         {entry.key, Named::kMatter, first_mat, mat_count() - first_mat, sound, entry.key_place},
         problems_);
+    for (const NamedRange& inner : inner_names) {
+      names_.add({entry.key + "." + inner.name, Named::kMatter, first_mat + inner.first,
+                  inner.count, sound, entry.key_place},
+                 problems_);
+    }
     scene_.matter.push_back({entry.key, first_mat, mat_count() - first_mat});
     const std::string links = entry.key + ".links";
     names_.add(

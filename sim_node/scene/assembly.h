@@ -18,6 +18,7 @@ struct Piece {
   std::vector<engine::Link> links;
   std::vector<double> radius_m;        ///< per MAT; 0 for a punctual mass
   std::vector<double> drawn_radius_m;  ///< per MAT
+  std::vector<NamedRange> names;       ///< of MATs within it, from 0
 };
 
 inline constexpr std::size_t kMostLinks = 8'000'000;  ///< of a scene

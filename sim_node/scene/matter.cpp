@@ -17,14 +17,18 @@ struct MatterKind {
   int lowest_space;
   int highest_space;
 };
-constexpr std::array<MatterKind, 7> kKinds{{
+constexpr std::array<MatterKind, 11> kKinds{{
     {"mass", read_mass, 1, 3},
     {"fixed", read_fixed, 1, 3},
     {"string", read_string, 1, 3},
     {"ring", read_ring, 1, 3},
     {"grid", read_grid, 1, 3},
     {"lattice", read_lattice, 2, 3},
+    {"disc", read_disc, 2, 3},
+    {"ball", read_ball, 3, 3},
     {"pack", read_pack, 2, 3},
+    {"skin", read_skin, 2, 3},
+    {"beam", read_beam, 2, 3},
 }};
 
 const MatterKind* kind_named(const std::string& word) {

@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "'velocity_m_per_s' in matter 'a' must have 2 numbers, got 1", ""},
         BadScene{kHead2, "matter:\n  a: {kind: ^mas, mass_kg: 1, at: 0}\n",
                  "'kind' in matter 'a' must be one of mass, fixed, string, ring, grid, lattice, "
-                 "pack, got 'mas'",
+                 "disc, ball, pack, skin, beam, got 'mas'",
                  "did you mean 'mass'?"},
         BadScene{kHead2, "matter:\n  a: ^{mass_kg: 1, at_m: [0, 0]}\n",
                  "missing key 'kind' in matter 'a'", ""},
@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2,
                  "matter:\n  a: {kind: lattice, structure: square, region: ^{from_m: [0, 0], to_m: "
                  "[1, 0.1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
-                 "no ball of matter 'a' fits into the region", ""},
+                 "no ball of matter 'a' fits into it", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: lattice, structure: square, counts: ^[1, 1], region: "
                  "{from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
@@ -280,6 +280,62 @@ INSTANTIATE_TEST_SUITE_P(
                  "1 ball of matter 'a' does not fit into the region",
                  "they are 3 % of it; without order, at most about 84 % of an area can be filled, "
                  "less at its border"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Bodies, BadMatter,
+    testing::Values(
+        BadScene{kHead2, "matter:\n  a: {kind: ^ball, center_m: [0, 0], radius_m: 1}\n",
+                 "a ball needs a scene of space 3, this one has 2", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: disc, center_m: [0, 0], radius_m: ^1000, spacing_m: 0.01, "
+                 "mass_kg: 1}\n",
+                 "matter 'a' has more than 1000000 MATs", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: ^1000, "
+                 "spacing_m: 0.01, mass_kg: 1}\n",
+                 "matter 'a' has more than 1000000 MATs", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: ^0.1, "
+                 "ball: {mass_kg: 1, radius_m: 0.2}}\n",
+                 "no ball of matter 'a' fits into it", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: 1, "
+                 "spacing_m: 0.1, mass_kg: 1, shear_stiffness_n_per_m: ^1}\n",
+                 "a disc of rings has no second neighbours that could be joined", ""},
+        BadScene{kHead3,
+                 "matter:\n  a: {kind: ball, structure: ^square, center_m: [0, 0, 0], radius_m: 1, "
+                 "spacing_m: 0.1, mass_kg: 1}\n",
+                 "'structure' in matter 'a' must be one of cubic, fcc, got 'square'", ""},
+        BadScene{kHead3,
+                 "matter:\n  a: {kind: skin, center_m: [0, 0, 0], radius_m: 1, subdivisions: ^9, "
+                 "mass_kg: 1, stiffness_n_per_m: 1}\n",
+                 "'subdivisions' in matter 'a' must be between 0 and 8, got 9", ""},
+        BadScene{
+            kHead2,
+            "matter:\n  a: {kind: skin, corners_m: ^[[0, 0], [1, 0]], spacing_m: 0.1, mass_kg: "
+            "1, stiffness_n_per_m: 1}\n",
+            "'corners_m' in matter 'a' must be at least 3 points, got 2", ""},
+        BadScene{
+            kHead2,
+            "matter:\n  a: {kind: skin, corners_m: [[0, 0], [1, 0], [0, 1]], spacing_m: ^1e-7, "
+            "mass_kg: 1, stiffness_n_per_m: 1}\n",
+            "matter 'a' has more than 1000000 MATs", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: skin, center_m: [0, 0], radius_m: 1, count: 5, mass_kg: 1, "
+                 "stiffness_n_per_m: 1, core: ^{mass_kg: 1}}\n",
+                 "missing key 'stiffness_n_per_m' in 'core' of matter 'a'", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: beam, from_m: [0, 0], to_m: ^[0, 0], cells: 1, height_m: 1, "
+                 "mass_kg: 1, stiffness_n_per_m: 1}\n",
+                 "the ends of matter 'a' are one point", ""},
+        BadScene{kHead3,
+                 "matter:\n  a: {kind: beam, from_m: [0, 0, 0], to_m: [1, 0, 0], cells: 1, "
+                 "height_m: 1, mass_kg: 1, stiffness_n_per_m: 1, up: ^x}\n",
+                 "'up' in matter 'a' must be one direction that is not along the beam", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: beam, from_m: [0, 0], to_m: [1, 0], cells: ^600000, "
+                 "height_m: 1, mass_kg: 1, stiffness_n_per_m: 1}\n",
+                 "'cells' in matter 'a' must be between 1 and 499999, got 600000", ""}));
 
 }  // namespace
 }  // namespace cordis::scene

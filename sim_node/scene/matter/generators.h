@@ -12,6 +12,10 @@ Piece read_string(Source& source);   ///< MATs in a row, each joined to the next
 Piece read_ring(Source& source);     ///< a string that closes in a circle
 Piece read_grid(Source& source);     ///< rows and columns
 Piece read_lattice(Source& source);  ///< a crystal: counts along its axes, or what fills a region
+Piece read_disc(Source& source);     ///< a full circle
+Piece read_ball(Source& source);     ///< a full sphere
 Piece read_pack(Source& source);     ///< balls without order that fill a region
+Piece read_skin(Source& source);     ///< a closed surface
+Piece read_beam(Source& source);     ///< a braced truss
 
 }  // namespace cordis::scene

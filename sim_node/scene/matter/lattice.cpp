@@ -1,5 +1,5 @@
 // A lattice: MATs in the order of a crystal.
-#include "sim_node/scene/matter/crystal.h"
+#include "sim_node/scene/matter/crystal_piece.h"
 #include "sim_node/scene/matter/generators.h"
 
 namespace cordis::scene {
@@ -8,25 +8,7 @@ namespace {
 
 using engine::Vec3;
 
-/// nullptr after a problem.
-const Structure* read_structure(Source& source) {
-  const std::vector<std::string> words{"square", "triangular", "cubic", "fcc"};
-  const bool sound_before = source.reader.ok();
-  const std::string word = source.reader.required_choice("structure", words);
-  if (sound_before && !source.reader.ok()) return nullptr;
-  const Structure* structure = structure_named(word);
-  if (structure->space == source.space) return structure;
-  source.reader.error_at("structure", "a " + word + " lattice needs a scene of space " +
-                                          std::to_string(structure->space) + ", this one has " +
-                                          std::to_string(source.space));
-  return nullptr;
-}
-
-void report_size(Source& source, const std::string& key) {
-  source.reader.error_at(
-      key, source.reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
-}
-
+/// `corner_m` and `counts`.
 Crystal read_block(Source& source, const Structure* structure, double spacing) {
   config::MappingReader& reader = source.reader;
   const Vec3 corner = required_point(reader, "corner_m", source.space);
@@ -44,58 +26,37 @@ Crystal read_block(Source& source, const Structure* structure, double spacing) {
     counts[axis] = numbers[axis];
     total *= static_cast<double>(numbers[axis]);
   }
-  if (total > static_cast<double>(kMostMats)) {
-    report_size(source, "counts");
-    return {};
-  }
-  return crystal_block(*structure, spacing, corner, counts);
+  if (total <= static_cast<double>(kMostMats))
+    return crystal_block(*structure, spacing, corner, counts);
+  reader.error_at("counts",
+                  reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
+  return {};
 }
 
-Crystal read_filled_region(Source& source, const Structure* structure, double spacing,
-                           double ball_radius) {
+Crystal read_filled_region(Source& source, const Structure* structure, const CrystalKeys& keys) {
   config::MappingReader& reader = source.reader;
   const std::size_t errors_before = source.problems.error_count();
   const Region region = read_region(reader.required_mapping("region"), source);
-  for (const char* key : {"counts", "corner_m"}) {
+  for (const std::string key : {"counts", "corner_m"}) {
     if (reader.optional_value(key).exists())
-      reader.error_at(
-          key, "either 'region' or '" + std::string(key) + "' can be given in " + reader.what());
+      reader.error_at(key, "either 'region' or '" + key + "' can be given in " + reader.what());
   }
   if (!reader.ok() || structure == nullptr || source.problems.error_count() != errors_before)
     return {};
-  const Region room = region.without_margin(ball_radius);
-  std::optional<Crystal> crystal;
-  if (room.is_possible()) crystal = crystal_in(*structure, spacing, room);
-  if (room.is_possible() && (!crystal || crystal->points.size() > kMostMats)) {
-    report_size(source, "region");
-  } else if (!crystal || crystal->points.empty()) {
-    reader.error_at("region", "no ball of " + reader.what() + " fits into the region");
-  }
-  return crystal.value_or(Crystal{});
+  return fill_region(source, *structure, keys, region, "region");
 }
 
 }  // namespace
 
 Piece read_lattice(Source& source) {
   config::MappingReader& reader = source.reader;
-  const Structure* structure = read_structure(source);
-  const Grain grain = read_grain(source);
-  const config::Range range{0.0, kFarthest, true};
-  const double spacing = grain.radius > 0.0
-                             ? reader.optional_number("spacing_m", 2.0 * grain.radius, range)
-                             : reader.required_number("spacing_m", range);
+  const Structure* structure = read_structure(source, {"square", "triangular", "cubic", "fcc"}, "");
+  const CrystalKeys keys = read_crystal_keys(source);
   const Crystal crystal = reader.optional_value("region").exists()
-                              ? read_filled_region(source, structure, spacing, grain.radius)
-                              : read_block(source, structure, spacing);
-  const std::optional<LinkLaw> law = optional_neighbour_law(source);
-  const std::optional<LinkLaw> shear = read_shear_law(reader);
-
-  Piece piece;
-  if (!reader.ok() || structure == nullptr) return piece;
-  for (const Vec3& point : crystal.points) add_mass(piece, grain, point);
-  if (law) join_all(source, piece, *law, crystal.neighbours);
-  if (shear) join_all(source, piece, *shear, crystal.second_neighbours);
-  return piece;
+                              ? read_filled_region(source, structure, keys)
+                              : read_block(source, structure, keys.spacing);
+  if (!reader.ok() || structure == nullptr) return {};
+  return crystal_piece(source, crystal, keys);
 }
 
 }  // namespace cordis::scene

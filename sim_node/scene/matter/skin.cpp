@@ -1,0 +1,128 @@
+// A skin: a closed surface, with or without a core.
+#include <cmath>
+#include <numbers>
+
+#include "sim_node/scene/matter/generators.h"
+#include "sim_node/scene/matter/icosphere.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using engine::Vec3;
+
+/// The points of a closed surface and how they lie to each other.
+struct Surface {
+  std::vector<Vec3> points;
+  std::vector<Joint> edges;
+  std::vector<Joint> across;  // second neighbours
+};
+
+Surface closed_line(std::vector<Vec3> points) {
+  Surface surface{std::move(points), {}, {}};
+  const auto count = static_cast<std::uint32_t>(surface.points.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    surface.edges.emplace_back(i, (i + 1) % count);
+    if (count > 4 || (count == 4 && i < 2)) surface.across.emplace_back(i, (i + 2) % count);
+  }
+  return surface;
+}
+
+Surface read_circle(Source& source) {
+  config::MappingReader& reader = source.reader;
+  const Vec3 center = required_point(reader, "center_m", 2);
+  const double radius = reader.required_number("radius_m", {0.0, kFarthest, true});
+  const long count = reader.required_integer("count", 3, kMostMats - 1);
+  std::vector<Vec3> points;
+  for (long i = 0; i < count && reader.ok(); ++i) {
+    const double angle =
+        2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    points.push_back(center + radius * Vec3(std::cos(angle), std::sin(angle), 0.0));
+  }
+  return closed_line(std::move(points));
+}
+
+/// Every side of a polygon in equal pieces of about the spacing.
+Surface read_polygon(Source& source) {
+  config::MappingReader& reader = source.reader;
+  const std::vector<Vec3> corners = required_points(reader, "corners_m", 2, source.problems);
+  const double spacing = reader.required_number("spacing_m", {0.0, kFarthest, true});
+  if (reader.ok() && corners.size() < 3) {
+    reader.error_at("corners_m", "'corners_m' in " + reader.what() +
+                                     " must be at least 3 points, got " +
+                                     std::to_string(corners.size()));
+  }
+  if (!reader.ok()) return {};
+  std::vector<Vec3> points;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const Vec3 side = corners[(c + 1) % corners.size()] - corners[c];
+    const double pieces = std::max(1.0, std::round(side.norm() / spacing));
+    if (static_cast<double>(points.size()) + pieces >= static_cast<double>(kMostMats)) {
+      reader.error_at("spacing_m",
+                      reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
+      return {};
+    }
+    for (double i = 0.0; i < pieces; i += 1.0) points.push_back(corners[c] + (i / pieces) * side);
+  }
+  return closed_line(std::move(points));
+}
+
+Surface read_sphere(Source& source) {
+  config::MappingReader& reader = source.reader;
+  constexpr long kMostSubdivisions = 8;  // 655,362 MATs
+  const Vec3 center = required_point(reader, "center_m", 3);
+  const double radius = reader.required_number("radius_m", {0.0, kFarthest, true});
+  const long subdivisions = reader.required_integer("subdivisions", 0, kMostSubdivisions);
+  if (!reader.ok()) return {};
+  Icosphere sphere = icosphere(static_cast<int>(subdivisions));
+  for (Vec3& point : sphere.points) point = center + radius * point;
+  return {std::move(sphere.points), std::move(sphere.edges), std::move(sphere.across)};
+}
+
+Surface read_surface(Source& source) {
+  if (source.space == 3) return read_sphere(source);
+  return source.reader.has("corners_m") ? read_polygon(source) : read_circle(source);
+}
+
+/// One MAT in the middle, the last of the piece, joined to all of the skin.
+void add_core(Source& source, Piece& piece, const config::Value& section) {
+  config::MappingReader reader(section, "'core' of " + source.reader.what(), source.problems);
+  Source inner{reader, source.liaisons, source.space, source.problems};
+  const Grain grain = read_grain(inner);
+  const std::optional<LinkLaw> law = read_neighbour_law(inner);
+  reader.finish();
+  if (!law || !reader.ok() || piece.mats.empty()) return;
+
+  const auto count = static_cast<std::uint32_t>(piece.mats.size());
+  Vec3 sum = Vec3::Zero();
+  std::vector<Joint> spokes;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    sum += piece.mats[i].position;
+    spokes.emplace_back(count, i);
+  }
+  add_mass(piece, grain, sum / static_cast<double>(count));
+  join_all(inner, piece, *law, spokes);
+  piece.names = {{"skin", 0, count}, {"core", count, 1}};
+}
+
+}  // namespace
+
+Piece read_skin(Source& source) {
+  config::MappingReader& reader = source.reader;
+  const Surface surface = read_surface(source);
+  const Grain grain = read_grain(source);
+  const std::optional<LinkLaw> law = read_neighbour_law(source);
+  const std::optional<LinkLaw> shear = read_shear_law(reader);
+  const config::Value core = reader.optional_mapping("core");
+
+  Piece piece;
+  if (law && reader.ok()) {
+    for (const Vec3& point : surface.points) add_mass(piece, grain, point);
+    join_all(source, piece, *law, surface.edges);
+    if (shear) join_all(source, piece, *shear, surface.across);
+  }
+  if (core.exists()) add_core(source, piece, core);
+  return piece;
+}
+
+}  // namespace cordis::scene
