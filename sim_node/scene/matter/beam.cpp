@@ -1,6 +1,4 @@
 // A beam: a truss of cells, each braced crosswise.
-#include <Eigen/Geometry>
-
 #include "sim_node/scene/matter/generators.h"
 
 namespace cordis::scene {
@@ -23,6 +21,11 @@ struct BeamShape {
     return station * corners() + corner;
   }
 };
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
+          a.x() * b.y() - a.y() * b.x()};
+}
 
 /// The direction of the height of a beam in 3-D: `up` made square to the axis, z unless written, or
 /// y for a beam along z. Zero after a problem.
@@ -66,7 +69,7 @@ BeamShape read_shape(Source& source) {
   const double width = reader.optional_number("width_m", height, {0.0, kFarthest, true});
   const Vec3 up = read_up(source, axis);
   const Vec3 h = 0.5 * height * up;
-  const Vec3 w = 0.5 * width * axis.cross(up);
+  const Vec3 w = 0.5 * width * cross(axis, up);
   shape.section = {-h - w, -h + w, h + w, h - w};
   shape.sides = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
   shape.section_diagonals = {{0, 2}, {1, 3}};
