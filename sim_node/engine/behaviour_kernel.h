@@ -161,11 +161,31 @@ struct ForceColumns;
 using AddStateLinkForces = StateLinkWork (*)(const StateLinkRows& links,
                                              const ForceColumns& columns) noexcept;
 
+/// Maxwell elements, one row each; arrays 64-byte aligned, padded to a multiple of 8 with elements
+/// of no force.
+struct MaxwellRows {
+  std::size_t count;              // rows, padding included
+  const std::uint32_t* column_a;  // 4 * MAT index
+  const std::uint32_t* column_b;
+  const double* persistence;  // e^(-K dt / Z)
+  const double* gain;         // Z (1 - persistence) / dt [N/m]
+  const double* compliance;   // 1 / K [m/N]
+  double* pull;               // [N]
+  double* factor;             // force of the last call = factor * vector from a to b
+};
+
+/// Adds the forces of all elements, in order. @return as AddStateLinkForces; elastic is the change
+/// of what their springs store.
+using AddMaxwellForces = StateLinkWork (*)(const MaxwellRows& links,
+                                           const ForceColumns& columns) noexcept;
+
 /// The loops of one width.
 struct BehaviourKernel {
   StepBehaviours step = nullptr;
   AddStateLinkForces state_links_1d = nullptr;
   AddStateLinkForces state_links_3d = nullptr;  // for 2 dimensions too
+  AddMaxwellForces maxwell_1d = nullptr;
+  AddMaxwellForces maxwell_3d = nullptr;
 };
 
 extern const BehaviourKernel kBehaviourKernelSse2;

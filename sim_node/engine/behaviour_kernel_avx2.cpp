@@ -1,7 +1,7 @@
 // sim_node/engine/behaviour_kernel_avx2.cpp -- four rows in a register. Compiled with -mavx2,
 // without FMA.
 #include "sim_node/engine/lanes_avx2.h"
-#include "sim_node/engine/state_link_kernel_body.h"
+#include "sim_node/engine/link_kernels_body.h"
 
 namespace cordis::engine {
 

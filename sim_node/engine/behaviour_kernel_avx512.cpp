@@ -1,7 +1,7 @@
 // sim_node/engine/behaviour_kernel_avx512.cpp -- eight rows in a register. Compiled with -mavx512f,
 // without contraction.
 #include "sim_node/engine/lanes_avx512.h"
-#include "sim_node/engine/state_link_kernel_body.h"
+#include "sim_node/engine/link_kernels_body.h"
 
 namespace cordis::engine {
 

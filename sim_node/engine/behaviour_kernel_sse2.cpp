@@ -1,7 +1,7 @@
 // sim_node/engine/behaviour_kernel_sse2.cpp -- two rows in a register: runs on every x86-64
 // processor.
 #include "sim_node/engine/lanes_sse2.h"
-#include "sim_node/engine/state_link_kernel_body.h"
+#include "sim_node/engine/link_kernels_body.h"
 
 namespace cordis::engine {
 

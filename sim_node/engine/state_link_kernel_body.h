@@ -238,10 +238,4 @@ class StateLinkLoop {
   Row viscous_work_[kParts];
 };
 
-template <class Lanes>
-constexpr BehaviourKernel make_behaviour_kernel() noexcept {
-  return BehaviourKernel{BehaviourLoop<Lanes>::step, StateLinkLoop<Lanes, MotionInLine>::add_forces,
-                         StateLinkLoop<Lanes, MotionInSpace>::add_forces};
-}
-
 }  // namespace cordis::engine

@@ -127,7 +127,8 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
 
     Lanes::store_column(masses.delayed + 4 * i, position);
     Lanes::store_column(masses.position + 4 * i, next);
-    blemish = Lanes::unite(blemish, next - next);  // 0 for finite values, else NaN
+    // 0 for finite values, else NaN
+    blemish = Lanes::unite(blemish, next - next);  // NOLINT(misc-redundant-expression)
   }
   return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(blemish)};
 }

@@ -12,6 +12,7 @@
 #include "sim_node/engine/behaviour_kernel.h"
 #include "sim_node/engine/event_log.h"
 #include "sim_node/engine/mat_array.h"
+#include "sim_node/engine/maxwell_links.h"
 #include "sim_node/engine/outside.h"
 #include "sim_node/engine/spring_damper.h"
 #include "sim_node/engine/state_hash.h"
@@ -50,6 +51,7 @@ struct World::State {
         links(network->description()),
         table(network->description().behaviours, network->step()),
         state_links(network->description(), table),
+        maxwell_links(network->description()),
         log(table, std::max(kLeastEventRoom, network->description().state_links.size())),
         outside(network->description()) {}
 
@@ -58,8 +60,8 @@ struct World::State {
   void restore(const Snapshot& snapshot);
   void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
   std::size_t state_size_before_outside() const noexcept {
-    return mats.state_size() + links.state_size() + state_links.state_size() + log.state_size() +
-           EnergyAccount::kStateSize;
+    return mats.state_size() + links.state_size() + state_links.state_size() +
+           maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize;
   }
 
   std::shared_ptr<const Network> network;
@@ -71,6 +73,7 @@ struct World::State {
   SpringDamperArray links;
   StateTable table;
   StateLinkArray state_links;
+  MaxwellArray maxwell_links;
   EventLog log;
   Outside outside;
   EnergyAccount account;
@@ -109,6 +112,7 @@ StepReport World::State::step() noexcept {
   if (!state_links.empty()) {
     energy += state_links.add_forces(behaviours, table, mats.force_columns(), step_count, log);
   }
+  energy += maxwell_links.add_forces(behaviours, mats.force_columns());
   energy.port_work += outside.work_at_ports(mats);
 
   energy.port_work += outside.push(mats);
@@ -165,6 +169,7 @@ void World::State::restore(const Snapshot& snapshot) {
   const double* next = mats.take_state(snapshot.state.data());
   next = links.take_state(next);
   next = state_links.take_state(next);
+  next = maxwell_links.take_state(next);
   next = log.take_state(next);
   next = account.take_state(next);
   outside.take_state(next);
@@ -252,9 +257,11 @@ const Columns& World::positions() const noexcept {
 Energy World::energy() const noexcept {
   const State& state = *state_;
   StepEnergy since = state.state_links.work_since_last_call(state.mats);
+  since += state.maxwell_links.work_since_last_call(state.mats);
   since.dissipated += state.links.work_since_last_call(state.mats);
-  return state.account.energy(state.network->description(), state.mats, since,
-                              state.state_links.stored_energy(state.table, state.mats));
+  const double stored = state.state_links.stored_energy(state.table, state.mats) +
+                        state.maxwell_links.stored_energy();
+  return state.account.energy(state.network->description(), state.mats, since, stored);
 }
 
 Vec3 World::momentum() const noexcept {
@@ -285,6 +292,7 @@ std::uint64_t World::state_hash() const noexcept {
     }
   }
   state_->state_links.add_to(hash);
+  state_->maxwell_links.add_to(hash);
   return hash.value();
 }
 
@@ -294,6 +302,7 @@ Snapshot World::snapshot() const {
   state_->mats.append_state(snapshot.state);
   state_->links.append_state(snapshot.state);
   state_->state_links.append_state(snapshot.state);
+  state_->maxwell_links.append_state(snapshot.state);
   state_->log.append_state(snapshot.state);
   state_->account.append_state(snapshot.state);
   state_->outside.append_state(snapshot.state);

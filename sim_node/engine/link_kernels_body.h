@@ -1,0 +1,17 @@
+// sim_node/engine/link_kernels_body.h -- all loops of links other than linear ones.
+#pragma once
+
+#include "sim_node/engine/maxwell_kernel_body.h"
+#include "sim_node/engine/state_link_kernel_body.h"
+
+namespace cordis::engine {
+
+template <class Lanes>
+constexpr BehaviourKernel make_behaviour_kernel() noexcept {
+  return BehaviourKernel{BehaviourLoop<Lanes>::step, StateLinkLoop<Lanes, MotionInLine>::add_forces,
+                         StateLinkLoop<Lanes, MotionInSpace>::add_forces,
+                         add_maxwell_forces<Lanes, GrowthInLine>,
+                         add_maxwell_forces<Lanes, GrowthInSpace>};
+}
+
+}  // namespace cordis::engine
