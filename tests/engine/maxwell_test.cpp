@@ -1,0 +1,180 @@
+// tests/engine/maxwell_test.cpp -- spring and damper in series, with one internal force.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/engine/maxwell_links.h"
+#include "tests/engine/reference_data.h"
+#include "tests/engine/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+const nlohmann::json& rheology() {
+  static const nlohmann::json data = reference("R16_rheology");
+  return data;
+}
+
+double parameter(const char* name) {
+  return number(rheology()["params"][name]);
+}
+
+/// A port joined to a fixed point by a Maxwell element, by a spring too if `with_spring`.
+NetworkDescription element(double step, bool with_spring) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = step;
+  scene.mats = {fixed(Vec3::Zero()), port(Vec3::Zero())};
+  scene.maxwell_links = {{0, 1, parameter("K2"), parameter("Z")}};
+  if (with_spring) scene.links = {{0, 1, parameter("K1"), 0.0, 0.0}};
+  return scene;
+}
+
+/// Largest relative error of the force that is left some time after a step of 1 m.
+double relaxation_error(double step, bool with_spring) {
+  World world = make_world(element(step, with_spring));
+  world.impose_position(1, Vec3(1, 0, 0));
+  world.step();
+  double largest = 0.0;
+  for (const auto& row : rheology()["t_values"]) {
+    const auto steps = static_cast<std::uint64_t>(std::lround(number(row[0]) / step));
+    while (world.step_count() < steps + 1) world.step();
+    const double expected = number(row[with_spring ? 3 : 1]);
+    largest = std::max(largest, std::abs(world.link_force(0).x() / expected - 1.0));
+  }
+  return largest;
+}
+
+TEST(Maxwell, RelaxesAsItsClosedForm) {
+  for (const bool with_spring : {false, true}) {
+    const double coarse = relaxation_error(1e-4, with_spring);
+    const double fine = relaxation_error(5e-5, with_spring);
+
+    // the step of 1 m takes one period: first order in dt, K dt / 2Z
+    EXPECT_LT(coarse, 8e-4);
+    EXPECT_NEAR(coarse / fine, 2.0, 0.02);
+  }
+}
+
+TEST(Maxwell, DecaysByTheExactFactorFromStepToStep) {
+  World world = make_world(element(1e-3, false));
+  world.impose_position(1, Vec3(1, 0, 0));
+  world.step();
+  const double first = world.link_force(0).x();
+  run(world, 500);
+
+  const double exact = std::exp(-parameter("K2") * 1e-3 / parameter("Z") * 500);
+  EXPECT_NEAR(world.link_force(0).x() / first / exact, 1.0, 1e-12);
+}
+
+TEST(Maxwell, LosesPerCycleWhatItsLossModulusSays) {
+  // standard linear solid, u = sin 10 t; the transient dies with e^(-15 t)
+  const double step = 2.0 * M_PI / 10.0 / 20'000.0;
+  World world = make_world(element(step, true));
+  const auto cycle = [&] {
+    for (int n = 0; n < 20'000; ++n) {
+      const double t = static_cast<double>(world.step_count() + 1) * step;
+      world.impose_position(1, Vec3(std::sin(10.0 * t), 0, 0));
+      world.step();
+    }
+  };
+  for (int n = 0; n < 5; ++n) cycle();
+  const double work = world.energy().port_work;
+  const double dissipated = world.energy().dissipated;
+  cycle();
+
+  const double expected = number(rheology()["sls_loss_w10_u1"]);
+  EXPECT_NEAR(world.energy().port_work - work, expected, 1e-4 * expected);
+  EXPECT_NEAR(world.energy().dissipated - dissipated, expected, 1e-4 * expected);
+}
+
+TEST(Maxwell, CreepsInAKelvinVoigtElementOfPlainLinks) {
+  // the massless element is met as the mass goes to 0: m / Z = 5e-6 s against a creep of 0.2 s
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-6;
+  scene.mats = {fixed(Vec3::Zero()), mass(1e-4, Vec3::Zero())};
+  scene.links = {{0, 1, parameter("K1"), parameter("Z"), 0.0}};
+  World world = make_world(scene);
+  world.set_external_force(1, Vec3(1, 0, 0));
+
+  for (const auto& row : rheology()["t_values"]) {
+    if (number(row[0]) > 0.2) break;
+    const auto steps = static_cast<std::uint64_t>(std::lround(number(row[0]) / scene.step));
+    while (world.step_count() < steps) world.step();
+    EXPECT_NEAR(world.position(1).x() / number(row[5]), 1.0, 1e-3);
+  }
+}
+
+TEST(Maxwell, CreepsOnUnderAConstantForce) {
+  // u = F (1/K + t/Z), around which a mass swings and comes to rest
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-4;
+  scene.mats = {fixed(Vec3::Zero()), mass(0.1, Vec3::Zero())};
+  scene.maxwell_links = {{0, 1, 300.0, 2.0}};
+  World world = make_world(scene);
+  world.set_external_force(1, Vec3(1, 0, 0));
+  run(world, 10'000);
+  const double before = world.position(1).x();
+  run(world, 10'000);
+
+  EXPECT_NEAR((world.position(1).x() - before) / 1.0, 1.0 / 2.0, 1e-5);
+}
+
+TEST(Maxwell, KeepsItsAccountInEveryDimension) {
+  for (const int dimension : {1, 2, 3}) {
+    NetworkDescription scene = free_cluster(20, 61, 0.0, dimension);
+    for (const Link& link : scene.links) {
+      scene.maxwell_links.push_back({link.mat_a, link.mat_b, link.stiffness, 2.0});
+    }
+    scene.links.clear();
+    scene.mats[4].kind = MatKind::kPort;
+    scene.mats[4].velocity = Vec3::Zero();
+    World world = make_world(scene);
+    double largest = 0.0;
+    for (int n = 0; n < 10'000; ++n) {
+      const Vec3 wave = Vec3(0.1 * std::sin(0.01 * n), 0, 0);
+      world.impose_position(4, scene.mats[4].position + wave);
+      world.step();
+      const engine::Energy energy = world.energy();
+      largest = std::max(largest, std::abs(energy.residual()) / energy.largest);
+    }
+    EXPECT_LT(largest, 1e-11) << "dimension " << dimension;
+    EXPECT_GT(world.energy().dissipated, 0.5 * world.energy().initial);
+    EXPECT_LT(std::abs(world.energy().elastic_error), 1e-12 * world.energy().largest);
+  }
+}
+
+TEST(Maxwell, StepsToTheSameBitsOnEveryWidthAndFromASnapshot) {
+  for (const int dimension : {1, 2, 3}) {
+    NetworkDescription scene = free_cluster(20, 0, 0.0, dimension);
+    for (std::uint32_t l = 0; l < 29; ++l) {
+      scene.maxwell_links.push_back({l % 20, (l + 7) % 20, 50.0 + l, 0.5});
+    }
+    World narrow = make_world(scene, VectorWidth::kSse2);
+    run(narrow, 200);
+    const engine::Snapshot snapshot = narrow.snapshot();
+    run(narrow, 200);
+    for (const VectorWidth width : engine::supported_vector_widths()) {
+      World world = make_world(scene, width);
+      run(world, 400);
+      EXPECT_EQ(world.state_hash(), narrow.state_hash()) << engine::to_string(width);
+      EXPECT_EQ(world.energy().dissipated, narrow.energy().dissipated);
+      world.restore(snapshot);
+      run(world, 200);
+      EXPECT_EQ(world.state_hash(), narrow.state_hash()) << engine::to_string(width);
+      EXPECT_EQ(world.energy().elastic, narrow.energy().elastic);
+    }
+  }
+}
+
+TEST(ShareOfDecay, IsOneLessTheExponential) {
+  for (double x = 1e-18; x < 1e3; x *= 1.37) {
+    EXPECT_NEAR(engine::share_of_decay(x) / -std::expm1(-x), 1.0, 2e-15) << x;
+  }
+  EXPECT_EQ(engine::share_of_decay(0.0), 0.0);
+}
+
+}  // namespace
+}  // namespace cordis::test

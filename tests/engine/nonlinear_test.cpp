@@ -1,0 +1,283 @@
+// tests/engine/nonlinear_test.cpp -- laws that are not linear: closed forms, and chains of them.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/many_states.h"
+#include "tests/engine/programs.h"
+#include "tests/engine/reference_data.h"
+#include "tests/engine/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+using engine::Law;
+
+LinkState with(const Law& elasticity, double stiffness = 0.0) {
+  LinkState state;
+  state.stiffness = stiffness;
+  state.elasticity = elasticity;
+  return state;
+}
+
+/// Pull of a link of one state at some distances, rest length 0.5, nothing moving.
+std::vector<double> pulls(const LinkState& state, const std::vector<double>& distances,
+                          VectorWidth width) {
+  NetworkDescription scene;
+  scene.step = 0.01;
+  scene.mats.push_back(fixed(Vec3::Zero()));
+  scene.behaviours = {Behaving().state(state).behaviour};
+  for (const double distance : distances) {
+    scene.state_links.push_back({0, static_cast<std::uint32_t>(scene.mats.size()), 0, 0.5});
+    scene.mats.push_back(fixed(Vec3(0, distance, 0)));
+  }
+  World world = make_world(scene, width);
+  world.step();
+  std::vector<double> found;
+  for (std::uint32_t l = 0; l < distances.size(); ++l) {
+    found.push_back(world.pull_of(l));
+    EXPECT_NEAR(world.link_force(l + 1).y(), -found.back(), 1e-12 * std::abs(found.back()));
+  }
+  return found;
+}
+
+class Laws : public testing::TestWithParam<VectorWidth> {
+ protected:
+  static void expect_pulls(const LinkState& state, double (*expected)(double distance)) {
+    std::vector<double> distances;
+    for (int i = 1; i <= 61; ++i) distances.push_back(0.05 * i - 0.0123);
+    const std::vector<double> found = pulls(state, distances, GetParam());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double pull = expected(distances[i]);
+      EXPECT_NEAR(found[i], pull, 1e-13 * (1.0 + std::abs(pull))) << "at " << distances[i];
+    }
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Widths, Laws, testing::ValuesIn(engine::supported_vector_widths()),
+                         [](const auto& width) { return engine::to_string(width.param); });
+
+TEST_P(Laws, OfATableIsLinearBetweenItsPointsAndConstantBeyond) {
+  expect_pulls(with(table_law()), [](double d) {
+    const double e = d - 0.5;
+    if (e < -0.2) return -9.0;
+    if (e < -0.05) return -9.0 + 8.0 * (e + 0.2) / 0.15;
+    if (e < 0.0) return -1.0 + (e + 0.05) / 0.05;
+    if (e < 0.1) return 25.0 * e;
+    return std::min(3.0, 2.5 + 0.5 * (e - 0.1) / 0.2);
+  });
+}
+
+TEST_P(Laws, OfATableMeetsItsPointsExactly) {
+  LinkState state;
+  state.elasticity.kind = Law::Kind::kTable;
+  state.elasticity.table = {{-0.25, 0.125, 0.25, 1.5}, {-0.3, 0.7, 0.1, 7.7}};
+  EXPECT_EQ(pulls(state, {0.25, 0.625, 0.75, 2.0, 0.125, 9.0}, GetParam()),
+            (std::vector<double>{-0.3, 0.7, 0.1, 7.7, -0.3, 7.7}));
+  state.elasticity.table = {{0.3}, {2.5}};
+  EXPECT_EQ(pulls(state, {0.25, 0.75, 0.8}, GetParam()), (std::vector<double>{2.5, 2.5, 2.5}));
+}
+
+TEST_P(Laws, OfALongTableFindsEverySegment) {
+  LinkState state;
+  state.elasticity.kind = Law::Kind::kTable;
+  for (int i = 0; i < 77; ++i) {
+    state.elasticity.table.at.push_back(0.03 * i - 0.4);
+    state.elasticity.table.value.push_back(i * i);
+  }
+  std::vector<double> distances;
+  for (int i = 0; i < 76; ++i) distances.push_back(0.5 + 0.03 * (i + 0.5) - 0.4);
+  const std::vector<double> found = pulls(state, distances, GetParam());
+  for (int i = 0; i < 76; ++i) EXPECT_NEAR(found[i], i * i + i + 0.5, 1e-9);
+}
+
+TEST_P(Laws, OfAPowerKeepsTheSignOfTheElongation) {
+  expect_pulls(with(power_law(3.0, 1.5)), [](double d) {
+    return std::copysign(3.0 * std::pow(std::abs(d - 0.5), 1.5), d - 0.5);
+  });
+  expect_pulls(with(power_law(-2.0, 7.0)), [](double d) { return -2.0 * std::pow(d - 0.5, 7.0); });
+  expect_pulls(with(power_law(2.0, 0.5)),
+               [](double d) { return std::copysign(2.0 * std::sqrt(std::abs(d - 0.5)), d - 0.5); });
+  expect_pulls(with(power_law(4.0, 0.0)), [](double d) { return d < 0.5 ? -4.0 : 4.0; });
+  EXPECT_EQ(pulls(with(power_law(4.0, 0.0)), {0.5}, GetParam()), std::vector<double>{0.0});
+}
+
+TEST_P(Laws, OfLennardJonesIsTheSlopeOfItsPotential) {
+  expect_pulls(with(lennard_jones_law(2e-3, 0.6, 0.0)), [](double d) {
+    const double r = 0.6 / d;
+    return 4.0 * 2e-3 * (-12.0 * std::pow(r, 12) + 6.0 * std::pow(r, 6)) / d;
+  });
+  expect_pulls(with(lennard_jones_law(2e-3, 0.6, 1.5)), [](double d) {
+    const double r = 0.6 / d;
+    return d < 1.5 ? 4.0 * 2e-3 * (-12.0 * std::pow(r, 12) + 6.0 * std::pow(r, 6)) / d : 0.0;
+  });
+}
+
+TEST_P(Laws, OfRingsAddUp) {
+  expect_pulls(with(ring_law()), [](double d) {
+    double pull = 0.0;
+    if (d < 0.2) pull -= 40.0 * (0.2 - d);
+    if (d < 0.4) pull += 15.0 * (0.4 - d);
+    return pull;
+  });
+}
+
+TEST_P(Laws, OfAFunctionComeOnTopOfTheSpring) {
+  expect_pulls(with(function_law(), 7.0), [](double d) {
+    const double e = d - 0.5;
+    return 7.0 * e + 30.0 * e + 100.0 * e * e * e;
+  });
+}
+
+TEST_P(Laws, OfViscosityAnswerToTheSpeed) {
+  const auto pull = [](const Law& dissipation, double speed) {
+    NetworkDescription scene;
+    scene.dimension = 1;
+    scene.step = 0.01;
+    scene.mats = {fixed(Vec3::Zero()), port(Vec3(1, 0, 0))};
+    LinkState state;
+    state.dissipation = dissipation;
+    scene.behaviours = {Behaving().state(state).behaviour};
+    scene.state_links = {{0, 1, 0, 0.3}};
+    World world = make_world(scene, GetParam());
+    world.impose_position(1, Vec3(1.0 + 0.01 * speed, 0, 0));
+    world.step();
+    return world.pull_of(0);
+  };
+  EXPECT_NEAR(pull(table_law(), 0.05), 1.25, 1e-9);
+  EXPECT_NEAR(pull(table_law(), -7.0), -9.0, 1e-9);
+  EXPECT_NEAR(pull(power_law(3.0, 2.0), -0.5), -0.75, 1e-9);
+  EXPECT_NEAR(pull(power_law(3.0, 0.0), -0.5), -3.0, 1e-9);
+}
+
+/// A chain between fixed ends in 1 dimension: masses at `q`, of the half-step speed that makes
+/// them start with the momenta `p`.
+NetworkDescription chain(const std::vector<double>& q, const std::vector<double>& p, double step,
+                         std::vector<Behaviour> behaviours) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = step;
+  scene.mats.push_back(fixed(Vec3::Zero()));
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    scene.mats.push_back(mass(1.0, Vec3(q[i], 0, 0), Vec3(p[i], 0, 0)));
+  }
+  scene.mats.push_back(fixed(Vec3::Zero()));
+  const auto kinds = static_cast<std::uint32_t>(behaviours.size());
+  for (std::uint32_t l = 0; l <= q.size(); ++l) {
+    scene.state_links.push_back({l, l + 1, l % kinds, 0.0});
+  }
+  scene.behaviours = std::move(behaviours);
+  return scene;
+}
+
+double duffing_error(double step) {
+  const nlohmann::json data = reference("R07_duffing");
+  NetworkDescription scene =
+      chain({number(data["params"]["x0"])}, {0.0}, step,
+            {Behaving().state(with(power_law(number(data["params"]["k3"]), 3.0), 1.0)).behaviour});
+  scene.state_links.pop_back();
+  World world = make_world(scene);
+  double largest = 0.0;
+  for (const auto& row : data["t_x"]) {
+    const auto steps = static_cast<std::uint64_t>(std::lround(number(row[0]) / step));
+    while (world.step_count() < steps) world.step();
+    largest = std::max(largest, std::abs(world.position(1).x() - number(row[1])));
+  }
+  return largest;
+}
+
+TEST(Duffing, IsMetToSecondOrder) {
+  const double coarse = duffing_error(2e-3);
+  const double fine = duffing_error(1e-3);
+
+  EXPECT_LT(fine, 2e-5);
+  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.05);
+}
+
+double stiff_chain_error(double step) {
+  const nlohmann::json data = reference("R09_stiff_fpu_hairer");
+  std::vector<double> start;
+  std::vector<double> momentum;
+  for (const auto& value : data["initial_q"]) start.push_back(number(value));
+  for (const auto& value : data["initial_p"]) momentum.push_back(number(value));
+  const double omega = number(data["params"]["omega"]);
+  World world = make_world(chain(start, momentum, step,
+                                 {Behaving().state(with(power_law(4.0, 3.0))).behaviour,
+                                  Behaving().state(0.5 * omega * omega).behaviour}));
+  const auto& row = data["rows"][0];
+  const auto steps = static_cast<int>(std::lround(row["t"].get<double>() / step));
+  run(world, steps);
+  double largest = 0.0;
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    largest = std::max(largest, std::abs(world.position(i + 1).x() - number(row["q"][i])));
+  }
+  return largest;
+}
+
+TEST(StiffChain, OfHairerLubichWannerIsMetToSecondOrder) {
+  const double coarse = stiff_chain_error(2e-4);
+  const double fine = stiff_chain_error(1e-4);
+
+  EXPECT_LT(fine, 1e-5);
+  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.05);
+}
+
+/// F = e + alpha e^2
+class QuadraticFunction : public engine::LinkFunction {
+ public:
+  explicit QuadraticFunction(double alpha) : alpha_(alpha) {}
+  double operator()(double, double elongation, double, double, double) const noexcept override {
+    return alpha_ * elongation * elongation;
+  }
+
+ private:
+  double alpha_;
+};
+
+/// Energy of a mode of a chain of 32 masses, positions and speeds at the same time.
+double mode_energy(const std::vector<double>& x, const std::vector<double>& v, int mode) {
+  double amplitude = 0.0;
+  double speed = 0.0;
+  for (int i = 1; i <= 32; ++i) {
+    const double shape = std::sqrt(2.0 / 33.0) * std::sin(std::numbers::pi * mode * i / 33.0);
+    amplitude += shape * x[i - 1];
+    speed += shape * v[i - 1];
+  }
+  const double w = 2.0 * std::sin(std::numbers::pi * mode / 66.0);
+  return 0.5 * (speed * speed + w * w * amplitude * amplitude);
+}
+
+TEST(FermiPastaUlam, SharesTheEnergyOfItsModesAsTheReference) {
+  const nlohmann::json data = reference("R10_fpu_alpha");
+  Law law;
+  law.kind = Law::Kind::kFunction;
+  law.function = std::make_shared<const QuadraticFunction>(number(data["params"]["alpha"]));
+  std::vector<double> start;
+  for (int i = 1; i <= 32; ++i) start.push_back(std::sin(std::numbers::pi * i / 33.0));
+  const double step = 0.01;
+  World world = make_world(chain(start, std::vector<double>(32, 0.0), step,
+                                 {Behaving().state(with(law, 1.0)).behaviour}));
+  run(world, 99'999);
+  std::vector<double> before;
+  for (std::uint32_t i = 1; i <= 32; ++i) before.push_back(world.position(i).x());
+  world.step();
+  std::vector<double> now;
+  for (std::uint32_t i = 1; i <= 32; ++i) now.push_back(world.position(i).x());
+  world.step();
+  std::vector<double> speed;
+  for (std::uint32_t i = 1; i <= 32; ++i) {
+    speed.push_back((world.position(i).x() - before[i - 1]) / (2.0 * step));
+  }
+
+  for (int mode = 1; mode <= 5; ++mode) {
+    const double expected = data["mode_energies_1to5"]["t=1000"][mode - 1].get<double>();
+    EXPECT_NEAR(mode_energy(now, speed, mode), expected, 2e-6) << "mode " << mode;
+  }
+}
+
+}  // namespace
+}  // namespace cordis::test
