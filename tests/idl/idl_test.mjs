@@ -1,0 +1,87 @@
+// A parser of another house reads every file of idl/ and finds in it the messages and fields that the generated classes have.
+//
+// usage: node idl_test.mjs IDL_FOLDER GENERATED_FOLDER FOLDER_WITH_NODE_MODULES
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { basename, join } from 'node:path';
+import test from 'node:test';
+
+const SKIPPED = 77;
+const [idlFolder, generatedFolder, web] = process.argv.slice(2);
+
+let parseIDL;
+try {
+  ({ parseIDL } = createRequire(join(web, 'package.json'))('@foxglove/omgidl-parser'));
+} catch (error) {
+  if (error.code !== 'MODULE_NOT_FOUND') throw error;
+  console.log(`skipped: @foxglove/omgidl-parser is not installed: run npm ci in ${web}`);
+  process.exit(SKIPPED);
+}
+
+const NAMESPACE = 'cordis::msg::';
+const units = readdirSync(idlFolder).filter((file) => file.endsWith('.idl'));
+const parse = (unit) => parseIDL(readFileSync(join(idlFolder, unit), 'utf8'));
+const structs = units.flatMap(parse).filter((definition) => definition.aggregatedKind === 'struct');
+const own = (definition) => definition.name.slice(NAMESPACE.length);
+
+/** Class name to the names of its members, as fastddsgen understood the file. */
+function generatedClasses(unit) {
+  const text = readFileSync(join(generatedFolder, `${basename(unit, '.idl')}.h`), 'utf8');
+  const classes = new Map();
+  for (const [, name, body] of text.matchAll(/^ *class (\w+)\n\s*\{\n(.*?)^ *\};/gms)) {
+    classes.set(name, [...body.matchAll(/ m_(\w+)(?: = [^;]*)?;/g)].map(([, member]) => member));
+  }
+  return classes;
+}
+
+test('the messages are those of the contract', () => {
+  const contract = {
+    'control.idl': ['ControlCommand', 'ControlReply', 'NodeStatus'],
+    'gesture.idl': ['GesturePositions', 'GestureForces'],
+    'scene.idl': [
+      'NamedRange', 'PortDescription', 'SignalDescription', 'SceneDescription', 'SceneFrame', 'SceneSignals', 'LinkEvent',
+      'SceneEvents',
+    ],
+  };
+  assert.deepEqual([...units].sort(), Object.keys(contract));
+  for (const unit of units) assert.deepEqual(parse(unit).filter((d) => d.aggregatedKind === 'struct').map(own), contract[unit]);
+});
+
+for (const unit of units) {
+  test(`both parsers find the same fields in ${unit}`, () => {
+    const read = parse(unit).filter((definition) => definition.aggregatedKind === 'struct');
+    const wanted = new Map(read.map((definition) => [own(definition), definition.definitions.map((field) => field.name)]));
+    assert.deepEqual(generatedClasses(unit), wanted);
+  });
+}
+
+test('every message is final, in the namespace, and of complete types', () => {
+  const known = new Set(structs.map((definition) => definition.name));
+  for (const definition of structs) {
+    assert.ok(definition.name.startsWith(NAMESPACE), definition.name);
+    assert.ok(definition.annotations?.final, `${definition.name} is not @final`);
+    for (const field of definition.definitions) {
+      assert.ok(!field.isComplex || known.has(field.type), `${definition.name}.${field.name} is of unknown type ${field.type}`);
+    }
+  }
+});
+
+test('messages of the force loop have a fixed size and 16 axes', () => {
+  for (const [name, perAxis] of [['GesturePositions', 'position_m'], ['GestureForces', 'force_n']]) {
+    const fields = structs.find((definition) => own(definition) === name).definitions;
+    for (const field of fields) {
+      assert.notEqual(field.type, 'string', field.name);
+      assert.ok(!field.isArray || field.arrayLengths, `${name}.${field.name} is a sequence`);
+    }
+    assert.deepEqual(fields.find((field) => field.name === perAxis)?.arrayLengths, [16]);
+    assert.deepEqual(fields.filter((field) => field.annotations?.key).map((field) => field.name), ['device_id']);
+  }
+});
+
+test('the table of topics names every message that is sent by itself, and no other', () => {
+  const rows = readFileSync(join(idlFolder, 'README.md'), 'utf8').matchAll(/^\| `([a-z/]+)` \| `(\w+)` \|/gm);
+  const nested = new Set(structs.flatMap((definition) => definition.definitions.map((field) => field.type)));
+  const sent = structs.filter((definition) => !nested.has(definition.name)).map(own);
+  assert.deepEqual([...rows].map(([, , type]) => type).sort(), sent.sort());
+});
