@@ -23,8 +23,8 @@ class LatencyHistogram {
   void clear() noexcept;  ///< forgets all samples
 
  private:
-  static constexpr int kStepsPerOctave = 32;
-  static constexpr int kOctaves = 33;
+  static constexpr std::size_t kStepsPerOctave = 32;
+  static constexpr std::size_t kOctaves = 33;
 
   std::array<std::uint64_t, kStepsPerOctave * kOctaves> bins_{};
   std::uint64_t count_ = 0;

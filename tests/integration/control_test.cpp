@@ -1,4 +1,6 @@
 // tests/integration/control_test.cpp -- a session is changed while it runs.
+#include "idl/control.h"
+
 #include <cmath>
 #include <csignal>
 #include <map>
@@ -6,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "idl/control.h"
 #include "idl/gesture.h"
 #include "idl/scene.h"
 #include "node/dds/reader.h"
@@ -95,13 +96,12 @@ TEST_P(Control, PausesStepsAndResumes) {
 
 TEST_P(Control, ResetBeginsTheSceneAnewUnderANewVersion) {
   start();
-  dds::Reader<msg::SceneDescription> descriptions(session_.participant(),
-                                                  dds::Topic::kDescription);
+  dds::Reader<msg::SceneDescription> descriptions(session_.participant(), dds::Topic::kDescription);
   msg::SceneDescription description;
   ASSERT_TRUE(eventually([&] { return descriptions.take(description); }));
   EXPECT_EQ(description.version(), 1u);
-  ASSERT_TRUE(status_.wait_for(
-      "sim", [](const msg::NodeStatus& status) { return status.step() > 2000; }));
+  ASSERT_TRUE(
+      status_.wait_for("sim", [](const msg::NodeStatus& status) { return status.step() > 2000; }));
   expect_done({"pause"}, "paused");
   expect_done({"reset"}, "'wall' begins anew, paused");
 
@@ -132,11 +132,12 @@ TEST_P(Control, LoadPlaysAnotherSceneAndTheKeyFeelsIt) {
 
 TEST_P(Control, ASceneWithErrorsIsRefusedWithThemAllAndTheOldOneGoesOn) {
   start();
-  expect_refused({"load", "bad.yaml"}, "bad.yaml:2:8: error: 'space' in scene must be between 1 and 3, got 7");
+  expect_refused({"load", "bad.yaml"},
+                 "bad.yaml:2:8: error: 'space' in scene must be between 1 and 3, got 7");
   expect_refused({"load", "nowhere.yaml"}, "cannot be read");
   EXPECT_EQ(status_.of("sim").phase(), "running");
-  EXPECT_TRUE(status_.wait_for(
-      "sim", [](const msg::NodeStatus& status) { return status.step() > 1000; }));
+  EXPECT_TRUE(
+      status_.wait_for("sim", [](const msg::NodeStatus& status) { return status.step() > 1000; }));
 }
 
 INSTANTIATE_TEST_SUITE_P(Clocks, Control, ::testing::Values("realtime", "lockstep"),
@@ -204,8 +205,8 @@ TEST_F(ControlInRealtime, EveryNodeAnswersACommandForAllJustOnce) {
   start();
   dds::Writer<msg::ControlCommand> commands(session_.participant(), dds::Topic::kCommand);
   dds::Reader<msg::ControlReply> replies(session_.participant(), dds::Topic::kReply);
-  ASSERT_TRUE(eventually(
-      [&] { return commands.matched_count() == 2 && replies.matched_count() == 2; }));
+  ASSERT_TRUE(
+      eventually([&] { return commands.matched_count() == 2 && replies.matched_count() == 2; }));
   std::map<std::string, int> answers;
   msg::ControlReply reply;
   const auto take_all = [&](std::uint64_t id) {
@@ -247,9 +248,9 @@ TEST_F(ControlInRealtime, WhoHasNothingToDoSaysSo) {
 TEST_F(ControlInRealtime, WithoutASimulationTheCommandEndsInOneClearMessage) {
   Outcome outcome = ctl({"pause"});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.output.find("nobody is in session 'test' of domain " +
-                                std::to_string(own_domain())),
-            std::string::npos)
+  EXPECT_NE(
+      outcome.output.find("nobody is in session 'test' of domain " + std::to_string(own_domain())),
+      std::string::npos)
       << outcome.output;
 
   session_.start("device_node", "keyboard");

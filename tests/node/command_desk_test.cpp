@@ -51,8 +51,7 @@ TEST(CommandDesk, IsSilentAboutWhatIsForOthers) {
 
 TEST(CommandDesk, ObeysACommandOnceHoweverOftenItComes) {
   Desk desk;
-  for (int i = 0; i < 3; ++i)
-    EXPECT_EQ(desk.desk.take(command_for("sim", 7))->text(), "answer 1");
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(desk.desk.take(command_for("sim", 7))->text(), "answer 1");
   EXPECT_EQ(desk.obeyed.size(), 1u);
 }
 

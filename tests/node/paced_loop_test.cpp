@@ -51,7 +51,8 @@ TEST(PacedLoop, SkipsAndCountsDeadlinesMissedInsteadOfCatchingUp) {
 TEST(PacedLoop, OfTheSameRateTakeTurnsByTheirPhase) {
   PacedLoop first(1000.0, 0.0);
   PacedLoop second(1000.0, 0.5);
-  // How far past its deadline each begins at best: a busy machine may make single ticks late, hardly all of 200.
+  // How far past its deadline each begins at best: a busy machine may make single ticks late,
+  // hardly all of 200.
   std::int64_t first_best = 1'000'000;
   std::int64_t second_best = 1'000'000;
   for (int tick = 0; tick < 200; ++tick) {

@@ -36,10 +36,10 @@ TEST(Command, OfAnUnknownVerbIsRefusedWithTheNearest) {
 }
 
 TEST(Command, WithAWrongArgumentIsRefusedInOneSentence) {
-  EXPECT_EQ(refusal_of("step", "0"),
-            "the number of steps must be between 1 and 1000000000, got 0");
+  EXPECT_EQ(refusal_of("step", "0"), "the number of steps must be between 1 and 1000000000, got 0");
   EXPECT_EQ(refusal_of("step", "many"), "the number of steps must be a whole number, got 'many'");
-  EXPECT_EQ(refusal_of("step", "[1]"), "the number of steps must be a whole number, got a sequence");
+  EXPECT_EQ(refusal_of("step", "[1]"),
+            "the number of steps must be a whole number, got a sequence");
   EXPECT_EQ(refusal_of("pause", "now"), "'pause' stands alone, got 'now' behind it");
   EXPECT_EQ(refusal_of("load", ""), "'load' needs the path of a scene");
   EXPECT_EQ(refusal_of("load", "{a: b}"), "'load' needs the path of a scene");

@@ -22,8 +22,8 @@ class DirectorTest : public ::testing::Test {
         director_(
             orders_, player_.simulation().shared_scene(), kRunOfSim,
             [](const std::string& path, config::Problems& problems) {
-              return scene::load_scene_text(path == "other.yaml" ? swing_text("other") : "cordis: 2",
-                                            path, problems);
+              return scene::load_scene_text(
+                  path == "other.yaml" ? swing_text("other") : "cordis: 2", path, problems);
             },
             [this](const scene::Scene& scene, std::uint64_t version) {
               told_.push_back(scene.name + " " + std::to_string(version));

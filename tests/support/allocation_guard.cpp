@@ -20,7 +20,8 @@ std::size_t rounded_up(std::size_t size, std::size_t alignment) noexcept {
 
 }  // namespace
 
-// The array forms of the standard library end in these; so do the nothrow forms, unless a sanitizer brings its own.
+// The array forms of the standard library end in these; so do the nothrow forms, unless a sanitizer
+// brings its own.
 void* operator new(std::size_t size) {
   return counted(std::malloc(size == 0 ? 1 : size));
 }

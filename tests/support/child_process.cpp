@@ -73,7 +73,8 @@ int ChildProcess::wait(std::chrono::milliseconds at_most) {
     if (waitpid(id_, &status, WNOHANG) == id_) {
       ended_ = true;
       exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-      // What it wrote last is still on its way; a child of its own may hold the pipe open for longer.
+      // What it wrote last is still on its way; a child of its own may hold the pipe open for
+      // longer.
       std::unique_lock lock(mutex_);
       more_.wait_for(lock, std::chrono::seconds(2), [this] { return closed_; });
     } else if (std::chrono::steady_clock::now() >= limit) {

@@ -1,0 +1,10 @@
+#!/bin/bash
+# Every C++ file of ours stands as clang-format would write it.  usage: format_test.sh SOURCE_FOLDER
+set -euo pipefail
+
+cd "$1"
+mapfile -t files < <(find sim_node device_node viz_node record_node node cli tests -name node_modules -prune -o \
+  \( -name '*.cpp' -o -name '*.h' \) -print 2>/dev/null | sort)
+((${#files[@]} > 100)) || { echo "only ${#files[@]} files found in $1"; exit 1; }
+clang-format --dry-run -Werror "${files[@]}" || { echo "mend it with: clang-format -i FILE"; exit 1; }
+echo "${#files[@]} files"
