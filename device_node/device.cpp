@@ -36,7 +36,8 @@ Device::Device(LoadedDevice device, dds::Participant& participant, config::Clock
       series_{run, 0},
       status_(participant, "device_node", run, [this](msg::NodeStatus& status) {
         meter_.fill(status);
-        status.target_rate_hz(config_.layout.rate_hz);
+        // in lockstep the scene's answers set the pace
+        status.target_rate_hz(clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz);
       }) {}
 
 int Device::live() {

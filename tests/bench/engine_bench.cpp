@@ -1,9 +1,13 @@
-// tests/bench/engine_bench.cpp -- time of a step per link, mass update included: a square grid of
-// spring-dampers.
+// tests/bench/engine_bench.cpp -- time of a step per link, mass update included: square grids of
+// spring-dampers with their links in order and shuffled, on each vector width; and one short
+// string, where what a step costs at least shows.
 //
 // usage: engine_bench --benchmark_repetitions=9 --benchmark_report_aggregates_only=true
+#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <random>
+#include <stdexcept>
 
 #include <benchmark/benchmark.h>
 
@@ -11,41 +15,107 @@
 
 namespace {
 
+using cordis::engine::Link;
+using cordis::engine::Mat;
+using cordis::engine::MatKind;
 using cordis::engine::Network;
 using cordis::engine::NetworkDescription;
 using cordis::engine::Vec3;
+using cordis::engine::VectorWidth;
 using cordis::engine::World;
 
-/// 100 x 100 masses, each tied to its right and its upper neighbour: 19,800 links.
-std::shared_ptr<const Network> grid(int dimension) {
-  constexpr std::uint32_t kSide = 100;
+constexpr std::uint32_t kSide = 100;
+
+Link spring_damper(std::uint32_t a, std::uint32_t b, double rest) {
+  return {a, b, 100.0, 0.01, rest};
+}
+
+/// 100 x 100 masses, each tied to its right and its upper neighbour: 19,800 links; with diagonals
+/// 29,601.
+NetworkDescription grid(int dimension, bool diagonals) {
   NetworkDescription network;
   network.dimension = dimension;
   network.step = 1e-3;
   for (std::uint32_t row = 0; row < kSide; ++row) {
     for (std::uint32_t column = 0; column < kSide; ++column) {
-      cordis::engine::Mat mat;
+      Mat mat;
       mat.mass = 0.01;
       mat.position = dimension == 1 ? Vec3(0.001 * (row * column % 7), 0.0, 0.0)
                                     : Vec3(0.01 * column, 0.01 * row, 0.0);
       network.mats.push_back(mat);
       const std::uint32_t here = row * kSide + column;
       const double rest = dimension == 1 ? 0.0 : 0.0099;
-      if (column > 0) network.links.push_back({here - 1, here, 100.0, 0.01, rest});
-      if (row > 0) network.links.push_back({here - kSide, here, 100.0, 0.01, rest});
+      if (column > 0) network.links.push_back(spring_damper(here - 1, here, rest));
+      if (row > 0) network.links.push_back(spring_damper(here - kSide, here, rest));
+      if (diagonals && row > 0 && column > 0) {
+        network.links.push_back(spring_damper(here - kSide - 1, here, 1.4142 * rest));
+      }
     }
   }
-  return std::make_shared<const Network>(network);
+  return network;
+}
+
+/// 40 masses in a row between two fixed points: the size of the scene that a hand plucks.
+NetworkDescription string() {
+  constexpr std::uint32_t kMats = 42;
+  NetworkDescription network;
+  network.dimension = 2;
+  network.step = 0.25e-3;
+  for (std::uint32_t i = 0; i < kMats; ++i) {
+    Mat mat;
+    mat.kind = i == 0 || i + 1 == kMats ? MatKind::kFixed : MatKind::kMass;
+    mat.mass = 0.0005;
+    mat.position = Vec3(0.01 * i, i == kMats / 2 ? 0.001 : 0.0, 0.0);
+    network.mats.push_back(mat);
+    if (i > 0) network.links.push_back(spring_damper(i - 1, i, 0.009));
+  }
+  return network;
+}
+
+void step(benchmark::State& state, const NetworkDescription& description, VectorWidth width) {
+  const auto network = std::make_shared<const Network>(description);
+  std::unique_ptr<World> world;
+  try {
+    world = std::make_unique<World>(network, width);
+  } catch (const std::invalid_argument& error) {
+    state.SkipWithError(error.what());
+    return;
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(world->step());
+  state.counters["per_link"] = benchmark::Counter(
+      static_cast<double>(network->link_count()),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void step_of_a_grid(benchmark::State& state) {
-  World world(grid(static_cast<int>(state.range(0))));
-  for (auto _ : state) benchmark::DoNotOptimize(world.step());
-  state.counters["per_link"] = benchmark::Counter(
-      static_cast<double>(world.network().link_count()),
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  const auto dimension = static_cast<int>(state.range(0));
+  step(state, grid(dimension, false), cordis::engine::best_vector_width());
 }
-BENCHMARK(step_of_a_grid)->ArgName("dimension")->Arg(1)->Arg(2)->Arg(3);
+BENCHMARK(step_of_a_grid)->ArgName("dimension")->DenseRange(1, 3);
+
+void step_of_a_grid_with_diagonals(benchmark::State& state) {
+  step(state, grid(3, true), cordis::engine::best_vector_width());
+}
+BENCHMARK(step_of_a_grid_with_diagonals);
+
+void step_of_a_shuffled_grid(benchmark::State& state) {
+  NetworkDescription network = grid(3, true);
+  std::shuffle(network.links.begin(), network.links.end(), std::mt19937_64(1990));
+  step(state, network, cordis::engine::best_vector_width());
+}
+BENCHMARK(step_of_a_shuffled_grid);
+
+void step_by_width(benchmark::State& state) {
+  const auto width = static_cast<VectorWidth>(state.range(0));
+  state.SetLabel(cordis::engine::to_string(width));
+  step(state, grid(3, false), width);
+}
+BENCHMARK(step_by_width)->ArgName("width")->DenseRange(0, 2);
+
+void step_of_a_string(benchmark::State& state) {
+  step(state, string(), cordis::engine::best_vector_width());
+}
+BENCHMARK(step_of_a_string);
 
 }  // namespace
 

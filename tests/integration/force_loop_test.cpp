@@ -35,6 +35,21 @@ TEST_P(ForceLoop, AKeyOfRoleMassFeelsTheSpringItPresses) {
   EXPECT_EQ(force.axis_count(), 1u);
 }
 
+TEST_P(ForceLoop, NodesClaimTheRateThatTheyKeepAndNoneInLockstep) {
+  LiveSession session(GetParam(), kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  StatusWatch status(session.participant());
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard");
+
+  const double kept = GetParam() == std::string("realtime") ? 1000.0 : 0.0;
+  for (const char* node : {"sim", "keyboard"}) {
+    ASSERT_TRUE(status.wait_for_phase(node, "running")) << node;
+    EXPECT_EQ(status.of(node).target_rate_hz(), kept) << node;
+  }
+}
+
 TEST_P(ForceLoop, AKeyOfRoleLiaisonMovesTheMassItPushes) {
   LiveSession session(GetParam(), kSimAndKey);
   session.add_file("scene.yaml", pushed_mass_scene());
