@@ -1,52 +1,11 @@
 // The real page in headless Chromium, before a real viz_node: what it draws, what it says, and that it comes back by itself.
 // Never how fast it is: that depends on the machine.
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { need, out, pageIsBuilt, runCases, Session, skip, until } from './session.mjs';
+import { banner, drawn, isDark, look, openPage, textOf, viz } from './browser.mjs';
+import { out, runCases, Session, until } from './session.mjs';
 
-const CHROMIUM = '/usr/bin/chromium';
-const FLAGS = [
-  '--headless',
-  '--no-sandbox',
-  '--disable-gpu',
-  '--disable-quic',
-  '--no-first-run',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-];
 const [MIDDLE, PORT] = [29, 12]; // MATs of the string of scene_source.cpp
-
-const { chromium } = need('playwright-core');
-if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed`);
-if (!pageIsBuilt()) throw new Error('the packages are there, but the page was not built');
-
-/** What window.viz says of `name`. */
-const viz = (page, name) => page.evaluate((key) => window.viz[key], name);
-
-async function drawn(page, count) {
-  const begin = await viz(page, 'framesDrawn');
-  await until(`${count} more frames were drawn`, async () => (await viz(page, 'framesDrawn')) >= begin + count);
-}
-
-/** Place of a MAT on the page and the colours there and elsewhere, all of one frame. */
-const look = (page, mat, elsewhere = []) =>
-  page.evaluate(
-    ([index, places]) => {
-      const at = window.viz.project(index);
-      return { at, colour: window.viz.pixelAt(at.x, at.y), others: places.map(({ x, y }) => window.viz.pixelAt(x, y)) };
-    },
-    [mat, elsewhere],
-  );
-
-const textOf = (page, selector) => page.locator(selector).textContent();
-const isDark = ([r, g, b]) => r + g + b < 190;
-
-async function banner(page, title) {
-  await until(`the banner says "${title}"`, async () => (await textOf(page, '#banner-title')) === title);
-}
 
 const cases = {
   'the string is drawn where it is, and moves': async ({ page }) => {
@@ -197,23 +156,7 @@ async function open() {
   session.view = session.viz();
   session.url = await session.view.says(/page at (\S+)/);
 
-  const profile = mkdtempSync(join(tmpdir(), 'cordis-chromium-'));
-  session.browser = await chromium.launchPersistentContext(profile, {
-    executablePath: CHROMIUM,
-    args: FLAGS,
-    viewport: { width: 1280, height: 720 },
-  });
-  const closePrograms = session.close.bind(session);
-  session.close = async () => {
-    await session.browser.close();
-    await closePrograms();
-    rmSync(profile, { recursive: true, force: true });
-  };
-  session.pageErrors = [];
-  session.page = session.browser.pages()[0] ?? (await session.browser.newPage());
-  session.page.on('pageerror', (error) => session.pageErrors.push(String(error)));
-  await session.page.goto(session.url);
-  await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0), 40_000);
+  await openPage(session, session.url);
   return session;
 }
 

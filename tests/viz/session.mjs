@@ -3,7 +3,8 @@ import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 
 const SKIPPED = 77;
@@ -18,6 +19,10 @@ const { values: options } = parseArgs({
 });
 mkdirSync(options.out, { recursive: true });
 export const { out, web } = options;
+export const source = join(dirname(fileURLToPath(import.meta.url)), '../..');
+
+/** Path of a program of this build. */
+export const program = (name) => join(dirname(options['viz-node']), name);
 
 /** A package of the page's node_modules; the test is skipped when they are not installed. */
 export function need(name) {

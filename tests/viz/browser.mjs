@@ -1,0 +1,67 @@
+// The real page in headless Chromium, and what it shows. Skipped with a reason where the browser or its driver is absent.
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { need, pageIsBuilt, skip, until } from './session.mjs';
+
+const CHROMIUM = '/usr/bin/chromium';
+const FLAGS = [
+  '--headless',
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
+
+const { chromium } = need('playwright-core');
+if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed`);
+if (!pageIsBuilt()) throw new Error('the packages are there, but the page was not built');
+
+/** What window.viz says of `name`. */
+export const viz = (page, name) => page.evaluate((key) => window.viz[key], name);
+
+export async function drawn(page, count) {
+  const begin = await viz(page, 'framesDrawn');
+  await until(`${count} more frames were drawn`, async () => (await viz(page, 'framesDrawn')) >= begin + count);
+}
+
+/** Place of a MAT on the page and the colours there and elsewhere, all of one frame. */
+export const look = (page, mat, elsewhere = []) =>
+  page.evaluate(
+    ([index, places]) => {
+      const at = window.viz.project(index);
+      return { at, colour: window.viz.pixelAt(at.x, at.y), others: places.map(({ x, y }) => window.viz.pixelAt(x, y)) };
+    },
+    [mat, elsewhere],
+  );
+
+export const textOf = (page, selector) => page.locator(selector).textContent();
+export const isDark = ([r, g, b]) => r + g + b < 190;
+
+export async function banner(page, title) {
+  await until(`the banner says "${title}"`, async () => (await textOf(page, '#banner-title')) === title);
+}
+
+/** Opens the page for `session`, which gets browser, page and pageErrors, and closes them before its programs. */
+export async function openPage(session, url) {
+  const profile = mkdtempSync(join(tmpdir(), 'cordis-chromium-'));
+  session.browser = await chromium.launchPersistentContext(profile, {
+    executablePath: CHROMIUM,
+    args: FLAGS,
+    viewport: { width: 1280, height: 720 },
+  });
+  const closePrograms = session.close.bind(session);
+  session.close = async () => {
+    await session.browser.close();
+    await closePrograms();
+    rmSync(profile, { recursive: true, force: true });
+  };
+  session.pageErrors = [];
+  session.page = session.browser.pages()[0] ?? (await session.browser.newPage());
+  session.page.on('pageerror', (error) => session.pageErrors.push(String(error)));
+  await session.page.goto(url);
+  await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0), 40_000);
+}
