@@ -36,6 +36,23 @@ const cases = {
     assert.ok(right.at.x - left.at.x > 0.7 * stage.width);
   },
 
+  'a link has the colour of its state': async ({ page }) => {
+    // The line between a MAT and the next is one pixel thin: the most coloured one of a few around its middle counts.
+    const linkAfter = (mat) =>
+      page.evaluate((index) => {
+        const [a, b] = [window.viz.project(index), window.viz.project(index + 1)];
+        const shades = [-2, -1, 0, 1, 2].map((dy) => window.viz.pixelAt((a.x + b.x) / 2, (a.y + b.y) / 2 + dy));
+        return shades.sort((p, q) => q[0] + q[1] + q[2] - (p[0] + p[1] + p[2]))[0];
+      }, mat);
+    const isAmber = ([r, , b]) => r > 120 && r > b + 50;
+    const isBlue = ([r, , b]) => b > 80 && b > r + 20;
+    for (const [colour, fits] of [['amber', isAmber], ['blue', isBlue], ['amber', isAmber]]) {
+      await until(`the link turns ${colour}`, async () => fits(await linkAfter(MIDDLE)));
+      const other = await linkAfter(MIDDLE + 1);
+      assert.ok(isBlue(other), `its neighbour stays blue: ${other}`);
+    }
+  },
+
   'every figure is there, and true': async ({ page, url }) => {
     await until('real time is known', async () => /^×\d/.test(await textOf(page, '#factor')));
     const figures = {
@@ -152,7 +169,7 @@ const cases = {
 
 async function open() {
   const session = await Session.open();
-  session.source = session.scene();
+  session.source = session.scene('--states');
   session.view = session.viz();
   session.url = await session.view.says(/page at (\S+)/);
 

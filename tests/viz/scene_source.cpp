@@ -1,7 +1,8 @@
 // tests/viz/scene_source.cpp -- stands for sim_node and a device before viz_node: a scene that
 // moves by formula.
 //
-// usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--bad-frames]
+// usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
+//                     [--bad-frames]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
 #include <atomic>
 #include <chrono>
@@ -38,6 +39,7 @@ struct Options {
   std::string session = "viz_test";
   std::string scene = "string";
   std::size_t mats = 60;
+  bool states = false;
   bool bad_frames = false;
   bool hold_domain = false;
 };
@@ -58,6 +60,8 @@ Options read_options(int argc, char** argv) {
       options.scene = value();
     } else if (word == "--mats") {
       options.mats = std::stoul(value());
+    } else if (word == "--states") {
+      options.states = true;
     } else if (word == "--bad-frames") {
       options.bad_frames = true;
     } else if (word == "--hold-domain") {
@@ -169,10 +173,11 @@ void name_parts(MovingScene& scene, const std::string& name, std::uint64_t run) 
 /// Everything that sim_node writes but the description.
 class Publisher {
  public:
-  Publisher(dds::Participant& participant, MovingScene& scene)
+  Publisher(dds::Participant& participant, MovingScene& scene, bool states)
       : frame_writer_(participant, dds::Topic::kFrame),
         signal_writer_(participant, dds::Topic::kSignals),
-        scene_(scene) {}
+        scene_(scene),
+        states_(states) {}
 
   void publish_frame(std::uint64_t number, std::uint64_t step) {
     const double t = static_cast<double>(step) / kStepRateHz;
@@ -184,6 +189,12 @@ class Publisher {
     frame_.position_m(scene_.rest_m);
     for (std::size_t i = 0; i < scene_.mode_a.size(); ++i) {
       frame_.position_m()[3 * i + 1] = static_cast<float>(scene_.height(i, t));
+    }
+    if (states_) {  // every second link changes its state once in a second
+      const std::uint8_t second = step / 1000 % 2 == 0 ? 0 : 1;
+      frame_.link_state().resize(scene_.description.link_ends().size() / 2);
+      for (std::size_t l = 1; l < frame_.link_state().size(); l += 2)
+        frame_.link_state()[l] = second;
     }
     frame_.time_nsec(node::monotonic_nsec());
     frame_writer_.write(frame_);
@@ -215,6 +226,7 @@ class Publisher {
   dds::Writer<msg::SceneFrame> frame_writer_;
   dds::Writer<msg::SceneSignals> signal_writer_;
   MovingScene& scene_;
+  bool states_;
   msg::SceneFrame frame_;
   msg::SceneSignals signals_;
 };
@@ -249,7 +261,7 @@ int publish(const Options& options) {
                                                 status.latency_max_s(1.9e-3);
                                               });
 
-  Publisher publisher(sim, scene);
+  Publisher publisher(sim, scene, options.states);
   node::PacedLoop loop(kFrameRateHz);
   for (std::uint64_t frame = 1; !node::stop_requested(); ++frame) {
     loop.wait();

@@ -139,6 +139,19 @@ const LINK_FRAGMENT = /* glsl */ `
   void main() { pixel = vec4(colour, 1.0); }
 `;
 
+/** Colours of links by the number of their state, for colour-blind eyes too; the first is that of a link without states. */
+const LINK_COLOURS = [
+  new THREE.Color(0.4, 0.53, 0.67),
+  new THREE.Color(1.0, 0.68, 0.26),
+  new THREE.Color(0.36, 0.84, 0.64),
+  new THREE.Color(0.9, 0.45, 0.75),
+  new THREE.Color(0.95, 0.9, 0.35),
+  new THREE.Color(1.0, 0.42, 0.42),
+];
+
+/** Which of the materials of linkMaterials() a link in this state is drawn with. */
+export const materialOfState = (state: number): number => state % LINK_COLOURS.length;
+
 /** Uniforms that both materials share. */
 export interface SceneUniforms {
   [name: string]: THREE.IUniform;
@@ -146,7 +159,6 @@ export interface SceneUniforms {
   least_pixels: { value: THREE.Vector4 };
   speed_scale: { value: number };
   orthographic: { value: boolean };
-  link_colour: { value: THREE.Color };
 }
 
 export function sceneUniforms(): SceneUniforms {
@@ -155,7 +167,6 @@ export function sceneUniforms(): SceneUniforms {
     least_pixels: { value: new THREE.Vector4(3, 3, 6, 5) },
     speed_scale: { value: 0 },
     orthographic: { value: false },
-    link_colour: { value: new THREE.Color(0.4, 0.53, 0.67) },
   };
 }
 
@@ -177,11 +188,15 @@ export function matMaterial(uniforms: SceneUniforms, spheres: boolean): THREE.Ra
   });
 }
 
-export function linkMaterial(uniforms: SceneUniforms): THREE.RawShaderMaterial {
-  return new THREE.RawShaderMaterial({
-    glslVersion: THREE.GLSL3,
-    uniforms,
-    vertexShader: LINK_VERTEX,
-    fragmentShader: LINK_FRAGMENT,
-  });
+/** One material per colour; they share every uniform but the colour. */
+export function linkMaterials(uniforms: SceneUniforms): THREE.RawShaderMaterial[] {
+  return LINK_COLOURS.map(
+    (colour) =>
+      new THREE.RawShaderMaterial({
+        glslVersion: THREE.GLSL3,
+        uniforms: { ...uniforms, link_colour: { value: colour } },
+        vertexShader: LINK_VERTEX,
+        fragmentShader: LINK_FRAGMENT,
+      }),
+  );
 }

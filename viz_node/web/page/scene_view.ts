@@ -1,7 +1,7 @@
 // The picture of the scene. Positions go from the message straight into a GPU buffer that matter and links share.
 import * as THREE from 'three';
 import { Ground } from './ground.ts';
-import { linkMaterial, matMaterial, sceneUniforms, shownKinds } from './mat_material.ts';
+import { linkMaterials, matMaterial, materialOfState, sceneUniforms, shownKinds } from './mat_material.ts';
 import type { Frame, Topology } from './protocol.ts';
 import type { Quality } from './quality.ts';
 import { CameraRig, type Pose } from './camera_rig.ts';
@@ -26,6 +26,7 @@ export class SceneView {
   private fastest = 0; // [m/s], falls slowly
   private framed = false;
   private speeds = false;
+  private states = new Uint8Array(0); // per link, as they are drawn
 
   constructor(
     private readonly container: HTMLElement,
@@ -63,10 +64,33 @@ export class SceneView {
   }
 
   private buildLinks(): void {
-    this.linkGeometry.setIndex(new THREE.BufferAttribute(this.topology.linkEnds, 1));
-    const links = new THREE.LineSegments(this.linkGeometry, linkMaterial(this.uniforms));
+    this.linkGeometry.setIndex(new THREE.BufferAttribute(this.topology.linkEnds.slice(), 1));
+    this.linkGeometry.addGroup(0, 2 * this.topology.linkCount, materialOfState(0));
+    const links = new THREE.LineSegments(this.linkGeometry, linkMaterials(this.uniforms));
     links.frustumCulled = false;
     this.scene.add(links);
+  }
+
+  /** Lays the links of one colour side by side in the index: one call draws each colour. */
+  private sortLinks(states: Uint8Array): void {
+    const index = this.linkGeometry.index;
+    if (index === null || states.length !== this.topology.linkCount) return;
+    if (states.length === this.states.length && states.every((state, l) => state === this.states[l])) return;
+    this.states = states.slice();
+    const ends = this.topology.linkEnds;
+    const sorted = index.array;
+    this.linkGeometry.clearGroups();
+    let filled = 0;
+    for (const material of new Set([...new Set(states)].map(materialOfState))) {
+      const begin = filled;
+      for (let l = 0; l < states.length; ++l) {
+        if (materialOfState(states[l]!) !== material) continue;
+        sorted[filled++] = ends[2 * l]!;
+        sorted[filled++] = ends[2 * l + 1]!;
+      }
+      this.linkGeometry.addGroup(begin, filled - begin, material);
+    }
+    index.needsUpdate = true;
   }
 
   /** Takes a frame; draw() shows it. */
@@ -75,6 +99,7 @@ export class SceneView {
     [this.newest, this.before] = [this.before, this.newest];
     this.newest.array = frame.positions;
     this.newest.needsUpdate = true;
+    this.sortLinks(frame.linkStates);
     if (first) {
       this.before.array = frame.positions.slice();
       this.before.needsUpdate = true;
