@@ -2,12 +2,15 @@
 // processes of their own.
 //
 // usage: force_loop_bench [seconds of the realtime part, 60]
-// Prints one table: lockstep exchanges per second and round trip, realtime overruns, resident
-// memory.
+// Prints one table: lockstep exchanges per second and round trip, realtime overruns with the page
+// open in Chromium (where there is one), resident memory.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "tests/integration/live_session.h"
 #include "tests/integration/status_watch.h"
@@ -61,18 +64,34 @@ bool lockstep() {
   return heard;
 }
 
+/// The page of viz_node in a browser without a window, drawn by the processor.
+std::unique_ptr<cordis::test::ChildProcess> open_page(cordis::test::ChildProcess& view,
+                                                      const LiveSession& session) {
+  const std::string browser = "/usr/bin/chromium";
+  if (!std::filesystem::exists(browser) || !view.wait_for_output("page at ", 30s)) return nullptr;
+  const std::string said = view.output();
+  const std::size_t begin = said.find("http://");
+  const std::string address = said.substr(begin, said.find_first_of(" \n", begin) - begin);
+  return std::make_unique<cordis::test::ChildProcess>(std::vector<std::string>{
+      browser, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
+      "--disable-background-networking", "--disable-component-update", "--remote-debugging-port=0",
+      "--user-data-dir=" + (session.folder() / "chromium").string(), address});
+}
+
 bool realtime(std::chrono::seconds duration) {
   LiveSession session("realtime", nodes(", duration_s: " + std::to_string(duration.count()), true),
                       "bench");
   StatusWatch status(session.participant());
-  session.start("viz_node", "view");
+  const auto page = open_page(session.start("viz_node", "view"), session);
   session.start("device_node", "keyboard");
   cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
   if (sim.wait(std::chrono::duration_cast<std::chrono::milliseconds>(duration) + 60s) != 0)
     return false;
   const bool heard =
       status.wait_for("sim", [](const NodeStatus& told) { return told.phase() == "stopped"; });
-  std::printf("realtime, 1 kHz, %lld s, with viz_node\n", static_cast<long long>(duration.count()));
+  std::printf("realtime, 1 kHz, %lld s, with viz_node and %llu frames drawn by a page\n",
+              static_cast<long long>(duration.count()),
+              static_cast<unsigned long long>(status.of("view").latency_count()));
   for (const char* name : {"sim", "keyboard"}) {
     const NodeStatus& told = status.of(name);
     std::printf("  %-12s %llu of %llu ticks began a period late (%.3f %%)\n", told.kind().c_str(),

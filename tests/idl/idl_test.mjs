@@ -40,8 +40,8 @@ test('the messages are those of the contract', () => {
     'control.idl': ['ControlCommand', 'ControlReply', 'NodeStatus'],
     'gesture.idl': ['GesturePositions', 'GestureForces'],
     'scene.idl': [
-      'NamedRange', 'PortDescription', 'SignalDescription', 'SceneDescription', 'SceneFrame', 'SceneSignals', 'LinkEvent',
-      'SceneEvents',
+      'NamedRange', 'PortDescription', 'SignalDescription', 'BehaviourDescription', 'SceneDescription', 'SceneFrame',
+      'SceneSignals', 'LinkEvent', 'SceneEvents',
     ],
   };
   assert.deepEqual([...units].sort(), Object.keys(contract));
