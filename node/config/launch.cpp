@@ -151,7 +151,15 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
   launch.directory = std::filesystem::path(path).parent_path();
   if (!root.exists()) return launch;
 
-  if (root.kind() == Value::Kind::kMapping) root = with_overrides(root, overrides, problems);
+  if (root.kind() == Value::Kind::kMapping) {
+    if (!root.find("nodes").exists() && root.find("matter").exists()) {
+      problems.error(root.place(), "this is a scene; a launch file has a key 'nodes'",
+                     "give it to a launch file that is there: cordis run LAUNCH.yaml "
+                     "sim.scene=SCENE.yaml, the path seen from the launch file");
+      return launch;
+    }
+    root = with_overrides(root, overrides, problems);
+  }
   MappingReader reader(root, "launch file", problems);
   reader.required_integer("cordis", 1, 1);
   launch.session = read_session(reader, path);

@@ -41,6 +41,18 @@ TEST(Launch, ReadsSessionAndNodesInTheOrderOfTheFile) {
   EXPECT_EQ(launch.resolve("/devices/keyboard.yaml").string(), "/devices/keyboard.yaml");
 }
 
+TEST(Launch, TellsASceneFromALaunchFileInOneProblem) {
+  Problems problems;
+
+  load_launch_text("cordis: 1\nname: bow\nspace: 1\nmatter: {a: {}}\nlinks: []\n", "bow.yaml", {},
+                   problems);
+
+  ASSERT_EQ(problems.all().size(), 1u) << problems.text();
+  EXPECT_NE(problems.text().find("bow.yaml:1:1: error: this is a scene"), std::string::npos)
+      << problems.text();
+  EXPECT_NE(problems.text().find("sim.scene="), std::string::npos) << problems.text();
+}
+
 TEST(Launch, HasDefaults) {
   Problems problems;
 

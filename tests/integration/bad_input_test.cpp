@@ -112,24 +112,56 @@ TEST(BadInput, ASecondSimOfASessionEndsAndTheFirstGoesOn) {
   EXPECT_EQ(session.node("sim").wait(0ms), -1) << "the first still runs";
 }
 
-TEST(BadInput, AnOccupiedPortIsToldInOneLine) {
-  const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  ASSERT_EQ(listen(listener, 1), 0);
-  socklen_t size = sizeof address;
-  getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
-  const std::string port = std::to_string(ntohs(address.sin_port));
+/// A port of this machine that somebody else has.
+class OccupiedPort {
+ public:
+  OccupiedPort() : listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    EXPECT_EQ(listen(listener_, 1), 0);
+    socklen_t size = sizeof address;
+    getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
+    number_ = std::to_string(ntohs(address.sin_port));
+  }
+  ~OccupiedPort() { close(listener_); }
+  OccupiedPort(const OccupiedPort&) = delete;
+  OccupiedPort& operator=(const OccupiedPort&) = delete;
 
-  LiveSession session("realtime", "  view: {node: viz_node, port: " + port + "}\n");
+  const std::string& number() const noexcept { return number_; }
+
+ private:
+  int listener_;
+  std::string number_;
+};
+
+TEST(BadInput, AnOccupiedPortIsToldInOneLine) {
+  const OccupiedPort port;
+  LiveSession session("realtime", "  view: {node: viz_node, port: " + port.number() + "}\n");
   ChildProcess& view = session.start("viz_node", "view");
 
   EXPECT_EQ(view.wait(kLimit), 1);
-  EXPECT_NE(view.output().find(port), std::string::npos) << view.output();
-  EXPECT_NE(view.output().find("view.port="), std::string::npos) << view.output();
-  close(listener);
+  const std::string said = view.output();
+  EXPECT_NE(said.find(port.number()), std::string::npos) << said;
+  EXPECT_NE(said.find("view.port="), std::string::npos) << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+}
+
+TEST(BadInput, AnOccupiedPortEndsTheWholeSession) {
+  const OccupiedPort port;
+  LiveSession session("realtime", std::string(kSimAndKey) +
+                                      "  view: {node: viz_node, port: " + port.number() + "}\n");
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(0, 0));
+  ChildProcess& launcher = session.start_launcher({"--no-color"});
+
+  EXPECT_EQ(launcher.wait(kLimit), 1);
+  const std::string said = launcher.output();
+  EXPECT_NE(said.find("view     | viz_node: port " + port.number()), std::string::npos) << said;
+  // The output ends only when no process holds its end of the pipe any longer.
+  EXPECT_NE(said.find("view: exit code 1; stopping the others"), std::string::npos) << said;
+  EXPECT_NE(said.find("state hash"), std::string::npos) << "sim_node ended in order\n" << said;
 }
 
 TEST(BadInput, ADivergingSceneStopsWithTheReasonAndNoForce) {
