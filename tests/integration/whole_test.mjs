@@ -55,8 +55,11 @@ const cases = {
     for (const [id, pattern] of Object.entries(figures)) {
       await until(`#${id} reads ${pattern}`, async () => pattern.test(await textOf(page, `#${id}`)));
     }
-    const nodes = (await viz(page, 'nodes')).map(({ name, kind, state }) => `${name} ${kind} ${state}`).sort();
-    assert.deepEqual(nodes, ['keyboard device_node running', 'sim sim_node running', 'view viz_node running']);
+    const running = 'keyboard device_node running, sim sim_node running, view viz_node running';
+    await until('all three nodes run', async () => {
+      const nodes = (await viz(page, 'nodes')).map(({ name, kind, state }) => `${name} ${kind} ${state}`);
+      return nodes.sort().join(', ') === running;
+    });
     const energies = new Set();
     await until('the energy changes', async () => energies.add(await textOf(page, '#energy')).size > 1);
     assert.equal(await page.locator('#plots canvas').count(), 3, 'position, force, energy');
