@@ -113,7 +113,7 @@ struct Avx2Lanes {
     return value[0] + value[1] + value[2];
   }
 
- private:
+ protected:
   static Row gather(const double* columns, const std::uint32_t* offset) noexcept {
     return _mm256_set_pd(columns[offset[3]], columns[offset[2]], columns[offset[1]],
                          columns[offset[0]]);

@@ -121,7 +121,7 @@ struct Avx512Lanes {
     return value[0] + value[1] + value[2];
   }
 
- private:
+ protected:
   /// The vectors of links l and l + 4, one after the other.
   static Row two_differences(const double* columns, const std::uint32_t* a, const std::uint32_t* b,
                              std::size_t l) noexcept {

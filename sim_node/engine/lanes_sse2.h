@@ -124,7 +124,7 @@ struct Sse2Lanes {
     return value[0] + value[1] + value[2];
   }
 
- private:
+ protected:
   static Row gather(const double* columns, const std::uint32_t* offset) noexcept {
     return _mm_loadh_pd(_mm_load_sd(columns + offset[0]), columns + offset[1]);
   }

@@ -59,7 +59,11 @@ struct MaxwellLink {
 };
 
 /// One liaison between the sets P and Q, or within the set P: between each two of their MATs nearer
-/// than `range`, as its behaviour says. [Luc90 III.2.3 a formalism for inter-connection]
+/// than `range`, as its behaviour says. Members of a set are alike: the distance of a pair has no
+/// sign in 1 dimension either, and there is no force while it is 0. With states, each pair has one
+/// of its own: it begins in that of the start, keeps its state while it is in range, and beyond it
+/// as long as it is bound, that is in another state than that of the start.
+/// [Luc90 III.2.3 a formalism for inter-connection]
 struct SetLiaison {
   std::uint32_t behaviour = 0;       ///< index in NetworkDescription::behaviours
   std::vector<std::uint32_t> set_p;  ///< MATs, each once

@@ -14,6 +14,7 @@
 #include "sim_node/engine/mat_array.h"
 #include "sim_node/engine/maxwell_links.h"
 #include "sim_node/engine/outside.h"
+#include "sim_node/engine/set_liaisons.h"
 #include "sim_node/engine/spring_damper.h"
 #include "sim_node/engine/state_hash.h"
 #include "sim_node/engine/state_links.h"
@@ -52,6 +53,7 @@ struct World::State {
         table(network->description().behaviours, network->step()),
         state_links(network->description(), table),
         maxwell_links(network->description()),
+        sets(network->description(), table, pair_kernel(width)),
         log(table, std::max(kLeastEventRoom, network->description().state_links.size())),
         outside(network->description()) {}
 
@@ -59,9 +61,22 @@ struct World::State {
   StepReport step() noexcept;
   void restore(const Snapshot& snapshot);
   void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
-  std::size_t state_size_before_outside() const noexcept {
+  std::size_t state_size_before_sets() const noexcept {
     return mats.state_size() + links.state_size() + state_links.state_size() +
            maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize;
+  }
+  bool can_take(const std::vector<double>& state) const noexcept;
+  PairStep pair_step(bool frozen) noexcept { return {table, behaviours, log, step_count, frozen}; }
+  /// Of all links but linear ones, in closed form [J].
+  double stored_energy() noexcept {
+    return state_links.stored_energy(table, mats) + maxwell_links.stored_energy() +
+           sets.stored_energy(table);
+  }
+  StepEnergy work_since_last_call() const noexcept {
+    StepEnergy work = state_links.work_since_last_call(mats);
+    work += maxwell_links.work_since_last_call(mats);
+    work += sets.work_since_last_call(mats);
+    return work;
   }
 
   std::shared_ptr<const Network> network;
@@ -74,6 +89,7 @@ struct World::State {
   StateTable table;
   StateLinkArray state_links;
   MaxwellArray maxwell_links;
+  SetLiaisons sets;
   EventLog log;
   Outside outside;
   EnergyAccount account;
@@ -84,6 +100,7 @@ struct World::State {
 void World::State::start() noexcept {
   links.add_forces(kernel, mats.force_columns());
   state_links.add_forces_before_start(behaviours, table, mats.force_columns());
+  sets.add_forces(pair_step(true), mats.force_columns());
   mats.start();
 
   // The account of ports and state links begins with the links as they were one period ago, when
@@ -92,12 +109,13 @@ void World::State::start() noexcept {
   one_period_ago.position = one_period_ago.delayed;
   links.add_forces(kernel, one_period_ago);
   state_links.add_forces_before_start(behaviours, table, one_period_ago);
+  sets.add_forces(pair_step(true), one_period_ago);
   outside.start(mats);
   mats.clear_forces();
   links.start();
   state_links.start();
-  account.start(network->description(), mats, state_links.stored_energy(table, mats),
-                state_links.work_since_last_call(mats).elastic);
+  sets.start();
+  account.start(network->description(), mats, stored_energy(), work_since_last_call().elastic);
 }
 
 StepReport World::State::step() noexcept {
@@ -113,6 +131,7 @@ StepReport World::State::step() noexcept {
     energy += state_links.add_forces(behaviours, table, mats.force_columns(), step_count, log);
   }
   energy += maxwell_links.add_forces(behaviours, mats.force_columns());
+  if (!sets.empty()) energy += sets.add_forces(pair_step(false), mats.force_columns());
   energy.port_work += outside.work_at_ports(mats);
 
   energy.port_work += outside.push(mats);
@@ -123,6 +142,7 @@ StepReport World::State::step() noexcept {
   account.add(energy);
   ++step_count;
   report.non_finite_mats = advance.non_finite_mats;
+  report.crowded_sets = sets.crowded_count();
   report.lost_events = log.lost();
   return report;
 }
@@ -140,13 +160,22 @@ void World::State::replace_behaviour(std::uint32_t index, const Behaviour& behav
       throw std::invalid_argument("a viscosity is too large for the step");
     }
   }
-  const double before = state_links.stored_energy(table, mats);
+  const double before = stored_energy();
   table.replace(index, behaviour);
   state_links.adopt(table);
+  sets.adopt(table);
   StepEnergy change;
-  change.switching = state_links.stored_energy(table, mats) - before;
+  change.switching = stored_energy() - before;
   account.add(change);
   replaced = true;
+}
+
+bool World::State::can_take(const std::vector<double>& state) const noexcept {
+  const std::size_t first = state_size_before_sets();
+  std::size_t size = 0;
+  return state.size() >= first &&
+         sets.find_size_of_state(state.data() + first, state.size() - first, size) &&
+         outside.is_end_of_state(state, first + size);
 }
 
 void World::State::restore(const Snapshot& snapshot) {
@@ -159,9 +188,11 @@ void World::State::restore(const Snapshot& snapshot) {
   StateLinkArray links_of_snapshot(network->description(), table_of_snapshot);
   std::swap(table, table_of_snapshot);
   std::swap(state_links, links_of_snapshot);
-  if (!outside.is_end_of_state(snapshot.state, state_size_before_outside())) {
+  sets.adopt(table);
+  if (!can_take(snapshot.state)) {
     std::swap(table, table_of_snapshot);
     std::swap(state_links, links_of_snapshot);
+    sets.adopt(table);
     throw std::invalid_argument("the snapshot is not complete");
   }
   step_count = snapshot.step;
@@ -172,6 +203,7 @@ void World::State::restore(const Snapshot& snapshot) {
   next = maxwell_links.take_state(next);
   next = log.take_state(next);
   next = account.take_state(next);
+  next = sets.take_state(next);
   outside.take_state(next);
 }
 
@@ -255,13 +287,11 @@ const Columns& World::positions() const noexcept {
 }
 
 Energy World::energy() const noexcept {
-  const State& state = *state_;
-  StepEnergy since = state.state_links.work_since_last_call(state.mats);
-  since += state.maxwell_links.work_since_last_call(state.mats);
+  State& state = *state_;
+  StepEnergy since = state.work_since_last_call();
   since.dissipated += state.links.work_since_last_call(state.mats);
-  const double stored = state.state_links.stored_energy(state.table, state.mats) +
-                        state.maxwell_links.stored_energy();
-  return state.account.energy(state.network->description(), state.mats, since, stored);
+  return state.account.energy(state.network->description(), state.mats, since,
+                              state.stored_energy());
 }
 
 Vec3 World::momentum() const noexcept {
@@ -293,6 +323,7 @@ std::uint64_t World::state_hash() const noexcept {
   }
   state_->state_links.add_to(hash);
   state_->maxwell_links.add_to(hash);
+  state_->sets.add_to(hash);
   return hash.value();
 }
 
@@ -305,6 +336,7 @@ Snapshot World::snapshot() const {
   state_->maxwell_links.append_state(snapshot.state);
   state_->log.append_state(snapshot.state);
   state_->account.append_state(snapshot.state);
+  state_->sets.append_state(snapshot.state);
   state_->outside.append_state(snapshot.state);
   return snapshot;
 }

@@ -18,6 +18,8 @@ struct StepReport {
   std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
   std::uint32_t refused_inputs =
       0;  ///< positions and forces from outside that were not finite, since the last step
+  std::uint32_t crowded_sets =
+      0;  ///< sets with more pairs in range than there was room for: correct, but slow
   std::uint32_t lost_events = 0;  ///< changes of state that found no room in events()
 };
 

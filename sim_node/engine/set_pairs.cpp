@@ -1,0 +1,292 @@
+// sim_node/engine/set_pairs.cpp
+#include "sim_node/engine/set_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cordis::engine {
+namespace {
+
+constexpr std::size_t kPairArrays = 7;  // of a PairRow
+constexpr std::size_t kRowArrays = kPairArrays + 3;
+// Entries of a neighbour list: room for all pairs where they are few, else for twice those of the
+// start with a large skin, within bounds.
+constexpr std::size_t kLeastCapacity = std::size_t{1} << 20;
+constexpr std::size_t kMostCapacity = std::size_t{1} << 25;
+constexpr std::size_t kStatesPerMember = 64;
+
+std::size_t padded(std::size_t count) {
+  return (count + kPairBatch - 1) / kPairBatch * kPairBatch;
+}
+
+std::size_t all_pairs(const SetLiaison& set) {
+  const std::size_t p = set.set_p.size();
+  return set.set_q.empty() ? p * (p - 1) / 2 : p * set.set_q.size();
+}
+
+std::size_t list_capacity(const NetworkDescription& description, const SetLiaison& set,
+                          const PairKernel& kernel) {
+  const std::size_t all = all_pairs(set);
+  if (all <= kLeastCapacity) return all;
+  NeighbourList trial(set.set_p.size(), set.set_q.size(), description.dimension, set.range, 0,
+                      kernel);
+  trial.hold_skin(0.5 * set.range);
+  AlignedVector<double> position;
+  for (const auto* half : {&set.set_p, &set.set_q}) {
+    for (const std::uint32_t mat : *half) {
+      const Vec3& at = description.mats[mat].position;
+      position.insert(position.end(), {at.x(), at.y(), at.z(), 0.0});
+    }
+  }
+  position.resize(4 * padded(position.size() / 4), 0.0);
+  trial.refresh(position.data());
+  return std::min(all, std::clamp(2 * trial.entry_count(), kLeastCapacity, kMostCapacity));
+}
+
+std::size_t state_capacity(const SetLiaison& set) {
+  const std::size_t members = set.set_p.size() + set.set_q.size();
+  return std::min(all_pairs(set), std::max(kLeastCapacity / 8, kStatesPerMember * members));
+}
+
+double dot(const double* u, const double* v) noexcept {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+}  // namespace
+
+SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
+                   const StateTable& table, const PairKernel& kernel)
+    : kernel_(kernel),
+      behaviour_(description.sets[index].behaviour),
+      rest_length_(description.sets[index].rest_length),
+      range_(description.sets[index].range),
+      neighbours_(description.sets[index].set_p.size(), description.sets[index].set_q.size(),
+                  description.dimension, range_,
+                  list_capacity(description, description.sets[index], kernel), kernel),
+      behaviours_(description, description.sets[index], table,
+                  state_capacity(description.sets[index])) {
+  const SetLiaison& set = description.sets[index];
+  for (const auto* half : {&set.set_p, &set.set_q}) {
+    for (const std::uint32_t mat : *half) {
+      column_.push_back(4 * mat);
+      if (rest_length_ < 0.0) radius_.push_back(description.radius[mat]);
+    }
+  }
+  row_size_ = padded(column_.size()) + kPairBatch;
+  if (!radius_.empty()) radius_.resize(row_size_, 0.0);
+  position_.resize(4 * row_size_, 0.0);
+  moved_.resize(position_.size(), 0.0);
+  force_.resize(position_.size(), 0.0);
+  viscous_.resize(position_.size(), 0.0);
+  row_column_.resize(row_size_, 0U);
+  row_values_.resize(kRowArrays * row_size_, 0.0);
+  adopt(table);
+}
+
+void SetPairs::adopt(const StateTable& table) {
+  behaviours_.adopt(table);
+  const StateTerm& term = table.terms()[table.start_state(behaviour_)];
+  const bool plain = !behaviours_.has_states() && term.dissipation.code == LawCode::kNone;
+  const bool bare = term.stiffness == 0.0 && term.viscosity_over_dt == 0.0 && !term.limited;
+  path_ = Path::kAnyBehaviour;
+  if (plain && term.elasticity.code == LawCode::kNone) {
+    path_ = Path::kLinear;
+    linear_ = {term.stiffness, term.viscosity_over_dt, term.least_pull,
+               term.most_pull, term.least_elongation,  term.most_elongation};
+  } else if (plain && bare && term.elasticity.code == LawCode::kLennardJones) {
+    path_ = Path::kLennardJones;
+    const double range = std::min(range_, term.elasticity.cut);
+    lennard_jones_ = {term.elasticity.attraction, term.elasticity.repulsion, range * range};
+  }
+  const auto is_bare_limit = [](double pull) { return pull == 0.0 || std::isinf(pull); };
+  const bool conservative = path_ == Path::kLennardJones ||
+                            (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 &&
+                             is_bare_limit(term.least_pull) && is_bare_limit(term.most_pull));
+  has_viscous_ = has_viscous_ || !conservative;  // forces of the last step may have been
+}
+
+PairRow SetPairs::row() noexcept {
+  const auto array = [this](std::size_t i) { return row_values_.data() + i * row_size_; };
+  return {row_column_.data(), array(0), array(1), array(2), array(3), array(4), array(5), array(6)};
+}
+
+MemberColumns SetPairs::members() const noexcept {
+  return {position_.data(), moved_.data(), static_cast<std::uint32_t>(4 * padded(column_.size()))};
+}
+
+PairRest SetPairs::rest() const noexcept {
+  return {rest_length_, radius_.empty() ? nullptr : radius_.data()};
+}
+
+StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& columns) noexcept {
+  StepEnergy energy = take_positions(columns);
+  neighbours_.refresh(position_.data());
+  behaviours_.begin_step(step);
+  for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
+       rows = neighbours_.rows_after(rows, position_.data())) {
+    step_rows(step, rows);
+  }
+  energy += give_forces(columns);
+  energy.switching += behaviours_.switching();
+  return energy;
+}
+
+void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexcept {
+  if (path_ == Path::kLennardJones) {
+    kernel_.lennard_jones_rows(lennard_jones_, members(), rows, row(), force_.data());
+    return;
+  }
+  for (std::size_t a = rows.first; a < rows.last; ++a) {
+    const std::size_t near = gather(rows, a);
+    if (path_ == Path::kLinear) {
+      if (near > 0) step_linear_row(a, near);
+      continue;
+    }
+    const std::size_t count =
+        behaviours_.step_row(kernel_, step, members(), a, near, range_ * range_, rest(), row());
+    if (count > 0) spread(a, count, behaviours_.factor(), behaviours_.viscous_factor());
+  }
+}
+
+std::size_t SetPairs::gather(const NeighbourRows& rows, std::size_t a) noexcept {
+  return kernel_.gather_row(members(), a, rows.neighbour + (rows.start[a] - rows.origin),
+                            rows.start[a + 1] - rows.start[a], range_ * range_, row());
+}
+
+void SetPairs::step_linear_row(std::size_t a, std::size_t count) noexcept {
+  double* rest_lengths = row_values_.data() + kPairArrays * row_size_;
+  double* factor = rest_lengths + row_size_;
+  double* viscous_factor = factor + row_size_;
+  for (std::size_t i = 0; i < padded(count); ++i) {
+    rest_lengths[i] = rest().of(a, row_column_[i] / 4);
+  }
+  kernel_.measure_row(members(), a, count, row());
+  kernel_.linear_row(linear_, row(), count, rest_lengths, factor, viscous_factor);
+  spread(a, count, factor, viscous_factor);
+}
+
+void SetPairs::spread(std::size_t a, std::size_t count, const double* factor,
+                      const double* viscous_factor) noexcept {
+  kernel_.spread_row(row(), count, factor, a, force_.data());
+  if (has_viscous_) kernel_.spread_row(row(), count, viscous_factor, a, viscous_.data());
+}
+
+/// Gathers the members, ends the account of the last forces and clears them.
+StepEnergy SetPairs::take_positions(const ForceColumns& columns) noexcept {
+  StepEnergy work;
+  for (std::size_t m = 0; m < column_.size(); ++m) {
+    const double* position = columns.position + column_[m];
+    const double* delayed = columns.delayed + column_[m];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      position_[4 * m + axis] = position[axis];
+      moved_[4 * m + axis] = position[axis] - delayed[axis];
+    }
+    work += work_of(m, moved_.data() + 4 * m);
+  }
+  std::fill(force_.begin(), force_.end(), 0.0);
+  if (has_viscous_) std::fill(viscous_.begin(), viscous_.end(), 0.0);
+  return work;
+}
+
+StepEnergy SetPairs::give_forces(const ForceColumns& columns) const noexcept {
+  StepEnergy work;
+  for (std::size_t m = 0; m < column_.size(); ++m) {
+    double* force = columns.force + column_[m];
+    for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += force_[4 * m + axis];
+    work += work_of(m, moved_.data() + 4 * m);
+  }
+  return work;
+}
+
+/// Half of what the force on a member takes over a way.
+StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noexcept {
+  const double all = -0.5 * dot(force_.data() + 4 * member, moved);
+  if (!has_viscous_) return {all, 0.0, 0.0, 0.0};
+  const double dissipated = -0.5 * dot(viscous_.data() + 4 * member, moved);
+  return {all - dissipated, dissipated, 0.0, 0.0};
+}
+
+StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
+  StepEnergy work;
+  for (std::size_t m = 0; m < column_.size(); ++m) {
+    const Vec3 moved = mats.position(column_[m] / 4) - mats.delayed_at_rest(column_[m] / 4);
+    work += work_of(m, moved.data());
+  }
+  return work;
+}
+
+double SetPairs::stored_energy(const StateTable& table) noexcept {
+  double sum = 0.0;
+  const PairRest rest_of = rest();
+  const PairStates& states = behaviours_.states();
+  const StateIndex start = behaviours_.start_state();
+  const auto distance = [this](std::size_t a, std::size_t b) {
+    double square = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double along = position_[4 * b + axis] - position_[4 * a + axis];
+      square += along * along;
+    }
+    return std::sqrt(square);
+  };
+  if (behaviours_.has_states() && states.has_rows()) {
+    for (std::size_t a = 0; a < states.row_count(); ++a) {
+      for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
+        const PairState& pair = states.state(i);
+        sum += table.stored_energy(pair.state, distance(a, pair.column / 4), pair.rest_length);
+      }
+    }
+    return sum;
+  }
+  for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
+       rows = neighbours_.rows_after(rows, position_.data())) {
+    for (std::size_t a = rows.first; a < rows.last; ++a) {
+      const std::size_t count = gather(rows, a);
+      for (std::size_t i = 0; i < count; ++i) {
+        sum += table.stored_energy(start, std::sqrt(row().square[i]),
+                                   rest_of.of(a, row_column_[i] / 4));
+      }
+    }
+  }
+  return sum;
+}
+
+/// The elastic forces stay: their work up to step 0 belongs to the energy stored there.
+void SetPairs::start() noexcept {
+  for (std::size_t i = 0; i < viscous_.size(); ++i) force_[i] -= viscous_[i];
+  std::fill(viscous_.begin(), viscous_.end(), 0.0);
+}
+
+bool SetPairs::is_crowded() const noexcept {
+  return !neighbours_.is_whole() || behaviours_.forgotten() > 0;
+}
+
+void SetPairs::add_to(StateHash& hash) const noexcept {
+  if (behaviours_.has_states()) behaviours_.states().add_to(hash);
+}
+
+void SetPairs::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), force_.begin(), force_.end());
+  state.insert(state.end(), viscous_.begin(), viscous_.end());
+  state.insert(state.end(), position_.begin(), position_.end());
+  if (behaviours_.has_states()) behaviours_.states().append_state(state);
+}
+
+std::size_t SetPairs::size_of_state(const double* state, std::size_t available) const noexcept {
+  const std::size_t forces = force_.size() + viscous_.size() + position_.size();
+  if (available < forces) return 0;
+  if (!behaviours_.has_states()) return forces;
+  const std::size_t states = behaviours_.states().size_of_state(state + forces, available - forces);
+  return states > 0 ? forces + states : 0;
+}
+
+const double* SetPairs::take_state(const double* state) noexcept {
+  for (AlignedVector<double>* values : {&force_, &viscous_, &position_}) {
+    std::copy_n(state, values->size(), values->data());
+    state += values->size();
+  }
+  neighbours_.forget();
+  neighbours_.refresh(position_.data());
+  return behaviours_.has_states() ? behaviours_.states().take_state(state) : state;
+}
+
+}  // namespace cordis::engine
