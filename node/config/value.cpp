@@ -10,6 +10,7 @@ struct Value::Data {
   Kind kind = Kind::kNothing;
   Place place;
   bool quoted = false;
+  bool verbatim = false;
   std::string text;
   std::vector<Value> items;
   std::vector<Entry> entries;
@@ -33,11 +34,12 @@ Value Value::nothing(Place place) {
   return value;
 }
 
-Value Value::scalar(std::string text, Place place, bool quoted) {
+Value Value::scalar(std::string text, Place place, bool quoted, bool verbatim) {
   Data data;
   data.kind = Kind::kScalar;
   data.place = std::move(place);
   data.quoted = quoted;
+  data.verbatim = verbatim;
   data.text = std::move(text);
   Value value;
   value.data_ = std::make_shared<const Data>(std::move(data));
@@ -75,6 +77,17 @@ Value::Kind Value::kind() const noexcept {
 const Place& Value::place() const noexcept {
   static const Place kNowhere;
   return data_ ? data_->place : kNowhere;
+}
+
+Place Value::place_in_text(std::size_t byte) const {
+  Place there = place();
+  if (!data_ || !data_->verbatim || there.line == 0) return there;
+  const std::string_view before = std::string_view(text()).substr(0, byte);
+  const auto characters = std::count_if(before.begin(), before.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  });
+  there.column += static_cast<int>(characters) + (quoted() ? 1 : 0);
+  return there;
 }
 
 const std::string& Value::text() const noexcept {

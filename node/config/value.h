@@ -19,12 +19,17 @@ class Value {
 
   Value() = default;
   static Value nothing(Place place);  ///< a key without a value, or null
-  static Value scalar(std::string text, Place place, bool quoted = false);
+  /// @param verbatim  whether the text stands in the file as it reads, from `place` on (after a
+  ///                  quote): on one line, without escapes.
+  static Value scalar(std::string text, Place place, bool quoted = false, bool verbatim = false);
   static Value sequence(std::vector<Value> items, Place place);
   static Value mapping(std::vector<Entry> entries, Place place);
 
   Kind kind() const noexcept;
   const Place& place() const noexcept;
+  /// Where a byte of a scalar's text stands in the file; place() when the text does not stand there
+  /// as it reads.
+  Place place_in_text(std::size_t byte) const;
   bool exists() const noexcept { return data_ != nullptr; }
 
   /// Of a scalar, else empty.

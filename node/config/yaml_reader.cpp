@@ -81,7 +81,8 @@ class TreeBuilder : public YAML::EventHandler {
     check_tag(mark, tag);
     const bool quoted = tag == "!";
     if (quoted) check_closing_quote(mark);
-    add(Value::scalar(text, place_at(source_, mark), quoted), anchor);
+    add(Value::scalar(text, place_at(source_, mark), quoted, is_verbatim(mark, text, quoted)),
+        anchor);
     if (value_count_ > kMostValues) give_up_on_size(mark);
   }
 
@@ -203,6 +204,14 @@ class TreeBuilder : public YAML::EventHandler {
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag.empty() || tag == "?" || tag == "!") return;
     problems_.error(place_at(source_, mark), "tags have no meaning here, got '" + tag + "'");
+  }
+
+  /// Whether the text stands at the mark letter by letter.
+  bool is_verbatim(const YAML::Mark& mark, const std::string& text, bool quoted) const {
+    if (mark.is_null()) return false;
+    const std::string_view line = source_.line(static_cast<std::size_t>(mark.line));
+    const std::size_t start = static_cast<std::size_t>(mark.column) + (quoted ? 1 : 0);
+    return start <= line.size() && line.substr(start, text.size()) == text;
   }
 
   /// yaml-cpp takes the end of the file for a closing quote.

@@ -9,28 +9,23 @@ namespace cordis::scene {
 using config::Value;
 
 void Assembly::read_liaisons(const Value& section) {
-  liaisons_.read_section(section, scene_.file, scene_.space());
+  liaisons_.read(section, scene_.file, scene_.space());
 }
 
 bool Assembly::add(Piece piece, const config::Place& place) {
   const std::size_t mats = scene_.network.mats.size() + piece.mats.size();
-  const std::size_t links = scene_.network.links.size() + piece.links.size();
+  const std::size_t links = sum(link_counts()) + piece.links.count();
   if (mats > static_cast<std::size_t>(kMostMats) || links > kMostLinks) {
     problems_.error(place, "the scene has more than " + std::to_string(kMostMats) + " MATs or " +
                                std::to_string(kMostLinks) + " links");
     return false;
   }
-  const std::uint32_t first_mat = mat_count();
-  for (engine::Link& link : piece.links) {
-    link.mat_a += first_mat;
-    link.mat_b += first_mat;
-  }
+  append(piece.links, mat_count());
   scene_.radius_m.insert(scene_.radius_m.end(), piece.drawn_radius_m.begin(),
                          piece.drawn_radius_m.end());
   scene_.network.radius.insert(scene_.network.radius.end(), piece.radius_m.begin(),
                                piece.radius_m.end());
   scene_.network.mats.insert(scene_.network.mats.end(), piece.mats.begin(), piece.mats.end());
-  scene_.network.links.insert(scene_.network.links.end(), piece.links.begin(), piece.links.end());
   scene_.layout.insert(scene_.layout.end(), piece.layout.begin(), piece.layout.end());
   return true;
 }
@@ -43,7 +38,7 @@ void Assembly::read_matter(const Value& section) {
     Piece piece = read_piece(reader, liaisons_, scene_.space(), problems_);
     const std::vector<NamedRange> inner_names = piece.names;
     const std::uint32_t first_mat = mat_count();
-    const std::uint32_t first_link = link_count();
+    const LinkCounts links_before = link_counts();
     const bool sound =
         problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
 
@@ -56,12 +51,7 @@ void Assembly::read_matter(const Value& section) {
                  problems_);
     }
     scene_.matter.push_back({entry.key, first_mat, mat_count() - first_mat});
-    const std::string links = entry.key + ".links";
-    names_.add(
-        {links, Named::kLinks, first_link, link_count() - first_link, sound, entry.key_place},
-        problems_);
-    if (link_count() > first_link)
-      scene_.links.push_back({links, first_link, link_count() - first_link});
+    name_links(entry.key + ".links", links_before, sound, entry.key_place);
   }
 }
 

@@ -2,6 +2,9 @@
 // Assembly]
 #pragma once
 
+#include <array>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "node/config/mapping_reader.h"
@@ -15,7 +18,7 @@ namespace cordis::scene {
 struct Piece {
   std::vector<engine::Mat> mats;
   std::vector<LayoutPoint> layout;  ///< per MAT in 1-D, else empty
-  std::vector<engine::Link> links;
+  LinkLists links;
   std::vector<double> radius_m;        ///< per MAT; 0 for a punctual mass
   std::vector<double> drawn_radius_m;  ///< per MAT
   std::vector<NamedRange> names;       ///< of MATs within it, from 0
@@ -23,21 +26,51 @@ struct Piece {
 
 inline constexpr std::size_t kMostLinks = 8'000'000;  ///< of a scene
 
+/// How many links of each kind there are, by LinkKind.
+using LinkCounts = std::array<std::uint32_t, kLinkKindCount>;
+inline std::uint32_t sum(const LinkCounts& counts) noexcept {
+  return counts[0] + counts[1] + counts[2];
+}
+
+/// Consecutive links of one kind under a name.
+struct LinkGroup {
+  std::string name;
+  LinkKind kind = LinkKind::kLinear;
+  std::uint32_t first = 0;  ///< among those of its kind
+  std::uint32_t count = 0;
+};
+
 /// What the sections of a scene file add to, in the order matter, ports, links, signals.
 class Assembly {
  public:
   Assembly(Scene& scene, config::Problems& problems)
-      : scene_(scene), problems_(problems), liaisons_(problems) {}
+      : scene_(scene), problems_(problems), liaisons_(scene.network, problems) {}
 
   void read_liaisons(const config::Value& section);
   void read_matter(const config::Value& section);
   void read_ports(const config::Value& section);
   void read_links(const config::Value& section);
   void read_signals(const config::Value& section);
+  /// To be called last: numbers the links of all kinds in one row.
+  void finish();
 
  private:
+  /// An entry of `links:` while it is read.
+  struct LinkEntry {
+    config::MappingReader& reader;
+    std::string name;       ///< of its links: their own, or that of their liaison
+    bool has_name = false;  ///< of their own
+    std::optional<LinkLaw> law;
+    std::size_t errors_before = 0;
+  };
+
   void read_port(const config::Value::Entry& entry);
   void read_link(const config::Value& value);
+  void read_ends(LinkEntry& entry);
+  void read_set(LinkEntry& entry);
+  void read_two_sets(LinkEntry& entry);
+  void add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
+               const std::vector<std::uint32_t>& q);
   void read_signal(const config::Value::Entry& entry, std::vector<Signal>& signals);
   /// The direction of a position, velocity or force; a port of one axis needs no `axis`.
   void read_direction_of_signal(config::MappingReader& reader, const Selection& of,
@@ -48,6 +81,11 @@ class Assembly {
   bool join(const Selection& from, const Selection& to, const LinkLaw& law,
             const config::Place& place);
 
+  /// Gives a name to the links that have been added since there were `before` of each kind. Where
+  /// they are of one kind they bear it, else each kind bears its own after it.
+  void name_links(const std::string& name, const LinkCounts& before, bool sound,
+                  const config::Place& place);
+
   /// Adds the MATs and links of a piece. @return false when the scene would become too large, which
   /// is a problem.
   bool add(Piece piece, const config::Place& place);
@@ -56,14 +94,16 @@ class Assembly {
   std::uint32_t mat_count() const noexcept {
     return static_cast<std::uint32_t>(scene_.network.mats.size());
   }
-  std::uint32_t link_count() const noexcept {
-    return static_cast<std::uint32_t>(scene_.network.links.size());
-  }
+  /// Adds links whose MATs are counted from another one.
+  void append(const LinkLists& links, std::uint32_t first_mat);
+  LinkCounts link_counts() const noexcept;
+  double radius_of(std::uint32_t mat) const noexcept;  ///< of a ball [m], else 0
 
   Scene& scene_;
   config::Problems& problems_;
   Liaisons liaisons_;
   Names names_;
+  std::vector<LinkGroup> groups_;
   std::vector<std::uint32_t> ports_without_layout_;  // MATs of a 1-D scene
 };
 

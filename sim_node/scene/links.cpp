@@ -18,9 +18,24 @@ void Assembly::read_link(const Value& value) {
   config::MappingReader reader(value, "link", problems_);
   const Value liaison = reader.optional_value("liaison");
   const std::string name = reader.optional_text("name", liaison.text());
-  if (reader.has("name")) check_name(name, reader.place_of("name"), problems_);
-  const std::optional<LinkLaw> law = read_law(reader, LawPlace::kLink, liaisons_, scene_.space());
-  const Value between = reader.required_sequence("between");
+  const bool has_name = reader.has("name");
+  if (has_name) check_name(name, reader.place_of("name"), problems_);
+  LinkEntry entry{reader, name, has_name, {}, errors_before};
+  entry.law = read_law(reader, LawPlace::kLink, liaisons_, scene_.space(),
+                       has_name ? names_.full(name) : "");
+  if (reader.has("within")) {
+    read_set(entry);
+  } else if (reader.has("between_sets")) {
+    read_two_sets(entry);
+  } else {
+    read_ends(entry);
+  }
+  reader.finish();
+}
+
+void Assembly::read_ends(LinkEntry& entry) {
+  const Value between = entry.reader.required_sequence("between");
+  for (const char* other : {"within", "between_sets"}) entry.reader.optional_value(other);
   std::vector<Selection> ends;
   for (const Value& end : between.items()) {
     const std::optional<Selection> picked =
@@ -28,21 +43,30 @@ void Assembly::read_link(const Value& value) {
     if (picked) ends.push_back(*picked);
   }
   if (between.exists() && between.items().size() != 2) {
-    reader.error_at("between",
-                    "a link is between 2 ends, got " + std::to_string(between.items().size()));
+    entry.reader.error_at(
+        "between", "a link is between 2 ends, got " + std::to_string(between.items().size()));
   }
-  reader.finish();
-
-  const std::uint32_t first_link = link_count();
-  bool sound = law && ends.size() == 2 && problems_.error_count() == errors_before;
-  if (sound) sound = join(ends[0], ends[1], *law, between.place());
-  if (reader.has("name")) {
-    names_.add({name, Named::kLinks, first_link, link_count() - first_link, sound,
-                reader.place_of("name")},
-               problems_);
+  const bool sound =
+      entry.law && ends.size() == 2 && problems_.error_count() == entry.errors_before;
+  std::vector<LinkLaw> parts;
+  if (entry.law) {
+    parts = entry.law->beside;
+    parts.insert(parts.begin(), *entry.law);
   }
-  if (link_count() > first_link)
-    scene_.links.push_back({names_.full(name), first_link, link_count() - first_link});
+  if (parts.empty()) parts.emplace_back();  // so that the name is known
+  for (const LinkLaw& part : parts) {
+    const LinkCounts before = link_counts();
+    const bool joined = sound && join(ends[0], ends[1], part, between.place());
+    const std::string name = parts.size() == 1 ? entry.name : entry.name + "." + part.part;
+    if (entry.has_name) {
+      name_links(name, before, joined, entry.reader.place_of("name"));
+    } else if (joined) {
+      const auto kind = static_cast<std::size_t>(part.kind);
+      groups_.push_back(
+          {names_.full(name), part.kind, before[kind], link_counts()[kind] - before[kind]});
+    }
+    if (!joined) break;
+  }
 }
 
 bool Assembly::join(const Selection& from, const Selection& to, const LinkLaw& law,
@@ -55,10 +79,11 @@ bool Assembly::join(const Selection& from, const Selection& to, const LinkLaw& l
     return false;
   }
   const std::uint32_t count = std::max(from.count(), to.count());
-  if (link_count() + count > kMostLinks) {
+  if (sum(link_counts()) + count > kMostLinks) {
     problems_.error(place, "the scene has more than " + std::to_string(kMostLinks) + " links");
     return false;
   }
+  LinkLists added;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t a = from.indices[from.count() == 1 ? 0 : i];
     const std::uint32_t b = to.indices[to.count() == 1 ? 0 : i];
@@ -67,20 +92,76 @@ bool Assembly::join(const Selection& from, const Selection& to, const LinkLaw& l
       return false;
     }
     const auto& mats = scene_.network.mats;
-    scene_.network.links.push_back(
-        make_link(law, a, b, mats[a].position, mats[b].position, scene_.space()));
+    added.join_alone(law, a, b, mats[a].position, mats[b].position, scene_.space(),
+                     radius_of(a) + radius_of(b));
   }
+  append(added, 0);
   return true;
 }
 
+void Assembly::name_links(const std::string& name, const LinkCounts& before, bool sound,
+                          const config::Place& place) {
+  const LinkCounts after = link_counts();
+  constexpr std::array<const char*, kLinkKindCount> kEndings{".linear", ".states", ".maxwell"};
+  std::size_t kinds = 0;
+  for (std::size_t k = 0; k < kLinkKindCount; ++k) kinds += after[k] > before[k] ? 1 : 0;
+  for (std::size_t k = 0; k < kLinkKindCount; ++k) {
+    const std::uint32_t count = after[k] - before[k];
+    if (count == 0 && (kinds > 0 || k > 0)) continue;
+    const std::string full = kinds > 1 ? name + kEndings[k] : name;
+    const auto kind = static_cast<LinkKind>(k);
+    names_.add({full, Named::kLinks, link_word(kind, before[k]), count, sound, place}, problems_);
+    if (count > 0) groups_.push_back({names_.full(full), kind, before[k], count});
+  }
+}
+
+void Assembly::append(const LinkLists& links, std::uint32_t first_mat) {
+  LinkLists all{std::move(scene_.network.links), std::move(scene_.network.state_links),
+                std::move(scene_.network.maxwell_links)};
+  all.append(links, first_mat);
+  scene_.network.links = std::move(all.links);
+  scene_.network.state_links = std::move(all.state_links);
+  scene_.network.maxwell_links = std::move(all.maxwell_links);
+}
+
+LinkCounts Assembly::link_counts() const noexcept {
+  const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+  return {count(scene_.network.links), count(scene_.network.state_links),
+          count(scene_.network.maxwell_links)};
+}
+
+double Assembly::radius_of(std::uint32_t mat) const noexcept {
+  return mat < scene_.network.radius.size() ? scene_.network.radius[mat] : 0.0;
+}
+
+void Assembly::finish() {
+  const LinkCounts counts = link_counts();
+  const std::array<std::uint32_t, kLinkKindCount> first{0, counts[0], counts[0] + counts[1]};
+  for (const LinkGroup& group : groups_) {
+    scene_.links.push_back(
+        {group.name, first[static_cast<std::size_t>(group.kind)] + group.first, group.count});
+  }
+  std::stable_sort(scene_.links.begin(), scene_.links.end(),
+                   [](const NamedRange& a, const NamedRange& b) { return a.first < b.first; });
+}
+
 void Assembly::lay_out_ports() {
+  const auto neighbour_of = [&](std::uint32_t port) {
+    std::uint32_t neighbour = port;
+    const auto look_in = [&](const auto& links) {
+      for (std::size_t l = 0; l < links.size() && neighbour == port; ++l) {
+        if (links[l].mat_a == port) neighbour = links[l].mat_b;
+        if (links[l].mat_b == port) neighbour = links[l].mat_a;
+      }
+    };
+    look_in(scene_.network.links);
+    look_in(scene_.network.state_links);
+    look_in(scene_.network.maxwell_links);
+    return neighbour;
+  };
   for (const std::uint32_t port : ports_without_layout_) {
-    const auto& links = scene_.network.links;
-    const auto joined = std::find_if(links.begin(), links.end(), [&](const engine::Link& link) {
-      return link.mat_a == port || link.mat_b == port;
-    });
-    if (joined == links.end()) continue;
-    scene_.layout[port] = scene_.layout[joined->mat_a == port ? joined->mat_b : joined->mat_a];
+    const std::uint32_t neighbour = neighbour_of(port);
+    if (neighbour != port) scene_.layout[port] = scene_.layout[neighbour];
   }
 }
 

@@ -95,6 +95,7 @@ void read_content(config::MappingReader& reader, Scene& scene, config::Problems&
   assembly.read_ports(ports);
   assembly.read_links(links);
   assembly.read_signals(signals);
+  assembly.finish();
   const auto is_ball = [](double radius) { return radius > 0.0; };
   std::vector<double>& radius = scene.network.radius;
   if (std::none_of(radius.begin(), radius.end(), is_ball)) radius.clear();

@@ -60,13 +60,20 @@ struct Scene {
   std::vector<NamedRange>
       matter;  ///< names of MATs in the order of the indices; a port has one MAT
   std::vector<NamedRange>
-      links;  ///< names of links in the order of the indices; see docs/language.md
+      links;  ///< names of links in the order of their numbers; see docs/language.md
+  std::vector<std::string> set_names;  ///< per set of the network
   std::vector<Port> ports;
   SignalReader signals;
   std::vector<double> radius_m;     ///< per MAT, as it is drawn; 0 for a point
   std::vector<LayoutPoint> layout;  ///< per MAT in a 1-D scene, else empty
 
   int space() const noexcept { return network.dimension; }
+
+  /// Links of all kinds are numbered in one row: linear ones, then those with states, then Maxwell
+  /// elements.
+  std::size_t link_count() const noexcept {
+    return network.links.size() + network.state_links.size() + network.maxwell_links.size();
+  }
 };
 
 /// Reads a scene file and all it includes. Whatever is wrong becomes a problem of its place, all in

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "node/config/value.h"
+#include "sim_node/scene/link_law.h"
 
 namespace cordis::scene {
 
@@ -38,6 +39,18 @@ struct Selection {
 
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(indices.size()); }
 };
+
+/// A link as a name tells it: its kind and its index among those of its kind in one word.
+constexpr std::uint32_t kLinkKindShift = 28;
+constexpr std::uint32_t link_word(LinkKind kind, std::uint32_t index) noexcept {
+  return (static_cast<std::uint32_t>(kind) << kLinkKindShift) | index;
+}
+constexpr LinkKind kind_of_link(std::uint32_t word) noexcept {
+  return static_cast<LinkKind>(word >> kLinkKindShift);
+}
+constexpr std::uint32_t index_of_link(std::uint32_t word) noexcept {
+  return word & ((1U << kLinkKindShift) - 1U);
+}
 
 /// The names of a scene. Matter, ports and named links share one list: no name stands for two
 /// things. While a part is read its scope is entered: names in it are those of the part.

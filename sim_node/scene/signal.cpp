@@ -15,17 +15,44 @@ struct Stretch {
   double growth = 0.0;
 };
 
-Stretch stretch_of(const engine::Link& link, const engine::World& world) noexcept {
-  const Vec3 along = world.position(link.mat_b) - world.position(link.mat_a);
-  const Vec3 moved = world.velocity(link.mat_b) - world.velocity(link.mat_a);
+Stretch stretch_of(std::uint32_t a, std::uint32_t b, const engine::World& world) noexcept {
+  const Vec3 along = world.position(b) - world.position(a);
+  const Vec3 moved = world.velocity(b) - world.velocity(a);
   if (world.network().dimension() == 1) return {along.x(), moved.x()};
   const double distance = along.norm();
   return {distance, distance > 0.0 ? along.dot(moved) / distance : 0.0};
 }
 
+double value_of_state_link(const Signal& signal, const engine::World& world) noexcept {
+  const engine::StateLink& link = world.network().description().state_links[signal.index];
+  const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
+  switch (signal.quantity) {
+    case Quantity::kDistance:
+      return stretch.distance;
+    case Quantity::kElongation:
+      return stretch.distance - world.rest_length_of(signal.index);
+    case Quantity::kGrowth:
+      return stretch.growth;
+    case Quantity::kState:
+      return world.state_of(signal.index);
+    case Quantity::kRestLength:
+      return world.rest_length_of(signal.index);
+    default:
+      return world.pull_of(signal.index);
+  }
+}
+
+double value_of_maxwell_link(const Signal& signal, const engine::World& world) noexcept {
+  const engine::MaxwellLink& link = world.network().description().maxwell_links[signal.index];
+  const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
+  return signal.quantity == Quantity::kDistance ? stretch.distance : stretch.growth;
+}
+
 double value_of_link(const Signal& signal, const engine::World& world) noexcept {
+  if (signal.kind == LinkKind::kState) return value_of_state_link(signal, world);
+  if (signal.kind == LinkKind::kMaxwell) return value_of_maxwell_link(signal, world);
   const engine::Link& link = world.network().description().links[signal.index];
-  const Stretch stretch = stretch_of(link, world);
+  const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
   const double elongation = stretch.distance - link.rest_length;
   switch (signal.quantity) {
     case Quantity::kDistance:
@@ -41,6 +68,18 @@ double value_of_link(const Signal& signal, const engine::World& world) noexcept 
   return without_direction ? 0.0 : link.stiffness * elongation + link.viscosity * stretch.growth;
 }
 
+double changes_in(const engine::World& world) noexcept {
+  std::uint64_t changes = 0;
+  const std::vector<engine::Behaviour>& behaviours = world.network().description().behaviours;
+  for (std::uint32_t b = 0; b < behaviours.size(); ++b) {
+    const auto states = static_cast<std::uint32_t>(behaviours[b].states.size());
+    for (std::uint32_t from = 0; from < states; ++from) {
+      for (std::uint32_t to = 0; to < states; ++to) changes += world.change_count(b, from, to);
+    }
+  }
+  return static_cast<double>(changes);
+}
+
 double value_of_scene(Quantity quantity, const engine::Energy& energy) noexcept {
   switch (quantity) {
     case Quantity::kKineticEnergy:
@@ -53,6 +92,8 @@ double value_of_scene(Quantity quantity, const engine::Energy& energy) noexcept 
       return energy.dissipated;
     case Quantity::kPortWork:
       return energy.port_work;
+    case Quantity::kSwitchingEnergy:
+      return energy.switching;
     default:
       return energy.total();
   }
@@ -73,7 +114,11 @@ double value_of(const Signal& signal, const engine::World& world,
     case Quantity::kElongation:
     case Quantity::kGrowth:
     case Quantity::kPull:
+    case Quantity::kState:
+    case Quantity::kRestLength:
       return value_of_link(signal, world);
+    case Quantity::kChanges:
+      return changes_in(world);
     default:
       return value_of_scene(signal.quantity, energy);
   }

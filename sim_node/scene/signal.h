@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_node/engine/world.h"
+#include "sim_node/scene/link_law.h"
 
 namespace cordis::scene {
 
@@ -20,23 +21,29 @@ enum class Quantity : std::uint8_t {
   kDistance,    ///< of the ends of a link [m]; signed in 1-D
   kElongation,  ///< distance less rest length [m]
   kGrowth,      ///< growth of the distance per second, over the last step [m/s]
-  kPull,  ///< K elongation + Z growth, of the present positions; positive pulls the ends together
-          ///< [N]
+  kPull,   ///< of a linear link K elongation + Z growth, of the present positions; of a link with
+           ///< states its pull in the last step; positive pulls the ends together [N]
+  kState,  ///< number of the state of a link, in the order of the file
+  kRestLength,  ///< present rest length of a link with states [m]
+
+  kChanges,  ///< of the states of all links, since step 0
 
   kEnergy,            ///< kinetic + elastic + gravity [J]
   kKineticEnergy,     ///< [J]
   kElasticEnergy,     ///< [J]
   kGravityEnergy,     ///< [J]
   kDissipatedEnergy,  ///< taken by viscosity since step 0 [J]
-  kPortWork           ///< brought in through the ports since step 0 [J]
+  kPortWork,          ///< brought in through the ports since step 0 [J]
+  kSwitchingEnergy    ///< brought in by changes of state since step 0 [J]
 };
 
 /// A signal, compiled: nothing is looked up by name any more.
 struct Signal {
   std::string name;
-  std::string unit;  ///< m, m/s, N or J
+  std::string unit;  ///< m, m/s, N, J, or empty
   Quantity quantity = Quantity::kEnergy;
-  std::uint32_t index = 0;                        ///< of the MAT or the link
+  std::uint32_t index = 0;                        ///< of the MAT, or of the link in its kind
+  LinkKind kind = LinkKind::kLinear;              ///< of the link
   engine::Vec3 direction = engine::Vec3::Zero();  ///< of a MAT's quantity, unit length
   double offset = 0.0;                            ///< subtracted from a position [m]: a port's rest
 };

@@ -13,7 +13,7 @@ namespace {
 using config::Value;
 using engine::Vec3;
 
-enum class Owner { kMat, kLink, kScene };
+enum class Owner { kMat, kLink, kStateLink, kMaxwellLink, kScene };
 
 /// What a scene can ask for, of whom.
 struct QuantityWord {
@@ -23,7 +23,7 @@ struct QuantityWord {
   const char* unit;
   bool has_direction;
 };
-constexpr std::array<QuantityWord, 14> kWords{{
+constexpr std::array<QuantityWord, 24> kWords{{
     {"position", Owner::kMat, Quantity::kPosition, "m", true},
     {"velocity", Owner::kMat, Quantity::kVelocity, "m/s", true},
     {"force", Owner::kMat, Quantity::kForce, "N", true},
@@ -32,17 +32,38 @@ constexpr std::array<QuantityWord, 14> kWords{{
     {"elongation", Owner::kLink, Quantity::kElongation, "m", false},
     {"speed", Owner::kLink, Quantity::kGrowth, "m/s", false},
     {"force", Owner::kLink, Quantity::kPull, "N", false},
+    {"distance", Owner::kStateLink, Quantity::kDistance, "m", false},
+    {"elongation", Owner::kStateLink, Quantity::kElongation, "m", false},
+    {"speed", Owner::kStateLink, Quantity::kGrowth, "m/s", false},
+    {"force", Owner::kStateLink, Quantity::kPull, "N", false},
+    {"state", Owner::kStateLink, Quantity::kState, "", false},
+    {"rest_length", Owner::kStateLink, Quantity::kRestLength, "m", false},
+    {"distance", Owner::kMaxwellLink, Quantity::kDistance, "m", false},
+    {"speed", Owner::kMaxwellLink, Quantity::kGrowth, "m/s", false},
+    {"changes", Owner::kScene, Quantity::kChanges, "", false},
     {"energy", Owner::kScene, Quantity::kEnergy, "J", false},
     {"kinetic_energy", Owner::kScene, Quantity::kKineticEnergy, "J", false},
     {"elastic_energy", Owner::kScene, Quantity::kElasticEnergy, "J", false},
     {"gravity_energy", Owner::kScene, Quantity::kGravityEnergy, "J", false},
     {"dissipated_energy", Owner::kScene, Quantity::kDissipatedEnergy, "J", false},
     {"port_work", Owner::kScene, Quantity::kPortWork, "J", false},
+    {"switching_energy", Owner::kScene, Quantity::kSwitchingEnergy, "J", false},
 }};
 
 const char* name_of(Owner owner) {
-  if (owner == Owner::kScene) return "the scene";
-  return owner == Owner::kLink ? "a link" : "a MAT";
+  switch (owner) {
+    case Owner::kScene:
+      return "the scene";
+    case Owner::kLink:
+      return "a link";
+    case Owner::kStateLink:
+      return "a link with states";
+    case Owner::kMaxwellLink:
+      return "a Maxwell element";
+    case Owner::kMat:
+      break;
+  }
+  return "a MAT";
 }
 
 /// nullptr when the owner has no such quantity.
@@ -59,6 +80,12 @@ std::string list_of_quantities(Owner owner) {
     if (known.owner == owner) list.append(list.empty() ? "" : ", ").append(known.word);
   }
   return list;
+}
+
+/// The owner of links of a kind.
+Owner owner_of(LinkKind kind) {
+  if (kind == LinkKind::kLinear) return Owner::kLink;
+  return kind == LinkKind::kState ? Owner::kStateLink : Owner::kMaxwellLink;
 }
 
 /// What `quantity` asks the owner for; nullptr after a problem.
@@ -101,11 +128,15 @@ void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signa
                     "pick one: " + names_.word_of(picked->indices[0], is_link));
   }
   Owner owner = Owner::kScene;
-  if (picked) owner = is_link ? Owner::kLink : Owner::kMat;
+  if (picked) owner = is_link ? owner_of(kind_of_link(picked->indices[0])) : Owner::kMat;
 
   Signal signal;
   signal.name = entry.key;
   signal.index = picked ? picked->indices[0] : 0;
+  if (is_link) {
+    signal.kind = kind_of_link(picked->indices[0]);
+    signal.index = index_of_link(picked->indices[0]);
+  }
   const QuantityWord* quantity = read_quantity(reader, owner);
   reader.optional_value("axis");
   if (quantity != nullptr) {

@@ -92,5 +92,15 @@ TEST(WithValueAt, ReplacesAddsAndLeavesTheOriginalAlone) {
   EXPECT_EQ(shown(root), "{nodes: {key: {driver: mock, hand: {mass_kg: 1}}}}");
 }
 
+TEST(Value, KnowsWhereAByteOfItsTextStands) {
+  const Value value = value_of("a: \"über x\"\nb: plain x\nc: 'it''s x'\nd: |\n  x\n");
+  const Place quoted = value.find("a").place_in_text(6);  // after a letter of two bytes
+  EXPECT_EQ(quoted.line, 1);
+  EXPECT_EQ(quoted.column, 10);
+  EXPECT_EQ(value.find("b").place_in_text(6).column, 10);
+  EXPECT_EQ(value.find("c").place_in_text(5).column, 4);  // it does not stand there as it reads
+  EXPECT_EQ(value.find("d").place_in_text(0).line, value.find("d").place().line);
+}
+
 }  // namespace
 }  // namespace cordis::config

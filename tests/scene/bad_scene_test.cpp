@@ -88,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "missing key 'kind' in liaison 's'", ""},
         BadScene{kHead1,
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: ^sprng}\n",
-                 "'kind' in liaison 's' must be one of spring, damper, spring_damper, got 'sprng'",
+                 "'kind' in liaison 's' must be one of spring, damper, spring_damper, maxwell, "
+                 "behaviour, parallel, got 'sprng'",
                  "did you mean 'spring'?"},
         BadScene{kHead1,
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: spring, "
@@ -98,11 +99,12 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: damper, "
                  "viscosity_n_s_per_m: 1, rest_m: ^1}\n",
                  "a damper has no 'rest_m'", ""},
-        BadScene{kHead1,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: spring, "
-                 "stiffness_n_per_m: 1, ^colour: red}\n",
-                 "unknown key 'colour' in liaison 's'",
-                 "known keys: kind, stiffness_n_per_m, rest_m, viscosity_n_s_per_m"},
+        BadScene{
+            kHead1,
+            "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: spring, "
+            "stiffness_n_per_m: 1, ^colour: red}\n",
+            "unknown key 'colour' in liaison 's'",
+            "known keys: kind, parameters, stiffness_n_per_m, viscosity_n_s_per_m, rest_m, rest"},
         BadScene{kHead1,
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  include: [^[x]]\n",
                  "'include' must be the path of a file, got a sequence", ""},

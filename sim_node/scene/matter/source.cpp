@@ -47,8 +47,8 @@ void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vecto
   for (const auto& [a, b] : joints) {
     const Vec3& position_a = piece.mats[a].position;
     const Vec3& position_b = piece.mats[b].position;
-    piece.links.push_back(make_link(law, a, b, position_a, position_b, source.space));
-    possible = possible && (source.space == 1 || piece.links.back().rest_length >= 0.0);
+    const double radii = piece.radius_m[a] + piece.radius_m[b];
+    possible = piece.links.join(law, a, b, position_a, position_b, source.space, radii) && possible;
     shortest = std::min(shortest, (position_b - position_a).norm());
   }
   if (possible) return;

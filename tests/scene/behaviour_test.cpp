@@ -1,0 +1,263 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/engine/world.h"
+#include "tests/scene/scene_text.h"
+
+namespace cordis::scene {
+namespace {
+
+constexpr const char* kTwo =
+    "matter:\n"
+    "  wall: {kind: fixed, at_m: [0, 0]}\n"
+    "  bob: {kind: mass, mass_kg: 1, at_m: [1, 0]}\n";
+
+engine::NetworkDescription network_of(const std::string& liaisons, const std::string& links) {
+  return sound_scene(2, kTwo + ("liaisons:\n" + liaisons) + "links:\n" + links).network;
+}
+
+constexpr const char* kCollophane =
+    "  collophane:\n"
+    "    parameters: {stiffness_n_per_m: 400, hold_m: 0.002, slow_m_per_s: hold_m * 5}\n"
+    "    start: unhooked\n"
+    "    states:\n"
+    "      hooked:\n"
+    "        stiffness_n_per_m: stiffness_n_per_m\n"
+    "        viscosity_n_s_per_m: 0.8\n"
+    "        exits: [{to: unhooked, when: abs(elongation_m) > hold_m}]\n"
+    "      unhooked:\n"
+    "        viscosity_n_s_per_m: 2 * 0.025\n"
+    "        exits:\n"
+    "          - to: hooked\n"
+    "            when: \"abs(speed_m_per_s) < slow_m_per_s and falling(abs(speed_m_per_s))\"\n"
+    "            rest: here\n";
+
+TEST(Behaviour, HasItsStatesExitsAndParametersPutToValues) {
+  const engine::NetworkDescription network =
+      network_of(kCollophane, "  - {liaison: collophane, between: [wall, bob], rest_m: 0.9}\n");
+
+  ASSERT_EQ(network.behaviours.size(), 1u);
+  const engine::Behaviour& behaviour = network.behaviours[0];
+  ASSERT_EQ(behaviour.states.size(), 2u);
+  EXPECT_EQ(behaviour.start, 1u);
+  EXPECT_EQ(behaviour.states[0].name, "hooked");
+  EXPECT_EQ(behaviour.states[0].stiffness, 400.0);
+  EXPECT_EQ(behaviour.states[0].viscosity, 0.8);
+  EXPECT_EQ(behaviour.states[1].viscosity, 0.05);
+  ASSERT_EQ(behaviour.exits.size(), 2u);
+  EXPECT_EQ(behaviour.exits[0].target, 1u);
+  EXPECT_EQ(behaviour.exits[0].fired, engine::Quantity::kElongation);
+  EXPECT_EQ(behaviour.exits[0].rest, engine::RestRule::kKeep);
+  EXPECT_EQ(behaviour.exits[1].target, 0u);
+  EXPECT_EQ(behaviour.exits[1].fired, engine::Quantity::kSpeed);
+  EXPECT_EQ(behaviour.exits[1].rest, engine::RestRule::kHere);
+  EXPECT_EQ(behaviour.exits[1].when.code[2].constant, 0.01);  // slow, after hold
+  ASSERT_EQ(network.state_links.size(), 1u);
+  EXPECT_EQ(network.state_links[0].rest_length, 0.9);
+}
+
+TEST(Behaviour, IsOneForEachDistinctSetOfParameters) {
+  const engine::NetworkDescription network =
+      network_of(kCollophane,
+                 "  - {liaison: collophane, between: [wall, bob]}\n"
+                 "  - {liaison: collophane, between: [bob, wall]}\n"
+                 "  - {liaison: collophane, between: [wall, bob], hold_m: 0.004}\n"
+                 "  - {liaison: collophane, between: [wall, bob], hold_m: 0.004}\n"
+                 "  - {liaison: collophane, between: [wall, bob], hold_m: 0.004, name: own}\n");
+  ASSERT_EQ(network.state_links.size(), 5u);
+  const auto of = [&](std::size_t link) { return network.state_links[link].behaviour; };
+  EXPECT_EQ(network.behaviours.size(), 3u);
+  EXPECT_EQ(of(0), of(1));
+  EXPECT_NE(of(0), of(2));
+  EXPECT_EQ(of(2), of(3));
+  EXPECT_NE(of(2), of(4));  // of its own, for it has a name by which it can be changed
+  const engine::Behaviour& held = network.behaviours[of(2)];
+  EXPECT_EQ(held.exits[0].when.code[2].constant, 0.004);
+  EXPECT_EQ(held.exits[1].when.code[2].constant, 0.02);  // what depends on it follows
+}
+
+TEST(Behaviour, LikeAnotherHasWhatItDoesNotSayItself) {
+  const engine::NetworkDescription network = network_of(
+      std::string("  rosin: {like: collophane, parameters: {hold_m: 0.003}}\n") + kCollophane +
+          "  wet:\n    like: rosin\n    states: {hooked: {viscosity_n_s_per_m: 7}}\n",
+      "  - {liaison: wet, between: [wall, bob]}\n");
+  const engine::Behaviour& wet = network.behaviours.at(0);
+  EXPECT_EQ(wet.states.size(), 2u);
+  EXPECT_EQ(wet.start, 1u);
+  EXPECT_EQ(wet.states[0].viscosity, 7.0);
+  EXPECT_EQ(wet.states[0].stiffness, 400.0);
+  EXPECT_EQ(wet.exits[0].when.code[2].constant, 0.003);
+}
+
+TEST(Behaviour, OfOneStateNeedsNoStates) {
+  const engine::NetworkDescription network = network_of(
+      "  clay:\n"
+      "    viscosity_n_s_per_m: 0.02\n"
+      "    elasticity: {kind: lennard_jones, depth_j: 1.0e-5, diameter_m: 0.008, cut_m: 0.02}\n"
+      "    dissipation: {kind: table, at_m_per_s: [-1, 0, 1], force_n: [-2, 0, 3]}\n"
+      "    force_limit_n: 5\n"
+      "    pulls: false\n",
+      "  - {liaison: clay, between: [wall, bob], viscosity_n_s_per_m: 0.03}\n");
+  const engine::Behaviour& clay = network.behaviours.at(0);
+  ASSERT_TRUE(clay.is_stateless());
+  const engine::LinkState& state = clay.states[0];
+  EXPECT_EQ(state.viscosity, 0.03);
+  EXPECT_EQ(state.elasticity.kind, engine::Law::Kind::kLennardJones);
+  EXPECT_EQ(state.elasticity.depth, 1.0e-5);
+  EXPECT_EQ(state.elasticity.diameter, 0.008);
+  EXPECT_EQ(state.elasticity.cut, 0.02);
+  EXPECT_EQ(state.dissipation.table.value, (std::vector<double>{-2.0, 0.0, 3.0}));
+  EXPECT_EQ(state.force_limit, 5.0);
+  EXPECT_FALSE(state.pulls);
+  EXPECT_TRUE(state.pushes);
+}
+
+TEST(Law, OfEveryKindIsRead) {
+  const auto law = [](const std::string& text) {
+    return network_of("  l: {elasticity: " + text + "}\n",
+                      "  - {liaison: l, between: [wall, bob]}\n")
+        .behaviours.at(0)
+        .states[0]
+        .elasticity;
+  };
+  const engine::Law table = law("{kind: table, at_m: [-1, 0, 2], force_n: [-5, 0, 1]}");
+  EXPECT_EQ(table.kind, engine::Law::Kind::kTable);
+  EXPECT_EQ(table.table.at, (std::vector<double>{-1.0, 0.0, 2.0}));
+  const engine::Law power = law("{kind: power, coefficient: 3e4, exponent: 1.5}");
+  EXPECT_EQ(power.kind, engine::Law::Kind::kPower);
+  EXPECT_EQ(power.coefficient, 3e4);
+  EXPECT_EQ(power.exponent, 1.5);
+  const engine::Law rings =
+      law("{kind: rings, rings: [{stiffness_n_per_m: 5, radius_m: 0.1}, {stiffness_n_per_m: -1, "
+          "radius_m: 0.2}]}");
+  ASSERT_EQ(rings.rings.size(), 2u);
+  EXPECT_EQ(rings.rings[1].stiffness, -1.0);
+  EXPECT_EQ(rings.rings[1].radius, 0.2);
+}
+
+TEST(Law, OfAFreeExpressionIsItsValue) {
+  const engine::NetworkDescription network = network_of(
+      "  l:\n    parameters: {k: 500}\n"
+      "    elasticity: \"k * elongation_m + 2e6 * elongation_m^3 - (distance_m > 2 ? 1 : 0)\"\n"
+      "    dissipation: 3 * speed_m_per_s * mass_a_kg\n",
+      "  - {liaison: l, between: [wall, bob]}\n");
+  const engine::LinkState& state = network.behaviours.at(0).states[0];
+  ASSERT_EQ(state.elasticity.kind, engine::Law::Kind::kFunction);
+  const engine::LinkFunction& pull = *state.elasticity.function;
+  EXPECT_NEAR(pull(1.0, 0.1, 0.0, 0.0, 0.0), 500 * 0.1 + 2e6 * 0.001, 1e-9);
+  EXPECT_NEAR(pull(3.0, 0.1, 0.0, 0.0, 0.0), 500 * 0.1 + 2e6 * 0.001 - 1.0, 1e-9);
+  EXPECT_EQ((*state.dissipation.function)(1.0, 0.1, 2.0, 4.0, 0.0), 24.0);
+}
+
+TEST(Liaison, MayBeAMaxwellElement) {
+  const engine::NetworkDescription network =
+      network_of("  creep: {kind: maxwell, stiffness_n_per_m: 100, viscosity_n_s_per_m: 5}\n",
+                 "  - {liaison: creep, between: [wall, bob]}\n"
+                 "  - {liaison: creep, between: [wall, bob], stiffness_n_per_m: 50}\n");
+  ASSERT_EQ(network.maxwell_links.size(), 2u);
+  EXPECT_EQ(network.maxwell_links[0].stiffness, 100.0);
+  EXPECT_EQ(network.maxwell_links[0].viscosity, 5.0);
+  EXPECT_EQ(network.maxwell_links[1].stiffness, 50.0);
+}
+
+TEST(Liaison, OfSeveralInParallelMakesALinkOfEach) {
+  const Scene scene = sound_scene(
+      2,
+      kTwo + std::string("liaisons:\n"
+                         "  soft: {kind: spring, stiffness_n_per_m: 3}\n"
+                         "  solid:\n"
+                         "    parameters: {late_n_per_m: 7}\n"
+                         "    parallel: [soft, {kind: maxwell, stiffness_n_per_m: late_n_per_m, "
+                         "viscosity_n_s_per_m: 1}]\n"
+                         "links:\n"
+                         "  - {liaison: solid, between: [wall, bob], rest_m: 2}\n"
+                         "  - {liaison: solid, between: [wall, bob], late_n_per_m: 9, name: n}\n"));
+  ASSERT_EQ(scene.network.links.size(), 2u);
+  ASSERT_EQ(scene.network.maxwell_links.size(), 2u);
+  EXPECT_EQ(scene.network.links[0].rest_length, 2.0);
+  EXPECT_EQ(scene.network.links[1].rest_length, 1.0);
+  EXPECT_EQ(scene.network.maxwell_links[0].stiffness, 7.0);
+  EXPECT_EQ(scene.network.maxwell_links[1].stiffness, 9.0);
+  std::string names;
+  for (const NamedRange& range : scene.links) {
+    names +=
+        range.name + " " + std::to_string(range.first) + " " + std::to_string(range.count) + ", ";
+  }
+  EXPECT_EQ(names, "solid.soft 0 1, n.soft 1 1, solid.maxwell 2 1, n.maxwell 3 1, ");
+}
+
+TEST(SetLiaison, WithinASetReachesAsFarAsItsLaw) {
+  const Scene scene = sound_scene(
+      2,
+      "liaisons:\n"
+      "  clay: {viscosity_n_s_per_m: 0.02, elasticity: {kind: lennard_jones, depth_j: 1.0e-5, "
+      "diameter_m: 0.008, cut_m: 0.02}}\n"
+      "  touch: {stiffness_n_per_m: 90, pulls: false, range: rest}\n"
+      "matter:\n"
+      "  paste: {kind: mass, ball: {mass_kg: 1, radius_m: 0.01}, at_m: [[0, 0], [1, 0], [2, 0]]}\n"
+      "  grit: {kind: mass, ball: {mass_kg: 1, radius_m: 0.02}, at_m: [[0, 1], [1, 1]]}\n"
+      "links:\n"
+      "  - {liaison: clay, within: paste}\n"
+      "  - {liaison: clay, within: \"paste[0..1]\", range_m: 0.03}\n"
+      "  - {liaison: touch, between_sets: [paste, grit], name: rub}\n"
+      "  - {liaison: touch, within: grit, rest_m: 0.5}\n");
+  const auto& sets = scene.network.sets;
+  ASSERT_EQ(sets.size(), 4u);
+  EXPECT_EQ(sets[0].set_p, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_TRUE(sets[0].set_q.empty());
+  EXPECT_EQ(sets[0].range, 0.02);
+  EXPECT_EQ(sets[0].behaviour, sets[1].behaviour);
+  EXPECT_EQ(sets[1].range, 0.03);
+  EXPECT_EQ(sets[2].set_q, (std::vector<std::uint32_t>{3, 4}));
+  EXPECT_EQ(sets[2].range, 0.03);  // the radii of two balls
+  EXPECT_LT(sets[2].rest_length, 0.0);
+  EXPECT_EQ(sets[3].range, 0.5);
+  EXPECT_EQ(sets[3].rest_length, 0.5);
+  EXPECT_EQ(scene.set_names, (std::vector<std::string>{"clay", "clay", "rub", "touch"}));
+}
+
+TEST(SetLiaison, MayBeLinear) {
+  const Scene scene = sound_scene(
+      2,
+      "liaisons:\n  s: {kind: spring_damper, stiffness_n_per_m: 3, viscosity_n_s_per_m: 4, rest_m: "
+      "1}\n"
+      "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
+      "links:\n  - {liaison: s, within: a, range_m: 2}\n");
+  const engine::Behaviour& pair = scene.network.behaviours.at(scene.network.sets.at(0).behaviour);
+  EXPECT_TRUE(pair.is_stateless());
+  EXPECT_EQ(pair.states[0].stiffness, 3.0);
+  EXPECT_EQ(pair.states[0].viscosity, 4.0);
+  EXPECT_EQ(scene.network.sets[0].rest_length, 1.0);
+}
+
+TEST(Matter, MayBeJoinedByLinksWithStates) {
+  const Scene scene = sound_scene(
+      2,
+      "liaisons:\n"
+      "  brittle:\n"
+      "    parameters: {length_m: 0.1}\n"
+      "    states:\n"
+      "      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > length_m}]}\n"
+      "      broken: {}\n"
+      "matter:\n"
+      "  bar: {kind: string, count: 4, mass_kg: 1, from_m: [0, 0], to_m: [3, 0], liaison: brittle, "
+      "length_m: 0.2}\n"
+      "signals:\n"
+      "  s: {of: \"bar.links[2]\", quantity: state}\n"
+      "  r: {of: \"bar.links[2]\", quantity: rest_length}\n"
+      "  n: {quantity: changes}\n");
+  ASSERT_EQ(scene.network.state_links.size(), 3u);
+  EXPECT_EQ(scene.network.behaviours.at(0).exits[0].when.code[1].constant, 0.2);
+  engine::World world(std::make_shared<const engine::Network>(scene.network));
+  world.force_state(2, 1);
+  world.step();
+  double values[3] = {};
+  scene.signals.read(world, values);
+  EXPECT_EQ(values[0], 1.0);
+  EXPECT_EQ(values[1], 1.0);
+  EXPECT_EQ(values[2], 1.0);
+}
+
+}  // namespace
+}  // namespace cordis::scene
