@@ -35,15 +35,10 @@ void tell_network(const scene::Scene& scene, msg::SceneDescription& description)
     description.mat_mass_kg().push_back(static_cast<float>(mass));
     description.mat_radius_m().push_back(static_cast<float>(scene.radius_m[i]));
   }
-  const auto tell_ends = [&](const auto& links) {
-    for (const auto& link : links) {
-      description.link_ends().push_back(link.mat_a);
-      description.link_ends().push_back(link.mat_b);
-    }
-  };
-  tell_ends(scene.network.links);  // in the order of Scene::link_count()
-  tell_ends(scene.network.state_links);
-  tell_ends(scene.network.maxwell_links);
+  for (const engine::Link& link : scene.network.links) {
+    description.link_ends().push_back(link.mat_a);
+    description.link_ends().push_back(link.mat_b);
+  }
 }
 
 }  // namespace

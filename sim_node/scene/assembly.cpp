@@ -9,7 +9,7 @@ namespace cordis::scene {
 using config::Value;
 
 void Assembly::read_liaisons(const Value& section) {
-  liaisons_.read(section, scene_.file, scene_.space());
+  liaisons_->read(section, scene_.file, scene_.space(), problems_);
 }
 
 bool Assembly::add(Piece piece, const config::Place& place) {
@@ -35,8 +35,9 @@ void Assembly::read_matter(const Value& section) {
     check_name(entry.key, entry.key_place, problems_);
     const std::size_t errors_before = problems_.error_count();
     config::MappingReader reader(entry.value, "matter '" + entry.key + "'", problems_);
-    Piece piece = read_piece(reader, liaisons_, scene_.space(), problems_);
+    Piece piece = read_piece(reader, *liaisons_, scene_.space(), problems_);
     const std::vector<NamedRange> inner_names = piece.names;
+    const std::optional<LinkLaw> law = piece.law;
     const std::uint32_t first_mat = mat_count();
     const LinkCounts links_before = link_counts();
     const bool sound =
@@ -51,7 +52,8 @@ void Assembly::read_matter(const Value& section) {
                  problems_);
     }
     scene_.matter.push_back({entry.key, first_mat, mat_count() - first_mat});
-    name_links(entry.key + ".links", links_before, sound, entry.key_place);
+    name_links(entry.key + ".links", links_before, sound, entry.key_place,
+               law && law->beside.empty() ? &*law : nullptr);
   }
 }
 

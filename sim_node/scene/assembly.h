@@ -19,6 +19,7 @@ struct Piece {
   std::vector<engine::Mat> mats;
   std::vector<LayoutPoint> layout;  ///< per MAT in 1-D, else empty
   LinkLists links;
+  std::optional<LinkLaw> law;          ///< of all its links; none when there are several
   std::vector<double> radius_m;        ///< per MAT; 0 for a punctual mass
   std::vector<double> drawn_radius_m;  ///< per MAT
   std::vector<NamedRange> names;       ///< of MATs within it, from 0
@@ -32,19 +33,11 @@ inline std::uint32_t sum(const LinkCounts& counts) noexcept {
   return counts[0] + counts[1] + counts[2];
 }
 
-/// Consecutive links of one kind under a name.
-struct LinkGroup {
-  std::string name;
-  LinkKind kind = LinkKind::kLinear;
-  std::uint32_t first = 0;  ///< among those of its kind
-  std::uint32_t count = 0;
-};
-
 /// What the sections of a scene file add to, in the order matter, ports, links, signals.
 class Assembly {
  public:
   Assembly(Scene& scene, config::Problems& problems)
-      : scene_(scene), problems_(problems), liaisons_(scene.network, problems) {}
+      : scene_(scene), problems_(problems), liaisons_(std::make_shared<Liaisons>()) {}
 
   void read_liaisons(const config::Value& section);
   void read_matter(const config::Value& section);
@@ -81,10 +74,14 @@ class Assembly {
   bool join(const Selection& from, const Selection& to, const LinkLaw& law,
             const config::Place& place);
 
+  /// Remembers the links of a kind that have been added since there were `before`.
+  void add_group(const std::string& name, LinkKind kind, const LinkCounts& before,
+                 const LinkLaw* law);
   /// Gives a name to the links that have been added since there were `before` of each kind. Where
   /// they are of one kind they bear it, else each kind bears its own after it.
+  /// @param law  they were made by; nullptr when they were made by several
   void name_links(const std::string& name, const LinkCounts& before, bool sound,
-                  const config::Place& place);
+                  const config::Place& place, const LinkLaw* law);
 
   /// Adds the MATs and links of a piece. @return false when the scene would become too large, which
   /// is a problem.
@@ -101,9 +98,8 @@ class Assembly {
 
   Scene& scene_;
   config::Problems& problems_;
-  Liaisons liaisons_;
+  std::shared_ptr<Liaisons> liaisons_;
   Names names_;
-  std::vector<LinkGroup> groups_;
   std::vector<std::uint32_t> ports_without_layout_;  // MATs of a 1-D scene
 };
 

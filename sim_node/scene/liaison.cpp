@@ -42,113 +42,134 @@ Value laid_on(const Value& base, const Value& own, bool is_whole) {
 
 }  // namespace
 
-void Liaisons::read(const Value& section, const std::string& file, int space) {
-  read_section(section, file);
-  std::vector<std::string> open;
-  for (const std::string& name : names_) complete(name, open);
+/// Reads the sections of the files, then puts the definitions together.
+class Liaisons::Reader {
+ public:
+  Reader(Liaisons& result, config::Problems& problems) : result_(result), problems_(problems) {}
+
+  void read_section(const Value& section, const std::string& file) {
+    open_files_.push_back(whole_path(file));
+    known_files_.push_back(open_files_.back());
+    if (section.exists() && section.kind() != Value::Kind::kMapping) {
+      problems_.error(section.place(),
+                      "'liaisons' must be a mapping of keys, got " + section.described());
+    }
+    for (const Value::Entry& entry : section.entries()) {
+      if (entry.key != "include") {
+        add(entry);
+        continue;
+      }
+      const bool sequence = entry.value.kind() == Value::Kind::kSequence;
+      for (const Value& path : sequence ? entry.value.items() : std::vector<Value>{entry.value})
+        read_include(path, file);
+    }
+    open_files_.pop_back();
+  }
+
+  /// Completes the definitions of all liaisons.
+  void complete_all() {
+    for (const std::string& name : result_.names_) complete(name);
+  }
+
+ private:
+  void read_include(const Value& path, const std::string& from_file) {
+    if (path.kind() != Value::Kind::kScalar || path.text().empty()) {
+      problems_.error(path.place(),
+                      "'include' must be the path of a file, got " + path.described());
+      return;
+    }
+    const std::filesystem::path file = std::filesystem::path(from_file).parent_path() / path.text();
+    const std::string whole = whole_path(file);
+    if (std::find(open_files_.begin(), open_files_.end(), whole) != open_files_.end()) {
+      problems_.error(path.place(), "'" + path.text() + "' includes itself");
+      return;
+    }
+    if (std::find(known_files_.begin(), known_files_.end(), whole) != known_files_.end()) return;
+
+    const Value root = config::load_file(file.string(), problems_, path.place());
+    if (!root.exists()) {
+      known_files_.push_back(whole);
+      return;
+    }
+    config::MappingReader reader(root, "file of liaisons", problems_);
+    reader.required_integer("cordis", 1, 1);
+    read_section(reader.required_mapping("liaisons"), file.string());
+    reader.finish();
+  }
+
+  void add(const Value::Entry& entry) {
+    const bool named = check_name(entry.key, entry.key_place, problems_);
+    const auto [known, is_new] = result_.liaisons_.try_emplace(entry.key);
+    if (!is_new) {
+      const config::Place& first = known->second.place;
+      problems_.error(entry.key_place, "the liaison '" + entry.key + "' is defined twice",
+                      "first defined at " + first.file + ":" + std::to_string(first.line));
+      return;
+    }
+    result_.names_.push_back(entry.key);
+    Liaison& liaison = known->second;
+    liaison.place = entry.key_place;
+    liaison.definition = entry.value;
+    liaison.sound = named;
+    if (entry.value.kind() == Value::Kind::kMapping) return;
+    problems_.error(
+        entry.value.place(),
+        "liaison '" + entry.key + "' must be a mapping of keys, got " + entry.value.described());
+    liaison.sound = false;
+  }
+
+  /// Completes the definition of a liaison, after that of the one it is like.
+  void complete(const std::string& name) {
+    Liaison& liaison = result_.liaisons_.at(name);
+    if (liaison.complete || !liaison.sound) return;
+    const Value like = liaison.definition.find("like");
+    waiting_.push_back(name);
+    const auto cycle = std::find(waiting_.begin(), waiting_.end(), like.text());
+    if (like.exists() && cycle != waiting_.end()) {
+      std::string circle;
+      for (auto word = cycle; word != waiting_.end(); ++word) circle += *word + " -> ";
+      problems_.error(like.place(), "the liaison '" + name + "' is like itself",
+                      circle + like.text());
+      liaison.sound = false;
+    } else if (waiting_.size() > kMostLevels) {
+      problems_.error(like.place(), "more than 64 liaisons are like each other");
+      liaison.sound = false;
+    } else if (like.exists()) {
+      if (result_.find(like.text()) != nullptr) complete(like.text());
+      liaison.definition = result_.completed(liaison.definition, problems_);
+      liaison.sound = liaison.definition.exists();
+    }
+    liaison.complete = true;
+    waiting_.pop_back();
+  }
+
+  Liaisons& result_;
+  config::Problems& problems_;
+  std::vector<std::string>
+      open_files_;  // canonical paths from the scene down to the present include
+  std::vector<std::string> known_files_;  // all that have been read
+  std::vector<std::string> waiting_;      // liaisons that wait for one they are like
+};
+
+void Liaisons::read(const Value& section, const std::string& file, int space,
+                    config::Problems& problems) {
+  Reader reader(*this, problems);
+  reader.read_section(section, file);
+  reader.complete_all();
   for (const std::string& name : names_) {
     Liaison& liaison = liaisons_.at(name);
     if (!liaison.sound) continue;
     std::optional<LinkLaw> law =
-        read_liaison(liaison.definition, name, {}, *this, space, true, problems_);
+        read_liaison(liaison.definition, name, {}, *this, space, true, problems);
     liaison.sound = law.has_value();
     if (law) liaison.law = std::move(*law);
   }
 }
 
-void Liaisons::read_section(const Value& section, const std::string& file) {
-  open_files_.push_back(whole_path(file));
-  known_files_.push_back(open_files_.back());
-  if (section.exists() && section.kind() != Value::Kind::kMapping) {
-    problems_.error(section.place(),
-                    "'liaisons' must be a mapping of keys, got " + section.described());
-  }
-  for (const Value::Entry& entry : section.entries()) {
-    if (entry.key != "include") {
-      add(entry);
-      continue;
-    }
-    const bool sequence = entry.value.kind() == Value::Kind::kSequence;
-    for (const Value& path : sequence ? entry.value.items() : std::vector<Value>{entry.value}) {
-      read_include(path, file);
-    }
-  }
-  open_files_.pop_back();
-}
-
-void Liaisons::read_include(const Value& path, const std::string& from_file) {
-  if (path.kind() != Value::Kind::kScalar || path.text().empty()) {
-    problems_.error(path.place(), "'include' must be the path of a file, got " + path.described());
-    return;
-  }
-  const std::filesystem::path file = std::filesystem::path(from_file).parent_path() / path.text();
-  const std::string whole = whole_path(file);
-  if (std::find(open_files_.begin(), open_files_.end(), whole) != open_files_.end()) {
-    problems_.error(path.place(), "'" + path.text() + "' includes itself");
-    return;
-  }
-  if (std::find(known_files_.begin(), known_files_.end(), whole) != known_files_.end()) return;
-
-  const Value root = config::load_file(file.string(), problems_, path.place());
-  if (!root.exists()) {
-    known_files_.push_back(whole);
-    return;
-  }
-  config::MappingReader reader(root, "file of liaisons", problems_);
-  reader.required_integer("cordis", 1, 1);
-  read_section(reader.required_mapping("liaisons"), file.string());
-  reader.finish();
-}
-
-void Liaisons::add(const Value::Entry& entry) {
-  const bool named = check_name(entry.key, entry.key_place, problems_);
-  const auto [known, is_new] = liaisons_.try_emplace(entry.key);
-  if (!is_new) {
-    const config::Place& first = known->second.place;
-    problems_.error(entry.key_place, "the liaison '" + entry.key + "' is defined twice",
-                    "first defined at " + first.file + ":" + std::to_string(first.line));
-    return;
-  }
-  names_.push_back(entry.key);
-  Liaison& liaison = known->second;
-  liaison.place = entry.key_place;
-  liaison.definition = entry.value;
-  liaison.sound = named;
-  if (entry.value.kind() == Value::Kind::kMapping) return;
-  problems_.error(
-      entry.value.place(),
-      "liaison '" + entry.key + "' must be a mapping of keys, got " + entry.value.described());
-  liaison.sound = false;
-}
-
-void Liaisons::complete(const std::string& name, std::vector<std::string>& open) {
-  Liaison& liaison = liaisons_.at(name);
-  if (liaison.complete || !liaison.sound) return;
-  const Value like = liaison.definition.find("like");
-  open.push_back(name);
-  const auto cycle = std::find(open.begin(), open.end(), like.text());
-  if (like.exists() && cycle != open.end()) {
-    std::string circle;
-    for (auto word = cycle; word != open.end(); ++word) circle += *word + " -> ";
-    problems_.error(like.place(), "the liaison '" + name + "' is like itself",
-                    circle + like.text());
-    liaison.sound = false;
-  } else if (open.size() > kMostLevels) {
-    problems_.error(like.place(), "more than 64 liaisons are like each other");
-    liaison.sound = false;
-  } else if (like.exists()) {
-    if (liaisons_.count(like.text()) != 0) complete(like.text(), open);
-    liaison.definition = completed(liaison.definition);
-    liaison.sound = liaison.definition.exists();
-  }
-  liaison.complete = true;
-  open.pop_back();
-}
-
-Value Liaisons::completed(const Value& definition) const {
+Value Liaisons::completed(const Value& definition, config::Problems& problems) const {
   const Value like = definition.find("like");
   if (!like.exists()) return definition;
-  const Liaison* const base = find(like);
+  const Liaison* const base = find(like, problems);
   return base == nullptr ? Value{} : laid_on(base->definition, definition, true);
 }
 
@@ -157,14 +178,14 @@ const Liaison* Liaisons::find(const std::string& name) const noexcept {
   return found == liaisons_.end() ? nullptr : &found->second;
 }
 
-const Liaison* Liaisons::find(const Value& name) const {
+const Liaison* Liaisons::find(const Value& name, config::Problems& problems) const {
   const Liaison* const known = name.kind() == Value::Kind::kScalar ? find(name.text()) : nullptr;
   if (known != nullptr) return known->sound ? known : nullptr;
   if (name.kind() != Value::Kind::kScalar) {
-    problems_.error(name.place(), "a liaison is called by its name, got " + name.described());
+    problems.error(name.place(), "a liaison is called by its name, got " + name.described());
   } else {
-    problems_.error(name.place(), "no liaison is named '" + name.text() + "'",
-                    config::did_you_mean(name.text(), names_));
+    problems.error(name.place(), "no liaison is named '" + name.text() + "'",
+                   config::did_you_mean(name.text(), names_));
   }
   return nullptr;
 }

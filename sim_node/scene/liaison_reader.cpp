@@ -152,7 +152,7 @@ class LiaisonReader {
     read_rest(reader, law, parameters);
     law.reach = read_reach(reader, parameters);
     if (problems_.error_count() != errors_before) return law;
-    behaviour.name = reader.what();
+    behaviour.name = open_.back();
     try {
       engine::check_behaviour(behaviour, reader.what());
     } catch (const std::invalid_argument& refusal) {
@@ -205,7 +205,7 @@ class LiaisonReader {
     const std::string name = item.kind() == Value::Kind::kScalar ? item.text() : std::string{};
     LinkLaw law;
     if (item.kind() == Value::Kind::kMapping) {
-      const Value definition = liaisons_.completed(item);
+      const Value definition = liaisons_.completed(item, problems_);
       if (!definition.exists()) return law;
       law = read(definition, "a part of " + what, {}, &parameters);
       const Value like = item.find("like");
@@ -219,7 +219,7 @@ class LiaisonReader {
                       circle + name);
       return law;
     }
-    const Liaison* const liaison = liaisons_.find(item);
+    const Liaison* const liaison = liaisons_.find(item, problems_);
     if (liaison == nullptr) return law;
     std::vector<std::string> open = open_;
     open.push_back(name);

@@ -111,6 +111,8 @@ GivenParameters read_given(MappingReader& reader, const std::vector<std::string>
 void place_behaviours(const Use& use, const std::string& liaison, const GivenParameters& given,
                       LinkLaw& law) {
   const auto put = [&](LinkLaw& part) {
+    part.liaison = liaison;
+    part.given = given;
     if (part.kind != LinkKind::kState) return;
     part.behaviour_index =
         use.liaisons.pool().index_of({liaison, given, part.part, use.owner}, *part.behaviour);
@@ -172,7 +174,10 @@ std::optional<LinkLaw> read_law(MappingReader& reader, LawPlace place, const Lia
   const Use use{reader, place, liaisons, space, owner};
   const Value name = place == LawPlace::kLink ? reader.required_value("liaison")
                                               : reader.optional_value("liaison");
-  const Liaison* const liaison = name.exists() ? liaisons.find(name) : nullptr;
+  Problems of_name;
+  const Liaison* const liaison = name.exists() ? liaisons.find(name, of_name) : nullptr;
+  for (const config::Problem& problem : of_name.all())
+    reader.error_at("liaison", problem.message, problem.hint);
   std::optional<LinkLaw> law;
   if (liaison != nullptr) {
     law = law_of_liaison(use, name, *liaison);

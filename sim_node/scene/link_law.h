@@ -30,6 +30,9 @@ struct Reach {
   double length = 0.0;
 };
 
+/// Values that a link gives to parameters of its liaison.
+using GivenParameters = std::map<std::string, double>;
+
 /// A liaison with its parameters put to values: what one link of it consists of.
 struct LinkLaw {
   LinkKind kind = LinkKind::kLinear;
@@ -42,6 +45,8 @@ struct LinkLaw {
   std::uint32_t behaviour_index = 0;  ///< of kState, in the network, once a link uses it
   Reach reach;                        ///< of kState
   std::string part;                   ///< its name in a parallel liaison, else empty
+  std::string liaison;                ///< the name of that it was made from, or empty
+  GivenParameters given;              ///< what the link gave to it
   std::vector<LinkLaw> beside;        ///< the others of a parallel liaison
 };
 
@@ -52,14 +57,9 @@ inline constexpr const char* kViscosity = "viscosity_n_s_per_m";
 /// Precondition: the law is not of kMaxwell.
 std::shared_ptr<const engine::Behaviour> behaviour_of(const LinkLaw& law);
 
-/// Values that a link gives to parameters of its liaison.
-using GivenParameters = std::map<std::string, double>;
-
 /// The behaviours of a network, one for each distinct set of parameter values.
 class BehaviourPool {
  public:
-  explicit BehaviourPool(std::vector<engine::Behaviour>& behaviours) : behaviours_(behaviours) {}
-
   /// Where a behaviour of the pool comes from.
   struct Origin {
     std::string liaison;
@@ -72,9 +72,10 @@ class BehaviourPool {
   /// Index of the behaviour of this origin, which is added when it is new.
   std::uint32_t index_of(const Origin& origin, const engine::Behaviour& behaviour);
   const std::map<Origin, std::uint32_t>& origins() const noexcept { return indices_; }
+  const std::vector<engine::Behaviour>& behaviours() const noexcept { return behaviours_; }
 
  private:
-  std::vector<engine::Behaviour>& behaviours_;
+  std::vector<engine::Behaviour> behaviours_;
   std::map<Origin, std::uint32_t> indices_;
 };
 

@@ -59,11 +59,9 @@ void Assembly::read_ends(LinkEntry& entry) {
     const bool joined = sound && join(ends[0], ends[1], part, between.place());
     const std::string name = parts.size() == 1 ? entry.name : entry.name + "." + part.part;
     if (entry.has_name) {
-      name_links(name, before, joined, entry.reader.place_of("name"));
+      name_links(name, before, joined, entry.reader.place_of("name"), &part);
     } else if (joined) {
-      const auto kind = static_cast<std::size_t>(part.kind);
-      groups_.push_back(
-          {names_.full(name), part.kind, before[kind], link_counts()[kind] - before[kind]});
+      add_group(name, part.kind, before, &part);
     }
     if (!joined) break;
   }
@@ -99,8 +97,20 @@ bool Assembly::join(const Selection& from, const Selection& to, const LinkLaw& l
   return true;
 }
 
+void Assembly::add_group(const std::string& name, LinkKind kind, const LinkCounts& before,
+                         const LinkLaw* law) {
+  const auto k = static_cast<std::size_t>(kind);
+  LinkGroup group{names_.full(name), kind, before[k], link_counts()[k] - before[k], {}, {}, {}};
+  if (law != nullptr) {
+    group.liaison = law->liaison;
+    group.part = law->part;
+    group.given = law->given;
+  }
+  scene_.link_groups.push_back(std::move(group));
+}
+
 void Assembly::name_links(const std::string& name, const LinkCounts& before, bool sound,
-                          const config::Place& place) {
+                          const config::Place& place, const LinkLaw* law) {
   const LinkCounts after = link_counts();
   constexpr std::array<const char*, kLinkKindCount> kEndings{".linear", ".states", ".maxwell"};
   std::size_t kinds = 0;
@@ -111,7 +121,7 @@ void Assembly::name_links(const std::string& name, const LinkCounts& before, boo
     const std::string full = kinds > 1 ? name + kEndings[k] : name;
     const auto kind = static_cast<LinkKind>(k);
     names_.add({full, Named::kLinks, link_word(kind, before[k]), count, sound, place}, problems_);
-    if (count > 0) groups_.push_back({names_.full(full), kind, before[k], count});
+    if (count > 0) add_group(full, kind, before, law);
   }
 }
 
@@ -135,9 +145,11 @@ double Assembly::radius_of(std::uint32_t mat) const noexcept {
 }
 
 void Assembly::finish() {
+  scene_.network.behaviours = liaisons_->pool().behaviours();
+  scene_.liaisons = liaisons_;
   const LinkCounts counts = link_counts();
   const std::array<std::uint32_t, kLinkKindCount> first{0, counts[0], counts[0] + counts[1]};
-  for (const LinkGroup& group : groups_) {
+  for (const LinkGroup& group : scene_.link_groups) {
     scene_.links.push_back(
         {group.name, first[static_cast<std::size_t>(group.kind)] + group.first, group.count});
   }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "node/config/problem.h"
 #include "sim_node/engine/network.h"
+#include "sim_node/scene/link_law.h"
 #include "sim_node/scene/signal.h"
 
 namespace cordis::scene {
@@ -16,6 +18,17 @@ struct NamedRange {
   std::string name;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
+};
+
+/// Consecutive links of one kind under a name.
+struct LinkGroup {
+  std::string name;
+  LinkKind kind = LinkKind::kLinear;
+  std::uint32_t first = 0;  ///< among those of its kind
+  std::uint32_t count = 0;
+  std::string liaison;    ///< they are made from; empty when there is none
+  std::string part;       ///< of it, when it is a parallel one
+  GivenParameters given;  ///< by the link
 };
 
 /// The two roles of a device. [Luc90 V.1 Force feedback gestual transducers]
@@ -62,6 +75,8 @@ struct Scene {
   std::vector<NamedRange>
       links;  ///< names of links in the order of their numbers; see docs/language.md
   std::vector<std::string> set_names;  ///< per set of the network
+  std::vector<LinkGroup> link_groups;  ///< what `links` names, kind by kind
+  std::shared_ptr<const Liaisons> liaisons;
   std::vector<Port> ports;
   SignalReader signals;
   std::vector<double> radius_m;     ///< per MAT, as it is drawn; 0 for a point

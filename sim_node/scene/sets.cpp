@@ -148,7 +148,7 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
     }
     set.behaviour = part.kind == LinkKind::kState
                         ? part.behaviour_index
-                        : liaisons_.pool().index_of(
+                        : liaisons_->pool().index_of(
                               {reader.optional_text("liaison", ""),
                                {{kStiffness, part.stiffness}, {kViscosity, part.viscosity}},
                                part.part,

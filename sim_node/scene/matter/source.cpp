@@ -42,6 +42,7 @@ void fix(engine::Mat& mat) {
 }
 
 void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Joint>& joints) {
+  piece.law = piece.links.count() == 0 ? std::optional(law) : std::nullopt;
   bool possible = true;
   double shortest = kFarthest;
   for (const auto& [a, b] : joints) {
