@@ -11,8 +11,8 @@ namespace cordis::engine {
 /// of 4 straddles two.
 template <class T>
 struct CacheLineAllocator {
-  using value_type =
-      T;  // NOLINT(readability-identifier-naming): the name that std::vector asks for
+  // NOLINTNEXTLINE(readability-identifier-naming): the name that std::vector asks for
+  using value_type = T;
   static constexpr std::align_val_t kAlignment{64};
 
   CacheLineAllocator() = default;
