@@ -46,11 +46,19 @@ Mock::Mock(const MockSettings& settings, const AxisLayout& layout) : layout_(lay
   key.lowest_m = layout.lowest_m;
   key.highest_m = layout.highest_m;
   axes_.resize(static_cast<std::size_t>(layout.count));
-  for (Axis& axis : axes_) axis.key = MockKey(key);
+  std::uint64_t seed = settings.seed;
+  for (Axis& axis : axes_) {
+    axis.key = MockKey(key);
+    axis.position_sensor = Sensor(settings.position_sensor, ++seed << 32);
+    axis.force_sensor = Sensor(settings.force_sensor, ++seed << 32);
+  }
   double delay_s = 0.0;
-  for (const int played : settings.played) {
-    Axis& axis = axes_.at(static_cast<std::size_t>(played));
-    axis.hand.emplace(settings.hand, settings.gesture);
+  if (settings.gesture.size() != 1 && settings.gesture.size() != settings.played.size()) {
+    throw std::invalid_argument("its hands need one path for all, or one each");
+  }
+  for (std::size_t h = 0; h < settings.played.size(); ++h) {
+    Axis& axis = axes_.at(static_cast<std::size_t>(settings.played[h]));
+    axis.hand.emplace(settings.hand, settings.gesture[settings.gesture.size() == 1 ? 0 : h]);
     axis.delay_s = delay_s;
     delay_s += settings.stagger_s;
   }
@@ -65,6 +73,8 @@ void Mock::start(Role role) noexcept {
   period_index_ = 0;
   for (Axis& axis : axes_) {
     axis.key.start();
+    axis.position_sensor.start();
+    axis.force_sensor.start();
     if (axis.hand) axis.hand->start();
   }
 }
@@ -74,14 +84,15 @@ double Mock::force_of_hand(const Axis& axis) const noexcept {
                    : 0.0;
 }
 
+double Mock::sense(Axis& axis) const noexcept {
+  if (role_ == Role::kMass) return axis.position_sensor.read(axis.key.position_m());
+  return std::clamp(axis.force_sensor.read(force_of_hand(axis)), -layout_.force_limit_n,
+                    layout_.force_limit_n);
+}
+
 bool Mock::read(AxisValues& sensed) noexcept {
   sensed.fill(0.0);
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    const Axis& axis = axes_[a];
-    sensed[a] = role_ == Role::kMass ? axis.key.position_m()
-                                     : std::clamp(force_of_hand(axis), -layout_.force_limit_n,
-                                                  layout_.force_limit_n);
-  }
+  for (std::size_t a = 0; a < axes_.size(); ++a) sensed[a] = sense(axes_[a]);
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include "device_node/drivers/driver.h"
 #include "device_node/drivers/hand.h"
 #include "device_node/drivers/mock_key.h"
+#include "device_node/drivers/sensor.h"
 #include "node/config/value.h"
 
 namespace cordis::device {
@@ -16,9 +17,12 @@ namespace cordis::device {
 struct MockSettings {
   KeySettings key;          ///< of every key; its ends of travel are those of the layout
   HandSettings hand;        ///< of every hand
-  Trajectory gesture;       ///< target of the hands
-  std::vector<int> played;  ///< axes that have a hand on them
-  double stagger_s = 0.0;   ///< each hand begins so much later than the one before
+  std::vector<Trajectory> gesture = {Trajectory()};  ///< target of the hands: one, or one each
+  std::vector<int> played;                           ///< axes that have a hand on them
+  double stagger_s = 0.0;  ///< each hand begins so much later than the one before
+  SensorSettings position_sensor;  ///< [m]
+  SensorSettings force_sensor;     ///< [N]
+  std::uint64_t seed = 1;          ///< of their noise
 };
 
 /// Keys with mechanics of their own, each moved by a simulated hand or by the force it is given
@@ -27,7 +31,8 @@ struct MockSettings {
 /// Role mass: the motor pushes the key with the force it is given; the hand feels it.
 /// Role liaison: the motor carries the key to the position it is given; the sensor measures the
 /// hand's force.
-/// Depends on what it is given and on nothing else: same forces, same positions, to the last bit.
+/// Depends on what it is given and on nothing else: same forces, same positions, to the last bit,
+/// the noise of its sensors included.
 class Mock final : public Driver {
  public:
   /// @throws std::invalid_argument when a setting is out of range, or when its mechanics are too
@@ -46,9 +51,12 @@ class Mock final : public Driver {
   struct Axis {
     MockKey key;
     std::optional<Hand> hand;
+    Sensor position_sensor;
+    Sensor force_sensor;
     double delay_s = 0.0;
   };
 
+  double sense(Axis& axis) const noexcept;
   void live(Axis& axis, double commanded) noexcept;
   double force_of_hand(const Axis& axis) const noexcept;
 

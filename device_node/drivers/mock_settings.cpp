@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "device_node/drivers/gestures.h"
 #include "device_node/drivers/mock.h"
 #include "node/config/mapping_reader.h"
 
@@ -36,38 +37,6 @@ KeySettings read_key(const config::Value& mapping, Problems& problems) {
     key.stop_viscosity_n_s_per_m = lowest;
   }
   return key;
-}
-
-std::vector<Trajectory::Move> read_moves(const config::Value& sequence, Problems& problems) {
-  std::vector<Trajectory::Move> moves;
-  double free_from_s = 0.0;
-  for (const config::Value& item : sequence.items()) {
-    config::MappingReader reader(item, "move", problems);
-    Trajectory::Move move;
-    move.begin_s = reader.required_number("at_s", Range::not_negative());
-    move.duration_s = reader.required_number("in_s", Range::not_negative());
-    move.to = reader.required_number("to_m", Range::between(-1.0, 1.0));
-    reader.finish();
-    if (move.begin_s < free_from_s) {
-      reader.error_at("at_s", "a move must not begin before the one before it has ended");
-      move.begin_s = free_from_s;
-    }
-    free_from_s = move.begin_s + move.duration_s;
-    moves.push_back(move);
-  }
-  return moves;
-}
-
-Trajectory read_gesture(config::MappingReader& hand, Problems& problems) {
-  const double start_m = hand.optional_number("start_m", 0.005, Range::between(-1.0, 1.0));
-  std::vector<Trajectory::Move> moves = read_moves(hand.optional_sequence("moves"), problems);
-  const double end_s = moves.empty() ? 0.0 : moves.back().begin_s + moves.back().duration_s;
-  double repeat_s = hand.optional_number("repeat_s", 0.0, Range::not_negative());
-  if (repeat_s != 0.0 && repeat_s < end_s) {
-    hand.error_at("repeat_s", "repeat_s must not be less than the end of the last move");
-    repeat_s = end_s;
-  }
-  return {start_m, std::move(moves), Trajectory::Shape::kMinimumJerk, repeat_s};
 }
 
 void read_finger(const config::Value& mapping, HandSettings& hand, Problems& problems) {
@@ -107,9 +76,21 @@ void read_hand(const config::Value& mapping, const AxisLayout& layout, MockSetti
   hand.viscosity_n_s_per_m = reader.optional_number("viscosity_n_s_per_m", hand.viscosity_n_s_per_m,
                                                     Range::not_negative());
   read_finger(reader.optional_mapping("finger"), hand, problems);
-  settings.gesture = read_gesture(reader, problems);
   settings.played = read_played(reader, layout);
+  settings.gesture = read_gesture(reader, settings.played.size(), problems);
   settings.stagger_s = reader.optional_number("stagger_s", 0.0, Range::not_negative());
+  reader.finish();
+}
+
+void read_sensor(const config::Value& mapping, MockSettings& settings, Problems& problems) {
+  config::MappingReader reader(mapping, "sensor", problems);
+  SensorSettings& position = settings.position_sensor;
+  SensorSettings& force = settings.force_sensor;
+  position.noise = reader.optional_number("noise_m", 0.0, Range::not_negative());
+  position.quantum = reader.optional_number("quantum_m", 0.0, Range::not_negative());
+  force.noise = reader.optional_number("noise_n", 0.0, Range::not_negative());
+  force.quantum = reader.optional_number("quantum_n", 0.0, Range::not_negative());
+  settings.seed = static_cast<std::uint64_t>(reader.optional_integer("seed", 1, 0, 1'000'000'000));
   reader.finish();
 }
 
@@ -120,6 +101,7 @@ std::unique_ptr<Driver> make_mock(const config::Value& section, const AxisLayout
   config::MappingReader reader(section, "mock", problems);
   MockSettings settings;
   settings.key = read_key(reader.optional_mapping("key"), problems);
+  read_sensor(reader.optional_mapping("sensor"), settings, problems);
   const config::Value hand = reader.optional_mapping("hand");
   if (hand.exists()) read_hand(hand, layout, settings, problems);
   reader.finish();

@@ -34,7 +34,7 @@ TEST(Mock, LivesWithoutAllocating) {
   AxisLayout layout;
   layout.count = kMaxAxes;
   MockSettings settings;
-  settings.gesture = pressing(-0.03);
+  settings.gesture = {pressing(-0.03)};
   for (int a = 0; a < kMaxAxes; ++a) settings.played.push_back(a);
   Mock mock(settings, layout);
 

@@ -26,7 +26,8 @@ MockSettings played_by_a_hand(double target_m, int axes) {
   settings.key.friction_n = 0.0;
   settings.hand.stiffness_n_per_m = kHandStiffness;
   settings.hand.finger_n_per_m = kFingerStiffness;
-  settings.gesture = Trajectory(0.0, {{0.1, 0.3, target_m}}, Trajectory::Shape::kMinimumJerk, 0.0);
+  settings.gesture = {
+      Trajectory(0.0, {{0.1, 0.3, target_m}}, Trajectory::Shape::kMinimumJerk, 0.0)};
   for (int a = 0; a < axes; ++a) settings.played.push_back(a);
   return settings;
 }
