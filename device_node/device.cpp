@@ -33,6 +33,7 @@ Device::Device(LoadedDevice device, dds::Participant& participant, config::Clock
       participant_(participant),
       clock_(clock),
       scenes_(participant, dds::Topic::kDescription),
+      description_(participant, dds::Topic::kDevice),
       series_{run, 0},
       status_(participant, "device_node", run, [this](msg::NodeStatus& status) {
         meter_.fill(status);
@@ -43,6 +44,7 @@ Device::Device(LoadedDevice device, dds::Participant& participant, config::Clock
 int Device::live() {
   spdlog::info("{} {}, driver {}, waiting for a scene that plays '{}'", config_.layout.count,
                config_.layout.count == 1 ? "axis" : "axes", config_.driver, config_.name);
+  describe();
   while (!node::stop_requested()) {
     if (!part_.wanted) {
       scenes_.wait(kLookAround);
@@ -58,6 +60,29 @@ int Device::live() {
   }
   end(Phase::kStopped);
   return 0;
+}
+
+/// Tells everyone what the device is and what it can bear.
+void Device::describe() {
+  msg::DeviceDescription told;
+  const config::DeviceLimits& limits = config_.limits;
+  told.device_id(config_.device_id);
+  told.device(config_.name);
+  told.driver(config_.driver);
+  told.run(series_.run);
+  told.coordinate_count(static_cast<std::uint32_t>(limits.coordinate_count));
+  told.rate_hz(limits.rate_hz);
+  told.lowest_m(limits.lowest_m);
+  told.highest_m(limits.highest_m);
+  told.force_limit_n(limits.force_limit_n);
+  told.moving_mass_kg(limits.moving_mass_kg);
+  told.viscosity_n_s_per_m(limits.viscosity_n_s_per_m);
+  told.stiffness_limit_n_per_m(limits.stiffness_limit_n_per_m);
+  told.damping_limit_n_s_per_m(limits.damping_limit_n_s_per_m);
+  told.delay_periods(static_cast<std::uint32_t>(limits.delay_periods));
+  told.plays_mass(driver_->can_play(Role::kMass));
+  told.plays_liaison(driver_->can_play(Role::kLiaison));
+  description_.write(told);
 }
 
 void Device::end(Phase phase) {

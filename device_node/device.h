@@ -8,10 +8,12 @@
 #include "device_node/exchange.h"
 #include "device_node/loop_meter.h"
 #include "device_node/scene_part.h"
+#include "idl/gesture.h"
 #include "idl/scene.h"
 #include "node/config/launch.h"
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
+#include "node/dds/writer.h"
 #include "node/status.h"
 
 namespace cordis::device {
@@ -30,6 +32,7 @@ class Device {
   int live();
 
  private:
+  void describe();
   bool hear_scene();
   bool look_around();
   void play();
@@ -44,6 +47,7 @@ class Device {
   dds::Participant& participant_;
   config::Clock clock_;
   dds::Reader<msg::SceneDescription> scenes_;
+  dds::Writer<msg::DeviceDescription> description_;
   msg::SceneDescription scene_;
   ScenePart part_;
   Exchange::Series series_;

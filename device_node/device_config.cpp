@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -16,32 +17,37 @@ namespace {
 using config::number_text;
 using config::Range;
 
-/// The device file with the other keys of the section laid on it.
-config::Value merged(const config::Launch& launch, const config::LaunchNode& node,
-                     config::Problems& problems) {
-  config::MappingReader reader(node.section, "device_node '" + node.name + "'", problems);
-  const std::string path = reader.required_text("device");
-  if (path.empty()) return {};
-
-  std::vector<config::Value::Entry> others;
-  for (const config::Value::Entry& entry : node.section.entries()) {
-    if (entry.key != "device") others.push_back(entry);
-  }
-  const config::Value file = config::load_file(launch.resolve(path).string(), problems);
-  if (!file.exists()) return {};
-  return config::overlay(file, config::Value::mapping(std::move(others), node.section.place()));
+AxisLayout layout_of(const config::DeviceLimits& limits) {
+  AxisLayout layout;
+  layout.count = limits.axis_count;
+  layout.lowest_m = limits.lowest_m;
+  layout.highest_m = limits.highest_m;
+  layout.rate_hz = limits.rate_hz;
+  layout.force_limit_n = limits.force_limit_n;
+  return layout;
 }
 
-AxisLayout read_layout(config::MappingReader& reader) {
-  AxisLayout layout;
-  layout.count = static_cast<int>(reader.required_integer("axes", 1, kMaxAxes));
-  const double travel_m = reader.optional_number("travel_m", 0.04, Range::between(0.001, 1.0));
-  const std::string rest = reader.optional_choice("rest", "top", {"top", "middle", "bottom"});
-  layout.lowest_m = rest == "top" ? -travel_m : rest == "middle" ? -travel_m / 2.0 : 0.0;
-  layout.highest_m = layout.lowest_m + travel_m;
-  layout.rate_hz = reader.optional_number("rate_hz", 1000.0, Range::between(1.0, 20000.0));
-  layout.force_limit_n = reader.optional_number("force_limit_n", 20.0, Range::positive());
-  return layout;
+/// The axes themselves when there is none, or when it is wrong.
+EndPiece read_end_piece(config::MappingReader& reader, int axis_count,
+                        config::Problems& problems) {
+  if (!reader.has("end_piece")) return EndPiece(axis_count);
+  config::MappingReader section(reader.optional_mapping("end_piece"), "end_piece", problems);
+  const config::Value rows = section.required_sequence("map");
+  section.finish();
+  std::vector<std::vector<double>> map;
+  for (const config::Value& row : rows.items()) {
+    std::vector<double>& numbers = map.emplace_back();
+    for (const config::Value& entry : row.items()) {
+      numbers.push_back(config::read_number(entry, "an entry of the map", 0.0, {}, problems));
+    }
+  }
+  if (!section.ok() || problems.has_errors()) return EndPiece(axis_count);
+  try {
+    return {map, axis_count};
+  } catch (const std::invalid_argument& error) {
+    section.error_at("map", error.what());
+    return EndPiece(axis_count);
+  }
 }
 
 /// The watchdog must leave room for the life of an ordinary answer, up to three periods, and for
@@ -64,14 +70,13 @@ void check_watchdog(config::MappingReader& reader, const ForceGuardSettings& gua
 }
 
 /// What the device is known to be made of, and what follows from it for the energy monitor.
-void read_passivity(config::MappingReader& reader, const AxisLayout& layout,
+void read_passivity(config::MappingReader& reader, const config::DeviceLimits& limits,
                     ForceGuardSettings& force, config::Problems& problems) {
   PassivitySettings& passivity = force.passivity;
   passivity.period_s = force.period_s;
-  passivity.travel_m = layout.highest_m - layout.lowest_m;
-  passivity.mass_kg = reader.optional_number("moving_mass_kg", 0.05, Range::between(1e-4, 100.0));
-  passivity.viscosity_n_s_per_m =
-      reader.optional_number("viscosity_n_s_per_m", 0.0, Range::not_negative());
+  passivity.travel_m = limits.highest_m - limits.lowest_m;
+  passivity.mass_kg = limits.moving_mass_kg;
+  passivity.viscosity_n_s_per_m = limits.viscosity_n_s_per_m;
   const bool known = passivity.viscosity_n_s_per_m > 0.0;
   config::MappingReader section(reader.optional_mapping("passivity"), "passivity", problems);
   passivity.active = section.optional_truth("active", known);
@@ -79,7 +84,7 @@ void read_passivity(config::MappingReader& reader, const AxisLayout& layout,
     section.error_at("active", "the passivity controller needs viscosity_n_s_per_m of the device");
   }
   passivity.budget_j = section.optional_number("budget_j", 0.001, Range::not_negative());
-  const double stored_j = layout.count * force.limit_n * passivity.travel_m;
+  const double stored_j = limits.axis_count * force.limit_n * passivity.travel_m;
   passivity.tank_j = section.optional_number("tank_j", stored_j, Range::positive());
   section.finish();
 }
@@ -104,7 +109,7 @@ void read_guards(config::MappingReader& reader, DeviceConfig& config, config::Pr
   force.slew_n_per_s = reader.optional_number(
       "slew_limit_n_per_s", 5.0 * force.limit_n / force.watchdog_s, Range::positive());
   if (reader.ok()) check_watchdog(reader, force);
-  read_passivity(reader, layout, force, problems);
+  read_passivity(reader, config.limits, force, problems);
 
   PositionGuardSettings& position = config.position_guard;
   position.lowest_m = layout.lowest_m;
@@ -146,7 +151,9 @@ LoadedDevice read_device(const config::Value& mapping, const std::string& name,
   device.config.name = name;
   device.config.device_id = config::name_hash(name);
   reader.optional_integer("cordis", 1, 1, 1);
-  device.config.layout = read_layout(reader);
+  device.config.limits = config::read_device_limits(reader);
+  device.config.layout = layout_of(device.config.limits);
+  device.config.end_piece = read_end_piece(reader, device.config.layout.count, problems);
   read_guards(reader, device.config, problems);
   read_trace(reader, device.config.trace, problems);
   device.driver = read_drivers(reader, device.config, problems);
@@ -157,7 +164,7 @@ LoadedDevice read_device(const config::Value& mapping, const std::string& name,
 
 LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode& node,
                          config::Problems& problems) {
-  const config::Value mapping = merged(launch, node, problems);
+  const config::Value mapping = config::device_mapping(launch, node, problems);
   problems.throw_if_any();
   return read_device(mapping, node.name, problems);
 }

@@ -6,9 +6,11 @@
 
 #include "device_node/axis.h"
 #include "device_node/drivers/driver.h"
+#include "device_node/end_piece.h"
 #include "device_node/force_guard.h"
 #include "device_node/position_guard.h"
 #include "device_node/traced_driver.h"
+#include "node/config/device_limits.h"
 #include "node/config/launch.h"
 
 namespace cordis::device {
@@ -17,7 +19,9 @@ namespace cordis::device {
 struct DeviceConfig {
   std::string name;  ///< the node's name in the launch file; ports of a scene refer to it
   std::uint32_t device_id = 0;  ///< hash of the name
+  config::DeviceLimits limits;  ///< as the file declares them, and as they are published
   AxisLayout layout;
+  EndPiece end_piece;                    ///< between the axes and the coordinates on the wire
   ForceGuardSettings force_guard;        ///< of role mass
   PositionGuardSettings position_guard;  ///< of role liaison
   TraceSettings trace;

@@ -14,10 +14,11 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
       clock_(clock),
       force_guard_(config.force_guard),
       position_guard_(config.position_guard),
+      late_(static_cast<std::size_t>(config.limits.delay_periods) + 1),
       first_sample_(series.last_sample + 1) {
   sample_.run = series.run;
   sample_.sample = series.last_sample;
-  sample_.axis_count = static_cast<std::uint32_t>(config.layout.count);
+  sample_.axis_count = static_cast<std::uint32_t>(config.end_piece.coordinate_count());
   meter_.set_phase(Phase::kWaiting);
   driver_.start(role_);
   if (driver_.read(sensed_) && all_finite(sensed_, kMaxAxes)) last_sensed_ = sensed_;
@@ -33,7 +34,8 @@ void Exchange::send_sample() noexcept {
   sample_.answered_run = used_.run;
   sample_.answered_sample = used_.sample;
   sample_.answered_time_nsec = used_.time_nsec;
-  sample_.value = sensed_;
+  sample_.value = role_ == Role::kMass ? config_.end_piece.coordinates_of(sensed_)
+                                       : config_.end_piece.coordinate_forces_of(sensed_);
   sample_.time_nsec = clock_();
   if (!channel_.send(sample_)) meter_.count_dropped();
 }
@@ -82,8 +84,12 @@ void Exchange::accept(const GestureMessage& answer) noexcept {
   }
   any_answer_ = true;
   used_ = answer;
-  const bool finite = role_ == Role::kMass ? force_guard_.accept(answer.value)
-                                           : position_guard_.accept(answer.value);
+  late_[answer.answered_sample % late_.size()] = answer.value;
+  const AxisValues& value =  // with room for the delay and one: the next to be replaced is the oldest
+      lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer.value;
+  const bool finite = role_ == Role::kMass
+                          ? force_guard_.accept(config_.end_piece.axis_forces_of(value))
+                          : position_guard_.accept(config_.end_piece.axes_of(value));
   if (!finite) meter_.count_dropped();
 }
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <vector>
 
 #include "device_node/device_config.h"
 #include "device_node/gesture_channel.h"
@@ -16,7 +17,9 @@ namespace cordis::device {
 /// very sample has its answer. Then live() guards what was answered, hands it to the driver, lets
 /// the driver live for a period and reads its sensors for the next sample.
 ///
-/// In lockstep the age of what goes to the guard is counted in samples, and nothing depends on
+/// Between the axes and the wire stands the end-piece of the device; the guard stands behind it, at
+/// the motors. In lockstep `delay_periods` of the device lets every answer be felt so much later, as
+/// over a slow wire; the age of what goes to the guard is counted in samples, and nothing depends on
 /// wall time. Otherwise the age counts from the moment the answered sample was sent, so that a
 /// scene that no longer hears this device counts as silent.
 class Exchange {
@@ -73,7 +76,8 @@ class Exchange {
   GestureMessage used_;         // the newest good answer
   AxisValues sensed_{};         // for the next sample
   AxisValues last_sensed_{};    // all finite
-  std::uint64_t first_sample_;  // of this exchange
+  std::vector<AxisValues> late_;  // the last answers, by the sample they answer
+  std::uint64_t first_sample_;    // of this exchange
   bool any_answer_ = false;
 };
 

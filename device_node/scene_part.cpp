@@ -17,10 +17,10 @@ std::string trouble_with(const msg::PortDescription& port, const DeviceConfig& d
                        port.role());
   }
   for (const std::uint32_t axis : port.axes()) {
-    if (axis >= static_cast<std::uint32_t>(device.layout.count)) {
+    const int count = device.end_piece.coordinate_count();
+    if (axis >= static_cast<std::uint32_t>(count)) {
       return fmt::format("port '{}' wants axis {} of device '{}', which has {} (axes 0 to {})",
-                         port.name(), axis, device.name, device.layout.count,
-                         device.layout.count - 1);
+                         port.name(), axis, device.name, count, count - 1);
     }
   }
   return {};

@@ -2,24 +2,28 @@
 #include "sim_node/sim_config.h"
 
 #include <algorithm>
+#include <optional>
 
+#include "node/config/device_limits.h"
 #include "node/config/mapping_reader.h"
+#include "sim_node/scene/port_limit.h"
 
 namespace cordis::sim {
 namespace {
 
-/// Number of axes of a device of the launch file, from its section or its device file; 0 when
-/// neither tells (then its own device_node will complain).
-long axis_count_of(const config::Launch& launch, const config::LaunchNode& device) {
-  config::Problems of_the_device;  // told by the device_node itself
-  config::Value axes = device.section.find("axes");
-  const config::Value file = device.section.find("device");
-  if (!axes.exists() && file.exists()) {
-    axes = config::load_file(launch.resolve(file.text()).string(), of_the_device).find("axes");
-  }
-  if (!axes.exists()) return 0;
-  return static_cast<long>(
-      config::read_number(axes, "axes", 0.0, config::Range::between(1, 16), of_the_device));
+constexpr const char* kHowToSoften =
+    "softer links at the port, or a 'coupling' between the device and a simulated tool";
+
+/// What the device file behind a node promises; empty when it cannot be read, of which the node
+/// itself tells.
+std::optional<config::DeviceLimits> limits_of(const config::Launch& launch,
+                                              const config::LaunchNode& device) {
+  config::Problems of_the_device;
+  const config::Value mapping = config::device_mapping(launch, device, of_the_device);
+  config::MappingReader reader(mapping, "device", of_the_device);
+  const config::DeviceLimits limits = config::read_device_limits(reader);
+  if (of_the_device.has_errors()) return {};
+  return limits;
 }
 
 void check_devices(const config::Launch& launch, const scene::Scene& scene,
@@ -39,9 +43,14 @@ void check_devices(const config::Launch& launch, const scene::Scene& scene,
           near.empty() ? "" : "did you mean '" + near + "'?");
       continue;
     }
-    const long axis_count = axis_count_of(launch, *device);
+    const std::optional<config::DeviceLimits> limits = limits_of(launch, *device);
+    if (!limits) continue;
+    const int axis_count = limits->coordinate_count;
     const auto highest = *std::max_element(port.axes.begin(), port.axes.end());
-    if (axis_count > 0 && static_cast<long>(highest) >= axis_count) {
+    const std::string refusal =
+        scene::refusal_of(scene, port, *limits, delay_periods_of(launch.clock));
+    if (!refusal.empty()) problems.error(port.place, refusal, kHowToSoften);
+    if (static_cast<int>(highest) >= axis_count) {
       problems.error(
           port.place,
           "port '" + port.name + "' wants axis " + std::to_string(highest) + " of the device '" +
@@ -52,6 +61,10 @@ void check_devices(const config::Launch& launch, const scene::Scene& scene,
 }
 
 }  // namespace
+
+int delay_periods_of(config::Clock clock) noexcept {
+  return clock == config::Clock::kLockstep ? 0 : 1;
+}
 
 SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,
                           config::Problems& problems) {

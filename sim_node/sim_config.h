@@ -13,6 +13,9 @@ struct SimConfig {
   scene::Scene scene;  ///< `scene`: what the file of that name says
 };
 
+/// Age of the position that a force answers when it reaches the motor, in periods of the device.
+int delay_periods_of(config::Clock clock) noexcept;
+
 /// Reads the section and the scene, and checks every port against the device files of the same
 /// launch. All that is wrong becomes a problem; the result is usable when there is none.
 SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,

@@ -19,6 +19,10 @@ struct TypeOf<msg::GestureForces> {
   using Type = msg::GestureForcesPubSubType;
 };
 template <>
+struct TypeOf<msg::DeviceDescription> {
+  using Type = msg::DeviceDescriptionPubSubType;
+};
+template <>
 struct TypeOf<msg::SceneDescription> {
   using Type = msg::SceneDescriptionPubSubType;
 };

@@ -106,6 +106,7 @@ int Reader<Message>::matched_count() const noexcept {
 
 template class Reader<msg::GesturePositions>;
 template class Reader<msg::GestureForces>;
+template class Reader<msg::DeviceDescription>;
 template class Reader<msg::SceneDescription>;
 template class Reader<msg::SceneFrame>;
 template class Reader<msg::SceneSignals>;

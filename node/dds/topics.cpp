@@ -12,6 +12,8 @@ TopicQos qos_of(Topic topic, bool lockstep) noexcept {
     case Topic::kForces:
       return lockstep ? TopicQos{"gesture/forces", true, false, 8, false, 20}
                       : TopicQos{"gesture/forces", false, false, 1, false, 20};
+    case Topic::kDevice:
+      return {"device/description", true, true, 1, false, 50};
     case Topic::kDescription:
       return {"scene/description", true, true, 1, false, 50};
     case Topic::kFrame:

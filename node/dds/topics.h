@@ -9,6 +9,7 @@ namespace cordis::dds {
 enum class Topic : std::uint8_t {
   kPositions,    ///< gesture/positions   msg::GesturePositions
   kForces,       ///< gesture/forces      msg::GestureForces
+  kDevice,       ///< device/description  msg::DeviceDescription
   kDescription,  ///< scene/description   msg::SceneDescription
   kFrame,        ///< scene/frame         msg::SceneFrame
   kSignals,      ///< scene/signals       msg::SceneSignals

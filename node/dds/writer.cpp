@@ -73,6 +73,7 @@ bool Writer<Message>::wait_until_acknowledged(std::chrono::milliseconds at_most)
 
 template class Writer<msg::GesturePositions>;
 template class Writer<msg::GestureForces>;
+template class Writer<msg::DeviceDescription>;
 template class Writer<msg::SceneDescription>;
 template class Writer<msg::SceneFrame>;
 template class Writer<msg::SceneSignals>;

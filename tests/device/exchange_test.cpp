@@ -68,6 +68,7 @@ DeviceConfig config_of_two_axes() {
   config.name = "keyboard";
   config.device_id = 4711;
   config.layout.count = 2;
+  config.end_piece = EndPiece(2);
   config.force_guard.ramp_s = 0.0;
   config.position_guard.ramp_s = 0.0;
   return config;
@@ -345,6 +346,57 @@ TEST(Exchange, InLockstepDoesNotDependOnTheClock) {
   };
 
   EXPECT_EQ(commands_when_a_period_takes(1), commands_when_a_period_takes(3'000'000'000));
+}
+
+TEST(Exchange, FeelsEveryAnswerSoManyPeriodsLaterInLockstep) {
+  for (const int delay : {0, 1, 3}) {
+    now_nsec = 1000;
+    DeviceConfig config = config_of_two_axes();
+    config.limits.delay_periods = delay;
+    FakeDriver driver;
+    FakeChannel channel;
+    LoopMeter meter;
+    Exchange exchange(config, Role::kMass, {kRun, 0}, true, driver, channel, meter, &now);
+    for (int n = 1; n <= 8; ++n) {
+      exchange.send_sample();
+      GestureMessage answer;
+      answer.run = kSceneRun;
+      answer.sample = answer.answered_sample = channel.sent.back().sample;
+      answer.answered_run = kRun;
+      answer.axis_count = 2;
+      answer.value[0] = 0.5 * n;
+      channel.waiting.push_back(answer);
+      ASSERT_TRUE(exchange.await_answer(nanoseconds(1)));
+      exchange.live();
+      EXPECT_DOUBLE_EQ(driver.commands.back()[0], std::max(0.0, 0.5 * (n - delay))) << delay;
+    }
+  }
+}
+
+TEST(Exchange, PutsTheEndPieceBetweenWireAndMotors) {
+  now_nsec = 1000;
+  DeviceConfig config = config_of_two_axes();
+  config.end_piece = EndPiece({{0.5, 0.5}}, 2);
+  FakeDriver driver;
+  FakeChannel channel;
+  LoopMeter meter;
+  Exchange exchange(config, Role::kMass, {kRun, 0}, true, driver, channel, meter, &now);
+  exchange.send_sample();
+  GestureMessage answer;
+  answer.run = kSceneRun;
+  answer.sample = answer.answered_sample = 1;
+  answer.answered_run = kRun;
+  answer.axis_count = 1;
+  answer.value[0] = 3.0;
+  channel.waiting.push_back(answer);
+  ASSERT_TRUE(exchange.await_answer(nanoseconds(1)));
+  exchange.live();
+  exchange.send_sample();
+
+  EXPECT_EQ(channel.sent.back().axis_count, 1u);
+  EXPECT_DOUBLE_EQ(channel.sent.back().value[0], -0.0005);  // half of -1 mm and 0
+  EXPECT_DOUBLE_EQ(driver.commands.back()[0], 1.5);
+  EXPECT_DOUBLE_EQ(driver.commands.back()[1], 1.5);
 }
 
 TEST(Exchange, IsLostWhileItsDriverHasNoDevice) {

@@ -15,6 +15,7 @@ DeviceConfig keyboard_of(int axes) {
   config.device_id = kId;
   config.driver = "script";
   config.layout.count = axes;
+  config.end_piece = EndPiece(axes);
   return config;
 }
 

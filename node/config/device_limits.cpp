@@ -1,0 +1,49 @@
+// node/config/device_limits.cpp
+#include "node/config/device_limits.h"
+
+#include <utility>
+
+namespace cordis::config {
+
+Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& problems) {
+  MappingReader reader(node.section, "device_node '" + node.name + "'", problems);
+  const std::string path = reader.required_text("device");
+  if (path.empty()) return {};
+
+  std::vector<Value::Entry> others;
+  for (const Value::Entry& entry : node.section.entries()) {
+    if (entry.key != "device") others.push_back(entry);
+  }
+  const Value file = load_file(launch.resolve(path).string(), problems);
+  if (!file.exists()) return {};
+  return overlay(file, Value::mapping(std::move(others), node.section.place()));
+}
+
+DeviceLimits read_device_limits(MappingReader& reader) {
+  constexpr int kMostAxes = 16;
+  constexpr int kMostDelay = 16;
+  DeviceLimits limits;
+  limits.axis_count = static_cast<int>(reader.required_integer("axes", 1, kMostAxes));
+  limits.coordinate_count = limits.axis_count;
+  const Value map = reader.optional_mapping("end_piece").find("map");
+  if (map.exists()) limits.coordinate_count = static_cast<int>(map.items().size());
+  const double travel_m = reader.optional_number("travel_m", 0.04, Range::between(0.001, 1.0));
+  const std::string rest = reader.optional_choice("rest", "top", {"top", "middle", "bottom"});
+  limits.lowest_m = rest == "top" ? -travel_m : rest == "middle" ? -travel_m / 2.0 : 0.0;
+  limits.highest_m = limits.lowest_m + travel_m;
+  limits.rate_hz = reader.optional_number("rate_hz", 1000.0, Range::between(1.0, 20000.0));
+  limits.force_limit_n = reader.optional_number("force_limit_n", 20.0, Range::positive());
+  limits.moving_mass_kg =
+      reader.optional_number("moving_mass_kg", 0.05, Range::between(1e-4, 100.0));
+  limits.viscosity_n_s_per_m =
+      reader.optional_number("viscosity_n_s_per_m", 0.0, Range::not_negative());
+  limits.stiffness_limit_n_per_m =
+      reader.optional_number("stiffness_limit_n_per_m", 0.0, Range::not_negative());
+  limits.damping_limit_n_s_per_m =
+      reader.optional_number("damping_limit_n_s_per_m", 0.0, Range::not_negative());
+  limits.delay_periods =
+      static_cast<int>(reader.optional_integer("delay_periods", 0, 0, kMostDelay));
+  return limits;
+}
+
+}  // namespace cordis::config

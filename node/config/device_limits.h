@@ -1,0 +1,31 @@
+// node/config/device_limits.h -- what a device file promises to everyone: its axes and its limits.
+#pragma once
+
+#include "node/config/launch.h"
+#include "node/config/mapping_reader.h"
+
+namespace cordis::config {
+
+/// The part of a device file that a scene is held against. SI units.
+struct DeviceLimits {
+  int axis_count = 1;
+  int coordinate_count = 1;  ///< of the handle: the axes, or what an end-piece makes of them
+  double rate_hz = 1000.0;
+  double lowest_m = -0.04;  ///< workspace of an axis; rest is 0, up is positive
+  double highest_m = 0.0;
+  double force_limit_n = 20.0;
+  double moving_mass_kg = 0.05;
+  double viscosity_n_s_per_m = 0.0;        ///< 0: unknown
+  double stiffness_limit_n_per_m = 0.0;    ///< as declared; 0: what follows from the viscosity
+  double damping_limit_n_s_per_m = 0.0;    ///< as declared; 0: likewise
+  int delay_periods = 0;                   ///< that the device adds on purpose
+};
+
+/// The mapping of a device_node: the file that its section names (`device: FILE`), with the other
+/// keys of the section laid on it. Does not exist after a problem.
+Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& problems);
+
+/// Reads these keys, and marks them as known; the reader's owner reads the others.
+DeviceLimits read_device_limits(MappingReader& reader);
+
+}  // namespace cordis::config
