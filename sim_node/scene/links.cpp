@@ -160,10 +160,14 @@ void Assembly::finish() {
 void Assembly::lay_out_ports() {
   const auto neighbour_of = [&](std::uint32_t port) {
     std::uint32_t neighbour = port;
+    // A tool is shown at what it touches, not at the handle that is shown with it.
+    const auto take = [&](std::uint32_t other) {
+      if (scene_.network.mats[other].kind != engine::MatKind::kPort) neighbour = other;
+    };
     const auto look_in = [&](const auto& links) {
       for (std::size_t l = 0; l < links.size() && neighbour == port; ++l) {
-        if (links[l].mat_a == port) neighbour = links[l].mat_b;
-        if (links[l].mat_b == port) neighbour = links[l].mat_a;
+        if (links[l].mat_a == port) take(links[l].mat_b);
+        if (links[l].mat_b == port) take(links[l].mat_a);
       }
     };
     look_in(scene_.network.links);

@@ -99,6 +99,55 @@ Piece read_port_mat(config::MappingReader& reader, const Port& port, int space,
   return piece;
 }
 
+/// A spring-damper between the handle that the device moves and a simulated tool, which the scene
+/// touches: what the hand feels is never stiffer than the coupling, whatever the scene is.
+struct Coupling {
+  double stiffness = 500.0;  // [N/m]
+  double viscosity = 1.5;    // [N s/m]
+  double mass = 0.05;        // of the tool [kg]
+};
+
+/// Nothing when the device holds the MAT of the port itself.
+std::optional<Coupling> read_coupling(config::MappingReader& reader, Role role,
+                                      config::Problems& problems) {
+  if (!reader.has("coupling")) return {};
+  if (role == Role::kLiaison) {
+    reader.error_at("coupling", "a port of role liaison has no 'coupling': its mass is the tool");
+    reader.optional_value("coupling");
+    return {};
+  }
+  const Value value = reader.optional_value("coupling");
+  if (value.kind() == Value::Kind::kScalar && value.text() == "direct") return {};
+  Coupling coupling;
+  if (value.kind() == Value::Kind::kScalar && value.text() == "virtual") return coupling;
+  if (value.kind() != Value::Kind::kMapping) {
+    reader.error_at("coupling", "'coupling' in " + reader.what() +
+                                    " must be direct, virtual, or a mapping of stiffness_n_per_m, "
+                                    "viscosity_n_s_per_m and mass_kg");
+    return {};
+  }
+  config::MappingReader section(value, "coupling of " + reader.what(), problems);
+  coupling.stiffness =
+      section.optional_number("stiffness_n_per_m", coupling.stiffness, Range::positive());
+  coupling.viscosity =
+      section.optional_number("viscosity_n_s_per_m", coupling.viscosity, Range::not_negative());
+  coupling.mass = section.optional_number("mass_kg", coupling.mass, Range::positive());
+  section.finish();
+  return coupling;
+}
+
+/// Makes the MAT of the piece the tool, and adds the handle and the coupling.
+void couple(Piece& piece, const Coupling& coupling) {
+  engine::Mat handle = piece.mats[0];
+  piece.mats[0].kind = engine::MatKind::kMass;
+  piece.mats[0].mass = coupling.mass;
+  piece.mats.push_back(handle);
+  piece.radius_m.push_back(0.0);
+  piece.drawn_radius_m.push_back(0.0);
+  if (!piece.layout.empty()) piece.layout.push_back(piece.layout[0]);
+  piece.links.links.push_back({1, 0, coupling.stiffness, coupling.viscosity, 0.0});
+}
+
 }  // namespace
 
 void Assembly::read_ports(const Value& section) {
@@ -132,13 +181,26 @@ void Assembly::read_port(const Value::Entry& entry) {
   } else {
     port.directions = read_axis_directions(reader, port.axes.size(), space, problems_);
   }
+  const std::optional<Coupling> coupling = read_coupling(reader, port.role, problems_);
+  if (coupling) couple(piece, *coupling);
+  if (coupling && space == 1 && !reader.has("layout_at_m")) {
+    ports_without_layout_.push_back(mat_count() + 1);
+  }
   reader.finish();
 
-  port.mat = mat_count();
+  port.tool = mat_count();
+  port.mat = coupling ? port.tool + 1 : port.tool;
+  const LinkCounts links_before = link_counts();
   const bool sound =
       problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
-  names_.add({entry.key, Named::kPort, port.mat, 1, sound, entry.key_place}, problems_);
-  scene_.matter.push_back({entry.key, port.mat, 1});
+  names_.add({entry.key, Named::kPort, port.tool, 1, sound, entry.key_place}, problems_);
+  scene_.matter.push_back({entry.key, port.tool, 1});
+  if (coupling) {
+    names_.add({entry.key + ".handle", Named::kPort, port.mat, 1, sound, entry.key_place},
+               problems_);
+    scene_.matter.push_back({entry.key + ".handle", port.mat, 1});
+    name_links(entry.key + ".coupling", links_before, sound, entry.key_place, nullptr);
+  }
   if (sound) scene_.ports.push_back(std::move(port));
 }
 

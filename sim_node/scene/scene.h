@@ -50,6 +50,8 @@ struct Port {
   Role role = Role::kMass;      ///< the same in all ports of one device
   std::uint32_t mat =
       0;  ///< the MAT at the port: MatKind::kPort in role mass, kMass in role liaison
+  std::uint32_t tool =
+      0;  ///< the MAT that the scene touches: that at the port, or the tool coupled to it
   engine::Vec3 rest = engine::Vec3::Zero();  ///< position of the MAT when all axes are at 0 [m]
   std::vector<std::uint32_t> axes;  ///< axes of the device, each below 16, none twice in a scene
   std::vector<engine::Vec3> directions;  ///< per axis, unit length, linearly independent

@@ -160,7 +160,8 @@ void Assembly::read_direction_of_signal(config::MappingReader& reader, const Sel
     return;
   }
   for (const Port& port : scene_.ports) {
-    if (port.mat != of.indices[0] || port.directions.size() != 1) continue;
+    const bool is_here = port.mat == of.indices[0] || port.tool == of.indices[0];
+    if (!is_here || port.directions.size() != 1) continue;
     signal.direction = port.directions.front();
     if (signal.quantity == Quantity::kPosition) signal.offset = signal.direction.dot(port.rest);
     return;

@@ -86,5 +86,45 @@ TEST(Port, IsShownBesideTheFirstMatItIsLinkedToInOneDimension) {
   EXPECT_EQ(scene.layout[6].z, 8.0);
 }
 
+TEST(Port, ACouplingPutsAToolBetweenTheDeviceAndTheScene) {
+  const Scene scene = scene_with_bob(
+      2, "  ground: {kind: fixed, at_m: [0, 0]}\n",
+      "liaisons:\n  wall: {kind: spring, stiffness_n_per_m: 9000}\n"
+      "ports:\n  key: {device: keyboard, axes: 0, role: mass, at_m: [1, 2], along: y,\n"
+      "        coupling: {stiffness_n_per_m: 300, viscosity_n_s_per_m: 2, mass_kg: 0.2}}\n"
+      "links:\n  - {liaison: wall, between: [key, ground]}\n"
+      "signals:\n  hand: {of: key.handle, quantity: force}\n"
+      "  tool: {of: key, quantity: position}\n");
+
+  const Port& port = scene.ports.at(0);
+  EXPECT_EQ(scene.network.mats[port.mat].kind, engine::MatKind::kPort);
+  EXPECT_EQ(scene.network.mats[port.tool].kind, engine::MatKind::kMass);
+  EXPECT_EQ(scene.network.mats[port.tool].mass, 0.2);
+  EXPECT_EQ(scene.network.mats[port.tool].position, Vec3(1, 2, 0));
+  ASSERT_EQ(scene.network.links.size(), 2u);
+  EXPECT_EQ(scene.network.links[0].stiffness, 300.0);
+  EXPECT_EQ(scene.network.links[0].viscosity, 2.0);
+  EXPECT_EQ(scene.network.links[0].rest_length, 0.0);
+  const engine::Link& wall = scene.network.links[1];
+  EXPECT_EQ(wall.mat_a == port.tool || wall.mat_b == port.tool, true) << "the scene has the tool";
+  EXPECT_EQ(scene.links[0].name, "key.coupling");
+  EXPECT_EQ(scene.signals.signals()[0].index, port.mat);
+  EXPECT_EQ(scene.signals.signals()[1].index, port.tool);
+  EXPECT_EQ(scene.signals.signals()[1].direction, Vec3(Vec3::UnitY()));
+}
+
+TEST(Port, ACouplingHasDefaultsAndMayBeRefusedInAWord) {
+  const auto links_with = [](const std::string& coupling) {
+    return scene_with_bob(1, "",
+                          "ports:\n  p: {device: d, axes: 0, role: mass, coupling: " + coupling +
+                              "}\n")
+        .network.links;
+  };
+  EXPECT_TRUE(links_with("direct").empty());
+  ASSERT_EQ(links_with("virtual").size(), 1u);
+  EXPECT_EQ(links_with("virtual")[0].stiffness, 500.0);
+  EXPECT_EQ(links_with("{stiffness_n_per_m: 80}")[0].viscosity, 1.5);
+}
+
 }  // namespace
 }  // namespace cordis::scene
