@@ -28,8 +28,7 @@ AxisLayout layout_of(const config::DeviceLimits& limits) {
 }
 
 /// The axes themselves when there is none, or when it is wrong.
-EndPiece read_end_piece(config::MappingReader& reader, int axis_count,
-                        config::Problems& problems) {
+EndPiece read_end_piece(config::MappingReader& reader, int axis_count, config::Problems& problems) {
   if (!reader.has("end_piece")) return EndPiece(axis_count);
   config::MappingReader section(reader.optional_mapping("end_piece"), "end_piece", problems);
   const config::Value rows = section.required_sequence("map");

@@ -31,10 +31,10 @@ class EndPiece {
   int axis_count() const noexcept { return axis_count_; }
 
   // Entries beyond the counts are 0. Real time: O(axes x coordinates), no allocation.
-  AxisValues coordinates_of(const AxisValues& axis_m) const noexcept;         ///< q = A x
-  AxisValues axis_forces_of(const AxisValues& coordinate_n) const noexcept;   ///< f = A^T F
-  AxisValues axes_of(const AxisValues& coordinate_m) const noexcept;          ///< x = A+ q
-  AxisValues coordinate_forces_of(const AxisValues& axis_n) const noexcept;   ///< F = (A+)^T f
+  AxisValues coordinates_of(const AxisValues& axis_m) const noexcept;        ///< q = A x
+  AxisValues axis_forces_of(const AxisValues& coordinate_n) const noexcept;  ///< f = A^T F
+  AxisValues axes_of(const AxisValues& coordinate_m) const noexcept;         ///< x = A+ q
+  AxisValues coordinate_forces_of(const AxisValues& axis_n) const noexcept;  ///< F = (A+)^T f
 
   double entry(int coordinate, int axis) const noexcept {
     return map_[static_cast<std::size_t>(coordinate)][static_cast<std::size_t>(axis)];

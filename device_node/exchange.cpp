@@ -85,7 +85,8 @@ void Exchange::accept(const GestureMessage& answer) noexcept {
   any_answer_ = true;
   used_ = answer;
   late_[answer.answered_sample % late_.size()] = answer.value;
-  const AxisValues& value =  // with room for the delay and one: the next to be replaced is the oldest
+  const AxisValues&
+      value =  // with room for the delay and one: the next to be replaced is the oldest
       lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer.value;
   const bool finite = role_ == Role::kMass
                           ? force_guard_.accept(config_.end_piece.axis_forces_of(value))

@@ -18,10 +18,10 @@ namespace cordis::device {
 /// the driver live for a period and reads its sensors for the next sample.
 ///
 /// Between the axes and the wire stands the end-piece of the device; the guard stands behind it, at
-/// the motors. In lockstep `delay_periods` of the device lets every answer be felt so much later, as
-/// over a slow wire; the age of what goes to the guard is counted in samples, and nothing depends on
-/// wall time. Otherwise the age counts from the moment the answered sample was sent, so that a
-/// scene that no longer hears this device counts as silent.
+/// the motors. In lockstep `delay_periods` of the device lets every answer be felt so much later,
+/// as over a slow wire; the age of what goes to the guard is counted in samples, and nothing
+/// depends on wall time. Otherwise the age counts from the moment the answered sample was sent, so
+/// that a scene that no longer hears this device counts as silent.
 class Exchange {
  public:
   using ClockFunction = std::int64_t (*)() noexcept;  ///< CLOCK_MONOTONIC [ns]
@@ -72,10 +72,10 @@ class Exchange {
   ClockFunction clock_;
   ForceGuard force_guard_;
   PositionGuard position_guard_;
-  GestureMessage sample_;       // the sample sent last
-  GestureMessage used_;         // the newest good answer
-  AxisValues sensed_{};         // for the next sample
-  AxisValues last_sensed_{};    // all finite
+  GestureMessage sample_;         // the sample sent last
+  GestureMessage used_;           // the newest good answer
+  AxisValues sensed_{};           // for the next sample
+  AxisValues last_sensed_{};      // all finite
   std::vector<AxisValues> late_;  // the last answers, by the sample they answer
   std::uint64_t first_sample_;    // of this exchange
   bool any_answer_ = false;

@@ -1,6 +1,9 @@
 // device_node/drivers/driver_table.cpp
 #include "device_node/drivers/driver_table.h"
 
+#include "device_node/drivers/firefader.h"
+#include "device_node/drivers/haply.h"
+#include "device_node/drivers/kfb1.h"
 #include "device_node/drivers/mock.h"
 #include "device_node/drivers/script.h"
 
@@ -8,8 +11,8 @@ namespace cordis::device {
 
 std::span<const DriverEntry> driver_table() noexcept {
   static constexpr DriverEntry kTable[] = {
-      {"mock", &make_mock},
-      {"script", &make_script},
+      {"mock", &make_mock},           {"script", &make_script}, {"kfb1", &make_kfb1},
+      {"firefader", &make_firefader}, {"haply", &make_haply},
   };
   return kTable;
 }

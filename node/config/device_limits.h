@@ -15,10 +15,10 @@ struct DeviceLimits {
   double highest_m = 0.0;
   double force_limit_n = 20.0;
   double moving_mass_kg = 0.05;
-  double viscosity_n_s_per_m = 0.0;        ///< 0: unknown
-  double stiffness_limit_n_per_m = 0.0;    ///< as declared; 0: what follows from the viscosity
-  double damping_limit_n_s_per_m = 0.0;    ///< as declared; 0: likewise
-  int delay_periods = 0;                   ///< that the device adds on purpose
+  double viscosity_n_s_per_m = 0.0;      ///< 0: unknown
+  double stiffness_limit_n_per_m = 0.0;  ///< as declared; 0: what follows from the viscosity
+  double damping_limit_n_s_per_m = 0.0;  ///< as declared; 0: likewise
+  int delay_periods = 0;                 ///< that the device adds on purpose
 };
 
 /// The mapping of a device_node: the file that its section names (`device: FILE`), with the other

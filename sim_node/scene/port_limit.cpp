@@ -22,8 +22,8 @@ Complex mass_under_held_force(const PortLoop& loop, Complex z) {
   const double b = loop.viscosity_n_s_per_m;
   // T - tau (1 - E) is the difference of two nearly equal numbers where b T << m.
   const double ratio = loop.period_s / tau;
-  const double drift = ratio < 1e-4 ? loop.period_s * ratio * (0.5 - ratio / 6.0)
-                                    : loop.period_s - tau * lost;
+  const double drift =
+      ratio < 1e-4 ? loop.period_s * ratio * (0.5 - ratio / 6.0) : loop.period_s - tau * lost;
   return (drift / b) / (z - 1.0) + (tau * lost) * (lost / b) / ((z - 1.0) * (z - 1.0 + lost));
 }
 
@@ -88,13 +88,11 @@ double stable_stiffness(const PortLoop& loop, double wall_viscosity) {
   const auto inverse = [&loop](Complex z) {  // -z^d / G(z)
     return -std::pow(z, loop.delay_periods) / mass_under_held_force(loop, z);
   };
-  const double largest_viscosity = least_real_value([&](Complex z) {
-    return loop.period_s * inverse(z) / (1.0 - 1.0 / z);
-  });
+  const double largest_viscosity =
+      least_real_value([&](Complex z) { return loop.period_s * inverse(z) / (1.0 - 1.0 / z); });
   if (wall_viscosity >= largest_viscosity) return 0.0;
-  return least_real_value([&](Complex z) {
-    return inverse(z) - wall_viscosity * (1.0 - 1.0 / z) / loop.period_s;
-  });
+  return least_real_value(
+      [&](Complex z) { return inverse(z) - wall_viscosity * (1.0 - 1.0 / z) / loop.period_s; });
 }
 
 double passive_stiffness(const PortLoop& loop, double wall_viscosity) {
@@ -109,8 +107,8 @@ double passive_stiffness(const PortLoop& loop, double wall_viscosity) {
     if (gain <= 0.0 && taken < 0.0) return 0.0;
   }
   // theta -> 0 gives (b + B) / (T/2 + d T), the limit for a slow hand.
-  least = std::min(least, (loop.viscosity_n_s_per_m + wall_viscosity) /
-                              (loop.period_s * (0.5 + d)));
+  least =
+      std::min(least, (loop.viscosity_n_s_per_m + wall_viscosity) / (loop.period_s * (0.5 + d)));
   return std::max(least, 0.0);
 }
 

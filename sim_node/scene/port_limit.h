@@ -11,10 +11,10 @@ namespace cordis::scene {
 /// A device alone before a wall, as the sampled loop has it: the mass m and viscosity b of an axis,
 /// the period T, and a force held over a period, made from the position d periods before.
 struct PortLoop {
-  double mass_kg = 0.05;            ///< m > 0
-  double viscosity_n_s_per_m = 1;   ///< b > 0
-  double period_s = 0.001;          ///< T > 0
-  int delay_periods = 0;            ///< d >= 0
+  double mass_kg = 0.05;           ///< m > 0
+  double viscosity_n_s_per_m = 1;  ///< b > 0
+  double period_s = 0.001;         ///< T > 0
+  int delay_periods = 0;           ///< d >= 0
 };
 
 /// Largest stiffness of the wall K + B (1 - 1/z) / T for which the loop is stable; 0 when the

@@ -86,10 +86,10 @@ TEST(EndPiece, IsReadFromADeviceFile) {
   EXPECT_EQ(device.config.end_piece.coordinate_count(), 2);
   EXPECT_EQ(device.config.limits.coordinate_count, 2);
   EXPECT_EQ(device.config.end_piece.entry(1, 2), 0.5);
-  EXPECT_THROW(read_device(config::load_text("{axes: 2, end_piece: {map: [[1, 1], [1, 1]]}}", "d",
-                                             problems),
-                           "handle", problems),
-               config::ConfigError);
+  EXPECT_THROW(
+      read_device(config::load_text("{axes: 2, end_piece: {map: [[1, 1], [1, 1]]}}", "d", problems),
+                  "handle", problems),
+      config::ConfigError);
 }
 
 }  // namespace

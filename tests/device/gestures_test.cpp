@@ -47,8 +47,10 @@ TEST(Gestures, PluckDrawsSlowlyAndLetsGoAtOnce) {
 }
 
 TEST(Gestures, ReachAndPressComesUpAsItWentDown) {
-  const auto paths = gesture_of("gesture: {kind: reach_and_press, depth_m: -0.03, after_s: 0, "
-                                "in_s: 0.4, stay_s: 1, repeats: false}", 1);
+  const auto paths = gesture_of(
+      "gesture: {kind: reach_and_press, depth_m: -0.03, after_s: 0, "
+      "in_s: 0.4, stay_s: 1, repeats: false}",
+      1);
 
   EXPECT_EQ(paths[0].at(0.9), -0.03);
   EXPECT_NEAR(paths[0].at(1.6), 0.5 * (0.005 - 0.03), 1e-12);
@@ -66,8 +68,10 @@ TEST(Gestures, BowStrokesAtItsSpeedWhileItPresses) {
 }
 
 TEST(Gestures, GraspAndDragMovesTwoFingersTogether) {
-  const auto paths = gesture_of("gesture: {kind: grasp_and_drag, open_m: 0.04, grip_m: 0.01, "
-                                "drag_m: [0.03, 0.02], after_s: 0, in_s: 1}", 4);
+  const auto paths = gesture_of(
+      "gesture: {kind: grasp_and_drag, open_m: 0.04, grip_m: 0.01, "
+      "drag_m: [0.03, 0.02], after_s: 0, in_s: 1}",
+      4);
 
   ASSERT_EQ(paths.size(), 4u);
   EXPECT_EQ(paths[2].at(1.0) - paths[0].at(1.0), 0.02) << "closed";
@@ -77,9 +81,10 @@ TEST(Gestures, GraspAndDragMovesTwoFingersTogether) {
 }
 
 TEST(Gestures, KneadPressesAndPartsSeveralTimes) {
-  const auto paths = gesture_of("gesture: {kind: knead, open_m: 0.05, grip_m: 0.005, depth_m: "
-                                "-0.02, times: 3, after_s: 0, in_s: 1, stay_s: 0, repeats: false}",
-                                4);
+  const auto paths = gesture_of(
+      "gesture: {kind: knead, open_m: 0.05, grip_m: 0.005, depth_m: "
+      "-0.02, times: 3, after_s: 0, in_s: 1, stay_s: 0, repeats: false}",
+      4);
 
   for (const double begin : {0.0, 2.0, 4.0}) {
     EXPECT_EQ(paths[2].at(begin + 1.0), 0.005);

@@ -73,10 +73,12 @@ INSTANTIATE_TEST_SUITE_P(
                  "[-3, 0]]}\n",
                  "'along' in port 'p': the directions depend on each other",
                  "no two may be parallel, no three in one plane"},
-        BadScene{kLinked,
-                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], ^coupling: 1}\n",
-                 "unknown key 'coupling' in port 'p'",
-                 "known keys: device, axes, role, at_m, ball, mass_kg, drawn_radius_m, along"}));
+        BadScene{
+            kLinked,
+            "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], coupling: ^1}\n",
+            "'coupling' in port 'p' must be direct, virtual, or a mapping of stiffness_n_per_m, "
+            "viscosity_n_s_per_m and mass_kg",
+            ""}));
 
 INSTANTIATE_TEST_SUITE_P(
     Signals, BadSignals,

@@ -1,0 +1,142 @@
+// device_node/drivers/haply.cpp
+#include "device_node/drivers/haply.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace cordis::device {
+namespace {
+
+constexpr std::uint8_t kConfigure = 1;
+constexpr std::uint8_t kTorques = 2;
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kLargestStep = 0.05;  // of the pen from one sample to the next [m]
+constexpr int kMostUnanswered = 4;     // then an answer was lost, and they are counted anew
+constexpr long kBaud = 57600;          // without meaning: native USB
+
+void put_float(std::uint8_t* at, double value) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  for (int i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(bits >> (8 * i) & 0xffu);
+}
+
+double get_float(const std::uint8_t* at) noexcept {
+  std::uint32_t bits = 0;
+  for (int i = 0; i < 4; ++i) bits |= static_cast<std::uint32_t>(at[i]) << (8 * i);
+  return std::bit_cast<float>(bits);
+}
+
+}  // namespace
+
+Haply::Haply(std::unique_ptr<Wire> wire, const HardwareSettings& settings, const AxisLayout& layout,
+             const HaplySettings& haply)
+    : Hardware(std::move(wire), settings, layout), haply_(haply) {}
+
+std::array<std::size_t, 2> Haply::by_port() const noexcept {
+  if (haply_.ports[0] < haply_.ports[1]) return {0, 1};
+  return {1, 0};
+}
+
+void Haply::begin() noexcept {
+  length_ = 0;
+  unanswered_ = 0;
+  configured_ = false;
+  pose_.exists = false;
+}
+
+/// Nothing is asked: the configuration has no answer. It goes out before the first torques.
+std::size_t Haply::greet(Message&) noexcept {
+  return 0;
+}
+
+std::size_t Haply::request(const AxisValues& force_n, Message& message) noexcept {
+  std::size_t count = 0;
+  const auto add = [&](std::uint8_t byte) { message[count++] = byte; };
+  const auto add_float = [&](double value) {
+    put_float(message.data() + count, value);
+    count += 4;
+  };
+  const auto order = by_port();
+  if (!std::exchange(configured_, true)) {
+    add(kConfigure);
+    add(haply_.device_id);
+    const unsigned mask = 1u << (haply_.ports[0] - 1) | 1u << (haply_.ports[1] - 1);
+    for (const auto* turns : {&haply_.motor_turns, &haply_.encoder_turns}) {
+      add(static_cast<std::uint8_t>(mask));
+      for (const std::size_t arm : order) add(static_cast<std::uint8_t>((*turns)[arm]));
+    }
+    add(0);  // sensors
+    add(0);  // pulses
+    for (const std::size_t arm : order) {
+      add_float(haply_.offsets_deg[arm]);
+      add_float(haply_.counts_per_turn[arm]);
+    }
+  }
+  const Pantograph::Pair torque =
+      pose_.exists ? Pantograph::torques(pose_, {force_n[0], force_n[1]}) : Pantograph::Pair{};
+  add(kTorques);
+  add(haply_.device_id);
+  for (const std::size_t arm : order) add_float(torque[arm]);
+  if (++unanswered_ > kMostUnanswered) unanswered_ = 1;
+  return count;
+}
+
+Hardware::Heard Haply::hear(std::uint8_t byte) noexcept {
+  if (length_ == 0 && byte != haply_.device_id) return Heard::kBad;
+  answer_[length_++] = byte;
+  if (length_ < kAnswer) return Heard::kNothing;
+  length_ = 0;
+  return take_angles();
+}
+
+Hardware::Heard Haply::take_angles() noexcept {
+  Pantograph::Pair angle{};
+  const auto order = by_port();
+  for (std::size_t i = 0; i < 2; ++i) {
+    angle[order[i]] = get_float(answer_.data() + 1 + 4 * i) * kDegree;
+  }
+  const bool finite = std::isfinite(angle[0]) && std::isfinite(angle[1]);
+  const Pantograph::Pose pose = finite ? haply_.arms.forward(angle) : Pantograph::Pose{};
+  if (!pose.exists) return Heard::kBad;
+  const double step = std::hypot(pose.pen_m[0] - pose_.pen_m[0], pose.pen_m[1] - pose_.pen_m[1]);
+  if (std::exchange(pose_.exists, false) && step > kLargestStep) return Heard::kBad;
+  pose_ = pose;
+  unanswered_ = std::max(0, unanswered_ - 1);
+  return unanswered_ == 0 ? Heard::kSample : Heard::kOldSample;
+}
+
+void Haply::position(AxisValues& position_m) const noexcept {
+  for (std::size_t i = 0; i < 2; ++i) position_m[i] = pose_.pen_m[i] - haply_.rest_m[i];
+}
+
+std::unique_ptr<Driver> make_haply(const config::Value& section, const AxisLayout& layout,
+                                   config::Problems& problems) {
+  using config::Range;
+  config::MappingReader reader(section, "haply", problems);
+  std::unique_ptr<Wire> wire = read_wire(reader, kBaud);
+  const HardwareSettings settings = read_hardware(reader, layout, problems);
+  HaplySettings haply;
+  haply.device_id = static_cast<std::uint8_t>(reader.optional_integer("device_id", 5, 1, 254));
+  const auto pair = [&](const char* key, Pantograph::Pair fallback) {
+    const std::vector<double> two = reader.optional_numbers(key, {fallback[0], fallback[1]}, 2);
+    return Pantograph::Pair{two[0], two[1]};
+  };
+  haply.rest_m = pair("rest_m", haply.rest_m);
+  haply.offsets_deg = pair("offsets_deg", haply.offsets_deg);
+  haply.counts_per_turn = pair("counts_per_turn", haply.counts_per_turn);
+  haply.arms.inner_m = reader.optional_number("inner_m", haply.arms.inner_m, Range::positive());
+  haply.arms.outer_m = reader.optional_number("outer_m", haply.arms.outer_m, Range::positive());
+  haply.arms.base_m = reader.optional_number("base_m", haply.arms.base_m, Range::not_negative());
+  reader.finish();
+  if (layout.count != 2) problems.error(section.place(), "haply: it has two axes, x and y");
+  Pantograph::Pair angle{};
+  if (!haply.arms.inverse(haply.rest_m, angle)) {
+    problems.error(section.place(), "haply: rest_m is out of the reach of its arms");
+  }
+  if (problems.has_errors()) return nullptr;
+  return std::make_unique<Haply>(std::move(wire), settings, layout, haply);
+}
+
+}  // namespace cordis::device

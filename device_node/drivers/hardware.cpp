@@ -1,0 +1,152 @@
+// device_node/drivers/hardware.cpp
+#include "device_node/drivers/hardware.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "node/time.h"
+
+namespace cordis::device {
+namespace {
+
+std::int64_t nsec_of(double seconds) noexcept {
+  return static_cast<std::int64_t>(seconds * 1e9);
+}
+
+}  // namespace
+
+Hardware::Hardware(std::unique_ptr<Wire> wire, const HardwareSettings& settings,
+                   const AxisLayout& layout)
+    : wire_(std::move(wire)), settings_(settings), layout_(layout), guard_(settings.guard) {}
+
+Hardware::~Hardware() = default;
+
+void Hardware::start(Role role) noexcept {
+  role_ = role;
+  pull_.fill(0.0);
+  moving_ = false;
+  guard_.start();
+  const std::int64_t now = node::monotonic_nsec();
+  if (contact_ == Contact::kLost) try_to_open(now);
+  if (contact_ == Contact::kPresent) ask({});
+}
+
+bool Hardware::read(AxisValues& sensed) noexcept {
+  sensed.fill(0.0);
+  for (std::size_t a = 0; a < static_cast<std::size_t>(layout_.count); ++a) {
+    sensed[a] = role_ == Role::kMass ? position_[a] : -pull_[a];
+  }
+  return contact_ == Contact::kPresent;
+}
+
+bool Hardware::write(const AxisValues& commanded) noexcept {
+  const std::int64_t now = node::monotonic_nsec();
+  if (contact_ == Contact::kLost) try_to_open(now);
+  if (contact_ == Contact::kGreeting && !greets_) ask({});
+  if (contact_ == Contact::kGreeting) listen(now, Heard::kGreeted);
+  if (contact_ == Contact::kPresent) {
+    ask(role_ == Role::kMass ? commanded : pull_to(commanded));
+    listen(now + nsec_of(settings_.answer_within_s), Heard::kSample);
+  }
+  if (contact_ != Contact::kLost &&
+      node::monotonic_nsec() - last_sample_nsec_ > nsec_of(settings_.lost_after_s)) {
+    lose();
+  }
+  return contact_ == Contact::kPresent;
+}
+
+void Hardware::stop() noexcept {
+  pull_.fill(0.0);
+  if (contact_ == Contact::kPresent) ask({});
+}
+
+void Hardware::try_to_open(std::int64_t now) noexcept {
+  if (now < next_try_nsec_) return;
+  next_try_nsec_ = now + nsec_of(settings_.retry_s);
+  if (!wire_->open()) return;
+  begin();
+  last_sample_nsec_ = now;  // from here on it has lost_after_s to speak
+  Message message;
+  const std::size_t count = greet(message);
+  contact_ = Contact::kGreeting;
+  greets_ = count > 0;
+  if (greets_) wire_->send({message.data(), count});
+}
+
+void Hardware::ask(const AxisValues& force_n) noexcept {
+  Message message;
+  const std::size_t count = request(force_n, message);
+  wire_->send({message.data(), count});
+  if (!wire_->is_open()) lose();
+}
+
+/// Takes all that is there, and waits for what is wanted until an instant.
+void Hardware::listen(std::int64_t until, Heard wanted) noexcept {
+  std::array<std::uint8_t, 256> bytes;
+  bool found = false;
+  for (;;) {
+    const std::int64_t left = found ? 0 : until - node::monotonic_nsec();
+    const std::size_t count =
+        wire_->receive(bytes, std::chrono::nanoseconds(std::max<std::int64_t>(left, 0)));
+    if (!wire_->is_open()) return lose();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Heard heard = hear(bytes[i]);
+      if (heard == Heard::kWrong) return lose();
+      const bool sampled = heard == Heard::kSample || heard == Heard::kOldSample;
+      if (sampled) position(position_);
+      const bool greeted = greets_ ? heard == Heard::kGreeted : sampled;
+      if (greeted && contact_ == Contact::kGreeting) contact_ = Contact::kPresent;
+      if (greeted || sampled) last_sample_nsec_ = node::monotonic_nsec();
+      bad_ += heard == Heard::kBad;
+      found = found || heard == wanted;
+    }
+    if (count == 0 && (found || node::monotonic_nsec() >= until)) break;
+  }
+  late_ += wanted == Heard::kSample && !found;
+}
+
+void Hardware::lose() noexcept {
+  wire_->close();
+  contact_ = Contact::kLost;
+  pull_.fill(0.0);
+  guard_.start();
+  moving_ = false;
+}
+
+AxisValues Hardware::pull_to(const AxisValues& wanted_m) noexcept {
+  AxisValues pull{};
+  for (std::size_t a = 0; a < static_cast<std::size_t>(layout_.count); ++a) {
+    const double gap = wanted_m[a] - position_[a];
+    const double gap_before = moving_ ? wanted_before_[a] - position_before_[a] : gap;
+    pull[a] = settings_.coupling_n_per_m * gap +
+              settings_.coupling_n_s_per_m * (gap - gap_before) * layout_.rate_hz;
+  }
+  wanted_before_ = wanted_m;
+  position_before_ = position_;
+  moving_ = true;
+  guard_.accept(pull);
+  pull_ = guard_.tick(0.0, position_);
+  return pull_;
+}
+
+HardwareSettings read_hardware(config::MappingReader& reader, const AxisLayout& layout,
+                               config::Problems& problems) {
+  using config::Range;
+  HardwareSettings settings;
+  settings.answer_within_s = reader.optional_number("answer_within_s", 0.4 / layout.rate_hz,
+                                                    Range::between(0.0, 0.9 / layout.rate_hz));
+  settings.lost_after_s = reader.optional_number("lost_after_s", 0.02, Range::between(0.002, 10.0));
+  settings.retry_s = reader.optional_number("retry_s", 0.5, Range::between(0.01, 60.0));
+  config::MappingReader coupling(reader.optional_mapping("coupling"), "coupling", problems);
+  settings.coupling_n_per_m =
+      coupling.optional_number("stiffness_n_per_m", 300.0, Range::positive());
+  settings.coupling_n_s_per_m =
+      coupling.optional_number("viscosity_n_s_per_m", 1.0, Range::not_negative());
+  coupling.finish();
+  settings.guard.limit_n = layout.force_limit_n;
+  settings.guard.period_s = 1.0 / layout.rate_hz;
+  settings.guard.slew_n_per_s = 5.0 * layout.force_limit_n / settings.guard.watchdog_s;
+  return settings;
+}
+
+}  // namespace cordis::device

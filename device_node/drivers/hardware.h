@@ -1,0 +1,110 @@
+// device_node/drivers/hardware.h -- what all drivers of things that can be unplugged share.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "device_node/drivers/driver.h"
+#include "device_node/drivers/wire.h"
+#include "device_node/force_guard.h"
+
+namespace cordis::device {
+
+/// How the driver stands with its device.
+enum class Contact : std::uint8_t {
+  kLost,      ///< the wire is closed; it is tried again every retry_s
+  kGreeting,  ///< the wire is open, and the device has not said yet what it is
+  kPresent    ///< samples come
+};
+
+/// Settings of every such driver.
+struct HardwareSettings {
+  double answer_within_s = 0.0004;  ///< how long write() waits for the sample it asks for
+  double lost_after_s = 0.02;       ///< without a sample
+  double retry_s = 0.5;
+  double coupling_n_per_m = 300.0;  ///< role liaison: between hand and commanded place
+  double coupling_n_s_per_m = 1.0;  ///< likewise
+  ForceGuardSettings guard;         ///< role liaison: of the forces that follow from it
+};
+
+/// A device at the end of a wire that is given forces and answers with positions, request by
+/// request. The loop never waits for it longer than answer_within_s. A device that falls silent is
+/// lost: the wire is closed, opened again every retry_s, and the driver goes on by itself.
+///
+/// Role mass: as it is. Role liaison, for devices without a sensor of force: the motors pull the
+/// handle to the commanded place by a coupling, F = K (x - x_h) + Z (v - v_h), through a guard of
+/// their own, and -F is what the hand is said to give.
+class Hardware : public Driver {
+ public:
+  Hardware(std::unique_ptr<Wire> wire, const HardwareSettings& settings, const AxisLayout& layout);
+  ~Hardware() override;
+
+  bool can_play(Role) const noexcept override { return true; }
+  void start(Role role) noexcept override;
+  bool read(AxisValues& sensed) noexcept override;
+  bool write(const AxisValues& commanded) noexcept override;
+  void stop() noexcept override;
+
+  Contact contact() const noexcept { return contact_; }
+  std::uint64_t late_count() const noexcept { return late_; }  ///< samples not there in time
+  std::uint64_t bad_count() const noexcept { return bad_; }    ///< damaged frames
+
+ protected:
+  static constexpr std::size_t kLargestMessage = 96;
+  using Message = std::array<std::uint8_t, kLargestMessage>;
+
+  /// What a byte brought about.
+  enum class Heard : std::uint8_t {
+    kNothing,
+    kGreeted,    ///< the device is the right one
+    kWrong,      ///< it is not: the wire is closed
+    kSample,     ///< a sample that answers the newest request
+    kOldSample,  ///< one that answers an earlier request
+    kBad         ///< damaged
+  };
+
+  /// Forgets half a message.
+  virtual void begin() noexcept = 0;
+  /// Writes what the device is asked first; 0: it is present as soon as it has sent a sample.
+  virtual std::size_t greet(Message& message) noexcept = 0;
+  /// Writes the request that carries forces [N].
+  virtual std::size_t request(const AxisValues& force_n, Message& message) noexcept = 0;
+  virtual Heard hear(std::uint8_t byte) noexcept = 0;
+  virtual void position(AxisValues& position_m) const noexcept = 0;  ///< of the newest sample
+
+  const AxisLayout& layout() const noexcept { return layout_; }
+
+ private:
+  void try_to_open(std::int64_t now) noexcept;
+  void ask(const AxisValues& force_n) noexcept;
+  void listen(std::int64_t until, Heard wanted) noexcept;
+  void lose() noexcept;
+  AxisValues pull_to(const AxisValues& wanted_m) noexcept;
+
+  std::unique_ptr<Wire> wire_;
+  HardwareSettings settings_;
+  AxisLayout layout_;
+  Role role_ = Role::kMass;
+  ForceGuard guard_;
+  Contact contact_ = Contact::kLost;
+  bool greets_ = true;  // it says what it is; otherwise its first sample must do
+  std::int64_t next_try_nsec_ = 0;
+  std::int64_t last_sample_nsec_ = 0;
+  AxisValues position_{};  // [m]
+  AxisValues pull_{};      // role liaison: on the handle [N]
+  AxisValues wanted_before_{};
+  AxisValues position_before_{};
+  bool moving_ = false;  // the two above are of the period before
+  std::uint64_t late_ = 0;
+  std::uint64_t bad_ = 0;
+};
+
+/// Reads what is common from the mapping of a driver: answer_within_s, lost_after_s, retry_s and
+/// `coupling`.
+HardwareSettings read_hardware(config::MappingReader& reader, const AxisLayout& layout,
+                               config::Problems& problems);
+
+}  // namespace cordis::device

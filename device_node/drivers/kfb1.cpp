@@ -1,0 +1,166 @@
+// device_node/drivers/kfb1.cpp
+#include "device_node/drivers/kfb1.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <spdlog/spdlog.h>
+
+namespace cordis::device {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+enum Type : std::uint8_t { kState = 1, kForce = 2, kHello = 3, kInfo = 4 };
+
+constexpr double kFullScale = 32767.0;
+constexpr std::uint8_t kVersion = 1;
+constexpr long kBaud = 1'000'000;
+
+/// CRC-16/CCITT-FALSE.
+std::uint16_t crc_of(Bytes bytes) noexcept {
+  unsigned crc = 0xffff;
+  for (const std::uint8_t byte : bytes) {
+    crc ^= static_cast<unsigned>(byte) << 8;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x8000u) != 0 ? (crc << 1) ^ 0x1021u : crc << 1;
+    crc &= 0xffffu;
+  }
+  return static_cast<std::uint16_t>(crc);
+}
+
+void put16(std::uint8_t* at, unsigned value) noexcept {
+  at[0] = static_cast<std::uint8_t>(value & 0xffu);
+  at[1] = static_cast<std::uint8_t>(value >> 8 & 0xffu);
+}
+
+unsigned get16(Bytes bytes, std::size_t at) noexcept {
+  return bytes[at] | static_cast<unsigned>(bytes[at + 1]) << 8;
+}
+
+std::uint32_t get32(Bytes bytes, std::size_t at) noexcept {
+  return get16(bytes, at) | static_cast<std::uint32_t>(get16(bytes, at + 2)) << 16;
+}
+
+/// Adds the checksum, encodes and ends with 0. @return bytes written
+template <class Message>
+std::size_t seal(Message& payload, std::size_t count, Message& frame) noexcept {
+  put16(payload.data() + count, crc_of({payload.data(), count}));
+  count += 2;
+  std::size_t length = 1;
+  std::size_t code_at = 0;
+  std::uint8_t code = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (payload[i] != 0) {
+      frame[length++] = payload[i];
+      ++code;
+      continue;
+    }
+    frame[code_at] = code;
+    code_at = length++;
+    code = 1;
+  }
+  frame[code_at] = code;
+  frame[length++] = 0;
+  return length;
+}
+
+/// Decodes in place. @return bytes of payload; 0 when the frame is damaged
+template <class Message>
+std::size_t unseal(Message& frame, std::size_t count) noexcept {
+  std::size_t length = 0;
+  std::size_t i = 0;
+  while (i < count) {
+    const std::size_t code = frame[i++];
+    if (code == 0 || i + code - 1 > count) return 0;
+    for (std::size_t k = 1; k < code; ++k) frame[length++] = frame[i++];
+    if (i < count) frame[length++] = 0;
+  }
+  if (length < 3) return 0;
+  const Bytes payload(frame.data(), length);
+  return crc_of(payload.first(length - 2)) == get16(payload, length - 2) ? length - 2 : 0;
+}
+
+}  // namespace
+
+void Kfb1::begin() noexcept {
+  length_ = 0;
+}
+
+std::size_t Kfb1::greet(Message& message) noexcept {
+  Message payload{};
+  payload[0] = kHello;
+  payload[1] = kVersion;
+  return seal(payload, 2, message);
+}
+
+std::size_t Kfb1::request(const AxisValues& force_n, Message& message) noexcept {
+  Message payload{};
+  const auto count = static_cast<std::size_t>(layout().count);
+  payload[0] = kForce;
+  payload[1] = ++sequence_;
+  payload[2] = static_cast<std::uint8_t>(count);
+  for (std::size_t a = 0; a < count; ++a) {
+    const double share = std::clamp(force_n[a] / force_n_, -1.0, 1.0);
+    put16(payload.data() + 4 + 2 * a,
+          static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(share * kFullScale))));
+  }
+  return seal(payload, 4 + 2 * count, message);
+}
+
+Hardware::Heard Kfb1::hear(std::uint8_t byte) noexcept {
+  if (byte != 0) {
+    if (length_ < frame_.size()) frame_[length_] = byte;
+    length_ = std::min(length_ + 1, frame_.size() + 1);  // one more: too long
+    return Heard::kNothing;
+  }
+  const Heard heard = length_ == 0 ? Heard::kNothing : take_frame();
+  length_ = 0;
+  return heard;
+}
+
+Hardware::Heard Kfb1::take_frame() noexcept {
+  if (length_ > frame_.size()) return Heard::kBad;
+  const std::size_t count = unseal(frame_, length_);
+  if (count == 0) return Heard::kBad;
+  const Bytes payload(frame_.data(), count);
+  if (payload[0] == kInfo) return take_info(payload);
+  if (payload[0] == kState) return take_state(payload);
+  return Heard::kNothing;  // EVENT, or of a later version
+}
+
+Hardware::Heard Kfb1::take_info(Bytes payload) noexcept {
+  if (payload.size() < 17) return Heard::kBad;
+  const int keys = payload[2];
+  if (payload[1] != kVersion || keys != layout().count || get32(payload, 7) == 0) {
+    spdlog::error(
+        "kfb1: the device has {} keys and speaks version {}; the device file says {} axes", keys,
+        payload[1], layout().count);
+    return Heard::kWrong;
+  }
+  travel_m_ = get32(payload, 3) * 1e-6;
+  force_n_ = get32(payload, 7) * 1e-3;
+  return Heard::kGreeted;
+}
+
+Hardware::Heard Kfb1::take_state(Bytes payload) noexcept {
+  const auto count = static_cast<std::size_t>(layout().count);
+  if (payload.size() < 10 + 2 * count || payload[2] != count) return Heard::kBad;
+  for (std::size_t a = 0; a < count; ++a) {
+    const double share = static_cast<std::int16_t>(get16(payload, 8 + 2 * a)) / kFullScale;
+    newest_[a] = layout().lowest_m + 0.5 * (share + 1.0) * travel_m_;
+  }
+  return payload[1] == sequence_ ? Heard::kSample : Heard::kOldSample;
+}
+
+std::unique_ptr<Driver> make_kfb1(const config::Value& section, const AxisLayout& layout,
+                                  config::Problems& problems) {
+  config::MappingReader reader(section, "kfb1", problems);
+  std::unique_ptr<Wire> wire = read_wire(reader, kBaud);
+  const HardwareSettings settings = read_hardware(reader, layout, problems);
+  reader.finish();
+  if (problems.has_errors()) return nullptr;
+  return std::make_unique<Kfb1>(std::move(wire), settings, layout);
+}
+
+}  // namespace cordis::device

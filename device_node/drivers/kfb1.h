@@ -1,0 +1,38 @@
+// device_node/drivers/kfb1.h -- keyboards that people build themselves: docs/kfb1.md.
+#pragma once
+
+#include "device_node/drivers/hardware.h"
+
+namespace cordis::device {
+
+/// KFB1: COBS frames with a checksum; each FORCE is answered by one STATE with its number. The
+/// driver asks what the device is, and refuses one with another number of keys.
+class Kfb1 final : public Hardware {
+ public:
+  using Hardware::Hardware;
+
+ protected:
+  void begin() noexcept override;
+  std::size_t greet(Message& message) noexcept override;
+  std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
+  Heard hear(std::uint8_t byte) noexcept override;
+  void position(AxisValues& position_m) const noexcept override { position_m = newest_; }
+
+ private:
+  Heard take_frame() noexcept;
+  Heard take_info(std::span<const std::uint8_t> payload) noexcept;
+  Heard take_state(std::span<const std::uint8_t> payload) noexcept;
+
+  Message frame_{};  // bytes since the last 0
+  std::size_t length_ = 0;
+  std::uint8_t sequence_ = 0;  // of the newest FORCE
+  double travel_m_ = 0.04;     // as the device says
+  double force_n_ = 20.0;      // likewise: of the largest value
+  AxisValues newest_{};        // [m]
+};
+
+/// Reads the mapping `kfb1:` of a device file. Empty when it has errors.
+std::unique_ptr<Driver> make_kfb1(const config::Value& section, const AxisLayout& layout,
+                                  config::Problems& problems);
+
+}  // namespace cordis::device

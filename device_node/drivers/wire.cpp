@@ -1,0 +1,134 @@
+// device_node/drivers/wire.cpp
+#include "device_node/drivers/wire.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <utility>
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace cordis::device {
+namespace {
+
+constexpr std::array<std::pair<long, speed_t>, 8> kBauds = {{{9600, B9600},
+                                                             {57600, B57600},
+                                                             {115200, B115200},
+                                                             {230400, B230400},
+                                                             {460800, B460800},
+                                                             {500000, B500000},
+                                                             {1000000, B1000000},
+                                                             {2000000, B2000000}}};
+
+class SerialLine final : public Wire {
+ public:
+  SerialLine(std::string path, speed_t baud) : path_(std::move(path)), baud_(baud) {}
+
+  bool open() noexcept override {
+    close();
+    file_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (file_ < 0) return false;
+    termios line{};
+    if (tcgetattr(file_, &line) == 0) {  // a pipe or a pseudo-terminal without one will do as it is
+      cfmakeraw(&line);
+      line.c_cflag |= CLOCAL | CREAD;
+      cfsetspeed(&line, baud_);
+      tcsetattr(file_, TCSANOW, &line);
+      tcflush(file_, TCIOFLUSH);
+    }
+    return true;
+  }
+
+ private:
+  std::string path_;
+  speed_t baud_;
+};
+
+class Datagrams final : public Wire {
+ public:
+  explicit Datagrams(const sockaddr_in& address) : address_(address) {}
+
+  bool open() noexcept override {
+    close();
+    file_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (file_ < 0) return false;
+    if (connect(file_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_) == 0) {
+      return true;
+    }
+    close();
+    return false;
+  }
+
+ private:
+  sockaddr_in address_;
+};
+
+}  // namespace
+
+Wire::~Wire() {
+  close();
+}
+
+void Wire::close() noexcept {
+  if (file_ >= 0) ::close(file_);
+  file_ = -1;
+}
+
+bool Wire::send(std::span<const std::uint8_t> bytes) noexcept {
+  if (file_ < 0) return false;
+  const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+  if (written == static_cast<ssize_t>(bytes.size())) return true;
+  // A full buffer is a device that no longer reads; half a frame is found out by its checksum.
+  if (written < 0 && errno != EAGAIN && errno != ECONNREFUSED) close();
+  return false;
+}
+
+std::size_t Wire::receive(std::span<std::uint8_t> room, std::chrono::nanoseconds at_most) noexcept {
+  if (file_ < 0) return 0;
+  pollfd poll_on{file_, POLLIN, 0};
+  const timespec limit{0, static_cast<long>(std::max<std::int64_t>(0, at_most.count()))};
+  if (ppoll(&poll_on, 1, &limit, nullptr) <= 0) return 0;
+  const ssize_t count = ::read(file_, room.data(), room.size());
+  if (count > 0) return static_cast<std::size_t>(count);
+  if (count == 0 || (errno != EAGAIN && errno != ECONNREFUSED)) close();
+  return 0;
+}
+
+std::unique_ptr<Wire> read_wire(config::MappingReader& reader, long default_baud) {
+  const std::string path = reader.optional_text("port", "");
+  const std::string address = reader.optional_text("udp", "");
+  const long baud = reader.optional_integer("baud", default_baud, 1, 10'000'000);
+  if (path.empty() == address.empty()) {
+    reader.error_at("port", reader.what() + " needs either 'port', a serial line, or 'udp'");
+    return nullptr;
+  }
+  if (!path.empty()) {
+    const auto* known = std::find_if(kBauds.begin(), kBauds.end(),
+                                     [baud](const auto& row) { return row.first == baud; });
+    if (known != kBauds.end()) return std::make_unique<SerialLine>(path, known->second);
+    reader.error_at("baud",
+                    "baud must be 9600, 57600, 115200, 230400, 460800, 500000, 1000000 or "
+                    "2000000");
+    return nullptr;
+  }
+  sockaddr_in peer{};
+  peer.sin_family = AF_INET;
+  const std::size_t colon = address.rfind(':');
+  const long number = colon == std::string::npos ? 0 : std::atol(address.c_str() + colon + 1);
+  peer.sin_port = htons(static_cast<std::uint16_t>(number));
+  if (number < 1 || number > 65535 ||
+      inet_pton(AF_INET, address.substr(0, colon).c_str(), &peer.sin_addr) != 1) {
+    reader.error_at("udp", "udp must be an address like 192.168.0.7:5005, got '" + address + "'");
+    return nullptr;
+  }
+  return std::make_unique<Datagrams>(peer);
+}
+
+}  // namespace cordis::device

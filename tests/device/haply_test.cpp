@@ -1,0 +1,205 @@
+// tests/device/haply_test.cpp -- the kinematics of a pantograph, and the driver against an emulated
+// board on a pseudo-terminal.
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "device_node/drivers/pantograph.h"
+#include "tests/device/plug.h"
+#include "tests/device/wired.h"
+
+namespace cordis::device {
+namespace {
+
+using test::Plug;
+
+TEST(Pantograph, InverseAndForwardAreEachOthersReverse) {
+  for (const double base : {0.0, 0.03}) {
+    Pantograph arms;
+    arms.base_m = base;
+    for (double x = -0.06; x <= 0.0601; x += 0.02) {
+      for (double y = 0.06; y <= 0.1201; y += 0.02) {
+        Pantograph::Pair angle{};
+        ASSERT_TRUE(arms.inverse({x, y}, angle)) << x << " " << y;
+        const Pantograph::Pose pose = arms.forward(angle);
+        ASSERT_TRUE(pose.exists) << x << " " << y;
+        EXPECT_NEAR(pose.pen_m[0], x, 1e-12);
+        EXPECT_NEAR(pose.pen_m[1], y, 1e-12);
+      }
+    }
+  }
+  Pantograph::Pair angle{};
+  EXPECT_FALSE(Pantograph().inverse({0.0, 0.2}, angle)) << "out of reach";
+}
+
+TEST(Pantograph, TorquesDoTheWorkOfTheForce) {
+  Pantograph arms;
+  arms.base_m = 0.02;
+  Pantograph::Pair angle{};
+  ASSERT_TRUE(arms.inverse({0.02, 0.09}, angle));
+  const Pantograph::Pair force{1.5, -0.7};
+  const Pantograph::Pair torque = Pantograph::torques(arms.forward(angle), force);
+
+  // Virtual work over a small turn of each motor, by central differences.
+  constexpr double kTurn = 1e-6;
+  for (std::size_t k = 0; k < 2; ++k) {
+    Pantograph::Pair more = angle;
+    Pantograph::Pair less = angle;
+    more[k] += kTurn;
+    less[k] -= kTurn;
+    const auto to = arms.forward(more).pen_m;
+    const auto from = arms.forward(less).pen_m;
+    const double work = force[0] * (to[0] - from[0]) + force[1] * (to[1] - from[1]);
+    EXPECT_NEAR(torque[k], work / (2.0 * kTurn), 1e-9);
+  }
+}
+
+/// The board: takes its configuration, and answers torques with angles.
+class BoardOfAPantograph {
+ public:
+  BoardOfAPantograph() : plug([this](std::uint8_t byte) { hear(byte); }, [] {}) {}
+
+  /// In the order of the ports: the right motor first.
+  std::array<std::atomic<float>, 2> degrees{};
+  std::array<std::atomic<float>, 2> torques{};
+  std::atomic<int> configurations{0};
+
+ private:
+  static constexpr std::size_t kConfiguration = 2 + 3 + 3 + 2 + 16;
+  static constexpr std::size_t kTorques = 2 + 8;
+
+  void hear(std::uint8_t byte) {
+    bytes_.push_back(byte);
+    if (bytes_[0] == 1 && bytes_.size() == kConfiguration) {
+      EXPECT_EQ(bytes_[1], 5);
+      EXPECT_EQ(bytes_[2], 3) << "ports 1 and 2";
+      EXPECT_EQ(float_at(10), -61.0f) << "offset of port 1, the right arm";
+      ++configurations;
+      bytes_.clear();
+    } else if (bytes_[0] == 2 && bytes_.size() == kTorques) {
+      torques[0] = float_at(2);
+      torques[1] = float_at(6);
+      bytes_.clear();
+      std::vector<std::uint8_t> answer{5};
+      for (const auto& angle : degrees) {
+        const auto bits = std::bit_cast<std::uint32_t>(angle.load());
+        for (int i = 0; i < 4; ++i) answer.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
+      }
+      plug.say(answer);
+    } else if (bytes_[0] != 1 && bytes_[0] != 2) {
+      bytes_.clear();
+    }
+  }
+  float float_at(std::size_t at) const {
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      bits |= static_cast<std::uint32_t>(bytes_[at + i]) << (8 * i);
+    return std::bit_cast<float>(bits);
+  }
+  std::vector<std::uint8_t> bytes_;
+
+ public:
+  Plug plug;  // last: its thread uses the rest
+};
+
+class HaplyTest : public Wired {
+ protected:
+  HaplyTest() {
+    layout_.count = 2;
+    layout_.lowest_m = -0.05;
+    layout_.highest_m = 0.05;
+  }
+
+  /// Angles of a place of the pen, as the board says them.
+  static void put_pen(BoardOfAPantograph& board, const Pantograph::Pair& pen) {
+    Pantograph::Pair angle{};
+    ASSERT_TRUE(Pantograph().inverse(pen, angle));
+    board.degrees[0] = static_cast<float>(angle[1] * 180.0 / std::numbers::pi);
+    board.degrees[1] = static_cast<float>(angle[0] * 180.0 / std::numbers::pi);
+  }
+
+  AxisLayout layout_;
+};
+
+TEST_F(HaplyTest, TurnsAnglesIntoThePenAndForcesIntoTorques) {
+  BoardOfAPantograph board;
+  put_pen(board, {0.02, 0.09});
+  board.plug.into_serial_line(link());
+  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  pen->start(Role::kMass);
+
+  Pantograph::Pair angle{};
+  ASSERT_TRUE(Pantograph().inverse({0.02, 0.09}, angle));
+  const auto wanted = Pantograph::torques(Pantograph().forward(angle), {1.0, 2.0});
+  ASSERT_TRUE(until(*pen, {1.0, 2.0}, [&](bool there) {
+    return there && std::abs(board.torques[1] - wanted[0]) < 1e-5 &&
+           std::abs(board.torques[0] - wanted[1]) < 1e-5;
+  }));
+  AxisValues sensed{};
+  ASSERT_TRUE(pen->read(sensed));
+  EXPECT_NEAR(sensed[0], 0.02, 1e-6);
+  EXPECT_NEAR(sensed[1], -0.01, 1e-6);
+  EXPECT_EQ(board.configurations, 1);
+}
+
+TEST_F(HaplyTest, GoesOnAfterDroppedAndLateAnswers) {
+  BoardOfAPantograph board;
+  put_pen(board, {0.0, 0.1});
+  board.plug.harm = [](int n) {
+    if (n % 10 == 4) return Plug::Harm::kDropped;
+    if (n % 10 == 7) return Plug::Harm::kLate;
+    return Plug::Harm::kNone;
+  };
+  board.plug.into_serial_line(link());
+  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  pen->start(Role::kMass);
+  ASSERT_TRUE(until(*pen, {}, [](bool there) { return there; }));
+
+  int present = 0;
+  AxisValues sensed{};
+  for (int n = 0; n < 1000; ++n) {
+    present += pen->write({0.1, 0.1});
+    ASSERT_TRUE(pen->read(sensed));
+    ASSERT_NEAR(sensed[0], 0.0, 1e-6);
+    ASSERT_NEAR(sensed[1], 0.0, 1e-6);
+  }
+  EXPECT_EQ(present, 1000);
+}
+
+TEST_F(HaplyTest, RefusesAnglesThatNoPenHas) {
+  BoardOfAPantograph board;
+  put_pen(board, {0.0, 0.1});
+  board.plug.into_serial_line(link());
+  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  auto& hardware = dynamic_cast<Hardware&>(*pen);
+  pen->start(Role::kMass);
+  ASSERT_TRUE(until(*pen, {}, [](bool there) { return there; }));
+
+  board.degrees[0] = std::nanf("");
+  ASSERT_TRUE(until(*pen, {}, [&](bool) { return hardware.bad_count() > 0; }));
+  AxisValues sensed{};
+  pen->read(sensed);
+  EXPECT_NEAR(sensed[0], 0.0, 1e-6) << "the last good place";
+}
+
+TEST_F(HaplyTest, IsLostWhenUnpluggedAndRecoversWhenPluggedInAgain) {
+  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  pen->start(Role::kMass);
+  for (int time = 0; time < 3; ++time) {
+    BoardOfAPantograph board;
+    put_pen(board, {0.0, 0.1});
+    board.plug.into_serial_line(link());
+    ASSERT_TRUE(until(*pen, {1.0, 1.0}, [](bool there) { return there; }));
+    board.plug.pull();
+    ASSERT_TRUE(until(*pen, {1.0, 1.0}, [](bool there) { return !there; }));
+  }
+}
+
+}  // namespace
+}  // namespace cordis::device

@@ -1,0 +1,229 @@
+// tests/device/kfb1_test.cpp -- the driver against the reference firmware, over a pseudo-terminal
+// and UDP, with damaged, dropped and late answers, unplugged and plugged in again.
+#include "device_node/firmware/kfb1.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "node/time.h"
+#include "tests/device/plug.h"
+#include "tests/device/wired.h"
+
+namespace cordis::device {
+namespace {
+
+constexpr double kTravel = 0.04;  // [m]
+constexpr double kForce = 10.0;   // largest of a motor [N]
+
+using test::Plug;
+
+/// A board on which the reference firmware runs, and a wire that may harm what it says.
+class Board {
+ public:
+  explicit Board(int keys = 2)
+      : plug([this](std::uint8_t byte) { kfb1_byte(&firmware_, byte); },
+             [this] { kfb1_tick(&firmware_); }) {
+    board_ = this;
+    kfb1_board what{};
+    what.keys = static_cast<std::uint8_t>(keys);
+    what.travel_um = 40000;
+    what.force_mn = 10000;
+    what.rate_hz = 1000;
+    what.position = [](std::uint8_t key) { return board_->positions[key].load(); };
+    what.force = [](std::uint8_t key, std::int16_t force) { board_->forces[key] = force; };
+    what.touched = [] { return std::uint16_t{1}; };
+    what.time_us = [] { return static_cast<std::uint32_t>(node::monotonic_nsec() / 1000); };
+    what.send = [](const std::uint8_t* bytes, std::uint8_t count) {
+      board_->plug.say({bytes, count});
+    };
+    kfb1_start(&firmware_, &what);
+  }
+
+  std::array<std::atomic<std::int16_t>, KFB1_MAX_KEYS> positions{};
+  std::array<std::atomic<std::int16_t>, KFB1_MAX_KEYS> forces{};
+
+ private:
+  static inline Board* board_ = nullptr;  // the firmware's functions know no other
+  kfb1 firmware_{};
+
+ public:
+  Plug plug;  // last: its thread uses the rest
+};
+
+AxisLayout layout_of(int keys) {
+  AxisLayout layout;
+  layout.count = keys;
+  layout.lowest_m = -kTravel;
+  layout.highest_m = 0.0;
+  layout.force_limit_n = kForce;
+  return layout;
+}
+
+class Kfb1Test : public Wired {
+ protected:
+  std::unique_ptr<Driver> keys_at(const std::string& where, int keys = 2) {
+    return driver("kfb1", where, layout_of(keys));
+  }
+};
+
+TEST_F(Kfb1Test, CarriesPositionsAndForcesBothWays) {
+  Board board;
+  board.positions[0] = 32767;  // up: 0 m
+  board.positions[1] = 0;      // in the middle: -0.02 m
+  board.plug.into_serial_line(link());
+  const auto key = keys_at(port());
+  key->start(Role::kMass);
+
+  ASSERT_TRUE(until(*key, {5.0, -10.0}, [&](bool there) {
+    return there && board.forces[0] == 16384 && board.forces[1] == -32767;
+  }));
+  AxisValues sensed;
+  ASSERT_TRUE(until(*key, {5.0, -10.0}, [&](bool there) {
+    return there && key->read(sensed) && std::abs(sensed[1] + 0.02) < 1e-6;
+  }));
+  EXPECT_NEAR(sensed[0], 0.0, 1e-9);
+
+  key->stop();
+  EXPECT_TRUE(until(*key, {}, [&](bool) { return board.forces[0] == 0 && board.forces[1] == 0; }));
+}
+
+TEST_F(Kfb1Test, SpeaksUdpToo) {
+  Board board(16);
+  board.positions[15] = -32767;
+  const int number = board.plug.into_udp();
+  const auto keys = keys_at("udp: '127.0.0.1:" + std::to_string(number) + "'", 16);
+  keys->start(Role::kMass);
+
+  AxisValues sensed{};
+  EXPECT_TRUE(until(*keys, {}, [&](bool there) {
+    return there && keys->read(sensed) && std::abs(sensed[15] + kTravel) < 1e-9;
+  }));
+}
+
+TEST_F(Kfb1Test, FindsOutDamagedAndDroppedAndLateAnswersAndGoesOn) {
+  Board board;
+  board.plug.harm = [](int n) {
+    if (n % 10 == 3) return Plug::Harm::kFlipped;
+    if (n % 10 == 5) return Plug::Harm::kDropped;
+    if (n % 10 == 7) return Plug::Harm::kLate;
+    return Plug::Harm::kNone;
+  };
+  board.positions[0] = 16384;  // -0.01 m
+  board.positions[1] = -16384;
+  board.plug.into_serial_line(link());
+  const auto key = keys_at(port());
+  auto& hardware = dynamic_cast<Hardware&>(*key);
+  key->start(Role::kMass);
+  ASSERT_TRUE(until(*key, {}, [](bool there) { return there; }));
+  AxisValues sensed;
+  ASSERT_TRUE(until(*key, {}, [&](bool) { return key->read(sensed) && sensed[0] != 0.0; }));
+
+  int present = 0;
+  constexpr int kPeriods = 1000;
+  for (int n = 0; n < kPeriods; ++n) {
+    present += key->write({1.0, 1.0});
+    ASSERT_TRUE(key->read(sensed));
+    ASSERT_NEAR(sensed[0], -0.01, 1e-5) << "no damaged position is ever believed";
+    ASSERT_NEAR(sensed[1], -0.03, 1e-5);
+  }
+
+  EXPECT_EQ(present, kPeriods);
+  EXPECT_GE(hardware.bad_count(), 50u);
+  EXPECT_GE(hardware.late_count(), 50u);
+}
+
+TEST_F(Kfb1Test, IsLostWhenUnpluggedAndRecoversWhenPluggedInAgain) {
+  const auto key = keys_at(port());
+  key->start(Role::kMass);
+  EXPECT_FALSE(key->write({}));  // nothing is there yet
+  auto& hardware = dynamic_cast<Hardware&>(*key);
+
+  for (int time = 0; time < 3; ++time) {
+    Board board;
+    board.plug.into_serial_line(link());
+    ASSERT_TRUE(until(*key, {2.0, 2.0}, [&](bool there) { return there && board.forces[0] > 0; }));
+    EXPECT_EQ(hardware.contact(), Contact::kPresent);
+
+    board.plug.pull();
+
+    ASSERT_TRUE(until(*key, {2.0, 2.0}, [](bool there) { return !there; }));
+    EXPECT_NE(hardware.contact(), Contact::kPresent);
+    AxisValues sensed;
+    EXPECT_FALSE(key->read(sensed));
+  }
+}
+
+TEST_F(Kfb1Test, TheFirmwareLetsGoWhenNobodySpeaks) {
+  Board board;
+  board.plug.into_serial_line(link());
+  const auto key = keys_at(port());
+  key->start(Role::kMass);
+  ASSERT_TRUE(until(*key, {3.0, 3.0}, [&](bool) { return board.forces[0] > 0; }));
+
+  // The driver falls silent, as after kill -9 of its process: the watchdog of the board bites.
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (board.forces[0] != 0 && std::chrono::steady_clock::now() < limit) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(board.forces[0], 0);
+  EXPECT_EQ(board.forces[1], 0);
+}
+
+TEST_F(Kfb1Test, RefusesADeviceWithAnotherNumberOfKeys) {
+  Board board(3);
+  board.plug.into_serial_line(link());
+  const auto key = keys_at(port(), 2);
+  key->start(Role::kMass);
+
+  for (int n = 0; n < 200; ++n) {
+    EXPECT_FALSE(key->write({5.0, 5.0}));
+    std::this_thread::sleep_for(std::chrono::microseconds(300));
+  }
+  EXPECT_EQ(board.forces[0], 0);
+}
+
+TEST_F(Kfb1Test, PlaysRoleLiaisonByACoupling) {
+  Board board;
+  board.positions[0] = 0;  // -0.02 m
+  board.positions[1] = 0;
+  board.plug.into_serial_line(link());
+  const auto key = keys_at(port());
+  key->start(Role::kLiaison);
+
+  // Commanded to -0.015 m: 300 N/m over 5 mm pull the key up with 1.5 N; the hand gives -1.5 N.
+  AxisValues given{};
+  EXPECT_TRUE(until(*key, {-0.015, -0.02}, [&](bool there) {
+    return there && key->read(given) && std::abs(given[0] + 1.5) < 0.01;
+  })) << given[0];
+  EXPECT_NEAR(given[1], 0.0, 0.01);
+  EXPECT_TRUE(until(*key, {-0.015, -0.02},
+                    [&](bool) { return std::abs(board.forces[0] - 0.15 * 32767) < 40; }));
+}
+
+TEST(Kfb1Frame, HostAndFirmwareSpeakTheSameCode) {
+  // CRC-16/CCITT-FALSE of "123456789" is 0x29B1.
+  const std::uint8_t digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  EXPECT_EQ(kfb1_crc(digits, 9), 0x29B1);
+
+  for (int n = 0; n < 256; ++n) {
+    std::uint8_t payload[60];
+    for (int i = 0; i < 60; ++i) {
+      payload[i] = static_cast<std::uint8_t>((i * n) % 5 == 0 ? 0 : i * n);
+    }
+    std::uint8_t frame[KFB1_LARGEST_FRAME];
+    const std::uint8_t length = kfb1_encode(payload, 60, frame);
+    EXPECT_EQ(std::count(frame, frame + length, 0), 1) << "the end alone";
+    std::uint8_t back[KFB1_LARGEST_FRAME];
+    ASSERT_EQ(kfb1_decode(frame, static_cast<std::uint8_t>(length - 1), back), 60);
+    EXPECT_TRUE(std::equal(payload, payload + 60, back));
+  }
+}
+
+}  // namespace
+}  // namespace cordis::device

@@ -1,0 +1,86 @@
+// tests/device/plug.cpp
+#include "tests/device/plug.h"
+
+#include <cstdlib>
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace cordis::test {
+
+void Plug::into_serial_line(const std::filesystem::path& link) {
+  wire_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  ASSERT_GE(wire_, 0);
+  ASSERT_EQ(grantpt(wire_), 0);
+  ASSERT_EQ(unlockpt(wire_), 0);
+  // Held open, so that there is no end of file while the driver is away.
+  keeper_ = ::open(ptsname(wire_), O_RDWR | O_NOCTTY);
+  termios line{};
+  tcgetattr(keeper_, &line);
+  cfmakeraw(&line);
+  tcsetattr(keeper_, TCSANOW, &line);
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(ptsname(wire_), link);
+  live();
+}
+
+int Plug::into_udp() {
+  wire_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  EXPECT_EQ(bind(wire_, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  socklen_t size = sizeof address;
+  getsockname(wire_, reinterpret_cast<sockaddr*>(&address), &size);
+  udp_ = true;
+  live();
+  return ntohs(address.sin_port);
+}
+
+void Plug::pull() {
+  lives_ = false;
+  if (thread_.joinable()) thread_.join();
+  if (keeper_ >= 0) close(keeper_);
+  if (wire_ >= 0) close(wire_);
+  wire_ = keeper_ = -1;
+}
+
+void Plug::live() {
+  lives_ = true;
+  thread_ = std::thread([this] {
+    while (lives_) {
+      pollfd poll_on{wire_, POLLIN, 0};
+      poll(&poll_on, 1, 1);
+      std::uint8_t bytes[256];
+      sockaddr_in from{};
+      socklen_t size = sizeof from;
+      const ssize_t count =
+          udp_ ? recvfrom(wire_, bytes, sizeof bytes, 0, reinterpret_cast<sockaddr*>(&from), &size)
+               : ::read(wire_, bytes, sizeof bytes);
+      if (udp_ && count > 0) peer_ = from;
+      for (ssize_t i = 0; i < count; ++i) hear_(bytes[i]);
+      idle_();
+    }
+  });
+}
+
+void Plug::say(std::span<const std::uint8_t> bytes) {
+  std::vector<std::uint8_t> frame(bytes.begin(), bytes.end());
+  const Harm harmed = harm(answers_++);
+  if (harmed == Harm::kDropped) return;
+  if (harmed == Harm::kFlipped) frame[frame.size() / 2] ^= 0x14;
+  late_.insert(late_.end(), frame.begin(), frame.end());
+  if (harmed == Harm::kLate) return;  // comes together with the next one
+  const ssize_t sent = udp_ ? sendto(wire_, late_.data(), late_.size(), 0,
+                                     reinterpret_cast<sockaddr*>(&peer_), sizeof peer_)
+                            : ::write(wire_, late_.data(), late_.size());
+  EXPECT_EQ(sent, static_cast<ssize_t>(late_.size()));
+  late_.clear();
+}
+
+}  // namespace cordis::test

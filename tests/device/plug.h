@@ -1,0 +1,51 @@
+// tests/device/plug.h -- the far end of a wire: a pseudo-terminal or UDP, with a thread behind it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include <netinet/in.h>
+
+namespace cordis::test {
+
+/// An emulated device's end. What arrives is handed to `hear`, on a thread of its own, which also
+/// calls `idle` about every millisecond; `say` answers from there, and harms what it is told to.
+class Plug {
+ public:
+  Plug(std::function<void(std::uint8_t)> hear, std::function<void()> idle)
+      : hear_(std::move(hear)), idle_(std::move(idle)) {}
+  ~Plug() { pull(); }
+  Plug(const Plug&) = delete;
+  Plug& operator=(const Plug&) = delete;
+
+  void into_serial_line(const std::filesystem::path& link);  ///< a path that leads to it
+  int into_udp();                                            ///< the port of it
+  void pull();
+
+  /// What happens to the n-th answer.
+  enum class Harm { kNone, kFlipped, kDropped, kLate };
+  std::function<Harm(int)> harm = [](int) { return Harm::kNone; };
+
+  void say(std::span<const std::uint8_t> bytes);
+
+ private:
+  void live();
+
+  std::function<void(std::uint8_t)> hear_;
+  std::function<void()> idle_;
+  std::thread thread_;
+  std::atomic<bool> lives_{false};
+  int wire_ = -1;
+  int keeper_ = -1;
+  bool udp_ = false;
+  sockaddr_in peer_{};
+  int answers_ = 0;
+  std::vector<std::uint8_t> late_;
+};
+
+}  // namespace cordis::test
