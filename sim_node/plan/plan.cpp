@@ -1,0 +1,109 @@
+// sim_node/plan/plan.cpp
+#include "sim_node/plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sim_node/plan/start_tangent.h"
+
+namespace cordis::plan {
+namespace {
+
+/// Whether a liaison of this behaviour is there at some times and not at others.
+bool switches(const engine::Behaviour& behaviour) {
+  for (const engine::LinkState& state : behaviour.states) {
+    if (!state.pulls || !state.pushes) return true;
+  }
+  return behaviour.states.size() > 1;
+}
+
+bool comes_and_goes(const engine::NetworkDescription& network, LiaisonId liaison) {
+  switch (liaison.kind) {
+    case LiaisonKind::kStateLink:
+      return switches(network.behaviours[network.state_links[liaison.index].behaviour]);
+    case LiaisonKind::kSet:
+      return true;
+    case LiaisonKind::kLink:
+    case LiaisonKind::kMaxwellLink:
+      return false;
+  }
+  return false;
+}
+
+}  // namespace
+
+double Stability::margin() const noexcept {
+  const double share = step / certified.step;
+  return 1.0 - share * share;
+}
+
+Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  Stability stability;
+  stability.certified = certified_bound(network, graph);
+  stability.diverging_step = StartTangent(network).diverging_step();
+  stability.bounded = graph.bounded;
+  stability.step = network.step;
+  return stability;
+}
+
+BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
+                      double frequency_hz) {
+  // A vibration y of unit mass has w^2 = y'K y and Z = y'Z y, hence Z <= w^2 max(Z / K) over the
+  // links, and what the medium adds. Where a link is a damper alone that says nothing, and the
+  // largest eigenvalue of M^-1 Z does.
+  const double w = 2.0 * std::numbers::pi * frequency_hz;
+  double ratio = 0.0;
+  LiaisonGraph dampers = graph;
+  for (Joint& joint : dampers.joints) {
+    if (joint.viscosity > 0.0) ratio = std::max(ratio, joint.viscosity / joint.stiffness);
+    joint.stiffness = 0.0;
+  }
+  for (Crowd& crowd : dampers.crowds) {
+    if (crowd.viscosity > 0.0) ratio = std::max(ratio, crowd.viscosity / crowd.stiffness);
+    crowd.stiffness = 0.0;
+  }
+  const double lightest = *std::max_element(graph.inverse_mass.begin(), graph.inverse_mass.end());
+  const double of_dampers = 2.0 / edge_bound(dampers).step;  // 2 dt Z = 4
+  BandEdge edge;
+  edge.frequency_hz = frequency_hz;
+  edge.viscosity = std::min(w * w * ratio + graph.medium_viscosity * lightest, of_dampers);
+  edge.error = oscillator_error(w, edge.viscosity, network.step);
+  return edge;
+}
+
+std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& network,
+                                            const LiaisonGraph& graph) {
+  std::optional<ContactGain> worst;
+  const auto consider = [&](LiaisonId liaison, double stiffness, double inverse_mass) {
+    const double normalised = stiffness * inverse_mass * network.step * network.step;
+    if (worst && normalised <= worst->stiffness) return;
+    const double gain = normalised < 4.0 ? normalised / (4.0 - normalised)
+                                         : std::numeric_limits<double>::infinity();
+    worst = {liaison, normalised, gain};
+  };
+  for (const Joint& joint : graph.joints) {
+    if (!comes_and_goes(network, joint.liaison)) continue;
+    consider(joint.liaison, joint.stiffness,
+             graph.inverse_mass[joint.mat_a] + graph.inverse_mass[joint.mat_b]);
+  }
+  const auto lightest = [&](const std::vector<std::uint32_t>& mats) {
+    double most = 0.0;
+    for (const std::uint32_t mat : mats) most = std::max(most, graph.inverse_mass[mat]);
+    return most;
+  };
+  for (const Crowd& crowd : graph.crowds) {
+    consider({LiaisonKind::kSet, crowd.set}, crowd.stiffness,
+             lightest(crowd.members) + lightest(crowd.others));
+  }
+  return worst;
+}
+
+Plan plan_of(const engine::NetworkDescription& network, double band_hz) {
+  const LiaisonGraph graph = liaison_graph(network);
+  return {stability_of(network, graph), band_edge_of(network, graph, band_hz),
+          worst_contact_of(network, graph)};
+}
+
+}  // namespace cordis::plan

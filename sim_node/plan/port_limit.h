@@ -1,0 +1,43 @@
+// sim_node/plan/port_limit.h -- how stiff a loop through a device may be.
+#pragma once
+
+#include <cstdint>
+
+#include "sim_node/engine/network.h"
+#include "sim_node/plan/liaison_graph.h"
+
+namespace cordis::plan {
+
+/// The loop of one device. The force or position that answers a sample takes effect `delay` periods
+/// after it: one in the sessions of this program, more when an answer is late.
+struct PortLoop {
+  double period = 1e-3;  ///< of the device [s]
+  int delay = 1;         ///< [periods], >= 0
+};
+
+/// What hangs on a port: the sums of the largest slopes of the liaisons at its MAT.
+struct PortLoad {
+  double stiffness = 0.0;  ///< [N/m]
+  double viscosity = 0.0;  ///< of the liaisons and, for a mass, of the medium [N s/m]
+};
+
+PortLoad port_load(const LiaisonGraph& graph, std::uint32_t mat);
+
+/// Role mass. The viscosity [N s/m] that the device itself must have at least, so that the loop is
+/// passive: then no passive hand can make it oscillate.
+///
+///     b > max over w of (K T / 2) sin((2 d + 1) w / 2) / sin(w / 2) - B cos((d + 1) w)
+///
+/// With B = 0 that is K (T / 2 + d T). [Colgate and Schenkel for d = 0]
+double least_device_viscosity(const PortLoad& load, const PortLoop& loop);
+
+/// Role mass. The stiffness [N/m] a scene may show at the port to a device of this viscosity; 0
+/// when its own viscosity at the port is too much already.
+double largest_port_stiffness(double device_viscosity, double port_viscosity, const PortLoop& loop);
+
+/// Role liaison. The stiffness [N/m] that a hand may add to a port of this mass: with the delay d
+/// >= 1, (viscosity of the scene and the hand) / (d T), of which the hand's part is left out here;
+/// without delay what keeps the mass below the limit of the scheme at the device's rate.
+double largest_hand_stiffness(const PortLoad& load, double mass, const PortLoop& loop);
+
+}  // namespace cordis::plan

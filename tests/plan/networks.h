@@ -1,0 +1,67 @@
+// tests/plan/networks.h -- networks whose limits are looked for.
+#pragma once
+
+#include <algorithm>
+#include <random>
+
+#include "tests/engine/scenes.h"
+
+namespace cordis::test {
+
+/// A random network in 1 dimension, connected, stiffness and viscosity over decades of their own
+/// (no proportional damping), one MAT fixed, some medium.
+inline NetworkDescription random_network(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  const auto decades = [&](double lowest, double count) {
+    return lowest * std::pow(10.0, count * uniform());
+  };
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.medium_viscosity = 0.01 * uniform();
+  const auto count = static_cast<std::uint32_t>(6 + random() % 25);
+  scene.mats.push_back(fixed(Vec3::Zero()));
+  for (std::uint32_t i = 1; i < count; ++i) {
+    scene.mats.push_back(mass(decades(0.01, 1.5), Vec3(uniform(), 0, 0)));
+  }
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    scene.links.push_back({a, b, decades(1.0, 4.0), decades(1e-4, 4.0), 0.0});
+  };
+  for (std::uint32_t i = 1; i < count; ++i) join(static_cast<std::uint32_t>(random() % i), i);
+  for (std::uint32_t extra = 0; extra < count; ++extra) {
+    const auto a = static_cast<std::uint32_t>(random() % count);
+    const auto b = static_cast<std::uint32_t>(random() % count);
+    if (a != b) join(a, b);
+  }
+  return scene;
+}
+
+/// The largest distance from 0 that a MAT ever has within so many steps.
+inline double largest_excursion(NetworkDescription scene, int step_count) {
+  World world = make_world(std::move(scene));
+  double largest = 0.0;
+  for (int n = 0; n < step_count && largest < 1e100; ++n) {
+    world.step();
+    largest = std::max(largest, world.positions().cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+/// A behaviour of one state: a spring and a law.
+inline engine::Behaviour behaviour(double stiffness, engine::Law elasticity = {}) {
+  engine::Behaviour made;
+  made.states.emplace_back();
+  made.states[0].stiffness = stiffness;
+  made.states[0].elasticity = std::move(elasticity);
+  return made;
+}
+
+/// A spring that never pulls.
+inline engine::Behaviour contact(double stiffness) {
+  engine::Behaviour made = behaviour(stiffness);
+  made.states[0].pulls = false;
+  return made;
+}
+
+}  // namespace cordis::test

@@ -1,0 +1,77 @@
+#include "sim_node/plan/start_tangent.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/step_bound.h"
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+using plan::StartTangent;
+
+class RandomNetwork : public testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomNetwork, DivergesWhereItsLimitSaysToWithinHalfAPercent) {
+  NetworkDescription scene = random_network(GetParam());
+  const double limit = StartTangent(scene).diverging_step();
+
+  scene.step = 0.995 * limit;
+  EXPECT_LT(largest_excursion(scene, 4000), 1e3);
+  // Past the limit an eigenvalue below -1 grows; 0.5 % beyond it that is at least 1e-3 a step.
+  scene.step = 1.005 * limit;
+  EXPECT_GT(largest_excursion(scene, 60000), 1e6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Forty, RandomNetwork, testing::Range(0u, 40u));
+
+TEST(StartTangent, IsExactForAChainBetweenFixedEnds) {
+  // w_j^2 = 4 K / m sin^2(j pi / 2 (N + 1)); stable while w dt < 2.
+  NetworkDescription scene = string_in_space(20, 0.0, 1e-4);
+  scene.dimension = 1;
+  for (Mat& mat : scene.mats) mat.position.y() = 0.0;
+  const double limit = std::sqrt(0.001 / 400.0) / std::sin(20.0 * M_PI / 42.0);
+
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), limit, 1e-6 * limit);
+}
+
+TEST(StartTangent, TakesThePoseOfASceneInSpaceAsItIs) {
+  // One mass on two springs at a right angle: each pulls along its own direction, K alone decides,
+  // while the graph, which knows no pose, adds the two.
+  NetworkDescription scene;
+  scene.dimension = 3;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3(1, 0, 0)), fixed(Vec3(0, 1, 0)), mass(0.1, Vec3::Zero())};
+  scene.links = {{0, 2, 1000.0, 0.0, 1.0}, {1, 2, 1000.0, 0.0, 1.0}};
+
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), 2.0 * std::sqrt(0.1 / 1000.0), 1e-8);
+  EXPECT_NEAR(plan::certified_bound(scene, plan::liaison_graph(scene)).step,
+              2.0 * std::sqrt(0.1 / 2000.0), 1e-8);
+}
+
+TEST(StartTangent, KnowsTheLimitOfAMassOnAMaxwellElement) {
+  // Z' tanh(K' / 2 Z') < 2, by bisection
+  NetworkDescription scene = oscillator(0.1, 0.0, 0.0, 1.0, 0.0, 1e-3);
+  scene.links.clear();
+  scene.maxwell_links = {{0, 1, 4000.0, 3.0}};
+  double low = 0.0;
+  double high = 1.0;
+  for (int n = 0; n < 60; ++n) {
+    const double h = 0.5 * (low + high);
+    (3.0 * h / 0.1 * std::tanh(4000.0 * h / 6.0) < 2.0 ? low : high) = h;
+  }
+
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), low, 1e-6 * low);
+  EXPECT_NEAR(plan::certified_bound(scene, plan::liaison_graph(scene)).step, low, 1e-3 * low);
+}
+
+TEST(StartTangent, NeverEndsWhereNothingPulls) {
+  NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
+
+  EXPECT_TRUE(std::isinf(StartTangent(scene).diverging_step()));
+}
+
+}  // namespace
+}  // namespace cordis::test
