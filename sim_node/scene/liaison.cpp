@@ -49,7 +49,7 @@ class Liaisons::Reader {
 
   void read_section(const Value& section, const std::string& file) {
     open_files_.push_back(whole_path(file));
-    known_files_.push_back(open_files_.back());
+    result_.files_.push_back(open_files_.back());
     if (section.exists() && section.kind() != Value::Kind::kMapping) {
       problems_.error(section.place(),
                       "'liaisons' must be a mapping of keys, got " + section.described());
@@ -84,11 +84,12 @@ class Liaisons::Reader {
       problems_.error(path.place(), "'" + path.text() + "' includes itself");
       return;
     }
-    if (std::find(known_files_.begin(), known_files_.end(), whole) != known_files_.end()) return;
+    const std::vector<std::string>& known = result_.files_;
+    if (std::find(known.begin(), known.end(), whole) != known.end()) return;
 
     const Value root = config::load_file(file.string(), problems_, path.place());
     if (!root.exists()) {
-      known_files_.push_back(whole);
+      result_.files_.push_back(whole);
       return;
     }
     config::MappingReader reader(root, "file of liaisons", problems_);
@@ -146,17 +147,18 @@ class Liaisons::Reader {
   Liaisons& result_;
   config::Problems& problems_;
   std::vector<std::string>
-      open_files_;  // canonical paths from the scene down to the present include
-  std::vector<std::string> known_files_;  // all that have been read
-  std::vector<std::string> waiting_;      // liaisons that wait for one they are like
+      open_files_;                    // canonical paths from the scene down to the present include
+  std::vector<std::string> waiting_;  // liaisons that wait for one they are like
 };
 
 void Liaisons::read(const Value& section, const std::string& file, int space,
                     config::Problems& problems) {
+  const std::size_t known = names_.size();
   Reader reader(*this, problems);
   reader.read_section(section, file);
   reader.complete_all();
-  for (const std::string& name : names_) {
+  for (std::size_t n = known; n < names_.size(); ++n) {
+    const std::string& name = names_[n];
     Liaison& liaison = liaisons_.at(name);
     if (!liaison.sound) continue;
     std::optional<LinkLaw> law =

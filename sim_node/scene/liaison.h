@@ -23,7 +23,7 @@ struct Liaison {
 /// The liaisons of a scene by name, with those of included files.
 class Liaisons {
  public:
-  /// Reads the `liaisons:` section of a scene and all it includes.
+  /// Reads a `liaisons:` section and all it includes that was not read before.
   /// @param file   the file it stands in; includes are relative to its folder.
   /// @param space  of the scene: a rest length may be negative in 1-D alone
   void read(const config::Value& section, const std::string& file, int space,
@@ -50,6 +50,7 @@ class Liaisons {
   mutable BehaviourPool pool_;
   std::map<std::string, Liaison> liaisons_;
   std::vector<std::string> names_;
+  std::vector<std::string> files_;  // canonical paths of all that have been read
 };
 
 }  // namespace cordis::scene

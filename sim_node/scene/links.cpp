@@ -21,7 +21,7 @@ void Assembly::read_link(const Value& value) {
   const bool has_name = reader.has("name");
   if (has_name) check_name(name, reader.place_of("name"), problems_);
   LinkEntry entry{reader, name, has_name, {}, errors_before};
-  entry.law = read_law(reader, LawPlace::kLink, liaisons_, scene_.space(),
+  entry.law = read_law(reader, LawPlace::kLink, *liaisons_, scene_.space(),
                        has_name ? names_.full(name) : "");
   if (reader.has("within")) {
     read_set(entry);

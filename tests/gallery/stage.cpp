@@ -125,7 +125,8 @@ Stage::Stage(const std::string& launch_file, const std::vector<std::string>& ove
     if (node.program != "sim_node") continue;
     sim::SimConfig config = sim::read_sim_config(launch, node, problems);
     if (problems.has_errors()) break;
-    simulation_ = std::make_unique<sim::Simulation>(std::move(config.scene), kSimRun);
+    simulation_ = std::make_unique<sim::Simulation>(
+        std::make_shared<const scene::Scene>(std::move(config.scene)), kSimRun);
   }
   if (problems.has_errors() || !simulation_) throw std::runtime_error(problems.text());
 
@@ -137,6 +138,7 @@ Stage::Stage(const std::string& launch_file, const std::vector<std::string>& ove
     players_.push_back(std::make_unique<Player>(std::move(loaded), *simulated));
   }
   row_.resize(scene().signals.count());
+  events_ = sim::EventRoom(world().network().description().state_links.size());
 }
 
 Stage::~Stage() = default;
@@ -145,7 +147,9 @@ void Stage::play_until(double time_s, const std::function<void()>& after_tick) {
   const double half_a_step = 0.5 * world().network().step();
   while (this->time_s() < time_s - half_a_step) {
     for (const auto& player : players_) player->speak();
-    simulation_->tick(row_.data());
+    events_.clear();
+    simulation_->advance(simulation_->steps_per_tick(), events_);
+    simulation_->read_signals(row_.data());
     if (simulation_->failed()) throw std::runtime_error(simulation_->failure());
     for (const auto& player : players_) player->hear(world());
     if (after_tick) after_tick();

@@ -4,10 +4,12 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "device_node/exchange.h"
+#include "sim_node/event_room.h"
 #include "sim_node/sim_config.h"
 #include "sim_node/simulation.h"
 
@@ -32,6 +34,9 @@ class Stage {
   const scene::Scene& scene() const noexcept { return simulation_->scene(); }
   double time_s() const noexcept { return simulation_->simulated_s(); }
 
+  /// The changes of state of the last tick.
+  std::span<const engine::LinkEvent> events() const noexcept { return events_.events(); }
+
   /// The MATs of a name; the links of a name. @throws std::out_of_range for a name there is not.
   scene::NamedRange mats(const std::string& name) const;
   scene::NamedRange links(const std::string& name) const;
@@ -50,6 +55,7 @@ class Stage {
   std::unique_ptr<sim::Simulation> simulation_;
   std::vector<std::unique_ptr<Player>> players_;
   std::vector<double> row_;
+  sim::EventRoom events_;
 };
 
 }  // namespace cordis::test
