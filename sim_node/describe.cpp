@@ -1,10 +1,13 @@
 // sim_node/describe.cpp
 #include "sim_node/describe.h"
 
+#include <limits>
 #include <vector>
 
 namespace cordis::sim {
 namespace {
+
+constexpr std::uint32_t kNoBehaviour = std::numeric_limits<std::uint32_t>::max();
 
 std::vector<msg::NamedRange> ranges_of(const std::vector<scene::NamedRange>& ranges) {
   std::vector<msg::NamedRange> told(ranges.size());
@@ -35,10 +38,29 @@ void tell_network(const scene::Scene& scene, msg::SceneDescription& description)
     description.mat_mass_kg().push_back(static_cast<float>(mass));
     description.mat_radius_m().push_back(static_cast<float>(scene.radius_m[i]));
   }
-  for (const engine::Link& link : scene.network.links) {
-    description.link_ends().push_back(link.mat_a);
-    description.link_ends().push_back(link.mat_b);
+  const auto tell_ends = [&description](const auto& links) {
+    for (const auto& link : links) {
+      description.link_ends().push_back(link.mat_a);
+      description.link_ends().push_back(link.mat_b);
+    }
+  };
+  tell_ends(scene.network.links);
+  tell_ends(scene.network.state_links);
+  tell_ends(scene.network.maxwell_links);
+}
+
+void tell_states(const engine::NetworkDescription& network, msg::SceneDescription& description) {
+  for (const engine::Behaviour& behaviour : network.behaviours) {
+    msg::BehaviourDescription told;
+    told.name(behaviour.name);
+    for (const engine::LinkState& state : behaviour.states) told.states().push_back(state.name);
+    description.behaviours().push_back(told);
   }
+  if (network.state_links.empty()) return;
+  std::vector<std::uint32_t>& behaviour = description.link_behaviour();
+  behaviour.assign(network.links.size(), kNoBehaviour);
+  for (const engine::StateLink& link : network.state_links) behaviour.push_back(link.behaviour);
+  behaviour.resize(behaviour.size() + network.maxwell_links.size(), kNoBehaviour);
 }
 
 }  // namespace
@@ -57,6 +79,7 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
   description.matter(ranges_of(scene.matter));
   description.links(ranges_of(scene.links));
   tell_network(scene, description);
+  tell_states(scene.network, description);
   for (const scene::Port& port : scene.ports) description.ports().push_back(port_of(port));
   for (const scene::Signal& signal : scene.signals.signals()) {
     msg::SignalDescription told;
@@ -65,6 +88,11 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
     description.signals().push_back(told);
   }
   return description;
+}
+
+std::size_t link_count_of(const scene::Scene& scene) noexcept {
+  return scene.network.links.size() + scene.network.state_links.size() +
+         scene.network.maxwell_links.size();
 }
 
 FrameLayout layout_of(const scene::Scene& scene) {

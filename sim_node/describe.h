@@ -10,6 +10,10 @@ namespace cordis::sim {
 /// The scene/description of a scene. @param version  tells one scene of the run from the next
 msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run, std::uint64_t version);
 
+/// Links of all kinds, as a description numbers them: linear ones, those with states, Maxwell
+/// elements.
+std::size_t link_count_of(const scene::Scene& scene) noexcept;
+
 /// Where the MATs of a 1-D scene are shown; empty in 2 and 3 dimensions.
 FrameLayout layout_of(const scene::Scene& scene);
 

@@ -5,8 +5,10 @@ namespace cordis::sim {
 
 FramePublisher::FramePublisher(dds::Participant& participant, std::uint64_t run)
     : frame_writer_(participant, dds::Topic::kFrame),
-      signal_writer_(participant, dds::Topic::kSignals) {
+      signal_writer_(participant, dds::Topic::kSignals),
+      event_writer_(participant, dds::Topic::kEvents) {
   frame_.run(run);
+  events_.run(run);
   signals_.run(run);
   thread_ = std::thread([this] { loop(); });
 }
@@ -36,6 +38,7 @@ void FramePublisher::loop() {
     if (busy_.load(std::memory_order_acquire)) {
       publish_frame(offered_->shape(), offered_->published());
       publish_signals(offered_->shape(), offered_->published());
+      publish_events(offered_->shape(), offered_->published().events);
       busy_.store(false, std::memory_order_release);
       busy_.notify_one();
     }
@@ -57,6 +60,7 @@ void FramePublisher::publish_frame(const FrameShape& shape, const FrameBuffer& b
       for (int i = 0; i < 3; ++i) shown[i] = static_cast<float>(x[i]);
     }
   }
+  frame_.link_state() = buffer.link_state;
   frame_.version(shape.version);
   frame_.frame(frame_.frame() + 1);
   frame_.step(buffer.step);
@@ -77,6 +81,32 @@ void FramePublisher::publish_signals(const FrameShape& shape, const FrameBuffer&
   const auto values = static_cast<std::ptrdiff_t>(buffer.row_count * shape.signal_count);
   signals_.value().assign(buffer.rows.begin(), buffer.rows.begin() + values);
   signal_writer_.write(signals_);
+}
+
+void FramePublisher::publish_events(const FrameShape& shape, const EventRoom& room) {
+  if (room.is_empty()) return;
+  std::vector<msg::LinkEvent>& told = events_.event();
+  told.resize(room.events().size());
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const engine::LinkEvent& event = room.events()[i];
+    const bool of_a_link = event.link != engine::kNoLink;
+    const auto first = static_cast<std::uint32_t>(of_a_link ? shape.first_state_link : 0);
+    told[i].step(event.step);
+    told[i].link(event.link + first);
+    told[i].mat_a(event.mat_a);
+    told[i].mat_b(event.mat_b);
+    told[i].behaviour(event.behaviour);
+    told[i].from_state(event.from);
+    told[i].to_state(event.to);
+    told[i].quantity(static_cast<std::uint32_t>(event.quantity));
+    told[i].value(event.value);
+    told[i].energy_j(event.energy);
+  }
+  lost_events_.fetch_add(room.lost(), std::memory_order_relaxed);
+  events_.version(shape.version);
+  events_.batch(events_.batch() + 1);
+  events_.lost(room.lost());
+  event_writer_.write(events_);
 }
 
 }  // namespace cordis::sim

@@ -13,12 +13,12 @@
 
 namespace cordis::sim {
 
-/// Publishes scene/frame and scene/signals from a thread of its own.
+/// Publishes scene/frame, scene/signals and scene/events from a thread of its own.
 ///
 /// The loop fills one of the two buffers of a store, and hands it over when a frame is due and the
-/// thread has finished with the last one. When it has not, the frame is left out and the rows stay
-/// for the next; rows beyond the buffer are counted as dropped. The loop's side is O(MATs) per
-/// frame, takes no lock and allocates nothing.
+/// thread has finished with the last one. When it has not, the frame is left out and the rows
+/// and events stay for the next; those beyond the buffer are counted as dropped. The loop's side is
+/// O(MATs) per frame, takes no lock and allocates nothing.
 class FramePublisher {
  public:
   FramePublisher(dds::Participant& participant, std::uint64_t run);
@@ -41,20 +41,27 @@ class FramePublisher {
   std::uint64_t frames_left_out() const noexcept {
     return frames_left_out_.load(std::memory_order_relaxed);
   }
+  std::uint64_t lost_events() const noexcept {
+    return lost_events_.load(std::memory_order_relaxed);
+  }  ///< in the whole run
 
  private:
   void loop();
   void publish_frame(const FrameShape& shape, const FrameBuffer& buffer);
   void publish_signals(const FrameShape& shape, const FrameBuffer& buffer);
+  void publish_events(const FrameShape& shape, const EventRoom& room);
 
   dds::Writer<msg::SceneFrame> frame_writer_;
   dds::Writer<msg::SceneSignals> signal_writer_;
+  dds::Writer<msg::SceneEvents> event_writer_;
   msg::SceneFrame frame_;
   msg::SceneSignals signals_;
+  msg::SceneEvents events_;
 
   const FrameStore* offered_ = nullptr;  // the thread's while busy_
   std::atomic<bool> busy_{false};
   std::atomic<std::uint64_t> frames_left_out_{0};
+  std::atomic<std::uint64_t> lost_events_{0};
   std::atomic<bool> ending_{false};
   std::counting_semaphore<4> wake_{0};
   std::thread thread_;

@@ -12,6 +12,8 @@ FrameStore::FrameStore(FrameShape shape)
       discarded_row_(shape_.signal_count) {
   for (FrameBuffer& buffer : buffers_) {
     buffer.positions.resize(4 * shape_.mat_count);
+    buffer.link_state.resize(shape_.link_count);
+    buffer.events = EventRoom(shape_.state_link_count);
     buffer.rows.resize(row_capacity_ * shape_.signal_count);
   }
 }
@@ -26,16 +28,28 @@ double* FrameStore::next_row(std::uint64_t step) noexcept {
   return buffer.rows.data() + shape_.signal_count * buffer.row_count++;
 }
 
+bool FrameStore::has_news() const noexcept {
+  const FrameBuffer& buffer = buffers_[filling_];
+  return buffer.row_count > 0 || overflowed_rows_ > 0 || !buffer.events.is_empty();
+}
+
 void FrameStore::turn(const engine::World& world, double simulated_s,
                       std::int64_t now_nsec) noexcept {
   FrameBuffer& buffer = buffers_[filling_];
   std::copy_n(world.positions().data(), buffer.positions.size(), buffer.positions.begin());
+  if (shape_.link_count > 0) {
+    for (std::size_t l = 0; l < shape_.state_link_count; ++l) {
+      buffer.link_state[shape_.first_state_link + l] =
+          static_cast<std::uint8_t>(world.state_of(static_cast<std::uint32_t>(l)));
+    }
+  }
   buffer.step = world.step_count();
   buffer.simulated_s = simulated_s;
   buffer.time_nsec = now_nsec;
 
   filling_ = 1 - filling_;
   buffers_[filling_].row_count = 0;
+  buffers_[filling_].events.clear();
   buffers_[filling_].dropped_rows = std::exchange(overflowed_rows_, 0);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim_node/engine/world.h"
+#include "sim_node/event_room.h"
 
 namespace cordis::sim {
 
@@ -24,11 +25,16 @@ struct FrameShape {
   std::size_t rows_per_frame = 1;  ///< rows of signals
   std::uint32_t stride_steps = 1;  ///< between two rows
   FrameLayout layout;
+  std::size_t link_count = 0;        ///< of all kinds; 0 when no link has states
+  std::size_t first_state_link = 0;  ///< number of the first one with states
+  std::size_t state_link_count = 0;
 };
 
-/// A frame with the signals of the ticks before it.
+/// A frame with the signals and events of the ticks before it.
 struct FrameBuffer {
-  std::vector<double> positions;  ///< as World::positions()
+  std::vector<double> positions;         ///< as World::positions()
+  std::vector<std::uint8_t> link_state;  ///< per link, or empty
+  EventRoom events;
   std::vector<double> rows;
   std::size_t row_count = 0;
   std::uint64_t first_step = 0;    ///< of the first row
@@ -50,8 +56,13 @@ class FrameStore {
   /// buffer is full and the row is dropped.
   double* next_row(std::uint64_t step) noexcept;
 
-  /// Puts the present positions into the buffer being filled, which then is published(), and begins
-  /// to fill the other one. O(MATs). Precondition: nobody uses published().
+  /// Where the changes of state of the present tick go.
+  EventRoom& events() noexcept { return buffers_[filling_].events; }
+  /// Whether there is something that no frame has told yet.
+  bool has_news() const noexcept;
+
+  /// Puts the present positions and states into the buffer being filled, which then is published(),
+  /// and begins to fill the other one. O(MATs + links). Precondition: nobody uses published().
   void turn(const engine::World& world, double simulated_s, std::int64_t now_nsec) noexcept;
 
   const FrameBuffer& published() const noexcept { return buffers_[1 - filling_]; }

@@ -47,7 +47,7 @@ bool Player::advance() noexcept {
     steps = std::min(steps, steps_left_);
     steps_left_ -= steps;
   }
-  return simulation().advance(static_cast<int>(steps));
+  return simulation().advance(static_cast<int>(steps), stage_->frames.events());
 }
 
 void Player::hold() noexcept {

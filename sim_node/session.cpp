@@ -93,13 +93,13 @@ void Session::run_realtime() {
   while (!finished()) {
     loop.wait();
     overruns_.store(earlier_overruns + loop.overruns(), std::memory_order_relaxed);
-    obey();
+    const bool plays = obey();
     if (loop.rate_hz() != player_.simulation().scene().gesture_rate_hz) {
       earlier_overruns += loop.overruns();
       loop = node::PacedLoop(player_.simulation().scene().gesture_rate_hz, kPhase);
     }
     receive();
-    advance();
+    if (plays) advance();
     answer_all();
   }
 }
@@ -136,20 +136,25 @@ void Session::run_asap() {
   }
 }
 
-void Session::obey() {
+bool Session::obey() {
   Order* order = orders_.waiting();
-  if (order == nullptr) return;
+  if (order == nullptr) return true;
   const bool new_stage = order->kind == Order::Kind::kRestart;
-  if (new_stage && frames_.is_busy()) return;  // for a few turns at most: none is offered meanwhile
+  if (new_stage && frames_.is_busy()) return false;
+  if (new_stage && player_.stage().frames.has_news()) {
+    offer_frame();
+    return false;
+  }
   player_.obey(*order);
   orders_.tell_steps_left(player_.steps_left());
   orders_.obeyed();
   if (new_stage) offer_frame();
   note_state();
+  return true;
 }
 
 bool Session::obey_or_rest() {
-  obey();
+  if (!obey()) return false;
   if (player_.moves()) return true;
   orders_.wait(kRest);
   if (++turns_ % kRestsPerFrame == 0) offer_frame();
@@ -197,19 +202,18 @@ bool Session::advance() {
     ticks_.store(++tick_count_, std::memory_order_relaxed);
   }
   const std::uint64_t turns = complete ? simulation.tick_count() : ++turns_;
-  if ((complete || player_.is_paused()) && turns % stage.ticks_per_frame == 0) offer_frame();
+  const bool due = (complete || player_.is_paused()) && turns % stage.ticks_per_frame == 0;
+  const bool waits = start_.launch.clock != config::Clock::kRealtime;
+  const bool many_events = stage.frames.events().is_half_full() && (waits || !frames_.is_busy());
+  if (due || many_events) offer_frame();
   return complete;
 }
 
 void Session::offer_frame() {
   if (start_.launch.clock != config::Clock::kRealtime) frames_.wait_until_free();
-  const Order* order = orders_.waiting();
-  // A change of stage waits until no frame is on its way.
-  if (order == nullptr || order->kind != Order::Kind::kRestart) {
-    const Simulation& simulation = player_.simulation();
-    frames_.offer(player_.stage().frames, simulation.world(), simulation.simulated_s(),
-                  node::monotonic_nsec());
-  }
+  const Simulation& simulation = player_.simulation();
+  frames_.offer(player_.stage().frames, simulation.world(), simulation.simulated_s(),
+                node::monotonic_nsec());
   note_state();
 }
 
@@ -249,6 +253,8 @@ void Session::note_state() {
   shown_.energy = simulation.world().energy();
   shown_.step = simulation.world().step_count();
   shown_.state_hash = simulation.world().state_hash();
+  shown_.version = player_.stage().frames.shape().version;
+  shown_.changes = player_.stage().changes.count(simulation.world());
 }
 
 bool Session::finished() const noexcept {
@@ -272,13 +278,26 @@ void Session::fill(msg::NodeStatus& status) {
                                                   : 0.0);
   status.step(shown_.step);
   status.state_hash(shown_.state_hash);
+  status.lost_events(frames_.lost_events());
+  status.changes().clear();
+  if (shown_.version != liaisons_version_) return;  // the scene was changed this very moment
+  for (std::size_t i = 0; i < liaisons_.size(); ++i) {
+    status.changes().emplace_back();
+    status.changes().back().liaison(liaisons_[i]);
+    status.changes().back().changes(shown_.changes[i]);
+  }
 }
 
 void Session::tell(const scene::Scene& scene, std::uint64_t version) {
+  {
+    const std::lock_guard lock(shown_mutex_);
+    liaisons_ = ChangeCounter(scene.network.behaviours).names();
+    liaisons_version_ = version;
+  }
   msg::SceneDescription description = describe(scene, start_.run, version);
   description_writer_.write(description);
   spdlog::info("scene '{}': {} MATs, {} links, {} steps per second, {} per gesture", scene.name,
-               scene.network.mats.size(), scene.network.links.size(), scene.step_rate_hz,
+               scene.network.mats.size(), link_count_of(scene), scene.step_rate_hz,
                std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
 }
 

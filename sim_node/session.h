@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <string>
+#include <vector>
 
 #include "node/command_listener.h"
 #include "node/dds/participant.h"
@@ -35,8 +37,9 @@ class Session {
   void run_lockstep();
   void run_asap();
 
-  /// Obeys the order that waits, if any, unless it has to wait for the frames.
-  void obey();
+  /// Obeys the order that waits, if any. @return false when the order is another stage, and the
+  /// scene has to stand still until all that happened in it is told
+  bool obey();
   /// Without real time: obeys, and spends a while when the scene stands still.
   /// @return whether it moves
   bool obey_or_rest();
@@ -75,9 +78,13 @@ class Session {
     engine::Energy energy;
     std::uint64_t step = 0;
     std::uint64_t state_hash = 0;
+    std::uint64_t version = 0;  // of the scene
+    ChangeCounter::Counts changes{};
   };
   std::mutex shown_mutex_;
   Shown shown_;
+  std::vector<std::string> liaisons_;  // names of those whose changes are shown
+  std::uint64_t liaisons_version_ = 0;
   std::atomic<const char*> phase_{"starting"};
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<std::uint64_t> overruns_{0};

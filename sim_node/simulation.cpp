@@ -40,7 +40,7 @@ Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t 
       steps_per_tick_(
           static_cast<int>(std::lround(scene_->step_rate_hz / scene_->gesture_rate_hz))) {}
 
-bool Simulation::advance(int steps) noexcept {
+bool Simulation::advance(int steps, EventRoom& events) noexcept {
   if (failed_) return false;
   if (is_between_ticks()) {
     for (DeviceExchange& device : devices_) device.begin_tick();
@@ -49,7 +49,9 @@ bool Simulation::advance(int steps) noexcept {
   while (steps_in_tick_ < last) {
     ++steps_in_tick_;
     for (DeviceExchange& device : devices_) device.play(world_, steps_in_tick_, steps_per_tick_);
-    if (world_.step().non_finite_mats > 0) {
+    const engine::StepReport report = world_.step();
+    events.add(world_.events(), report.lost_events);
+    if (report.non_finite_mats > 0) {
       failed_ = true;
       return false;
     }

@@ -8,6 +8,7 @@
 
 #include "sim_node/device_exchange.h"
 #include "sim_node/engine/world.h"
+#include "sim_node/event_room.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
@@ -21,8 +22,9 @@ class Simulation {
   Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t run);
 
   /// Does the next steps of a tick, at most so many. Real time: allocates nothing, does not throw.
-  /// Does nothing once failed(). @return whether the tick is complete.
-  bool advance(int steps) noexcept;
+  /// Does nothing once failed(). @param events  where the changes of state go
+  /// @return whether the tick is complete.
+  bool advance(int steps, EventRoom& events) noexcept;
 
   /// @param row  room for one value per signal of the scene
   void read_signals(double* row) const noexcept { scene_->signals.read(world_, row); }

@@ -22,7 +22,10 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
           .signal_count = scene.signals.count(),
           .rows_per_frame = ticks_per_frame_of(scene),
           .stride_steps = static_cast<std::uint32_t>(simulation.steps_per_tick()),
-          .layout = layout_of(scene)};
+          .layout = layout_of(scene),
+          .link_count = scene.network.state_links.empty() ? 0 : link_count_of(scene),
+          .first_state_link = scene.network.links.size(),
+          .state_link_count = scene.network.state_links.size()};
 }
 
 }  // namespace
@@ -30,6 +33,7 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
 Stage::Stage(std::shared_ptr<const scene::Scene> scene, std::uint64_t run, std::uint64_t version)
     : simulation(std::move(scene), run),
       frames(shape_of(simulation, version)),
+      changes(simulation.scene().network.behaviours),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}
 
 }  // namespace cordis::sim

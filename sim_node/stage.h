@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "sim_node/change_counter.h"
 #include "sim_node/frame_store.h"
 #include "sim_node/simulation.h"
 
@@ -17,6 +18,7 @@ struct Stage {
 
   Simulation simulation;
   FrameStore frames;
+  ChangeCounter changes;
   std::uint64_t ticks_per_frame;
 };
 

@@ -9,6 +9,7 @@
 #include "node/status.h"
 #include "node/stop.h"
 #include "node/time.h"
+#include "viz_node/command_relay.h"
 #include "viz_node/scene_listener.h"
 #include "viz_node/scene_mirror.h"
 #include "viz_node/viz_config.h"
@@ -58,13 +59,14 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                   "' in domain " + std::to_string(membership.domain));
   dds::Participant participant(membership);
   viz::SceneMirror mirror(config.rate_hz);
+  viz::CommandRelay relay(participant, start.run);
   viz::WebServer server({.node = membership.node,
                          .session = membership.session,
                          .address = config.address,
                          .port = config.port,
                          .folder = viz::page_folder()},
-                        mirror);
-  const viz::SceneListener listener(participant, mirror);
+                        mirror, [&relay](const viz::PageCommand& command) { relay.send(command); });
+  const viz::SceneListener listener(participant, mirror, relay);
   const node::StatusPublisher publisher(
       participant, "viz_node", start.run,
       [&](msg::NodeStatus& status) { fill(status, mirror, server, config.rate_hz); });

@@ -13,6 +13,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kLongestText = 300;  // of a text that another process wrote
+constexpr std::size_t kMostStates = 64;    // of a liaison, and liaisons whose changes are counted
 constexpr std::size_t kMostNames = 2000;   // names of matter, links and ports that a page is told
 
 std::string clipped(const std::string& text) {
@@ -48,6 +49,27 @@ Json ports(const std::vector<msg::PortDescription>& described) {
   return list;
 }
 
+Json behaviours(const std::vector<msg::BehaviourDescription>& described) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(described.size(), kMostNames); ++i) {
+    Json states = Json::array();
+    for (const std::string& state : described[i].states()) {
+      if (states.size() == kMostStates) break;
+      states.push_back(clipped(state));
+    }
+    list.push_back({{"name", clipped(described[i].name())}, {"states", std::move(states)}});
+  }
+  return list;
+}
+
+Json changes(const std::vector<msg::LiaisonChanges>& counted) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(counted.size(), kMostStates); ++i) {
+    list.push_back({{"liaison", clipped(counted[i].liaison())}, {"changes", counted[i].changes()}});
+  }
+  return list;
+}
+
 std::string state_of(const HeardNode& node, std::int64_t now_nsec) {
   const std::string& phase = node.status.phase();
   if (phase == "stopped" || phase == "failed") return phase;
@@ -75,6 +97,8 @@ Json node_json(const HeardNode& node, std::int64_t now_nsec) {
           {"energy_j", s.energy_j()},
           {"energy_drift", s.energy_drift()},
           {"step", s.step()},
+          {"changes", changes(s.changes())},
+          {"lost_events", s.lost_events()},
           {"memory_bytes", s.memory_bytes()}};
 }
 
@@ -83,11 +107,27 @@ Json events_json(const HeardEvents& events) {
   for (const auto& event : events.newest) {
     newest.push_back({{"step", event.step()},
                       {"link", event.link()},
+                      {"mat_a", event.mat_a()},
+                      {"mat_b", event.mat_b()},
+                      {"behaviour", event.behaviour()},
                       {"from", event.from_state()},
                       {"to", event.to_state()},
+                      {"quantity", event.quantity()},
+                      {"value", event.value()},
                       {"energy_j", event.energy_j()}});
   }
   return {{"total", events.total}, {"lost", events.lost}, {"newest", std::move(newest)}};
+}
+
+Json replies_json(const HeardReplies& replies) {
+  Json list = Json::array();
+  for (const msg::ControlReply& reply : replies) {
+    list.push_back({{"number", reply.command_id()},
+                    {"node", clipped(reply.node())},
+                    {"accepted", reply.accepted()},
+                    {"text", clipped(reply.text())}});
+  }
+  return list;
 }
 
 }  // namespace
@@ -118,12 +158,14 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"link_count", description.link_ends().size() / 2},
                   {"matter", ranges(description.matter())},
                   {"links", ranges(description.links())},
+                  {"behaviours", behaviours(description.behaviours())},
                   {"ports", ports(description.ports())},
                   {"signals", std::move(signals)}});
 }
 
 std::string status_text(const std::vector<HeardNode>& nodes, const HeardEvents& events,
-                        const MirrorFigures& figures, std::uint32_t scene, std::int64_t now_nsec) {
+                        const HeardReplies& replies, const MirrorFigures& figures,
+                        std::uint32_t scene, std::int64_t now_nsec) {
   Json list = Json::array();
   for (const HeardNode& node : nodes) list.push_back(node_json(node, now_nsec));
   return written(
@@ -132,6 +174,7 @@ std::string status_text(const std::vector<HeardNode>& nodes, const HeardEvents& 
        {"sent_nsec", now_nsec},
        {"nodes", std::move(list)},
        {"events", events_json(events)},
+       {"replies", replies_json(replies)},
        {"viz",
         {{"frames", figures.frames}, {"refused", figures.refused}, {"lost", figures.lost}}}});
 }
@@ -145,6 +188,18 @@ std::optional<Acknowledgement> read_acknowledgement(std::string_view text) {
   const auto number = sequence.get<std::uint64_t>();
   if (number > std::numeric_limits<std::uint32_t>::max()) return std::nullopt;
   return Acknowledgement{static_cast<std::uint32_t>(number), drawn.get<bool>()};
+}
+
+std::optional<PageCommand> read_page_command(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || json.value("type", Json()) != "command") return std::nullopt;
+  const Json verb = json.value("verb", Json());
+  const Json steps = json.value("steps", Json(1u));
+  if (!verb.is_string() || !steps.is_number_unsigned()) return std::nullopt;
+  PageCommand command{verb.get<std::string>(), steps.get<std::uint64_t>()};
+  const std::string& word = command.verb;
+  if (word != "pause" && word != "resume" && word != "step" && word != "reset") return std::nullopt;
+  return command;
 }
 
 }  // namespace cordis::viz

@@ -25,7 +25,11 @@ struct HeardEvents {
   std::uint64_t lost = 0;
   std::deque<msg::LinkEvent> newest;  ///< at most kEventsShown, oldest first
 };
-inline constexpr std::size_t kEventsShown = 8;
+inline constexpr std::size_t kEventsShown = 12;
+
+/// Replies to what the pages wanted, newest last.
+using HeardReplies = std::deque<msg::ControlReply>;
+inline constexpr std::size_t kRepliesShown = 4;
 
 /// What viz_node says about its own work.
 struct MirrorFigures {
@@ -42,7 +46,8 @@ inline constexpr std::int64_t kLostAfterNsec = 1'600'000'000;
 std::string hello_text(const std::string& session, const std::string& node);
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene);
 std::string status_text(const std::vector<HeardNode>& nodes, const HeardEvents& events,
-                        const MirrorFigures& figures, std::uint32_t scene, std::int64_t now_nsec);
+                        const HeardReplies& replies, const MirrorFigures& figures,
+                        std::uint32_t scene, std::int64_t now_nsec);
 
 /// A page's word that it is done with all frames up to `sequence`; `drawn` when it has drawn that
 /// one.
@@ -53,5 +58,15 @@ struct Acknowledgement {
 
 /// Reads `{"type": "ack", "sequence": 12, "drawn": true}`; nothing when `text` is anything else.
 std::optional<Acknowledgement> read_acknowledgement(std::string_view text);
+
+/// What a page wants of the simulation.
+struct PageCommand {
+  std::string verb;         ///< pause, resume, step or reset
+  std::uint64_t steps = 1;  ///< of step
+};
+
+/// Reads `{"type": "command", "verb": "step", "steps": 10}`; nothing when `text` is anything else,
+/// or wants what a page may not: files stay out of its reach.
+std::optional<PageCommand> read_page_command(std::string_view text);
 
 }  // namespace cordis::viz

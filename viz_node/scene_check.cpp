@@ -49,6 +49,9 @@ std::string fault_of(const msg::SceneDescription& description) {
     return "a port of the description is at a MAT that does not exist";
   if (!ranges_fit(description.matter(), mats) || !ranges_fit(description.links(), ends / 2))
     return "a name of the description reaches past the last MAT or link";
+  if (!description.link_behaviour().empty() && description.link_behaviour().size() != ends / 2)
+    return count_fault("behaviours of links in the description",
+                       description.link_behaviour().size(), ends / 2);
   if (!is_rate(description.step_rate_hz()) || !is_rate(description.frame_rate_hz()))
     return "a rate of the description is not a positive number";
   if (!std::ranges::all_of(description.mat_radius_m(), [](float r) { return r >= 0.0F; }))
@@ -68,6 +71,20 @@ std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& 
   if (!std::isfinite(frame.simulated_s())) return "a frame without a simulated time";
   if (!std::ranges::all_of(frame.position_m(), [](float x) { return std::isfinite(x); }))
     return "a frame with a position that is not a finite number";
+  return {};
+}
+
+std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription& description) {
+  const std::size_t mats = description.mat_kind().size();
+  const std::size_t links = description.link_ends().size() / 2;
+  std::string fault = run_fault("events", events.run(), description.run());
+  if (!fault.empty()) return fault;
+  const auto is_foreign = [&](const msg::LinkEvent& event) {
+    return (event.link() >= links && event.link() != kNoLink) || event.mat_a() >= mats ||
+           event.mat_b() >= mats;
+  };
+  if (std::ranges::any_of(events.event(), is_foreign))
+    return "an event of a link or a MAT that does not exist";
   return {};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "idl/scene.h"
@@ -25,5 +26,10 @@ std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& 
 /// A batch is sound when it belongs to the run of `description` and holds whole rows of its
 /// signals. Values need not be finite: a signal may have none for a while.
 std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescription& description);
+
+/// Events are sound when they belong to the run of `description` and name links and MATs of it.
+std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription& description);
+
+inline constexpr std::uint32_t kNoLink = 0xffffffff;  ///< in an event: a pair of a set liaison
 
 }  // namespace cordis::viz

@@ -64,16 +64,19 @@ struct SceneListener::Impl {
         frame(participant, dds::Topic::kFrame),
         signals(participant, dds::Topic::kSignals),
         events(participant, dds::Topic::kEvents),
-        status(participant, dds::Topic::kStatus) {}
+        status(participant, dds::Topic::kStatus),
+        reply(participant, dds::Topic::kReply) {}
 
   Follower<msg::SceneDescription> description;
   Follower<msg::SceneFrame> frame;
   Follower<msg::SceneSignals> signals;
   Follower<msg::SceneEvents> events;
   Follower<msg::NodeStatus> status;
+  Follower<msg::ControlReply> reply;
 };
 
-SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror)
+SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
+                             const CommandRelay& relay)
     : impl_(std::make_unique<Impl>(participant)) {
   impl_->description.follow(
       [&mirror](msg::SceneDescription&& message) { return mirror.take(std::move(message)); });
@@ -86,6 +89,10 @@ SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror)
       [&mirror](msg::SceneEvents&& message) { return mirror.take(std::move(message)); });
   impl_->status.follow([&mirror](msg::NodeStatus&& message) {
     mirror.take(std::move(message), node::monotonic_nsec());
+    return std::string();
+  });
+  impl_->reply.follow([&mirror, &relay](msg::ControlReply&& message) {
+    if (relay.is_mine(message)) mirror.take(std::move(message));
     return std::string();
   });
 }

@@ -4,18 +4,19 @@
 #include <memory>
 
 #include "node/dds/participant.h"
+#include "viz_node/command_relay.h"
 #include "viz_node/scene_mirror.h"
 
 namespace cordis::viz {
 
-/// Reads scene/description, scene/frame, scene/signals, scene/events and node/status, one thread
-/// per topic, so that a large frame does not hold up a status. Says in the log what it refuses,
-/// once per reason.
+/// Reads scene/description, scene/frame, scene/signals, scene/events, node/status and the replies
+/// to the pages, one thread per topic, so that a large frame does not hold up a status. Says in the
+/// log what it refuses, once per reason.
 class SceneListener {
  public:
-  /// @param mirror  outlives the listener
+  /// @param mirror, relay  outlive the listener
   /// @throws std::runtime_error when DDS refuses
-  SceneListener(dds::Participant& participant, SceneMirror& mirror);
+  SceneListener(dds::Participant& participant, SceneMirror& mirror, const CommandRelay& relay);
   ~SceneListener();
   SceneListener(const SceneListener&) = delete;
   SceneListener& operator=(const SceneListener&) = delete;

@@ -123,11 +123,12 @@ std::string SceneMirror::take(msg::SceneSignals&& signals) {
 std::string SceneMirror::take(msg::SceneEvents&& events) {
   const std::lock_guard lock(mutex_);
   if (description_ == nullptr) return {};
-  if (events.run() != description_->run()) {
-    ++figures_.refused;
-    return "events of another run of sim_node than its description";
-  }
   if (is_of_another_scene(events, *description_)) return {};
+  std::string fault = fault_of(events, *description_);
+  if (!fault.empty()) {
+    ++figures_.refused;
+    return fault;
+  }
   events_.total += events.event().size();
   events_.lost += events.lost();
   for (const auto& event : events.event()) {
@@ -145,6 +146,12 @@ void SceneMirror::take(msg::NodeStatus&& status, std::int64_t now_nsec) {
         nodes_, {}, [](const auto& entry) { return entry.second.heard_nsec; }));
   }
   nodes_[node_id] = {std::move(status), now_nsec};
+}
+
+void SceneMirror::take(msg::ControlReply&& reply) {
+  const std::lock_guard lock(mutex_);
+  replies_.push_back(std::move(reply));
+  if (replies_.size() > kRepliesShown) replies_.pop_front();
 }
 
 std::shared_ptr<const ShownScene> SceneMirror::scene() const {
@@ -167,16 +174,18 @@ std::shared_ptr<const ShownSignals> SceneMirror::signals_after(std::uint64_t aft
 std::string SceneMirror::status(std::int64_t now_nsec) const {
   std::vector<HeardNode> nodes;
   HeardEvents events;
+  HeardReplies replies;
   MirrorFigures figures;
   std::uint32_t scene = 0;
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, node] : nodes_) nodes.push_back(node);
     events = events_;
+    replies = replies_;
     figures = figures_;
     if (scene_ != nullptr) scene = scene_->scene;
   }
-  return status_text(nodes, events, figures, scene, now_nsec);
+  return status_text(nodes, events, replies, figures, scene, now_nsec);
 }
 
 MirrorFigures SceneMirror::figures() const {

@@ -57,6 +57,7 @@ class SceneMirror {
   std::string take(msg::SceneSignals&& signals);
   std::string take(msg::SceneEvents&& events);
   void take(msg::NodeStatus&& status, std::int64_t now_nsec);
+  void take(msg::ControlReply&& reply);
 
   std::shared_ptr<const ShownScene> scene() const;  ///< nullptr before the first description
   std::shared_ptr<const ShownFrame> frame()
@@ -81,6 +82,7 @@ class SceneMirror {
   std::size_t signals_bytes_ = 0;
   std::map<std::uint32_t, HeardNode> nodes_;  // by node_id
   HeardEvents events_;
+  HeardReplies replies_;
   MirrorFigures figures_;
   std::uint64_t last_frame_number_ = 0;  // of sim_node, within the present run
   std::uint32_t scene_count_ = 0;

@@ -1,6 +1,7 @@
 // tests/viz/page_text_test.cpp
 #include "viz_node/page_text.h"
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ HeardNode heard(const std::string& phase, std::int64_t seconds_ago) {
 }
 
 std::string state_of(const HeardNode& node) {
-  return Json::parse(status_text({node}, {}, {}, 0, kNow))["nodes"][0]["state"];
+  return Json::parse(status_text({node}, {}, {}, {}, 0, kNow))["nodes"][0]["state"];
 }
 
 TEST(PageText, CallsANodeLostThatIsNoLongerHeardUnlessItSaidThatItStops) {
@@ -41,7 +42,7 @@ TEST(PageText, SurvivesTextsThatAreNoUtf8AndNumbersThatAreNone) {
   node.status.node("a\xff\"b" + std::string(10'000, 'x'));
   node.status.energy_j(std::numeric_limits<double>::quiet_NaN());
 
-  const Json json = Json::parse(status_text({node}, {}, {}, 0, kNow));
+  const Json json = Json::parse(status_text({node}, {}, {}, {}, 0, kNow));
 
   EXPECT_TRUE(json["nodes"][0]["energy_j"].is_null());
   EXPECT_LT(json["nodes"][0]["name"].get<std::string>().size(), 400u);
@@ -71,6 +72,72 @@ TEST(PageText, TakesNothingElseForAnAcknowledgement) {
                            R"({"type": "ack", "sequence": 4294967296, "drawn": true})",
                            R"({"type": "ack", "sequence": 1, "drawn": 1})"}) {
     EXPECT_FALSE(read_acknowledgement(text)) << text;
+  }
+}
+
+TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
+  msg::SceneDescription description = row_of_three();
+  msg::BehaviourDescription behaviour;
+  behaviour.name("rosin");
+  behaviour.states({"hooked", "unhooked"});
+  description.behaviours().push_back(behaviour);
+  const Json described = Json::parse(description_text(description, 1));
+  EXPECT_EQ(described["behaviours"],
+            Json::parse(R"([{"name": "rosin", "states": ["hooked", "unhooked"]}])"));
+
+  HeardEvents events;
+  events.total = 9;
+  msg::LinkEvent event;
+  event.step(120);
+  event.link(1);
+  event.mat_b(2);
+  event.to_state(1);
+  event.quantity(1);
+  event.value(0.002);
+  event.energy_j(std::nan(""));
+  events.newest.push_back(event);
+  HeardNode node;
+  msg::LiaisonChanges counted;
+  counted.liaison("rosin");
+  counted.changes(9);
+  node.status.changes().push_back(counted);
+  node.status.lost_events(3);
+
+  const Json json = Json::parse(status_text({node}, events, {}, {}, 1, kNow));
+
+  EXPECT_EQ(json["events"]["newest"][0],
+            Json::parse(R"({"step": 120, "link": 1, "mat_a": 0, "mat_b": 2, "behaviour": 0,
+                            "from": 0, "to": 1, "quantity": 1, "value": 0.002, "energy_j": null})"));
+  EXPECT_EQ(json["nodes"][0]["changes"], Json::parse(R"([{"liaison": "rosin", "changes": 9}])"));
+  EXPECT_EQ(json["nodes"][0]["lost_events"], 3);
+}
+
+TEST(PageText, TellsRepliesToThePages) {
+  msg::ControlReply reply;
+  reply.command_id(4);
+  reply.node("sim");
+  reply.accepted(true);
+  reply.text("paused at step 8");
+  const Json json = Json::parse(status_text({}, {}, {reply}, {}, 1, kNow));
+  EXPECT_EQ(json["replies"],
+            Json::parse(
+                R"([{"number": 4, "node": "sim", "accepted": true, "text": "paused at step 8"}])"));
+}
+
+TEST(PageCommand, IsReadFromItsMessage) {
+  EXPECT_EQ(read_page_command(R"({"type": "command", "verb": "pause"})")->verb, "pause");
+  EXPECT_EQ(read_page_command(R"({"type": "command", "verb": "step"})")->steps, 1u);
+  EXPECT_EQ(read_page_command(R"({"type": "command", "verb": "step", "steps": 25})")->steps, 25u);
+}
+
+TEST(PageCommand, IsNothingElse) {
+  for (const char* text :
+       {"", "{", "[]", "3", R"({"type": "ack", "verb": "pause"})", R"({"verb": "pause"})",
+        R"({"type": "command"})", R"({"type": "command", "verb": 3})",
+        R"({"type": "command", "verb": "load"})", R"({"type": "command", "verb": "set"})",
+        R"({"type": "command", "verb": "step", "steps": -1})",
+        R"({"type": "command", "verb": "step", "steps": "9"})"}) {
+    EXPECT_FALSE(read_page_command(text).has_value()) << text;
   }
 }
 

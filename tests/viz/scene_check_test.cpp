@@ -26,6 +26,7 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
       {"radius", [](auto& d) { d.mat_radius_m()[1] = -1.0F; }},
       {"radius", [](auto& d) { d.mat_radius_m()[1] = std::nanf(""); }},
       {"dimensions", [](auto& d) { d.space(4); }},
+      {"behaviours", [](auto& d) { d.link_behaviour({0}); }},
       {"odd number", [](auto& d) { d.link_ends().pop_back(); }},
       {"joins a MAT", [](auto& d) { d.link_ends()[3] = 3; }},
       {"port",
@@ -70,6 +71,27 @@ TEST(SceneCheck, FindsFramesThatDoNotFitTheirDescription) {
     msg::SceneFrame frame = frame_of_three(1);
     spoil(frame);
     EXPECT_NE(fault_of(frame, row_of_three()).find(word), std::string::npos) << word;
+  }
+}
+
+TEST(SceneCheck, FindsEventsOfWhatDoesNotExist) {
+  msg::SceneEvents events;
+  events.run(kRun);
+  events.event().resize(2);
+  events.event()[1].link(kNoLink);
+  events.event()[1].mat_b(2);
+  EXPECT_EQ(fault_of(events, row_of_three()), "");
+
+  const std::vector<std::pair<const char*, std::function<void(msg::SceneEvents&)>>> faults = {
+      {"another run", [](auto& e) { e.run(1); }},
+      {"does not exist", [](auto& e) { e.event()[0].link(2); }},
+      {"does not exist", [](auto& e) { e.event()[1].mat_a(3); }},
+      {"does not exist", [](auto& e) { e.event()[0].mat_b(3); }},
+  };
+  for (const auto& [word, spoil] : faults) {
+    msg::SceneEvents bad = events;
+    spoil(bad);
+    EXPECT_NE(fault_of(bad, row_of_three()).find(word), std::string::npos) << word;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -58,9 +59,11 @@ class Client;
 
 /// What all connections share. Lives in the server's thread, but for the latency.
 struct Hub {
-  explicit Hub(SceneMirror& of) noexcept : mirror(of) {}
+  Hub(SceneMirror& of, std::function<void(const PageCommand&)> call)
+      : mirror(of), obey(std::move(call)) {}
 
   SceneMirror& mirror;
+  std::function<void(const PageCommand&)> obey;
   std::string hello;
   std::shared_ptr<const std::string> status;  // newest text
   std::uint64_t status_number = 0;
@@ -85,7 +88,8 @@ class Seat {
   Hub* hub_;
 };
 
-/// One page. Sends one message at a time, whatever is most due; reads acknowledgements.
+/// One page. Sends one message at a time, whatever is most due; reads acknowledgements and
+/// commands.
 class Client : public std::enable_shared_from_this<Client> {
  public:
   Client(beast::tcp_stream&& stream, Seat&& seat, Hub& hub)
@@ -205,7 +209,10 @@ class Client : public std::enable_shared_from_this<Client> {
     const std::string text = beast::buffers_to_string(incoming_.data());
     incoming_.consume(incoming_.size());
     const auto word = read_acknowledgement(text);
-    if (!word) return;
+    if (!word) {
+      if (const auto command = read_page_command(text)) hub_.obey(*command);
+      return;
+    }
     const auto taken_nsec = credit_.acknowledge(word->sequence);
     if (taken_nsec && word->drawn) {
       const std::lock_guard lock(hub_.latency_mutex);
@@ -354,7 +361,9 @@ std::string url_of(const tcp::endpoint& endpoint) {
 }  // namespace
 
 struct WebServer::Impl {
-  Impl(const ServerConfig& config, SceneMirror& mirror) : pages(config.folder), hub(mirror) {
+  Impl(const ServerConfig& config, SceneMirror& mirror,
+       std::function<void(const PageCommand&)> obey)
+      : pages(config.folder), hub(mirror, std::move(obey)) {
     listen(acceptor, config);
     const tcp::endpoint endpoint = acceptor.local_endpoint();
     url = url_of(endpoint);
@@ -421,8 +430,9 @@ struct WebServer::Impl {
   std::thread thread;
 };
 
-WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror)
-    : impl_(std::make_unique<Impl>(config, mirror)) {
+WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror,
+                     std::function<void(const PageCommand&)> obey)
+    : impl_(std::make_unique<Impl>(config, mirror, std::move(obey))) {
   mirror.on_change([impl = impl_.get()] { impl->wake(); });
   impl_->accept();
   impl_->tell_status();

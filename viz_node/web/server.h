@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -34,9 +35,12 @@ class WebServer {
  public:
   /// Begins to listen.
   /// @param mirror  outlives the server; its on_change() is taken over
+  /// @param obey    called from the server's thread with what a page wants of the simulation; must
+  ///                not wait
   /// @throws std::runtime_error with what to type when the port is occupied or the address is not
   /// to be had
-  WebServer(const ServerConfig& config, SceneMirror& mirror);
+  WebServer(const ServerConfig& config, SceneMirror& mirror,
+            std::function<void(const PageCommand&)> obey);
 
   /// Closes all connections and joins the thread.
   ~WebServer();

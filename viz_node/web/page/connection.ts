@@ -34,6 +34,11 @@ export class Connection {
     if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'ack', sequence, drawn }));
   }
 
+  /** Asks for something of the simulation. */
+  command(verb: string): void {
+    if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'command', verb }));
+  }
+
   private open(): void {
     const socket = new WebSocket(this.url);
     socket.binaryType = 'arraybuffer';

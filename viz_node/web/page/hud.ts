@@ -1,6 +1,7 @@
 // The figures that are always on screen, the state of every node, and the banner when something is amiss.
 import { count, duration, joined, NONE, plain, rate, withUnit } from './format.ts';
-import type { Description, LinkEvent, NodeState, Status } from './protocol.ts';
+import { countsLine, eventLine } from './events.ts';
+import type { Description, NodeState, Status } from './protocol.ts';
 
 // After this time without a frame the picture is called old, whatever the nodes say.
 const OLD_AFTER_S = 1.5;
@@ -48,7 +49,7 @@ export class Hud {
   setStatus(status: Status): void {
     this.status = status;
     this.writeNodes(status.nodes);
-    this.writeEvents(status.events.total, status.events.lost, status.events.newest);
+    this.writeEvents(status);
   }
 
   get nodes(): NodeState[] {
@@ -74,7 +75,8 @@ export class Hud {
     this.writeBanner(measured);
   }
 
-  private alive(kind: string): NodeState | undefined {
+  /** The node of this kind that was heard lately. */
+  alive(kind: string): NodeState | undefined {
     return this.nodes.find((node) => node.kind === kind && !GONE.includes(node.state));
   }
 
@@ -85,7 +87,7 @@ export class Hud {
       return;
     }
     const target = sim.target_rate_hz ?? 0;
-    const short = target > 0 && (sim.reached_rate_hz ?? 0) < 0.98 * target;
+    const short = target > 0 && sim.state !== 'paused' && (sim.reached_rate_hz ?? 0) < 0.98 * target;
     set('loop', rate(sim.reached_rate_hz), short ? 'warn' : '');
     set('loop-more', target > 0 ? `/ ${plainRate(target)} Hz` : 'Hz, no target');
     const share = sim.ticks > 0 ? sim.overruns / sim.ticks : 0;
@@ -115,22 +117,20 @@ export class Hud {
     element('nodes').replaceChildren(...sorted.map(rowOf));
   }
 
-  private writeEvents(total: number, lost: number, newest: LinkEvent[]): void {
-    element('events').hidden = total === 0;
-    if (total === 0) return;
-    set('events-total', `${count(total)}${lost > 0 ? `, ${count(lost)} lost` : ''}`);
-    const period = 1 / (this.description?.step_rate_hz ?? 1);
+  private writeEvents(status: Status): void {
+    const { total, lost, newest } = status.events;
+    const sim = this.alive('sim_node');
+    const all = sim?.changes.reduce((sum, { changes }) => sum + changes, 0) ?? 0;
+    const unseen = lost + (sim?.lost_events ?? 0) > 0 ? `, ${count(Math.max(lost, sim?.lost_events ?? 0))} lost` : '';
+    element('events').hidden = total === 0 && all === 0;
+    set('events-total', count(Math.max(total, all)) + unseen);
+    set('events-counts', countsLine(sim?.changes ?? []));
     const lines = [...newest].reverse().map((event) => {
       const line = document.createElement('li');
-      line.textContent = `${(event.step * period).toFixed(3)} s  ${this.linkName(event.link)}  state ${event.from} → ${event.to}`;
+      line.textContent = line.title = eventLine(event, this.description);
       return line;
     });
     element('events-list').replaceChildren(...lines);
-  }
-
-  private linkName(link: number): string {
-    const range = this.description?.links.find((r) => link >= r.first && link < r.first + r.count);
-    return range ? `${range.name}[${link - range.first}]` : `link ${link}`;
   }
 
   private writeBanner(measured: Measured): void {
@@ -160,6 +160,7 @@ export class Hud {
       const device = amiss.some((node) => node.kind === 'device_node');
       return [amiss.map((n) => `${n.name} is ${n.state}`).join(', '), amiss.map(fate).join(' ') + (device ? ' Its forces are zero meanwhile.' : ''), 'warn'];
     }
+    if (this.alive('sim_node')?.state === 'paused') return ['paused', 'The scene stands still, and the devices are let go of.', 'warn'];
     if (measured.held) return ['picture held', 'The simulation goes on. Space lets the picture go on too.', 'warn'];
     return ['', '', ''];
   }

@@ -2,6 +2,7 @@
 import { ClockOffset, RealTimeFactor } from './clock.ts';
 import type { Pose } from './camera_rig.ts';
 import { Connection } from './connection.ts';
+import { Controls } from './controls.ts';
 import { roundLength } from './ground.ts';
 import { joined, withUnit } from './format.ts';
 import { Hud } from './hud.ts';
@@ -41,6 +42,7 @@ class Page {
   private readonly factor = new RealTimeFactor();
   private readonly renderer = findRenderer();
   readonly connection: Connection;
+  private readonly controls: Controls;
   private pending: Frame | null = null;
   private pendingIsLate = false; // it came, or waited, while nobody could see the page
   private frameMs = Number.NaN; // when the newest frame came
@@ -66,6 +68,7 @@ class Page {
       closed: () => this.forgetConnection(),
       failed: (error) => this.note(error),
     });
+    this.controls = new Controls(this.connection);
     window.setInterval(() => this.refresh(), FIGURES_PERIOD_MS);
   }
 
@@ -89,7 +92,8 @@ class Page {
         return this.build(message);
       case 'status':
         this.clock.note(message.sent_nsec, performance.now());
-        return this.hud.setStatus(message);
+        this.hud.setStatus(message);
+        return this.controls.update(this.hud.alive('sim_node'), message.replies);
       case 'signals':
         if (message.scene !== this.description?.scene) return;
         this.store?.append(message);

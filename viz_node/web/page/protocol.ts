@@ -84,6 +84,7 @@ export interface Description {
   link_count: number;
   matter: NamedRange[];
   links: NamedRange[];
+  behaviours: { name: string; states: string[] }[];
   ports: Port[];
   signals: { name: string; unit: string }[];
 }
@@ -95,7 +96,7 @@ export interface NodeState {
   name: string;
   kind: string;
   run: string;
-  state: string; // starting, waiting, running, lost, stopped, failed
+  state: string; // starting, waiting, running, paused, lost, stopped, failed
   text: string;
   heard_s: number;
   target_rate_hz: Figure;
@@ -111,14 +112,33 @@ export interface NodeState {
   energy_j: Figure;
   energy_drift: Figure;
   step: number;
+  changes: LiaisonChanges[]; // since the scene began
+  lost_events: number;
   memory_bytes: Figure;
+}
+
+export interface LiaisonChanges {
+  liaison: string;
+  changes: number;
+}
+
+export interface Reply {
+  number: number;
+  node: string;
+  accepted: boolean;
+  text: string;
 }
 
 export interface LinkEvent {
   step: number;
-  link: number;
+  link: number; // 4294967295: a pair of a set liaison
+  mat_a: number;
+  mat_b: number;
+  behaviour: number;
   from: number;
   to: number;
+  quantity: number;
+  value: Figure;
   energy_j: Figure;
 }
 
@@ -128,6 +148,7 @@ export interface Status {
   sent_nsec: number;
   nodes: NodeState[];
   events: { total: number; lost: number; newest: LinkEvent[] };
+  replies: Reply[]; // to the commands of pages, newest last
   viz: { frames: number; refused: number; lost: number };
 }
 

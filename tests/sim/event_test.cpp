@@ -1,0 +1,149 @@
+// tests/sim/event_test.cpp -- changes of state on their way out.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/change_counter.h"
+#include "sim_node/describe.h"
+#include "sim_node/event_room.h"
+#include "sim_node/player.h"
+#include "tests/sim/stages.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cordis::sim {
+namespace {
+
+/// distance > limit
+engine::Program further_than(double limit) {
+  using engine::Operation;
+  engine::Program program;
+  program.code.push_back({Operation::kQuantity, engine::Quantity::kDistance, 0.0, 0});
+  program.code.push_back({Operation::kConstant, engine::Quantity::kNone, limit, 0});
+  program.code.push_back({Operation::kGreater, engine::Quantity::kNone, 0.0, 0});
+  return program;
+}
+
+/// A link that breaks when it is longer than a limit.
+engine::Behaviour breaking(const std::string& name, double limit) {
+  engine::Behaviour behaviour;
+  behaviour.name = name;
+  behaviour.states.resize(2);
+  behaviour.states[0].name = "whole";
+  behaviour.states[0].last_exit = 1;
+  behaviour.states[1].name = "broken";
+  behaviour.states[1].first_exit = 1;
+  behaviour.states[1].last_exit = 1;
+  behaviour.exits.resize(1);
+  behaviour.exits[0].when = further_than(limit);
+  behaviour.exits[0].target = 1;
+  behaviour.exits[0].fired = engine::Quantity::kDistance;
+  return behaviour;
+}
+
+/// The swing with `count` links more that break, in pairs of two liaisons, when the bob has moved
+/// by a millimetre and more: the bob starts at 0.01 m, at rest.
+std::shared_ptr<const scene::Scene> breaking_scene(std::size_t count) {
+  auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
+  scene->network.behaviours = {breaking("thin", 0.0101), breaking("thick", 0.0102),
+                               breaking("thin", 0.0103)};
+  scene->network.mats[1].velocity = engine::Vec3(1.0, 0.0, 0.0);
+  const auto first = static_cast<std::uint32_t>(scene->network.links.size());
+  for (std::size_t l = 0; l < count; ++l)
+    scene->network.state_links.push_back({0, 1, static_cast<std::uint32_t>(l % 3), 0.01});
+  scene->links.push_back({"fuse", first, static_cast<std::uint32_t>(count)});
+  return scene;
+}
+
+TEST(EventRoom, KeepsEventsInOrderAndCountsThoseBeyondItsRoom) {
+  EventRoom room(0);
+  std::vector<engine::LinkEvent> events(EventRoom::kLeast - 10);
+  for (std::size_t i = 0; i < events.size(); ++i) events[i].step = i;
+  EXPECT_TRUE(room.is_empty());
+  room.add(events, 0);
+  EXPECT_TRUE(room.is_half_full());
+  room.add(events, 5);
+
+  ASSERT_EQ(room.events().size(), EventRoom::kLeast);
+  EXPECT_EQ(room.events()[EventRoom::kLeast - 11].step, EventRoom::kLeast - 11);
+  EXPECT_EQ(room.events()[EventRoom::kLeast - 10].step, 0u);
+  EXPECT_EQ(room.lost(), EventRoom::kLeast - 20 + 5u);
+  room.clear();
+  EXPECT_TRUE(room.is_empty());
+}
+
+TEST(ChangeCounter, CountsTheBehavioursOfALiaisonTogether) {
+  const auto scene = breaking_scene(9);
+  const ChangeCounter counter(scene->network.behaviours);
+  EXPECT_EQ(counter.names(), (std::vector<std::string>{"thin", "thick"}));
+  engine::World world(std::make_shared<const engine::Network>(scene->network));
+  EXPECT_EQ(counter.count(world), ChangeCounter::Counts{});
+  for (int step = 0; step < 40; ++step) world.step();
+
+  const ChangeCounter::Counts counts = counter.count(world);
+  EXPECT_EQ(counts[0], 6u);
+  EXPECT_EQ(counts[1], 3u);
+}
+
+TEST(ChangeCounter, PutsWhatIsTooMuchTogether) {
+  std::vector<engine::Behaviour> behaviours;
+  for (int i = 0; i < 100; ++i) behaviours.push_back(breaking(std::to_string(i), 0.0102));
+  const ChangeCounter counter(behaviours);
+  ASSERT_EQ(counter.names().size(), ChangeCounter::kMostLiaisons);
+  EXPECT_EQ(counter.names().back(), "others");
+}
+
+TEST(Description, NumbersTheLinksOfAllKindsInOneRow) {
+  auto scene = std::make_shared<scene::Scene>(*breaking_scene(3));
+  scene->network.maxwell_links.push_back({1, 2, 10.0, 1.0});
+  const msg::SceneDescription told = describe(*scene, 1, 2);
+
+  EXPECT_EQ(told.version(), 2u);
+  ASSERT_EQ(told.link_ends().size(), 2u * 6u);
+  EXPECT_EQ(told.link_ends()[4], 0u);  // the first one with states
+  EXPECT_EQ(told.link_ends()[5], 1u);
+  EXPECT_EQ(told.link_ends()[11], 2u);  // the Maxwell element
+  constexpr std::uint32_t kNone = 0xffffffff;
+  EXPECT_EQ(told.link_behaviour(), (std::vector<std::uint32_t>{kNone, kNone, 0, 1, 2, kNone}));
+  ASSERT_EQ(told.behaviours().size(), 3u);
+  EXPECT_EQ(told.behaviours()[1].name(), "thick");
+  EXPECT_EQ(told.behaviours()[1].states(), (std::vector<std::string>{"whole", "broken"}));
+}
+
+TEST(Description, SaysNothingOfStatesWhenThereAreNone) {
+  const msg::SceneDescription told = describe(*scene_of(swing_text()), 1, 1);
+  EXPECT_TRUE(told.behaviours().empty());
+  EXPECT_TRUE(told.link_behaviour().empty());
+}
+
+TEST(Player, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
+  Player player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
+  FrameStore& frames = player.stage().frames;
+  for (int tick = 0; tick < 10; ++tick) player.advance();
+  EXPECT_TRUE(frames.has_news());
+  frames.turn(player.simulation().world(), 0.0, 0);
+
+  const FrameBuffer& frame = frames.published();
+  ASSERT_EQ(frame.events.events().size(), 6u);
+  EXPECT_TRUE(std::is_sorted(
+      frame.events.events().begin(), frame.events.events().end(),
+      [](const engine::LinkEvent& a, const engine::LinkEvent& b) { return a.step < b.step; }));
+  EXPECT_EQ(frame.events.events()[0].behaviour, 0u);
+  EXPECT_EQ(frame.events.events()[0].to, 1u);
+  EXPECT_GT(frame.events.events()[0].value, 0.0101);
+  EXPECT_EQ(frame.link_state, (std::vector<std::uint8_t>{0, 0, 1, 1, 1, 1, 1, 1}));
+  EXPECT_FALSE(frames.has_news());
+}
+
+TEST(Player, GathersEventsWithoutAllocating) {
+  Player player(std::make_unique<Stage>(breaking_scene(60), kRunOfSim, 1), false);
+  const test::AllocationGuard guard;
+  for (int tick = 0; tick < 10; ++tick) {
+    player.advance();
+    player.stage().frames.turn(player.simulation().world(), 0.0, 0);
+    player.stage().changes.count(player.simulation().world());
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace cordis::sim

@@ -1,0 +1,56 @@
+// The changes of state: how many, of which liaison, and the last of them, newest first.
+import { count, joined, withUnit } from './format.ts';
+import type { Description, LinkEvent, LiaisonChanges } from './protocol.ts';
+
+const NO_LINK = 0xffffffff; // a pair of a set liaison
+
+// By number, as idl/README.md lists them.
+const QUANTITIES: [string, string][] = [
+  ['distance', 'm'],
+  ['elongation', 'm'],
+  ['speed', 'm/s'],
+  ['speed x', 'm/s'],
+  ['speed y', 'm/s'],
+  ['speed z', 'm/s'],
+  ['slip', 'm/s'],
+  ['force', 'N'],
+  ['impulse', 'N s'],
+  ['age', 's'],
+  ['rest', 'm'],
+  ['mass a', 'kg'],
+  ['mass b', 'kg'],
+];
+
+/** One line for a person: 1.250 s  rosin[3]  hooked → unhooked  elongation 2.1 mm  −3.2 µJ */
+export function eventLine(event: LinkEvent, description: Description | null): string {
+  const time = (event.step / (description?.step_rate_hz ?? 1)).toFixed(3);
+  const behaviour = description?.behaviours[event.behaviour];
+  const state = (index: number) => behaviour?.states[index] ?? `state ${index}`;
+  const [quantity, unit] = QUANTITIES[event.quantity] ?? ['', ''];
+  const why = quantity === '' ? 'forced' : `${quantity} ${joined(withUnit(event.value, unit))}`;
+  const energy = event.energy_j ? `  ${joined(withUnit(event.energy_j, 'J'))}` : '';
+  return `${time} s  ${nameOf(event, description)}  ${state(event.from)} → ${state(event.to)}  ${why}${energy}`;
+}
+
+function nameOf(event: LinkEvent, description: Description | null): string {
+  if (event.link === NO_LINK) {
+    const liaison = description?.behaviours[event.behaviour]?.name ?? 'pair';
+    return `${liaison}(${matName(event.mat_a, description)}, ${matName(event.mat_b, description)})`;
+  }
+  return indexed(event.link, description?.links) ?? `link ${event.link}`;
+}
+
+function matName(mat: number, description: Description | null): string {
+  return indexed(mat, description?.matter) ?? `MAT ${mat}`;
+}
+
+function indexed(index: number, ranges: Description['links'] | undefined): string | null {
+  const range = ranges?.find((r) => index >= r.first && index < r.first + r.count);
+  if (range === undefined) return null;
+  return range.count === 1 ? range.name : `${range.name}[${index - range.first}]`;
+}
+
+/** The counts of all liaisons in one line: collophane 120 · pluck 3 */
+export function countsLine(changes: LiaisonChanges[]): string {
+  return changes.map(({ liaison, changes: number }) => `${liaison} ${count(number)}`).join(' · ');
+}
