@@ -37,7 +37,7 @@ function generatedClasses(unit) {
 
 test('the messages are those of the contract', () => {
   const contract = {
-    'control.idl': ['ControlCommand', 'ControlReply', 'NodeStatus'],
+    'control.idl': ['ControlCommand', 'ControlReply', 'LiaisonChanges', 'NodeStatus'],
     'gesture.idl': ['GesturePositions', 'GestureForces'],
     'scene.idl': [
       'NamedRange', 'PortDescription', 'SignalDescription', 'BehaviourDescription', 'SceneDescription', 'SceneFrame',

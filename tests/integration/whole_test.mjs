@@ -66,6 +66,25 @@ const cases = {
     await page.screenshot({ path: join(out, 'whole_swinging.png') });
   },
 
+  'the buttons of the page pause the scene, do a step, begin it anew and let it go on': async ({ page }) => {
+    const click = (verb) => page.click(`#control button[data-verb="${verb}"]`);
+    const replied = (pattern) =>
+      until(`the reply reads ${pattern}`, async () => pattern.exec(await textOf(page, '#reply')));
+    await click('pause');
+    const step = Number((await replied(/^paused at step (\d+)$/))[1]);
+    await until('the banner says so', async () => (await textOf(page, '#banner-title')) === 'paused');
+    await click('step');
+    await replied(new RegExp(`^paused at step ${step + 1}$`));
+    await until('the step is shown', async () => (await viz(page, 'lastFrame')).step === step + 1);
+    await click('reset');
+    await replied(/^'plucked_string' begins anew, paused/);
+    await until('the beginning is shown', async () => (await viz(page, 'lastFrame')).step === 0);
+    await click('pause');
+    await replied(/^goes on at step 0$/);
+    await until('it goes on', async () => (await viz(page, 'lastFrame')).step > 1000);
+    await until('the key is down', async () => (await height(page, KEY)) < -0.11);
+  },
+
   'Ctrl-C ends every process, and the launcher tells how it went': async ({ page, launcher, pageErrors }) => {
     assert.deepEqual([await viz(page, 'errors'), pageErrors], [[], []]);
     assert.equal(await launcher.end('SIGINT'), 0);
