@@ -16,15 +16,14 @@ double kinetic_energy(const NetworkDescription& network, const MatArray& mats) n
   return 0.5 * sum / (network.step * network.step);
 }
 
+/// Of linear springs in 1 dimension.
 double elastic_energy(const NetworkDescription& network, const MatArray& mats) noexcept {
-  const bool in_line = network.dimension == 1;
+  if (network.dimension != 1) return 0.0;
   double sum = 0.0;
   for (const Link& link : network.links) {
-    const Vec3 now = mats.position(link.mat_b) - mats.position(link.mat_a);
-    const Vec3 before = mats.delayed_at_rest(link.mat_b) - mats.delayed_at_rest(link.mat_a);
-    const double elongation = (in_line ? now.x() : now.norm()) - link.rest_length;
-    const double elongation_before = (in_line ? before.x() : before.norm()) - link.rest_length;
-    sum += link.stiffness * elongation * elongation_before;
+    const double now = (mats.position(link.mat_b) - mats.position(link.mat_a)).x();
+    const double before = (mats.delayed_at_rest(link.mat_b) - mats.delayed_at_rest(link.mat_a)).x();
+    sum += link.stiffness * (now - link.rest_length) * (before - link.rest_length);
   }
   return 0.5 * sum;
 }

@@ -17,14 +17,12 @@ namespace cordis::engine {
 /// keeps its account: a force f(n) changes the kinetic energy of the half-step velocities by
 /// exactly f(n) . (x(n+1) - x(n-1)) / 2, and dissipated and port_work are these exact works.
 ///
-/// Of linear links, elastic is the product that the scheme keeps, K e(n) e(n-1) / 2. It changes
-/// - in 1 dimension by exactly the work of the springs: no residual but rounding, for every step
-///   that is stable;
-/// - in 2 and 3 dimensions by that work up to third order in dt a step, from the turning of the
-///   links: the residual is of order dt^2.
-/// Of all other links, elastic is what they stored at first, and the exact works of their elastic
-/// forces and the energies of their changes of state since: no residual but rounding, whatever the
-/// law. What they should store by the closed form of their laws differs from this by elastic_error.
+/// Of linear links in 1 dimension, elastic is the product that the scheme keeps,
+/// K e(n) e(n-1) / 2, which changes by exactly the work of the springs. Of all other links, elastic
+/// is what they stored at first, and the exact works of their elastic forces and the energies of
+/// their changes of state since. So no residual is left but rounding, for every law and every step
+/// that is stable; and what the links should store by the closed forms of their laws differs from
+/// elastic by elastic_error, which shows what finite steps have done to them.
 /// A port that has moved counts up to its present position, and rests there until the next step.
 struct Energy {
   double kinetic =
@@ -39,8 +37,8 @@ struct Energy {
                             ///< sum of LinkEvent::energy
   double initial = 0.0;     ///< kinetic + elastic + gravity at step 0
   double elastic_error = 0.0;  ///< part of elastic that a finite step has put there, above what the
-                               ///< laws of the links store: of order dt^2, 0 for linear links and
-                               ///< states in 1 dimension
+                               ///< laws of the links store: of order dt^2; 0 for linear links and
+                               ///< states in 1 dimension, and at changes of state
   double largest = 0.0;  ///< largest magnitude among the fields above, and that port_work ever had:
                          ///< the scale for a relative residual
 
@@ -52,7 +50,7 @@ struct Energy {
 
 /// What one step does to the account [J].
 struct StepEnergy {
-  double elastic = 0.0;     ///< work that went into links other than linear ones
+  double elastic = 0.0;     ///< work that went into the links, but for linear ones in 1 dimension
   double dissipated = 0.0;  ///< work that viscosity took
   double switching = 0.0;   ///< brought into links by changes of state
   double port_work = 0.0;
@@ -70,7 +68,7 @@ struct StepEnergy {
 class EnergyAccount {
  public:
   /// Opens the account with the energies of step 0.
-  /// @param stored  by links other than linear ones, at the delayed positions [J]
+  /// @param stored  by the links, but for linear ones in 1 dimension, at the delayed positions [J]
   /// @param since   work of their forces from there to the present positions [J]
   void start(const NetworkDescription& network, const MatArray& mats, double stored,
              double since) noexcept;
@@ -79,8 +77,8 @@ class EnergyAccount {
   void add(const StepEnergy& step) noexcept;
 
   /// @param since   works of the forces of the last step up to the present positions
-  /// @param stored  what links other than linear ones should store, by the closed forms of their
-  ///                laws, where the forces of the last step were computed [J]
+  /// @param stored  what links, but for linear ones in 1 dimension, should store by the closed
+  ///                forms of their laws, where the forces of the last step were computed [J]
   /// Real time: O(MATs + links), no allocation.
   Energy energy(const NetworkDescription& network, const MatArray& mats, const StepEnergy& since,
                 double stored) const noexcept;
@@ -96,7 +94,7 @@ class EnergyAccount {
   double dissipated_ = 0.0;
   double port_work_ = 0.0;
   double largest_port_work_ = 0.0;
-  double stored_ = 0.0;  // in links other than linear ones, when the last forces were computed
+  double stored_ = 0.0;  // in the links, when the last forces were computed
   double switching_ = 0.0;
 };
 

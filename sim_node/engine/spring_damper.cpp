@@ -20,7 +20,8 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description)
       stiffness_(column_a_.size(), 0.0),
       viscosity_over_dt_(column_a_.size(), 0.0),
       rest_length_(column_a_.size(), 0.0),
-      viscous_factor_(column_a_.size(), 0.0) {
+      viscous_factor_(column_a_.size(), 0.0),
+      elastic_factor_(in_line_ ? 0 : column_a_.size(), 0.0) {
   for (std::size_t l = 0; l < description.links.size(); ++l) {
     const Link& link = description.links[l];
     column_a_[l] = 4 * link.mat_a;
@@ -32,12 +33,13 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description)
   }
 }
 
-double SpringDamperArray::add_forces(const StepKernel& kernel,
-                                     const ForceColumns& columns) noexcept {
-  const LinkRows rows{column_a_.size(),      column_a_.data(),          column_b_.data(),
-                      stiffness_.data(),     viscosity_over_dt_.data(), rest_length_.data(),
-                      viscous_factor_.data()};
-  return 0.5 * choose(kernel)(rows, columns);
+StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel,
+                                         const ForceColumns& columns) noexcept {
+  const LinkRows rows{column_a_.size(),       column_a_.data(),          column_b_.data(),
+                      stiffness_.data(),      viscosity_over_dt_.data(), rest_length_.data(),
+                      viscous_factor_.data(), elastic_factor_.data()};
+  const LinkWork work = choose(kernel)(rows, columns);
+  return {0.5 * work.elastic, 0.5 * work.dissipated, 0.0, 0.0};
 }
 
 AddLinkForces SpringDamperArray::choose(const StepKernel& kernel) const noexcept {
@@ -45,17 +47,31 @@ AddLinkForces SpringDamperArray::choose(const StepKernel& kernel) const noexcept
   return viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
 }
 
-double SpringDamperArray::work_since_last_call(const MatArray& mats) const noexcept {
-  if (!viscous_) return 0.0;
-  double work = 0.0;
+StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const noexcept {
+  StepEnergy work;
+  if (in_line_ && !viscous_) return work;
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
     const std::uint32_t a = column_a_[l] / 4;
     const std::uint32_t b = column_b_[l] / 4;
     const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
     const Vec3 moved = mats.position(b) - mats.position(a) - before;
-    work += 0.5 * viscous_factor_[l] * (in_line_ ? moved.x() : before.dot(moved));
+    const double product = 0.5 * (in_line_ ? moved.x() : before.dot(moved));
+    work.dissipated += viscous_factor_[l] * product;
+    if (!in_line_) work.elastic += elastic_factor_[l] * product;
   }
   return work;
+}
+
+double SpringDamperArray::stored_energy(const MatArray& mats) const noexcept {
+  if (in_line_) return 0.0;
+  double sum = 0.0;
+  for (std::size_t l = 0; l < column_a_.size(); ++l) {
+    const Vec3 along =
+        mats.delayed_at_rest(column_b_[l] / 4) - mats.delayed_at_rest(column_a_[l] / 4);
+    const double elongation = along.norm() - rest_length_[l];
+    sum += stiffness_[l] * elongation * elongation;
+  }
+  return 0.5 * sum;
 }
 
 void SpringDamperArray::start() noexcept {
@@ -64,11 +80,13 @@ void SpringDamperArray::start() noexcept {
 
 void SpringDamperArray::append_state(std::vector<double>& state) const {
   state.insert(state.end(), viscous_factor_.begin(), viscous_factor_.end());
+  state.insert(state.end(), elastic_factor_.begin(), elastic_factor_.end());
 }
 
 const double* SpringDamperArray::take_state(const double* state) noexcept {
   std::copy_n(state, viscous_factor_.size(), viscous_factor_.data());
-  return state + viscous_factor_.size();
+  std::copy_n(state + viscous_factor_.size(), elastic_factor_.size(), elastic_factor_.data());
+  return state + state_size();
 }
 
 }  // namespace cordis::engine

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim_node/engine/aligned_vector.h"
+#include "sim_node/engine/energy.h"
 #include "sim_node/engine/mat_array.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/step_kernel.h"
@@ -20,21 +21,26 @@ class SpringDamperArray {
   explicit SpringDamperArray(const NetworkDescription& description);
 
   /// Adds the force of every link to its two MATs, in link order.
-  /// @return the work [J] the viscosity of the links took with the forces of the last call, from
-  /// then to now, and with
-  ///         these, from the last call to now; half of each, as a force f(n) does in this scheme
-  ///         the work f(n) . (x(n+1) - x(n-1)) / 2.
+  /// @return the work [J] that went into the links with the forces of the last call, from then to
+  ///         now, and with these, from the last call to now; half of each, as a force f(n) does in
+  ///         this scheme the work f(n) . (x(n+1) - x(n-1)) / 2. In 1 dimension without that of the
+  ///         springs, which is the change of K e(n) e(n-1) / 2.
   /// Real time: O(links), no allocation.
-  double add_forces(const StepKernel& kernel, const ForceColumns& columns) noexcept;
+  StepEnergy add_forces(const StepKernel& kernel, const ForceColumns& columns) noexcept;
 
-  /// The first half alone, for the forces of the last call up to the present positions [J].
+  /// The first half alone, for the forces of the last call up to the present positions.
   /// Real time: O(links), no allocation.
-  double work_since_last_call(const MatArray& mats) const noexcept;
+  StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  /// Energy of the springs where the forces of the last call were computed [J]; 0 in 1 dimension.
+  /// Real time: O(links), no allocation.
+  double stored_energy(const MatArray& mats) const noexcept;
 
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
   void start() noexcept;
 
-  std::size_t state_size() const noexcept { return viscous_factor_.size(); }
+  std::size_t state_size() const noexcept {
+    return viscous_factor_.size() + elastic_factor_.size();
+  }
   /// The state as a row of values: what the account remembers of the last call.
   void append_state(std::vector<double>& state) const;
   /// Takes it back. @return one past the last value taken.
@@ -52,6 +58,7 @@ class SpringDamperArray {
   AlignedVector<double> viscosity_over_dt_;  // Z / dt [N/m]
   AlignedVector<double> rest_length_;        // [m]
   AlignedVector<double> viscous_factor_;     // [N/m]; in 1 dimension the viscous pull itself [N]
+  AlignedVector<double> elastic_factor_;     // [N/m]; none in 1 dimension
 };
 
 }  // namespace cordis::engine

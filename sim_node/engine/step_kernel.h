@@ -27,6 +27,7 @@ struct LinkRows {
   const double* rest_length = nullptr;        // [m]
   double* viscous_factor =
       nullptr;  // viscous force of the last call = factor * vector from a to b [N/m]
+  double* elastic_factor = nullptr;  // the same of the elastic force; not in 1 dimension
 };
 
 /// The state the forces follow from, and where they are added; 4 x N, columns 32-byte aligned.
@@ -36,12 +37,17 @@ struct ForceColumns {
   double* force = nullptr;           // f(n) [N]
 };
 
+/// Twice the work [J] that forces of the links took: half of the last step's and half of this
+/// one's, so that the sum over all steps is that of f(n) . (x(n+1) - x(n-1)), twice the work of
+/// f(n) in this scheme.
+struct LinkWork {
+  double elastic =
+      0.0;  // of the elastic forces; 0 in 1 dimension, where it follows from K e(n) e(n-1)
+  double dissipated = 0.0;  // of the viscous forces
+};
+
 /// Adds the forces of all links in link order.
-/// @return twice the work [J] that their viscosity took: half of the last step's and half of this
-/// one's, so that the
-///         sum over all steps is that of f(n) . (x(n+1) - x(n-1)), twice the work of f(n) in this
-///         scheme.
-using AddLinkForces = double (*)(const LinkRows& links, const ForceColumns& columns) noexcept;
+using AddLinkForces = LinkWork (*)(const LinkRows& links, const ForceColumns& columns) noexcept;
 
 /// A row of neighbouring masses, and what moves them.
 struct MassColumns {

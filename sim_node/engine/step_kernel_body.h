@@ -18,6 +18,13 @@
 
 namespace cordis::engine {
 
+/// Works of some links, by their place in the batch.
+template <class Lanes>
+struct WorkRows {
+  typename Lanes::Row elastic;
+  typename Lanes::Row dissipated;
+};
+
 /// pull = K (b - a - rest) + Z (growth of b - a) / dt, signed; kViscous = false leaves the second
 /// term out.
 template <class Lanes, bool kViscous>
@@ -25,7 +32,7 @@ struct LinksInLine {
   using Row = typename Lanes::Row;
 
   static void add_forces(const LinkRows& links, const ForceColumns& columns, std::size_t l,
-                         Row& work) noexcept {
+                         WorkRows<Lanes>& work) noexcept {
     const std::uint32_t* a = links.column_a + l;
     const std::uint32_t* b = links.column_b + l;
 
@@ -34,7 +41,8 @@ struct LinksInLine {
     if constexpr (kViscous) {
       const Row grown = distance - Lanes::difference_1d(columns.delayed, a, b);
       const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
-      work = work + (viscous_pull + Lanes::load(links.viscous_factor + l)) * grown;
+      work.dissipated =
+          work.dissipated + (viscous_pull + Lanes::load(links.viscous_factor + l)) * grown;
       Lanes::store(links.viscous_factor + l, viscous_pull);
       pull = pull + viscous_pull;
     }
@@ -50,30 +58,31 @@ struct LinksInSpace {
   using Row3 = typename Lanes::Row3;
 
   static void add_forces(const LinkRows& links, const ForceColumns& columns, std::size_t l,
-                         Row& work) noexcept {
+                         WorkRows<Lanes>& work) noexcept {
     const std::uint32_t* a = links.column_a + l;
     const std::uint32_t* b = links.column_b + l;
 
     Row3 along;
     Row3 before;
-    if constexpr (kViscous) {
-      Lanes::differences(columns.position, columns.delayed, a, b, along, before);
-    } else {
-      along = Lanes::difference(columns.position, a, b);
-    }
+    Lanes::differences(columns.position, columns.delayed, a, b, along, before);
     const Row square = along.x * along.x + along.y * along.y + along.z * along.z;
     const Row length = Lanes::sqrt(square);
     const Row inverse = Lanes::inverse_or_zero(square, length);
-    Row factor =
+    const Row3 moved{along.x - before.x, along.y - before.y, along.z - before.z};
+    const Row along_moved = along.x * moved.x + along.y * moved.y + along.z * moved.z;
+    const Row before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
+
+    const Row elastic_factor =
         Lanes::load(links.stiffness + l) * (length - Lanes::load(links.rest_length + l)) * inverse;
+    work.elastic = work.elastic + (elastic_factor * along_moved +
+                                   Lanes::load(links.elastic_factor + l) * before_moved);
+    Lanes::store(links.elastic_factor + l, elastic_factor);
+    Row factor = elastic_factor;
     if constexpr (kViscous) {
-      const Row moved_x = along.x - before.x;
-      const Row moved_y = along.y - before.y;
-      const Row moved_z = along.z - before.z;
-      const Row grown = (along.x * moved_x + along.y * moved_y + along.z * moved_z) * inverse;
+      const Row grown = along_moved * inverse;
       const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
-      const Row before_moved = before.x * moved_x + before.y * moved_y + before.z * moved_z;
-      work = work + (viscous_pull * grown + Lanes::load(links.viscous_factor + l) * before_moved);
+      work.dissipated = work.dissipated + (viscous_pull * grown +
+                                           Lanes::load(links.viscous_factor + l) * before_moved);
       const Row viscous_factor = viscous_pull * inverse;
       Lanes::store(links.viscous_factor + l, viscous_factor);
       factor = factor + viscous_factor;
@@ -83,13 +92,25 @@ struct LinksInSpace {
   }
 };
 
-/// A batch of 8 links at a time, in one register or in parts; the work is summed by the place in
+/// Sum of the 8 values of a batch, place by place.
+template <class Lanes>
+double sum_of_batch(const typename Lanes::Row* rows) noexcept {
+  alignas(64) double lane[kLinkBatch];
+  for (std::size_t part = 0; part < kLinkBatch / Lanes::kWidth; ++part) {
+    Lanes::store(lane + part * Lanes::kWidth, rows[part]);
+  }
+  double sum = 0.0;
+  for (const double value : lane) sum += value;
+  return sum;
+}
+
+/// A batch of 8 links at a time, in one register or in parts; the works are summed by the place in
 /// the batch.
 template <class Lanes, class Links>
-double add_link_forces(const LinkRows& links, const ForceColumns& columns) noexcept {
+LinkWork add_link_forces(const LinkRows& links, const ForceColumns& columns) noexcept {
   constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
-  typename Lanes::Row work[kParts];
-  for (std::size_t part = 0; part < kParts; ++part) work[part] = Lanes::zero();
+  WorkRows<Lanes> work[kParts];
+  for (std::size_t part = 0; part < kParts; ++part) work[part] = {Lanes::zero(), Lanes::zero()};
 
   for (std::size_t l = 0; l < links.count; l += kLinkBatch) {
 #pragma GCC unroll 4
@@ -98,13 +119,13 @@ double add_link_forces(const LinkRows& links, const ForceColumns& columns) noexc
     }
   }
 
-  alignas(64) double lane[kLinkBatch];
+  typename Lanes::Row elastic[kParts];
+  typename Lanes::Row dissipated[kParts];
   for (std::size_t part = 0; part < kParts; ++part) {
-    Lanes::store(lane + part * Lanes::kWidth, work[part]);
+    elastic[part] = work[part].elastic;
+    dissipated[part] = work[part].dissipated;
   }
-  double sum = 0.0;
-  for (const double value : lane) sum += value;
-  return sum;
+  return LinkWork{sum_of_batch<Lanes>(elastic), sum_of_batch<Lanes>(dissipated)};
 }
 
 template <class Lanes, bool kMedium>

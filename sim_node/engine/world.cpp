@@ -69,11 +69,12 @@ struct World::State {
   PairStep pair_step(bool frozen) noexcept { return {table, behaviours, log, step_count, frozen}; }
   /// Of all links but linear ones, in closed form [J].
   double stored_energy() noexcept {
-    return state_links.stored_energy(table, mats) + maxwell_links.stored_energy() +
-           sets.stored_energy(table);
+    return links.stored_energy(mats) + state_links.stored_energy(table, mats) +
+           maxwell_links.stored_energy() + sets.stored_energy(table);
   }
   StepEnergy work_since_last_call() const noexcept {
-    StepEnergy work = state_links.work_since_last_call(mats);
+    StepEnergy work = links.work_since_last_call(mats);
+    work += state_links.work_since_last_call(mats);
     work += maxwell_links.work_since_last_call(mats);
     work += sets.work_since_last_call(mats);
     return work;
@@ -126,7 +127,7 @@ StepReport World::State::step() noexcept {
   StepEnergy energy;
   energy.port_work = outside.move_ports(mats);
   mats.clear_forces();
-  energy.dissipated = links.add_forces(kernel, mats.force_columns());
+  energy += links.add_forces(kernel, mats.force_columns());
   if (!state_links.empty()) {
     energy += state_links.add_forces(behaviours, table, mats.force_columns(), step_count, log);
   }
@@ -288,10 +289,8 @@ const Columns& World::positions() const noexcept {
 
 Energy World::energy() const noexcept {
   State& state = *state_;
-  StepEnergy since = state.work_since_last_call();
-  since.dissipated += state.links.work_since_last_call(state.mats);
-  return state.account.energy(state.network->description(), state.mats, since,
-                              state.stored_energy());
+  return state.account.energy(state.network->description(), state.mats,
+                              state.work_since_last_call(), state.stored_energy());
 }
 
 Vec3 World::momentum() const noexcept {
