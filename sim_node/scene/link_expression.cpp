@@ -1,7 +1,8 @@
 #include "sim_node/scene/link_expression.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <string_view>
 
 #include <muParser.h>
 
@@ -67,7 +68,8 @@ class LinkExpression final : public engine::LinkFunction {
     parser_.DefineVar("mass_a_kg", &mass_a_);
     parser_.DefineVar("mass_b_kg", &mass_b_);
     for (const std::string& name : parameters.names()) {
-      if (parser_.GetConst().count(name) == 0) parser_.DefineConst(name, *parameters.find(name));
+      if (parser_.GetConst().count(name) == 0)
+        parser_.DefineConst(name, parameters.find(name).value_or(0.0));
     }
     parser_.SetExpr(text);
     parser_.Eval();
@@ -95,6 +97,16 @@ class LinkExpression final : public engine::LinkFunction {
   mutable double mass_a_ = 1.0;
   mutable double mass_b_ = 1.0;
 };
+
+/// Place of a lone '=', which would assign to a variable.
+std::size_t place_of_assignment(const std::string& text) {
+  for (std::size_t at = text.find('='); at != std::string::npos; at = text.find('=', at + 1)) {
+    const bool ends_sign =
+        at > 0 && std::string_view("<>!=").find(text[at - 1]) != std::string_view::npos;
+    if (!ends_sign && text.substr(at + 1, 1) != "=") return at;
+  }
+  return std::string::npos;
+}
 
 /// What is wrong, in words; the hint where there is one.
 struct Explanation {
@@ -135,6 +147,11 @@ std::shared_ptr<const engine::LinkFunction> compile_link_expression(
     config::Problems& problems) {
   if (text.text().size() > kLongest) {
     problems.error(text.place(), what + " is longer than 2000 characters");
+    return nullptr;
+  }
+  if (const std::size_t at = place_of_assignment(text.text()); at != std::string::npos) {
+    problems.error(text.place_in_text(at), what + " does not expect '=' here",
+                   "to compare, write '=='");
     return nullptr;
   }
   try {

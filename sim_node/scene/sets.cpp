@@ -146,14 +146,11 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
                                      "' of sets reaches to any distance, it needs a 'range_m'");
       return;
     }
-    set.behaviour = part.kind == LinkKind::kState
-                        ? part.behaviour_index
-                        : liaisons_->pool().index_of(
-                              {reader.optional_text("liaison", ""),
-                               {{kStiffness, part.stiffness}, {kViscosity, part.viscosity}},
-                               part.part,
-                               entry.has_name ? names_.full(entry.name) : ""},
-                              *behaviour);
+    const std::string owner = entry.has_name ? names_.full(entry.name) : "";
+    set.behaviour =
+        part.kind == LinkKind::kState
+            ? part.behaviour_index
+            : liaisons_->pool().index_of({part.liaison, part.given, part.part, owner}, *behaviour);
     scene_.network.sets.push_back(std::move(set));
     scene_.set_names.push_back(
         names_.full(parts.size() == 1 ? entry.name : entry.name + "." + part.part));

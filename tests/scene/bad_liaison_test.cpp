@@ -87,5 +87,188 @@ INSTANTIATE_TEST_SUITE_P(
         BadLiaison{when("\"^äö > 1\""),
                    "'when' in exit of state 'x' of liaison 'l' does not expect 'ä' here", ""}));
 
+/// A liaison with these states.
+std::string states(const std::string& text) {
+  return scene_of("  l:\n    parameters: {hold_m: 1}\n    states:\n" + text);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    States, BadLiaisons,
+    testing::Values(
+        BadLiaison{
+            states("      x: {exits: [{to: ^z, when: elongation_m > hold_m}]}\n      yy: {}\n"),
+            "'to' in exit of state 'x' of liaison 'l' must be one of x, yy, got 'z'", ""},
+        BadLiaison{states("      x: {exits: [^{when: elongation_m > hold_m}]}\n"),
+                   "missing key 'to' in exit of state 'x' of liaison 'l'", ""},
+        BadLiaison{states("      x: {exits: [^{to: x}]}\n"),
+                   "missing key 'when' in exit of state 'x' of liaison 'l'", ""},
+        BadLiaison{states("      x: {exits: [{to: x, when: elongation_m > hold_m, rest: "
+                          "\"rest_m + ^elongation\"}]}\n"),
+                   "'rest' in exit of state 'x' of liaison 'l' names 'elongation', which is no "
+                   "quantity and no parameter",
+                   "did you mean 'elongation_m'?"},
+        BadLiaison{states("      x: {exits: [{to: x, when: elongation_m > hold_m, rest: ^rest_m > "
+                          "1}]}\n"),
+                   "'rest' in exit of state 'x' of liaison 'l' must be a length, got a comparison",
+                   "rest: keep, here, or an expression such as rest_m + elongation_m"},
+        BadLiaison{states("      x: {stiffness_n_per_m: ^-1}\n"),
+                   "'stiffness_n_per_m' in state 'x' of liaison 'l' must be >= 0, got -1", ""},
+        BadLiaison{states("      x: {stiffness_n_per_m: ^hold_m - 2}\n"),
+                   "'stiffness_n_per_m' in state 'x' of liaison 'l' must be >= 0, got -1", ""},
+        BadLiaison{states("      x: {stiffness_n_per_m: ^.nan}\n"),
+                   "'stiffness_n_per_m' in state 'x' of liaison 'l' must be a finite number, got "
+                   ".nan",
+                   ""},
+        BadLiaison{states("      x: {stiffness_n_per_m: 2 * ^elongation_m}\n"),
+                   "'stiffness_n_per_m' in state 'x' of liaison 'l' is fixed before the run and "
+                   "cannot ask for 'elongation_m'",
+                   ""},
+        BadLiaison{states("      x: {^stifness_n_per_m: 1}\n"),
+                   "unknown key 'stifness_n_per_m' in state 'x' of liaison 'l'",
+                   "did you mean 'stiffness_n_per_m'?"},
+        BadLiaison{states("      x: {force_limit_n: ^0}\n"),
+                   "'force_limit_n' in state 'x' of liaison 'l' must be > 0, got 0", ""},
+        BadLiaison{scene_of("  l:\n    start: ^yy\n    states: {x: {}}\n"),
+                   "'start' in liaison 'l' must be one of x, got 'yy'", ""},
+        BadLiaison{scene_of("  l: {states: ^{}}\n"), "'states' in liaison 'l' must not be empty",
+                   ""},
+        BadLiaison{states("      ^and: {}\n"), "'and' cannot be the name of a state", ""}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Lints, BadLiaisons,
+    testing::Values(
+        BadLiaison{states("      x: {exits: [{to: x, when: elongation_m > hold_m, rest: here}]}\n  "
+                          "    ^yy: {}\n"),
+                   "state 'yy' of liaison 'l' cannot be reached from its start, 'x'", ""},
+        BadLiaison{states("      x: {exits: [{to: yy, when: elongation_m > hold_m}]}\n"
+                          "      ^yy: {stiffness_n_per_m: 1}\n"),
+                   "no exit leads out of state 'yy' of liaison 'l'",
+                   "if that is meant, write final: true"},
+        BadLiaison{states("      x: {exits: [{to: yy, when: ^1 > 2}, {to: yy, when: elongation_m > "
+                          "hold_m}]}\n      yy: {}\n"),
+                   "this condition of liaison 'l' never holds", ""},
+        BadLiaison{scene_of("  l:\n    parameters: {hold_m: ^1}\n    states: {x: {}}\n"),
+                   "parameter 'hold_m' of liaison 'l' is used nowhere", ""},
+        // the bow of the paper: at the moment of release both ends still move alike
+        BadLiaison{
+            states("      x: {exits: [{to: yy, when: abs(elongation_m) > hold_m}]}\n"
+                   "      yy: {exits: [{to: x, when: ^abs(speed_m_per_s) < 0.01, rest: "
+                   "here}]}\n"),
+            "this exit of state 'yy' of liaison 'l' holds already when the state is entered "
+            "from 'x' by ends that move slowly: the link would change again in the next "
+            "step, and what comes of it would depend on the length of a step",
+            "let the state last: add 'and falling(...)' of the compared value, or 'and age_s "
+            "> ...'"},
+        BadLiaison{
+            states("      x: {exits: [{to: yy, when: elongation_m > hold_m}]}\n"
+                   "      yy: {exits: [{to: x, when: ^elongation_m > hold_m / 2}]}\n"),
+            "this exit of state 'yy' of liaison 'l' holds already when the state is entered "
+            "from 'x' by ends that move slowly: the link would change again in the next "
+            "step, and what comes of it would depend on the length of a step",
+            "let the state last: add 'and falling(...)' of the compared value, or 'and age_s "
+            "> ...'"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Laws, BadLiaisons,
+    testing::Values(
+        BadLiaison{
+            scene_of("  l: {elasticity: {kind: table, at_m: [0, 2, ^1], force_n: [0, 1, 2]}}\n"),
+            "'at_m' in elasticity of liaison 'l' must ascend, got 1 after 2", ""},
+        BadLiaison{scene_of("  l: {elasticity: {kind: table, at_m: [0, ^0], force_n: [0, 1]}}\n"),
+                   "'at_m' in elasticity of liaison 'l' must ascend, got 0 after 0", ""},
+        BadLiaison{
+            scene_of("  l: {elasticity: {kind: table, at_m: [0, 1], force_n: ^[0]}}\n"),
+            "'force_n' in elasticity of liaison 'l' must have one number for each of 'at_m', "
+            "2, got 1",
+            ""},
+        BadLiaison{scene_of("  l: {elasticity: {kind: table, at_m: ^[], force_n: []}}\n"),
+                   "'at_m' in elasticity of liaison 'l' must not be empty", ""},
+        BadLiaison{scene_of("  l: {elasticity: {kind: power, coefficient: 1, exponent: ^1.3}}\n"),
+                   "'exponent' in elasticity of liaison 'l' must be a multiple of 0.5, got 1.3",
+                   "give any other power as a table"},
+        BadLiaison{
+            scene_of("  l: {elasticity: {kind: lennard_jones, depth_j: ^-1, diameter_m: 1}}\n"),
+            "'depth_j' in elasticity of liaison 'l' must be >= 0, got -1", ""},
+        BadLiaison{
+            scene_of("  l: {elasticity: {kind: rings, rings: [{stiffness_n_per_m: 1, radius_m: "
+                     "^0}]}}\n"),
+            "'radius_m' in ring of elasticity of liaison 'l' must be > 0, got 0", ""},
+        BadLiaison{scene_of("  l: {dissipation: {kind: ^rings, rings: []}}\n"),
+                   "'kind' in dissipation of liaison 'l' must be one of table, power, got 'rings'",
+                   ""},
+        BadLiaison{scene_of("  l: {elasticity: \"500 * ^elongation\"}\n"),
+                   "elasticity of liaison 'l' does not know 'elongation'",
+                   "did you mean 'elongation_m'?"},
+        BadLiaison{scene_of("  l: {elasticity: \"500 * (elongation_m^\"}\n"),
+                   "elasticity of liaison 'l' has a bracket without its partner", ""},
+        BadLiaison{scene_of("  l: {elasticity: \"elongation_m ^= 3\"}\n"),
+                   "elasticity of liaison 'l' does not expect '=' here",
+                   "to compare, write '=='"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Circles, BadLiaisons,
+    testing::Values(
+        BadLiaison{scene_of("  a: {like: b}\n  b: {like: ^a}\n"), "the liaison 'b' is like itself",
+                   "a -> b -> a"},
+        BadLiaison{scene_of("  b: {like: ^b}\n"), "the liaison 'b' is like itself", "b -> b"},
+        BadLiaison{scene_of("  b: {like: ^c}\n  cc: {kind: spring, stiffness_n_per_m: 1}\n"),
+                   "no liaison is named 'c'", "did you mean 'cc'?"},
+        BadLiaison{scene_of("  a: {parallel: [^a]}\n"),
+                   "the liaison 'a' stands in parallel with itself", "a -> a"},
+        BadLiaison{scene_of("  a: {parallel: ^[]}\n"),
+                   "'parallel' in liaison 'a' must not be empty", ""},
+        BadLiaison{scene_of("  l:\n    parameters: {a: 2 * b, b: c + 1, c: ^a}\n    "
+                            "stiffness_n_per_m: a\n    kind: spring\n"),
+                   "parameter 'c' of liaison 'l' depends on itself", "a -> b -> c -> a"},
+        BadLiaison{scene_of("  l:\n    parameters: {^rest_m: 2}\n    kind: spring\n    "
+                            "stiffness_n_per_m: rest_m\n"),
+                   "'rest_m' cannot be the name of a parameter", "it is a quantity of the link"}));
+
+constexpr const char* kBrittle =
+    "  l:\n    parameters: {hold_m: 1}\n    states:\n"
+    "      x: {stiffness_n_per_m: 1, exits: [{to: y, when: elongation_m > sqrt(hold_m)}]}\n"
+    "      y: {}\n"
+    "  m: {kind: maxwell, stiffness_n_per_m: 1, viscosity_n_s_per_m: 1}\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Links, BadLiaisons,
+    testing::Values(
+        BadLiaison{
+            scene_of(kBrittle, "  - {liaison: l, between: [\"a[0]\", \"a[1]\"], ^hold: 2}\n"),
+            "unknown key 'hold' in link", "did you mean 'hold_m'?"},
+        BadLiaison{
+            scene_of(kBrittle, "  - {liaison: l, between: [\"a[0]\", \"a[1]\"], hold_m: ^-2}\n"),
+            "the liaison 'l' cannot have these parameters: 'when' in exit of state 'x' of "
+            "liaison 'l' has a part that is no finite number",
+            ""},
+        BadLiaison{
+            scene_of(kBrittle, "  - {liaison: m, between: [\"a[0]\", \"a[1]\"], rest_m: ^2}\n"),
+            "a maxwell has no 'rest_m'", ""},
+        BadLiaison{scene_of(kBrittle, "  - {liaison: ^m, within: a}\n"),
+                   "a Maxwell element joins two MATs, not sets", ""},
+        BadLiaison{scene_of(kBrittle, "  - {liaison: ^l, within: a, rest_m: 1}\n"),
+                   "the liaison 'l' of sets reaches to any distance, it needs a 'range_m'", ""},
+        BadLiaison{scene_of(kBrittle, "  - {liaison: ^l, within: a, range_m: 1}\n"),
+                   "a liaison of sets whose MATs have no radius needs a 'rest_m'", ""},
+        BadLiaison{
+            scene_of(kBrittle, "  - {liaison: l, within: ^\"a[0]\", range_m: 1, rest_m: 1}\n"),
+            "a set of one MAT has no two that could be joined", ""},
+        BadLiaison{scene_of(kBrittle,
+                            "  - {liaison: l, between_sets: ^[a, \"a[0]\"], range_m: 1, "
+                            "rest_m: 1}\n"),
+                   "the two sets have a MAT in common", "write within: for one set"},
+        BadLiaison{
+            scene_of(kBrittle, "  - {liaison: l, between_sets: ^[a], range_m: 1, rest_m: 1}\n"),
+            "a link is between 2 sets, got 1", ""},
+        BadLiaison{scene_of(kBrittle,
+                            "  - {liaison: l, within: a, between_sets: ^[a, a], range_m: 1, "
+                            "rest_m: 1}\n"),
+                   "a link is within a set, between two sets or between ends: one of them", ""},
+        BadLiaison{scene_of(kBrittle, "  - {liaison: l, within: a, range_m: ^0, rest_m: 1}\n"),
+                   "'range_m' in link must be > 0, got 0", ""},
+        BadLiaison{
+            scene_of(kBrittle, "  - {liaison: l, between: [\"a[0]\", \"a[1]\"], rest: ^radius}\n"),
+            "'rest' in link must be one of radii, got 'radius'", "did you mean 'radii'?"}));
+
 }  // namespace
 }  // namespace cordis::scene

@@ -194,7 +194,7 @@ TEST(Collophane, DragsAndSlipsInTurnBothWays) {
   EXPECT_EQ(forth.changes, back.changes);
   EXPECT_DOUBLE_EQ(forth.farthest, back.farthest);
   // the hair holds 400 N/m * 2 mm = 0.8 N, with which a spring of 100 N/m is drawn by 8 mm
-  EXPECT_NEAR(forth.farthest, 0.008, 0.0005);
+  EXPECT_NEAR(forth.farthest, 0.008, 0.001);  // it swings within the hair, and on when let go
   // it is dragged 8 mm beyond where it was caught, at 0.1 m/s, again and again
   EXPECT_GT(forth.changes, 2 * 8);
   EXPECT_LT(forth.changes, 2 * 40);
@@ -310,7 +310,7 @@ TEST(Bond, BreaksAndIsWholeAgain) {
 
 /// Draws the hand 1 mm at once, waits, and tells the pull.
 double relaxed(Rig& rig, double time) {
-  rig.move_to(0.001, 1000.0);  // in one step
+  rig.move_to(0.001, 0.001 / kStep);  // in one step
   while (rig.time() < time) rig.step();
   return rig.pull();
 }

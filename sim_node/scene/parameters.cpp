@@ -1,0 +1,258 @@
+#include "sim_node/scene/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "sim_node/scene/liaison.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using Outcome = Parameters::Outcome;
+using Origin = BehaviourPool::Origin;
+
+Outcome refused(std::string problem, std::string hint = {}) {
+  return {{}, std::move(problem), std::move(hint)};
+}
+
+/// Later values go before earlier ones.
+GivenParameters merged(GivenParameters values, const GivenParameters& later) {
+  for (const auto& [name, value] : later) values[name] = value;
+  return values;
+}
+
+const LinkLaw* part_of(const LinkLaw& law, const std::string& part) {
+  if (law.part == part) return &law;
+  const auto found = std::find_if(law.beside.begin(), law.beside.end(),
+                                  [&](const LinkLaw& other) { return other.part == part; });
+  return found == law.beside.end() ? nullptr : &*found;
+}
+
+bool is_of(const LinkGroup& group, const std::string& name) {
+  return group.name == name || (!group.part.empty() && group.name == name + "." + group.part);
+}
+
+void add_words(std::vector<std::string>& words, const std::vector<std::string>& more) {
+  for (const std::string& word : more) {
+    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+  }
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// The parameters that links of a group may be given.
+std::vector<std::string> parameters_of_group(const LinkGroup& group, const Scene& scene) {
+  const Liaison* const liaison =
+      group.liaison.empty() ? nullptr : scene.liaisons->find(group.liaison);
+  if (liaison != nullptr) return parameters_of(liaison->definition);
+  if (group.kind == LinkKind::kState) return {};
+  return {kStiffness, kViscosity};
+}
+
+Outcome unknown_parameter(const std::string& name, const std::string& parameter,
+                          const std::vector<std::string>& words) {
+  std::string hint = config::did_you_mean(parameter, words);
+  if (hint.empty()) hint = words.empty() ? "it has none" : "it has " + listed(words);
+  return refused("'" + name + "' has no parameter '" + parameter + "'", hint);
+}
+
+}  // namespace
+
+void apply(const Change& change, engine::NetworkDescription& network) {
+  if (change.kind == Change::Kind::kBehaviour) {
+    network.behaviours[change.first] = change.behaviour;
+    return;
+  }
+  const auto put = [&](auto& links) {
+    for (std::uint32_t l = change.first; l < change.first + change.count; ++l) {
+      if (change.stiffness) links[l].stiffness = *change.stiffness;
+      if (change.viscosity) links[l].viscosity = *change.viscosity;
+    }
+  };
+  if (change.kind == Change::Kind::kLinks) put(network.links);
+  if (change.kind == Change::Kind::kMaxwellLinks) put(network.maxwell_links);
+}
+
+/// What is changed together: the behaviours and the linear or Maxwell links of a name.
+struct Parameters::Target {
+  std::vector<std::pair<Origin, std::uint32_t>> behaviours;
+  std::vector<const LinkGroup*> groups;
+
+  /// Adds the changes that follow when each member is given `values_of(liaison, given)`.
+  template <class ValuesOf>
+  Outcome changes(const Scene& scene, ValuesOf values_of) const {
+    Outcome outcome;
+    const auto add = [&](const std::string& liaison, const GivenParameters& given,
+                         const std::string& part, const std::string& owner, Change change) {
+      config::Problems problems;
+      const std::optional<LinkLaw> law = read_liaison(
+          scene.liaisons->find(liaison)->definition, liaison, values_of(liaison, given, owner),
+          *scene.liaisons, scene.space(), false, problems);
+      const LinkLaw* const own = law ? part_of(*law, part) : nullptr;
+      if (own == nullptr) {
+        outcome = refused(problems.all().empty() ? "the liaison '" + liaison + "' has changed"
+                                                 : problems.all().front().message);
+        return false;
+      }
+      if (change.kind == Change::Kind::kBehaviour) {
+        change.behaviour = *behaviour_of(*own);
+      } else {
+        change.stiffness = own->stiffness;
+        change.viscosity = own->viscosity;
+      }
+      outcome.changes.push_back(std::move(change));
+      return true;
+    };
+    for (const auto& [origin, index] : behaviours) {
+      Change change;
+      change.first = index;
+      if (!add(origin.liaison, origin.given, origin.part, origin.owner, change)) return outcome;
+    }
+    for (const LinkGroup* group : groups) {
+      Change change;
+      change.kind =
+          group->kind == LinkKind::kLinear ? Change::Kind::kLinks : Change::Kind::kMaxwellLinks;
+      change.first = group->first;
+      change.count = group->count;
+      if (!add(group->liaison, group->given, group->part, group->name, change)) return outcome;
+    }
+    return outcome;
+  }
+};
+
+Parameters::Parameters(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {}
+
+Outcome Parameters::set(const std::string& name, const std::string& parameter, double value) {
+  if (!std::isfinite(value)) return refused("a parameter must be a finite number");
+  if (scene_->liaisons != nullptr && scene_->liaisons->find(name) != nullptr)
+    return set_of_liaison(name, parameter, value);
+  const std::vector<std::string> known = names();
+  if (std::find(known.begin(), known.end(), name) != known.end())
+    return set_of_links(name, parameter, value);
+  return refused("no liaison and no links are named '" + name + "'",
+                 config::did_you_mean(name, known));
+}
+
+Outcome Parameters::set_of_liaison(const std::string& name, const std::string& parameter,
+                                   double value) {
+  const Scene& scene = *scene_;
+  const std::vector<std::string> words = parameters_of(scene.liaisons->find(name)->definition);
+  if (std::find(words.begin(), words.end(), parameter) == words.end())
+    return unknown_parameter(name, parameter, words);
+
+  Target target;
+  bool used = false;
+  for (const auto& [origin, index] : scene.liaisons->pool().origins()) {
+    if (origin.liaison != name) continue;
+    used = true;
+    if (origin.given.count(parameter) == 0) target.behaviours.emplace_back(origin, index);
+  }
+  for (const LinkGroup& group : scene.link_groups) {
+    if (group.liaison != name || group.kind == LinkKind::kState) continue;
+    used = true;
+    if (group.given.count(parameter) == 0) target.groups.push_back(&group);
+  }
+  GivenParameters values = of_liaison_[name];
+  values[parameter] = value;
+  Outcome outcome = target.changes(
+      scene, [&](const std::string&, const GivenParameters& given, const std::string& owner) {
+        const auto own = of_links_.find(owner);
+        const GivenParameters before = merged(values, given);
+        return own == of_links_.end() ? before : merged(before, own->second);
+      });
+  if (!outcome.problem.empty()) return outcome;
+  if (outcome.changes.empty() && used) {
+    return refused("all links of '" + name + "' give their own '" + parameter + "'",
+                   "set it by the name of the links");
+  }
+  if (outcome.changes.empty()) return refused("no link is made of the liaison '" + name + "'");
+  of_liaison_[name] = std::move(values);
+  return outcome;
+}
+
+Outcome Parameters::set_of_links(const std::string& name, const std::string& parameter,
+                                 double value) {
+  const Scene& scene = *scene_;
+  const engine::NetworkDescription& network = scene.network;
+  Target target;
+  std::vector<std::string> words;
+  std::set<std::uint32_t> behaviours;
+  std::vector<Change> plain;  // of links without a liaison
+  std::vector<bool> is_own(network.state_links.size(), false);
+  for (const LinkGroup& group : scene.link_groups) {
+    if (!is_of(group, name)) continue;
+    add_words(words, parameters_of_group(group, scene));
+    if (group.kind == LinkKind::kState) {
+      for (std::uint32_t l = group.first; l < group.first + group.count; ++l) {
+        behaviours.insert(network.state_links[l].behaviour);
+        is_own[l] = true;
+      }
+    } else if (!group.liaison.empty()) {
+      target.groups.push_back(&group);
+    } else {
+      Change change;
+      change.kind = Change::Kind::kLinks;
+      change.first = group.first;
+      change.count = group.count;
+      (parameter == kStiffness ? change.stiffness : change.viscosity) = value;
+      plain.push_back(std::move(change));
+    }
+  }
+  for (std::size_t s = 0; s < network.sets.size(); ++s) {
+    if (scene.set_names[s] == name) behaviours.insert(network.sets[s].behaviour);
+  }
+  for (const auto& [origin, index] : scene.liaisons->pool().origins()) {
+    if (behaviours.count(index) == 0) continue;
+    target.behaviours.emplace_back(origin, index);
+    add_words(words, parameters_of(scene.liaisons->find(origin.liaison)->definition));
+  }
+  if (std::find(words.begin(), words.end(), parameter) == words.end())
+    return unknown_parameter(name, parameter, words);
+  if (!plain.empty() && value < 0.0) return refused("'" + parameter + "' must be >= 0");
+
+  bool shared = false;
+  for (std::size_t l = 0; l < network.state_links.size(); ++l)
+    shared = shared || (!is_own[l] && behaviours.count(network.state_links[l].behaviour) != 0);
+  for (std::size_t s = 0; s < network.sets.size(); ++s)
+    shared =
+        shared || (scene.set_names[s] != name && behaviours.count(network.sets[s].behaviour) != 0);
+  if (shared) {
+    return refused("'" + name + "' shares its parameters with other links",
+                   "set those of the liaison '" + target.behaviours.front().first.liaison +
+                       "', or give these links a name of their own");
+  }
+  GivenParameters values = of_links_[name];
+  values[parameter] = value;
+  Outcome outcome = target.changes(
+      scene, [&](const std::string& liaison, const GivenParameters& given, const std::string&) {
+        const auto before = of_liaison_.find(liaison);
+        const GivenParameters own = merged(given, values);
+        return before == of_liaison_.end() ? own : merged(before->second, own);
+      });
+  if (!outcome.problem.empty()) return outcome;
+  outcome.changes.insert(outcome.changes.end(), plain.begin(), plain.end());
+  of_links_[name] = std::move(values);
+  return outcome;
+}
+
+std::vector<std::string> Parameters::names() const {
+  std::vector<std::string> names =
+      scene_->liaisons ? scene_->liaisons->names() : std::vector<std::string>{};
+  for (const LinkGroup& group : scene_->link_groups) {
+    add_words(names, {group.name});
+    const std::size_t ending = group.part.size() + 1;
+    if (!group.part.empty() && group.name.size() > ending)
+      add_words(names, {group.name.substr(0, group.name.size() - ending)});
+  }
+  add_words(names, scene_->set_names);
+  return names;
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,71 @@
+// sim_node/scene/parameters.h -- parameters of a scene that are set while it runs.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim_node/scene/scene.h"
+
+namespace cordis::scene {
+
+/// One thing to change in a network; worked out beforehand, so that little is left to do between
+/// two steps.
+struct Change {
+  enum class Kind : std::uint8_t {
+    kBehaviour,    ///< for World::replace_behaviour; it has the states it had
+    kLinks,        ///< of linear links, which a World takes only with a new Network
+    kMaxwellLinks  ///< likewise
+  };
+  Kind kind = Kind::kBehaviour;
+  std::uint32_t first =
+      0;  ///< index of the behaviour, or of the first link among those of its kind
+  std::uint32_t count = 1;
+  engine::Behaviour behaviour;      ///< of kBehaviour
+  std::optional<double> stiffness;  ///< of links [N/m]; as it is when there is none
+  std::optional<double> viscosity;  ///< of links [N s/m]; as it is when there is none
+};
+
+/// Whether a change can be made without a new Network.
+inline bool is_live(const Change& change) noexcept {
+  return change.kind == Change::Kind::kBehaviour;
+}
+
+/// Makes a change in a description: a World of a Network made from it is as if the scene had been
+/// written so.
+void apply(const Change& change, engine::NetworkDescription& network);
+
+/// The parameters of the liaisons and the links of a scene, as they have been set since it was
+/// read.
+class Parameters {
+ public:
+  explicit Parameters(std::shared_ptr<const Scene> scene);
+
+  /// What has to be changed, or why it cannot be.
+  struct Outcome {
+    std::vector<Change> changes;  ///< none after a problem
+    std::string problem;          ///< one sentence without a full stop; empty when there is none
+    std::string hint;
+  };
+
+  /// Sets a parameter of a liaison, for all its links that give it no value of their own; or of the
+  /// links of a name (a `name` of the scene, or string.links), which must not share their behaviour
+  /// with others. Parameters are those that a link may give. What follows from the parameter by a
+  /// formula follows. Nothing is set after a problem. Not in real time.
+  Outcome set(const std::string& name, const std::string& parameter, double value);
+
+ private:
+  struct Target;
+
+  Outcome set_of_liaison(const std::string& name, const std::string& parameter, double value);
+  Outcome set_of_links(const std::string& name, const std::string& parameter, double value);
+  std::vector<std::string> names() const;
+
+  std::shared_ptr<const Scene> scene_;
+  std::map<std::string, GivenParameters> of_liaison_;  // values set since, by its name
+  std::map<std::string, GivenParameters> of_links_;    // by the name of the links
+};
+
+}  // namespace cordis::scene

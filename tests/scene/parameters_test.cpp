@@ -1,0 +1,150 @@
+#include "sim_node/scene/parameters.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/scene/scene_text.h"
+
+namespace cordis::scene {
+namespace {
+
+constexpr const char* kScene =
+    "liaisons:\n"
+    "  soft: {kind: spring_damper, parameters: {k: 3}, stiffness_n_per_m: 2 * k, "
+    "viscosity_n_s_per_m: 1}\n"
+    "  late: {kind: maxwell, stiffness_n_per_m: 5, viscosity_n_s_per_m: 6}\n"
+    "  both: {parallel: [soft, late]}\n"
+    "  brittle:\n"
+    "    parameters: {length_m: 0.1, twice_m: 2 * length_m}\n"
+    "    states:\n"
+    "      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > twice_m}]}\n"
+    "      broken: {}\n"
+    "matter:\n"
+    "  wall: {kind: fixed, at_m: [0, 0]}\n"
+    "  bob: {kind: mass, mass_kg: 1, at_m: [1, 0]}\n"
+    "  bar: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], stiffness_n_per_m: "
+    "7, viscosity_n_s_per_m: 8}\n"
+    "links:\n"
+    "  - {liaison: soft, between: [wall, bob]}\n"
+    "  - {liaison: soft, between: [wall, bob], k: 9, name: stiff}\n"
+    "  - {liaison: late, between: [wall, bob]}\n"
+    "  - {liaison: brittle, between: [wall, bob]}\n"
+    "  - {liaison: brittle, between: [wall, bob]}\n"
+    "  - {liaison: brittle, between: [wall, bob], length_m: 0.3, name: strong}\n"
+    "  - {liaison: brittle, within: bar, rest_m: 0.1, range_m: 0.2, name: glue}\n"
+    "  - {liaison: both, between: [wall, bob], name: solid}\n";
+
+class ParametersOfAScene : public testing::Test {
+ protected:
+  /// The network after a change; nothing has changed after a problem.
+  engine::NetworkDescription after(const std::string& name, const std::string& parameter,
+                                   double value) {
+    const Parameters::Outcome outcome = parameters.set(name, parameter, value);
+    problem = outcome.problem;
+    hint = outcome.hint;
+    for (const Change& change : outcome.changes) apply(change, network);
+    return network;
+  }
+  /// The elongation at which links of a behaviour break.
+  double limit_of(std::uint32_t behaviour) const {
+    return network.behaviours[behaviour].exits[0].when.code[1].constant;
+  }
+
+  std::shared_ptr<const Scene> scene = std::make_shared<const Scene>(sound_scene(2, kScene));
+  Parameters parameters{scene};
+  engine::NetworkDescription network = scene->network;
+  std::string problem;
+  std::string hint;
+};
+
+TEST_F(ParametersOfAScene, OfALiaisonAreSetForLinksThatGiveNoneOfTheirOwn) {
+  after("brittle", "length_m", 0.5);
+
+  EXPECT_EQ(problem, "");
+  EXPECT_EQ(limit_of(network.state_links[0].behaviour), 1.0);  // what depends on it follows
+  EXPECT_EQ(limit_of(network.state_links[1].behaviour), 1.0);
+  EXPECT_EQ(limit_of(network.state_links[2].behaviour), 0.6);
+  EXPECT_EQ(limit_of(network.sets[0].behaviour), 1.0);
+  EXPECT_NO_THROW(engine::Network{network});
+}
+
+TEST_F(ParametersOfAScene, OfNamedLinksAreSetForThemAlone) {
+  after("strong", "length_m", 0.4);
+  after("glue", "length_m", 0.05);
+
+  EXPECT_EQ(limit_of(network.state_links[0].behaviour), 0.2);
+  EXPECT_EQ(limit_of(network.state_links[2].behaviour), 0.8);
+  EXPECT_EQ(limit_of(network.sets[0].behaviour), 0.1);
+}
+
+TEST_F(ParametersOfAScene, KeepWhatWasSetBefore) {
+  after("glue", "length_m", 0.05);
+  after("brittle", "twice_m", 3.0);
+  EXPECT_EQ(limit_of(network.sets[0].behaviour), 3.0);
+  after("glue", "length_m", 0.07);
+  EXPECT_EQ(limit_of(network.sets[0].behaviour), 3.0);
+}
+
+TEST_F(ParametersOfAScene, OfLinearAndMaxwellLinksChangeTheDescription) {
+  after("soft", "k", 4.0);
+  EXPECT_EQ(network.links[2].stiffness, 8.0);  // after the two of the bar
+  EXPECT_EQ(network.links[3].stiffness, 18.0);
+  after("stiff", "k", 5.0);
+  EXPECT_EQ(network.links[3].stiffness, 10.0);
+  EXPECT_EQ(network.links[3].viscosity, 1.0);
+  after("late", "viscosity_n_s_per_m", 60.0);
+  EXPECT_EQ(network.maxwell_links[0].viscosity, 60.0);
+  EXPECT_EQ(network.maxwell_links[0].stiffness, 5.0);
+  after("bar.links", "stiffness_n_per_m", 70.0);
+  EXPECT_EQ(network.links[0].stiffness, 70.0);
+  EXPECT_EQ(network.links[1].stiffness, 70.0);
+  EXPECT_EQ(network.links[1].viscosity, 8.0);
+  EXPECT_EQ(problem, "");
+}
+
+TEST_F(ParametersOfAScene, ThatDoNotExistAreRefused) {
+  after("brittel", "length_m", 1.0);
+  EXPECT_EQ(problem, "no liaison and no links are named 'brittel'");
+  EXPECT_EQ(hint, "did you mean 'brittle'?");
+  after("brittle", "lenght_m", 1.0);
+  EXPECT_EQ(problem, "'brittle' has no parameter 'lenght_m'");
+  EXPECT_EQ(hint, "did you mean 'length_m'?");
+  after("bar.links", "k", 1.0);
+  EXPECT_EQ(problem, "'bar.links' has no parameter 'k'");
+  EXPECT_EQ(hint, "it has stiffness_n_per_m, viscosity_n_s_per_m");
+  EXPECT_EQ(limit_of(network.state_links[0].behaviour), 0.2);
+}
+
+TEST_F(ParametersOfAScene, OfImpossibleValuesAreRefused) {
+  after("late", "stiffness_n_per_m", -1.0);
+  EXPECT_EQ(problem, "'stiffness_n_per_m' in liaison 'late' must be > 0, got -1");
+  after("soft", "k", std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(problem, "a parameter must be a finite number");
+  after("bar.links", "stiffness_n_per_m", -1.0);
+  EXPECT_EQ(problem, "'stiffness_n_per_m' must be >= 0");
+  EXPECT_EQ(network.maxwell_links[0].stiffness, 5.0);
+}
+
+TEST(Parameters, OfMatterThatSharesItsBehaviourAreThoseOfTheLiaison) {
+  const auto scene = std::make_shared<const Scene>(sound_scene(
+      2,
+      "liaisons:\n"
+      "  brittle:\n"
+      "    parameters: {length_m: 0.1}\n"
+      "    states:\n"
+      "      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > length_m}]}\n"
+      "      broken: {}\n"
+      "matter:\n"
+      "  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], liaison: brittle}\n"
+      "  b: {kind: string, count: 3, mass_kg: 1, from_m: [0, 2], to_m: [1, 2], liaison: "
+      "brittle}\n"));
+  Parameters parameters(scene);
+
+  const Parameters::Outcome outcome = parameters.set("a.links", "length_m", 0.2);
+
+  EXPECT_EQ(outcome.problem, "'a.links' shares its parameters with other links");
+  EXPECT_TRUE(outcome.changes.empty());
+  EXPECT_EQ(parameters.set("brittle", "length_m", 0.2).changes.size(), 1u);
+}
+
+}  // namespace
+}  // namespace cordis::scene
