@@ -1,6 +1,8 @@
 // device_node/exchange.cpp
 #include "device_node/exchange.h"
 
+#include <utility>
+
 namespace cordis::device {
 
 Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep,
@@ -79,9 +81,7 @@ bool Exchange::consider(const GestureMessage& answer) noexcept {
 }
 
 void Exchange::accept(const GestureMessage& answer) noexcept {
-  if (!any_answer_ || answer.answered_sample > used_.answered_sample) {
-    meter_.record_latency(clock_() - answer.answered_time_nsec);
-  }
+  if (!any_answer_ || answer.answered_sample > used_.answered_sample) unfelt_ = true;
   any_answer_ = true;
   used_ = answer;
   late_[answer.answered_sample % late_.size()] = answer.value;
@@ -106,6 +106,7 @@ void Exchange::live() noexcept {
   const AxisValues& commanded =
       role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
   const bool written = driver_.write(commanded);
+  if (std::exchange(unfelt_, false)) meter_.record_latency(clock_() - used_.answered_time_nsec);
   const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);
   if (!sensed) sensed_ = last_sensed_;  // a hand does not jump
   last_sensed_ = sensed_;

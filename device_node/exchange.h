@@ -79,6 +79,7 @@ class Exchange {
   std::vector<AxisValues> late_;  // the last answers, by the sample they answer
   std::uint64_t first_sample_;    // of this exchange
   bool any_answer_ = false;
+  bool unfelt_ = false;  // the newest answer has not been handed to the driver yet
 };
 
 }  // namespace cordis::device

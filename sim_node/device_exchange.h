@@ -73,6 +73,8 @@ class DeviceExchange {
   bool has_new_sample() const noexcept { return has_new_; }
   bool is_lost() const noexcept { return silent_ticks_ > lost_after_ticks_; }
   bool was_heard() const noexcept { return heard_run_ != 0; }
+  /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
+  std::int64_t heard_time_nsec() const noexcept { return heard_time_nsec_; }
   std::uint64_t refused_count() const noexcept { return refused_count_; }
   std::uint64_t missed_count() const noexcept {
     return missed_count_;

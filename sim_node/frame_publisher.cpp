@@ -20,12 +20,12 @@ FramePublisher::~FramePublisher() {
 }
 
 bool FramePublisher::offer(FrameStore& store, const engine::World& world, double simulated_s,
-                           std::int64_t now_nsec) noexcept {
+                           std::int64_t now_nsec, std::int64_t action_nsec) noexcept {
   if (is_busy()) {
     frames_left_out_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
-  store.turn(world, simulated_s, now_nsec);
+  store.turn(world, simulated_s, now_nsec, action_nsec);
   offered_ = &store;
   busy_.store(true, std::memory_order_release);
   wake_.release();
@@ -65,6 +65,7 @@ void FramePublisher::publish_frame(const FrameShape& shape, const FrameBuffer& b
   frame_.frame(frame_.frame() + 1);
   frame_.step(buffer.step);
   frame_.time_nsec(buffer.time_nsec);
+  frame_.action_time_nsec(buffer.action_time_nsec);
   frame_.simulated_s(buffer.simulated_s);
   frame_writer_.write(frame_);
 }

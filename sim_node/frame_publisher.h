@@ -29,7 +29,7 @@ class FramePublisher {
   /// Loop: a frame is due. @return false when it was left out because the thread is still busy.
   /// The store must live until is_busy() is false again.
   bool offer(FrameStore& store, const engine::World& world, double simulated_s,
-             std::int64_t now_nsec) noexcept;
+             std::int64_t now_nsec, std::int64_t action_nsec = 0) noexcept;
 
   /// Whether the thread uses the store that was offered last.
   bool is_busy() const noexcept { return busy_.load(std::memory_order_acquire); }

@@ -33,8 +33,8 @@ bool FrameStore::has_news() const noexcept {
   return buffer.row_count > 0 || overflowed_rows_ > 0 || !buffer.events.is_empty();
 }
 
-void FrameStore::turn(const engine::World& world, double simulated_s,
-                      std::int64_t now_nsec) noexcept {
+void FrameStore::turn(const engine::World& world, double simulated_s, std::int64_t now_nsec,
+                      std::int64_t action_nsec) noexcept {
   FrameBuffer& buffer = buffers_[filling_];
   std::copy_n(world.positions().data(), buffer.positions.size(), buffer.positions.begin());
   if (shape_.link_count > 0) {
@@ -46,6 +46,7 @@ void FrameStore::turn(const engine::World& world, double simulated_s,
   buffer.step = world.step_count();
   buffer.simulated_s = simulated_s;
   buffer.time_nsec = now_nsec;
+  buffer.action_time_nsec = action_nsec;
 
   filling_ = 1 - filling_;
   buffers_[filling_].row_count = 0;

@@ -41,6 +41,7 @@ struct FrameBuffer {
   std::uint32_t dropped_rows = 0;  ///< before the first row
   std::uint64_t step = 0;
   std::int64_t time_nsec = 0;
+  std::int64_t action_time_nsec = 0;  ///< of the newest device sample; 0: none
   double simulated_s = 0.0;
 };
 
@@ -63,7 +64,8 @@ class FrameStore {
 
   /// Puts the present positions and states into the buffer being filled, which then is published(),
   /// and begins to fill the other one. O(MATs + links). Precondition: nobody uses published().
-  void turn(const engine::World& world, double simulated_s, std::int64_t now_nsec) noexcept;
+  void turn(const engine::World& world, double simulated_s, std::int64_t now_nsec,
+            std::int64_t action_nsec) noexcept;
 
   const FrameBuffer& published() const noexcept { return buffers_[1 - filling_]; }
 

@@ -213,7 +213,7 @@ void Session::offer_frame() {
   if (start_.launch.clock != config::Clock::kRealtime) frames_.wait_until_free();
   const Simulation& simulation = player_.simulation();
   frames_.offer(player_.stage().frames, simulation.world(), simulation.simulated_s(),
-                node::monotonic_nsec());
+                node::monotonic_nsec(), simulation.action_time_nsec());
   note_state();
 }
 

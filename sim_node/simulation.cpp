@@ -69,6 +69,14 @@ DeviceExchange* Simulation::find(std::uint32_t device_id) noexcept {
   return nullptr;
 }
 
+std::int64_t Simulation::action_time_nsec() const noexcept {
+  std::int64_t newest = 0;
+  for (const DeviceExchange& device : devices_) {
+    if (!device.is_lost()) newest = std::max(newest, device.heard_time_nsec());
+  }
+  return newest;
+}
+
 double Simulation::simulated_s() const noexcept {
   return static_cast<double>(world_.step_count()) * world_.network().step();
 }

@@ -32,6 +32,8 @@ class Simulation {
   /// The exchange of a device, nullptr when no port of the scene is its.
   DeviceExchange* find(std::uint32_t device_id) noexcept;
   std::vector<DeviceExchange>& devices() noexcept { return devices_; }
+  /// Of the newest sample of all devices that are there; 0 when none is [ns].
+  std::int64_t action_time_nsec() const noexcept;
 
   const scene::Scene& scene() const noexcept { return *scene_; }
   const std::shared_ptr<const scene::Scene>& shared_scene() const noexcept { return scene_; }

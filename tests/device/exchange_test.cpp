@@ -1,5 +1,6 @@
 #include "device_node/exchange.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <random>

@@ -33,8 +33,7 @@ class Wired : public ::testing::Test {
                                  const AxisLayout& layout) {
     config::Problems problems;
     const config::Value section = config::load_text(
-        "{" + where + ", answer_within_s: 0.0009, lost_after_s: 0.1, retry_s: 0.01}", name,
-        problems);
+        "{" + where + ", answer_within_s: 0.0009, lost_after_s: 5, retry_s: 0.01}", name, problems);
     for (const DriverEntry& entry : driver_table()) {
       if (entry.name != name) continue;
       auto made = entry.make(section, layout, problems);

@@ -80,5 +80,46 @@ TEST(Kill, TheForceIsZeroWithinTheWatchdogTimeWhenSimNodeIsKilled) {
               static_cast<double>(last_force_nsec - dead_nsec) * 1e-6, pressed);
 }
 
+TEST(Kill, ASceneThatComesBackUnderAPressedKeyIsFeltWithoutAJump) {
+  LiveSession session("realtime", kSimAndKey);
+  const std::filesystem::path trace = session.folder() / "trace.csv";
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml",
+                   steady_key(-0.01, 0.0) + "trace: {file: " + trace.string() + ", last_s: 60}\n");
+  StatusWatch status(session.participant());
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  msg::GestureForces force;
+  const auto is_pressed = [&] {
+    return forces.take(force) && std::abs(force.force_n()[0] - 2.0) < 1e-9;
+  };
+  session.start("sim_node", "sim");
+  ChildProcess& device = session.start("device_node", "keyboard");
+  ASSERT_TRUE(eventually([&] { return is_pressed() && force.answered_sample() > 500; }));
+
+  session.node("sim").signal(SIGKILL);
+  ASSERT_EQ(session.node("sim").wait(kPatience), 128 + SIGKILL);
+  ASSERT_TRUE(status.wait_for_phase("keyboard", "lost"));
+  while (forces.take(force)) {
+  }
+  session.start("sim_node", "sim");
+  ASSERT_TRUE(eventually(is_pressed));
+  const std::uint64_t back_at = force.answered_sample();
+  ASSERT_TRUE(eventually([&] { return is_pressed() && force.answered_sample() > back_at + 500; }));
+  device.signal(SIGTERM);
+  ASSERT_EQ(device.wait(kPatience), 0);
+
+  double before = 0.0;
+  int times_from_zero = 0;
+  for (const Row& row : read_trace(trace)) {
+    EXPECT_LE(std::abs(row.commanded - before), 5.0 + 1e-9) << "slew limit of 5000 N/s";
+    if (before == 0.0 && row.commanded > 0.0) {
+      ++times_from_zero;
+      EXPECT_LT(row.commanded, 0.1) << "a ramp of 0.2 s begins";
+    }
+    before = row.commanded;
+  }
+  EXPECT_GE(times_from_zero, 2) << "felt, gone, and felt again";
+}
+
 }  // namespace
 }  // namespace cordis::test

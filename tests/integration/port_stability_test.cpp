@@ -47,7 +47,7 @@ std::string number(double value) {
   return text.str();
 }
 
-/// A key of which nothing but mass and viscosity is felt: stops far away and simulated in 100
+/// A key of which nothing but mass and viscosity is felt: stops far away and simulated in 90
 /// sub-steps, no friction, a guard that lets everything through.
 std::string bare_key(int delay, const std::string& hand) {
   return "cordis: 1\naxes: 1\ntravel_m: 1\nrest: middle\nrate_hz: 1000\ndriver: mock\n"
@@ -55,7 +55,7 @@ std::string bare_key(int delay, const std::string& hand) {
          "power_limit_w: 1.0e+12\nstart_ramp_s: 0\ndelay_periods: " +
          std::to_string(delay) + "\nmock:\n  key: {mass_kg: " + number(kMass) +
          ", viscosity_n_s_per_m: " + number(kBeta * kMass / kPeriod) +
-         ", friction_n: 0, stop_n_per_m: 4.9e+6, stop_viscosity_n_s_per_m: 20, "
+         ", friction_n: 0, stop_n_per_m: 4.0e+6, stop_viscosity_n_s_per_m: 20, "
          "motor_limit_n: 1.0e+6}\n" +
          hand;
 }

@@ -163,7 +163,8 @@ class Client : public std::enable_shared_from_this<Client> {
     if (kept_frame_ == nullptr || kept_frame_->scene != scene_) return;
     if (!credit_.may_send(kept_frame_->sequence)) return;
     const msg::SceneFrame& frame = kept_frame_->frame;
-    credit_.sent(kept_frame_->sequence, frame.time_nsec());
+    const bool played = frame.action_time_nsec() != 0;
+    credit_.sent(kept_frame_->sequence, played ? frame.action_time_nsec() : frame.time_nsec());
     header_ = encode({.sequence = kept_frame_->sequence,
                       .scene = kept_frame_->scene,
                       .frame = frame.frame(),

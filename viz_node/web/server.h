@@ -19,8 +19,9 @@ struct ServerConfig {
   std::filesystem::path folder;  ///< the built page
 };
 
-/// What the server has done. Delays run from the moment sim_node took a frame until a page said
-/// that it has drawn it.
+/// What the server has done. Delays run from the hand to the picture: from the newest device sample
+/// that a frame shows, or from the frame itself while no device plays, until a page said that it has
+/// drawn it.
 struct ServerFigures {
   std::uint64_t drawn = 0;  ///< frames drawn, over all pages
   double latency_p50_s = 0.0;

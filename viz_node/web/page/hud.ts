@@ -69,6 +69,10 @@ export class Hud {
     set('factor', Number.isFinite(factor) ? `×${factor.toFixed(2)}` : NONE, factor < 0.98 ? 'warn' : '');
     const lag = fresh ? measured.lagS : measured.sinceFrameS;
     set('lag', Number.isFinite(lag) ? (1000 * lag).toFixed(0) : NONE, lag > 0.5 ? 'bad' : lag > 0.15 ? 'warn' : '');
+    const viz = this.alive('viz_node');
+    element('lag').title = viz !== undefined && viz.latency_count > 0
+      ? `from the hand to the picture, all pages: p50 ${joined(withUnit(viz.latency_p50_s, 's'))}, p99 ${joined(withUnit(viz.latency_p99_s, 's'))}, max ${joined(withUnit(viz.latency_max_s, 's'))}`
+      : '';
     set('dropped', count(measured.dropped), '');
     const before = (this.status?.viz.lost ?? 0) + (this.status?.viz.refused ?? 0);
     element('dropped').title = `frames not sent to this page because it was busy; ${count(before)} more never came to it or did not fit`;

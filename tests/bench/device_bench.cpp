@@ -1,0 +1,130 @@
+// tests/bench/device_bench.cpp -- what a device costs: a tick of 16 axes, and KFB1 at 1 kHz over a
+// pseudo-terminal against the reference firmware.
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+#include "device_node/device_config.h"
+#include "device_node/drivers/kfb1.h"
+#include "device_node/exchange.h"
+#include "device_node/firmware/kfb1.h"
+#include "node/latency.h"
+#include "node/paced_loop.h"
+#include "node/time.h"
+#include "tests/device/plug.h"
+
+namespace cordis::device {
+namespace {
+
+/// A scene that answers every sample at once with a spring.
+class Echo final : public GestureChannel {
+ public:
+  bool send(const GestureMessage& sample) noexcept override {
+    answer_ = sample;
+    answer_.run = 9;
+    answer_.answered_run = sample.run;
+    answer_.answered_sample = sample.sample;
+    answer_.answered_time_nsec = sample.time_nsec;
+    for (double& value : answer_.value) value *= -200.0;
+    fresh_ = true;
+    return true;
+  }
+  bool receive(GestureMessage& answer, std::chrono::nanoseconds) noexcept override {
+    if (!std::exchange(fresh_, false)) return false;
+    answer = answer_;
+    return true;
+  }
+
+ private:
+  GestureMessage answer_;
+  bool fresh_ = false;
+};
+
+/// One period of the loop without its sleep and without DDS: sample, answer, guard with energy
+/// monitor, simulated keys and hands, sensors.
+void device_tick(benchmark::State& state) {
+  config::Problems problems;
+  const config::Value file =
+      config::load_file(CORDIS_SOURCE_DIR "/launch_configs/devices/keyboard_16.yaml", problems);
+  LoadedDevice device = read_device(file, "keyboard", problems);
+  Echo echo;
+  LoopMeter meter;
+  Exchange exchange(device.config, Role::kMass, {1, 0}, true, *device.driver, echo, meter,
+                    &node::monotonic_nsec);
+  for (auto _ : state) {
+    exchange.send_sample();
+    exchange.receive();
+    exchange.live();
+  }
+}
+BENCHMARK(device_tick)->Unit(benchmark::kMicrosecond);
+
+std::atomic<int> board_keys{16};
+test::Plug* board_plug = nullptr;
+
+/// 10 s at 1 kHz. Counters: cycles whose STATE did not come within their period, damaged frames,
+/// and the round trip from FORCE to STATE.
+void kfb1_at_1_khz(benchmark::State& state) {
+  std::string folder = (std::filesystem::temp_directory_path() / "cordis-bench-XXXXXX").string();
+  folder = mkdtemp(folder.data());
+  kfb1 firmware{};
+  test::Plug plug([&](std::uint8_t byte) { kfb1_byte(&firmware, byte); },
+                  [&] { kfb1_tick(&firmware); });
+  board_plug = &plug;
+  kfb1_board board{};
+  board.keys = static_cast<std::uint8_t>(board_keys.load());
+  board.travel_um = 40000;
+  board.force_mn = 20000;
+  board.rate_hz = 1000;
+  board.position = [](std::uint8_t) { return std::int16_t{0}; };
+  board.force = [](std::uint8_t, std::int16_t) {};
+  board.touched = [] { return std::uint16_t{0}; };
+  board.time_us = [] { return static_cast<std::uint32_t>(node::monotonic_nsec() / 1000); };
+  board.send = [](const std::uint8_t* bytes, std::uint8_t count) {
+    board_plug->say({bytes, count});
+  };
+  kfb1_start(&firmware, &board);
+  plug.into_serial_line(folder + "/tty");
+
+  config::Problems problems;
+  AxisLayout layout;
+  layout.count = board_keys;
+  const auto driver = make_kfb1(
+      config::load_text("{port: " + folder + "/tty, answer_within_s: 0.0009}", "kfb1", problems),
+      layout, problems);
+  auto& hardware = dynamic_cast<Hardware&>(*driver);
+  driver->start(Role::kMass);
+  while (!driver->write({})) {
+  }
+  node::make_realtime(80);
+  node::LatencyHistogram round_trip;
+  for (auto _ : state) {
+    const std::uint64_t late = hardware.late_count();
+    node::PacedLoop pace(1000.0);
+    int absent = 0;
+    for (int n = 0; n < 10000; ++n) {
+      pace.wait();
+      const std::int64_t begin = node::monotonic_nsec();
+      absent += !driver->write({1.0, 2.0});
+      round_trip.record(node::monotonic_nsec() - begin);
+    }
+    state.counters["lost cycles"] = static_cast<double>(hardware.late_count() - late) + absent;
+    state.counters["overruns"] = static_cast<double>(pace.overruns());
+  }
+  state.counters["damaged"] = static_cast<double>(hardware.bad_count());
+  state.counters["p50 [us]"] = round_trip.quantile_nsec(0.5) * 1e-3;
+  state.counters["p99 [us]"] = round_trip.quantile_nsec(0.99) * 1e-3;
+  plug.pull();
+  std::filesystem::remove_all(folder);
+}
+BENCHMARK(kfb1_at_1_khz)->Iterations(1)->Unit(benchmark::kSecond);
+
+}  // namespace
+}  // namespace cordis::device
+
+BENCHMARK_MAIN();
