@@ -65,7 +65,7 @@ class FrameStore {
   /// Puts the present positions and states into the buffer being filled, which then is published(),
   /// and begins to fill the other one. O(MATs + links). Precondition: nobody uses published().
   void turn(const engine::World& world, double simulated_s, std::int64_t now_nsec,
-            std::int64_t action_nsec) noexcept;
+            std::int64_t action_nsec = 0) noexcept;
 
   const FrameBuffer& published() const noexcept { return buffers_[1 - filling_]; }
 
