@@ -10,7 +10,6 @@ namespace {
 
 constexpr int kRowBounds = 24;
 constexpr int kMaxwellRounds = 200;
-constexpr double kNegligible = 1e-6;  // of a step
 
 /// Rows of the graph's matrix times a vector, stiffness and viscosity apart.
 struct Rows {

@@ -1,8 +1,6 @@
 // sim_node/scene/placement.h -- where a part of a scene is put.
 #pragma once
 
-#include <Eigen/Core>
-
 #include "node/config/mapping_reader.h"
 #include "sim_node/engine/vec.h"
 #include "sim_node/scene/scene.h"

@@ -124,8 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2,
                  "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: 1, "
                  "stiffness_n_per_m: 1, ^plane: xz}\n",
-                 "unknown key 'plane' in matter 'a'",
-                 ""},
+                 "unknown key 'plane' in matter 'a'", ""},
         BadScene{kHead3,
                  "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0, 0], radius_m: "
                  "1, stiffness_n_per_m: 1, plane: ^zx}\n",

@@ -115,9 +115,8 @@ TEST(Port, ACouplingPutsAToolBetweenTheDeviceAndTheScene) {
 
 TEST(Port, ACouplingHasDefaultsAndMayBeRefusedInAWord) {
   const auto links_with = [](const std::string& coupling) {
-    return scene_with_bob(1, "",
-                          "ports:\n  p: {device: d, axes: 0, role: mass, coupling: " + coupling +
-                              "}\n")
+    return scene_with_bob(
+               1, "", "ports:\n  p: {device: d, axes: 0, role: mass, coupling: " + coupling + "}\n")
         .network.links;
   };
   EXPECT_TRUE(links_with("direct").empty());

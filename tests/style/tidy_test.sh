@@ -18,7 +18,7 @@ compiled() {
     case $line in
       '"file": "'*) file=${line#*\": \"}; file=${file%\"*} ;;
       '"command": "'*) object=${line##* -o }; object=${object%% *} ;;
-      '}'*) [[ $file == "$source/$beginning"* && $file != "$build"/* && $file != "$source"/tests/* ]] && echo "${file#"$source"/} $object" ;;
+      '}'*) [[ $file == "$source/$beginning"* && $file != "$build"/* && $file != "$source"/tests/* && $file == *.cpp ]] && echo "${file#"$source"/} $object" ;;
     esac
   done <"$build/compile_commands.json" | sort -u -k1,1
 }

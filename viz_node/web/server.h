@@ -20,8 +20,8 @@ struct ServerConfig {
 };
 
 /// What the server has done. Delays run from the hand to the picture: from the newest device sample
-/// that a frame shows, or from the frame itself while no device plays, until a page said that it has
-/// drawn it.
+/// that a frame shows, or from the frame itself while no device plays, until a page said that it
+/// has drawn it.
 struct ServerFigures {
   std::uint64_t drawn = 0;  ///< frames drawn, over all pages
   double latency_p50_s = 0.0;

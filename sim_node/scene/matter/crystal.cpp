@@ -102,7 +102,7 @@ class Sites {
       return static_cast<std::size_t>(t[axis] - lowest_[axis]);
     };
     const auto size = [&](std::size_t axis) {
-      return static_cast<std::size_t>(highest_[axis] - lowest_[axis] + 1);
+      return static_cast<std::size_t>(highest_[axis] - lowest_[axis]) + 1;
     };
     return (along(2) * size(1) + along(1)) * size(0) + along(0);
   }
