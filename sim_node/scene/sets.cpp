@@ -102,6 +102,7 @@ void Assembly::read_two_sets(LinkEntry& entry) {
   if (shared != sets[1].end())
     reader.error_at("between_sets", "the two sets have a MAT in common",
                     "write within: for one set");
+  if (sets[0].empty() || sets[1].empty()) sets = {{}, {}};  // what is wrong with one has been told
   add_set(entry, sets[0], sets[1]);
 }
 
@@ -114,7 +115,7 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
   const bool has_range = reader.optional_value("range_m").exists();
   const double given_range =
       has_range ? reader.required_number("range_m", config::Range::positive()) : 0.0;
-  if (!entry.law || problems_.error_count() != entry.errors_before) return;
+  if (!entry.law || p.empty() || problems_.error_count() != entry.errors_before) return;
 
   std::vector<LinkLaw> parts = entry.law->beside;
   parts.insert(parts.begin(), *entry.law);
