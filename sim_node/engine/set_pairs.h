@@ -13,6 +13,7 @@
 #include "sim_node/engine/pair_behaviours.h"
 #include "sim_node/engine/pair_kernel.h"
 #include "sim_node/engine/step_kernel.h"
+#include "sim_node/engine/world.h"
 
 namespace cordis::engine {
 
@@ -42,6 +43,8 @@ class SetPairs {
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   /// Potential energy [J] of the pairs at the positions of the last call, in closed form.
   double stored_energy(const StateTable& table) noexcept;
+
+  std::vector<BoundPair> bound_pairs(const StateTable& table) const;
 
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
   void start() noexcept;

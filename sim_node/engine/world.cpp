@@ -266,6 +266,10 @@ std::uint64_t World::change_count(std::uint32_t behaviour, std::uint32_t from,
   return state_->log.change_count(behaviour, from, to);
 }
 
+std::vector<BoundPair> World::bound_pairs(std::size_t set) const {
+  return state_->sets.set(set).bound_pairs(state_->table);
+}
+
 std::uint64_t World::step_count() const noexcept {
   return state_->step_count;
 }

@@ -23,6 +23,14 @@ struct StepReport {
   std::uint32_t lost_events = 0;  ///< changes of state that found no room in events()
 };
 
+/// A pair of a set liaison that is in another state than that of the start.
+struct BoundPair {
+  std::uint32_t mat_a = 0;
+  std::uint32_t mat_b = 0;
+  std::uint32_t state = 0;   ///< of the behaviour of the set
+  double rest_length = 0.0;  ///< [m]
+};
+
 /// Everything needed to go on later from the same state, bit for bit.
 struct Snapshot {
   std::uint64_t network = 0;  ///< Network::fingerprint()
@@ -91,6 +99,10 @@ class World {
   /// How often links of a behaviour went from one state to another since step 0, over all of them.
   std::uint64_t change_count(std::uint32_t behaviour, std::uint32_t from,
                              std::uint32_t to) const noexcept;
+
+  /// The bound pairs of a set after the last step, in the order of its sums. Not in real time:
+  /// allocates. Precondition: the set exists.
+  std::vector<BoundPair> bound_pairs(std::size_t set) const;
 
   Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
   Vec3 momentum() const noexcept;  ///< sum of m v over the masses [kg m/s]

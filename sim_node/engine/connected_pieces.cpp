@@ -1,0 +1,104 @@
+// sim_node/engine/connected_pieces.cpp
+#include "sim_node/engine/connected_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "sim_node/engine/vector_width.h"
+
+namespace cordis::engine {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+const SetLiaison& set_of(const Network& network, std::size_t set) {
+  if (set >= network.description().sets.size()) {
+    throw std::invalid_argument("set " + std::to_string(set) + " does not exist");
+  }
+  return network.description().sets[set];
+}
+
+}  // namespace
+
+ConnectedPieces::ConnectedPieces(const Network& network, std::size_t set)
+    : count_p_(set_of(network, set).set_p.size()),
+      across_(!set_of(network, set).set_q.empty()),
+      kernel_(pair_kernel(best_vector_width())),
+      grid_(count_p_, network.dimension()),
+      member_(network.mat_count(), kNone) {
+  for (const auto* half : {&set_of(network, set).set_p, &set_of(network, set).set_q}) {
+    for (const std::uint32_t mat : *half) {
+      member_[mat] = static_cast<std::uint32_t>(mat_.size());
+      mat_.push_back(mat);
+    }
+  }
+  parent_.resize(mat_.size());
+  piece_.resize(mat_.size());
+  found_.resize(count_p_ + kPairBatch);
+  position_.resize(4 * mat_.size());
+}
+
+std::size_t ConnectedPieces::find_near(const Columns& positions, double distance) noexcept {
+  begin();
+  for (std::size_t m = 0; m < mat_.size(); ++m) {
+    std::copy_n(positions.col(mat_[m]).data(), 4, position_.data() + 4 * m);
+  }
+  grid_.fill(position_.data(), count_p_, distance);
+  const CellPlaces places = grid_.places();
+  for (std::size_t b = across_ ? count_p_ : 0; b < mat_.size(); ++b) {
+    const double* point = position_.data() + 4 * b;
+    if (!std::isfinite(point[0] + point[1] + point[2])) continue;
+    const std::size_t last = std::min(b, count_p_);
+    const NearQuery query{
+        point[0], point[1], point[2], distance * distance, 0.0, static_cast<double>(last)};
+    const CellGrid::Surroundings around = grid_.around(point, last);
+    for (std::size_t r = 0; r < around.count; ++r) {
+      const CellGrid::Run run = around.runs[r];
+      const std::size_t count = kernel_.find_near(places, run.begin, run.end, query, found_.data());
+      for (std::size_t i = 0; i < count; ++i) join(found_[i], static_cast<std::uint32_t>(b));
+    }
+  }
+  return number_pieces();
+}
+
+std::size_t ConnectedPieces::find_bound(std::span<const BoundPair> pairs) noexcept {
+  begin();
+  for (const BoundPair& pair : pairs) {
+    const std::uint32_t a = member_[pair.mat_a];
+    const std::uint32_t b = member_[pair.mat_b];
+    if (a != kNone && b != kNone) join(a, b);
+  }
+  return number_pieces();
+}
+
+void ConnectedPieces::begin() noexcept {
+  for (std::uint32_t m = 0; m < parent_.size(); ++m) parent_[m] = m;
+}
+
+std::uint32_t ConnectedPieces::root_of(std::uint32_t member) noexcept {
+  while (parent_[member] != member) {
+    parent_[member] = parent_[parent_[member]];
+    member = parent_[member];
+  }
+  return member;
+}
+
+void ConnectedPieces::join(std::uint32_t a, std::uint32_t b) noexcept {
+  const std::uint32_t root_a = root_of(a);
+  const std::uint32_t root_b = root_of(b);
+  parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+}
+
+/// The root of a piece is its first member, so that its number is known to all later ones.
+std::size_t ConnectedPieces::number_pieces() noexcept {
+  std::uint32_t count = 0;
+  for (std::uint32_t m = 0; m < parent_.size(); ++m) {
+    const std::uint32_t root = root_of(m);
+    piece_[m] = root == m ? count++ : piece_[root];
+  }
+  return count;
+}
+
+}  // namespace cordis::engine
