@@ -38,6 +38,20 @@ std::string path_argument(const std::string& path) {
   return quoted(std::filesystem::exists(path) ? std::filesystem::absolute(path).string() : path);
 }
 
+/// NAME.PARAMETER=VALUE words as a mapping.
+std::string values_argument(const std::vector<std::string>& words) {
+  std::string yaml;
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    const bool named = equals != std::string::npos && equals > 0 && equals + 1 < word.size();
+    if (!named || word.substr(0, equals).find('.') == std::string::npos)
+      throw UsageError("'" + word + "' is not of the form NAME.PARAMETER=VALUE");
+    yaml += (yaml.empty() ? "{" : ", ") + quoted(word.substr(0, equals)) + ": " +
+            word.substr(equals + 1);
+  }
+  return yaml + "}";
+}
+
 }  // namespace
 
 ControlWords read_control_words(const std::string& name, const std::vector<std::string>& words) {
@@ -46,6 +60,11 @@ ControlWords read_control_words(const std::string& name, const std::vector<std::
   const bool needs_a_word = *verb.words != '\0' && !optional;
   if ((needs_a_word && words.empty()) || (*verb.words == '\0' && !words.empty())) refuse(verb);
   if (words.empty()) return {name, ""};
+  if (name == "set") return {name, values_argument(words)};
+  if (name == "state") {
+    if (words.size() != 2) refuse(verb);
+    return {name, "[" + quoted(words[0]) + ", " + quoted(words[1]) + "]"};
+  }
   if (words.size() > 1) refuse(verb);
   if (name == "step") return {name, words.front()};
   return {name, path_argument(words.front())};

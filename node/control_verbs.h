@@ -19,6 +19,8 @@ inline const std::vector<ControlVerb>& control_verbs() {
       {"step", "[N]", "Pause, then do one step, or N"},
       {"reset", "", "Begin the scene anew, with its present parameters"},
       {"load", "SCENE", "Play another scene from its beginning"},
+      {"set", "NAME.PARAMETER=VALUE ...", "Change parameters of liaisons or named links"},
+      {"state", "LINKS STATE", "Put links into a state"},
   };
   return kVerbs;
 }

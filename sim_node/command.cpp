@@ -11,11 +11,13 @@
 namespace cordis::sim {
 namespace {
 
-constexpr std::array<std::pair<const char*, Verb>, 5> kVerbs{{{"pause", Verb::kPause},
+constexpr std::array<std::pair<const char*, Verb>, 7> kVerbs{{{"pause", Verb::kPause},
                                                               {"resume", Verb::kResume},
                                                               {"step", Verb::kStep},
                                                               {"reset", Verb::kReset},
-                                                              {"load", Verb::kLoad}}};
+                                                              {"load", Verb::kLoad},
+                                                              {"set", Verb::kSet},
+                                                              {"state", Verb::kState}}};
 
 /// @throws std::invalid_argument with the first problem, as one sentence
 void throw_first(const config::Problems& problems) {
@@ -47,6 +49,33 @@ std::string read_file(const config::Value& argument, config::Problems& problems)
   return {};
 }
 
+std::vector<NewValue> read_values(const config::Value& argument, config::Problems& problems) {
+  if (argument.kind() != config::Value::Kind::kMapping || argument.entries().empty())
+    problems.error(argument.place(), "'set' needs NAME.PARAMETER and a value");
+  std::vector<NewValue> values;
+  for (const config::Value::Entry& entry : argument.entries()) {
+    // Names may have dots, parameters have none.
+    const std::size_t dot = entry.key.rfind('.');
+    if (dot == std::string::npos || dot == 0 || dot + 1 == entry.key.size()) {
+      problems.error(entry.key_place, "'" + entry.key + "' is not of the form NAME.PARAMETER");
+      continue;
+    }
+    values.push_back({entry.key.substr(0, dot), entry.key.substr(dot + 1),
+                      config::read_number(entry.value, "'" + entry.key + "'", 0.0, {}, problems)});
+  }
+  return values;
+}
+
+void read_state(const config::Value& argument, Command& command, config::Problems& problems) {
+  const std::vector<config::Value>& items = argument.items();
+  if (items.size() != 2 || items[0].text().empty() || items[1].text().empty()) {
+    problems.error(argument.place(), "'state' needs links and the state they are put into");
+    return;
+  }
+  command.links = items[0].text();
+  command.state = items[1].text();
+}
+
 }  // namespace
 
 Command read_command(const std::string& verb, const std::string& argument) {
@@ -62,6 +91,12 @@ Command read_command(const std::string& verb, const std::string& argument) {
       break;
     case Verb::kLoad:
       command.scene_file = read_file(value, problems);
+      break;
+    case Verb::kSet:
+      command.values = read_values(value, problems);
+      break;
+    case Verb::kState:
+      read_state(value, command, problems);
       break;
     case Verb::kPause:
     case Verb::kResume:

@@ -5,6 +5,9 @@
 #include <thread>
 #include <utility>
 
+#include "node/config/mapping_reader.h"
+#include "sim_node/link_states.h"
+
 namespace cordis::sim {
 namespace {
 
@@ -30,6 +33,7 @@ Director::Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, 
                    Load load, Tell tell)
     : orders_(orders),
       scene_(std::move(scene)),
+      parameters_(scene_),
       run_(run),
       load_(std::move(load)),
       tell_(std::move(tell)) {}
@@ -55,6 +59,10 @@ node::Answer Director::obey(const msg::ControlCommand& message) {
       return restart(scene_, "'" + scene_->name + "' begins anew");
     case Verb::kLoad:
       return load(command.scene_file);
+    case Verb::kSet:
+      return set(command.values);
+    case Verb::kState:
+      return force(command.links, command.state);
   }
   return {};
 }
@@ -99,8 +107,48 @@ node::Answer Director::load(const std::string& path) {
   if (problems.has_errors()) return {false, refusal_of(path, problems)};
   const std::string warnings = problems.text();
   node::Answer answer = restart(scene, "'" + scene->name + "' begins");
+  if (answer.accepted) parameters_ = scene::Parameters(scene);
   if (answer.accepted && !warnings.empty()) answer.text += "\n" + warnings;
   return answer;
+}
+
+node::Answer Director::set(const std::vector<NewValue>& values) {
+  scene::Parameters parameters = parameters_;
+  auto scene = std::make_shared<scene::Scene>(*scene_);
+  std::string done;
+  for (const NewValue& wanted : values) {
+    const auto outcome = parameters.set(wanted.name, wanted.parameter, wanted.value);
+    if (!outcome.problem.empty())
+      return {false, outcome.problem + (outcome.hint.empty() ? "" : "; " + outcome.hint)};
+    for (const scene::Change& change : outcome.changes) scene::apply(change, scene->network);
+    done += (done.empty() ? "" : ", ") + wanted.name + "." + wanted.parameter + " = " +
+            config::number_text(wanted.value);
+  }
+  Order order;
+  order.kind = Order::Kind::kExchange;
+  try {
+    order.stage = std::make_unique<Stage>(scene, run_, version_);
+  } catch (const std::invalid_argument& refusal) {
+    return {false, std::string("this cannot be simulated: ") + refusal.what()};
+  }
+  order.room.reserve(order.stage->simulation.world().most_values_of_state());
+  const node::Answer answer = give(order, done);
+  if (!order.done) return {false, "this changes more than parameters; load the scene anew"};
+  if (!answer.accepted) return answer;
+  scene_ = std::move(scene);
+  parameters_ = std::move(parameters);
+  return answer;
+}
+
+node::Answer Director::force(const std::string& links, const std::string& state) {
+  Order order;
+  order.kind = Order::Kind::kForceStates;
+  try {
+    order.forced = find_states(*scene_, links, state);
+  } catch (const std::invalid_argument& refusal) {
+    return {false, refusal.what()};
+  }
+  return give(order, count_of(order.forced.size(), "link") + " put into '" + state + "'");
 }
 
 }  // namespace cordis::sim

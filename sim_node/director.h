@@ -6,10 +6,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "node/command_desk.h"
 #include "sim_node/command.h"
 #include "sim_node/order.h"
+#include "sim_node/scene/parameters.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
@@ -38,10 +40,13 @@ class Director {
   node::Answer restart(std::shared_ptr<const scene::Scene> scene, const std::string& done);
   node::Answer step(std::uint64_t count);
   node::Answer load(const std::string& path);
+  node::Answer set(const std::vector<NewValue>& values);
+  node::Answer force(const std::string& links, const std::string& state);
   node::Answer give(Order& order, const std::string& done);
 
   OrderBox& orders_;
-  std::shared_ptr<const scene::Scene> scene_;
+  std::shared_ptr<const scene::Scene> scene_;  // with the parameters as they have been set
+  scene::Parameters parameters_;
   std::uint64_t run_;
   std::uint64_t version_ = 1;
   Load load_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <semaphore>
+#include <vector>
 
 #include "sim_node/stage.h"
 
@@ -17,16 +18,27 @@ struct Order {
   enum class Kind : std::uint8_t {
     kPause,
     kResume,
-    kStep,    ///< pause, then do `steps` steps
-    kRestart  ///< play `stage` from its beginning
+    kStep,        ///< pause, then do `steps` steps
+    kRestart,     ///< play `stage` from its beginning
+    kExchange,    ///< go on in `stage`, the same scene with other parameters
+    kForceStates  ///< put links into states
+  };
+  struct ForcedState {
+    std::uint32_t state_link;
+    std::uint32_t state;
   };
   Kind kind = Kind::kPause;
   std::uint64_t steps = 0;
   std::unique_ptr<Stage> stage;  ///< the new one; afterwards the one played before
+  std::vector<double> room;      ///< of kExchange: most_values_of_state() of its world
+  std::vector<ForcedState> forced;
+
+  bool changes_stage() const noexcept { return kind == Kind::kRestart || kind == Kind::kExchange; }
 
   // What the loop has to say about it.
   std::uint64_t step = 0;   ///< steps done when it was obeyed, in the scene played then
   bool was_paused = false;  ///< before
+  bool done = true;         ///< false: kExchange found that the stage does not fit
 };
 
 /// Room for one order on its way from one thread to the loop.

@@ -12,20 +12,29 @@ Player::Player(std::unique_ptr<Stage> stage, bool devices_wait) noexcept
 void Player::obey(Order& order) noexcept {
   order.step = simulation().world().step_count();
   order.was_paused = paused_;
-  steps_left_ = 0;
   switch (order.kind) {
     case Order::Kind::kPause:
       paused_ = true;
+      steps_left_ = 0;
       break;
     case Order::Kind::kResume:
       paused_ = false;
+      steps_left_ = 0;
       break;
     case Order::Kind::kStep:
       paused_ = true;
       steps_left_ = order.steps;
       break;
     case Order::Kind::kRestart:
+      steps_left_ = 0;
       restart(order.stage);
+      break;
+    case Order::Kind::kExchange:
+      exchange(order);
+      break;
+    case Order::Kind::kForceStates:
+      for (const Order::ForcedState& forced : order.forced)
+        simulation().world().force_state(forced.state_link, forced.state);
       break;
   }
 }
@@ -37,6 +46,11 @@ void Player::restart(std::unique_ptr<Stage>& stage) noexcept {
   }
   played_before_s_ = played_s();
   stage_.swap(stage);
+}
+
+void Player::exchange(Order& order) noexcept {
+  order.done = order.stage->simulation.go_on_from(simulation(), order.room);
+  if (order.done) stage_.swap(order.stage);
 }
 
 bool Player::advance() noexcept {

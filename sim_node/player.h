@@ -23,7 +23,7 @@ class Player {
   Player(std::unique_ptr<Stage> stage, bool devices_wait) noexcept;
 
   /// Does what the order wants; the step in progress, if any, is complete.
-  /// Precondition of kRestart: nobody uses the frames of the present stage.
+  /// Precondition of kRestart and kExchange: nobody uses the frames of the present stage.
   void obey(Order& order) noexcept;
 
   /// Whether this turn of the loop has something to do.
@@ -45,6 +45,7 @@ class Player {
 
  private:
   void restart(std::unique_ptr<Stage>& stage) noexcept;
+  void exchange(Order& order) noexcept;
 
   std::unique_ptr<Stage> stage_;
   bool devices_wait_;

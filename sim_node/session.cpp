@@ -139,7 +139,7 @@ void Session::run_asap() {
 bool Session::obey() {
   Order* order = orders_.waiting();
   if (order == nullptr) return true;
-  const bool new_stage = order->kind == Order::Kind::kRestart;
+  const bool new_stage = order->changes_stage();
   if (new_stage && frames_.is_busy()) return false;
   if (new_stage && player_.stage().frames.has_news()) {
     offer_frame();

@@ -40,6 +40,17 @@ Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t 
       steps_per_tick_(
           static_cast<int>(std::lround(scene_->step_rate_hz / scene_->gesture_rate_hz))) {}
 
+bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room) noexcept {
+  if (!world_.take_over(before.world_, room)) return false;
+  for (const DeviceExchange& device : before.devices_) {
+    DeviceExchange* now = find(device.device_id());
+    if (now != nullptr) now->take_over(device, /*at_once=*/true);
+  }
+  steps_in_tick_ = before.steps_in_tick_;
+  tick_count_ = before.tick_count_;
+  return true;
+}
+
 bool Simulation::advance(int steps, EventRoom& events) noexcept {
   if (failed_) return false;
   if (is_between_ticks()) {

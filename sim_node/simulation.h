@@ -21,6 +21,11 @@ class Simulation {
   /// @param run  of this sim_node
   Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t run);
 
+  /// Goes on where a simulation of the same scene with other parameters is.
+  /// @param room  as World::take_over() wants it
+  /// @return false when the scenes do not fit; then nothing has changed. Real time as take_over().
+  bool go_on_from(const Simulation& before, std::vector<double>& room) noexcept;
+
   /// Does the next steps of a tick, at most so many. Real time: allocates nothing, does not throw.
   /// Does nothing once failed(). @param events  where the changes of state go
   /// @return whether the tick is complete.

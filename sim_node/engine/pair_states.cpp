@@ -69,6 +69,10 @@ void PairStates::append_state(std::vector<double>& state) const {
                written_.memory.begin() + static_cast<std::ptrdiff_t>(written_.count * slot_count_));
 }
 
+std::size_t PairStates::most_values() const noexcept {
+  return 2 + written_.start.size() + written_.states.size() * (kValuesOfState + slot_count_);
+}
+
 std::size_t PairStates::size_of_state(const double* state, std::size_t available) const noexcept {
   if (available == 0) return 0;
   if (!(state[0] >= 0.0 && state[0] <= static_cast<double>(written_.states.size()))) return 0;

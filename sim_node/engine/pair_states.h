@@ -60,6 +60,8 @@ class PairStates {
   void add_to(StateHash& hash) const noexcept;
   /// The state as a row of values, of a length that depends on it.
   void append_state(std::vector<double>& state) const;
+  /// Values of the longest such row.
+  std::size_t most_values() const noexcept;
   /// How long such a row is that begins with these values; 0 when it is none.
   std::size_t size_of_state(const double* state, std::size_t available) const noexcept;
   /// Takes it back. @return one past the last value taken.

@@ -51,6 +51,12 @@ void SetLiaisons::append_state(std::vector<double>& state) const {
   for (const SetPairs& set : sets_) set.append_state(state);
 }
 
+std::size_t SetLiaisons::most_values() const noexcept {
+  std::size_t values = 0;
+  for (const SetPairs& set : sets_) values += set.most_values();
+  return values;
+}
+
 bool SetLiaisons::find_size_of_state(const double* state, std::size_t available,
                                      std::size_t& size) const noexcept {
   size = 0;

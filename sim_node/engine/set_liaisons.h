@@ -28,6 +28,7 @@ class SetLiaisons {
   void add_to(StateHash& hash) const noexcept;
 
   void append_state(std::vector<double>& state) const;
+  std::size_t most_values() const noexcept;
   /// How long the row of values is that begins with these. @return false when they are none.
   bool find_size_of_state(const double* state, std::size_t available,
                           std::size_t& size) const noexcept;

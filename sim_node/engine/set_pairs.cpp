@@ -286,6 +286,11 @@ void SetPairs::append_state(std::vector<double>& state) const {
   if (behaviours_.has_states()) behaviours_.states().append_state(state);
 }
 
+std::size_t SetPairs::most_values() const noexcept {
+  const std::size_t states = behaviours_.has_states() ? behaviours_.states().most_values() : 0;
+  return force_.size() + viscous_.size() + position_.size() + states;
+}
+
 std::size_t SetPairs::size_of_state(const double* state, std::size_t available) const noexcept {
   const std::size_t forces = force_.size() + viscous_.size() + position_.size();
   if (available < forces) return 0;

@@ -66,6 +66,8 @@ struct World::State {
            maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize;
   }
   bool can_take(const std::vector<double>& state) const noexcept;
+  void append_state(std::vector<double>& state) const;
+  void take_state(const std::vector<double>& state) noexcept;
   PairStep pair_step(bool frozen) noexcept { return {table, behaviours, log, step_count, frozen}; }
   /// Of all links but linear ones, in closed form [J].
   double stored_energy() noexcept {
@@ -198,7 +200,22 @@ void World::State::restore(const Snapshot& snapshot) {
   }
   step_count = snapshot.step;
   replaced = !snapshot.behaviours.empty();
-  const double* next = mats.take_state(snapshot.state.data());
+  take_state(snapshot.state);
+}
+
+void World::State::append_state(std::vector<double>& state) const {
+  mats.append_state(state);
+  links.append_state(state);
+  state_links.append_state(state);
+  maxwell_links.append_state(state);
+  log.append_state(state);
+  account.append_state(state);
+  sets.append_state(state);
+  outside.append_state(state);
+}
+
+void World::State::take_state(const std::vector<double>& state) noexcept {
+  const double* next = mats.take_state(state.data());
   next = links.take_state(next);
   next = state_links.take_state(next);
   next = maxwell_links.take_state(next);
@@ -333,19 +350,40 @@ std::uint64_t World::state_hash() const noexcept {
 Snapshot World::snapshot() const {
   Snapshot snapshot{state_->network->fingerprint(), state_->step_count, {}, {}};
   if (state_->replaced) snapshot.behaviours = state_->table.behaviours();
-  state_->mats.append_state(snapshot.state);
-  state_->links.append_state(snapshot.state);
-  state_->state_links.append_state(snapshot.state);
-  state_->maxwell_links.append_state(snapshot.state);
-  state_->log.append_state(snapshot.state);
-  state_->account.append_state(snapshot.state);
-  state_->sets.append_state(snapshot.state);
-  state_->outside.append_state(snapshot.state);
+  state_->append_state(snapshot.state);
   return snapshot;
 }
 
 void World::restore(const Snapshot& snapshot) {
   state_->restore(snapshot);
+}
+
+std::size_t World::most_values_of_state() const noexcept {
+  return state_->state_size_before_sets() + state_->sets.most_values() +
+         state_->outside.most_values();
+}
+
+bool World::take_over(const World& before, std::vector<double>& room) noexcept {
+  room.clear();
+  before.state_->append_state(room);
+  const bool same_mats = network().mat_count() == before.network().mat_count();
+  const bool same_sets =
+      network().description().sets.size() == before.network().description().sets.size();
+  if (!same_mats || !same_sets || !state_->can_take(room)) return false;
+
+  const Energy energy_before = before.energy();
+  const double stored_before = before.state_->stored_energy();
+  state_->take_state(room);
+  state_->step_count = before.state_->step_count;
+  StepEnergy change;
+  change.switching = state_->stored_energy() - stored_before;
+  state_->account.add(change);
+  // Of linear links in 1 dimension, whose energy stands in no account.
+  StepEnergy rest;
+  rest.switching = energy().total() - energy_before.total() - change.switching;
+  rest.elastic = -rest.switching;
+  state_->account.add(rest);
+  return true;
 }
 
 }  // namespace cordis::engine

@@ -104,6 +104,15 @@ class World {
   /// allocates. Precondition: the set exists.
   std::vector<BoundPair> bound_pairs(std::size_t set) const;
 
+  /// Goes on where another world is, of a network that differs in the parameters of links alone:
+  /// motion, states, ports, account and counts are taken over, and what the energy of the links
+  /// changes by counts as switching. Real time: O(MATs + links + pairs), no allocation.
+  /// @param room  its capacity is at least most_values_of_state(); what is in it is overwritten
+  /// @return false when the networks do not fit; then this world is as it was.
+  bool take_over(const World& before, std::vector<double>& room) noexcept;
+  /// How many values the state of a world may have.
+  std::size_t most_values_of_state() const noexcept;
+
   Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
   Vec3 momentum() const noexcept;  ///< sum of m v over the masses [kg m/s]
   Vec3 angular_momentum()

@@ -37,6 +37,21 @@ TEST(ControlWords, MakeAPathThatExistsHereAbsoluteAndQuoteIt) {
   EXPECT_EQ(read_control_words("load", {"no such: 'file'"}).argument, "'no such: ''file'''");
 }
 
+TEST(ControlWords, MakeAMappingOfNewValues) {
+  EXPECT_EQ(read_control_words("set", {"rosin.hold_m=0.003", "a.b.c=-1"}).argument,
+            "{'rosin.hold_m': 0.003, 'a.b.c': -1}");
+  EXPECT_EQ(refusal_of("set", {}), "write: set NAME.PARAMETER=VALUE ...");
+  for (const char* word : {"hold_m=3", "rosin.hold_m", "rosin.hold_m=", "=3"})
+    EXPECT_EQ(refusal_of("set", {word}),
+              "'" + std::string(word) + "' is not of the form NAME.PARAMETER=VALUE");
+}
+
+TEST(ControlWords, NameLinksAndTheirState) {
+  EXPECT_EQ(read_control_words("state", {"rosin[3]", "unhooked"}).argument,
+            "['rosin[3]', 'unhooked']");
+  EXPECT_EQ(refusal_of("state", {"rosin"}), "write: state LINKS STATE");
+}
+
 TEST(ControlWords, RefuseAnUnknownCommandWithTheNearest) {
   EXPECT_EQ(refusal_of("paus", {}), "there is no command 'paus', did you mean 'pause'?");
   EXPECT_EQ(refusal_of("xyzzy", {}), "there is no command 'xyzzy'");

@@ -30,6 +30,29 @@ TEST(Command, IsReadFromItsVerbAndArgument) {
   EXPECT_EQ(load.scene_file, "scenes/it's.yaml");
 }
 
+TEST(Command, SetNamesParametersAndValues) {
+  const Command set = read_command("set", "{'rosin.hold_m': 3e-3, 'a.links.stiffness_n_per_m': 5}");
+  EXPECT_EQ(set.verb, Verb::kSet);
+  ASSERT_EQ(set.values.size(), 2u);
+  EXPECT_EQ(set.values[0].name, "rosin");
+  EXPECT_EQ(set.values[0].parameter, "hold_m");
+  EXPECT_EQ(set.values[0].value, 3e-3);
+  EXPECT_EQ(set.values[1].name, "a.links");
+  EXPECT_EQ(set.values[1].parameter, "stiffness_n_per_m");
+  EXPECT_EQ(refusal_of("set", ""), "'set' needs NAME.PARAMETER and a value");
+  EXPECT_EQ(refusal_of("set", "{hold_m: 3}"), "'hold_m' is not of the form NAME.PARAMETER");
+  EXPECT_EQ(refusal_of("set", "{a.hold_m: much}"), "'a.hold_m' must be a number, got 'much'");
+  EXPECT_NE(refusal_of("set", "{a.hold_m: .nan}"), "");
+}
+
+TEST(Command, StateNamesLinksAndTheirState) {
+  const Command state = read_command("state", "['rosin[3]', unhooked]");
+  EXPECT_EQ(state.links, "rosin[3]");
+  EXPECT_EQ(state.state, "unhooked");
+  for (const char* argument : {"", "rosin", "[rosin]", "[a, b, c]", "[[a], b]"})
+    EXPECT_EQ(refusal_of("state", argument), "'state' needs links and the state they are put into");
+}
+
 TEST(Command, OfAnUnknownVerbIsRefusedWithTheNearest) {
   EXPECT_EQ(refusal_of("pauze", ""), "a sim_node knows no command 'pauze', did you mean 'pause'?");
   EXPECT_EQ(refusal_of("", ""), "a sim_node knows no command ''");

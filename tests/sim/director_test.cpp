@@ -105,6 +105,40 @@ TEST_F(DirectorTest, LoadsAnotherSceneAndTellsOfIt) {
   EXPECT_EQ(told_, (std::vector<std::string>{"other 2", "other 3"}));
 }
 
+TEST_F(DirectorTest, SetsParametersOfALiaisonInTheRunningScene) {
+  const node::Answer answer =
+      obey("set", "{spring.stiffness_n_per_m: 250, spring.viscosity_n_s_per_m: 0.5}");
+  EXPECT_TRUE(answer.accepted) << answer.text;
+  EXPECT_EQ(
+      answer.text.find("spring.stiffness_n_per_m = 250, spring.viscosity_n_s_per_m = 0.5 at step "),
+      0u)
+      << answer.text;
+  obey("set", "{spring.stiffness_n_per_m: 300}");
+  end_loop();
+  for (const engine::Link& link : player_.simulation().world().network().description().links) {
+    EXPECT_EQ(link.stiffness, 300.0);
+    EXPECT_EQ(link.viscosity, 0.5) << "set before, and kept";
+  }
+  EXPECT_GT(player_.simulation().world().step_count(), 0u);
+  EXPECT_EQ(player_.stage().frames.shape().version, 1u) << "it is the same scene";
+  EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(DirectorTest, SetsAllOrNothing) {
+  const node::Answer answer = obey("set", "{spring.stiffness_n_per_m: 250, sprig.mass_kg: 1}");
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_NE(answer.text.find("did you mean 'spring'?"), std::string::npos) << answer.text;
+  EXPECT_FALSE(obey("set", "{spring.stifness_n_per_m: 250}").accepted);
+  EXPECT_FALSE(obey("set", "{spring.stiffness_n_per_m: -5}").accepted);
+  EXPECT_TRUE(obey("set", "{spring.viscosity_n_s_per_m: 0.2}").accepted);
+  end_loop();
+  EXPECT_EQ(player_.simulation().world().network().description().links[0].stiffness, 100.0);
+}
+
+TEST_F(DirectorTest, RefusesToForceWhatHasNoStates) {
+  EXPECT_EQ(obey("state", "[spring, broken]").text, "'spring' has no states");
+}
+
 TEST_F(DirectorTest, RefusesASceneWithErrorsAndGoesOn) {
   const node::Answer answer = obey("load", "bad.yaml");
   EXPECT_FALSE(answer.accepted);

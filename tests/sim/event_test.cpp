@@ -1,11 +1,14 @@
 // tests/sim/event_test.cpp -- changes of state on their way out.
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include "sim_node/change_counter.h"
 #include "sim_node/describe.h"
 #include "sim_node/event_room.h"
+#include "sim_node/link_states.h"
 #include "sim_node/player.h"
 #include "tests/sim/stages.h"
 #include "tests/support/allocation_guard.h"
@@ -132,6 +135,55 @@ TEST(Player, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
   EXPECT_GT(frame.events.events()[0].value, 0.0101);
   EXPECT_EQ(frame.link_state, (std::vector<std::uint8_t>{0, 0, 1, 1, 1, 1, 1, 1}));
   EXPECT_FALSE(frames.has_news());
+}
+
+TEST(LinkStates, AreFoundByTheNamesOfLinksAndStates) {
+  const auto scene = breaking_scene(6);
+  const auto all = find_states(*scene, "fuse", "broken");
+  ASSERT_EQ(all.size(), 6u);
+  EXPECT_EQ(all[5].state_link, 5u);
+  EXPECT_EQ(all[5].state, 1u);
+  const auto some = find_states(*scene, "fuse[2..4]", "whole");
+  ASSERT_EQ(some.size(), 3u);
+  EXPECT_EQ(some[0].state_link, 2u);
+  EXPECT_EQ(some[0].state, 0u);
+  EXPECT_EQ(find_states(*scene, "fuse[3]", "broken").at(0).state_link, 3u);
+}
+
+TEST(LinkStates, ThatDoNotExistAreRefusedInOneSentence) {
+  const auto scene = breaking_scene(6);
+  const auto refusal = [&](const std::string& links, const std::string& state) -> std::string {
+    try {
+      find_states(*scene, links, state);
+    } catch (const std::invalid_argument& refused) {
+      return refused.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("fuze", "broken"), "no links are named 'fuze', did you mean 'fuse'?");
+  EXPECT_EQ(refusal("fuse", "brocken"),
+            "the liaison 'thin' has no state 'brocken', did you mean 'broken'?");
+  EXPECT_EQ(refusal("fuse[6]", "broken"), "'fuse' has 6 links, from 0 to 5");
+  EXPECT_EQ(refusal("fuse[2..9]", "broken"), "'fuse' has 6 links, from 0 to 5");
+  for (const char* links : {"fuse[]", "fuse[x]", "fuse[-1]", "fuse[3..2]", "fuse[1.5]"}) {
+    EXPECT_EQ(refusal(links, "broken"),
+              "'" + std::string(links) + "' is not of the form name, name[3] or name[2..5]");
+  }
+  EXPECT_EQ(refusal("spring", "broken"), "'spring' has no states");
+}
+
+TEST(Player, PutsLinksIntoStates) {
+  Player player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
+  Order order;
+  order.kind = Order::Kind::kForceStates;
+  order.forced = find_states(player.simulation().scene(), "fuse[1]", "broken");
+  player.obey(order);
+  player.advance();
+  EXPECT_EQ(player.simulation().world().state_of(1), 1u);
+  const auto events = player.stage().frames.events().events();
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events[0].link, 1u);
+  EXPECT_EQ(events[0].quantity, engine::Quantity::kNone);
 }
 
 TEST(Player, GathersEventsWithoutAllocating) {

@@ -141,6 +141,80 @@ TEST(Player, StaysPausedWithAnotherStage) {
   EXPECT_EQ(steps_of(player), 0u);
 }
 
+/// The swing with another stiffness of its springs.
+std::unique_ptr<Stage> stage_with_stiffness(double stiffness) {
+  auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
+  for (engine::Link& link : scene->network.links) link.stiffness = stiffness;
+  return std::make_unique<Stage>(scene, kRunOfSim, 1);
+}
+
+Order exchange_for(std::unique_ptr<Stage> stage) {
+  Order order = order_of(Order::Kind::kExchange);
+  order.room.reserve(stage->simulation.world().most_values_of_state());
+  order.stage = std::move(stage);
+  return order;
+}
+
+TEST(Player, GoesOnBitForBitWhenTheNewParametersAreTheOldOnes) {
+  Player straight(stage_of(swing_text()), false);
+  Player exchanged(stage_of(swing_text()), false);
+  for (std::uint64_t n = 1; n <= 400; ++n) {
+    turn(straight, n, -0.005);
+    turn(exchanged, n, -0.005);
+    if (n != 200) continue;
+    Order order = exchange_for(stage_of(swing_text()));
+    exchanged.obey(order);
+    ASSERT_TRUE(order.done);
+  }
+  EXPECT_EQ(exchanged.simulation().world().state_hash(),
+            straight.simulation().world().state_hash());
+  EXPECT_DOUBLE_EQ(exchanged.played_s(), straight.played_s());
+  EXPECT_EQ(exchanged.simulation().world().energy().dissipated,
+            straight.simulation().world().energy().dissipated);
+}
+
+TEST(Player, TakesOverMotionForceAndAccountWithNewParameters) {
+  Player player(stage_of(swing_text()), false);
+  std::uint64_t number = 0;
+  for (int i = 0; i < 300; ++i) turn(player, ++number, -0.01);
+  const engine::Vec3 position = player.simulation().world().position(1);
+  const engine::Vec3 velocity = player.simulation().world().velocity(1);
+  const std::uint64_t hash = player.simulation().world().state_hash();
+  Order order = exchange_for(stage_with_stiffness(300.0));
+
+  const test::AllocationGuard guard;
+  player.obey(order);
+  EXPECT_EQ(guard.count(), 0u);
+
+  const engine::World& world = player.simulation().world();
+  EXPECT_TRUE(order.done);
+  EXPECT_EQ(world.state_hash(), hash);
+  EXPECT_EQ(world.position(1), position);
+  EXPECT_EQ(world.velocity(1), velocity);
+  EXPECT_EQ(world.network().description().links[0].stiffness, 300.0);
+  const double threefold = 3.0 * force_of_key(player);
+  turn(player, ++number, -0.01);
+  EXPECT_NEAR(force_of_key(player), threefold, 0.02 * std::abs(threefold)) << "at once";
+
+  for (int i = 0; i < 2500; ++i) turn(player, ++number, -0.01);
+  const engine::Energy energy = player.simulation().world().energy();
+  EXPECT_NE(energy.switching, 0.0);
+  EXPECT_LT(std::abs(energy.residual()), 1e-9 * energy.largest) << "the account closes";
+}
+
+TEST(Player, RefusesAStageThatDoesNotFitAndGoesOn) {
+  Player player(stage_of(swing_text()), false);
+  for (std::uint64_t n = 1; n <= 10; ++n) turn(player, n, 0.0);
+  auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
+  scene->network.mats.push_back(scene->network.mats.back());
+  scene->radius_m.push_back(0.0);
+  scene->layout.push_back({});
+  Order order = exchange_for(std::make_unique<Stage>(scene, kRunOfSim, 1));
+  player.obey(order);
+  EXPECT_FALSE(order.done);
+  EXPECT_EQ(steps_of(player), 40u);
+}
+
 TEST(Player, AllocatesNothingWhatever) {
   Player player(stage_of(swing_text()), false);
   Order restart = order_of(Order::Kind::kRestart);
