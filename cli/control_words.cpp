@@ -63,7 +63,7 @@ ControlWords read_control_words(const std::string& name, const std::vector<std::
   if (name == "set") return {name, values_argument(words)};
   if (name == "state") {
     if (words.size() != 2) refuse(verb);
-    return {name, "[" + quoted(words[0]) + ", " + quoted(words[1]) + "]"};
+    return {name, fmt::format("[{}, {}]", quoted(words[0]), quoted(words[1]))};
   }
   if (words.size() > 1) refuse(verb);
   if (name == "step") return {name, words.front()};
