@@ -12,6 +12,17 @@ void Assembly::read_liaisons(const Value& section) {
   liaisons_.read_section(section, scene_.file, scene_.space());
 }
 
+void Assembly::put(Piece& piece) const {
+  for (engine::Mat& mat : piece.mats) {
+    mat.position = placement_(mat.position);
+    mat.velocity = placement_.turn * mat.velocity;
+  }
+  for (LayoutPoint& point : piece.layout) {
+    point.x += placement_.layout_shift.x;
+    point.z += placement_.layout_shift.z;
+  }
+}
+
 bool Assembly::add(Piece piece, const config::Place& place) {
   const std::size_t mats = scene_.network.mats.size() + piece.mats.size();
   const std::size_t links = scene_.network.links.size() + piece.links.size();
@@ -20,6 +31,7 @@ bool Assembly::add(Piece piece, const config::Place& place) {
                                std::to_string(kMostLinks) + " links");
     return false;
   }
+  if (!open_parts_.empty()) put(piece);
   const std::uint32_t first_mat = mat_count();
   for (engine::Link& link : piece.links) {
     link.mat_a += first_mat;
@@ -38,31 +50,38 @@ bool Assembly::add(Piece piece, const config::Place& place) {
 void Assembly::read_matter(const Value& section) {
   for (const Value::Entry& entry : section.entries()) {
     check_name(entry.key, entry.key_place, problems_);
-    const std::size_t errors_before = problems_.error_count();
-    config::MappingReader reader(entry.value, "matter '" + entry.key + "'", problems_);
-    Piece piece = read_piece(reader, liaisons_, scene_.space(), problems_);
-    const std::vector<NamedRange> inner_names = piece.names;
-    const std::uint32_t first_mat = mat_count();
-    const std::uint32_t first_link = link_count();
-    const bool sound =
-        problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
-
-    names_.add(
-        {entry.key, Named::kMatter, first_mat, mat_count() - first_mat, sound, entry.key_place},
-        problems_);
-    for (const NamedRange& inner : inner_names) {
-      names_.add({entry.key + "." + inner.name, Named::kMatter, first_mat + inner.first,
-                  inner.count, sound, entry.key_place},
-                 problems_);
+    if (entry.value.find("part").exists()) {
+      read_part_use(entry);
+    } else {
+      read_generated(entry);
     }
-    scene_.matter.push_back({entry.key, first_mat, mat_count() - first_mat});
-    const std::string links = entry.key + ".links";
-    names_.add(
-        {links, Named::kLinks, first_link, link_count() - first_link, sound, entry.key_place},
-        problems_);
-    if (link_count() > first_link)
-      scene_.links.push_back({links, first_link, link_count() - first_link});
   }
+}
+
+void Assembly::read_generated(const Value::Entry& entry) {
+  const std::size_t errors_before = problems_.error_count();
+  config::MappingReader reader(entry.value, matter_called(entry.key), problems_);
+  Piece piece = read_piece(reader, liaisons_, scene_.space(), problems_);
+  const std::vector<NamedRange> inner_names = piece.names;
+  const std::uint32_t first_mat = mat_count();
+  const std::uint32_t first_link = link_count();
+  const bool sound =
+      problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
+
+  names_.add(
+      {entry.key, Named::kMatter, first_mat, mat_count() - first_mat, sound, entry.key_place},
+      problems_);
+  for (const NamedRange& inner : inner_names) {
+    names_.add({entry.key + "." + inner.name, Named::kMatter, first_mat + inner.first, inner.count,
+                sound, entry.key_place},
+               problems_);
+  }
+  scene_.matter.push_back({names_.full(entry.key), first_mat, mat_count() - first_mat});
+  const std::string links = entry.key + ".links";
+  names_.add({links, Named::kLinks, first_link, link_count() - first_link, sound, entry.key_place},
+             problems_);
+  if (link_count() > first_link)
+    scene_.links.push_back({names_.full(links), first_link, link_count() - first_link});
 }
 
 }  // namespace cordis::scene

@@ -2,10 +2,14 @@
 // Assembly]
 #pragma once
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/scene/liaison.h"
+#include "sim_node/scene/part.h"
+#include "sim_node/scene/placement.h"
 #include "sim_node/scene/scene.h"
 #include "sim_node/scene/selection.h"
 
@@ -23,19 +27,40 @@ struct Piece {
 
 inline constexpr std::size_t kMostLinks = 8'000'000;  ///< of a scene
 
-/// What the sections of a scene file add to, in the order matter, ports, links, signals.
+/// What the sections of a scene file add to, in the order liaisons, parts, matter, ports, links,
+/// signals.
 class Assembly {
  public:
   Assembly(Scene& scene, config::Problems& problems)
-      : scene_(scene), problems_(problems), liaisons_(problems) {}
+      : scene_(scene), problems_(problems), liaisons_(problems), parts_(problems) {}
 
   void read_liaisons(const config::Value& section);
+  void read_parts(const config::Value& section);
   void read_matter(const config::Value& section);
   void read_ports(const config::Value& section);
   void read_links(const config::Value& section);
   void read_signals(const config::Value& section);
 
  private:
+  /// An entry of `matter:` that uses a part, while it is read.
+  struct PartUse {
+    const Part* part = nullptr;
+    PartBody body;
+    Placement placement;
+    Placement step;            ///< from one copy to the next
+    std::uint32_t copies = 0;  ///< 0: it is not repeated
+  };
+  void read_part_use(const config::Value::Entry& entry);
+  /// Nothing after a problem.
+  std::optional<PartUse> read_use(const config::Value::Entry& entry);
+  /// Adds the matter and links of a part. @return whether all of it was sound.
+  bool add_copy(const PartUse& use, const std::string& name, const Placement& placement);
+  /// Whether the part is none of those that are being added; if it is, a problem.
+  bool check_cycle(const Part& part, const config::Place& place);
+  /// What matter is called in messages.
+  std::string matter_called(const std::string& name) const;
+
+  void read_generated(const config::Value::Entry& entry);
   void read_port(const config::Value::Entry& entry);
   void read_link(const config::Value& value);
   void read_signal(const config::Value::Entry& entry, std::vector<Signal>& signals);
@@ -51,6 +76,8 @@ class Assembly {
   /// Adds the MATs and links of a piece. @return false when the scene would become too large, which
   /// is a problem.
   bool add(Piece piece, const config::Place& place);
+  /// Puts a piece where the part it belongs to stands.
+  void put(Piece& piece) const;
   void check_devices();
   void lay_out_ports();
   std::uint32_t mat_count() const noexcept {
@@ -64,6 +91,10 @@ class Assembly {
   config::Problems& problems_;
   Liaisons liaisons_;
   Names names_;
+  Parts parts_;
+  Placement placement_;                              // of the part that is being added
+  std::vector<const Part*> open_parts_;              // from the outermost to it
+  std::set<const Part*> faulty_parts_;               // whose faults have been told
   std::vector<std::uint32_t> ports_without_layout_;  // MATs of a 1-D scene
 };
 

@@ -78,7 +78,7 @@ std::string Names::word_of(std::uint32_t index, bool is_link) const {
     if ((entry.kind == Named::kLinks) != is_link || index < entry.first ||
         index - entry.first >= entry.count)
       continue;
-    if (nearest == nullptr || entry.count < nearest->count) nearest = &entry;
+    if (nearest == nullptr || entry.count <= nearest->count) nearest = &entry;  // the innermost
   }
   if (nearest == nullptr) return std::to_string(index);
   std::string word = nearest->name;

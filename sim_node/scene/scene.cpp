@@ -82,6 +82,7 @@ void check_by_engine(const Scene& scene, config::MappingReader& reader) {
 void read_content(config::MappingReader& reader, Scene& scene, config::Problems& problems) {
   const Value world = reader.optional_mapping("world");
   const Value liaisons = reader.optional_mapping("liaisons");
+  const Value parts = reader.optional_mapping("parts");
   const Value matter = reader.required_mapping("matter");
   const Value ports = reader.optional_mapping("ports");
   const Value links = reader.optional_sequence("links");
@@ -91,6 +92,7 @@ void read_content(config::MappingReader& reader, Scene& scene, config::Problems&
   Assembly assembly(scene, problems);
   read_world(world, scene, problems);
   assembly.read_liaisons(liaisons);
+  assembly.read_parts(parts);
   assembly.read_matter(matter);
   assembly.read_ports(ports);
   assembly.read_links(links);
