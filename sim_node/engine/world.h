@@ -73,7 +73,8 @@ class World {
   void force_state(std::uint32_t state_link, std::uint32_t state) noexcept;
 
   /// Gives the liaisons of a behaviour other parameters between two steps; each link stays in its
-  /// state. What their energy changes by counts as switching. Not in real time: allocates.
+  /// state. What their energy changes by counts as switching. If only the new one asks for the
+  /// impulse, that counts from here on. Not in real time: allocates.
   /// @throws std::invalid_argument when the network has no such behaviour, when the new one is not
   ///         well-formed, or has not the same number of states.
   void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
