@@ -38,7 +38,7 @@ function generatedClasses(unit) {
 test('the messages are those of the contract', () => {
   const contract = {
     'control.idl': ['ControlCommand', 'ControlReply', 'LiaisonChanges', 'NodeStatus'],
-    'gesture.idl': ['GesturePositions', 'GestureForces'],
+    'gesture.idl': ['GesturePositions', 'GestureForces', 'DeviceDescription'],
     'scene.idl': [
       'NamedRange', 'PortDescription', 'SignalDescription', 'BehaviourDescription', 'SceneDescription', 'SceneFrame',
       'SceneSignals', 'LinkEvent', 'SceneEvents',
