@@ -69,7 +69,7 @@ struct World::State {
   void append_state(std::vector<double>& state) const;
   void take_state(const std::vector<double>& state) noexcept;
   PairStep pair_step(bool frozen) noexcept { return {table, behaviours, log, step_count, frozen}; }
-  /// Of all links but linear ones, in closed form [J].
+  /// Of all links, in closed form [J].
   double stored_energy() noexcept {
     return links.stored_energy(mats) + state_links.stored_energy(table, mats) +
            maxwell_links.stored_energy() + sets.stored_energy(table);
