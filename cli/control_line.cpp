@@ -45,6 +45,7 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const
     if (addressed == 0 && now > began + kLongestDiscovery) break;
     if (addressed > replies.size() && now >= send_at && commands_.matched_count() > 0) {
       commands_.write(command);
+      sent_ = true;
       send_at = now + kRepeatAfter;
     }
     replies_.wait(kLook);

@@ -27,6 +27,8 @@ class ControlLine {
 
   /// The nodes heard so far that have not said that they stop.
   std::vector<std::string> present() const;
+  /// Whether a command has been sent.
+  bool has_sent() const noexcept { return sent_; }
   /// How many of them a target addresses.
   std::size_t addressed_count(const std::string& target) const;
 
@@ -39,6 +41,7 @@ class ControlLine {
   dds::Writer<msg::ControlCommand> commands_;
   dds::Reader<msg::ControlReply> replies_;
   dds::Reader<msg::NodeStatus> statuses_;
+  bool sent_ = false;
   std::map<std::string, msg::NodeStatus> nodes_;  // the newest status, by name
 };
 

@@ -54,10 +54,13 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-std::runtime_error silence(const CtlWords& words, const Address& address,
-                           const std::vector<std::string>& present, bool addressed_is_there) {
+std::runtime_error silence(const CtlWords& words, const Address& address, const ControlLine& line) {
   const std::string where =
       "session '" + address.session + "' of domain " + std::to_string(address.domain);
+  const std::vector<std::string> present = line.present();
+  const bool addressed_is_there = line.addressed_count(words.node) > 0;
+  if (line.has_sent() && !addressed_is_there)
+    return std::runtime_error(words.node + " has left " + where + " before it answered");
   if (present.empty())
     return std::runtime_error("nobody is in " + where + ": start it with `cordis run`" +
                               (words.domain.empty() ? ", or name its --domain" : ""));
@@ -74,8 +77,7 @@ int ctl(const CtlWords& words) {
   ControlLine line(address.domain, address.session);
   const std::vector<msg::ControlReply> replies =
       line.ask(words.node, command.verb, command.argument, timeout);
-  if (replies.empty())
-    throw silence(words, address, line.present(), line.addressed_count(words.node) > 0);
+  if (replies.empty()) throw silence(words, address, line);
 
   int result = kSuccess;
   for (const msg::ControlReply& reply : replies) {

@@ -8,6 +8,7 @@ namespace cordis::node {
 namespace {
 
 constexpr auto kLongestWait = std::chrono::seconds(1);
+constexpr auto kFarewell = std::chrono::milliseconds(200);
 
 }  // namespace
 
@@ -19,7 +20,9 @@ CommandListener::CommandListener(dds::Participant& participant, const std::strin
 CommandListener::~CommandListener() {
   ending_ = true;
   reader_.interrupt();
-  if (thread_.joinable()) thread_.join();
+  if (!thread_.joinable()) return;
+  thread_.join();
+  writer_.wait_until_acknowledged(kFarewell);  // the last reply tells what the node ended with
 }
 
 void CommandListener::start() {

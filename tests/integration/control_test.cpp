@@ -130,6 +130,62 @@ TEST_P(Control, LoadPlaysAnotherSceneAndTheKeyFeelsIt) {
   EXPECT_EQ(status_.of("keyboard").phase(), "running");
 }
 
+TEST_P(Control, SetChangesAParameterAndTheKeyFeelsIt) {
+  start();
+  dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
+  msg::GestureForces force;
+  const auto feels = [&](double wanted) {
+    return eventually(
+        [&] { return forces.take(force) && std::abs(force.force_n()[0] - wanted) < 1e-9; });
+  };
+  ASSERT_TRUE(feels(2.0));
+  expect_done({"set", "wall.stiffness_n_per_m=350"}, "sim: wall.stiffness_n_per_m = 350 at step ");
+  ASSERT_TRUE(feels(3.5));
+
+  expect_refused({"set", "wal.stiffness_n_per_m=1"}, "did you mean 'wall'?");
+  expect_refused({"set", "wall.stifness_n_per_m=1"}, "has no parameter 'stifness_n_per_m'");
+  expect_refused({"set", "wall.stiffness_n_per_m=-1"}, "must be >= 0, got -1");
+  expect_refused({"set", "wall.stiffness_n_per_m=soft"}, "must be a number, got 'soft'");
+  expect_refused({"state", "wall", "broken"}, "'wall' has no states");
+  ASSERT_TRUE(feels(3.5));
+}
+
+/// A link of a liaison with states, put into its other state by hand.
+TEST(ControlOfStates, StatePutsALinkIntoAStateAndAnEventTells) {
+  LiveSession session("asap", "  sim: {node: sim_node, scene: scene.yaml}\n");
+  session.add_file("scene.yaml",
+                   "cordis: 1\nname: fuse\nspace: 1\nstep: {rate_hz: 1000}\n"
+                   "liaisons:\n  fuse:\n    start: whole\n    states:\n"
+                   "      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: "
+                   "\"elongation_m > 1\"}]}\n"
+                   "      broken: {exits: [{to: whole, when: \"elongation_m < -1\"}]}\n"
+                   "matter:\n  wall: {kind: fixed, at_m: 0}\n"
+                   "  bob: {kind: mass, mass_kg: 1, at_m: 0.1}\n"
+                   "links:\n  - {name: joint, liaison: fuse, between: [wall, bob]}\n");
+  dds::Reader<msg::SceneEvents> events(session.participant(), dds::Topic::kEvents);
+  StatusWatch status(session.participant());
+  session.start("sim_node", "sim");
+  ASSERT_TRUE(status.wait_for_phase("sim", "running"));
+  ASSERT_TRUE(eventually([&] { return events.matched_count() == 1; }));
+
+  ChildProcess process(
+      {program_path("cordis"), "ctl", session.launch_file(), "state", "joint", "broken"});
+  ASSERT_EQ(process.wait(30s), 0) << process.output();
+  EXPECT_NE(process.output().find("sim: 1 link put into 'broken' at step "), std::string::npos)
+      << process.output();
+  msg::SceneEvents batch;
+  ASSERT_TRUE(eventually([&] { return events.take(batch); }));
+  ASSERT_EQ(batch.event().size(), 1u);
+  EXPECT_EQ(batch.event()[0].link(), 0u);
+  EXPECT_EQ(batch.event()[0].from_state(), 0u);
+  EXPECT_EQ(batch.event()[0].to_state(), 1u);
+  EXPECT_EQ(batch.event()[0].quantity(), 13u);
+  EXPECT_TRUE(status.wait_for("sim", [](const msg::NodeStatus& now) {
+    return now.changes().size() == 1 && now.changes()[0].liaison() == "fuse" &&
+           now.changes()[0].changes() == 1;
+  }));
+}
+
 TEST_P(Control, ASceneWithErrorsIsRefusedWithThemAllAndTheOldOneGoesOn) {
   start();
   expect_refused({"load", "bad.yaml"},
