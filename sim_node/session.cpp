@@ -46,8 +46,8 @@ Session::Session(const node::NodeStart& start, SimConfig config)
               [this](msg::NodeStatus& status) { fill(status); }),
       director_(
           orders_, player_.simulation().shared_scene(), start.run,
-          [this](const std::string& path, config::Problems& problems) {
-            return load_checked_scene(start_.launch, path, {}, problems);
+          [this, force = config.force](const std::string& path, config::Problems& problems) {
+            return load_checked_scene(start_.launch, path, {}, force, problems);
           },
           [this](const scene::Scene& scene, std::uint64_t version) { tell(scene, version); }),
       commands_(participant_, "sim_node",

@@ -7,6 +7,7 @@
 #include "node/config/device_limits.h"
 #include "node/config/mapping_reader.h"
 #include "sim_node/scene/port_limit.h"
+#include "sim_node/stability_check.h"
 
 namespace cordis::sim {
 namespace {
@@ -72,18 +73,21 @@ SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode
   config::MappingReader reader(node.section, "node '" + node.name + "'", problems);
   const std::string scene_file = reader.required_text("scene");
   sim.duration_s = reader.optional_number("duration_s", 0.0, config::Range::not_negative());
+  sim.force = reader.optional_truth("force", false);
   const config::Place scene_place = reader.place_of("scene");
   reader.finish();
   if (scene_file.empty()) return sim;
 
-  sim.scene = load_checked_scene(launch, scene_file, scene_place, problems);
+  sim.scene = load_checked_scene(launch, scene_file, scene_place, sim.force, problems);
   return sim;
 }
 
 scene::Scene load_checked_scene(const config::Launch& launch, const std::string& path,
-                                const config::Place& referrer, config::Problems& problems) {
+                                const config::Place& referrer, bool force,
+                                config::Problems& problems) {
   scene::Scene scene = scene::load_scene(launch.resolve(path).string(), problems, referrer);
   if (!problems.has_errors()) check_devices(launch, scene, problems);
+  if (!problems.has_errors()) check_stability(scene, force, problems);
   return scene;
 }
 

@@ -10,20 +10,23 @@ namespace cordis::sim {
 struct SimConfig {
   double duration_s =
       0.0;  ///< `duration_s`: simulated time after which the node ends by itself [s]; 0 = never
+  bool force = false;  ///< `force`: a scene that is surely unstable runs all the same
   scene::Scene scene;  ///< `scene`: what the file of that name says
 };
 
 /// Age of the position that a force answers when it reaches the motor, in periods of the device.
 int delay_periods_of(config::Clock clock) noexcept;
 
-/// Reads the section and the scene, and checks every port against the device files of the same
-/// launch. All that is wrong becomes a problem; the result is usable when there is none.
+/// Reads the section and the scene, checks every port against the device files of the same launch,
+/// and the stability of the scene. All that is wrong becomes a
+/// problem; the result is usable when there is none.
 SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,
                           config::Problems& problems);
 
-/// Reads a scene and checks every port against the device files of the launch.
+/// Reads a scene and checks every port against the device files of the launch, and its stability.
 /// @param path  as a person wrote it; relative to the launch file
 scene::Scene load_checked_scene(const config::Launch& launch, const std::string& path,
-                                const config::Place& referrer, config::Problems& problems);
+                                const config::Place& referrer, bool force,
+                                config::Problems& problems);
 
 }  // namespace cordis::sim

@@ -5,19 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/liaison_id.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/plan/slope.h"
 
 namespace cordis::plan {
 
-/// Which list of the description a liaison stands in.
-enum class LiaisonKind : std::uint8_t { kLink = 0, kStateLink = 1, kMaxwellLink = 2, kSet = 3 };
-
-/// A liaison of a network; none at all for the medium.
-struct LiaisonId {
-  LiaisonKind kind = LiaisonKind::kLink;
-  std::uint32_t index = 0;  ///< in the list of its kind
-};
+using engine::LiaisonId;
+using engine::LiaisonKind;
 
 /// A liaison between two MATs with the largest slopes it can have.
 struct Joint {

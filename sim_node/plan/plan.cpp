@@ -11,6 +11,25 @@
 namespace cordis::plan {
 namespace {
 
+double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mats) {
+  double most = 0.0;  // of 1 / m
+  for (const std::uint32_t mat : mats) most = std::max(most, graph.inverse_mass[mat]);
+  return most;
+}
+
+/// The step at which one contact of a set diverges by itself, by its linear part.
+double limit_of_one_contact(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const Crowd& crowd : graph.crowds) {
+    const double inverse_mass = lightest(graph, crowd.members) + lightest(graph, crowd.others);
+    for (const auto& state : network.behaviours[network.sets[crowd.set].behaviour].states) {
+      limit = std::min(limit,
+                       limit_step(state.stiffness * inverse_mass, state.viscosity * inverse_mass));
+    }
+  }
+  return limit;
+}
+
 /// Whether a liaison of this behaviour is there at some times and not at others.
 bool switches(const engine::Behaviour& behaviour) {
   for (const engine::LinkState& state : behaviour.states) {
@@ -42,7 +61,8 @@ double Stability::margin() const noexcept {
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   Stability stability;
   stability.certified = certified_bound(network, graph);
-  stability.diverging_step = StartTangent(network).diverging_step();
+  stability.diverging_step =
+      std::min(StartTangent(network).diverging_step(), limit_of_one_contact(network, graph));
   stability.bounded = graph.bounded;
   stability.step = network.step;
   return stability;
@@ -64,11 +84,11 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
     if (crowd.viscosity > 0.0) ratio = std::max(ratio, crowd.viscosity / crowd.stiffness);
     crowd.stiffness = 0.0;
   }
-  const double lightest = *std::max_element(graph.inverse_mass.begin(), graph.inverse_mass.end());
+  const double most = *std::max_element(graph.inverse_mass.begin(), graph.inverse_mass.end());
   const double of_dampers = 2.0 / edge_bound(dampers).step;  // 2 dt Z = 4
   BandEdge edge;
   edge.frequency_hz = frequency_hz;
-  edge.viscosity = std::min(w * w * ratio + graph.medium_viscosity * lightest, of_dampers);
+  edge.viscosity = std::min(w * w * ratio + graph.medium_viscosity * most, of_dampers);
   edge.error = oscillator_error(w, edge.viscosity, network.step);
   return edge;
 }
@@ -88,14 +108,9 @@ std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& ne
     consider(joint.liaison, joint.stiffness,
              graph.inverse_mass[joint.mat_a] + graph.inverse_mass[joint.mat_b]);
   }
-  const auto lightest = [&](const std::vector<std::uint32_t>& mats) {
-    double most = 0.0;
-    for (const std::uint32_t mat : mats) most = std::max(most, graph.inverse_mass[mat]);
-    return most;
-  };
   for (const Crowd& crowd : graph.crowds) {
     consider({LiaisonKind::kSet, crowd.set}, crowd.stiffness,
-             lightest(crowd.members) + lightest(crowd.others));
+             lightest(graph, crowd.members) + lightest(graph, crowd.others));
   }
   return worst;
 }

@@ -14,10 +14,12 @@ namespace cordis::plan {
 
 /// What is surely stable, what surely diverges.
 struct Stability {
-  StepBound certified;          ///< stable in every pose and every combination of states
-  double diverging_step = 0.0;  ///< beyond it the scene diverges from its start [s]
-  bool bounded = true;          ///< false: the certificate holds within a Reach alone
-  double step = 0.0;            ///< of the network [s]
+  StepBound certified;  ///< stable in every pose and every combination of states
+  /// Beyond it the scene diverges at the pose of its start once its links are in their stiffest
+  /// states [s].
+  double diverging_step = 0.0;
+  bool bounded = true;  ///< false: the certificate holds within a Reach alone
+  double step = 0.0;    ///< of the network [s]
 
   bool holds() const noexcept { return step < certified.step; }
   bool diverges() const noexcept { return step > diverging_step; }

@@ -151,8 +151,7 @@ Slope largest_slope(const engine::Behaviour& behaviour, double rest_length, int 
   return largest;
 }
 
-Slope slope_at_start(const engine::Behaviour& behaviour, double rest_length, double distance) {
-  const engine::LinkState& state = behaviour.states[behaviour.start];
+Tangent stiffest_tangent(const engine::Behaviour& behaviour, double rest_length, double distance) {
   const double elongation = distance - rest_length;
   const double nearby = 1e-6 * std::max(std::abs(distance), 1e-6);
   const Argument elastic{0.0, rest_length, true, false};
@@ -161,19 +160,18 @@ Slope slope_at_start(const engine::Behaviour& behaviour, double rest_length, dou
     if (law.kind == Law::Kind::kNone) return 0.0;
     return (value(law, at + nearby, about) - value(law, at - nearby, about)) / (2.0 * nearby);
   };
-  Slope slope{state.stiffness + rise(state.elasticity, elongation, elastic),
-              state.viscosity + rise(state.dissipation, 0.0, viscous), true};
-  const double pull = pull_at_start(behaviour, rest_length, distance);
-  const bool idle = (!state.pulls && pull >= 0.0) || (!state.pushes && pull <= 0.0) ||
-                    std::abs(pull) >= state.force_limit;
-  return idle ? Slope{} : slope;
-}
-
-double pull_at_start(const engine::Behaviour& behaviour, double rest_length, double distance) {
-  const engine::LinkState& state = behaviour.states[behaviour.start];
-  const double elongation = distance - rest_length;
-  const Argument elastic{0.0, rest_length, true, false};
-  return state.stiffness * elongation + value(state.elasticity, elongation, elastic);
+  Tangent stiffest;
+  for (const engine::LinkState& state : behaviour.states) {
+    stiffest.stiffness =
+        std::max(stiffest.stiffness, state.stiffness + rise(state.elasticity, elongation, elastic));
+    stiffest.viscosity =
+        std::max(stiffest.viscosity, state.viscosity + rise(state.dissipation, 0.0, viscous));
+  }
+  const engine::LinkState& first = behaviour.states.front();
+  if (behaviour.is_stateless()) {
+    stiffest.pull = first.stiffness * elongation + value(first.elasticity, elongation, elastic);
+  }
+  return stiffest;
 }
 
 Reach reach_of(const engine::NetworkDescription& network) {

@@ -26,12 +26,15 @@ struct Slope {
 Slope largest_slope(const engine::Behaviour& behaviour, double rest_length, int dimension,
                     const Reach& reach);
 
-/// Of the state a behaviour starts in, at one elongation and with no speed, without the slopes that
-/// lie across the link. [N/m] and [N s/m]
-Slope slope_at_start(const engine::Behaviour& behaviour, double rest_length, double distance);
+/// The tangent of a liaison at one distance of its ends and no speed, in the stiffest of its
+/// states.
+struct Tangent {
+  double stiffness = 0.0;  ///< along the link [N/m]
+  double viscosity = 0.0;  ///< [N s/m]
+  double pull = 0.0;       ///< of a behaviour of one state, else 0 [N]
+};
 
-/// The pull of the state a behaviour starts in, at rest [N].
-double pull_at_start(const engine::Behaviour& behaviour, double rest_length, double distance);
+Tangent stiffest_tangent(const engine::Behaviour& behaviour, double rest_length, double distance);
 
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the
 /// fastest MAT, at least 1 m/s; two such MATs meeting.

@@ -19,7 +19,8 @@ using Columns = Eigen::Matrix3Xd;
 constexpr int kRounds = 40;           // of the step, each from the direction found in the last one
 constexpr int kMostIterations = 400;  // in one round
 constexpr int kFewestIterations = 24;
-constexpr double kWork = 4e6;  // iterations times links
+constexpr double kWork =
+    1e7;  // iterations times links  // iterations times links  // iterations times links
 constexpr double kTolerance = 1e-7;
 constexpr double kRounding = 1e-14;
 constexpr double kNoStep = 1e-300;  // [s]
@@ -120,10 +121,8 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::StateLink& link : network.state_links) {
     const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
     const double length = distance(link.mat_a, link.mat_b);
-    const Slope slope = slope_at_start(behaviour, link.rest_length, length);
-    add(link.mat_a, link.mat_b, network, slope.stiffness,
-        slope.stiffness > 0.0 ? pull_at_start(behaviour, link.rest_length, length) : 0.0,
-        slope.viscosity, 0.0);
+    const Tangent tangent = stiffest_tangent(behaviour, link.rest_length, length);
+    add(link.mat_a, link.mat_b, network, tangent.stiffness, tangent.pull, tangent.viscosity, 0.0);
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     add(link.mat_a, link.mat_b, network, link.stiffness, 0.0, 0.0, link.viscosity);
@@ -199,14 +198,16 @@ double StartTangent::diverging_step() const {
   int left = std::max(
       kFewestIterations,
       static_cast<int>(kWork / static_cast<double>(parts_.size() + root_of_inverse_mass_.size())));
-  for (int round = 0; round < kRounds && left > 0; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     const double at = std::max(step, kNoStep);  // a Maxwell element is softer at a larger step
     const double stiffness = dot(x, times(x, 1.0, 0.0, at));
     const double viscosity = dot(x, times(x, 0.0, 1.0, at));
     const double before = step;
     step = limit_step(std::max(stiffness, 0.0), viscosity);
-    if (!std::isfinite(step) || std::abs(step - before) < 0.1 * kTolerance * step) break;
-    left -= climb(x, step, std::min(left, kMostIterations));
+    const bool settled = !std::isfinite(step) || std::abs(step - before) < 0.1 * kTolerance * step;
+    if (settled || left <= 0) break;
+    // The first rounds only bring the step near, and take a part of the work.
+    left -= climb(x, step, std::min({left, kMostIterations, round < 2 ? kFewestIterations : left}));
   }
   return step;
 }

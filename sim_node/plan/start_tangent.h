@@ -9,8 +9,8 @@
 
 namespace cordis::plan {
 
-/// The linear network that a scene is for small movements about its start: every link with its
-/// tangent there, state links in the state they start in, sets left out.
+/// The linear network that a scene is for small movements about the pose of its start: every link
+/// with its tangent there, state links in their stiffest state, sets left out.
 ///
 /// In 1 dimension, for linear links alone, this is the network itself, and its limit is exact.
 class StartTangent {

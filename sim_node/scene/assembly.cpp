@@ -72,7 +72,8 @@ void Assembly::read_generated(const Value::Entry& entry) {
                 sound, entry.key_place},
                problems_);
   }
-  scene_.matter.push_back({names_.full(entry.key), first_mat, mat_count() - first_mat});
+  scene_.matter.push_back(
+      {names_.full(entry.key), first_mat, mat_count() - first_mat, entry.key_place});
   name_links(entry.key + ".links", links_before, sound, entry.key_place,
              law && law->beside.empty() ? &*law : nullptr);
 }

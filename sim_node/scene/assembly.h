@@ -104,7 +104,7 @@ class Assembly {
 
   /// Remembers the links of a kind that have been added since there were `before`.
   void add_group(const std::string& name, LinkKind kind, const LinkCounts& before,
-                 const LinkLaw* law);
+                 const config::Place& place, const LinkLaw* law);
   /// Gives a name to the links that have been added since there were `before` of each kind. Where
   /// they are of one kind they bear it, else each kind bears its own after it.
   /// @param law  they were made by; nullptr when they were made by several

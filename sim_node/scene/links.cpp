@@ -61,7 +61,7 @@ void Assembly::read_ends(LinkEntry& entry) {
     if (entry.has_name) {
       name_links(name, before, joined, entry.reader.place_of("name"), &part);
     } else if (joined) {
-      add_group(name, part.kind, before, &part);
+      add_group(name, part.kind, before, between.place(), &part);
     }
     if (!joined) break;
   }
@@ -98,9 +98,10 @@ bool Assembly::join(const Selection& from, const Selection& to, const LinkLaw& l
 }
 
 void Assembly::add_group(const std::string& name, LinkKind kind, const LinkCounts& before,
-                         const LinkLaw* law) {
+                         const config::Place& place, const LinkLaw* law) {
   const auto k = static_cast<std::size_t>(kind);
-  LinkGroup group{names_.full(name), kind, before[k], link_counts()[k] - before[k], {}, {}, {}};
+  LinkGroup group{
+      names_.full(name), kind, before[k], link_counts()[k] - before[k], {}, {}, place, {}};
   if (law != nullptr) {
     group.liaison = law->liaison;
     group.part = law->part;
@@ -121,7 +122,7 @@ void Assembly::name_links(const std::string& name, const LinkCounts& before, boo
     const std::string full = kinds > 1 ? name + kEndings[k] : name;
     const auto kind = static_cast<LinkKind>(k);
     names_.add({full, Named::kLinks, link_word(kind, before[k]), count, sound, place}, problems_);
-    if (count > 0) add_group(full, kind, before, law);
+    if (count > 0) add_group(full, kind, before, place, law);
   }
 }
 
@@ -150,8 +151,8 @@ void Assembly::finish() {
   const LinkCounts counts = link_counts();
   const std::array<std::uint32_t, kLinkKindCount> first{0, counts[0], counts[0] + counts[1]};
   for (const LinkGroup& group : scene_.link_groups) {
-    scene_.links.push_back(
-        {group.name, first[static_cast<std::size_t>(group.kind)] + group.first, group.count});
+    scene_.links.push_back({group.name, first[static_cast<std::size_t>(group.kind)] + group.first,
+                            group.count, group.place});
   }
   std::stable_sort(scene_.links.begin(), scene_.links.end(),
                    [](const NamedRange& a, const NamedRange& b) { return a.first < b.first; });

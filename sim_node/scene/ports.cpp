@@ -194,11 +194,11 @@ void Assembly::read_port(const Value::Entry& entry) {
   const bool sound =
       problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
   names_.add({entry.key, Named::kPort, port.tool, 1, sound, entry.key_place}, problems_);
-  scene_.matter.push_back({entry.key, port.tool, 1});
+  scene_.matter.push_back({entry.key, port.tool, 1, entry.key_place});
   if (coupling) {
     names_.add({entry.key + ".handle", Named::kPort, port.mat, 1, sound, entry.key_place},
                problems_);
-    scene_.matter.push_back({entry.key + ".handle", port.mat, 1});
+    scene_.matter.push_back({entry.key + ".handle", port.mat, 1, entry.key_place});
     name_links(entry.key + ".coupling", links_before, sound, entry.key_place, nullptr);
   }
   if (sound) scene_.ports.push_back(std::move(port));

@@ -18,6 +18,7 @@ struct NamedRange {
   std::string name;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
+  config::Place place{};  ///< where it is described
 };
 
 /// Consecutive links of one kind under a name.
@@ -28,6 +29,7 @@ struct LinkGroup {
   std::uint32_t count = 0;
   std::string liaison;    ///< they are made from; empty when there is none
   std::string part;       ///< of it, when it is a parallel one
+  config::Place place;    ///< where they are described
   GivenParameters given;  ///< by the link
 };
 

@@ -164,12 +164,23 @@ TEST(BadInput, AnOccupiedPortEndsTheWholeSession) {
   EXPECT_NE(said.find("state hash"), std::string::npos) << "sim_node ended in order\n" << said;
 }
 
+/// K' = 1e9 (1/4000)^2 / 1 = 62: far beyond the limit of 4.
+std::string unstable_scene() {
+  return with(with(wall_scene(1e9), "[key, ground]", "[bob, ground]"), "at_m: [0.1]",
+              "at_m: [0.1], velocity_m_per_s: [1]");
+}
+
+TEST(BadInput, AnUnstableSceneIsRefusedAtTheLinkThatSetsItsLimit) {
+  const Outcome outcome = run(unstable_scene(), steady_key(0, 0));
+  expect_bad_file(outcome, "scene.yaml:13:", "unstable: wall at the mass bob sets the limit");
+  expect_bad_file(outcome, "scene.yaml:13:", "sim_node");
+}
+
 TEST(BadInput, ADivergingSceneStopsWithTheReasonAndNoForce) {
-  // K' = 1e9 (1/4000)^2 / 1 = 62: far beyond the limit of 4.
-  const std::string scene = with(with(wall_scene(1e9), "[key, ground]", "[bob, ground]"),
-                                 "at_m: [0.1]", "at_m: [0.1], velocity_m_per_s: [1]");
-  LiveSession session("lockstep", kSimAndKey);
-  session.add_file("scene.yaml", scene);
+  LiveSession session("lockstep",
+                      "  sim: {node: sim_node, scene: scene.yaml, force: true}\n"
+                      "  keyboard: {node: device_node, device: key.yaml}\n");
+  session.add_file("scene.yaml", unstable_scene());
   session.add_file("key.yaml", steady_key(0, 0));
   session.start("device_node", "keyboard");
   ChildProcess& sim = session.start("sim_node", "sim");

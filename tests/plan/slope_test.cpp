@@ -80,16 +80,19 @@ TEST(Slope, OfRingsIsThatOfTheirSteepestSum) {
   EXPECT_DOUBLE_EQ(largest_slope(behaviour(0.0, law), 0.0, 3, {}).stiffness, 200.0);
 }
 
-TEST(Slope, AtTheStartIsTheTangentOfTheStateThere) {
+TEST(Tangent, IsThatOfTheStiffestStateAtTheDistance) {
   engine::Behaviour touch = contact(100.0);
-  touch.states[0].viscosity = 0.5;
-
-  EXPECT_DOUBLE_EQ(plan::slope_at_start(touch, 0.1, 0.09).stiffness, 100.0);
-  EXPECT_DOUBLE_EQ(plan::slope_at_start(touch, 0.1, 0.09).viscosity, 0.5);
-  EXPECT_DOUBLE_EQ(plan::slope_at_start(touch, 0.1, 0.11).stiffness, 0.0);
+  touch.states.push_back(touch.states[0]);
+  touch.states[1].stiffness = 20.0;
+  touch.states[1].viscosity = 0.5;
+  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09).stiffness, 100.0);
+  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09).viscosity, 0.5);
+  EXPECT_NEAR(plan::stiffest_tangent(behaviour(100.0), 0.1, 0.09).pull, -1.0, 1e-12);
   // 57.1 in units of depth / diameter^2 at the distance of rest, 2^(1/6) diameters.
   const engine::Behaviour ball = behaviour(0.0, lennard_jones(1.0, 1.0));
-  EXPECT_NEAR(plan::slope_at_start(ball, 1.0, std::pow(2.0, 1.0 / 6.0)).stiffness, 57.146, 0.01);
+  const double rest = std::pow(2.0, 1.0 / 6.0);
+  EXPECT_NEAR(plan::stiffest_tangent(ball, 1.0, rest).stiffness, 57.146, 0.01);
+  EXPECT_NEAR(plan::stiffest_tangent(ball, 1.0, rest).pull, 0.0, 1e-9);
 }
 
 }  // namespace

@@ -1,0 +1,215 @@
+// The report of `cordis check`, for a person and for a program.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/scene_check.h"
+
+namespace cordis::cli {
+namespace {
+
+using scene::place_text;
+
+std::string seconds(double value) {
+  if (!std::isfinite(value)) return "any length";
+  if (value < 1e-3) return fmt::format("{:.4g} us", 1e6 * value);
+  return fmt::format("{:.4g} ms", 1e3 * value);
+}
+
+std::string percent(double share) {
+  return fmt::format("{:+.2g} %", 100.0 * share);
+}
+
+std::string limit_text(const SceneCheck& check) {
+  const plan::StepBound& bound = check.plan.stability.certified;
+  if (!std::isfinite(bound.step)) return "limit       none: nothing pulls\n";
+  const scene::Called liaison = scene::call_liaison(check.scene, bound.liaison);
+  const scene::Called mat = scene::call_mat(check.scene, bound.mat);
+  const auto at = [](const scene::Called& called) {
+    return called.place.line > 0 ? " (" + place_text(called.place) + ")" : std::string();
+  };
+  return fmt::format("limit       set by {}{} at the mass {} of {:.4g} kg{}\n", liaison.name,
+                     at(liaison), mat.name, check.scene.network.mats[bound.mat].mass, at(mat));
+}
+
+std::string stability_text(const SceneCheck& check) {
+  const plan::Stability& stability = check.plan.stability;
+  std::string text;
+  if (stability.holds()) {
+    text = fmt::format("stability   stable in every pose and state: margin {:.4g} % of stiffness\n",
+                       100.0 * stability.margin());
+  } else if (stability.diverges()) {
+    text = fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
+                       check.rate_above(1.0 / stability.certified.step));
+  } else {
+    text = fmt::format(
+        "stability   not certain: stable in some poses or states alone; a rate_hz of {:.0f} is "
+        "stable in all\n",
+        check.rate_above(1.0 / stability.certified.step));
+  }
+  text += fmt::format("            step {}; certified up to {}, surely unstable beyond {}\n",
+                      seconds(stability.step), seconds(stability.certified.step),
+                      seconds(stability.diverging_step));
+  if (!stability.bounded) {
+    text +=
+        "            a law has no largest slope: certified while no link is longer than twice its "
+        "length at\n            the start, and no pair meets faster than the fastest two at the "
+        "start\n";
+  }
+  return text + limit_text(check);
+}
+
+std::string accuracy_text(const SceneCheck& check) {
+  const plan::BandEdge& edge = check.plan.band_edge;
+  if (!edge.error.oscillates) {
+    return fmt::format("accuracy    at {:.4g} Hz nothing can swing at this rate and viscosity\n",
+                       edge.frequency_hz);
+  }
+  return fmt::format("accuracy    at {:.4g} Hz: pitch {} ({:+.2g} cent), decay {} at most\n",
+                     edge.frequency_hz, percent(edge.error.pitch), plan::cents(edge.error.pitch),
+                     percent(edge.error.decay));
+}
+
+std::string contact_text(const SceneCheck& check) {
+  const auto& contact = check.plan.worst_contact;
+  if (!contact) return {};
+  const scene::Called liaison = scene::call_liaison(check.scene, contact->liaison);
+  return fmt::format("contacts    one collision gains {:.2g} % of its energy at worst: {}\n",
+                     100.0 * contact->worst, liaison.name);
+}
+
+std::string port_text(const SceneCheck& check, const PortCheck& port) {
+  const double rate = check.scene.gesture_rate_hz;
+  const int delay = check.options.delay_periods;
+  const std::string who =
+      fmt::format("port        {} ({}): ", port.port->name, place_text(port.port->place));
+  if (port.port->role == scene::Role::kLiaison) {
+    return who + fmt::format(
+                     "a hand may be as stiff as {:.4g} N/m, and as its own viscosity over "
+                     "{:.3g} ms, at {:.4g} Hz and {} of delay\n",
+                     port.largest_hand_stiffness, 1e3 * delay / rate, rate,
+                     delay == 1 ? "one period" : std::to_string(delay) + " periods");
+  }
+  std::string text =
+      who + fmt::format(
+                "{:.4g} N/m and {:.3g} N s/m; the device needs {:.3g} N s/m of its own, at "
+                "{:.4g} Hz and {} of delay\n",
+                port.load.stiffness, port.load.viscosity, port.least_device_viscosity, rate,
+                delay == 1 ? "one period" : std::to_string(delay) + " periods");
+  if (check.options.device_viscosity > 0.0) {
+    text += fmt::format(
+        "            a device of {:.3g} N s/m bears {:.4g} N/m: {}\n",
+        check.options.device_viscosity, port.largest_stiffness,
+        port.load.stiffness <= port.largest_stiffness ? "safe with any hand" : "TOO STIFF");
+  }
+  return text;
+}
+
+std::string load_text(const SceneCheck& check) {
+  std::string text =
+      fmt::format("load        {:.4g} us a step, {:.3g} % of real time on this machine\n",
+                  1e-3 * check.step_nsec, 100.0 * check.load());
+  if (check.load() < 1.0) return text;
+  const double rate = 1e9 / check.step_nsec;
+  const double slowest = 1.0 / check.plan.stability.certified.step;
+  text += fmt::format(
+      "            TOO SLOW for real time: run it with clock asap, {:.3g} times slower, or at "
+      "{:.4g} "
+      "steps per second{}\n",
+      check.load(), rate, rate > slowest ? "" : ", which is unstable: make it smaller or softer");
+  return text;
+}
+
+nlohmann::json finite(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+nlohmann::json called(const scene::Called& called) {
+  nlohmann::json json{{"name", called.name}};
+  if (called.place.line > 0) {
+    json["file"] = called.place.file;
+    json["line"] = called.place.line;
+  }
+  return json;
+}
+
+nlohmann::json ports_json(const SceneCheck& check) {
+  nlohmann::json ports = nlohmann::json::array();
+  for (const PortCheck& port : check.ports) {
+    nlohmann::json json{{"name", port.port->name},
+                        {"device", port.port->device},
+                        {"stiffness_n_per_m", port.load.stiffness},
+                        {"viscosity_n_s_per_m", port.load.viscosity},
+                        {"delay_periods", check.options.delay_periods}};
+    if (port.port->role == scene::Role::kMass) {
+      json["role"] = "mass";
+      json["least_device_viscosity_n_s_per_m"] = port.least_device_viscosity;
+      if (check.options.device_viscosity > 0.0) {
+        json["device_viscosity_n_s_per_m"] = check.options.device_viscosity;
+        json["largest_stiffness_n_per_m"] = port.largest_stiffness;
+      }
+    } else {
+      json["role"] = "liaison";
+      json["largest_hand_stiffness_n_per_m"] = port.largest_hand_stiffness;
+    }
+    ports.push_back(std::move(json));
+  }
+  return ports;
+}
+
+const char* verdict(const plan::Stability& stability) {
+  if (stability.holds()) return "stable";
+  return stability.diverges() ? "unstable" : "not_certain";
+}
+
+}  // namespace
+
+std::string text_of(const SceneCheck& check) {
+  const scene::Scene& scene = check.scene;
+  std::string text =
+      fmt::format("scene       {} ({}), {} MATs, {} links, {}-D\n", scene.name, scene.file,
+                  scene.network.mats.size(), scene.network.links.size(), scene.space());
+  text +=
+      fmt::format("integrator  cordis at {:.6g} Hz, 1 thread, no reductions\n", scene.step_rate_hz);
+  text += stability_text(check) + accuracy_text(check) + contact_text(check);
+  for (const PortCheck& port : check.ports) text += port_text(check, port);
+  return text + load_text(check);
+}
+
+std::string json_of(const SceneCheck& check) {
+  const plan::Stability& stability = check.plan.stability;
+  const plan::BandEdge& edge = check.plan.band_edge;
+  nlohmann::json json{
+      {"scene", check.scene.name},
+      {"file", check.scene.file},
+      {"integrator", "cordis"},
+      {"rate_hz", check.scene.step_rate_hz},
+      {"threads", 1},
+      {"stability",
+       {{"verdict", verdict(stability)},
+        {"step_s", stability.step},
+        {"certified_step_s", finite(stability.certified.step)},
+        {"diverging_step_s", finite(stability.diverging_step)},
+        {"margin", stability.margin()},
+        {"bounded_laws", stability.bounded}}},
+      {"accuracy",
+       {{"band_hz", edge.frequency_hz},
+        {"oscillates", edge.error.oscillates},
+        {"pitch_error", edge.error.pitch},
+        {"decay_error", edge.error.decay}}},
+      {"ports", ports_json(check)},
+      {"reductions", nlohmann::json::array()},
+      {"load", {{"step_nsec", check.step_nsec}, {"share_of_real_time", check.load()}}}};
+  if (std::isfinite(stability.certified.step)) {
+    json["stability"]["limit"] = {
+        {"liaison", called(scene::call_liaison(check.scene, stability.certified.liaison))},
+        {"mat", called(scene::call_mat(check.scene, stability.certified.mat))}};
+  }
+  if (check.plan.worst_contact) {
+    json["worst_contact_energy_gain"] = finite(check.plan.worst_contact->worst);
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,53 @@
+// cli/scene_check.cpp
+#include "cli/scene_check.h"
+
+#include <cmath>
+#include <utility>
+
+#include "sim_node/plan/load.h"
+
+namespace cordis::cli {
+namespace {
+
+PortCheck check_port(const scene::Scene& scene, const plan::LiaisonGraph& graph,
+                     const scene::Port& port, const CheckOptions& options) {
+  const plan::PortLoop loop{1.0 / scene.gesture_rate_hz, options.delay_periods};
+  PortCheck check;
+  check.port = &port;
+  check.load = plan::port_load(graph, port.mat);
+  if (port.role == scene::Role::kMass) {
+    check.least_device_viscosity = plan::least_device_viscosity(check.load, loop);
+    check.largest_stiffness =
+        plan::largest_port_stiffness(options.device_viscosity, check.load.viscosity, loop);
+  } else {
+    check.largest_hand_stiffness =
+        plan::largest_hand_stiffness(check.load, scene.network.mats[port.mat].mass, loop);
+  }
+  return check;
+}
+
+}  // namespace
+
+double SceneCheck::rate_above(double rate_hz) const noexcept {
+  return (std::floor(rate_hz / scene.gesture_rate_hz) + 1.0) * scene.gesture_rate_hz;
+}
+
+SceneCheck check_scene(const CheckOptions& options) {
+  config::Problems problems;
+  SceneCheck check;
+  check.options = options;
+  check.scene = scene::load_scene(options.scene_file, problems);
+  problems.throw_if_any();
+  const engine::NetworkDescription& network = check.scene.network;
+  check.plan = plan::plan_of(network, options.band_hz);
+  if (!check.scene.ports.empty()) {
+    const plan::LiaisonGraph graph = plan::liaison_graph(network);
+    for (const scene::Port& port : check.scene.ports) {
+      check.ports.push_back(check_port(check.scene, graph, port, options));
+    }
+  }
+  check.step_nsec = plan::measure_step_nsec(network);
+  return check;
+}
+
+}  // namespace cordis::cli

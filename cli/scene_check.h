@@ -1,0 +1,53 @@
+// cli/scene_check.h -- what `cordis check` finds out about a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim_node/plan/plan.h"
+#include "sim_node/scene/naming.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::cli {
+
+/// What a person asked for.
+struct CheckOptions {
+  std::string scene_file;
+  std::string json_file;        ///< empty: none; "-": instead of the text
+  double band_hz = 0.0;         ///< the upper end of the band that matters
+  int delay_periods = 1;        ///< of the loop through a device
+  double device_viscosity = 0;  ///< of the device [N s/m]; 0: not known
+  bool force = false;
+};
+
+/// The loop through one port, in its role.
+struct PortCheck {
+  const scene::Port* port = nullptr;
+  plan::PortLoad load;
+  double least_device_viscosity = 0.0;  ///< role mass: what the device must have [N s/m]
+  double largest_stiffness = 0.0;       ///< role mass, of the device asked for [N/m]
+  double largest_hand_stiffness = 0.0;  ///< role liaison [N/m]
+};
+
+struct SceneCheck {
+  scene::Scene scene;
+  CheckOptions options;
+  plan::Plan plan;
+  std::vector<PortCheck> ports;
+  double step_nsec = 0.0;  ///< measured on this machine
+
+  /// Wall time per simulated time.
+  double load() const noexcept { return 1e-9 * step_nsec * scene.step_rate_hz; }
+  /// The lowest rate above `rate` that is a multiple of the gesture rate.
+  double rate_above(double rate_hz) const noexcept;
+};
+
+/// @throws config::ConfigError when the scene has faults.
+SceneCheck check_scene(const CheckOptions& options);
+
+/// Lines for a person.
+std::string text_of(const SceneCheck& check);
+/// The same for a program; keys carry their unit.
+std::string json_of(const SceneCheck& check);
+
+}  // namespace cordis::cli

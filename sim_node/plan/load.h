@@ -1,0 +1,14 @@
+// sim_node/plan/load.h -- how long a step takes on this machine.
+#pragma once
+
+#include "sim_node/engine/network.h"
+
+namespace cordis::plan {
+
+/// Runs the network from its start for some 50 ms of wall time, and at least 30 steps.
+/// @return the time of a step [ns]: of the quickest of several batches, so that what else runs on
+///         the machine counts little. Not a promise: a scene in motion may have more contacts.
+/// @throws std::invalid_argument when the engine does not take the network.
+double measure_step_nsec(const engine::NetworkDescription& network);
+
+}  // namespace cordis::plan

@@ -1,0 +1,14 @@
+// sim_node/stability_check.h -- refuses before the run what would diverge in it.
+#pragma once
+
+#include "node/config/problem.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// Holds the step of a scene against its limits: an error where it surely diverges, unless forced
+/// (then a warning); a warning where it is not certified in every pose and state. The place is that
+/// of the liaison that sets the limit. `cordis check` says more.
+void check_stability(const scene::Scene& scene, bool force, config::Problems& problems);
+
+}  // namespace cordis::sim

@@ -1,0 +1,95 @@
+// tests/cli/scene_check_test.cpp
+#include "cli/scene_check.h"
+
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/exit_code.h"
+#include "cli/verbs.h"
+
+namespace cordis::cli {
+namespace {
+
+/// A mass of 0.1 kg on a spring: K' = 4 at 50 steps per second for 1000 N/m.
+class Checked : public testing::Test {
+ protected:
+  void write(const std::string& rate, const std::string& more = "") {
+    std::ofstream(path_) << "cordis: 1\nname: bob\nspace: 1\nstep: {rate_hz: " << rate
+                         << ", gesture_rate_hz: 10}\nmatter:\n  ground: {kind: fixed, at_m: [0]}\n"
+                            "  bob: {kind: mass, mass_kg: 0.1, at_m: [0.1]}\n"
+                            "liaisons:\n  holder: {kind: spring, stiffness_n_per_m: 1000}\n"
+                            "links:\n  - {liaison: holder, between: [ground, bob]}\n"
+                         << more;
+  }
+  int run(std::vector<std::string> words) {
+    CommandLine line("cordis", "", "1");
+    add_check_verb(line);
+    words.insert(words.begin(), {"check", path_});
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int code = line.run(words);
+    out_ = testing::internal::GetCapturedStdout();
+    error_ = testing::internal::GetCapturedStderr();
+    return code;
+  }
+
+  std::string path_ = testing::TempDir() + "scene_check_test.yaml";
+  std::string out_;
+  std::string error_;
+};
+
+TEST_F(Checked, AStableSceneHasItsMarginAndItsLimitByNameAndLine) {
+  write("100");
+  EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("margin 75 % of stiffness"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("set by holder (" + path_ + ":11)"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("mass bob of 0.1 kg (" + path_ + ":7)"), std::string::npos) << out_;
+}
+
+TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
+  write("40");
+  EXPECT_EQ(run({}), kFailure);
+  EXPECT_NE(out_.find("UNSTABLE: take a rate_hz of 60 or more"), std::string::npos) << out_;
+  EXPECT_NE(error_.find("unstable at 40 Hz"), std::string::npos) << error_;
+  EXPECT_EQ(run({"--force"}), kSuccess);
+}
+
+TEST_F(Checked, AProgramReadsTheSame) {
+  write("100");
+  ASSERT_EQ(run({"--json", "-", "--band", "2"}), kSuccess) << error_;
+  const nlohmann::json json = nlohmann::json::parse(out_);
+  EXPECT_EQ(json["stability"]["verdict"], "stable");
+  EXPECT_NEAR(json["stability"]["certified_step_s"].get<double>(), 0.02, 1e-9);
+  EXPECT_NEAR(json["stability"]["diverging_step_s"].get<double>(), 0.02, 1e-8);
+  EXPECT_EQ(json["stability"]["limit"]["liaison"]["line"], 11);
+  // w dt = 2 pi 2 / 100: (w dt)^2 / 24
+  EXPECT_NEAR(json["accuracy"]["pitch_error"].get<double>(), 6.58e-4, 3e-6);
+  EXPECT_GT(json["load"]["step_nsec"].get<double>(), 0.0);
+}
+
+TEST_F(Checked, PortsAreJudgedInTheirRole) {
+  write("100",
+        "  - {liaison: holder, between: [key, bob]}\n"
+        "ports:\n  key: {device: keyboard, axes: [0], role: mass, at_m: [0]}\n");
+  // K (T / 2 + d T) with T = 0.1 s: 150 N s/m with one period of delay, 250 with two
+  ASSERT_EQ(run({"--device-viscosity", "200"}), kSuccess) << error_;
+  EXPECT_NE(out_.find("the device needs 150 N s/m"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("safe with any hand"), std::string::npos) << out_;
+  ASSERT_EQ(run({"--device-viscosity", "200", "--delay", "2"}), kSuccess) << error_;
+  EXPECT_NE(out_.find("TOO STIFF"), std::string::npos) << out_;
+}
+
+TEST_F(Checked, WrongWordsAndFilesAreBadInput) {
+  write("100");
+  EXPECT_EQ(run({"--band", "loud"}), kBadInput);
+  EXPECT_NE(error_.find("--band must be a number"), std::string::npos) << error_;
+  write("100", "tuning: 440\n");
+  EXPECT_EQ(run({}), kBadInput);
+  EXPECT_NE(error_.find(":12:1: error"), std::string::npos) << error_;
+}
+
+}  // namespace
+}  // namespace cordis::cli
