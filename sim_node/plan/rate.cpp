@@ -1,0 +1,83 @@
+// sim_node/plan/rate.cpp
+#include "sim_node/plan/rate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "sim_node/plan/plan.h"
+
+namespace cordis::plan {
+namespace {
+
+constexpr double kPartOfTheCertifiedStep = 0.9;
+
+/// The largest step at which a vibration is within the tolerance, by its exact roots; infinite for
+/// what creeps, which has no pitch.
+template <class Error>
+double largest_step(const BandEdge& edge, double tolerance, Error error) {
+  const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
+  if (0.5 * edge.viscosity >= w) return std::numeric_limits<double>::infinity();
+  double low = 0.0;
+  double high = limit_step(w * w, edge.viscosity);
+  for (int n = 0; n < 60; ++n) {
+    const double step = 0.5 * (low + high);
+    const OscillatorError reached = oscillator_error(w, edge.viscosity, step);
+    const bool within = reached.oscillates && std::abs(error(reached)) <= tolerance;
+    (within ? low : high) = step;
+  }
+  return low;
+}
+
+}  // namespace
+
+RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyWish& wish,
+                       double gesture_rate_hz) {
+  engine::NetworkDescription per_gesture = network;
+  per_gesture.step = 1.0 / gesture_rate_hz;
+  const LiaisonGraph graph = liaison_graph(per_gesture);
+
+  double step = per_gesture.step;
+  RateChoice choice;
+  const auto consider = [&](double largest, RateReason reason) {
+    if (largest >= step) return;
+    step = largest;
+    choice.reason = reason;
+  };
+  consider(kPartOfTheCertifiedStep * certified_bound(per_gesture, graph).step,
+           RateReason::kStability);
+  if (const auto contact = worst_contact_of(per_gesture, graph)) {
+    const double most = 4.0 * wish.contact_energy / (1.0 + wish.contact_energy);
+    consider(per_gesture.step * std::sqrt(most / contact->stiffness), RateReason::kContact);
+  }
+  const BandEdge edge = band_edge_of(per_gesture, graph, wish.band_hz);
+  consider(largest_step(edge, wish.tolerance, [](const OscillatorError& e) { return e.pitch; }),
+           RateReason::kPitch);
+  consider(largest_step(edge, wish.tolerance, [](const OscillatorError& e) { return e.decay; }),
+           RateReason::kDecay);
+
+  constexpr double kRounding = 1e-9;
+  choice.needed_hz = 1.0 / step;
+  choice.rate_hz = std::ceil(choice.needed_hz / gesture_rate_hz - kRounding) * gesture_rate_hz;
+  return choice;
+}
+
+const char* to_string(RateReason reason) noexcept {
+  switch (reason) {
+    case RateReason::kGesture:
+      return "one step per gesture is enough";
+    case RateReason::kStability:
+      return "the stability in every pose and state";
+    case RateReason::kContact:
+      return "the energy of its contacts";
+    case RateReason::kPitch:
+      return "the pitch at the end of the band";
+    case RateReason::kDecay:
+      return "the decay at the end of the band";
+  }
+  return "";
+}
+
+}  // namespace cordis::plan

@@ -1,0 +1,39 @@
+// sim_node/plan/rate.h -- the lowest rate that keeps what a scene asks for.
+#pragma once
+
+#include <cstdint>
+
+#include "sim_node/engine/network.h"
+
+namespace cordis::plan {
+
+/// What a scene asks for instead of a rate.
+struct AccuracyWish {
+  double tolerance = 0.01;      ///< largest relative error of the pitch and of the rate of decay
+  double band_hz = 100.0;       ///< of vibrations up to this frequency
+  double contact_energy = 0.1;  ///< largest part of its energy that a collision may gain or lose
+};
+
+/// What made the rate as high as it is.
+enum class RateReason : std::uint8_t {
+  kGesture = 0,  ///< one step per gesture is enough
+  kStability,    ///< 0.9 of the certified step
+  kContact,      ///< K' <= 4 e / (1 + e) for the stiffest liaison that comes and goes
+  kPitch,        ///< at the end of the band
+  kDecay
+};
+
+struct RateChoice {
+  double needed_hz = 0.0;  ///< the least that serves
+  double rate_hz = 0.0;    ///< the next multiple of the gesture rate
+  RateReason reason = RateReason::kGesture;
+};
+
+/// The step of the network itself does not matter. O(liaisons).
+RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyWish& wish,
+                       double gesture_rate_hz);
+
+/// For a person: "the pitch at the end of the band".
+const char* to_string(RateReason reason) noexcept;
+
+}  // namespace cordis::plan

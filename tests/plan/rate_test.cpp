@@ -1,0 +1,82 @@
+#include "sim_node/plan/rate.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/oscillator_error.h"
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+using plan::AccuracyWish;
+using plan::choose_rate;
+using plan::RateChoice;
+using plan::RateReason;
+
+TEST(RateChoice, OneStepPerGestureWhereNothingAsksForMore) {
+  const RateChoice choice =
+      choose_rate(oscillator(1.0, 10.0, 0.0, 1.0, 0.0, 1.0), AccuracyWish{0.01, 0.5, 0.1}, 1000.0);
+
+  EXPECT_EQ(choice.reason, RateReason::kGesture);
+  EXPECT_DOUBLE_EQ(choice.rate_hz, 1000.0);
+}
+
+TEST(RateChoice, IsOneCentAtAPhaseOf118Thousandths) {
+  const AccuracyWish wish{5.778e-4, 100.0, 0.1};  // one cent
+  const RateChoice choice = choose_rate(oscillator(1.0, 10.0, 0.0, 1.0, 0.0, 1.0), wish, 1000.0);
+
+  EXPECT_EQ(choice.reason, RateReason::kPitch);
+  EXPECT_NEAR(choice.needed_hz, 2.0 * M_PI * 100.0 / 0.118, 20.0);
+  EXPECT_DOUBLE_EQ(choice.rate_hz, 6000.0);
+}
+
+TEST(RateChoice, ViscosityAsksForMoreThanPitch) {
+  // the rate of decay is off by Z'/2
+  const RateChoice choice = choose_rate(oscillator(1.0, 4e5, 40.0, 1.0, 0.0, 1.0),
+                                        AccuracyWish{0.001, 100.0, 0.1}, 1000.0);
+
+  EXPECT_EQ(choice.reason, RateReason::kDecay);
+  // Z / K = 1e-4 s, so at most (200 pi)^2 1e-4 = 39.5 / s at 100 Hz
+  EXPECT_NEAR(choice.needed_hz, 39.48 / (2.0 * 0.001), 50.0);
+}
+
+TEST(RateChoice, ContactsKeepTheirEnergy) {
+  NetworkDescription scene = oscillator(0.1, 0.0, 0.0, 1.0, 0.0, 1e-3);
+  scene.links.clear();
+  scene.behaviours.push_back(contact(1e5));
+  scene.state_links = {{0, 1, 0, 0.0}};
+
+  const RateChoice choice = choose_rate(scene, AccuracyWish{0.1, 1.0, 0.01}, 1000.0);
+
+  EXPECT_EQ(choice.reason, RateReason::kContact);
+  // K' = 4 * 0.01 / 1.01 at 1e6 dt^2
+  EXPECT_NEAR(choice.needed_hz, 1e3 / std::sqrt(0.04 / 1.01), 1.0);
+}
+
+TEST(RateChoice, StaysBelowTheLimit) {
+  const RateChoice choice =
+      choose_rate(oscillator(0.1, 1e6, 0.0, 1.0, 0.0, 1e-3), AccuracyWish{0.1, 1.0, 0.5}, 1000.0);
+
+  EXPECT_EQ(choice.reason, RateReason::kStability);
+  EXPECT_NEAR(choice.needed_hz, 0.5 * std::sqrt(1e7) / 0.9, 1.0);
+  EXPECT_DOUBLE_EQ(choice.rate_hz, 2000.0);
+}
+
+TEST(RateChoice, KeepsTheToleranceWhenItRuns) {
+  // A chain whose lowest vibration is the whole band: its pitch, by its zero crossings.
+  const double w = 2.0 * M_PI * 20.0;
+  const AccuracyWish wish{0.002, 20.0, 0.1};
+  NetworkDescription scene = oscillator(1.0, w * w, 0.2, 1.0, 0.0, 1.0);
+  const RateChoice choice = choose_rate(scene, wish, 100.0);
+  const auto errors = plan::oscillator_error(w, 0.2, 1.0 / choice.rate_hz);
+
+  EXPECT_LE(std::abs(errors.pitch), wish.tolerance);
+  EXPECT_LE(std::abs(errors.decay), wish.tolerance);
+  const auto slower = plan::oscillator_error(w, 0.2, 1.0 / (choice.rate_hz - 100.0));
+  EXPECT_GT(std::max(std::abs(slower.pitch), std::abs(slower.decay)), wish.tolerance);
+}
+
+}  // namespace
+}  // namespace cordis::test
