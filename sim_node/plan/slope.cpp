@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim_node/plan/law_value.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -20,40 +22,9 @@ struct Argument {
   bool turns = true;  // a pull also has a slope across the link: pull / distance
 };
 
-/// Pull of a law at rest, or of a viscous law at distance `rest_length`.
 double value(const Law& law, double argument, const Argument& about) {
-  const double distance = about.elastic ? argument + about.rest_length : about.rest_length;
-  switch (law.kind) {
-    case Law::Kind::kNone:
-      return 0.0;
-    case Law::Kind::kTable: {
-      const auto& at = law.table.at;
-      const auto above = std::upper_bound(at.begin(), at.end(), argument) - at.begin();
-      if (above == 0) return law.table.value.front();
-      const auto i = static_cast<std::size_t>(above);
-      if (i == at.size()) return law.table.value.back();
-      const double share = (argument - at[i - 1]) / (at[i] - at[i - 1]);
-      return law.table.value[i - 1] + share * (law.table.value[i] - law.table.value[i - 1]);
-    }
-    case Law::Kind::kPower:
-      return std::copysign(law.coefficient * std::pow(std::abs(argument), law.exponent), argument);
-    case Law::Kind::kLennardJones: {
-      if (distance <= 0.0 || (law.cut > 0.0 && distance >= law.cut)) return 0.0;
-      const double sixth = std::pow(law.diameter / distance, 6.0);
-      return -24.0 * law.depth * (2.0 * sixth * sixth - sixth) / distance;
-    }
-    case Law::Kind::kRings: {
-      double pull = 0.0;
-      for (const engine::Ring& ring : law.rings) {
-        if (distance < ring.radius) pull -= ring.stiffness * (ring.radius - distance);
-      }
-      return pull;
-    }
-    case Law::Kind::kFunction:
-      return about.elastic ? (*law.function)(distance, argument, 0.0, 0.0, 0.0)
-                           : (*law.function)(about.rest_length, 0.0, argument, 0.0, 0.0);
-  }
-  return 0.0;
+  return about.elastic ? elastic_pull(law, argument + about.rest_length, argument)
+                       : viscous_pull(law, about.rest_length, 0.0, argument);
 }
 
 Slope of_table(const Law& law, const Argument& about) {
