@@ -110,7 +110,8 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
                        const std::vector<std::uint32_t>& q) {
   config::MappingReader& reader = entry.reader;
   if (entry.has_name) {  // so that nothing else bears it
-    names_.add({entry.name, Named::kLinks, 0, 0, false, reader.place_of("name")}, problems_);
+    const bool sound = problems_.error_count() == entry.errors_before;
+    names_.add({entry.name, Named::kLinks, 0, 0, sound, reader.place_of("name")}, problems_);
   }
   const bool has_range = reader.optional_value("range_m").exists();
   const double given_range =

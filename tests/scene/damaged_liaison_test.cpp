@@ -90,6 +90,18 @@ TEST(SetLiaison, OfUnsoundMatterSaysNothingOfItsOwn) {
   }
 }
 
+TEST(SetLiaison, IsNoLinkThatASignalCouldBeOf) {
+  config::Problems problems;
+  load_scene_text(scene_head(2) +
+                      "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}\n"
+                      "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
+                      "links:\n  - {liaison: s, within: a, range_m: 1, name: glue}\n"
+                      "signals:\n  g: {of: glue, quantity: force}\n",
+                  "t", problems);
+  ASSERT_EQ(problems.all().size(), 1u) << problems.text();
+  EXPECT_EQ(problems.all()[0].message, "'glue' has no links");
+}
+
 TEST(BadLiaisons, AreAllToldInOneGo) {
   config::Problems problems;
   load_scene_text(scene_head(2) +

@@ -1,5 +1,8 @@
 #include "sim_node/scene/parameters.h"
 
+#include <limits>
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_text.h"
