@@ -1,0 +1,33 @@
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/engine/connected_pieces.h"
+#include "tests/gallery/stage.h"
+
+namespace cordis::test {
+namespace {
+
+constexpr std::size_t kCohesion = 0;
+constexpr double kNear = 0.015;  // half as far again as two balls are at rest
+
+TEST(Regrouping, ComesApartInTwoHalvesAndIsOneAgain) {
+  Stage stage("regrouping.yaml");
+  engine::ConnectedPieces pieces(stage.world().network(), kCohesion);
+  const auto count = [&] { return pieces.find_near(stage.world().positions(), kNear); };
+  EXPECT_EQ(count(), 1u);
+
+  stage.play_until(2.9);  // the hands are apart
+  EXPECT_EQ(count(), 2u);
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < pieces.members().size(); ++i)
+    first += pieces.piece_of(i) == 0 ? 1 : 0;
+  EXPECT_GE(std::min(first, pieces.members().size() - first), 20u);  // of 50
+
+  stage.play_until(6.0);  // and pressed together
+  EXPECT_EQ(count(), 1u);
+}
+
+}  // namespace
+}  // namespace cordis::test
