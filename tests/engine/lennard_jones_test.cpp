@@ -54,7 +54,8 @@ double period_of_dimer(double distance, double step) {
 }
 
 TEST(LennardJones, DimerSwingsWithItsExactPeriod) {
-  for (const json& row : reference("R11_lennard_jones")["dimer"]["period_vs_energy"]) {
+  const json problem = reference("R11_lennard_jones");
+  for (const json& row : problem["dimer"]["period_vs_energy"]) {
     const double exact = number(row[1]);
     const double coarse = period_of_dimer(number(row[3]), 2e-3) - exact;
     const double fine = period_of_dimer(number(row[3]), 1e-3) - exact;
