@@ -49,7 +49,7 @@ double period_of_dimer(double distance, double step) {
     world.step();
     const double before = speed;
     speed = (world.velocity(1) - world.velocity(0)).x();
-    if (before > 0.0 && speed <= 0.0) return (n - 0.5 + before / (before - speed)) * step + step;
+    if (before > 0.0 && speed <= 0.0) return (n - 0.5 + before / (before - speed)) * step;
   }
 }
 

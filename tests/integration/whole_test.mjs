@@ -19,11 +19,15 @@ const cases = {
   },
 
   'the hand presses the key, and the string is drawn where it was pulled to': async ({ page }) => {
-    await until('the key is up', async () => (await height(page, KEY)) > -0.102);
-    const before = await look(page, PLUCKED);
+    // An earlier stroke may have left the string swinging.
+    const before = await until('the key is up, the string not below its rest', async () => {
+      const seen = await look(page, PLUCKED);
+      return (await height(page, KEY)) > -0.102 && (await height(page, PLUCKED)) > -0.001 && seen;
+    });
     const pulled = await until('the key is 10 mm down, and the string 4 mm', async () => {
       const down = (await height(page, KEY)) < -0.11 && (await height(page, PLUCKED)) < -0.004;
-      return down && look(page, PLUCKED, [before.at]);
+      const seen = down && (await look(page, PLUCKED, [before.at]));
+      return seen && seen.at.y > before.at.y + 5 && seen;
     });
     assert.ok(pulled.at.y > before.at.y + 5, `pixels: from ${before.at.y} down to ${pulled.at.y}`);
     assert.ok(!isDark(pulled.colour), `a mass is drawn at its new place: ${pulled.colour}`);
