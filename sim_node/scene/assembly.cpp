@@ -9,7 +9,9 @@ namespace cordis::scene {
 using config::Value;
 
 void Assembly::read_liaisons(const Value& section) {
-  liaisons_->read(section, scene_.file, scene_.space(), problems_);
+  std::vector<LiaisonSection> sections{{section, scene_.file}};
+  sections.insert(sections.end(), parts_.liaisons().begin(), parts_.liaisons().end());
+  liaisons_->read(sections, scene_.space(), problems_);
 }
 
 void Assembly::put(Piece& piece) const {

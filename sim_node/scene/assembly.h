@@ -36,7 +36,7 @@ inline std::uint32_t sum(const LinkCounts& counts) noexcept {
   return counts[0] + counts[1] + counts[2];
 }
 
-/// What the sections of a scene file add to, in the order liaisons, parts, matter, ports, links,
+/// What the sections of a scene file add to, in the order parts, liaisons, matter, ports, links,
 /// signals.
 class Assembly {
  public:
@@ -46,8 +46,9 @@ class Assembly {
         liaisons_(std::make_shared<Liaisons>()),
         parts_(problems) {}
 
-  void read_liaisons(const config::Value& section);
   void read_parts(const config::Value& section);
+  /// Those of the scene and of files of parts.
+  void read_liaisons(const config::Value& section);
   void read_matter(const config::Value& section);
   void read_ports(const config::Value& section);
   void read_links(const config::Value& section);

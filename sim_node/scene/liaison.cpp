@@ -1,8 +1,8 @@
 #include "sim_node/scene/liaison.h"
 
 #include <algorithm>
-#include <filesystem>
 
+#include "sim_node/scene/include.h"
 #include "sim_node/scene/selection.h"
 
 namespace cordis::scene {
@@ -12,12 +12,6 @@ namespace {
 using config::Value;
 
 constexpr std::size_t kMostLevels = 64;  // of liaisons that are like each other
-
-std::string whole_path(const std::filesystem::path& path) {
-  std::error_code failure;
-  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, failure);
-  return failure ? path.string() : whole.string();
-}
 
 /// `base` with `own` laid on it: mappings merge unless they are of different kinds, everything else
 /// is replaced.
@@ -45,11 +39,11 @@ Value laid_on(const Value& base, const Value& own, bool is_whole) {
 /// Reads the sections of the files, then puts the definitions together.
 class Liaisons::Reader {
  public:
-  Reader(Liaisons& result, config::Problems& problems) : result_(result), problems_(problems) {}
+  Reader(Liaisons& result, config::Problems& problems)
+      : result_(result), problems_(problems), includes_(problems) {}
 
   void read_section(const Value& section, const std::string& file) {
-    open_files_.push_back(whole_path(file));
-    result_.files_.push_back(open_files_.back());
+    const Includes::Open open(includes_, file);
     if (section.exists() && section.kind() != Value::Kind::kMapping) {
       problems_.error(section.place(),
                       "'liaisons' must be a mapping of keys, got " + section.described());
@@ -59,11 +53,13 @@ class Liaisons::Reader {
         add(entry);
         continue;
       }
-      const bool sequence = entry.value.kind() == Value::Kind::kSequence;
-      for (const Value& path : sequence ? entry.value.items() : std::vector<Value>{entry.value})
-        read_include(path, file);
+      for (const Includes::File& included : includes_.read(entry.value, file)) {
+        config::MappingReader reader(included.root, "file of liaisons", problems_);
+        reader.required_integer("cordis", 1, 1);
+        read_section(reader.required_mapping("liaisons"), included.path);
+        reader.finish();
+      }
     }
-    open_files_.pop_back();
   }
 
   /// Completes the definitions of all liaisons.
@@ -72,32 +68,6 @@ class Liaisons::Reader {
   }
 
  private:
-  void read_include(const Value& path, const std::string& from_file) {
-    if (path.kind() != Value::Kind::kScalar || path.text().empty()) {
-      problems_.error(path.place(),
-                      "'include' must be the path of a file, got " + path.described());
-      return;
-    }
-    const std::filesystem::path file = std::filesystem::path(from_file).parent_path() / path.text();
-    const std::string whole = whole_path(file);
-    if (std::find(open_files_.begin(), open_files_.end(), whole) != open_files_.end()) {
-      problems_.error(path.place(), "'" + path.text() + "' includes itself");
-      return;
-    }
-    const std::vector<std::string>& known = result_.files_;
-    if (std::find(known.begin(), known.end(), whole) != known.end()) return;
-
-    const Value root = config::load_file(file.string(), problems_, path.place());
-    if (!root.exists()) {
-      result_.files_.push_back(whole);
-      return;
-    }
-    config::MappingReader reader(root, "file of liaisons", problems_);
-    reader.required_integer("cordis", 1, 1);
-    read_section(reader.required_mapping("liaisons"), file.string());
-    reader.finish();
-  }
-
   void add(const Value::Entry& entry) {
     const bool named = check_name(entry.key, entry.key_place, problems_);
     const auto [known, is_new] = result_.liaisons_.try_emplace(entry.key);
@@ -146,19 +116,16 @@ class Liaisons::Reader {
 
   Liaisons& result_;
   config::Problems& problems_;
-  std::vector<std::string>
-      open_files_;                    // canonical paths from the scene down to the present include
+  Includes includes_;
   std::vector<std::string> waiting_;  // liaisons that wait for one they are like
 };
 
-void Liaisons::read(const Value& section, const std::string& file, int space,
+void Liaisons::read(const std::vector<LiaisonSection>& sections, int space,
                     config::Problems& problems) {
-  const std::size_t known = names_.size();
   Reader reader(*this, problems);
-  reader.read_section(section, file);
+  for (const LiaisonSection& section : sections) reader.read_section(section.section, section.file);
   reader.complete_all();
-  for (std::size_t n = known; n < names_.size(); ++n) {
-    const std::string& name = names_[n];
+  for (const std::string& name : names_) {
     Liaison& liaison = liaisons_.at(name);
     if (!liaison.sound) continue;
     std::optional<LinkLaw> law =

@@ -20,14 +20,19 @@ struct Liaison {
   bool sound = true;      ///< false: it has a problem, which has been told
 };
 
+/// A `liaisons:` section, and the file it stands in: its includes are relative to the folder of
+/// that.
+struct LiaisonSection {
+  config::Value section;
+  std::string file;
+};
+
 /// The liaisons of a scene by name, with those of included files.
 class Liaisons {
  public:
-  /// Reads a `liaisons:` section and all it includes that was not read before.
-  /// @param file   the file it stands in; includes are relative to its folder.
+  /// Reads all sections of a scene and what they include; to be called once.
   /// @param space  of the scene: a rest length may be negative in 1-D alone
-  void read(const config::Value& section, const std::string& file, int space,
-            config::Problems& problems);
+  void read(const std::vector<LiaisonSection>& sections, int space, config::Problems& problems);
 
   /// The liaison that the value names. Nothing when there is none of that name, which is a problem,
   /// or when the liaison itself has one.
@@ -50,7 +55,6 @@ class Liaisons {
   mutable BehaviourPool pool_;
   std::map<std::string, Liaison> liaisons_;
   std::vector<std::string> names_;
-  std::vector<std::string> files_;  // canonical paths of all that have been read
 };
 
 }  // namespace cordis::scene

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim_node/scene/include.h"
+#include "sim_node/scene/liaison.h"
 
 namespace cordis::scene {
 
@@ -35,11 +36,7 @@ class Parts {
   /// Reads a `parts:` section and all it includes. @param file  the file it stands in
   void read_section(const config::Value& section, const std::string& file);
 
-  /// A `liaisons:` section that stood in a file of parts.
-  struct LiaisonSection {
-    config::Value section;
-    std::string file;
-  };
+  /// The `liaisons:` sections that stood in files of parts.
   const std::vector<LiaisonSection>& liaisons() const noexcept { return liaisons_; }
 
   /// The part that the value names. Nothing when there is none, which is a problem, or when the

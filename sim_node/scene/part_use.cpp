@@ -10,8 +10,6 @@ using config::Value;
 
 void Assembly::read_parts(const Value& section) {
   parts_.read_section(section, scene_.file);
-  for (const Parts::LiaisonSection& included : parts_.liaisons())
-    liaisons_->read(included.section, included.file, scene_.space(), problems_);
 }
 
 std::string Assembly::matter_called(const std::string& name) const {

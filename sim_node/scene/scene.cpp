@@ -91,8 +91,8 @@ void read_content(config::MappingReader& reader, Scene& scene, config::Problems&
 
   Assembly assembly(scene, problems);
   read_world(world, scene, problems);
-  assembly.read_liaisons(liaisons);
   assembly.read_parts(parts);
+  assembly.read_liaisons(liaisons);
   assembly.read_matter(matter);
   assembly.read_ports(ports);
   assembly.read_links(links);
