@@ -3,10 +3,6 @@
 //
 // Built twice: against the engine as it is shipped, and against the same sources compiled with -O1.
 #include <cstdint>
-#include <fstream>
-#include <map>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -14,6 +10,7 @@
 
 #include "tests/engine/many_states.h"
 #include "tests/engine/scenes.h"
+#include "tests/support/golden_hashes.h"
 
 namespace cordis::test {
 namespace {
@@ -106,30 +103,11 @@ World changing_links(VectorWidth width) {
   return world;
 }
 
-/// Reads "name: 0x..." lines, the part of YAML that tests/golden/hashes.yaml keeps to.
-std::map<std::string, std::uint64_t> golden_hashes() {
-  std::ifstream file(std::string(CORDIS_GOLDEN_DIR) + "/hashes.yaml");
-  if (!file) throw std::runtime_error("tests/golden/hashes.yaml cannot be read");
-  std::map<std::string, std::uint64_t> hashes;
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.empty() || line[0] == '#' || colon == std::string::npos) continue;
-    hashes[line.substr(0, colon)] = std::stoull(line.substr(colon + 2), nullptr, 16);
-  }
-  return hashes;
-}
-
-std::string hexadecimal(std::uint64_t value) {
-  std::ostringstream text;
-  text << "0x" << std::hex << value;
-  return text.str();
-}
-
 class GoldenHash : public testing::TestWithParam<VectorWidth> {
  protected:
   static void expect(const World& world, const std::string& name) {
     EXPECT_TRUE(std::isfinite(world.energy().total()));
-    EXPECT_EQ(hexadecimal(world.state_hash()), hexadecimal(golden_hashes().at(name)))
+    EXPECT_EQ(hexadecimal(world.state_hash()), golden_hashes("hashes.yaml").at(name))
         << name << ": the numbers of the engine have changed";
   }
 };
