@@ -5,6 +5,20 @@
 #include <utility>
 
 namespace cordis::sim {
+namespace {
+
+std::uint8_t shown_state(const engine::World& world, std::uint32_t link) noexcept {
+  const engine::NetworkDescription& network = world.network().description();
+  const std::uint32_t number = world.state_of(link);
+  const engine::LinkState& state =
+      network.behaviours[network.state_links[link].behaviour].states[number];
+  const bool is_idle = state.stiffness == 0.0 && state.viscosity == 0.0 &&
+                       state.elasticity.kind == engine::Law::Kind::kNone &&
+                       state.dissipation.kind == engine::Law::Kind::kNone;
+  return static_cast<std::uint8_t>(number + (is_idle ? kLinkIsIdle : 0));
+}
+
+}  // namespace
 
 FrameStore::FrameStore(FrameShape shape)
     : shape_(std::move(shape)),
@@ -40,7 +54,7 @@ void FrameStore::turn(const engine::World& world, double simulated_s, std::int64
   if (shape_.link_count > 0) {
     for (std::size_t l = 0; l < shape_.state_link_count; ++l) {
       buffer.link_state[shape_.first_state_link + l] =
-          static_cast<std::uint8_t>(world.state_of(static_cast<std::uint32_t>(l)));
+          shown_state(world, static_cast<std::uint32_t>(l));
     }
   }
   buffer.step = world.step_count();

@@ -30,10 +30,14 @@ struct FrameShape {
   std::size_t state_link_count = 0;
 };
 
+/// Added to the state of a link that neither pulls nor pushes in it, whatever its ends do: apart,
+/// broken. A behaviour has 64 states at most.
+inline constexpr std::uint8_t kLinkIsIdle = 128;
+
 /// A frame with the signals and events of the ticks before it.
 struct FrameBuffer {
   std::vector<double> positions;         ///< as World::positions()
-  std::vector<std::uint8_t> link_state;  ///< per link, or empty
+  std::vector<std::uint8_t> link_state;  ///< of SceneFrame: per link, or empty
   EventRoom events;
   std::vector<double> rows;
   std::size_t row_count = 0;

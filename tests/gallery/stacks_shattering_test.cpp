@@ -48,7 +48,7 @@ TEST(StacksShattering, StandByThemselvesAndShatterWhenTheyAreHit) {
     before = now;
   });
   EXPECT_EQ(whole_bonds(stage).size(), bonds - broken);
-  EXPECT_GE(before, 30u);  // of 3
+  EXPECT_GE(before, 50u);  // of 3
   EXPECT_LT(before, 108u);
   // a step before the threshold or a step beyond it, as the account has it
   const double mean = taken / static_cast<double>(broken);

@@ -32,6 +32,7 @@ engine::Behaviour breaking(const std::string& name, double limit) {
   behaviour.name = name;
   behaviour.states.resize(2);
   behaviour.states[0].name = "whole";
+  behaviour.states[0].viscosity = 1.0e-9;
   behaviour.states[0].last_exit = 1;
   behaviour.states[1].name = "broken";
   behaviour.states[1].first_exit = 1;
@@ -121,6 +122,8 @@ TEST(Description, SaysNothingOfStatesWhenThereAreNone) {
 TEST(Player, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
   Player player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
   FrameStore& frames = player.stage().frames;
+  frames.turn(player.simulation().world(), 0.0, 0);
+  EXPECT_EQ(frames.published().link_state, std::vector<std::uint8_t>(8, 0));
   for (int tick = 0; tick < 10; ++tick) player.advance();
   EXPECT_TRUE(frames.has_news());
   frames.turn(player.simulation().world(), 0.0, 0);
@@ -133,7 +136,9 @@ TEST(Player, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
   EXPECT_EQ(frame.events.events()[0].behaviour, 0u);
   EXPECT_EQ(frame.events.events()[0].to, 1u);
   EXPECT_GT(frame.events.events()[0].value, 0.0101);
-  EXPECT_EQ(frame.link_state, (std::vector<std::uint8_t>{0, 0, 1, 1, 1, 1, 1, 1}));
+  constexpr std::uint8_t kBroken = 1 + kLinkIsIdle;
+  EXPECT_EQ(frame.link_state, (std::vector<std::uint8_t>{0, 0, kBroken, kBroken, kBroken, kBroken,
+                                                         kBroken, kBroken}));
   EXPECT_FALSE(frames.has_news());
 }
 

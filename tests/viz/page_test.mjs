@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { banner, drawn, isDark, look, openPage, textOf, viz } from './browser.mjs';
 import { out, runCases, Session, until } from './session.mjs';
 
-const [MIDDLE, PORT] = [29, 12]; // MATs of the string of scene_source.cpp
+const [MIDDLE, PORT, IDLE] = [29, 12, 32]; // MATs of the string of scene_source.cpp
 
 const cases = {
   'the string is drawn where it is, and moves': async ({ page }) => {
@@ -51,6 +51,8 @@ const cases = {
       const other = await linkAfter(MIDDLE + 1);
       assert.ok(isBlue(other), `its neighbour stays blue: ${other}`);
     }
+    const idle = await linkAfter(IDLE);
+    assert.ok(isDark(idle), `a link that does nothing is not drawn: ${idle}`);
   },
 
   'every figure is there, and true': async ({ page, url }) => {

@@ -33,6 +33,7 @@ constexpr std::uint32_t kStepsPerFrame = 40;
 constexpr std::uint8_t kMass = 0;
 constexpr std::uint8_t kFixed = 1;
 constexpr std::uint8_t kPort = 2;
+constexpr std::size_t kIdleLink = 32;  // it does nothing, all the time
 
 struct Options {
   int domain = -1;
@@ -195,6 +196,7 @@ class Publisher {
       frame_.link_state().resize(scene_.description.link_ends().size() / 2);
       for (std::size_t l = 1; l < frame_.link_state().size(); l += 2)
         frame_.link_state()[l] = second;
+      if (frame_.link_state().size() > kIdleLink) frame_.link_state()[kIdleLink] = 128 + 1;
     }
     frame_.time_nsec(node::monotonic_nsec());
     frame_writer_.write(frame_);

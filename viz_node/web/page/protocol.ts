@@ -19,7 +19,7 @@ export interface Frame {
   matCount: number;
   dropped: number;
   positions: Float32Array<ArrayBuffer>; // x, y, z of each MAT [m]
-  linkStates: Uint8Array<ArrayBuffer>; // per link, or empty
+  linkStates: Uint8Array<ArrayBuffer>; // per link, + LINK_IS_IDLE, or empty
 }
 
 export interface Signals {
@@ -43,6 +43,9 @@ export interface Topology {
   linkEnds: Uint32Array<ArrayBuffer>; // two per link
   kinds: Uint8Array<ArrayBuffer>; // KIND_*
 }
+
+/** Added to the state of a link that does nothing in it: apart, broken. */
+export const LINK_IS_IDLE = 128;
 
 export const KIND_MASS = 0;
 export const KIND_FIXED = 1;

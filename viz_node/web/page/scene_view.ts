@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import { Ground } from './ground.ts';
 import { linkMaterials, matMaterial, materialOfState, sceneUniforms, shownKinds } from './mat_material.ts';
-import type { Frame, Topology } from './protocol.ts';
+import { LINK_IS_IDLE, type Frame, type Topology } from './protocol.ts';
 import type { Quality } from './quality.ts';
 import { CameraRig, type Pose } from './camera_rig.ts';
 
@@ -71,7 +71,7 @@ export class SceneView {
     this.scene.add(links);
   }
 
-  /** Lays the links of one colour side by side in the index: one call draws each colour. */
+  /** Lays the links of one colour side by side in the index: one call draws each colour. Those that do nothing are not drawn. */
   private sortLinks(states: Uint8Array): void {
     const index = this.linkGeometry.index;
     if (index === null || states.length !== this.topology.linkCount) return;
@@ -81,10 +81,12 @@ export class SceneView {
     const sorted = index.array;
     this.linkGeometry.clearGroups();
     let filled = 0;
-    for (const material of new Set([...new Set(states)].map(materialOfState))) {
+    const shown = [...new Set(states)].filter((state) => state < LINK_IS_IDLE);
+    for (const material of new Set(shown.map(materialOfState))) {
       const begin = filled;
       for (let l = 0; l < states.length; ++l) {
-        if (materialOfState(states[l]!) !== material) continue;
+        const state = states[l]!;
+        if (state >= LINK_IS_IDLE || materialOfState(state) !== material) continue;
         sorted[filled++] = ends[2 * l]!;
         sorted[filled++] = ends[2 * l + 1]!;
       }
