@@ -1,31 +1,17 @@
 // cli/check_verb.cpp -- cordis check: says before the run what it promises, and where it would
 // fail.
-#include <charconv>
 #include <cstdio>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
 
 #include "cli/exit_code.h"
+#include "cli/number.h"
 #include "cli/scene_check.h"
 #include "cli/verbs.h"
-#include "node/config/mapping_reader.h"
 
 namespace cordis::cli {
 namespace {
-
-/// @throws UsageError unless the text is a number within the range
-double parse_number(const std::string& option, const std::string& text, double lowest,
-                    double highest) {
-  double number = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || stop != end || !(number >= lowest) || !(number <= highest)) {
-    throw UsageError(option + " must be a number from " + config::number_text(lowest) + " to " +
-                     config::number_text(highest) + ", got '" + text + "'");
-  }
-  return number;
-}
 
 void write_json(const SceneCheck& check) {
   const std::string json = json_of(check);

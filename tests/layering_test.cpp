@@ -74,6 +74,8 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
     {"device_node/", {"device_node/", "node/", "idl/"}},
     {"viz_node/", {"viz_node/", "node/", "idl/"}},
     {"record_node/", {"record_node/", "node/", "idl/"}},
+    {"cli/lab/",  // plays a session in one process
+     {"cli/", "node/", "idl/", "sim_node/", "device_node/"}},
     {"cli/",
      {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/", "record_node/mcap/",
       "viz_node/render/"}},

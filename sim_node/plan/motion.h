@@ -2,34 +2,46 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "sim_node/engine/network.h"
+#include "sim_node/plan/near_pairs.h"
+#include "sim_node/plan/program_value.h"
 
 namespace cordis::plan {
 
 /// A network in continuous time: what a run of ever smaller steps tends to.
 ///
 /// Its values are a row: positions, velocities (3 per MAT each), the internal forces of the Maxwell
-/// elements. Ports rest. A state link changes its state at the very moment a condition becomes
-/// true; whoever moves the values has to find that moment (see Oracle).
+/// elements. Ports go on with the velocity they have. A liaison changes its state at the very
+/// moment a condition becomes true; whoever moves the values has to find that moment (see Oracle).
+/// `rising` and `falling` ask for the slope of their value in time.
 class Motion {
  public:
   using Values = std::vector<double>;
 
-  /// @throws std::invalid_argument for what has no meaning in continuous time or is not known here:
-  ///         sets, `rising` and `falling`, the impulse of a link.
+  /// A state link, or a pair of a set, whose state is to change.
+  struct Change {
+    std::optional<std::uint32_t> state_link;
+    std::uint32_t set = 0;
+    NearPairs::Pair pair;
+  };
+
+  /// @throws std::invalid_argument for what is not known here: the impulse of a link.
   explicit Motion(engine::NetworkDescription network);
 
   Values start() const;
   /// How the values change per second, in the present states. Resizes `rate`.
-  void rate(double time, const Values& values, Values& rate) const;
+  void rate(const Values& values, Values& rate);
+  /// The force from outside [N] on a mass, until it is set again.
+  void hold_force(std::uint32_t mat, const engine::Vec3& force);
 
-  /// The condition of a state that is true, or -1: index of the first state link one of whose exits
-  /// holds.
-  std::int64_t link_to_change(double time, const Values& values) const;
-  /// Takes that link to its next state.
-  void change(std::uint32_t state_link, double time, const Values& values);
+  /// The first state link, or else pair, one of whose exits holds.
+  std::optional<Change> next_change(double time, const Values& values);
+  /// Takes it to its next state.
+  void change(const Change& change, double time, const Values& values);
   std::uint32_t state_of(std::uint32_t state_link) const { return states_[state_link].state; }
   bool has_states() const noexcept { return has_states_; }
 
@@ -43,19 +55,43 @@ class Motion {
   struct Present {
     std::uint32_t state = 0;
     double rest_length = 0.0;
-    double entered = 0.0;  // [s]
+    double entered = -1.0;  // [s]
+  };
+  struct Set {
+    NearPairs near;
+    std::map<NearPairs::Pair, Present> bound;  // in another state than that of the start
+  };
+  /// A liaison between two MATs in its present state.
+  struct Joined {
+    std::uint32_t mat_a;
+    std::uint32_t mat_b;
+    const engine::Behaviour& behaviour;
+    const Present& present;
+    bool of_set;
   };
 
-  Geometry geometry(const Values& values, std::uint32_t a, std::uint32_t b) const;
-  double pull(const Present& present, std::uint32_t state_link, const Geometry& link) const;
-  double evaluate(const engine::Program& program, std::uint32_t state_link, double time,
-                  const Geometry& link) const;
+  Geometry geometry(const Values& values, const Joined& joined) const;
+  double mass(std::uint32_t mat) const;
+  double pull(const Joined& joined, const Geometry& link) const;
+  LinkQuantities quantities(const Joined& joined, double time, const Geometry& link) const;
   /// The exit of the present state that holds; -1 when none does.
-  std::int64_t exit_of(std::uint32_t state_link, double time, const Values& values) const;
+  std::int64_t exit_of(const Joined& joined, double time, const Values& values);
+  /// Values a moment earlier, for conditions that ask for a trend.
+  const Values& earlier(double time, const Values& values);
+  Present fresh(std::uint32_t set, NearPairs::Pair pair) const;
+  Joined joined(std::uint32_t state_link) const;
+  Joined joined(std::uint32_t set, NearPairs::Pair pair, const Present& present) const;
+  template <class Visit>
+  void each_pair(std::uint32_t set, const Values& values, Visit visit);
 
   engine::NetworkDescription network_;
   std::vector<Present> states_;
+  std::vector<Set> sets_;
+  std::vector<engine::Vec3> held_;  // forces from outside, per MAT
   bool has_states_ = false;
+  Values earlier_;
+  Values rate_;
+  bool earlier_is_known_ = false;
 };
 
 }  // namespace cordis::plan

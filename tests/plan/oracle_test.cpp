@@ -129,10 +129,96 @@ TEST(Oracle, RelaxesAMaxwellElementAsTheClosedFormDoes) {
   EXPECT_NEAR((0.5 - oracle.velocity(1).x()) / slowed, 1.0, 1e-5);
 }
 
+/// Two balls fly apart after they have pushed each other, once by a state link, once as a set.
+NetworkDescription colliding_balls(bool as_set) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats = {mass(0.1, Vec3(0, 0, 0), Vec3(1, 0, 0)), mass(0.3, Vec3(0.1, 0.01, 0))};
+  scene.radius = {0.02, 0.02};
+  scene.behaviours = {contact(500.0)};
+  if (as_set) {
+    scene.sets.push_back({0, {0, 1}, {}, 0.04, -1.0});
+  } else {
+    scene.state_links = {{0, 1, 0, 0.04}};
+  }
+  return scene;
+}
+
+TEST(Oracle, ASetOfTwoIsALinkBetweenThem) {
+  Oracle set(colliding_balls(true));
+  Oracle link(colliding_balls(false));
+  set.advance_to(0.3);
+  link.advance_to(0.3);
+  EXPECT_NEAR(set.velocity(1).x(), link.velocity(1).x(), 1e-10);
+  EXPECT_GT(set.velocity(1).x(), 0.3);  // they have met
+  EXPECT_NEAR(0.1 * set.velocity(0).x() + 0.3 * set.velocity(1).x(), 0.1, 1e-12);
+  EXPECT_NEAR(0.1 * set.velocity(0).squaredNorm() + 0.3 * set.velocity(1).squaredNorm(), 0.1, 1e-9);
+}
+
+TEST(Oracle, HoldsForcesAndMovesPorts) {
+  // A mass of 2 kg under 3 N; a spring of 8 N/m to a port that leaves at 0.5 m/s drags it along.
+  NetworkDescription scene = oscillator(2.0, 0.0, 0.0, 0.0, 0.0, 1e-3);
+  Oracle pushed(scene);
+  pushed.hold_force(1, Vec3(3.0, 0, 0));
+  pushed.advance_to(2.0);
+  EXPECT_NEAR(pushed.position(1).x(), 0.5 * 3.0 / 2.0 * 4.0, 1e-11);
+
+  scene.mats[0] = port(Vec3::Zero());
+  scene.links[0].stiffness = 8.0;
+  Oracle dragged(scene);
+  dragged.set_velocity(0, Vec3(0.5, 0, 0));
+  dragged.advance_to(3.0);
+  EXPECT_NEAR(dragged.position(1).x(), 0.5 * (3.0 - std::sin(2.0 * 3.0) / 2.0), 1e-11);
+}
+
+TEST(Oracle, FindsTheMomentAtWhichAValueFalls) {
+  // x = cos t from 1 downwards: |x| < 0.5 and falling first holds at t = pi / 3; for the speed of
+  // the link, -sin t, |v| > 0.5 and rising first holds at pi / 6.
+  const auto asked = [](engine::Quantity quantity, engine::Operation compare,
+                        engine::Operation trend) {
+    engine::Program program;
+    const engine::Instruction value{engine::Operation::kQuantity, quantity, 0.0, 0};
+    const engine::Instruction absolute{engine::Operation::kAbs, quantity, 0.0, 0};
+    program.code = {value,
+                    absolute,
+                    {engine::Operation::kConstant, quantity, 0.5, 0},
+                    {compare, quantity, 0.0, 0},
+                    value,
+                    absolute,
+                    {trend, quantity, 0.0, 0},
+                    {engine::Operation::kAnd, quantity, 0.0, 0}};
+    return program;
+  };
+  const auto moment = [&](const engine::Program& when) {
+    NetworkDescription scene = oscillator(1.0, 1.0, 0.0, 1.0, 0.0, 1e-2);
+    engine::Behaviour watch;
+    watch.states.resize(2);
+    watch.states[0].last_exit = watch.states[1].first_exit = watch.states[1].last_exit = 1;
+    watch.exits.resize(1);
+    watch.exits[0].when = when;
+    watch.exits[0].target = 1;
+    scene.behaviours = {watch};
+    scene.state_links = {{0, 1, 0, 0.0}};
+    Oracle oracle(scene);
+    double time = 0.0;
+    while (oracle.state_of(0) == 0 && time < 3.0) oracle.advance_to(time += 1e-3);
+    return time;
+  };
+  using engine::Operation;
+  using engine::Quantity;
+  EXPECT_NEAR(moment(asked(Quantity::kDistance, Operation::kLess, Operation::kFalling)),
+              std::acos(0.5), 1.5e-3);
+  EXPECT_NEAR(moment(asked(Quantity::kSpeed, Operation::kGreater, Operation::kRising)),
+              std::asin(0.5), 1.5e-3);
+}
+
 TEST(Oracle, RefusesWhatItDoesNotKnow) {
   NetworkDescription scene = oscillator(1.0, 1.0, 0.0, 1.0, 0.0, 1e-3);
   scene.behaviours.push_back(contact(1.0));
-  scene.sets.push_back({0, {1}, {}, 1.0, 0.5});
+  scene.behaviours[0].exits.resize(1);
+  scene.behaviours[0].exits[0].when.code = {
+      {engine::Operation::kQuantity, engine::Quantity::kImpulse, 0.0, 0}};
   EXPECT_THROW(Oracle{scene}, std::invalid_argument);
 }
 

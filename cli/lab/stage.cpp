@@ -1,10 +1,10 @@
-// tests/gallery/stage.cpp
-#include "tests/gallery/stage.h"
+// cli/lab/stage.cpp
+#include "cli/lab/stage.h"
 
 #include <cmath>
 #include <stdexcept>
 
-namespace cordis::test {
+namespace cordis::cli {
 namespace {
 
 using device::GestureMessage;
@@ -44,6 +44,7 @@ class DirectChannel final : public device::GestureChannel {
   explicit DirectChannel(sim::DeviceExchange& exchange) : exchange_(exchange) {}
 
   bool send(const GestureMessage& sample) noexcept override {
+    given_ = sample.value;
     if (exchange_.role() == Role::kMass) {
       msg::GesturePositions positions;
       fill_header(sample, exchange_.device_id(), positions);
@@ -69,6 +70,8 @@ class DirectChannel final : public device::GestureChannel {
     has_answer_ = true;
   }
 
+  const device::AxisValues& given() const noexcept { return given_; }
+
   bool receive(GestureMessage& answer, std::chrono::nanoseconds) noexcept override {
     if (!has_answer_) return false;
     answer = answer_;
@@ -79,6 +82,7 @@ class DirectChannel final : public device::GestureChannel {
  private:
   sim::DeviceExchange& exchange_;
   GestureMessage answer_;
+  device::AxisValues given_{};
   bool has_answer_ = false;
 };
 
@@ -101,6 +105,8 @@ class Stage::Player {
                   simulated.role() == Role::kMass ? device::Role::kMass : device::Role::kLiaison,
                   {kDeviceRun, 0}, true, *device_.driver, channel_, meter_, &no_time) {}
 
+  const device::DeviceConfig& config() const noexcept { return device_.config; }
+  const device::AxisValues& given() const noexcept { return channel_.given(); }
   void speak() noexcept { exchange_.send_sample(); }
   void hear(const engine::World& world) {
     channel_.take_answer(world);
@@ -119,8 +125,7 @@ class Stage::Player {
 
 Stage::Stage(const std::string& launch_file, const std::vector<std::string>& overrides) {
   config::Problems problems;
-  const config::Launch launch = config::load_launch(
-      std::string(CORDIS_SOURCE_DIR) + "/launch_configs/" + launch_file, overrides, problems);
+  const config::Launch launch = config::load_launch(launch_file, overrides, problems);
   for (const config::LaunchNode& node : launch.nodes) {
     if (node.program != "sim_node") continue;
     sim::SimConfig config = sim::read_sim_config(launch, node, problems);
@@ -128,13 +133,15 @@ Stage::Stage(const std::string& launch_file, const std::vector<std::string>& ove
     simulation_ = std::make_unique<sim::Simulation>(
         std::make_shared<const scene::Scene>(std::move(config.scene)), kSimRun);
   }
-  if (problems.has_errors() || !simulation_) throw std::runtime_error(problems.text());
+  problems.throw_if_any();
+  if (!simulation_) throw std::runtime_error(launch_file + " has no sim_node");
 
   for (const config::LaunchNode& node : launch.nodes) {
     if (node.program != "device_node") continue;
     device::LoadedDevice loaded = device::load_device(launch, node, problems);
     sim::DeviceExchange* simulated = simulation_->find(loaded.config.device_id);
-    if (simulated == nullptr) continue;  // no port is its
+    const bool is_simulated = loaded.config.driver == "mock" || loaded.config.driver == "script";
+    if (simulated == nullptr || !is_simulated) continue;
     players_.push_back(std::make_unique<Player>(std::move(loaded), *simulated));
   }
   row_.resize(scene().signals.count());
@@ -142,6 +149,30 @@ Stage::Stage(const std::string& launch_file, const std::vector<std::string>& ove
 }
 
 Stage::~Stage() = default;
+
+const Stage::Player* Stage::player_of(const scene::Port& port) const noexcept {
+  for (const auto& player : players_) {
+    if (player->config().device_id == port.device_id) return player.get();
+  }
+  return nullptr;
+}
+
+bool Stage::plays(const scene::Port& port) const noexcept {
+  return player_of(port) != nullptr;
+}
+
+std::string Stage::driver_of(const scene::Port& port) const {
+  return player_of(port)->config().driver;
+}
+
+engine::Vec3 Stage::given(const scene::Port& port) const {
+  if (port.role == Role::kMass) return world().position(port.mat);
+  engine::Vec3 force = engine::Vec3::Zero();
+  for (std::size_t i = 0; i < port.axes.size(); ++i) {
+    force += player_of(port)->given()[port.axes[i]] * port.directions[i];
+  }
+  return force;
+}
 
 void Stage::play_until(double time_s, const std::function<void()>& after_tick) {
   const double half_a_step = 0.5 * world().network().step();
@@ -185,4 +216,4 @@ double Stage::energy_residual() const {
   return energy.residual() / energy.largest;
 }
 
-}  // namespace cordis::test
+}  // namespace cordis::cli

@@ -1,0 +1,162 @@
+// cli/lab/lab.cpp
+#include "cli/lab/lab.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "cli/lab/lab_store.h"
+#include "sim_node/plan/instruction_counter.h"
+#include "sim_node/plan/load.h"
+
+namespace cordis::cli {
+namespace {
+
+using plan::TrialResult;
+
+/// How much of everything.
+struct Effort {
+  double tolerance;   // of the oracle
+  double longest_s;   // of one of the two oracles
+  double all_runs_s;  // wall time of all runs by one core; what is more is left out
+  double highest_factor;
+  bool coarse;
+};
+constexpr Effort kThorough{1e-12, 300.0, 1200.0, 256.0, false};
+constexpr Effort kQuick{1e-10, 6.0, 7.0, 256.0, true};
+
+struct Attempt {
+  std::string integrator;
+  double rate_hz;
+};
+
+/// Leaves out the highest rates, as far as the time asks for it.
+std::string shorten(plan::Ladder& ladder, double step_nsec, double integrators, double longest_s) {
+  const double highest = ladder.rates_hz.back();
+  double cost = 0.0;
+  for (const double rate : ladder.rates_hz) {
+    cost += 1e-9 * step_nsec * rate * ladder.sampling.duration() * integrators;
+  }
+  while (cost > longest_s && ladder.rates_hz.size() > 3) {
+    cost -= 1e-9 * step_nsec * ladder.rates_hz.back() * ladder.sampling.duration() * integrators;
+    ladder.rates_hz.pop_back();
+  }
+  if (ladder.rates_hz.back() == highest) return {};
+  return fmt::format("rates from {:g} to {:g} Hz are left out: they take too long",
+                     2.0 * ladder.rates_hz.back(), highest);
+}
+
+/// The time of a short run is that of the quickest of three.
+TrialResult measure(const LabScene& lab, const Attempt& attempt, const plan::Reference& reference) {
+  constexpr double kShort = 5e7;  // [ns]
+  TrialResult best =
+      plan::try_out(lab.scene.network, attempt.integrator, attempt.rate_hz, lab.course, reference);
+  if (best.nsec_per_s * reference.sampling.duration() > kShort) return best;
+  for (int again = 0; again < 2; ++again) {
+    const TrialResult next = plan::try_out(lab.scene.network, attempt.integrator, attempt.rate_hz,
+                                           lab.course, reference);
+    best.nsec_per_s = std::min(best.nsec_per_s, next.nsec_per_s);
+  }
+  return best;
+}
+
+void run_all(const LabScene& lab, const plan::Reference& reference,
+             const std::vector<Attempt>& attempts, int jobs, LabStore& store,
+             const std::function<void(std::string)>& progress) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<std::size_t> done{0};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < attempts.size(); i = next++) {
+      try {
+        store.keep(measure(lab, attempts[i], reference));
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        failure = std::current_exception();
+        return;
+      }
+      const std::size_t count = ++done;
+      const std::lock_guard lock(mutex);
+      progress(fmt::format("{} of {} runs: {} at {:g} Hz", count, attempts.size(),
+                           attempts[i].integrator, attempts[i].rate_hz));
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (int job = 1; job < jobs; ++job) helpers.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::vector<LabRun> sorted_runs(const std::vector<TrialResult>& results,
+                                const std::vector<std::string>& integrators) {
+  std::vector<LabRun> runs;
+  for (const std::string& integrator : integrators) {
+    const std::size_t first = runs.size();
+    for (const TrialResult& result : results) {
+      if (result.integrator == integrator) runs.push_back({result, false});
+    }
+    std::sort(runs.begin() + static_cast<std::ptrdiff_t>(first), runs.end(),
+              [](const LabRun& a, const LabRun& b) { return a.result.rate_hz < b.result.rate_hz; });
+  }
+  for (LabRun& run : runs) {
+    run.on_front =
+        !run.result.blown_up && std::none_of(runs.begin(), runs.end(), [&run](const LabRun& other) {
+          return !other.result.blown_up && other.result.error <= run.result.error &&
+                 other.result.nsec_per_s < run.result.nsec_per_s;
+        });
+  }
+  return runs;
+}
+
+}  // namespace
+
+LabReport run_lab(const LabOptions& options, const std::function<void(std::string)>& progress) {
+  const Effort& effort = options.quick ? kQuick : kThorough;
+  progress("reading " + options.file);
+  LabReport report;
+  report.lab = load_lab_scene(options.file, options.duration_s);
+  const engine::NetworkDescription& network = report.lab.scene.network;
+  report.stability = plan::stability_of(network, plan::liaison_graph(network));
+
+  const std::vector<std::string> integrators = plan::integrator_names();
+  const double limit = report.stability.diverging_step;
+  plan::Ladder ladder = plan::make_ladder(
+      std::isfinite(limit) ? 1.0 / limit : 0.0,
+      {options.duration_s, report.lab.scene.step_rate_hz, effort.highest_factor, effort.coarse});
+  report.left_out =
+      shorten(ladder, plan::measure_step_nsec(network),
+              static_cast<double>(integrators.size()) / options.jobs, effort.all_runs_s);
+
+  LabStore store(options.folder,
+                 plan::key_of(network, report.lab.course, ladder.sampling, effort.tolerance),
+                 options.again);
+  if (!store.reference()) {
+    plan::ReferenceWish wish{
+        ladder.sampling, effort.tolerance, effort.longest_s, ladder.rates_hz.back(),
+        [&progress](double done) { progress(fmt::format("the oracle: {:.0f} %", 100.0 * done)); }};
+    store.keep(plan::make_reference(network, report.lab.course, wish));
+  }
+  report.reference = *store.reference();
+
+  std::vector<Attempt> attempts;
+  for (const std::string& integrator : integrators) {
+    for (const double rate : ladder.rates_hz) {
+      if (store.find(integrator, rate) == nullptr) attempts.push_back({integrator, rate});
+    }
+  }
+  report.kept_runs = static_cast<int>(store.runs().size());
+  run_all(report.lab, report.reference, attempts, options.jobs, store, progress);
+  report.runs = sorted_runs(store.runs(), integrators);
+  report.counts_instructions = plan::InstructionCounter().counts();
+  return report;
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,48 @@
+// cli/lab/lab.h -- all integrators at many rates, against the oracle.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/lab/lab_scene.h"
+#include "sim_node/plan/ladder.h"
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/trial.h"
+
+namespace cordis::cli {
+
+/// What a person asked for.
+struct LabOptions {
+  std::string file;    ///< a scene or a launch file
+  std::string folder;  ///< where the results go
+  double duration_s = 2.0;
+  int jobs = 1;
+  bool quick = false;
+  bool again = false;  ///< forget what is there of an earlier lab
+};
+
+struct LabRun {
+  plan::TrialResult result;
+  bool on_front = false;  ///< none is cheaper in time and no less exact
+};
+
+struct LabReport {
+  LabScene lab;
+  plan::Stability stability;
+  plan::Reference reference;
+  std::vector<LabRun> runs;  ///< by integrator, then by rate
+  bool counts_instructions = false;
+  int kept_runs = 0;     ///< from an earlier lab
+  std::string left_out;  ///< what was not tried, and why; empty when nothing
+};
+
+/// Does what is not there yet in the folder, and keeps every result there at once.
+/// @param progress  told in one line what is going on
+/// @throws config::ConfigError, std::runtime_error
+LabReport run_lab(const LabOptions& options, const std::function<void(std::string)>& progress);
+
+/// A table for a person.
+std::string text_of(const LabReport& report);
+
+}  // namespace cordis::cli

@@ -1,0 +1,127 @@
+// cli/lab/lab_chart.cpp
+#include "cli/lab/lab_chart.h"
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "cli/child.h"
+
+namespace cordis::cli {
+namespace {
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
+}
+
+std::string number_or_nothing(double value) {
+  return value > 0.0 ? fmt::format("{:.6g}", value) : std::string();
+}
+
+/// A run that blew up has no error, and a place of its own in the chart.
+std::string csv_of(const LabReport& report) {
+  std::string text =
+      "integrator,rate_hz,force_evaluations_per_s,nsec_per_s,instructions_per_s,error,"
+      "energy_error,on_front,blown_up_at_s\n";
+  for (const LabRun& run : report.runs) {
+    const plan::TrialResult& result = run.result;
+    text += fmt::format(
+        "{},{:.10g},{:.10g},{:.5g},{},{},{},{:d},{}\n", result.integrator, result.rate_hz,
+        result.evaluations_per_s, result.nsec_per_s, number_or_nothing(result.instructions_per_s),
+        result.blown_up ? "" : fmt::format("{:.6g}", result.error),
+        result.blown_up ? "" : fmt::format("{:.6g}", result.energy_error), run.on_front ? 1 : 0,
+        result.blown_up ? fmt::format("{:.6g}", result.blown_up_at) : "");
+  }
+  return text;
+}
+
+std::set<std::string> names_of(const LabReport& report) {
+  std::set<std::string> names;
+  for (const LabRun& run : report.runs) names.insert(run.result.integrator);
+  return names;
+}
+
+/// One panel: error over a column of the table.
+std::string panel(const LabReport& report, int column, const std::string& label, bool limit) {
+  std::string text = fmt::format("set xlabel '{}'\nunset arrow\n", label);
+  const double diverging = report.stability.diverging_step;
+  if (limit && std::isfinite(diverging)) {
+    text += fmt::format(
+        "set arrow from {0:.6g}, graph 0 to {0:.6g}, graph 1 nohead dashtype 2 linecolor rgb "
+        "'#888888'\nset label 1 'limit of cordis' at {0:.6g}, graph 0.03 rotate left offset "
+        "-0.6,0 textcolor rgb '#666666'\n",
+        1.0 / diverging);
+  } else {
+    text += "unset label 1\n";
+  }
+  text += "plot ";
+  int colour = 1;
+  for (const std::string& name : names_of(report)) {
+    const std::string own = fmt::format("(strcol(1) eq '{}' ? column({}) : NaN)", name, column);
+    text += fmt::format(
+        "table using {0}:6 with linespoints pointtype 7 pointsize 0.5 linecolor {1} title '{2}', "
+        "\\\n     table using {0}:(strlen(strcol(9)) > 0 ? top : NaN) with points pointtype 2 "
+        "linecolor {1} notitle, \\\n     ",
+        own, colour++, name);
+  }
+  text += fmt::format(
+      "table using (column(8) == 1 ? column({}) : NaN):6 with points pointtype 6 pointsize 1 "
+      "linecolor rgb '#000000' title 'Pareto front', \\\n     {:.3g} with lines dashtype 3 "
+      "linecolor rgb '#888888' title 'doubt of the reference'\n",
+      column, std::max(report.reference.doubt, 1e-16));
+  return text;
+}
+
+std::string script_of(const LabReport& report) {
+  double worst = 1.0;
+  for (const LabRun& run : report.runs) worst = std::max(worst, run.result.error);
+  return fmt::format(
+             "# Error against cost; crosses at the top blew up.  usage: gnuplot chart.gp\n"
+             "set terminal svg size 1000,420 font 'sans-serif,12' background rgb 'white'\n"
+             "set output 'chart.svg'\n"
+             "set datafile separator ','\n"
+             "set datafile missing ''\n"
+             "table = 'lab.csv'\n"
+             "top = {:.3g}\n"
+             "set logscale xy\n"
+             "set format xy '10^{{%T}}'\n"
+             "set yrange [*:5 * top]\n"
+             "set key bottom left\n"
+             "set grid\n"
+             "set ylabel 'rms position error / amplitude'\n"
+             "set multiplot layout 1,2 title '{}: {:.3g} s'\n",
+             2.0 * worst, report.lab.scene.name, report.reference.sampling.duration()) +
+         panel(report, 3, "force evaluations per simulated second", true) + "unset key\n" +
+         panel(report, 4, "processor time per simulated second [ns]", false) + "unset multiplot\n";
+}
+
+/// @return whether gnuplot is there and is content
+bool run_gnuplot(const std::filesystem::path& folder) {
+  const std::string command = "cd \"$1\" && gnuplot chart.gp";
+  Child child({"/bin/sh", "-c", command, "sh", folder.string()});
+  constexpr std::chrono::milliseconds kPatience{20};
+  std::optional<Ending> ending;
+  while (!(ending = child.ending())) std::this_thread::sleep_for(kPatience);
+  return ending->exit_code() == 0;
+}
+
+}  // namespace
+
+std::string draw_chart(const LabReport& report, const std::filesystem::path& folder) {
+  write(folder / "lab.csv", csv_of(report));
+  write(folder / "chart.gp", script_of(report));
+  if (run_gnuplot(folder)) {
+    return "lab.csv, chart.gp and chart.svg are in " + folder.string();
+  }
+  return "lab.csv and chart.gp are in " + folder.string() +
+         "; gnuplot, which makes chart.svg of them, is missing or failed";
+}
+
+}  // namespace cordis::cli

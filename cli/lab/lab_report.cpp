@@ -1,0 +1,78 @@
+// The table of `cordis lab`.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "cli/lab/lab.h"
+
+namespace cordis::cli {
+namespace {
+
+std::string rate_of(double step) {
+  return std::isfinite(step) ? fmt::format("{:.5g} Hz", 1.0 / step) : std::string("any rate");
+}
+
+std::string reference_text(const plan::Reference& reference) {
+  std::string text = fmt::format(
+      "reference   {}: {} evaluations of all forces for {:.4g} s; amplitude {:.3g} m (rms)\n",
+      reference.made_by, reference.evaluations, reference.sampling.duration(), reference.amplitude);
+  text += fmt::format("            trusted to {:.1e} of the amplitude\n", reference.doubt);
+  if (reference.compared == reference.sampling.count) return text;
+  const double until = reference.sampling.time(reference.compared - 1);
+  return text + fmt::format(
+                    "            {} at {:.4g} s: positions are compared up to there, then kinetic "
+                    "energy\n",
+                    reference.parted ? "CHAOTIC: two references part"
+                                     : "the second one took too long: it ends",
+                    until);
+}
+
+const char* prediction(const LabReport& report, double rate_hz) {
+  const double step = 1.0 / rate_hz;
+  if (step < report.stability.certified.step) return "stable";
+  return step > report.stability.diverging_step ? "unstable" : "not certain";
+}
+
+std::string run_text(const LabReport& report, const LabRun& run) {
+  const plan::TrialResult& result = run.result;
+  const std::string instructions =
+      result.instructions_per_s > 0.0 ? fmt::format("{:.3e}", result.instructions_per_s) : "-";
+  const bool late = report.reference.compared < report.reference.sampling.count;
+  std::string text =
+      fmt::format("{:12}{:>9.7g}{:>14.7g}{:>12.4g}{:>14}", result.integrator, result.rate_hz,
+                  result.evaluations_per_s, 1e-6 * result.nsec_per_s, instructions);
+  if (result.blown_up) {
+    text += fmt::format("   blew up at {:.3g} s", result.blown_up_at);
+  } else {
+    text += fmt::format("{:>11.2e}{}", result.error, run.on_front ? " *" : "  ");
+    if (late) text += fmt::format("{:>+11.2e}", result.energy_error);
+  }
+  return text + "   " + prediction(report, result.rate_hz) + "\n";
+}
+
+}  // namespace
+
+std::string text_of(const LabReport& report) {
+  const scene::Scene& scene = report.lab.scene;
+  std::string text = fmt::format("lab         {} ({}), {} MATs, {} links, {} sets, {}-D\n",
+                                 scene.name, scene.file, scene.network.mats.size(),
+                                 scene.link_count(), scene.network.sets.size(), scene.space());
+  for (const std::string& port : report.lab.ports) text += "port        " + port + "\n";
+  text += reference_text(report.reference);
+  text += fmt::format("predicted   certified from {}, surely unstable below {}\n",
+                      rate_of(report.stability.certified.step),
+                      rate_of(report.stability.diverging_step));
+  if (report.kept_runs > 0) {
+    text += fmt::format("            {} runs are kept from an earlier lab\n", report.kept_runs);
+  }
+  if (!report.left_out.empty()) text += "            " + report.left_out + "\n";
+  if (!report.counts_instructions) {
+    text += "            instructions cannot be counted on this machine\n";
+  }
+  text += fmt::format("\n{:12}{:>9}{:>14}{:>12}{:>14}{:>11}\n", "integrator", "rate_hz", "forces/s",
+                      "ms/s", "instr./s", "error");
+  for (const LabRun& run : report.runs) text += run_text(report, run);
+  return text + "* on the Pareto front of time and error; /s: per simulated second\n";
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,105 @@
+// tests/cli/lab_test.cpp
+#include "cli/lab/lab.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "cli/lab/lab_chart.h"
+
+namespace cordis::cli {
+namespace {
+
+/// A mass of 0.1 kg on a spring of 1000 N/m without viscosity: w = 100 / s, limit at 50 Hz.
+class Lab : public testing::Test {
+ protected:
+  Lab() {
+    std::filesystem::remove_all(options_.folder);
+    write("");
+  }
+  void write(const std::string& more) {
+    std::ofstream(options_.file)
+        << "cordis: 1\nname: bob\nspace: 1\nstep: {rate_hz: 1000}\nmatter:\n"
+           "  ground: {kind: fixed, at_m: [0]}\n  bob: {kind: mass, mass_kg: 0.1, at_m: [0.1]}\n"
+           "liaisons:\n  holder: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}\n"
+           "links:\n  - {liaison: holder, between: [ground, bob]}\n"
+        << more;
+  }
+  LabReport run() {
+    return run_lab(options_, [](const std::string&) {});
+  }
+  std::string read(const char* name) {
+    std::ifstream file(std::filesystem::path(options_.folder) / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  LabOptions options_{
+      testing::TempDir() + "lab_test.yaml", testing::TempDir() + "lab_test", 2.0, 2, true, false};
+};
+
+TEST_F(Lab, TheErrorIsThatOfThePhase) {
+  // x = 0.1 cos(w t); the scheme has exactly 0.1 cos(W t) with W = (2 / h) asin(w h / 2).
+  const LabReport report = run();
+  EXPECT_TRUE(report.reference.by_oracle);
+  EXPECT_LT(report.reference.doubt, 1e-7);
+  const plan::Sampling& sampling = report.reference.sampling;
+  double mean = 0.0;
+  double square = 0.0;
+  for (int i = 0; i < sampling.count; ++i) {
+    const double x = std::cos(100.0 * sampling.time(i));
+    mean += x / sampling.count;
+    square += x * x / sampling.count;
+  }
+  const double amplitude = std::sqrt(square - mean * mean);
+  EXPECT_NEAR(report.reference.amplitude, 0.1 * amplitude, 1e-9);
+  int compared = 0;
+  for (const LabRun& run : report.runs) {
+    if (run.result.integrator != "cordis" || run.result.blown_up) continue;
+    const double h = 1.0 / run.result.rate_hz;
+    double off = 0.0;
+    for (int i = 0; i < sampling.count; ++i) {
+      const double t = sampling.time(i);
+      off += std::pow(std::cos(2.0 / h * std::asin(50.0 * h) * t) - std::cos(100.0 * t), 2);
+    }
+    EXPECT_NEAR(run.result.error, std::sqrt(off / sampling.count) / amplitude, 1e-6)
+        << run.result.rate_hz;
+    ++compared;
+  }
+  EXPECT_GE(compared, 5);
+}
+
+TEST_F(Lab, WhatIsBelowTheLimitBlowsUp) {
+  int blown_up = 0;
+  for (const LabRun& run : run().runs) {
+    if (run.result.integrator != "cordis") continue;
+    EXPECT_EQ(run.result.blown_up, run.result.rate_hz < 50) << run.result.rate_hz;
+    blown_up += run.result.blown_up ? 1 : 0;
+  }
+  EXPECT_GE(blown_up, 1);
+}
+
+TEST_F(Lab, GoesOnWhereItWasAndBeginsAnewForAnotherScene) {
+  const LabReport first = run();
+  EXPECT_EQ(first.kept_runs, 0);
+  const LabReport again = run();
+  EXPECT_EQ(again.kept_runs, static_cast<int>(first.runs.size()));
+  EXPECT_NE(text_of(again).find("kept from an earlier lab"), std::string::npos);
+  write("world: {viscosity_n_s_per_m: 0.1}\n");
+  EXPECT_EQ(run().kept_runs, 0);
+}
+
+TEST_F(Lab, WritesATableAndAScriptForItsChart) {
+  const LabReport report = run();
+  draw_chart(report, options_.folder);
+  const std::string csv = read("lab.csv");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
+            report.runs.size() + 1);
+  EXPECT_NE(read("chart.gp").find("limit of cordis"), std::string::npos);
+  EXPECT_NE(text_of(report).find("blew up"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cordis::cli
