@@ -13,23 +13,38 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-const SetLiaison& set_of(const Network& network, std::size_t set) {
-  if (set >= network.description().sets.size()) {
+const SetLiaison& set_of(const NetworkDescription& network, std::size_t set) {
+  if (set >= network.sets.size()) {
     throw std::invalid_argument("set " + std::to_string(set) + " does not exist");
   }
-  return network.description().sets[set];
+  return network.sets[set];
 }
 
 }  // namespace
 
 ConnectedPieces::ConnectedPieces(const Network& network, std::size_t set)
-    : count_p_(set_of(network, set).set_p.size()),
-      across_(!set_of(network, set).set_q.empty()),
-      kernel_(pair_kernel(best_vector_width())),
-      grid_(count_p_, network.dimension()),
-      member_(network.mat_count(), kNone) {
-  for (const auto* half : {&set_of(network, set).set_p, &set_of(network, set).set_q}) {
+    : ConnectedPieces(network.description(), set) {}
+
+ConnectedPieces::ConnectedPieces(const NetworkDescription& network, std::size_t set)
+    : ConnectedPieces(network, set_of(network, set).set_p, set_of(network, set).set_q) {}
+
+ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
+                                 const std::vector<std::uint32_t>& mats)
+    : ConnectedPieces(network, mats, {}) {}
+
+ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
+                                 const std::vector<std::uint32_t>& set_p,
+                                 const std::vector<std::uint32_t>& set_q)
+    : count_p_(set_p.size()),
+      across_(!set_q.empty()),
+      kernel_(&pair_kernel(best_vector_width())),
+      grid_(count_p_, network.dimension),
+      member_(network.mats.size(), kNone) {
+  for (const auto* half : {&set_p, &set_q}) {
     for (const std::uint32_t mat : *half) {
+      if (mat >= member_.size() || member_[mat] != kNone) {
+        throw std::invalid_argument("MAT " + std::to_string(mat) + " does not exist, or twice");
+      }
       member_[mat] = static_cast<std::uint32_t>(mat_.size());
       mat_.push_back(mat);
     }
@@ -56,7 +71,8 @@ std::size_t ConnectedPieces::find_near(const Columns& positions, double distance
     const CellGrid::Surroundings around = grid_.around(point, last);
     for (std::size_t r = 0; r < around.count; ++r) {
       const CellGrid::Run run = around.runs[r];
-      const std::size_t count = kernel_.find_near(places, run.begin, run.end, query, found_.data());
+      const std::size_t count =
+          kernel_->find_near(places, run.begin, run.end, query, found_.data());
       for (std::size_t i = 0; i < count; ++i) join(found_[i], static_cast<std::uint32_t>(b));
     }
   }
@@ -65,12 +81,23 @@ std::size_t ConnectedPieces::find_near(const Columns& positions, double distance
 
 std::size_t ConnectedPieces::find_bound(std::span<const BoundPair> pairs) noexcept {
   begin();
-  for (const BoundPair& pair : pairs) {
-    const std::uint32_t a = member_[pair.mat_a];
-    const std::uint32_t b = member_[pair.mat_b];
-    if (a != kNone && b != kNone) join(a, b);
-  }
+  for (const BoundPair& pair : pairs) join(pair);
   return number_pieces();
+}
+
+std::size_t ConnectedPieces::find_bound(const World& world, std::size_t set) noexcept {
+  begin();
+  const VisitBoundPair add = [](void* owner, const BoundPair& pair) {
+    static_cast<ConnectedPieces*>(owner)->join(pair);
+  };
+  world.visit_bound_pairs(set, add, this);
+  return number_pieces();
+}
+
+void ConnectedPieces::join(const BoundPair& pair) noexcept {
+  const std::uint32_t a = member_[pair.mat_a];
+  const std::uint32_t b = member_[pair.mat_b];
+  if (a != kNone && b != kNone) join(a, b);
 }
 
 void ConnectedPieces::begin() noexcept {

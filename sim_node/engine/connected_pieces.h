@@ -16,13 +16,18 @@ namespace cordis::engine {
 
 /// Counts pieces of matter: two members of a set belong to one piece when their pair is near, or
 /// bound, or when a chain of such pairs leads from one to the other. A pair is one of the set
-/// liaison: across its two sets, or within its one. [Luc90 IX Experimentation] tells of matter that
-/// shatters and regroups: this is the number it is told by.
+/// liaison: across its two sets, or within its one; of members that no liaison joins it is any two.
+/// [Luc90 IX Experimentation] tells of matter that shatters and regroups: this is the number it is
+/// told by.
 class ConnectedPieces {
  public:
   /// @param set  index in NetworkDescription::sets
   /// @throws std::invalid_argument when the network has no such set.
   ConnectedPieces(const Network& network, std::size_t set);
+  ConnectedPieces(const NetworkDescription& network, std::size_t set);
+  /// Of MATs that no set liaison need join: all pairs within `mats` count.
+  /// @throws std::invalid_argument when the network has no such MAT, or one stands there twice.
+  ConnectedPieces(const NetworkDescription& network, const std::vector<std::uint32_t>& mats);
 
   /// Finds the pieces of members nearer than a distance [m], > 0. A member that is not finite is a
   /// piece of its own. Real time: O(members + pairs), no allocation. @return how many
@@ -31,6 +36,8 @@ class ConnectedPieces {
   /// Finds the pieces of members in bound pairs, such as World::bound_pairs. Real time: O(members +
   /// pairs), no allocation. @return how many
   std::size_t find_bound(std::span<const BoundPair> pairs) noexcept;
+  /// The same of the bound pairs of a set of a world. Precondition: the set exists.
+  std::size_t find_bound(const World& world, std::size_t set) noexcept;
 
   /// Number of the piece of a member as last found, from 0 in the order of their first members.
   std::uint32_t piece_of(std::size_t member) const noexcept { return piece_[member]; }
@@ -38,14 +45,17 @@ class ConnectedPieces {
   std::span<const std::uint32_t> members() const noexcept { return mat_; }
 
  private:
+  ConnectedPieces(const NetworkDescription& network, const std::vector<std::uint32_t>& set_p,
+                  const std::vector<std::uint32_t>& set_q);
   void begin() noexcept;
+  void join(const BoundPair& pair) noexcept;
   void join(std::uint32_t a, std::uint32_t b) noexcept;
   std::uint32_t root_of(std::uint32_t member) noexcept;
   std::size_t number_pieces() noexcept;
 
   std::size_t count_p_;
   bool across_;  // two sets
-  const PairKernel& kernel_;
+  const PairKernel* kernel_;
   CellGrid grid_;
   std::vector<std::uint32_t> mat_;     // of each member
   std::vector<std::uint32_t> member_;  // of each MAT of the set

@@ -250,19 +250,17 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
   return sum;
 }
 
-std::vector<BoundPair> SetPairs::bound_pairs(const StateTable& table) const {
-  std::vector<BoundPair> bound;
-  if (!behaviours_.has_states()) return bound;
+void SetPairs::visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const {
+  if (!behaviours_.has_states()) return;
   const PairStates& states = behaviours_.states();
   for (std::size_t a = 0; a < states.row_count(); ++a) {
     for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
       const PairState& pair = states.state(i);
       if (pair.state == behaviours_.start_state()) continue;
-      bound.push_back({column_[a] / 4, column_[pair.column / 4] / 4,
-                       pair.state - table.first_state(behaviour_), pair.rest_length});
+      visit(owner, {column_[a] / 4, column_[pair.column / 4] / 4,
+                    pair.state - table.first_state(behaviour_), pair.rest_length});
     }
   }
-  return bound;
 }
 
 /// The elastic forces stay: their work up to step 0 belongs to the energy stored there.

@@ -44,7 +44,7 @@ class SetPairs {
   /// Potential energy [J] of the pairs at the positions of the last call, in closed form.
   double stored_energy(const StateTable& table) noexcept;
 
-  std::vector<BoundPair> bound_pairs(const StateTable& table) const;
+  void visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const;
 
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
   void start() noexcept;

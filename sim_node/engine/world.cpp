@@ -284,7 +284,16 @@ std::uint64_t World::change_count(std::uint32_t behaviour, std::uint32_t from,
 }
 
 std::vector<BoundPair> World::bound_pairs(std::size_t set) const {
-  return state_->sets.set(set).bound_pairs(state_->table);
+  std::vector<BoundPair> pairs;
+  const VisitBoundPair add = [](void* owner, const BoundPair& pair) {
+    static_cast<std::vector<BoundPair>*>(owner)->push_back(pair);
+  };
+  visit_bound_pairs(set, add, &pairs);
+  return pairs;
+}
+
+void World::visit_bound_pairs(std::size_t set, VisitBoundPair visit, void* owner) const {
+  state_->sets.set(set).visit_bound_pairs(state_->table, visit, owner);
 }
 
 std::uint64_t World::step_count() const noexcept {

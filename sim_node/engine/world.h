@@ -31,6 +31,8 @@ struct BoundPair {
   double rest_length = 0.0;  ///< [m]
 };
 
+using VisitBoundPair = void (*)(void* owner, const BoundPair& pair);
+
 /// Everything needed to go on later from the same state, bit for bit.
 struct Snapshot {
   std::uint64_t network = 0;  ///< Network::fingerprint()
@@ -104,6 +106,8 @@ class World {
   /// The bound pairs of a set after the last step, in the order of its sums. Not in real time:
   /// allocates. Precondition: the set exists.
   std::vector<BoundPair> bound_pairs(std::size_t set) const;
+  /// Shows them one by one. Real time: O(pairs), no allocation. Precondition: the set exists.
+  void visit_bound_pairs(std::size_t set, VisitBoundPair visit, void* owner) const;
 
   /// Goes on where another world is, of a network that differs in the parameters of links alone:
   /// motion, states, ports, account and counts are taken over, and what the energy of the links

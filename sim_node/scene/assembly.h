@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -94,6 +95,8 @@ class Assembly {
   void add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
                const std::vector<std::uint32_t>& q);
   void read_signal(const config::Value::Entry& entry, std::vector<Signal>& signals);
+  void read_signal_of_set(config::MappingReader& reader, const std::string& name, std::uint32_t set,
+                          std::vector<Signal>& signals);
   /// The direction of a position, velocity or force; a port of one axis needs no `axis`.
   void read_direction_of_signal(config::MappingReader& reader, const Selection& of,
                                 Signal& signal) const;
@@ -131,6 +134,7 @@ class Assembly {
   config::Problems& problems_;
   std::shared_ptr<Liaisons> liaisons_;
   Names names_;
+  std::map<std::string, std::uint32_t> named_sets_;  // of the network, by full name
   Parts parts_;
   Placement placement_;                              // of the part that is being added
   std::vector<const Part*> open_parts_;              // from the outermost to it

@@ -153,9 +153,13 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
         part.kind == LinkKind::kState
             ? part.behaviour_index
             : liaisons_->pool().index_of({part.liaison, part.given, part.part, owner}, *behaviour);
+    const std::string name =
+        names_.full(parts.size() == 1 ? entry.name : entry.name + "." + part.part);
+    if (entry.has_name) {
+      named_sets_.emplace(name, static_cast<std::uint32_t>(scene_.network.sets.size()));
+    }
     scene_.network.sets.push_back(std::move(set));
-    scene_.set_names.push_back(
-        names_.full(parts.size() == 1 ? entry.name : entry.name + "." + part.part));
+    scene_.set_names.push_back(name);
   }
 }
 

@@ -99,8 +99,17 @@ double value_of_scene(Quantity quantity, const engine::Energy& energy) noexcept 
   }
 }
 
-double value_of(const Signal& signal, const engine::World& world,
-                const engine::Energy& energy) noexcept {
+double bonds_in(const engine::World& world, std::size_t set) noexcept {
+  double count = 0.0;
+  const engine::VisitBoundPair add = [](void* sum, const engine::BoundPair&) {
+    *static_cast<double*>(sum) += 1.0;
+  };
+  world.visit_bound_pairs(set, add, &count);
+  return count;
+}
+
+double value_of_signal(const Signal& signal, const engine::World& world,
+                       const engine::Energy& energy) noexcept {
   switch (signal.quantity) {
     case Quantity::kPosition:
       return signal.direction.dot(world.position(signal.index)) - signal.offset;
@@ -117,6 +126,8 @@ double value_of(const Signal& signal, const engine::World& world,
     case Quantity::kState:
     case Quantity::kRestLength:
       return value_of_link(signal, world);
+    case Quantity::kBonds:
+      return bonds_in(world, signal.index);
     case Quantity::kChanges:
       return changes_in(world);
     default:
@@ -126,7 +137,17 @@ double value_of(const Signal& signal, const engine::World& world,
 
 }  // namespace
 
-SignalReader::SignalReader(std::vector<Signal> signals) : signals_(std::move(signals)) {
+SignalReader::SignalReader(std::vector<Signal> signals, const engine::NetworkDescription& network)
+    : signals_(std::move(signals)), pieces_(signals_.size()) {
+  for (std::size_t s = 0; s < signals_.size(); ++s) {
+    const Signal& signal = signals_[s];
+    if (signal.quantity != Quantity::kPieces) continue;
+    if (signal.mats.empty()) {
+      pieces_[s].emplace(network, signal.index);
+    } else {
+      pieces_[s].emplace(network, signal.mats);
+    }
+  }
   wants_energy_ = std::any_of(signals_.begin(), signals_.end(), [](const Signal& signal) {
     return signal.quantity >= Quantity::kEnergy;
   });
@@ -134,7 +155,17 @@ SignalReader::SignalReader(std::vector<Signal> signals) : signals_(std::move(sig
 
 void SignalReader::read(const engine::World& world, double* values) const noexcept {
   const engine::Energy energy = wants_energy_ ? world.energy() : engine::Energy{};
-  for (const Signal& signal : signals_) *values++ = value_of(signal, world, energy);
+  for (std::size_t s = 0; s < signals_.size(); ++s) *values++ = value_of(s, world, energy);
+}
+
+double SignalReader::value_of(std::size_t index, const engine::World& world,
+                              const engine::Energy& energy) const noexcept {
+  const Signal& signal = signals_[index];
+  if (!pieces_[index]) return value_of_signal(signal, world, energy);
+  engine::ConnectedPieces& pieces = *pieces_[index];
+  const std::size_t count = signal.near > 0.0 ? pieces.find_near(world.positions(), signal.near)
+                                              : pieces.find_bound(world, signal.index);
+  return static_cast<double>(count);
 }
 
 }  // namespace cordis::scene

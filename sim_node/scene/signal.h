@@ -3,15 +3,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim_node/engine/connected_pieces.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/link_law.h"
 
 namespace cordis::scene {
 
-/// What a signal tells. The first group is of a MAT, the second of a link, the third of the scene.
+/// What a signal tells. The first group is of a MAT, the second of a link, the third of a set, the
+/// last two of the scene.
 enum class Quantity : std::uint8_t {
   kPosition,  ///< of a MAT along a direction [m]
   kVelocity,  ///< of a MAT along a direction, over the last step [m/s]
@@ -25,6 +28,9 @@ enum class Quantity : std::uint8_t {
            ///< states its pull in the last step; positive pulls the ends together [N]
   kState,  ///< number of the state of a link, in the order of the file
   kRestLength,  ///< present rest length of a link with states [m]
+
+  kPieces,  ///< connected pieces of the MATs of a set liaison, or of MATs
+  kBonds,   ///< pairs of a set liaison that are in another state than that of the start
 
   kChanges,  ///< of the states of all links, since step 0
 
@@ -42,29 +48,38 @@ struct Signal {
   std::string name;
   std::string unit;  ///< m, m/s, N, J, or empty
   Quantity quantity = Quantity::kEnergy;
-  std::uint32_t index = 0;                        ///< of the MAT, or of the link in its kind
-  LinkKind kind = LinkKind::kLinear;              ///< of the link
+  std::uint32_t index = 0;            ///< of the MAT, of the link in its kind, or of the set
+  LinkKind kind = LinkKind::kLinear;  ///< of the link
   engine::Vec3 direction = engine::Vec3::Zero();  ///< of a MAT's quantity, unit length
   double offset = 0.0;                            ///< subtracted from a position [m]: a port's rest
+  double near = 0.0;  ///< of pieces: within which two MATs are one piece [m]; 0: bound
+  std::vector<std::uint32_t> mats;  ///< whose pieces are counted; empty: of a set
 };
 
 /// Evaluates the signals of a scene.
 class SignalReader {
  public:
   SignalReader() = default;
-  explicit SignalReader(std::vector<Signal> signals);
+  /// @param network  they are of
+  SignalReader(std::vector<Signal> signals, const engine::NetworkDescription& network);
 
   std::size_t count() const noexcept { return signals_.size(); }
   const std::vector<Signal>& signals() const noexcept { return signals_; }
 
   /// The values of all signals in their order.
-  /// Real time: no allocation; O(signals), and O(MATs + links) more when an energy is among them.
+  /// Real time: no allocation; O(signals), and O(MATs + links) more when an energy is among them,
+  /// O(MATs + pairs) for each that counts pieces. Not from two threads at once.
   /// @param world   of the network the signals were compiled for
   /// @param values  room for count() values
   void read(const engine::World& world, double* values) const noexcept;
 
  private:
+  double value_of(std::size_t index, const engine::World& world,
+                  const engine::Energy& energy) const noexcept;
+
   std::vector<Signal> signals_;
+  // Room to count in, of those that count pieces; nothing is kept in it from one call to the next.
+  mutable std::vector<std::optional<engine::ConnectedPieces>> pieces_;
   bool wants_energy_ = false;
 };
 

@@ -13,7 +13,7 @@ namespace {
 using config::Value;
 using engine::Vec3;
 
-enum class Owner { kMat, kLink, kStateLink, kMaxwellLink, kScene };
+enum class Owner { kMat, kLink, kStateLink, kMaxwellLink, kSet, kScene };
 
 /// What a scene can ask for, of whom.
 struct QuantityWord {
@@ -23,7 +23,7 @@ struct QuantityWord {
   const char* unit;
   bool has_direction;
 };
-constexpr std::array<QuantityWord, 24> kWords{{
+constexpr std::array<QuantityWord, 27> kWords{{
     {"position", Owner::kMat, Quantity::kPosition, "m", true},
     {"velocity", Owner::kMat, Quantity::kVelocity, "m/s", true},
     {"force", Owner::kMat, Quantity::kForce, "N", true},
@@ -40,6 +40,9 @@ constexpr std::array<QuantityWord, 24> kWords{{
     {"rest_length", Owner::kStateLink, Quantity::kRestLength, "m", false},
     {"distance", Owner::kMaxwellLink, Quantity::kDistance, "m", false},
     {"speed", Owner::kMaxwellLink, Quantity::kGrowth, "m/s", false},
+    {"pieces", Owner::kMat, Quantity::kPieces, "", false},
+    {"pieces", Owner::kSet, Quantity::kPieces, "", false},
+    {"bonds", Owner::kSet, Quantity::kBonds, "", false},
     {"changes", Owner::kScene, Quantity::kChanges, "", false},
     {"energy", Owner::kScene, Quantity::kEnergy, "J", false},
     {"kinetic_energy", Owner::kScene, Quantity::kKineticEnergy, "J", false},
@@ -60,6 +63,8 @@ const char* name_of(Owner owner) {
       return "a link with states";
     case Owner::kMaxwellLink:
       return "a Maxwell element";
+    case Owner::kSet:
+      return "a liaison of sets";
     case Owner::kMat:
       break;
   }
@@ -107,20 +112,24 @@ const QuantityWord* read_quantity(config::MappingReader& reader, Owner owner) {
 void Assembly::read_signals(const Value& section) {
   std::vector<Signal> signals;
   for (const Value::Entry& entry : section.entries()) read_signal(entry, signals);
-  scene_.signals = SignalReader(std::move(signals));
+  if (problems_.has_errors()) return;  // and the network is not whole
+  scene_.signals = SignalReader(std::move(signals), scene_.network);
 }
 
 void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signals) {
   check_name(entry.key, entry.key_place, problems_);
   config::MappingReader reader(entry.value, "signal '" + entry.key + "'", problems_);
   const Value of = reader.optional_value("of");
+  const auto set = named_sets_.find(of.text());
+  if (set != named_sets_.end()) return read_signal_of_set(reader, entry.key, set->second, signals);
   std::optional<Selection> picked;
   if (of.exists()) {
     picked = select(of, "'of' in " + reader.what(), true, names_, problems_);
     if (!picked) return;  // whose signal it is decides what else it may say
   }
   const bool is_link = picked && picked->kind == Named::kLinks;
-  if (picked && picked->count() != 1) {
+  const bool is_count = picked && !is_link && reader.optional_text("quantity", "") == "pieces";
+  if (picked && picked->count() != 1 && !is_count) {
     reader.error_at("of",
                     "a signal is of one MAT or one link, and " +
                         (of.text().empty() ? "this list" : "'" + of.text() + "'") + " has " +
@@ -139,6 +148,10 @@ void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signa
   }
   const QuantityWord* quantity = read_quantity(reader, owner);
   reader.optional_value("axis");
+  if (is_count) {
+    signal.mats = picked->indices;
+    signal.near = reader.required_number("near_m", config::Range::positive());
+  }
   if (quantity != nullptr) {
     signal.quantity = quantity->quantity;
     signal.unit = quantity->unit;
@@ -147,6 +160,27 @@ void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signa
     } else if (reader.has("axis")) {
       reader.error_at("axis", std::string("the quantity '") + quantity->word + "' has no axis");
     }
+  }
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+void Assembly::read_signal_of_set(config::MappingReader& reader, const std::string& name,
+                                  std::uint32_t set, std::vector<Signal>& signals) {
+  const QuantityWord* quantity = read_quantity(reader, Owner::kSet);
+  const bool is_pieces = quantity != nullptr && quantity->quantity == Quantity::kPieces;
+  Signal signal;
+  signal.name = name;
+  signal.index = set;
+  if (quantity != nullptr) signal.quantity = quantity->quantity;
+  if (is_pieces && reader.has("near_m")) {
+    signal.near = reader.required_number("near_m", config::Range::positive());
+  }
+  const std::uint32_t behaviour = scene_.network.sets[set].behaviour;
+  const bool binds = liaisons_->pool().behaviours()[behaviour].states.size() > 1;
+  if (quantity != nullptr && !binds && !reader.has("near_m")) {
+    reader.error_at("quantity", "pairs of a liaison of one state are never bound",
+                    "count pieces of balls nearer than near_m");
   }
   reader.finish();
   signals.push_back(std::move(signal));

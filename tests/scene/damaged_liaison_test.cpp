@@ -90,7 +90,7 @@ TEST(SetLiaison, OfUnsoundMatterSaysNothingOfItsOwn) {
   }
 }
 
-TEST(SetLiaison, IsNoLinkThatASignalCouldBeOf) {
+TEST(SetLiaison, HasNoQuantitiesOfALink) {
   config::Problems problems;
   load_scene_text(scene_head(2) +
                       "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}\n"
@@ -99,7 +99,8 @@ TEST(SetLiaison, IsNoLinkThatASignalCouldBeOf) {
                       "signals:\n  g: {of: glue, quantity: force}\n",
                   "t", problems);
   ASSERT_EQ(problems.all().size(), 1u) << problems.text();
-  EXPECT_EQ(problems.all()[0].message, "'glue' has no links");
+  EXPECT_EQ(problems.all()[0].message, "a liaison of sets has no quantity 'force'");
+  EXPECT_EQ(problems.all()[0].hint, "it has pieces, bonds");
 }
 
 TEST(BadLiaisons, AreAllToldInOneGo) {

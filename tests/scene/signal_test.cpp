@@ -134,15 +134,70 @@ TEST(SignalReader, TellsTheAccountOfEnergy) {
   EXPECT_NEAR(run.value("e") + run.value("d"), before, 1e-2);
 }
 
+/// Two pairs of balls that touch, and one that flies at the second; what touches sticks.
+const char* const kGlue =
+    "liaisons:\n  spring: {kind: spring, stiffness_n_per_m: 1}\n  stick:\n    range: rest\n    "
+    "states:\n"
+    "      apart: {exits: [{to: stuck, when: elongation_m < 0}]}\n"
+    "      stuck: {stiffness_n_per_m: 1, exits: [{to: apart, when: elongation_m > 1}]}\n"
+    "matter:\n"
+    "  row: {kind: mass, at_m: [[0, 0], [1.5, 0], [6, 0], [7.5, 0]], "
+    "ball: {mass_kg: 1, radius_m: 1}}\n"
+    "  thrown: {kind: mass, at_m: [6, 2.5], velocity_m_per_s: [0, -10], "
+    "ball: {mass_kg: 1, radius_m: 1}}\n"
+    "links:\n  - {liaison: stick, within: [row, thrown], name: glue}\n";
+
+TEST(SignalReader, CountsThePiecesAndBondsOfASetOfBalls) {
+  Observed run(sound_scene(
+      2,
+      kGlue + std::string("signals:\n  p: {of: glue, quantity: pieces}\n"
+                          "  b: {of: glue, quantity: bonds}\n"
+                          "  near: {of: glue, quantity: pieces, near_m: 2.4}\n"
+                          "  row: {of: [\"row[1..2]\", thrown], quantity: pieces, near_m: 4}\n")));
+  EXPECT_EQ(run.value("p"), 5.0);  // nothing has touched yet
+  EXPECT_EQ(run.value("b"), 0.0);
+  EXPECT_EQ(run.value("near"), 3.0);
+  EXPECT_EQ(run.value("row"), 2.0);  // 2.5 m from the thrown one to its target
+
+  run.step(1);
+  EXPECT_EQ(run.value("p"), 3.0);
+  EXPECT_EQ(run.value("b"), 2.0);
+
+  run.step(70);  // 0.7 m further down
+  EXPECT_EQ(run.value("p"), 2.0);
+  EXPECT_EQ(run.value("near"), 2.0);
+  EXPECT_EQ(run.value("b"), 3.0);
+}
+
+TEST(SignalReader, SaysWhatCannotBeCounted) {
+  const auto problem = [](const std::string& signal) {
+    config::Problems problems;
+    load_scene_text(scene_head(2) + kGlue +
+                        "  - {liaison: spring, within: row, range_m: 1, name: s}\n"
+                        "signals:\n  p: " +
+                        signal,
+                    "t", problems);
+    return problems.all().empty() ? std::string() : problems.all()[0].message;
+  };
+  EXPECT_EQ(problem("{of: row, quantity: pieces}"), "missing key 'near_m' in signal 'p'");
+  EXPECT_EQ(problem("{of: glue, quantity: pieces, near_m: 0}"),
+            "'near_m' in signal 'p' must be > 0, got 0");
+  EXPECT_EQ(problem("{of: s, quantity: pieces}"),
+            "pairs of a liaison of one state are never bound");
+  EXPECT_EQ(problem("{of: glue, quantity: bonds, near_m: 1}"),
+            "unknown key 'near_m' in signal 'p'");
+}
+
 TEST(SignalReader, ReadsWithoutAllocating) {
   Observed run(
       sound_scene(2,
                   "matter:\n  a: {kind: string, count: 9, mass_kg: 1, from_m: [0, 0], to_m: [1, "
                   "0], stiffness_n_per_m: 10}\n"
-                  "signals:\n  x: {of: \"a[3]\", quantity: position, axis: x}\n  f: {of: "
+                  "signals:\n  p: {of: a, quantity: pieces, near_m: 0.2}\n"
+                  "  x: {of: \"a[3]\", quantity: position, axis: x}\n  f: {of: "
                   "\"a.links[2]\", quantity: force}\n"
                   "  e: {quantity: energy}\n"));
-  std::vector<double> values(3);
+  std::vector<double> values(4);
   run.step(3);
 
   const test::AllocationGuard guard;

@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/engine/connected_pieces.h"
+#include "tests/gallery/stage.h"
+
+namespace cordis::test {
+namespace {
+
+constexpr double kReach = 0.0075;  // of the law
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+Pairs neighbours(const Stage& stage) {
+  const scene::NamedRange paste = stage.mats("paste");
+  Pairs pairs;
+  for (std::uint32_t a = 0; a < paste.count; ++a) {
+    for (std::uint32_t b = a + 1; b < paste.count; ++b) {
+      const double distance = (stage.position("paste", b) - stage.position("paste", a)).norm();
+      if (distance < kReach) pairs.emplace_back(a, b);
+    }
+  }
+  return pairs;
+}
+
+/// Of these pairs, how many are among the others too. Both ascend.
+std::size_t in_common(const Pairs& some, const Pairs& others) {
+  return static_cast<std::size_t>(std::count_if(some.begin(), some.end(), [&](const auto& pair) {
+    return std::binary_search(others.begin(), others.end(), pair);
+  }));
+}
+
+TEST(Plasticine, IsMouldedTornAndStuckTogetherAgain) {
+  Stage stage("plasticine.yaml");
+  std::vector<double> history;
+  const auto note = [&] {
+    const double pieces = stage.signal("pieces");
+    if (history.empty() || history.back() != pieces) history.push_back(pieces);
+  };
+  stage.play_until(0.3, note);
+  const Pairs before = neighbours(stage);
+
+  stage.play_until(2.0, note);  // the fingers are apart
+  engine::ConnectedPieces pieces(stage.world().network(), 0);
+  ASSERT_EQ(pieces.find_near(stage.world().positions(), kReach), 2u);
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < 400; ++i) first += pieces.piece_of(i) == 0 ? 1 : 0;
+  EXPECT_GE(std::min(first, 400 - first), 100u);
+  EXPECT_LT(in_common(before, neighbours(stage)),
+            before.size() * 4 / 5);  // what is elastic keeps all
+
+  stage.play_until(2.9, note);  // and together
+  EXPECT_EQ(history, (std::vector<double>{1, 2, 1}));
+}
+
+}  // namespace
+}  // namespace cordis::test
