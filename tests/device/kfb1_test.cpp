@@ -3,16 +3,14 @@
 #include "device_node/firmware/kfb1.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-#include "node/time.h"
-#include "tests/device/plug.h"
+#include "tests/device/kfb1_board.h"
 #include "tests/device/wired.h"
 
 namespace cordis::device {
@@ -21,40 +19,8 @@ namespace {
 constexpr double kTravel = 0.04;  // [m]
 constexpr double kForce = 10.0;   // largest of a motor [N]
 
+using test::Kfb1Board;
 using test::Plug;
-
-/// A board on which the reference firmware runs, and a wire that may harm what it says.
-class Board {
- public:
-  explicit Board(int keys = 2)
-      : plug([this](std::uint8_t byte) { kfb1_byte(&firmware_, byte); },
-             [this] { kfb1_tick(&firmware_); }) {
-    board_ = this;
-    kfb1_board what{};
-    what.keys = static_cast<std::uint8_t>(keys);
-    what.travel_um = 40000;
-    what.force_mn = 10000;
-    what.rate_hz = 1000;
-    what.position = [](std::uint8_t key) { return board_->positions[key].load(); };
-    what.force = [](std::uint8_t key, std::int16_t force) { board_->forces[key] = force; };
-    what.touched = [] { return std::uint16_t{1}; };
-    what.time_us = [] { return static_cast<std::uint32_t>(node::monotonic_nsec() / 1000); };
-    what.send = [](const std::uint8_t* bytes, std::uint8_t count) {
-      board_->plug.say({bytes, count});
-    };
-    kfb1_start(&firmware_, &what);
-  }
-
-  std::array<std::atomic<std::int16_t>, KFB1_MAX_KEYS> positions{};
-  std::array<std::atomic<std::int16_t>, KFB1_MAX_KEYS> forces{};
-
- private:
-  static inline Board* board_ = nullptr;  // the firmware's functions know no other
-  kfb1 firmware_{};
-
- public:
-  Plug plug;  // last: its thread uses the rest
-};
 
 AxisLayout layout_of(int keys) {
   AxisLayout layout;
@@ -73,7 +39,7 @@ class Kfb1Test : public Wired {
 };
 
 TEST_F(Kfb1Test, CarriesPositionsAndForcesBothWays) {
-  Board board;
+  Kfb1Board board;
   board.positions[0] = 32767;  // up: 0 m
   board.positions[1] = 0;      // in the middle: -0.02 m
   board.plug.into_serial_line(link());
@@ -94,7 +60,7 @@ TEST_F(Kfb1Test, CarriesPositionsAndForcesBothWays) {
 }
 
 TEST_F(Kfb1Test, SpeaksUdpToo) {
-  Board board(16);
+  Kfb1Board board(16);
   board.positions[15] = -32767;
   const int number = board.plug.into_udp();
   const auto keys = keys_at("udp: '127.0.0.1:" + std::to_string(number) + "'", 16);
@@ -107,7 +73,7 @@ TEST_F(Kfb1Test, SpeaksUdpToo) {
 }
 
 TEST_F(Kfb1Test, FindsOutDamagedAndDroppedAndLateAnswersAndGoesOn) {
-  Board board;
+  Kfb1Board board;
   board.plug.harm = [](int n) {
     if (n % 10 == 3) return Plug::Harm::kFlipped;
     if (n % 10 == 5) return Plug::Harm::kDropped;
@@ -145,7 +111,7 @@ TEST_F(Kfb1Test, IsLostWhenUnpluggedAndRecoversWhenPluggedInAgain) {
   auto& hardware = dynamic_cast<Hardware&>(*key);
 
   for (int time = 0; time < 3; ++time) {
-    Board board;
+    Kfb1Board board;
     board.plug.into_serial_line(link());
     ASSERT_TRUE(until(*key, {2.0, 2.0}, [&](bool there) { return there && board.forces[0] > 0; }));
     EXPECT_EQ(hardware.contact(), Contact::kPresent);
@@ -160,7 +126,7 @@ TEST_F(Kfb1Test, IsLostWhenUnpluggedAndRecoversWhenPluggedInAgain) {
 }
 
 TEST_F(Kfb1Test, TheFirmwareLetsGoWhenNobodySpeaks) {
-  Board board;
+  Kfb1Board board;
   board.plug.into_serial_line(link());
   const auto key = keys_at(port());
   key->start(Role::kMass);
@@ -176,7 +142,7 @@ TEST_F(Kfb1Test, TheFirmwareLetsGoWhenNobodySpeaks) {
 }
 
 TEST_F(Kfb1Test, RefusesADeviceWithAnotherNumberOfKeys) {
-  Board board(3);
+  Kfb1Board board(3);
   board.plug.into_serial_line(link());
   const auto key = keys_at(port(), 2);
   key->start(Role::kMass);
@@ -189,7 +155,7 @@ TEST_F(Kfb1Test, RefusesADeviceWithAnotherNumberOfKeys) {
 }
 
 TEST_F(Kfb1Test, PlaysRoleLiaisonByACoupling) {
-  Board board;
+  Kfb1Board board;
   board.positions[0] = 0;  // -0.02 m
   board.positions[1] = 0;
   board.plug.into_serial_line(link());

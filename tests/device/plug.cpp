@@ -14,12 +14,12 @@
 namespace cordis::test {
 
 void Plug::into_serial_line(const std::filesystem::path& link) {
-  wire_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  wire_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   ASSERT_GE(wire_, 0);
   ASSERT_EQ(grantpt(wire_), 0);
   ASSERT_EQ(unlockpt(wire_), 0);
   // Held open, so that there is no end of file while the driver is away.
-  keeper_ = ::open(ptsname(wire_), O_RDWR | O_NOCTTY);
+  keeper_ = ::open(ptsname(wire_), O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios line{};
   tcgetattr(keeper_, &line);
   cfmakeraw(&line);
@@ -30,7 +30,7 @@ void Plug::into_serial_line(const std::filesystem::path& link) {
 }
 
 int Plug::into_udp() {
-  wire_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  wire_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
