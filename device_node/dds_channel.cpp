@@ -25,8 +25,10 @@ template <class Sent, class Received>
 class DdsChannel final : public GestureChannel {
  public:
   DdsChannel(dds::Participant& participant, dds::Topic sent, dds::Topic received,
-             std::uint32_t device_id)
-      : writer_(participant, sent), reader_(participant, received), device_id_(device_id) {}
+             std::uint32_t device_id, int strength)
+      : writer_(participant, sent, strength),
+        reader_(participant, received),
+        device_id_(device_id) {}
 
   bool send(const GestureMessage& sample) noexcept override {
     sent_.device_id(device_id_);
@@ -78,13 +80,13 @@ class DdsChannel final : public GestureChannel {
 }  // namespace
 
 std::unique_ptr<GestureChannel> make_dds_channel(dds::Participant& participant, Role role,
-                                                 std::uint32_t device_id) {
+                                                 std::uint32_t device_id, int strength) {
   if (role == Role::kMass) {
     return std::make_unique<DdsChannel<msg::GesturePositions, msg::GestureForces>>(
-        participant, dds::Topic::kPositions, dds::Topic::kForces, device_id);
+        participant, dds::Topic::kPositions, dds::Topic::kForces, device_id, strength);
   }
   return std::make_unique<DdsChannel<msg::GestureForces, msg::GesturePositions>>(
-      participant, dds::Topic::kForces, dds::Topic::kPositions, device_id);
+      participant, dds::Topic::kForces, dds::Topic::kPositions, device_id, strength);
 }
 
 }  // namespace cordis::device

@@ -9,8 +9,9 @@
 namespace cordis::device {
 
 /// The two gesture topics, in the direction that the role of the device gives them.
+/// @param strength  among the nodes that play the device
 /// @throws std::runtime_error when DDS refuses.
 std::unique_ptr<GestureChannel> make_dds_channel(dds::Participant& participant, Role role,
-                                                 std::uint32_t device_id);
+                                                 std::uint32_t device_id, int strength);
 
 }  // namespace cordis::device

@@ -112,7 +112,8 @@ bool Device::hear_scene() {
 
 /// Plays one role until it changes or a stop is requested.
 void Device::play() {
-  const auto channel = make_dds_channel(participant_, part_.role, config_.device_id);
+  const auto channel =
+      make_dds_channel(participant_, part_.role, config_.device_id, config_.strength);
   if (clock_ == config::Clock::kRealtime) ask_for_realtime();
   const bool lockstep = clock_ == config::Clock::kLockstep;
   Exchange exchange(config_, part_.role, series_, lockstep, *driver_, *channel, meter_,
@@ -144,7 +145,7 @@ void Device::play_paced(Exchange& exchange) {
     exchange.receive();
     exchange.live();
     meter_.add_overruns(pace.overruns() - std::exchange(overruns, pace.overruns()));
-    note_phase();
+    note_phase(exchange);
     if (look_around()) return;
   }
 }
@@ -158,12 +159,12 @@ void Device::play_in_lockstep(Exchange& exchange) {
       silent += kRepeatAfter;
       if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
         meter_.set_phase(Phase::kLost);
-        note_phase();
+        note_phase(exchange);
       }
       exchange.repeat_sample();
     }
     exchange.live();
-    note_phase();
+    note_phase(exchange);
     if (look_around()) return;
   }
 }
@@ -176,16 +177,26 @@ bool Device::look_around() {
 }
 
 /// Tells of a change of phase, once.
-void Device::note_phase() {
+void Device::note_phase(const Exchange& exchange) {
   const Phase phase = meter_.phase();
   if (phase == noted_phase_) return;
-  if (phase == Phase::kLost) {
+  const bool plays_on = phase == Phase::kRunning;
+  if (phase == Phase::kStandby) {
+    spdlog::info("another node plays '{}' with more strength; ready to take over", config_.name);
+  } else if (phase == Phase::kLost) {
     lost_since_nsec_ = node::monotonic_nsec();
-    spdlog::warn("no answer from the scene for more than {} ms: motors at zero",
-                 clock_ == config::Clock::kLockstep ? static_cast<double>(kLockstepPatience.count())
-                                                    : config_.force_guard.watchdog_s * 1e3);
-  } else if (noted_phase_ == Phase::kLost) {
-    spdlog::info("answers are back after {:.3f} s",
+    if (!exchange.has_device()) {
+      spdlog::warn("driver {}: the device is not there; trying again", config_.driver);
+    } else {
+      spdlog::warn("no answer from the scene for more than {} ms: motors at zero",
+                   clock_ == config::Clock::kLockstep
+                       ? static_cast<double>(kLockstepPatience.count())
+                       : config_.force_guard.watchdog_s * 1e3);
+    }
+  } else if (plays_on && noted_phase_ == Phase::kStandby) {
+    spdlog::info("takes over '{}'", config_.name);
+  } else if (plays_on && noted_phase_ == Phase::kLost) {
+    spdlog::info("plays again after {:.3f} s",
                  static_cast<double>(node::monotonic_nsec() - lost_since_nsec_) * 1e-9);
   }
   noted_phase_ = phase;

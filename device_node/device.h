@@ -39,7 +39,7 @@ class Device {
   void play_paced(Exchange& exchange);
   void play_in_lockstep(Exchange& exchange);
   void ask_for_realtime();
-  void note_phase();
+  void note_phase(const Exchange& exchange);
   void end(Phase phase);
 
   DeviceConfig config_;

@@ -121,6 +121,26 @@ void read_guards(config::MappingReader& reader, DeviceConfig& config, config::Pr
   position.period_s = force.period_s;
 }
 
+/// A node that plays another's device is heard as soon as that falls silent, which takes wall time,
+/// and is refused where it would be heard between two samples of a device that is not silent.
+void check_stand_in(const DeviceConfig& config, const config::LaunchNode& node, config::Clock clock,
+                    config::Problems& problems) {
+  constexpr double kLowestRate = 100.0;  // two samples within the deadline of the topic, 20 ms
+  if (config.name == node.name) return;
+  if (clock == config::Clock::kLockstep) {
+    problems.error(node.place,
+                   "a lockstep session has no stand-ins: '" + node.name + "' cannot play '" +
+                       config.name + "'",
+                   "clock: realtime, or without 'plays'");
+  }
+  if (config.layout.rate_hz < kLowestRate) {
+    problems.error(node.place, "'" + node.name + "' plays '" + config.name +
+                                   "', for which rate_hz must be at least " +
+                                   number_text(kLowestRate) + ", got " +
+                                   number_text(config.layout.rate_hz));
+  }
+}
+
 /// Builds every driver that the file has a mapping for, and keeps the one in use.
 std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig& config,
                                      config::Problems& problems) {
@@ -143,12 +163,14 @@ std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig
 
 }  // namespace
 
-LoadedDevice read_device(const config::Value& mapping, const std::string& name,
+LoadedDevice read_device(const config::Value& mapping, const std::string& node,
                          config::Problems& problems) {
   LoadedDevice device;
-  config::MappingReader reader(mapping, "device '" + name + "'", problems);
-  device.config.name = name;
-  device.config.device_id = config::name_hash(name);
+  config::MappingReader reader(mapping, "device '" + node + "'", problems);
+  const config::PlayedDevice played = config::read_played_device(reader, node);
+  device.config.name = played.name;
+  device.config.device_id = config::name_hash(played.name);
+  device.config.strength = played.strength;
   reader.optional_integer("cordis", 1, 1, 1);
   device.config.limits = config::read_device_limits(reader);
   device.config.layout = layout_of(device.config.limits);
@@ -165,7 +187,10 @@ LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode&
                          config::Problems& problems) {
   const config::Value mapping = config::device_mapping(launch, node, problems);
   problems.throw_if_any();
-  return read_device(mapping, node.name, problems);
+  LoadedDevice device = read_device(mapping, node.name, problems);
+  check_stand_in(device.config, node, launch.clock, problems);
+  problems.throw_if_any();
+  return device;
 }
 
 }  // namespace cordis::device

@@ -17,8 +17,9 @@ namespace cordis::device {
 
 /// What every device has, whoever drives it.
 struct DeviceConfig {
-  std::string name;  ///< the node's name in the launch file; ports of a scene refer to it
+  std::string name;  ///< what ports of a scene refer to: the node's name, or the device it `plays`
   std::uint32_t device_id = 0;  ///< hash of the name
+  int strength = 10;            ///< among the nodes that play this device
   config::DeviceLimits limits;  ///< as the file declares them, and as they are published
   AxisLayout layout;
   EndPiece end_piece;                    ///< between the axes and the coordinates on the wire
@@ -36,8 +37,9 @@ struct LoadedDevice {
 
 /// Reads a device from its mapping, and builds its driver. The mappings of all drivers in it are
 /// checked, not only that of the driver in use.
+/// @param node  name of the node
 /// @throws config::ConfigError with everything that is wrong.
-LoadedDevice read_device(const config::Value& mapping, const std::string& name,
+LoadedDevice read_device(const config::Value& mapping, const std::string& node,
                          config::Problems& problems);
 
 /// The device of a node: the device file that its section names (`device: FILE`), with the other

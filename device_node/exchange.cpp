@@ -23,7 +23,8 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
   sample_.axis_count = static_cast<std::uint32_t>(config.end_piece.coordinate_count());
   meter_.set_phase(Phase::kWaiting);
   driver_.start(role_);
-  if (driver_.read(sensed_) && all_finite(sensed_, kMaxAxes)) last_sensed_ = sensed_;
+  present_ = driver_.read(sensed_) && all_finite(sensed_, kMaxAxes);
+  if (present_) last_sensed_ = sensed_;
   sensed_ = last_sensed_;
 }
 
@@ -32,6 +33,7 @@ Exchange::~Exchange() {
 }
 
 void Exchange::send_sample() noexcept {
+  if (!present_ && !lockstep_) return;
   ++sample_.sample;
   sample_.answered_run = used_.run;
   sample_.answered_sample = used_.sample;
@@ -63,11 +65,15 @@ bool Exchange::await_answer(std::chrono::nanoseconds silence) noexcept {
 /// A new run of the scene is recognised by what it answers alone.
 bool Exchange::consider(const GestureMessage& answer) noexcept {
   if (answer.answered_run == 0) return false;  // the scene has not heard this device yet
+  if (answer.answered_run != sample_.run) {
+    other_answered_ = true;
+    other_answered_nsec_ = clock_();
+    return false;
+  }
   const bool well_formed = answer.axis_count >= 1 && answer.axis_count <= kMaxAxes &&
                            answer.answered_time_nsec <= clock_();
-  const bool answers_us = answer.answered_run == sample_.run &&
-                          answer.answered_sample >= first_sample_ &&
-                          answer.answered_sample <= sample_.sample;
+  const bool answers_us =
+      answer.answered_sample >= first_sample_ && answer.answered_sample <= sample_.sample;
   // Between two samples of this device the scene may answer twice: the later answer counts.
   const bool later = answer.run != used_.run || answer.sample > used_.sample;
   const bool newer = !any_answer_ || answer.answered_sample > used_.answered_sample ||
@@ -113,10 +119,21 @@ void Exchange::live() noexcept {
   meter_.count_tick();
   if (role_ == Role::kMass) meter_.note_energy(force_guard_.energy());
 
-  const bool present = written && sensed;
-  if (!present) force_guard_.let_go();  // a device that comes back is ramped up anew
-  const bool in_time = age < config_.force_guard.watchdog_s;
-  if (any_answer_) meter_.set_phase(present && in_time ? Phase::kRunning : Phase::kLost);
+  present_ = written && sensed;
+  if (!present_) force_guard_.let_go();  // a device that comes back is ramped up anew
+  note_phase(any_answer_ && age < config_.force_guard.watchdog_s);
+}
+
+void Exchange::note_phase(bool in_time) noexcept {
+  const double since_other_s = static_cast<double>(clock_() - other_answered_nsec_) * 1e-9;
+  const bool other = other_answered_ && since_other_s < config_.force_guard.watchdog_s;
+  if (present_ && in_time) {
+    meter_.set_phase(Phase::kRunning);
+  } else if (present_ && other) {
+    meter_.set_phase(Phase::kStandby);
+  } else if (!present_ || any_answer_) {
+    meter_.set_phase(Phase::kLost);
+  }
 }
 
 }  // namespace cordis::device

@@ -41,7 +41,9 @@ class Exchange {
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
 
-  void send_sample() noexcept;    ///< the newest readings, under the next number
+  /// The newest readings, under the next number; nothing while the driver has no device, so that
+  /// another node may play it. In lockstep the last ones then, since a scene waits for them.
+  void send_sample() noexcept;
   void repeat_sample() noexcept;  ///< the same message once more
 
   /// Takes all answers that are there. Bad, foreign and outdated ones are counted as dropped.
@@ -52,9 +54,11 @@ class Exchange {
   bool await_answer(std::chrono::nanoseconds silence) noexcept;
 
   /// Motors, one period, sensors. Sets the phase of the meter: waiting until the first answer,
-  /// running while answers come, lost when they are older than the watchdog or the driver has no
-  /// device.
+  /// running while answers come, standby while they go to another node, lost when they are older
+  /// than the watchdog or the driver has no device.
   void live() noexcept;
+
+  bool has_device() const noexcept { return present_; }  ///< whether the driver has one
 
   std::uint64_t last_sample() const noexcept { return sample_.sample; }
 
@@ -62,6 +66,7 @@ class Exchange {
   bool consider(const GestureMessage& answer) noexcept;
   void accept(const GestureMessage& answer) noexcept;
   double age_s() const noexcept;
+  void note_phase(bool in_time) noexcept;
 
   const DeviceConfig& config_;
   Role role_;
@@ -72,12 +77,15 @@ class Exchange {
   ClockFunction clock_;
   ForceGuard force_guard_;
   PositionGuard position_guard_;
-  GestureMessage sample_;         // the sample sent last
-  GestureMessage used_;           // the newest good answer
-  AxisValues sensed_{};           // for the next sample
-  AxisValues last_sensed_{};      // all finite
-  std::vector<AxisValues> late_;  // the last answers, by the sample they answer
-  std::uint64_t first_sample_;    // of this exchange
+  GestureMessage sample_;                 // the sample sent last
+  GestureMessage used_;                   // the newest good answer
+  AxisValues sensed_{};                   // for the next sample
+  AxisValues last_sensed_{};              // all finite
+  std::vector<AxisValues> late_;          // the last answers, by the sample they answer
+  std::uint64_t first_sample_;            // of this exchange
+  std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came
+  bool other_answered_ = false;           // ever
+  bool present_ = false;                  // the driver has its device
   bool any_answer_ = false;
   bool unfelt_ = false;  // the newest answer has not been handed to the driver yet
 };

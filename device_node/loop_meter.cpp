@@ -17,8 +17,10 @@ PhaseWords words_of(Phase phase) noexcept {
       return {"waiting", "waits for a scene that plays this device; motors off"};
     case Phase::kRunning:
       return {"running", ""};
+    case Phase::kStandby:
+      return {"standby", "another node plays this device; ready to take over"};
     case Phase::kLost:
-      return {"lost", "the scene no longer answers in time; motors at zero"};
+      return {"lost", "no answer from the scene in time, or no device; motors at zero"};
     case Phase::kStopped:
       return {"stopped", ""};
     case Phase::kFailed:

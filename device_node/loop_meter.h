@@ -14,7 +14,8 @@ namespace cordis::device {
 enum class Phase : std::uint8_t {
   kWaiting,  ///< no scene names it yet, or no answer has come yet; motors off
   kRunning,  ///< answers come in time
-  kLost,     ///< they no longer do; motors at zero
+  kStandby,  ///< the scene answers another node that plays the same device; motors off
+  kLost,     ///< answers no longer come, or the driver has no device; motors at zero
   kStopped,  ///< the node is ending as it was asked to
   kFailed    ///< the node is ending because it cannot play what the scene wants
 };

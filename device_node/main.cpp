@@ -17,10 +17,15 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
   if (start.check_only) return 0;
 
   const std::string& name = start.node->name;
+  const std::string session =
+      "cordis/" + std::to_string(start.launch.domain) + "/" + start.launch.session + "/";
+  const std::string where = "' already runs in session '" + start.launch.session + "' of domain " +
+                            std::to_string(start.launch.domain);
+  cordis::node::claim(session + name, "a node named '" + name + where);
+  const std::string strength = std::to_string(device.config.strength);
   cordis::node::claim(
-      "cordis/" + std::to_string(start.launch.domain) + "/" + start.launch.session + "/" + name,
-      "a node named '" + name + "' already runs in session '" + start.launch.session +
-          "' of domain " + std::to_string(start.launch.domain));
+      session + std::to_string(device.config.device_id) + "/" + strength,
+      "a node that plays '" + device.config.name + "' with strength " + strength + where.substr(1));
   cordis::dds::Participant participant(start.membership());
   cordis::node::CommandListener commands(
       participant, "device_node", [](const cordis::msg::ControlCommand& command) {

@@ -32,6 +32,7 @@ void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexc
   if (role_ != before.role_) return;
   newest_ = before.newest_;
   has_new_ = before.has_new_;
+  new_run_ = before.new_run_;
   if (!at_once) return;
   from_ = before.from_;
   to_ = before.to_;
@@ -65,6 +66,7 @@ DeviceExchange::Reception DeviceExchange::receive(const Sample& sample,
     return Reception::kRefused;
   }
   if (sample.run() == heard_run_) missed_count_ += sample.sample() - heard_sample_ - 1;
+  new_run_ = new_run_ || sample.run() != heard_run_;
   heard_run_ = sample.run();
   heard_sample_ = sample.sample();
   heard_time_nsec_ = sample.time_nsec();
@@ -84,7 +86,8 @@ DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& samp
 void DeviceExchange::begin_tick() noexcept {
   from_ = to_;
   if (has_new_) {
-    if (is_lost()) rejoin_left_ = rejoin_ticks_;
+    if (is_lost() || new_run_) rejoin_left_ = rejoin_ticks_;
+    new_run_ = false;
     silent_ticks_ = 0;
   } else if (!is_lost()) {
     ++silent_ticks_;

@@ -22,10 +22,10 @@ constexpr std::size_t kMaxAxes = 16;
 /// A new position is reached in a ramp over the sub-steps of one period, and the answer holds the
 /// forces of the last sub-step, computed at the position of the sample itself: no virtual damping
 /// is lost, and no delay added. A device that was not heard for kLostAfter is lost: its MATs hold
-/// still, its forces count as 0, and it is given none. When it is heard again it takes over
-/// gradually, within kRejoin, and so do the forces it is given: neither side jumps. Both are
-/// counted in ticks. Real time: every function but the constructor is O(axes), allocates nothing
-/// and does not throw.
+/// still, its forces count as 0, and it is given none. When it is heard again, or another process
+/// is heard in its place, that takes over gradually, within kRejoin, and so do the forces it is
+/// given: neither side jumps. Both are counted in ticks. Real time: every function but the
+/// constructor is O(axes), allocates nothing and does not throw.
 class DeviceExchange {
  public:
   static constexpr double kLostAfter = 0.02;  ///< [s]
@@ -99,6 +99,7 @@ class DeviceExchange {
   std::uint64_t heard_sample_ = 0;
   std::int64_t heard_time_nsec_ = 0;
   bool has_new_ = false;
+  bool new_run_ = false;  // it is the first of another process
 
   std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick
   std::array<double, kMaxAxes> to_{};    // and at its end

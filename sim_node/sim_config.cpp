@@ -15,49 +15,70 @@ namespace {
 constexpr const char* kHowToSoften =
     "softer links at the port, or a 'coupling' between the device and a simulated tool";
 
-/// What the device file behind a node promises; empty when it cannot be read, of which the node
-/// itself tells.
-std::optional<config::DeviceLimits> limits_of(const config::Launch& launch,
-                                              const config::LaunchNode& device) {
-  config::Problems of_the_device;
-  const config::Value mapping = config::device_mapping(launch, device, of_the_device);
-  config::MappingReader reader(mapping, "device", of_the_device);
-  const config::DeviceLimits limits = config::read_device_limits(reader);
-  if (of_the_device.has_errors()) return {};
-  return limits;
+/// A device_node of the launch, and what its device file promises.
+struct LaunchedDevice {
+  const config::LaunchNode* node = nullptr;
+  std::string plays;                           // name of the device
+  std::optional<config::DeviceLimits> limits;  // empty when the file cannot be read, of which the
+                                               // node itself tells
+};
+
+std::vector<LaunchedDevice> devices_of(const config::Launch& launch) {
+  std::vector<LaunchedDevice> devices;
+  for (const config::LaunchNode& node : launch.nodes) {
+    if (node.program != "device_node") continue;
+    config::Problems of_the_device;
+    const config::Value mapping = config::device_mapping(launch, node, of_the_device);
+    config::MappingReader reader(mapping, "device", of_the_device);
+    LaunchedDevice device{&node, config::read_played_device(reader, node.name).name, {}};
+    const config::DeviceLimits limits = config::read_device_limits(reader);
+    if (!of_the_device.has_errors()) device.limits = limits;
+    devices.push_back(std::move(device));
+  }
+  return devices;
 }
 
+/// That nobody plays the device of a port.
+void warn_of_nobody(const config::Launch& launch, const std::vector<LaunchedDevice>& devices,
+                    const scene::Port& port, config::Problems& problems) {
+  std::vector<std::string> names;
+  for (const LaunchedDevice& device : devices) names.push_back(device.plays);
+  const std::string near = config::nearest_word(port.device, names);
+  problems.warning(
+      port.place,
+      "port '" + port.name + "' wants the device '" + port.device + "', and " + launch.file +
+          " has no device_node of that name: it stays at rest until one joins the session",
+      near.empty() ? "" : "did you mean '" + near + "'?");
+}
+
+void check_device(const config::Launch& launch, const scene::Scene& scene, const scene::Port& port,
+                  const config::DeviceLimits& limits, config::Problems& problems) {
+  const int axis_count = limits.coordinate_count;
+  const auto highest = *std::max_element(port.axes.begin(), port.axes.end());
+  const std::string refusal =
+      scene::refusal_of(scene, port, limits, delay_periods_of(launch.clock));
+  if (!refusal.empty()) problems.error(port.place, refusal, kHowToSoften);
+  if (static_cast<int>(highest) >= axis_count) {
+    problems.error(
+        port.place,
+        "port '" + port.name + "' wants axis " + std::to_string(highest) + " of the device '" +
+            port.device + "', which has " + std::to_string(axis_count) +
+            (axis_count == 1 ? " axis: 0" : " axes: 0 to " + std::to_string(axis_count - 1)));
+  }
+}
+
+/// Every port against every node that may play its device.
 void check_devices(const config::Launch& launch, const scene::Scene& scene,
                    config::Problems& problems) {
+  const std::vector<LaunchedDevice> devices = devices_of(launch);
   for (const scene::Port& port : scene.ports) {
-    const config::LaunchNode* device = launch.find(port.device);
-    if (device == nullptr || device->program != "device_node") {
-      std::vector<std::string> names;
-      for (const auto& node : launch.nodes) {
-        if (node.program == "device_node") names.push_back(node.name);
-      }
-      const std::string near = config::nearest_word(port.device, names);
-      problems.warning(
-          port.place,
-          "port '" + port.name + "' wants the device '" + port.device + "', and " + launch.file +
-              " has no device_node of that name: it stays at rest until one joins the session",
-          near.empty() ? "" : "did you mean '" + near + "'?");
-      continue;
+    bool any = false;
+    for (const LaunchedDevice& device : devices) {
+      if (device.plays != port.device) continue;
+      any = true;
+      if (device.limits) check_device(launch, scene, port, *device.limits, problems);
     }
-    const std::optional<config::DeviceLimits> limits = limits_of(launch, *device);
-    if (!limits) continue;
-    const int axis_count = limits->coordinate_count;
-    const auto highest = *std::max_element(port.axes.begin(), port.axes.end());
-    const std::string refusal =
-        scene::refusal_of(scene, port, *limits, delay_periods_of(launch.clock));
-    if (!refusal.empty()) problems.error(port.place, refusal, kHowToSoften);
-    if (static_cast<int>(highest) >= axis_count) {
-      problems.error(
-          port.place,
-          "port '" + port.name + "' wants axis " + std::to_string(highest) + " of the device '" +
-              port.device + "', which has " + std::to_string(axis_count) +
-              (axis_count == 1 ? " axis: 0" : " axes: 0 to " + std::to_string(axis_count - 1)));
-    }
+    if (!any) warn_of_nobody(launch, devices, port, problems);
   }
 }
 

@@ -46,4 +46,14 @@ DeviceLimits read_device_limits(MappingReader& reader) {
   return limits;
 }
 
+PlayedDevice read_played_device(MappingReader& reader, const std::string& node) {
+  constexpr int kOwn = 10;
+  constexpr int kOfAnother = 5;
+  PlayedDevice played;
+  played.name = reader.optional_text("plays", node);
+  played.strength = static_cast<int>(
+      reader.optional_integer("strength", played.name == node ? kOwn : kOfAnother, 1, 1000));
+  return played;
+}
+
 }  // namespace cordis::config

@@ -28,4 +28,13 @@ Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& pro
 /// Reads these keys, and marks them as known; the reader's owner reads the others.
 DeviceLimits read_device_limits(MappingReader& reader);
 
+/// Which device a node plays. Of several nodes that play one, the strongest that is there is heard.
+struct PlayedDevice {
+  std::string name;   ///< `plays`: the name of the node itself when it is not given
+  int strength = 10;  ///< `strength`: 5 for a node that plays another's device; 1..1000
+};
+
+/// Reads these keys, and marks them as known. @param node  name of the node
+PlayedDevice read_played_device(MappingReader& reader, const std::string& node);
+
 }  // namespace cordis::config

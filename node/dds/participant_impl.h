@@ -25,7 +25,8 @@ struct Participant::Impl {
   fast::Topic* topic(const TopicQos& row, fast::TypeSupport type);
 };
 
-/// Reliability, durability, history and memory of a row, on a DataWriterQos or DataReaderQos.
+/// Reliability, durability, history, ownership and memory of a row, on a DataWriterQos or
+/// DataReaderQos.
 template <class Qos>
 void apply(const TopicQos& row, Qos& qos) {
   qos.reliability().kind =
@@ -34,6 +35,11 @@ void apply(const TopicQos& row, Qos& qos) {
                                                     : fast::VOLATILE_DURABILITY_QOS;
   qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = row.history_depth;
+  if (row.exclusive_for_msec > 0) {
+    qos.ownership().kind = fast::EXCLUSIVE_OWNERSHIP_QOS;
+    qos.deadline().period = eprosima::fastrtps::Duration_t(
+        0, static_cast<std::uint32_t>(row.exclusive_for_msec) * 1'000'000u);
+  }
   qos.data_sharing().off();
   qos.endpoint().history_memory_policy =
       eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;

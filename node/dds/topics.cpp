@@ -4,14 +4,14 @@
 namespace cordis::dds {
 
 TopicQos qos_of(Topic topic, bool lockstep) noexcept {
-  // name, reliable, kept, depth, asynchronous, heartbeat [ms]
+  // name, reliable, kept, depth, asynchronous, heartbeat [ms], exclusive for [ms]
   switch (topic) {
     case Topic::kPositions:
       return lockstep ? TopicQos{"gesture/positions", true, false, 8, false, 20}
-                      : TopicQos{"gesture/positions", false, false, 1, false, 20};
+                      : TopicQos{"gesture/positions", false, false, 1, false, 20, 20};
     case Topic::kForces:
       return lockstep ? TopicQos{"gesture/forces", true, false, 8, false, 20}
-                      : TopicQos{"gesture/forces", false, false, 1, false, 20};
+                      : TopicQos{"gesture/forces", false, false, 1, false, 20, 20};
     case Topic::kDevice:
       return {"device/description", true, true, 1, false, 50};
     case Topic::kDescription:

@@ -27,10 +27,13 @@ struct TopicQos {
   int history_depth;           ///< keep last
   bool asynchronous;           ///< written by a thread of the middleware: for large frames
   int heartbeat_msec;          ///< of a reliable writer
+  /// Of several writers of a key the strongest is heard, until it has been silent for so long;
+  /// 0: all are heard.
+  int exclusive_for_msec = 0;
 };
 
-/// @param lockstep  the two gesture topics are reliable in a lockstep session and best effort
-/// otherwise
+/// @param lockstep  the two gesture topics are reliable in a lockstep session; otherwise best
+/// effort, and heard of the strongest writer of a device alone
 TopicQos qos_of(Topic topic, bool lockstep) noexcept;
 
 }  // namespace cordis::dds

@@ -18,7 +18,8 @@ struct Writer<Message>::Impl {
 };
 
 template <class Message>
-Writer<Message>::Writer(Participant& participant, Topic topic) : impl_(std::make_unique<Impl>()) {
+Writer<Message>::Writer(Participant& participant, Topic topic, int strength)
+    : impl_(std::make_unique<Impl>()) {
   using eprosima::fastrtps::Duration_t;
   Participant::Impl& shared = participant.impl();
   const TopicQos row = qos_of(topic, shared.membership.lockstep);
@@ -27,6 +28,7 @@ Writer<Message>::Writer(Participant& participant, Topic topic) : impl_(std::make
 
   fast::DataWriterQos qos;
   apply(row, qos);
+  qos.ownership_strength().value = static_cast<std::uint32_t>(strength);
   qos.publish_mode().kind =
       row.asynchronous ? fast::ASYNCHRONOUS_PUBLISH_MODE : fast::SYNCHRONOUS_PUBLISH_MODE;
   qos.reliable_writer_qos().times.heartbeatPeriod =

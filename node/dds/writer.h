@@ -13,8 +13,9 @@ namespace cordis::dds {
 template <class Message>
 class Writer {
  public:
+  /// @param strength  among the writers of the same key of an exclusive topic, >= 0
   /// @throws std::runtime_error when DDS refuses.
-  Writer(Participant& participant, Topic topic);
+  Writer(Participant& participant, Topic topic, int strength = 0);
   ~Writer();
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;

@@ -47,6 +47,22 @@ TEST(DeviceConfig, NeedsNothingButItsAxes) {
   EXPECT_NE(device.driver, nullptr);
 }
 
+TEST(DeviceConfig, MayPlayTheDeviceOfAnotherNode) {
+  const DeviceConfig own = launched("keyboard.yaml", {}).config;
+  EXPECT_EQ(own.strength, 10);
+  const DeviceConfig stand_in = launched("keyboard.yaml", {"keyboard.plays=organ"}).config;
+  EXPECT_EQ(stand_in.name, "organ");
+  EXPECT_EQ(stand_in.device_id, config::name_hash("organ"));
+  EXPECT_EQ(stand_in.strength, 5);
+  EXPECT_EQ(
+      launched("keyboard.yaml", {"keyboard.plays=organ", "keyboard.strength=7"}).config.strength,
+      7);
+  EXPECT_THROW(launched("keyboard.yaml", {"keyboard.plays=organ", "clock=lockstep"}),
+               config::ConfigError);
+  EXPECT_THROW(launched("keyboard.yaml", {"keyboard.plays=organ", "keyboard.rate_hz=50"}),
+               config::ConfigError);
+}
+
 TEST(DeviceConfig, GivesItsLimitsToBothGuards) {
   const DeviceConfig config = device_of(
                                   "{axes: 1, travel_m: 0.03, rest: middle, rate_hz: 500, "

@@ -228,12 +228,12 @@ TEST(Exchange, DropsWhatIsNotAnAnswerToIt) {
 
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.axis_count = 0; }), 1u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.axis_count = 17; }), 1u);
-  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_run = kRun - 1; }), 1u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_sample += 1; }), 1u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_sample -= 1; }), 1u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_time_nsec = now_nsec + 1; }), 1u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.sample = 101; }), 1u);
-  // A scene that has not heard this device yet is no fault.
+  // A scene that has not heard this device yet, or that answers another node, is no fault.
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_run = kRun - 1; }), 0u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_run = m.answered_sample = 0; }), 0u);
 }
 
@@ -413,6 +413,47 @@ TEST(Exchange, IsLostWhileItsDriverHasNoDevice) {
   EXPECT_EQ(rig.period(true, 15.0), 0.0);
   EXPECT_EQ(rig.period(true, 15.0), 5.0);  // from zero again
   EXPECT_EQ(rig.meter.phase(), Phase::kRunning);
+}
+
+TEST(Exchange, SendsNothingWhileItsDriverHasNoDevice) {
+  Rig rig(false);
+  rig.period(true, 1.0);
+  rig.driver.present = false;
+  rig.period(true, 1.0);  // finds out
+  ASSERT_EQ(rig.channel.sent.size(), 2u);
+
+  rig.period(false);
+  rig.driver.present = true;
+  rig.period(false);
+  EXPECT_EQ(rig.channel.sent.size(), 2u);
+  rig.period(false);
+
+  ASSERT_EQ(rig.channel.sent.size(), 3u);
+  EXPECT_EQ(rig.channel.sent.back().sample, 3u) << "no number is missing";
+}
+
+TEST(Exchange, StandsByWhileAnotherNodeIsAnswered) {
+  Rig rig(false);
+  const auto period_of_another = [&rig] {
+    rig.exchange.send_sample();
+    GestureMessage message = rig.answer(9.0);
+    message.answered_run = kRun + 1;
+    rig.channel.waiting.push_back(message);
+    now_nsec += kPeriod;
+    rig.exchange.receive();
+    rig.exchange.live();
+    return rig.driver.commands.back()[0];
+  };
+  EXPECT_EQ(period_of_another(), 0.0);
+  EXPECT_EQ(rig.meter.phase(), Phase::kStandby);
+
+  rig.period(true, 1.0);
+  EXPECT_EQ(rig.period(true, 1.0), 1.0);
+  EXPECT_EQ(rig.meter.phase(), Phase::kRunning) << "it has taken over";
+
+  for (int n = 0; n < 30; ++n) period_of_another();
+  EXPECT_EQ(period_of_another(), 0.0);
+  EXPECT_EQ(rig.meter.phase(), Phase::kStandby) << "and handed back";
 }
 
 TEST(Exchange, StopsItsDriverAtTheEnd) {

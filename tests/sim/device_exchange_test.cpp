@@ -161,6 +161,33 @@ TEST(DeviceExchange, TakesOverGraduallyFromADeviceThatWasAway) {
   EXPECT_LT(largest_move, kFar / 99.0);  // 100 equal moves, not a jump
 }
 
+TEST(DeviceExchange, AnotherProcessOfTheDeviceTakesOverGradually) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  settle(exchange, world, 0.02);
+  double force = exchange.answer_forces(world, true, 0).force_n()[1];
+  double position = world.position(0).x() - 1.0;
+  double largest_move = 0.0;
+  double largest_rise = 0.0;
+  for (std::uint64_t number = 1; number <= 100; ++number) {
+    msg::GesturePositions sample = sample_at(number, 0.04);
+    sample.run(kRun + 1);
+    exchange.receive(sample);
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+    const double force_now = exchange.answer_forces(world, true, 0).force_n()[1];
+    largest_rise = std::max(largest_rise, std::abs(force_now) - std::abs(force));
+    largest_move = std::max(largest_move, std::abs(world.position(0).x() - 1.0 - position));
+    force = force_now;
+    position = world.position(0).x() - 1.0;
+  }
+  EXPECT_NEAR(position, 0.04, 1e-15);
+  EXPECT_LT(largest_move, 0.02 / 99.0);
+  EXPECT_NEAR(force, -kStiffness * 0.04, 1e-12);
+  EXPECT_LT(largest_rise, 2.0 * kStiffness * 0.04 / 99.0) << "share and position grow together";
+}
+
 TEST(DeviceExchange, GivesItsForcesGraduallyToADeviceThatWasAway) {
   engine::World world = world_with_a_port();
   DeviceExchange exchange = mass_exchange();

@@ -1,0 +1,181 @@
+// tests/integration/failover_test.cpp -- a mock plays on when the process of the hardware dies, and
+// hands back when it returns.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "idl/control.h"
+#include "idl/gesture.h"
+#include "node/dds/reader.h"
+#include "tests/device/kfb1_board.h"
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+constexpr double kStiffness = 200.0;    // of the wall [N/m]
+constexpr double kHardwareForce = 2.0;  // the key on the table is pressed to -10 mm [N]
+constexpr double kStandInForce = 1.0;   // the simulated one to -5 mm [N]
+constexpr double kSlew = 0.3;           // slew limit of both: 300 N/s in 1 ms [N]
+constexpr double kSceneGrowth = 0.05;   // of forces that the scene gives, in 1 ms [N]
+constexpr double kFullScale = 10.0;     // of the board [N]
+constexpr double kJitter = 1.2;         // ages and times of rows are taken some us apart
+
+const char* const kLimits =
+    "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nforce_limit_n: 5\nslew_limit_n_per_s: 300\n";
+
+/// One key of which two nodes are the device: the hardware, and a script of lower strength.
+class Failover : public ::testing::Test {
+ protected:
+  Failover()
+      : session_("realtime",
+                 "  sim: {node: sim_node, scene: scene.yaml}\n"
+                 "  keyboard: {node: device_node, device: key.yaml, required: false}\n"
+                 "  stand_in: {node: device_node, device: mock.yaml, plays: keyboard}\n"),
+        board_(1),
+        status_(session_.participant(), dds::Topic::kStatus),
+        forces_(session_.participant(), dds::Topic::kForces) {
+    session_.add_file("scene.yaml", wall_scene(kStiffness));
+    session_.add_file("key.yaml", std::string(kLimits) + "driver: kfb1\nkfb1: {port: " +
+                                      (session_.folder() / "tty").string() +
+                                      ", lost_after_s: 5, retry_s: 0.05}\n");
+    session_.add_file("mock.yaml", std::string(kLimits) +
+                                       "driver: script\nscript: {positions: [{at_s: 0, m: -0.005}]}"
+                                       "\ntrace: {file: " +
+                                       trace().string() + ", last_s: 60}\n");
+    board_.positions[0] = 16384;  // three quarters up: -0.01 m
+    board_.on_force = [this](int, int force) { note_board(force * kFullScale / 32767.0); };
+    board_.plug.into_serial_line(session_.folder() / "tty");
+  }
+
+  std::filesystem::path trace() const { return session_.folder() / "stand_in.csv"; }
+
+  /// The firmware's own watchdog lets go at once; all else comes from the driver.
+  void note_board(double force) {
+    const std::int64_t now = node::monotonic_nsec();
+    const double change = std::abs(force - board_force_) / periods_of(now - board_time_nsec_);
+    if (force != 0.0 || board_force_ < kSlew) {
+      largest_board_change_ = std::max(largest_board_change_.load(), change);
+    }
+    board_force_ = force;
+    board_time_nsec_ = now;
+  }
+
+  /// A late tick makes up for what should have faded meanwhile.
+  static double periods_of(std::int64_t nsec) {
+    return std::max(1.0, static_cast<double>(nsec) * 1e-6);
+  }
+
+  void listen() {
+    msg::NodeStatus status;
+    while (status_.take(status)) newest_[status.node()] = status;
+    msg::GestureForces force;
+    while (forces_.take(force)) {
+      const double steps = static_cast<double>(force.sample() - answer_.sample());
+      const double growth = std::abs(force.force_n()[0]) - std::abs(answer_.force_n()[0]);
+      if (answer_.sample() > 0) {
+        largest_scene_growth_ = std::max(largest_scene_growth_, growth / std::max(1.0, steps));
+      }
+      answer_ = force;
+    }
+  }
+
+  bool in_phases(const std::string& hardware, const std::string& stand_in, double force) {
+    return eventually([&] {
+      listen();
+      return (hardware.empty() || newest_["keyboard"].phase() == hardware) &&
+             newest_["stand_in"].phase() == stand_in && newest_["sim"].phase() == "running" &&
+             std::abs(answer_.force_n()[0] - force) < 2e-3;
+    });
+  }
+
+  /// Largest change of force from one period to the next that the stand-in's driver was given.
+  void check_stand_in() const {
+    std::ifstream file(trace());
+    std::string line;
+    std::getline(file, line);
+    std::int64_t time_before = 0;  // [ns]
+    double before = 0.0;
+    double largest = 0.0;
+    while (std::getline(file, line)) {
+      const std::int64_t time = std::atoll(line.c_str());
+      const double force = std::atof(line.substr(line.find(',') + 1).c_str());
+      EXPECT_LE(std::abs(force - before), kJitter * kSlew * periods_of(time - time_before));
+      time_before = time;
+      largest = std::max(largest, force);
+      before = force;
+    }
+    EXPECT_GT(largest, 0.1 * kStandInForce);
+  }
+
+  LiveSession session_;
+  std::atomic<double> board_force_{0.0};
+  std::int64_t board_time_nsec_ = 0;
+  std::atomic<double> largest_board_change_{0.0};
+  Kfb1Board board_;
+  dds::Reader<msg::NodeStatus> status_;
+  dds::Reader<msg::GestureForces> forces_;
+  std::map<std::string, msg::NodeStatus> newest_;
+  msg::GestureForces answer_;
+  double largest_scene_growth_ = 0.0;
+};
+
+TEST_F(Failover, AStandInTakesOverWhenTheHardwareProcessDiesAndHandsBack) {
+  session_.start("sim_node", "sim");
+  session_.start("device_node", "keyboard");
+  ASSERT_TRUE(eventually([&] {
+    listen();
+    return newest_["keyboard"].phase() == "running";
+  }));
+  ChildProcess& stand_in = session_.start("device_node", "stand_in");
+  ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
+  ASSERT_TRUE(eventually([&] { return std::abs(board_force_ - kHardwareForce) < 2e-3; }));
+  const std::uint64_t sim_run = newest_["sim"].run();
+  const std::uint64_t ticks = newest_["sim"].ticks();
+
+  session_.node("keyboard").signal(SIGKILL);
+  ASSERT_EQ(session_.node("keyboard").wait(kPatience), 128 + SIGKILL);
+  ASSERT_TRUE(in_phases("", "running", kStandInForce));
+  EXPECT_EQ(board_.forces[0], 0) << "its own watchdog has let go";
+
+  session_.start("device_node", "keyboard");
+  ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
+  ASSERT_TRUE(eventually([&] { return std::abs(board_force_ - kHardwareForce) < 2e-3; }));
+
+  stand_in.signal(SIGTERM);
+  ASSERT_EQ(stand_in.wait(kPatience), 0);
+  check_stand_in();
+  EXPECT_LE(largest_board_change_, kJitter * kSlew);
+  EXPECT_GT(largest_board_change_, 0.0);
+  EXPECT_LE(largest_scene_growth_, kSceneGrowth);
+  EXPECT_EQ(newest_["sim"].run(), sim_run);
+  EXPECT_TRUE(eventually([&] {
+    listen();
+    return newest_["sim"].ticks() > ticks;
+  })) << "the scene went on";
+}
+
+TEST_F(Failover, AStandInPlaysWhileTheHardwareIsUnplugged) {
+  session_.start("sim_node", "sim");
+  session_.start("device_node", "keyboard");
+  session_.start("device_node", "stand_in");
+  ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
+
+  board_.plug.pull();
+  ASSERT_TRUE(in_phases("lost", "running", kStandInForce));
+
+  board_.plug.into_serial_line(session_.folder() / "tty");
+  ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
+  EXPECT_LE(largest_board_change_, kJitter * kSlew);
+}
+
+}  // namespace
+}  // namespace cordis::test
