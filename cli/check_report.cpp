@@ -17,6 +17,11 @@ std::string seconds(double value) {
   return fmt::format("{:.4g} ms", 1e3 * value);
 }
 
+/// The place of a part, in brackets; nothing where there is none.
+std::string at(const scene::Called& called) {
+  return called.place.line > 0 ? " (" + place_text(called.place) + ")" : std::string();
+}
+
 std::string percent(double share) {
   return fmt::format("{:+.2g} %", 100.0 * share);
 }
@@ -26,9 +31,6 @@ std::string limit_text(const SceneCheck& check) {
   if (!std::isfinite(bound.step)) return "limit       none: nothing pulls\n";
   const scene::Called liaison = scene::call_liaison(check.scene, bound.liaison);
   const scene::Called mat = scene::call_mat(check.scene, bound.mat);
-  const auto at = [](const scene::Called& called) {
-    return called.place.line > 0 ? " (" + place_text(called.place) + ")" : std::string();
-  };
   return fmt::format("limit       set by {}{} at the mass {} of {:.4g} kg{}\n", liaison.name,
                      at(liaison), mat.name, check.scene.network.mats[bound.mat].mass, at(mat));
 }
@@ -75,8 +77,8 @@ std::string contact_text(const SceneCheck& check) {
   const auto& contact = check.plan.worst_contact;
   if (!contact) return {};
   const scene::Called liaison = scene::call_liaison(check.scene, contact->liaison);
-  return fmt::format("contacts    one collision gains {:.2g} % of its energy at worst: {}\n",
-                     100.0 * contact->worst, liaison.name);
+  return fmt::format("contacts    one collision gains {:.2g} % of its energy at worst: {}{}\n",
+                     100.0 * contact->worst, liaison.name, at(liaison));
 }
 
 std::string port_text(const SceneCheck& check, const PortCheck& port) {
@@ -167,9 +169,9 @@ const char* verdict(const plan::Stability& stability) {
 
 std::string text_of(const SceneCheck& check) {
   const scene::Scene& scene = check.scene;
-  std::string text =
-      fmt::format("scene       {} ({}), {} MATs, {} links, {}-D\n", scene.name, scene.file,
-                  scene.network.mats.size(), scene.network.links.size(), scene.space());
+  std::string text = fmt::format("scene       {} ({}), {} MATs, {} links, {} sets, {}-D\n",
+                                 scene.name, scene.file, scene.network.mats.size(),
+                                 scene.link_count(), scene.network.sets.size(), scene.space());
   text +=
       fmt::format("integrator  cordis at {:.6g} Hz, 1 thread, no reductions\n", scene.step_rate_hz);
   text += stability_text(check) + accuracy_text(check) + contact_text(check);
@@ -207,7 +209,9 @@ std::string json_of(const SceneCheck& check) {
         {"mat", called(scene::call_mat(check.scene, stability.certified.mat))}};
   }
   if (check.plan.worst_contact) {
-    json["worst_contact_energy_gain"] = finite(check.plan.worst_contact->worst);
+    json["worst_contact"] = {
+        {"energy_gain", finite(check.plan.worst_contact->worst)},
+        {"liaison", called(scene::call_liaison(check.scene, check.plan.worst_contact->liaison))}};
   }
   return json.dump(2) + "\n";
 }

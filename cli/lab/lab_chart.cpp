@@ -1,6 +1,7 @@
 // cli/lab/lab_chart.cpp
 #include "cli/lab/lab_chart.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -29,15 +30,15 @@ std::string number_or_nothing(double value) {
 std::string csv_of(const LabReport& report) {
   std::string text =
       "integrator,rate_hz,force_evaluations_per_s,nsec_per_s,instructions_per_s,error,"
-      "energy_error,on_front,blown_up_at_s\n";
+      "energy_error,on_front,blown_up,blown_up_at_s\n";
   for (const LabRun& run : report.runs) {
     const plan::TrialResult& result = run.result;
     text += fmt::format(
-        "{},{:.10g},{:.10g},{:.5g},{},{},{},{:d},{}\n", result.integrator, result.rate_hz,
+        "{},{:.10g},{:.10g},{:.5g},{},{},{},{:d},{:d},{}\n", result.integrator, result.rate_hz,
         result.evaluations_per_s, result.nsec_per_s, number_or_nothing(result.instructions_per_s),
         result.blown_up ? "" : fmt::format("{:.6g}", result.error),
         result.blown_up ? "" : fmt::format("{:.6g}", result.energy_error), run.on_front ? 1 : 0,
-        result.blown_up ? fmt::format("{:.6g}", result.blown_up_at) : "");
+        result.blown_up ? 1 : 0, result.blown_up ? fmt::format("{:.6g}", result.blown_up_at) : "");
   }
   return text;
 }
@@ -48,6 +49,15 @@ std::set<std::string> names_of(const LabReport& report) {
   return names;
 }
 
+/// The bottom of the chart, a third of a decade below the best run.
+double least_error(const LabReport& report) {
+  double least = 1.0;
+  for (const LabRun& run : report.runs) {
+    if (!run.result.blown_up && run.result.error > 0.0) least = std::min(least, run.result.error);
+  }
+  return 0.5 * least;
+}
+
 /// One panel: error over a column of the table.
 std::string panel(const LabReport& report, int column, const std::string& label, bool limit) {
   std::string text = fmt::format("set xlabel '{}'\nunset arrow\n", label);
@@ -55,7 +65,7 @@ std::string panel(const LabReport& report, int column, const std::string& label,
   if (limit && std::isfinite(diverging)) {
     text += fmt::format(
         "set arrow from {0:.6g}, graph 0 to {0:.6g}, graph 1 nohead dashtype 2 linecolor rgb "
-        "'#888888'\nset label 1 'limit of cordis' at {0:.6g}, graph 0.03 rotate left offset "
+        "'#888888'\nset label 1 'limit of cordis' at {0:.6g}, graph 0.97 right rotate left offset "
         "-0.6,0 textcolor rgb '#666666'\n",
         1.0 / diverging);
   } else {
@@ -67,16 +77,21 @@ std::string panel(const LabReport& report, int column, const std::string& label,
     const std::string own = fmt::format("(strcol(1) eq '{}' ? column({}) : NaN)", name, column);
     text += fmt::format(
         "table using {0}:6 with linespoints pointtype 7 pointsize 0.5 linecolor {1} title '{2}', "
-        "\\\n     table using {0}:(strlen(strcol(9)) > 0 ? top : NaN) with points pointtype 2 "
+        "\\\n     table using {0}:(column(9) == 1 ? top : NaN) with points pointtype 2 "
         "linecolor {1} notitle, \\\n     ",
         own, colour++, name);
   }
   text += fmt::format(
       "table using (column(8) == 1 ? column({}) : NaN):6 with points pointtype 6 pointsize 1 "
-      "linecolor rgb '#000000' title 'Pareto front', \\\n     {:.3g} with lines dashtype 3 "
-      "linecolor rgb '#888888' title 'doubt of the reference'\n",
-      column, std::max(report.reference.doubt, 1e-16));
-  return text;
+      "linecolor rgb '#000000' title 'Pareto front'",
+      column);
+  if (report.reference.doubt > least_error(report)) {
+    text += fmt::format(
+        ", \\\n     {:.3g} with lines dashtype 3 linecolor rgb '#888888' title 'doubt of the "
+        "reference'",
+        report.reference.doubt);
+  }
+  return text + "\n";
 }
 
 std::string script_of(const LabReport& report) {
@@ -92,12 +107,13 @@ std::string script_of(const LabReport& report) {
              "top = {:.3g}\n"
              "set logscale xy\n"
              "set format xy '10^{{%T}}'\n"
-             "set yrange [*:5 * top]\n"
+             "set yrange [{:.3g}:3 * top]\n"
              "set key bottom left\n"
              "set grid\n"
              "set ylabel 'rms position error / amplitude'\n"
-             "set multiplot layout 1,2 title '{}: {:.3g} s'\n",
-             2.0 * worst, report.lab.scene.name, report.reference.sampling.duration()) +
+             "set multiplot layout 1,2 title '{}: {:.3g} s' noenhanced\n",
+             2.0 * worst, least_error(report), report.lab.scene.name,
+             report.reference.sampling.duration()) +
          panel(report, 3, "force evaluations per simulated second", true) + "unset key\n" +
          panel(report, 4, "processor time per simulated second [ns]", false) + "unset multiplot\n";
 }

@@ -23,26 +23,18 @@ Called call_mat(const Scene& scene, std::uint32_t mat) {
 Called call_liaison(const Scene& scene, std::optional<engine::LiaisonId> liaison) {
   if (!liaison) return {"the viscosity of the medium", {}};
   const engine::NetworkDescription& network = scene.network;
+  const auto linear = static_cast<std::uint32_t>(network.links.size());
+  const auto with_states = static_cast<std::uint32_t>(network.state_links.size());
   const std::uint32_t index = liaison->index;
-  const auto of_behaviour = [&](std::uint32_t behaviour, const std::string& where) {
-    return Called{"liaison '" + network.behaviours[behaviour].name + "' " + where, {}};
-  };
   switch (liaison->kind) {
     case engine::LiaisonKind::kLink:
       return call(scene.links, index, "link");
-    case engine::LiaisonKind::kStateLink: {
-      const engine::StateLink& link = network.state_links[index];
-      return of_behaviour(link.behaviour, "between " + call_mat(scene, link.mat_a).name + " and " +
-                                              call_mat(scene, link.mat_b).name);
-    }
-    case engine::LiaisonKind::kMaxwellLink: {
-      const engine::MaxwellLink& link = network.maxwell_links[index];
-      return {"the Maxwell element between " + call_mat(scene, link.mat_a).name + " and " +
-                  call_mat(scene, link.mat_b).name,
-              {}};
-    }
+    case engine::LiaisonKind::kStateLink:
+      return call(scene.links, linear + index, "link");
+    case engine::LiaisonKind::kMaxwellLink:
+      return call(scene.links, linear + with_states + index, "link");
     case engine::LiaisonKind::kSet:
-      return of_behaviour(network.sets[index].behaviour, "of sets");
+      return {scene.set_names[index] + " of sets", scene.set_places[index]};
   }
   return {};
 }

@@ -78,8 +78,9 @@ struct Scene {
       matter;  ///< names of MATs in the order of the indices; a port has one MAT
   std::vector<NamedRange>
       links;  ///< names of links in the order of their numbers; see docs/language.md
-  std::vector<std::string> set_names;  ///< per set of the network
-  std::vector<LinkGroup> link_groups;  ///< what `links` names, kind by kind
+  std::vector<std::string> set_names;     ///< per set of the network
+  std::vector<config::Place> set_places;  ///< where they are described
+  std::vector<LinkGroup> link_groups;     ///< what `links` names, kind by kind
   std::shared_ptr<const Liaisons> liaisons;
   std::vector<Port> ports;
   SignalReader signals;

@@ -160,6 +160,7 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
     }
     scene_.network.sets.push_back(std::move(set));
     scene_.set_names.push_back(name);
+    scene_.set_places.push_back(reader.place());
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -47,6 +48,32 @@ TEST_F(Checked, AStableSceneHasItsMarginAndItsLimitByNameAndLine) {
   EXPECT_NE(out_.find("margin 75 % of stiffness"), std::string::npos) << out_;
   EXPECT_NE(out_.find("set by holder (" + path_ + ":11)"), std::string::npos) << out_;
   EXPECT_NE(out_.find("mass bob of 0.1 kg (" + path_ + ":7)"), std::string::npos) << out_;
+}
+
+TEST_F(Checked, LinksWithStatesAndSetsHaveALineToo) {
+  const std::string states =
+      "  - {liaison: catch, between: [ground, bob], name: catch}\n"
+      "  - {liaison: knock, within: [bob, other]}\n"
+      "ports:\n  other: {device: d, axes: [0], role: mass, at_m: 0.5}\n";
+  const auto soft = [&](const std::string& stiffness, const std::string& of_set) {
+    write("1000", states);
+    std::ifstream in(path_);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string head = "liaisons:\n";
+    text.insert(text.find(head) + head.size(),
+                "  catch: {states: {a: {stiffness_n_per_m: " + stiffness +
+                    ", exits: [{to: b, when: elongation_m > 1}]}, b: {final: true}}}\n"
+                    "  knock: {stiffness_n_per_m: " +
+                    of_set + ", pulls: false, rest_m: 0.1, range: rest}\n");
+    std::ofstream(path_) << text;
+  };
+  soft("9000", "100");
+  EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("set by catch (" + path_ + ":14)"), std::string::npos) << out_;
+  soft("100", "9000");
+  EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("set by knock of sets (" + path_ + ":15)"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("at worst: knock of sets (" + path_ + ":15)"), std::string::npos) << out_;
 }
 
 TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
