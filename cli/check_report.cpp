@@ -172,8 +172,8 @@ std::string text_of(const SceneCheck& check) {
   std::string text = fmt::format("scene       {} ({}), {} MATs, {} links, {} sets, {}-D\n",
                                  scene.name, scene.file, scene.network.mats.size(),
                                  scene.link_count(), scene.network.sets.size(), scene.space());
-  text +=
-      fmt::format("integrator  cordis at {:.6g} Hz, 1 thread, no reductions\n", scene.step_rate_hz);
+  text += fmt::format("integrator  {} at {:.6g} Hz, 1 thread, no reductions\n",
+                      engine::to_string(scene.network.integrator), scene.step_rate_hz);
   text += stability_text(check) + accuracy_text(check) + contact_text(check);
   for (const PortCheck& port : check.ports) text += port_text(check, port);
   return text + load_text(check);
@@ -185,7 +185,7 @@ std::string json_of(const SceneCheck& check) {
   nlohmann::json json{
       {"scene", check.scene.name},
       {"file", check.scene.file},
-      {"integrator", "cordis"},
+      {"integrator", engine::to_string(check.scene.network.integrator)},
       {"rate_hz", check.scene.step_rate_hz},
       {"threads", 1},
       {"stability",

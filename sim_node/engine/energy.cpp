@@ -47,6 +47,11 @@ void EnergyAccount::start(const NetworkDescription& network, const MatArray& mat
              gravity_energy(network, mats);
 }
 
+void EnergyAccount::open(double initial) noexcept {
+  *this = EnergyAccount{};
+  initial_ = initial;
+}
+
 void EnergyAccount::add(const StepEnergy& step) noexcept {
   stored_ += step.elastic + step.switching;
   dissipated_ += step.dissipated;
@@ -61,15 +66,29 @@ Energy EnergyAccount::energy(const NetworkDescription& network, const MatArray& 
   energy.kinetic = kinetic_energy(network, mats);
   energy.elastic = elastic_energy(network, mats) + (stored_ + since.elastic);
   energy.gravity = gravity_energy(network, mats);
-  energy.dissipated = dissipated_ + since.dissipated;
+  energy.dissipated = since.dissipated;
+  enter_account(energy);
+  energy.elastic_error = stored_ - stored;
+  return energy;
+}
+
+Energy EnergyAccount::at_moment(double kinetic, double elastic, double gravity) const noexcept {
+  Energy energy;
+  energy.kinetic = kinetic;
+  energy.elastic = elastic;
+  energy.gravity = gravity;
+  enter_account(energy);
+  return energy;
+}
+
+void EnergyAccount::enter_account(Energy& energy) const noexcept {
+  energy.dissipated += dissipated_;
   energy.port_work = port_work_;
   energy.switching = switching_;
   energy.initial = initial_;
-  energy.elastic_error = stored_ - stored;
   energy.largest = std::max({energy.kinetic, std::abs(energy.elastic), std::abs(energy.gravity),
                              std::abs(energy.dissipated), std::abs(energy.switching),
                              largest_port_work_, std::abs(energy.initial)});
-  return energy;
 }
 
 void EnergyAccount::append_state(std::vector<double>& state) const {

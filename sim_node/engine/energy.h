@@ -24,6 +24,10 @@ namespace cordis::engine {
 /// that is stable; and what the links should store by the closed forms of their laws differs from
 /// elastic by elastic_error, which shows what finite steps have done to them.
 /// A port that has moved counts up to its present position, and rests there until the next step.
+///
+/// All of this is so for Integrator::kCordis. The others keep the account at the moment of the last
+/// forces, with all energies in closed form and the works of viscosity at that moment: then the
+/// residual is what finite steps have done, and elastic_error is 0.
 struct Energy {
   double kinetic =
       0.0;  ///< of the half-step velocity (x(n) - x(n-1)) / dt before the present position
@@ -73,6 +77,9 @@ class EnergyAccount {
   void start(const NetworkDescription& network, const MatArray& mats, double stored,
              double since) noexcept;
 
+  /// Opens the account of an integrator that keeps it at the moments x(n): with their sum [J].
+  void open(double initial) noexcept;
+
   /// Enters one step, or a change between two.
   void add(const StepEnergy& step) noexcept;
 
@@ -83,6 +90,9 @@ class EnergyAccount {
   Energy energy(const NetworkDescription& network, const MatArray& mats, const StepEnergy& since,
                 double stored) const noexcept;
 
+  /// The same with the energies of a moment x(n), all of them in closed form [J].
+  Energy at_moment(double kinetic, double elastic, double gravity) const noexcept;
+
   static constexpr std::size_t kStateSize = 6;
   /// The state as a row of values.
   void append_state(std::vector<double>& state) const;
@@ -90,6 +100,8 @@ class EnergyAccount {
   const double* take_state(const double* state) noexcept;
 
  private:
+  void enter_account(Energy& energy) const noexcept;
+
   double initial_ = 0.0;
   double dissipated_ = 0.0;
   double port_work_ = 0.0;

@@ -121,6 +121,10 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   fingerprint.add_if_any(3, description.state_links);
   fingerprint.add_if_any(4, description.maxwell_links);
   fingerprint.add_if_any(5, description.sets);
+  if (description.integrator != Integrator::kCordis) {
+    fingerprint.add(std::uint64_t{6});
+    fingerprint.add(static_cast<std::uint64_t>(description.integrator));
+  }
   return fingerprint.value();
 }
 

@@ -18,6 +18,7 @@ MatArray::MatArray(const NetworkDescription& description)
       force_(position_.size(), 0.0),
       dt2_over_mass_(description.mats.size(), 0.0),
       persistence_(description.mats.size(), 1.0),
+      dt_(description.step),
       weight_step_(description.gravity * description.step * description.step),
       medium_viscosity_over_dt_(description.medium_viscosity / description.step) {
   const double dt = description.step;
@@ -54,7 +55,18 @@ void MatArray::clear_forces() noexcept {
 
 AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
   const bool in_medium = medium_viscosity_over_dt_ > 0.0;
-  const Advance advance_row = in_medium ? kernel.advance_in_medium : kernel.advance;
+  return advance_rows(in_medium ? kernel.advance_in_medium : kernel.advance, nullptr, 0.5);
+}
+
+AdvanceReport MatArray::extrapolate(const StepKernel& kernel,
+                                    AlignedVector<double>& felt) noexcept {
+  const bool in_medium = medium_viscosity_over_dt_ > 0.0;
+  return advance_rows(in_medium ? kernel.extrapolate_in_medium : kernel.extrapolate, felt.data(),
+                      1.0);
+}
+
+/// @param share  of moved_product in the square of a displacement
+AdvanceReport MatArray::advance_rows(Advance advance_row, double* felt, double share) noexcept {
   MassColumns row{0,
                   0,
                   position_.data(),
@@ -62,6 +74,7 @@ AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
                   force_.data(),
                   dt2_over_mass_.data(),
                   persistence_.data(),
+                  felt,
                   {weight_step_.x(), weight_step_.y(), weight_step_.z(), 0.0}};
   AdvanceReport report;
   bool all_finite = true;
@@ -70,11 +83,37 @@ AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
     row.first = range.first;
     row.last = range.last;
     const AdvanceResult result = advance_row(row);
-    report.medium_work += 0.5 * medium_viscosity_over_dt_ * result.moved_product;
+    report.medium_work += share * medium_viscosity_over_dt_ * result.moved_product;
     all_finite = all_finite && result.all_finite;
   }
   if (!all_finite) report.non_finite_mats = count_non_finite();
   return report;
+}
+
+void MatArray::push(double part, AlignedVector<double>& velocity) const noexcept {
+  const double of_displacement = part / dt_;
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Vec3 pushed =
+          dt2_over_mass_[i] * force(static_cast<std::uint32_t>(i)) + weight_step_;  // a dt^2
+      Eigen::Map<Vec3>(velocity.data() + 4 * i) += of_displacement * pushed;
+    }
+  }
+}
+
+std::uint32_t MatArray::drift(const AlignedVector<double>& velocity) noexcept {
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Vec3 now = vector(position_, static_cast<std::uint32_t>(i));
+      set_column(delayed_, i, now);
+      set_column(position_, i, now + dt_ * Vec3::Map(velocity.data() + 4 * i));
+    }
+  }
+  return count_non_finite();
+}
+
+void MatArray::add_forces(const AlignedVector<double>& more) noexcept {
+  for (std::size_t i = 0; i < force_.size(); ++i) force_[i] += more[i];
 }
 
 void MatArray::move_port(std::uint32_t mat, const Vec3& position) noexcept {

@@ -39,11 +39,23 @@ class MatArray {
   /// Moves every mass by one step. Real time: O(N), no allocation.
   AdvanceReport advance(const StepKernel& kernel) noexcept;
 
+  /// The same as `leapfrog` does it; see StepKernel::extrapolate.
+  /// @param felt  4 x N, x(n) - dt v(n), then that of the next step
+  AdvanceReport extrapolate(const StepKernel& kernel, AlignedVector<double>& felt) noexcept;
+
+  /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
+  void push(double part, AlignedVector<double>& velocity) const noexcept;
+  /// Moves the masses by one period at these velocities. @return how many are not finite then
+  std::uint32_t drift(const AlignedVector<double>& velocity) noexcept;
+  /// Adds to the forces on all MATs, 4 x N.
+  void add_forces(const AlignedVector<double>& more) noexcept;
+
   /// Moves a port mass from where it is, its delayed position then. Precondition: `mat` is a port
   /// mass.
   void move_port(std::uint32_t mat, const Vec3& position) noexcept;
 
   std::size_t count() const noexcept { return dt2_over_mass_.size(); }
+  bool is_mass(std::uint32_t mat) const noexcept { return dt2_over_mass_[mat] > 0.0; }
   Columns position() const noexcept { return view(position_); }  ///< x(n) [m]
   Columns delayed() const noexcept { return view(delayed_); }    ///< x(n-1) [m]
   Columns force() const noexcept { return view(force_); }        ///< f(n) [N]
@@ -53,8 +65,15 @@ class MatArray {
   Vec3 force(std::uint32_t mat) const noexcept { return vector(force_, mat); }
   /// x(n-1) of a mass; of all else, which rests between two steps, x(n). [m]
   Vec3 delayed_at_rest(std::uint32_t mat) const noexcept {
-    return vector(dt2_over_mass_[mat] > 0.0 ? delayed_ : position_, mat);
+    return vector(is_mass(mat) ? delayed_ : position_, mat);
   }
+  /// Where a MAT was when the last forces were computed [m].
+  Vec3 position_of_forces(std::uint32_t mat) const noexcept {
+    return forces_are_present_ ? position(mat) : delayed_at_rest(mat);
+  }
+  /// Whether the last forces were computed at x(n), or at x(n-1) as by moving since.
+  void set_forces_are_present(bool present) noexcept { forces_are_present_ = present; }
+  bool forces_are_present() const noexcept { return forces_are_present_; }
   void set_force(std::uint32_t mat, const Vec3& force) noexcept;
 
   /// Where the links find the positions and leave their forces.
@@ -72,6 +91,7 @@ class MatArray {
     std::size_t last;
   };
 
+  AdvanceReport advance_rows(Advance advance_row, double* felt, double share) noexcept;
   Columns view(const AlignedVector<double>& columns) const noexcept;
   static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;
   std::uint32_t count_non_finite() const noexcept;
@@ -82,8 +102,10 @@ class MatArray {
   AlignedVector<double> dt2_over_mass_;  // [s^2/kg], 0 unless a mass
   AlignedVector<double> persistence_;    // 1 - dt Z / m
   std::vector<Range> masses_;            // rows of neighbouring masses
+  double dt_;                            // [s]
   Vec3 weight_step_;                     // gravity * dt^2 [m]
   double medium_viscosity_over_dt_;      // Z / dt [N/m]
+  bool forces_are_present_ = false;
 };
 
 }  // namespace cordis::engine

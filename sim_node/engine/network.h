@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim_node/engine/behaviour.h"
+#include "sim_node/engine/integrator.h"
 #include "sim_node/engine/vec.h"
 
 namespace cordis::engine {
@@ -75,8 +76,9 @@ struct SetLiaison {
 /// All that a Network is assembled from. Forces are summed in a fixed order: links; state links, by
 /// behaviour and within one in the order given; Maxwell links; sets.
 struct NetworkDescription {
-  int dimension = 3;              ///< 1, 2 or 3
-  double step = 0.0;              ///< dt [s], > 0
+  int dimension = 3;  ///< 1, 2 or 3
+  double step = 0.0;  ///< dt [s], > 0
+  Integrator integrator = Integrator::kCordis;
   Vec3 gravity = Vec3::Zero();    ///< [m/s^2]; components beyond the dimension must be 0
   double medium_viscosity = 0.0;  ///< Z of the medium on every mass [N s/m], >= 0
   std::vector<Mat> mats;

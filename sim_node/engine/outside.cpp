@@ -30,6 +30,7 @@ Outside::Outside(const NetworkDescription& description)
     if (description.mats[i].kind != MatKind::kPort) continue;
     slot_[i] = static_cast<std::uint32_t>(ports_.size());
     ports_.push_back({static_cast<std::uint32_t>(i), description.mats[i].position});
+    port_mats_.push_back(static_cast<std::uint32_t>(i));
   }
   forces_.reserve(static_cast<std::size_t>(
       std::count_if(description.mats.begin(), description.mats.end(),

@@ -28,6 +28,9 @@ class Outside {
   /// The forces of the links before step 0, which the account of the ports begins with.
   void start(const MatArray& mats) noexcept;
 
+  /// The port masses, in their order.
+  const std::vector<std::uint32_t>& ports() const noexcept { return port_mats_; }
+
   /// Moves the ports. @return work [J] the last forces of their links took from the outside on the
   /// way, half of it.
   double move_ports(MatArray& mats) noexcept;
@@ -65,7 +68,8 @@ class Outside {
   Vec3 within_dimension(Vec3 value) const noexcept;
 
   int dimension_;
-  std::vector<Port> ports_;  // in MAT order
+  std::vector<Port> ports_;               // in MAT order
+  std::vector<std::uint32_t> port_mats_;  // of ports_
   std::vector<HeldForce>
       forces_;  // in the order in which the masses were first given one; room for all masses
   std::vector<std::uint32_t> slot_;  // by MAT: its place in ports_ or forces_

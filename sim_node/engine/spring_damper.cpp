@@ -33,18 +33,27 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description)
   }
 }
 
+LinkRows SpringDamperArray::rows() noexcept {
+  return {column_a_.size(),       column_a_.data(),          column_b_.data(),
+          stiffness_.data(),      viscosity_over_dt_.data(), rest_length_.data(),
+          viscous_factor_.data(), elastic_factor_.data()};
+}
+
 StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel,
                                          const ForceColumns& columns) noexcept {
-  const LinkRows rows{column_a_.size(),       column_a_.data(),          column_b_.data(),
-                      stiffness_.data(),      viscosity_over_dt_.data(), rest_length_.data(),
-                      viscous_factor_.data(), elastic_factor_.data()};
-  const LinkWork work = choose(kernel)(rows, columns);
+  const AddLinkForces in_line = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
+  const AddLinkForces in_space = viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
+  const LinkWork work = (in_line_ ? in_line : in_space)(rows(), columns);
   return {0.5 * work.elastic, 0.5 * work.dissipated, 0.0, 0.0};
 }
 
-AddLinkForces SpringDamperArray::choose(const StepKernel& kernel) const noexcept {
-  if (in_line_) return viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
-  return viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
+StepEnergy SpringDamperArray::add_forces_of_moment(const StepKernel& kernel,
+                                                   const ForceColumns& columns) noexcept {
+  const AddLinkForces in_line = viscous_ ? kernel.moment_spring_dampers_1d : kernel.springs_1d;
+  const AddLinkForces in_space =
+      viscous_ ? kernel.moment_spring_dampers_3d : kernel.moment_springs_3d;
+  const LinkWork work = (in_line_ ? in_line : in_space)(rows(), columns);
+  return {0.0, work.dissipated, 0.0, 0.0};
 }
 
 StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const noexcept {
@@ -62,13 +71,12 @@ StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const n
   return work;
 }
 
-double SpringDamperArray::stored_energy(const MatArray& mats) const noexcept {
-  if (in_line_) return 0.0;
+double SpringDamperArray::potential_energy(const MatArray& mats) const noexcept {
   double sum = 0.0;
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
     const Vec3 along =
-        mats.delayed_at_rest(column_b_[l] / 4) - mats.delayed_at_rest(column_a_[l] / 4);
-    const double elongation = along.norm() - rest_length_[l];
+        mats.position_of_forces(column_b_[l] / 4) - mats.position_of_forces(column_a_[l] / 4);
+    const double elongation = (in_line_ ? along.x() : along.norm()) - rest_length_[l];
     sum += stiffness_[l] * elongation * elongation;
   }
   return 0.5 * sum;
@@ -76,6 +84,11 @@ double SpringDamperArray::stored_energy(const MatArray& mats) const noexcept {
 
 void SpringDamperArray::start() noexcept {
   std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
+}
+
+void SpringDamperArray::drop_viscosity() noexcept {
+  std::fill(viscosity_over_dt_.begin(), viscosity_over_dt_.end(), 0.0);
+  viscous_ = false;
 }
 
 void SpringDamperArray::append_state(std::vector<double>& state) const {

@@ -28,15 +28,25 @@ class SpringDamperArray {
   /// Real time: O(links), no allocation.
   StepEnergy add_forces(const StepKernel& kernel, const ForceColumns& columns) noexcept;
 
+  /// The same for an account that is kept at moments: only the energy [J] that the viscous forces
+  /// take in a period at the velocity (x - delayed) / dt is returned, and nothing remembered.
+  StepEnergy add_forces_of_moment(const StepKernel& kernel, const ForceColumns& columns) noexcept;
+
   /// The first half alone, for the forces of the last call up to the present positions.
   /// Real time: O(links), no allocation.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
-  /// Energy of the springs where the forces of the last call were computed [J]; 0 in 1 dimension.
+  /// Energy of the springs where the forces of the last call were computed [J].
   /// Real time: O(links), no allocation.
-  double stored_energy(const MatArray& mats) const noexcept;
+  double potential_energy(const MatArray& mats) const noexcept;
+  /// The same, but 0 in 1 dimension, where the account keeps K e(n) e(n-1) / 2.
+  double stored_energy(const MatArray& mats) const noexcept {
+    return in_line_ ? 0.0 : potential_energy(mats);
+  }
 
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
   void start() noexcept;
+  /// From now on these links are springs alone.
+  void drop_viscosity() noexcept;
 
   std::size_t state_size() const noexcept {
     return viscous_factor_.size() + elastic_factor_.size();
@@ -47,7 +57,7 @@ class SpringDamperArray {
   const double* take_state(const double* state) noexcept;
 
  private:
-  AddLinkForces choose(const StepKernel& kernel) const noexcept;
+  LinkRows rows() noexcept;
 
   bool in_line_;                           // 1 dimension
   bool viscous_ = false;                   // a link has viscosity

@@ -95,6 +95,10 @@ void StateLinkArray::add_forces_before_start(const BehaviourKernel& kernel, cons
 
 void StateLinkArray::start() noexcept {
   std::fill(pull_.begin(), pull_.end(), 0.0);
+  forget_viscous_forces();
+}
+
+void StateLinkArray::forget_viscous_forces() noexcept {
   std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
 }
 
@@ -149,7 +153,7 @@ StepEnergy StateLinkArray::work_since_last_call(const MatArray& mats) const noex
 double StateLinkArray::distance_at_last_call(const MatArray& mats,
                                              std::size_t link) const noexcept {
   const Vec3 along =
-      mats.delayed_at_rest(column_b_[link] / 4) - mats.delayed_at_rest(column_a_[link] / 4);
+      mats.position_of_forces(column_b_[link] / 4) - mats.position_of_forces(column_a_[link] / 4);
   return in_line_ ? along.x() : along.norm();
 }
 

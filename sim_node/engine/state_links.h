@@ -29,6 +29,8 @@ class StateLinkArray {
                                const ForceColumns& columns) noexcept;
   /// Forgets pulls and viscous forces: those before step 0 take no work.
   void start() noexcept;
+  /// Forgets the viscous forces of the last call.
+  void forget_viscous_forces() noexcept;
 
   /// One step: exits, changes of state, then the force of every link on its two MATs, in link
   /// order. Enters the changes in the log. Real time: O(links), no allocation.

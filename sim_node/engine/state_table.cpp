@@ -81,6 +81,7 @@ ProgramTerm ready(const Program& program) {
 struct StateTable::Content {
   std::vector<Behaviour> behaviours;
   double dt = 0.0;
+  double part_of_work = 0.5;  // that the account has not entered yet
   std::vector<StateTerm> terms;
   std::vector<std::vector<ExitTerm>> exits;  // by behaviour
   std::vector<ReadyLaw> laws;                // of all terms, in order: elasticity, dissipation
@@ -167,10 +168,11 @@ void StateTable::Content::note_needs(const Law& law) {
   needs[static_cast<std::size_t>(Quantity::kMassB)] = true;
 }
 
-StateTable::StateTable(std::vector<Behaviour> behaviours, double dt)
+StateTable::StateTable(std::vector<Behaviour> behaviours, double dt, bool whole_steps)
     : content_(std::make_unique<Content>()) {
   content_->behaviours = std::move(behaviours);
   content_->dt = dt;
+  content_->part_of_work = whole_steps ? 0.0 : 0.5;
   content_->build();
 }
 
@@ -230,11 +232,12 @@ double StateTable::stored_energy(StateIndex index, double distance,
 }
 
 double StateTable::change_energy(const BehaviourRows& rows, std::size_t row) const noexcept {
+  const double part = content_->part_of_work;
   const double distance = rows.quantity[static_cast<std::size_t>(Quantity::kDistance)][row];
   const double after = stored_energy(rows.state[row], distance, rows.rest_length[row]) -
-                       0.5 * rows.elastic[row] * rows.growth[row];
+                       part * rows.elastic[row] * rows.growth[row];
   const double before = stored_energy(rows.from[row], distance, rows.rest_before[row]) -
-                        0.5 * rows.elastic_before[row] * rows.growth[row];
+                        part * rows.elastic_before[row] * rows.growth[row];
   return after - before;
 }
 

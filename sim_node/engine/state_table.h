@@ -16,7 +16,9 @@ namespace cordis::engine {
 class StateTable {
  public:
   /// Precondition: check_behaviour has passed all of them.
-  StateTable(std::vector<Behaviour> behaviours, double dt);
+  /// @param whole_steps  the account of the world belongs to the moments x(n), not to the middles
+  ///                     between them
+  StateTable(std::vector<Behaviour> behaviours, double dt, bool whole_steps = false);
   ~StateTable();
   StateTable(StateTable&&) noexcept;
   StateTable& operator=(StateTable&&) noexcept;
@@ -38,8 +40,8 @@ class StateTable {
   /// a function. In a state that does not pull (push) only what the spring and a power law store
   /// while they push (pull). Lennard-Jones: 0 at its cut.
   double stored_energy(StateIndex state, double distance, double rest_length) const noexcept;
-  /// What a change adds to the stored energy as the account keeps it, in the middle of the last
-  /// period: stored energy less half of the elastic work of the period, after minus before.
+  /// What a change adds to the stored energy as the account keeps it: after minus before. In the
+  /// middle of the last period that is stored energy less half of the elastic work of the period.
   double change_energy(const BehaviourRows& rows, std::size_t row) const noexcept;
   /// The condition's quantity of an exit; kNone when it was forced.
   Quantity fired(StateIndex from, std::uint32_t exit) const noexcept;

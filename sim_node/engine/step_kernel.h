@@ -51,33 +51,44 @@ using AddLinkForces = LinkWork (*)(const LinkRows& links, const ForceColumns& co
 
 /// A row of neighbouring masses, and what moves them.
 struct MassColumns {
-  std::size_t first = 0;                   // index of the first mass
-  std::size_t last = 0;                    // one past the last
-  double* position = nullptr;              // x(n), then x(n+1) [m]
-  double* delayed = nullptr;               // x(n-1), then x(n) [m]
-  const double* force = nullptr;           // f(n) [N]
-  const double* dt2_over_mass = nullptr;   // dt^2 / m [s^2/kg], one per MAT
-  const double* persistence = nullptr;     // 1 - dt Z / m, with Z of the medium; one per MAT
+  std::size_t first = 0;                  // index of the first mass
+  std::size_t last = 0;                   // one past the last
+  double* position = nullptr;             // x(n), then x(n+1) [m]
+  double* delayed = nullptr;              // x(n-1), then x(n) [m]
+  const double* force = nullptr;          // f(n) [N]
+  const double* dt2_over_mass = nullptr;  // dt^2 / m [s^2/kg], one per MAT
+  const double* persistence = nullptr;    // 1 - dt Z / m, with Z of the medium; one per MAT
+  double* felt = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
   alignas(32) double weight_step[4] = {};  // gravity * dt^2 [m]
 };
 
 struct AdvanceResult {
-  double moved_product =
-      0.0;  // sum of moved(n) . (moved(n) + moved(n+1)), for the account of the medium [m^2]
+  // For the account of the medium: sum of moved(n) . (moved(n) + moved(n+1)), of `leapfrog` that of
+  // (dt v(n))^2. [m^2]
+  double moved_product = 0.0;
   bool all_finite = true;
 };
 
 /// x(n+1) = x(n) + persistence (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2.
 using Advance = AdvanceResult (*)(const MassColumns& masses) noexcept;
 
-/// The loops of one width.
+/// The loops of one width. Those of a moment remember nothing for an account: `elastic` is 0 and
+/// `dissipated` the viscous power of these forces times dt, once. The last two keep in `felt` the
+/// velocity that dampers and medium see, v(n) = 1.5 v(n-1/2) - 0.5 v(n-3/2): x(n+1) = x(n) + (x(n)
+/// - x(n-1)) + (dt^2 / m) f(n)
+/// + gravity dt^2 - (1 - persistence) dt v(n).
 struct StepKernel {
   AddLinkForces springs_1d = nullptr;  // no link has viscosity; distances are signed
   AddLinkForces spring_dampers_1d = nullptr;
   AddLinkForces springs_3d = nullptr;  // for 2 dimensions too
   AddLinkForces spring_dampers_3d = nullptr;
+  AddLinkForces moment_spring_dampers_1d = nullptr;  // of springs_1d there is only one
+  AddLinkForces moment_springs_3d = nullptr;
+  AddLinkForces moment_spring_dampers_3d = nullptr;
   Advance advance = nullptr;  // without a medium: persistence is not read, moved_product stays 0
   Advance advance_in_medium = nullptr;
+  Advance extrapolate = nullptr;  // of `leapfrog`
+  Advance extrapolate_in_medium = nullptr;
 };
 
 extern const StepKernel kStepKernelSse2;

@@ -25,9 +25,13 @@ struct WorkRows {
   typename Lanes::Row dissipated;
 };
 
+/// Whether the account takes half of the work of the last forces and half of that of these, or the
+/// viscous work of these alone; see LinkWork and StepKernel.
+enum class Works { kOfPeriod, kOfMoment };
+
 /// pull = K (b - a - rest) + Z (growth of b - a) / dt, signed; kViscous = false leaves the second
 /// term out.
-template <class Lanes, bool kViscous>
+template <class Lanes, bool kViscous, Works kWorks>
 struct LinksInLine {
   using Row = typename Lanes::Row;
 
@@ -41,9 +45,13 @@ struct LinksInLine {
     if constexpr (kViscous) {
       const Row grown = distance - Lanes::difference_1d(columns.delayed, a, b);
       const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
-      work.dissipated =
-          work.dissipated + (viscous_pull + Lanes::load(links.viscous_factor + l)) * grown;
-      Lanes::store(links.viscous_factor + l, viscous_pull);
+      if constexpr (kWorks == Works::kOfPeriod) {
+        work.dissipated =
+            work.dissipated + (viscous_pull + Lanes::load(links.viscous_factor + l)) * grown;
+        Lanes::store(links.viscous_factor + l, viscous_pull);
+      } else {
+        work.dissipated = work.dissipated + viscous_pull * grown;
+      }
       pull = pull + viscous_pull;
     }
     Lanes::add_pairs_1d(columns.force, a, b, pull);
@@ -52,7 +60,7 @@ struct LinksInLine {
 
 /// pull = K (d - rest) + Z (growth of the link along its axis) / dt; none while d is 0, for lack of
 /// a direction.
-template <class Lanes, bool kViscous>
+template <class Lanes, bool kViscous, Works kWorks>
 struct LinksInSpace {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
@@ -62,29 +70,41 @@ struct LinksInSpace {
     const std::uint32_t* a = links.column_a + l;
     const std::uint32_t* b = links.column_b + l;
 
+    constexpr bool kMoves = kViscous || kWorks == Works::kOfPeriod;
     Row3 along;
     Row3 before;
-    Lanes::differences(columns.position, columns.delayed, a, b, along, before);
+    if constexpr (kMoves) {
+      Lanes::differences(columns.position, columns.delayed, a, b, along, before);
+    } else {
+      along = before = Lanes::difference(columns.position, a, b);
+    }
     const Row square = along.x * along.x + along.y * along.y + along.z * along.z;
     const Row length = Lanes::sqrt(square);
     const Row inverse = Lanes::inverse_or_zero(square, length);
     const Row3 moved{along.x - before.x, along.y - before.y, along.z - before.z};
     const Row along_moved = along.x * moved.x + along.y * moved.y + along.z * moved.z;
-    const Row before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
 
     const Row elastic_factor =
         Lanes::load(links.stiffness + l) * (length - Lanes::load(links.rest_length + l)) * inverse;
-    work.elastic = work.elastic + (elastic_factor * along_moved +
-                                   Lanes::load(links.elastic_factor + l) * before_moved);
-    Lanes::store(links.elastic_factor + l, elastic_factor);
+    Row before_moved = Lanes::zero();
+    if constexpr (kWorks == Works::kOfPeriod) {
+      before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
+      work.elastic = work.elastic + (elastic_factor * along_moved +
+                                     Lanes::load(links.elastic_factor + l) * before_moved);
+      Lanes::store(links.elastic_factor + l, elastic_factor);
+    }
     Row factor = elastic_factor;
     if constexpr (kViscous) {
       const Row grown = along_moved * inverse;
       const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
-      work.dissipated = work.dissipated + (viscous_pull * grown +
-                                           Lanes::load(links.viscous_factor + l) * before_moved);
       const Row viscous_factor = viscous_pull * inverse;
-      Lanes::store(links.viscous_factor + l, viscous_factor);
+      if constexpr (kWorks == Works::kOfPeriod) {
+        work.dissipated = work.dissipated + (viscous_pull * grown +
+                                             Lanes::load(links.viscous_factor + l) * before_moved);
+        Lanes::store(links.viscous_factor + l, viscous_factor);
+      } else {
+        work.dissipated = work.dissipated + viscous_pull * grown;
+      }
       factor = factor + viscous_factor;
     }
     Lanes::add_pairs(columns.force, a, b,
@@ -154,14 +174,53 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
   return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(blemish)};
 }
 
+template <class Lanes, bool kMedium>
+AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
+  using Column = typename Lanes::Column;
+  const Column weight_step = Lanes::load_column(masses.weight_step);
+  const Column one = Lanes::broadcast(1.0);
+  const Column half = Lanes::broadcast(0.5);
+  Column product = Lanes::broadcast(0.0);
+  Column blemish = Lanes::broadcast(0.0);
+
+  for (std::size_t i = masses.first; i < masses.last; ++i) {
+    const Column position = Lanes::load_column(masses.position + 4 * i);
+    const Column moved = position - Lanes::load_column(masses.delayed + 4 * i);
+    Column pushed =
+        Lanes::load_column(masses.force + 4 * i) * Lanes::broadcast(masses.dt2_over_mass[i]) +
+        weight_step;
+    if constexpr (kMedium) {
+      const Column seen = position - Lanes::load_column(masses.felt + 4 * i);
+      pushed = pushed - seen * (one - Lanes::broadcast(masses.persistence[i]));
+      product = product + seen * seen;
+    }
+    const Column moving = moved + pushed;
+    const Column next = position + moving;
+
+    Lanes::store_column(masses.delayed + 4 * i, position);
+    Lanes::store_column(masses.position + 4 * i, next);
+    Lanes::store_column(masses.felt + 4 * i, position - half * pushed);
+    // 0 for finite values, else NaN
+    blemish = Lanes::unite(blemish, next - next);  // NOLINT(misc-redundant-expression)
+  }
+  return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(blemish)};
+}
+
 template <class Lanes>
 constexpr StepKernel make_step_kernel() noexcept {
-  return StepKernel{add_link_forces<Lanes, LinksInLine<Lanes, false>>,
-                    add_link_forces<Lanes, LinksInLine<Lanes, true>>,
-                    add_link_forces<Lanes, LinksInSpace<Lanes, false>>,
-                    add_link_forces<Lanes, LinksInSpace<Lanes, true>>,
+  constexpr Works kPeriod = Works::kOfPeriod;
+  constexpr Works kMoment = Works::kOfMoment;
+  return StepKernel{add_link_forces<Lanes, LinksInLine<Lanes, false, kPeriod>>,
+                    add_link_forces<Lanes, LinksInLine<Lanes, true, kPeriod>>,
+                    add_link_forces<Lanes, LinksInSpace<Lanes, false, kPeriod>>,
+                    add_link_forces<Lanes, LinksInSpace<Lanes, true, kPeriod>>,
+                    add_link_forces<Lanes, LinksInLine<Lanes, true, kMoment>>,
+                    add_link_forces<Lanes, LinksInSpace<Lanes, false, kMoment>>,
+                    add_link_forces<Lanes, LinksInSpace<Lanes, true, kMoment>>,
                     advance_masses<Lanes, false>,
-                    advance_masses<Lanes, true>};
+                    advance_masses<Lanes, true>,
+                    extrapolate_masses<Lanes, false>,
+                    extrapolate_masses<Lanes, true>};
 }
 
 }  // namespace cordis::engine

@@ -13,6 +13,8 @@
 
 namespace cordis::engine {
 
+struct WorldState;
+
 /// What one step has to report. Everything is 0 when nothing is wrong.
 struct StepReport {
   std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
@@ -44,9 +46,8 @@ struct Snapshot {
 /// A network in motion.
 ///
 /// A step has two phases [Luc90 III Calculability]: all forces from the present positions, then all
-/// positions from these forces, x(n+1) = 2 x(n) - x(n-1) + (dt^2 / m) f(n). The delayed positions
-/// at step 0 are those of the half-step velocity v0 - a0 dt / 2, which keeps the start of second
-/// order. Results are the same bits on every run, optimisation level and vector width.
+/// positions from these forces, as NetworkDescription::integrator says. Results are the same bits
+/// on every run, optimisation level and vector width.
 class World {
  public:
   /// @throws std::invalid_argument without a network, or when the processor lacks the vector
@@ -86,7 +87,8 @@ class World {
 
   std::uint64_t step_count() const noexcept;        ///< steps done since step 0
   Vec3 position(std::uint32_t mat) const noexcept;  ///< x(n) [m]
-  Vec3 velocity(std::uint32_t mat) const noexcept;  ///< (x(n) - x(n-1)) / dt [m/s]
+  /// (x(n) - x(n-1)) / dt; of the integrators of second order that of the moment of x(n). [m/s]
+  Vec3 velocity(std::uint32_t mat) const noexcept;
   /// Sum of the forces that the links put on the MAT in the last step [N]; 0 before the first.
   Vec3 link_force(std::uint32_t mat) const noexcept;
   const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N
@@ -119,9 +121,10 @@ class World {
   std::size_t most_values_of_state() const noexcept;
 
   Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
-  Vec3 momentum() const noexcept;  ///< sum of m v over the masses [kg m/s]
-  Vec3 angular_momentum()
-      const noexcept;  ///< sum of m x(n-1) x v(n-1/2) about the origin [kg m^2/s]
+  /// Sum of m (x(n) - x(n-1)) / dt over the masses [kg m/s]
+  Vec3 momentum() const noexcept;
+  /// Sum of m x(n-1) x (x(n) - x(n-1)) / dt about the origin [kg m^2/s]
+  Vec3 angular_momentum() const noexcept;
 
   /// 64-bit hash of step count, positions and delayed positions, and of the states, rest lengths
   /// and internal forces of links that have them. Real time: O(MATs + links), no allocation.
@@ -132,8 +135,7 @@ class World {
   void restore(const Snapshot& snapshot);
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<WorldState> state_;
 };
 
 }  // namespace cordis::engine

@@ -4,19 +4,61 @@
 #include <cmath>
 
 namespace cordis::plan {
+namespace {
 
-OscillatorError oscillator_error(double angular_frequency, double viscosity, double step) {
+using engine::Integrator;
+
+/// A pair of roots of z^2 - trace z + product: what one period does to an oscillation.
+struct Roots {
+  double trace = 0.0;
+  double product = 0.0;
+};
+
+/// z^3 - (2 - K' - 1.5 Z') z^2 + (1 - 2 Z') z + 0.5 Z': the pair beside its real root.
+Roots of_extrapolated_damping(double stiffness, double viscosity) {
+  const double a = -(2.0 - stiffness - 1.5 * viscosity);
+  const double b = 1.0 - 2.0 * viscosity;
+  const double c = 0.5 * viscosity;
+  double real = -c;  // near 0, as -0.5 Z' / (1 - 2 Z')
+  for (int n = 0; n < 60; ++n) {
+    const double slope = (3.0 * real + 2.0 * a) * real + b;
+    real -= (((real + a) * real + b) * real + c) / slope;
+  }
+  return {-a - real, b + real * (a + real)};
+}
+
+Roots roots_of(Integrator integrator, double stiffness, double viscosity) {
+  switch (integrator) {
+    case Integrator::kCordis:
+      break;
+    case Integrator::kLeapfrog: {
+      if (viscosity <= engine::kMostExtrapolatedViscosity) {
+        return of_extrapolated_damping(stiffness, viscosity);
+      }
+      const double left = std::exp(-viscosity);
+      return {(1.0 + left) * (1.0 - 0.5 * stiffness), left};
+    }
+  }
+  return {2.0 - stiffness - viscosity, 1.0 - viscosity};
+}
+
+}  // namespace
+
+OscillatorError oscillator_error(double angular_frequency, double viscosity, double step,
+                                 Integrator integrator) {
   const double rate = 0.5 * viscosity;  // of decay
   const double square = angular_frequency * angular_frequency - rate * rate;
-  const double trace = 2.0 - angular_frequency * angular_frequency * step * step - viscosity * step;
-  const double product = 1.0 - viscosity * step;  // of the two roots
+  const Roots roots =
+      roots_of(integrator, angular_frequency * angular_frequency * step * step, viscosity * step);
   OscillatorError error;
-  error.oscillates = square > 0.0 && product > 0.0 && trace * trace < 4.0 * product;
+  error.oscillates =
+      square > 0.0 && roots.product > 0.0 && roots.trace * roots.trace < 4.0 * roots.product;
   if (!error.oscillates) return error;
   const double frequency = std::sqrt(square);
-  const double reached = std::atan2(std::sqrt(product - 0.25 * trace * trace), 0.5 * trace) / step;
+  const double half = 0.5 * roots.trace;
+  const double reached = std::atan2(std::sqrt(roots.product - half * half), half) / step;
   error.pitch = reached / frequency - 1.0;
-  if (rate > 0.0) error.decay = -0.5 * std::log1p(-viscosity * step) / (rate * step) - 1.0;
+  if (rate > 0.0) error.decay = -0.5 * std::log1p(roots.product - 1.0) / (rate * step) - 1.0;
   return error;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sim_node/plan/limit_weights.h"
 #include "sim_node/plan/start_tangent.h"
 
 namespace cordis::plan {
@@ -19,15 +20,27 @@ double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mat
 
 /// The step at which one contact of a set diverges by itself, by its linear part.
 double limit_of_one_contact(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  const LimitWeights weights = limit_weights(network);
   double limit = std::numeric_limits<double>::infinity();
   for (const Crowd& crowd : graph.crowds) {
     const double inverse_mass = lightest(graph, crowd.members) + lightest(graph, crowd.others);
     for (const auto& state : network.behaviours[network.sets[crowd.set].behaviour].states) {
-      limit = std::min(limit,
-                       limit_step(state.stiffness * inverse_mass, state.viscosity * inverse_mass));
+      limit = std::min(limit, limit_step(weights.stiffness * state.stiffness * inverse_mass,
+                                         weights.viscosity * state.viscosity * inverse_mass));
     }
   }
   return limit;
+}
+
+/// Of the tangent at the start, or of one contact.
+double diverging_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  struct Limit {
+    double step;
+  };
+  const auto limit_at = [&graph](const engine::NetworkDescription& at) {
+    return Limit{std::min(StartTangent(at).diverging_step(), limit_of_one_contact(at, graph))};
+  };
+  return limit_of_all_steps(network, limit_at).step;
 }
 
 /// Whether a liaison of this behaviour is there at some times and not at others.
@@ -61,8 +74,7 @@ double Stability::margin() const noexcept {
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   Stability stability;
   stability.certified = certified_bound(network, graph);
-  stability.diverging_step =
-      std::min(StartTangent(network).diverging_step(), limit_of_one_contact(network, graph));
+  stability.diverging_step = diverging_step_of(network, graph);
   stability.bounded = graph.bounded;
   stability.step = network.step;
   return stability;
@@ -89,7 +101,7 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   BandEdge edge;
   edge.frequency_hz = frequency_hz;
   edge.viscosity = std::min(w * w * ratio + graph.medium_viscosity * most, of_dampers);
-  edge.error = oscillator_error(w, edge.viscosity, network.step);
+  edge.error = oscillator_error(w, edge.viscosity, network.step, network.integrator);
   return edge;
 }
 

@@ -17,14 +17,15 @@ constexpr double kPartOfTheCertifiedStep = 0.9;
 /// The largest step at which a vibration is within the tolerance, by its exact roots; infinite for
 /// what creeps, which has no pitch.
 template <class Error>
-double largest_step(const BandEdge& edge, double tolerance, Error error) {
+double largest_step(const BandEdge& edge, engine::Integrator integrator, double tolerance,
+                    Error error) {
   const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
   if (0.5 * edge.viscosity >= w) return std::numeric_limits<double>::infinity();
   double low = 0.0;
   double high = limit_step(w * w, edge.viscosity);
   for (int n = 0; n < 60; ++n) {
     const double step = 0.5 * (low + high);
-    const OscillatorError reached = oscillator_error(w, edge.viscosity, step);
+    const OscillatorError reached = oscillator_error(w, edge.viscosity, step, integrator);
     const bool within = reached.oscillates && std::abs(error(reached)) <= tolerance;
     (within ? low : high) = step;
   }
@@ -53,9 +54,12 @@ RateChoice choose_rate(const engine::NetworkDescription& network, const Accuracy
     consider(per_gesture.step * std::sqrt(most / contact->stiffness), RateReason::kContact);
   }
   const BandEdge edge = band_edge_of(per_gesture, graph, wish.band_hz);
-  consider(largest_step(edge, wish.tolerance, [](const OscillatorError& e) { return e.pitch; }),
+  const engine::Integrator integrator = network.integrator;
+  consider(largest_step(edge, integrator, wish.tolerance,
+                        [](const OscillatorError& e) { return e.pitch; }),
            RateReason::kPitch);
-  consider(largest_step(edge, wish.tolerance, [](const OscillatorError& e) { return e.decay; }),
+  consider(largest_step(edge, integrator, wish.tolerance,
+                        [](const OscillatorError& e) { return e.decay; }),
            RateReason::kDecay);
 
   constexpr double kRounding = 1e-9;

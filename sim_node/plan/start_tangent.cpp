@@ -8,6 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "sim_node/plan/limit_weights.h"
 #include "sim_node/plan/slope.h"
 #include "sim_node/plan/step_bound.h"
 
@@ -109,23 +110,28 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
     root_of_inverse_mass_[static_cast<Eigen::Index>(i)] =
         mat.kind == engine::MatKind::kMass ? 1.0 / std::sqrt(mat.mass) : 0.0;
   }
+  const LimitWeights weights = limit_weights(network);
+  medium_viscosity_ *= weights.link_viscosity;
   const auto distance = [&](std::uint32_t a, std::uint32_t b) {
     const Eigen::Vector3d along = network.mats[b].position - network.mats[a].position;
     return network.dimension == 1 ? along.x() : along.norm();
   };
   for (const engine::Link& link : network.links) {
     const double elongation = distance(link.mat_a, link.mat_b) - link.rest_length;
-    add(link.mat_a, link.mat_b, network, link.stiffness, link.stiffness * elongation,
-        link.viscosity, 0.0);
+    const double stiffness = weights.link_stiffness * link.stiffness;
+    add(link.mat_a, link.mat_b, network, stiffness, stiffness * elongation,
+        weights.link_viscosity * link.viscosity, 0.0);
   }
   for (const engine::StateLink& link : network.state_links) {
     const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
     const double length = distance(link.mat_a, link.mat_b);
     const Tangent tangent = stiffest_tangent(behaviour, link.rest_length, length);
-    add(link.mat_a, link.mat_b, network, tangent.stiffness, tangent.pull, tangent.viscosity, 0.0);
+    add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
+        weights.stiffness * tangent.pull, weights.viscosity * tangent.viscosity, 0.0);
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
-    add(link.mat_a, link.mat_b, network, link.stiffness, 0.0, 0.0, link.viscosity);
+    add(link.mat_a, link.mat_b, network, weights.stiffness * link.stiffness, 0.0, 0.0,
+        weights.stiffness * link.viscosity);
   }
 }
 

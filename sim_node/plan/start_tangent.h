@@ -10,7 +10,8 @@
 namespace cordis::plan {
 
 /// The linear network that a scene is for small movements about the pose of its start: every link
-/// with its tangent there, state links in their stiffest state, sets left out.
+/// with its tangent there, state links in their stiffest state, sets left out; with the weights of
+/// its integrator at its step (LimitWeights).
 ///
 /// In 1 dimension, for linear links alone, this is the network itself, and its limit is exact.
 class StartTangent {

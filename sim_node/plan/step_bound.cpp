@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "sim_node/plan/limit_weights.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -154,17 +156,28 @@ StepBound edge_bound(const LiaisonGraph& graph) {
   return bound;
 }
 
-StepBound certified_bound(const engine::NetworkDescription& network, LiaisonGraph graph) {
-  StepBound bound = bound_at(graph);
+namespace {
+
+StepBound certified_bound_at(const engine::NetworkDescription& network, LiaisonGraph graph) {
+  const LimitWeights weights = limit_weights(network);
+  StepBound bound = bound_at(weighted(graph, weights));
   // A Maxwell element softens as the step grows: with its stiffness at a stable step every step up
   // to the next bound is stable too.
   for (int round = 0;
        round < kMaxwellRounds && !network.maxwell_links.empty() && std::isfinite(bound.step);
        ++round) {
     graph.set_step(network, bound.step);
-    bound = bound_at(graph);
+    bound = bound_at(weighted(graph, weights));
   }
   return bound;
+}
+
+}  // namespace
+
+StepBound certified_bound(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  return limit_of_all_steps(network, [&graph](const engine::NetworkDescription& at) {
+    return certified_bound_at(at, graph);
+  });
 }
 
 }  // namespace cordis::plan

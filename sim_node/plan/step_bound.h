@@ -18,16 +18,19 @@ struct StepBound {
 };
 
 /// Stable is what keeps every eigenvalue of M^-1 (dt^2 K + 2 dt Z) below 4: exactly the limit of
-/// the centred difference. A bound from above on the eigenvalues is one from below on the step.
+/// the centred difference, and with LimitWeights that of the other integrators. A bound from above
+/// on the eigenvalues is one from below on the step.
 
-/// Edge bound: d_a / m_a + d_b / m_b over the liaisons, d the sum of a MAT's slopes. O(liaisons).
+/// Edge bound of the centred difference: d_a / m_a + d_b / m_b over the liaisons, d the sum of a
+/// MAT's slopes. O(liaisons).
 StepBound edge_bound(const LiaisonGraph& graph);
 
 /// The better of the edge bound and of 24 row bounds, max over i of (B x)_i / x_i, which hold for
 /// any x > 0 (B the graph's matrix with all its entries positive; Collatz); x from power iteration.
-/// Both hold in every pose and every combination of states. O(liaisons). Source: numerics of
+/// Both hold in every pose and every combination of states, for the integrator of the network.
+/// O(liaisons). Source: numerics of
 /// networks, docs/numerics.md.
-StepBound certified_bound(const engine::NetworkDescription& network, LiaisonGraph graph);
+StepBound certified_bound(const engine::NetworkDescription& network, const LiaisonGraph& graph);
 
 /// The step at which dt^2 stiffness + 2 dt viscosity = 4, both for unit mass; infinite for 0 and 0.
 double limit_step(double stiffness, double viscosity) noexcept;

@@ -17,10 +17,7 @@ constexpr double kBlownUp = 100.0;  // amplitudes away, or tens of thousands of 
 
 engine::World world_at(engine::NetworkDescription network, const std::string& integrator,
                        double rate_hz) {
-  const std::vector<std::string> known = integrator_names();
-  if (std::find(known.begin(), known.end(), integrator) == known.end()) {
-    throw std::invalid_argument("there is no integrator '" + integrator + "'");
-  }
+  network.integrator = engine::integrator_named(integrator);
   network.step = 1.0 / rate_hz;
   return engine::World(std::make_shared<const engine::Network>(std::move(network)));
 }
@@ -76,11 +73,13 @@ class Comparison {
 }  // namespace
 
 std::vector<std::string> integrator_names() {
-  return {"cordis"};
+  std::vector<std::string> names;
+  for (const auto integrator : engine::kIntegrators) names.emplace_back(to_string(integrator));
+  return names;
 }
 
-int evaluations_per_step(const std::string& /*integrator*/) {
-  return 1;
+int evaluations_per_step(const std::string& integrator) {
+  return engine::evaluations_per_step(engine::integrator_named(integrator));
 }
 
 CourseRun::CourseRun(engine::NetworkDescription network, const std::string& integrator,

@@ -28,7 +28,11 @@ std::string nearest_multiples(double rate, double gesture_rate) {
 
 void read_step(const Value& section, Scene& scene, config::Problems& problems) {
   config::MappingReader reader(section, "step", problems);
-  reader.optional_choice("integrator", "cordis", {"cordis"});
+  std::vector<std::string> integrators;
+  for (const auto integrator : engine::kIntegrators)
+    integrators.emplace_back(to_string(integrator));
+  scene.network.integrator =
+      engine::integrator_named(reader.optional_choice("integrator", "cordis", integrators));
   scene.step_rate_hz = reader.required_number("rate_hz", Range::between(1.0, kHighestStepRate));
   scene.gesture_rate_hz =
       reader.optional_number("gesture_rate_hz", 1000.0, Range::between(1.0, kHighestGestureRate));

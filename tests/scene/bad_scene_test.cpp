@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kNothing,
                  "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^euler}\nmatter: {a: "
                  "{kind: mass, mass_kg: 1, at_m: 0}}\n",
-                 "'integrator' in step must be one of cordis, got 'euler'", ""},
+                 "'integrator' in step must be one of cordis, leapfrog, got 'euler'", ""},
         BadScene{kHead1, "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nworld: {^viscosity: 1}\n",
                  "unknown key 'viscosity' in world", "did you mean 'viscosity_n_s_per_m'?"},
         BadScene{

@@ -1,0 +1,58 @@
+// sim_node/engine/cordis_mover.cpp
+#include "sim_node/engine/cordis_mover.h"
+
+#include "sim_node/engine/world_state.h"
+
+namespace cordis::engine {
+
+void CordisMover::start(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  world.add_frozen_forces(mats.force_columns());
+  mats.start();
+
+  // The account of ports and state links begins with the links as they were one period ago, when
+  // nothing is known to have moved.
+  ForceColumns one_period_ago = mats.force_columns();
+  one_period_ago.position = one_period_ago.delayed;
+  world.add_frozen_forces(one_period_ago);
+  world.outside.start(mats);
+  mats.clear_forces();
+  world.links.start();
+  world.state_links.start();
+  world.sets.start();
+  world.account.start(world.description(), mats, world.stored_energy(),
+                      world.work_since_last_call().elastic);
+}
+
+Moved CordisMover::step(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  Moved moved;
+  StepEnergy& energy = moved.energy;
+  energy.port_work = world.outside.move_ports(mats);
+  mats.clear_forces();
+  energy += world.links.add_forces(world.kernel, mats.force_columns());
+  if (!world.state_links.empty()) {
+    energy += world.state_links.add_forces(world.behaviours, world.table, mats.force_columns(),
+                                           world.step_count, world.log);
+  }
+  energy += world.maxwell_links.add_forces(world.behaviours, mats.force_columns());
+  if (!world.sets.empty()) {
+    energy += world.sets.add_forces(world.pair_step(false), mats.force_columns());
+  }
+  energy.port_work += world.outside.work_at_ports(mats);
+
+  energy.port_work += world.outside.push(mats);
+  const AdvanceReport advance = mats.advance(world.kernel);
+  energy.port_work += world.outside.release(mats);
+
+  energy.dissipated += advance.medium_work;
+  moved.non_finite_mats = advance.non_finite_mats;
+  return moved;
+}
+
+Energy CordisMover::energy(WorldState& world) const noexcept {
+  return world.account.energy(world.description(), world.mats, world.work_since_last_call(),
+                              world.stored_energy());
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,43 @@
+// sim_node/engine/integrator.h -- the ways a world may go from one step to the next.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace cordis::engine {
+
+struct NetworkDescription;
+
+/// How the MATs are moved. All go over the same links, states and sets, at the steps of the
+/// network; what each is for stands in docs/numerics.md.
+enum class Integrator : std::uint8_t {
+  kCordis = 0,   ///< the centred difference of the paper; dampers see x(n) - x(n-1)
+  kLeapfrog = 1  ///< the same with dampers of second order
+};
+
+/// All of them, in the order in which they are listed to people.
+inline constexpr std::array kIntegrators{Integrator::kCordis, Integrator::kLeapfrog};
+
+/// As a scene writes it: "leapfrog".
+const char* to_string(Integrator integrator) noexcept;
+/// The other way round. @throws std::invalid_argument for any other word.
+Integrator integrator_named(const std::string& name);
+
+/// How often a step computes all forces.
+int evaluations_per_step(Integrator integrator) noexcept;
+
+/// The viscosity Z' = dt Z / m beyond which `leapfrog` takes the dampers apart from the rest.
+inline constexpr double kMostExtrapolatedViscosity = 0.3;
+
+/// The largest step [s] at which `leapfrog` feeds all dampers of the network an extrapolated
+/// velocity: where the edge bound of dt M^-1 Z, of linear links and medium, is
+/// kMostExtrapolatedViscosity. Infinite without dampers.
+double largest_extrapolated_step(const NetworkDescription& network);
+
+/// Whether `leapfrog` damps the linear links and the medium of this network in sweeps of their own,
+/// each pair exactly: beyond largest_extrapolated_step. The step is then limited by their stiffness
+/// alone.
+bool damps_in_sweeps(const NetworkDescription& network);
+
+}  // namespace cordis::engine

@@ -1,0 +1,182 @@
+// sim_node/engine/leapfrog.cpp
+#include "sim_node/engine/leapfrog.h"
+
+#include <algorithm>
+
+#include "sim_node/engine/world_state.h"
+
+namespace cordis::engine {
+namespace {
+
+Eigen::Map<Vec3> column(AlignedVector<double>& columns, std::size_t mat) noexcept {
+  return Eigen::Map<Vec3>(columns.data() + 4 * mat);
+}
+
+Vec3 column(const AlignedVector<double>& columns, std::size_t mat) noexcept {
+  return Vec3::Map(columns.data() + 4 * mat);
+}
+
+}  // namespace
+
+Leapfrog::Leapfrog(const NetworkDescription& network)
+    : felt_(4 * network.mats.size(), 0.0),
+      sweeps_(damps_in_sweeps(network) ? std::make_unique<DampingSweeps>(network) : nullptr),
+      velocity_(sweeps_ ? felt_.size() : 0, 0.0) {}
+
+void Leapfrog::start(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  world.add_frozen_forces(mats.force_columns());  // the delayed positions are x0 - dt v0
+  for (std::uint32_t i = 0; i < mats.count(); ++i) column(felt_, i) = mats.delayed(i);
+  world.outside.start(mats);
+  mats.start();
+  mats.set_forces_are_present(true);
+  if (sweeps_) world.links.drop_viscosity();
+  world.links.start();
+  world.state_links.start();
+  world.sets.start();
+  world.account.open(energy(world).total());
+}
+
+Moved Leapfrog::step(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  Moved moved;
+  StepEnergy& energy = moved.energy;
+  energy = pending_;
+  pending_ = {};
+  energy.port_work += world.outside.move_ports(mats);
+  feel_ports(world);
+  const double half_power = add_forces(world, energy);
+  energy.dissipated += half_power;
+  pending_.dissipated += half_power;
+  energy.port_work += world.outside.work_at_ports(mats);
+  energy.port_work += world.outside.push(mats);
+
+  if (sweeps_) {
+    moved.non_finite_mats = advance_in_sweeps(world, energy);
+  } else {
+    const AdvanceReport advance = mats.extrapolate(world.kernel, felt_);
+    moved.non_finite_mats = advance.non_finite_mats;
+    energy.dissipated += 0.5 * advance.medium_work;
+    pending_.dissipated += 0.5 * advance.medium_work;
+  }
+  pending_.port_work += world.outside.release(mats);
+  if (sweeps_) mats.add_forces(sweeps_->force());
+  mats.set_forces_are_present(false);
+  started_ = true;
+  return moved;
+}
+
+/// What a port does is given from outside: it is felt as it has moved in the last period.
+void Leapfrog::feel_ports(const WorldState& world) noexcept {
+  const std::vector<Mat>& mats = world.description().mats;
+  for (std::uint32_t i = 0; i < mats.size(); ++i) {
+    if (mats[i].kind == MatKind::kPort) column(felt_, i) = world.mats.delayed(i);
+  }
+}
+
+/// @return half of what viscosity takes in this period [J]
+double Leapfrog::add_forces(WorldState& world, StepEnergy& energy) noexcept {
+  MatArray& mats = world.mats;
+  const ForceColumns as_it_moved = mats.force_columns();
+  ForceColumns felt = as_it_moved;
+  felt.delayed = felt_.data();
+  mats.clear_forces();
+
+  StepEnergy of_links = world.links.add_forces_of_moment(world.kernel, felt);
+  of_links.dissipated *= 0.5;
+  // Without the viscous forces of the last step, half the work of those of this one is returned.
+  if (!world.state_links.empty()) {
+    world.state_links.forget_viscous_forces();
+    of_links += world.state_links.add_forces(world.behaviours, world.table, felt, world.step_count,
+                                             world.log);
+  }
+  energy.dissipated += world.maxwell_links.add_forces(world.behaviours, as_it_moved).dissipated;
+  if (!world.sets.empty()) {
+    world.sets.start();
+    of_links += world.sets.add_forces(world.pair_step(false), felt);
+  }
+  energy.switching += of_links.switching;
+  return of_links.dissipated;
+}
+
+/// Half of the push, what dampers do in a period, the other half.
+std::uint32_t Leapfrog::advance_in_sweeps(WorldState& world, StepEnergy& energy) noexcept {
+  MatArray& mats = world.mats;
+  const double rate = 1.0 / world.network->step();
+  for (std::uint32_t i = 0; i < mats.count(); ++i) {
+    const Vec3 before = started_ || !mats.is_mass(i) ? mats.delayed_at_rest(i) : column(felt_, i);
+    column(velocity_, i) = rate * (mats.position(i) - before);
+  }
+  for (const std::uint32_t port : world.outside.ports()) {
+    column(velocity_, port) = rate * (mats.position(port) - mats.delayed(port));
+  }
+  sweeps_->clear_force();
+  if (started_) {  // before step 0 nothing is known to have pushed
+    mats.push(0.5, velocity_);
+    const DampingSweeps::Loss loss = sweeps_->sweep(mats, false, velocity_);
+    energy.dissipated += loss.dissipated;
+    energy.port_work += loss.port_work;
+  }
+  felt_ = velocity_;  // v(n), of which follows what is felt; the same size: no allocation
+  const DampingSweeps::Loss loss = sweeps_->sweep(mats, true, velocity_);
+  pending_.dissipated += loss.dissipated;
+  pending_.port_work += loss.port_work;
+  mats.push(0.5, velocity_);
+  const std::uint32_t non_finite = mats.drift(velocity_);
+
+  const double dt = world.network->step();
+  for (std::uint32_t i = 0; i < mats.count(); ++i) {
+    const Vec3 moved = mats.position(i) - mats.delayed_at_rest(i);
+    column(felt_, i) = mats.delayed_at_rest(i) - (moved - dt * column(felt_, i));
+  }
+  return non_finite;
+}
+
+/// dt v at the moment of the last forces [m].
+Vec3 Leapfrog::centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept {
+  const Vec3 felt = column(felt_, mat);
+  if (!started_) return world.mats.position(mat) - felt;
+  const Vec3 delayed = world.mats.delayed(mat);
+  return (world.mats.position(mat) - delayed) - (delayed - felt);
+}
+
+Energy Leapfrog::energy(WorldState& world) const noexcept {
+  const NetworkDescription& network = world.description();
+  double kinetic = 0.0;
+  double gravity = 0.0;
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    if (network.mats[i].kind != MatKind::kMass) continue;
+    kinetic += network.mats[i].mass * centred_displacement(world, i).squaredNorm();
+    gravity -= network.mats[i].mass * network.gravity.dot(world.mats.position_of_forces(i));
+  }
+  kinetic *= 0.5 / (network.step * network.step);
+  return world.account.at_moment(kinetic, world.potential_energy(), gravity);
+}
+
+Vec3 Leapfrog::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
+  if (!world.mats.is_mass(mat)) return Mover::velocity(world, mat);
+  return (world.mats.position(mat) - column(felt_, mat)) / world.network->step();
+}
+
+void Leapfrog::add_to(StateHash& hash) const noexcept {
+  for (const double value : felt_) hash.add(value);
+}
+
+void Leapfrog::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), felt_.begin(), felt_.end());
+  state.insert(state.end(),
+               {pending_.dissipated, pending_.port_work, static_cast<double>(started_)});
+}
+
+const double* Leapfrog::take_state(WorldState& world, const double* state) noexcept {
+  std::copy_n(state, felt_.size(), felt_.data());
+  state += felt_.size();
+  pending_ = {};
+  pending_.dissipated = *state++;
+  pending_.port_work = *state++;
+  started_ = *state++ != 0.0;
+  world.mats.set_forces_are_present(!started_);
+  return state;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,26 @@
+// sim_node/engine/mover.cpp
+#include "sim_node/engine/mover.h"
+
+#include <stdexcept>
+
+#include "sim_node/engine/cordis_mover.h"
+#include "sim_node/engine/leapfrog.h"
+#include "sim_node/engine/world_state.h"
+
+namespace cordis::engine {
+
+Vec3 Mover::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
+  return (world.mats.position(mat) - world.mats.delayed(mat)) / world.network->step();
+}
+
+std::unique_ptr<Mover> make_mover(const NetworkDescription& network) {
+  switch (network.integrator) {
+    case Integrator::kCordis:
+      return std::make_unique<CordisMover>();
+    case Integrator::kLeapfrog:
+      return std::make_unique<Leapfrog>(network);
+  }
+  throw std::invalid_argument("there is no such integrator");
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,171 @@
+// sim_node/engine/world_state.cpp
+#include "sim_node/engine/world_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace cordis::engine {
+namespace {
+
+constexpr std::size_t kLeastEventRoom = 1024;
+
+std::shared_ptr<const Network> require(std::shared_ptr<const Network> network) {
+  if (!network) throw std::invalid_argument("a world needs a network");
+  return network;
+}
+
+VectorWidth require(VectorWidth width) {
+  const std::vector<VectorWidth> supported = supported_vector_widths();
+  if (std::find(supported.begin(), supported.end(), width) == supported.end()) {
+    throw std::invalid_argument(std::string("this processor does not run ") + to_string(width));
+  }
+  return width;
+}
+
+}  // namespace
+
+WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWidth width_of_step)
+    : network(require(std::move(network_of_world))),
+      width(require(width_of_step)),
+      kernel(step_kernel(width)),
+      behaviours(behaviour_kernel(width)),
+      mats(description()),
+      positions(mats.position()),
+      links(description()),
+      table(make_table(description().behaviours)),
+      state_links(description(), table),
+      maxwell_links(description()),
+      sets(description(), table, pair_kernel(width)),
+      log(table, std::max(kLeastEventRoom, description().state_links.size())),
+      outside(description()),
+      mover(make_mover(description())) {}
+
+StateTable WorldState::make_table(std::vector<Behaviour> from) const {
+  const bool whole_steps = description().integrator != Integrator::kCordis;
+  return StateTable(std::move(from), network->step(), whole_steps);
+}
+
+StepReport WorldState::step() noexcept {
+  StepReport report;
+  report.refused_inputs = outside.take_refused();
+  log.begin_step();
+  const Moved moved = mover->step(*this);
+  account.add(moved.energy);
+  ++step_count;
+  report.non_finite_mats = moved.non_finite_mats;
+  report.crowded_sets = sets.crowded_count();
+  report.lost_events = log.lost();
+  return report;
+}
+
+void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
+  links.add_forces(kernel, columns);
+  state_links.add_forces_before_start(behaviours, table, columns);
+  sets.add_forces(pair_step(true), columns);
+}
+
+double WorldState::stored_energy() noexcept {
+  return links.stored_energy(mats) + state_links.stored_energy(table, mats) +
+         maxwell_links.stored_energy() + sets.stored_energy(table);
+}
+
+double WorldState::potential_energy() noexcept {
+  return links.potential_energy(mats) + state_links.stored_energy(table, mats) +
+         maxwell_links.stored_energy() + sets.stored_energy(table);
+}
+
+StepEnergy WorldState::work_since_last_call() const noexcept {
+  StepEnergy work = links.work_since_last_call(mats);
+  work += state_links.work_since_last_call(mats);
+  work += maxwell_links.work_since_last_call(mats);
+  work += sets.work_since_last_call(mats);
+  return work;
+}
+
+void WorldState::replace_behaviour(std::uint32_t index, const Behaviour& behaviour) {
+  if (index >= table.behaviours().size()) {
+    throw std::invalid_argument("behaviour " + std::to_string(index) + " does not exist");
+  }
+  check_behaviour(behaviour, "behaviour " + std::to_string(index));
+  if (behaviour.states.size() != table.behaviours()[index].states.size()) {
+    throw std::invalid_argument("a behaviour is replaced by one of as many states");
+  }
+  for (const LinkState& state : behaviour.states) {
+    if (!std::isfinite(state.viscosity / network->step())) {
+      throw std::invalid_argument("a viscosity is too large for the step");
+    }
+  }
+  const double before = stored_energy();
+  table.replace(index, behaviour);
+  state_links.adopt(table);
+  sets.adopt(table);
+  StepEnergy change;
+  change.switching = stored_energy() - before;
+  account.add(change);
+  replaced = true;
+}
+
+std::size_t WorldState::state_size_before_sets() const noexcept {
+  return mats.state_size() + links.state_size() + state_links.state_size() +
+         maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize +
+         mover->state_size();
+}
+
+bool WorldState::can_take(const std::vector<double>& state) const noexcept {
+  const std::size_t first = state_size_before_sets();
+  std::size_t size = 0;
+  return state.size() >= first &&
+         sets.find_size_of_state(state.data() + first, state.size() - first, size) &&
+         outside.is_end_of_state(state, first + size);
+}
+
+void WorldState::restore(const Snapshot& snapshot) {
+  if (snapshot.network != network->fingerprint()) {
+    throw std::invalid_argument("the snapshot is of another network");
+  }
+  const std::vector<Behaviour>& own = description().behaviours;
+  StateTable table_of_snapshot =
+      make_table(snapshot.behaviours.empty() ? own : snapshot.behaviours);
+  StateLinkArray links_of_snapshot(description(), table_of_snapshot);
+  std::swap(table, table_of_snapshot);
+  std::swap(state_links, links_of_snapshot);
+  sets.adopt(table);
+  if (!can_take(snapshot.state)) {
+    std::swap(table, table_of_snapshot);
+    std::swap(state_links, links_of_snapshot);
+    sets.adopt(table);
+    throw std::invalid_argument("the snapshot is not complete");
+  }
+  step_count = snapshot.step;
+  replaced = !snapshot.behaviours.empty();
+  take_state(snapshot.state);
+}
+
+void WorldState::append_state(std::vector<double>& state) const {
+  mats.append_state(state);
+  links.append_state(state);
+  state_links.append_state(state);
+  maxwell_links.append_state(state);
+  log.append_state(state);
+  account.append_state(state);
+  mover->append_state(state);
+  sets.append_state(state);
+  outside.append_state(state);
+}
+
+void WorldState::take_state(const std::vector<double>& state) noexcept {
+  const double* next = mats.take_state(state.data());
+  next = links.take_state(next);
+  next = state_links.take_state(next);
+  next = maxwell_links.take_state(next);
+  next = log.take_state(next);
+  next = account.take_state(next);
+  next = mover->take_state(*this, next);
+  next = sets.take_state(next);
+  outside.take_state(next);
+}
+
+}  // namespace cordis::engine

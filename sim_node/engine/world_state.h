@@ -1,0 +1,70 @@
+// sim_node/engine/world_state.h -- what a world is made of, as those that move it see it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sim_node/engine/behaviour_kernel.h"
+#include "sim_node/engine/event_log.h"
+#include "sim_node/engine/mat_array.h"
+#include "sim_node/engine/maxwell_links.h"
+#include "sim_node/engine/mover.h"
+#include "sim_node/engine/outside.h"
+#include "sim_node/engine/set_liaisons.h"
+#include "sim_node/engine/spring_damper.h"
+#include "sim_node/engine/state_links.h"
+#include "sim_node/engine/state_table.h"
+#include "sim_node/engine/step_kernel.h"
+#include "sim_node/engine/world.h"
+
+namespace cordis::engine {
+
+/// The parts of a World.
+struct WorldState {
+  /// @throws std::invalid_argument without a network, or when the processor lacks the vector
+  /// instructions.
+  WorldState(std::shared_ptr<const Network> network_of_world, VectorWidth width_of_step);
+
+  const NetworkDescription& description() const noexcept { return network->description(); }
+  StepReport step() noexcept;
+  void restore(const Snapshot& snapshot);
+  void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
+
+  std::size_t state_size_before_sets() const noexcept;
+  bool can_take(const std::vector<double>& state) const noexcept;
+  void append_state(std::vector<double>& state) const;
+  void take_state(const std::vector<double>& state) noexcept;
+  StateTable make_table(std::vector<Behaviour> behaviours) const;
+
+  PairStep pair_step(bool frozen) noexcept { return {table, behaviours, log, step_count, frozen}; }
+  /// Adds the forces of all liaisons, as they are, without testing an exit; Maxwell elements left
+  /// out.
+  void add_frozen_forces(const ForceColumns& columns) noexcept;
+  /// Of all links where the last forces were computed, in closed form; without linear ones in 1
+  /// dimension [J].
+  double stored_energy() noexcept;
+  /// The same, with linear links in every dimension.
+  double potential_energy() noexcept;
+  StepEnergy work_since_last_call() const noexcept;
+
+  std::shared_ptr<const Network> network;
+  VectorWidth width;
+  const StepKernel& kernel;
+  const BehaviourKernel& behaviours;
+  MatArray mats;
+  Columns positions;  // of mats
+  SpringDamperArray links;
+  StateTable table;
+  StateLinkArray state_links;
+  MaxwellArray maxwell_links;
+  SetLiaisons sets;
+  EventLog log;
+  Outside outside;
+  EnergyAccount account;
+  std::unique_ptr<Mover> mover;
+  std::uint64_t step_count = 0;
+  bool replaced = false;  // a behaviour is no longer that of the network
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,35 @@
+// sim_node/plan/limit_weights.cpp
+#include "sim_node/plan/limit_weights.h"
+
+namespace cordis::plan {
+
+using engine::Integrator;
+
+LimitWeights limit_weights(const engine::NetworkDescription& network) {
+  LimitWeights weights;
+  switch (network.integrator) {
+    case Integrator::kCordis:
+      break;
+    case Integrator::kLeapfrog:  // 4 M - dt^2 K - 4 dt Z > 0, without Z in sweeps
+      weights.link_viscosity = engine::damps_in_sweeps(network) ? 0.0 : 2.0;
+      weights.viscosity = 2.0;
+      break;
+  }
+  return weights;
+}
+
+LiaisonGraph weighted(LiaisonGraph graph, const LimitWeights& weights) {
+  for (Joint& joint : graph.joints) {
+    const bool linear = joint.liaison.kind == LiaisonKind::kLink;
+    joint.stiffness *= linear ? weights.link_stiffness : weights.stiffness;
+    joint.viscosity *= linear ? weights.link_viscosity : weights.viscosity;
+  }
+  for (Crowd& crowd : graph.crowds) {
+    crowd.stiffness *= weights.stiffness;
+    crowd.viscosity *= weights.viscosity;
+  }
+  graph.medium_viscosity *= weights.link_viscosity;
+  return graph;
+}
+
+}  // namespace cordis::plan

@@ -1,0 +1,266 @@
+// tests/engine/leapfrog_test.cpp -- dampers of second order, whatever their viscosity.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/many_states.h"
+#include "tests/engine/reference_data.h"
+#include "tests/engine/scenes.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cordis::test {
+namespace {
+
+using engine::Energy;
+using engine::Integrator;
+
+NetworkDescription by_leapfrog(NetworkDescription scene) {
+  scene.integrator = Integrator::kLeapfrog;
+  return scene;
+}
+
+double largest_excursion(const NetworkDescription& scene) {
+  World world = make_world(by_leapfrog(scene));
+  double largest = 0.0;
+  for (int n = 0; n < 5000 && largest < 1e100; ++n) {
+    world.step();
+    largest = std::max(largest, world.positions().cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+struct Regime {
+  std::string name;
+  double bound;  // of the position error [m] with a step of 1 ms
+};
+
+class LeapfrogOscillator : public testing::TestWithParam<Regime> {};
+
+TEST_P(LeapfrogOscillator, ConvergesToTheExactMotionWithTheSecondOrder) {
+  const nlohmann::json problem = reference("R01_damped_oscillator");
+  const auto regime =
+      std::find_if(problem["cases"].begin(), problem["cases"].end(),
+                   [](const auto& given) { return given["name"] == GetParam().name; });
+  ASSERT_NE(regime, problem["cases"].end());
+  const auto& params = problem["params"];
+  const auto largest_error = [&](double step) {
+    World world = make_world(
+        by_leapfrog(oscillator(number(params["m"]), number(params["k"]), number((*regime)["z"]),
+                               number(params["x0"]), number(params["v0"]), step)));
+    double largest = 0.0;
+    for (const auto& row : (*regime)["t_x_v"]) {
+      const int n = static_cast<int>(std::lround(number(row[0]) / step));
+      run(world, n - static_cast<int>(world.step_count()));
+      largest = std::max(largest, std::abs(world.position(1).x() - number(row[1])));
+      EXPECT_NEAR(world.velocity(1).x(), number(row[2]), 100.0 * GetParam().bound);
+    }
+    return largest;
+  };
+
+  const double coarse = largest_error(1e-3);
+  const double fine = largest_error(5e-4);
+
+  EXPECT_LT(coarse, GetParam().bound);
+  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.1);
+}
+
+// `cordis` needs bounds of 5e-6, 2.5e-5, 5e-5 and 5e-4 m here.
+INSTANTIATE_TEST_SUITE_P(Regimes, LeapfrogOscillator,
+                         testing::Values(Regime{"undamped", 1.9e-7}, Regime{"light", 1.9e-7},
+                                         Regime{"zeta=0.5", 1.9e-7}, Regime{"critical", 1.9e-7},
+                                         Regime{"overdamped", 2e-6}));
+
+// Two masses that fly round each other on a damper, in a medium: what a damper sees turns with it.
+class LeapfrogInSpace : public testing::TestWithParam<double> {};  // viscosity of the link
+
+TEST_P(LeapfrogInSpace, IsOfSecondOrderWhereDampersTurn) {
+  const auto end = [](double step) {
+    NetworkDescription scene;
+    scene.dimension = 2;
+    scene.step = step;
+    scene.medium_viscosity = 0.05;
+    scene.gravity = Vec3(0, -1, 0);
+    scene.mats = {mass(0.1, Vec3(0, 0, 0), Vec3(0, -0.5, 0)),
+                  mass(0.3, Vec3(0.2, 0, 0), Vec3(0, 1.5, 0))};
+    scene.links = {{0, 1, 20.0, GetParam(), 0.15}};
+    World world = make_world(by_leapfrog(scene));
+    run(world, static_cast<int>(std::lround(0.4 / step)));
+    return Vec3(world.position(1));
+  };
+
+  const Vec3 coarse = end(1e-3);
+  const Vec3 middle = end(5e-4);
+  const Vec3 fine = end(2.5e-4);
+
+  EXPECT_NEAR(std::log2((coarse - middle).norm() / (middle - fine).norm()), 2.0, 0.15);
+}
+
+INSTANTIATE_TEST_SUITE_P(ExtrapolatedAndInSweeps, LeapfrogInSpace, testing::Values(0.3, 100.0));
+
+// m = 1 and dt = 1: then K is K' and Z is Z'.
+TEST(LeapfrogStability, EndsAtStiffnessPlusFourTimesTheExtrapolatedViscosityOfFour) {
+  for (const double viscosity : {0.0, 0.1, 0.2, 0.3}) {
+    const double limit = 4.0 - 4.0 * viscosity;
+
+    EXPECT_LT(largest_excursion(oscillator(1.0, 0.98 * limit, viscosity, 1.0, 0.0, 1.0)), 100.0);
+    EXPECT_GT(largest_excursion(oscillator(1.0, 1.02 * limit, viscosity, 1.0, 0.0, 1.0)), 1e3);
+  }
+}
+
+TEST(LeapfrogStability, OfStatesEndsAtFourTimesTheirViscosityHoweverLargeItIs) {
+  for (const double viscosity : {0.5, 0.9}) {
+    for (const double side : {0.98, 1.02}) {
+      NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
+      scene.links.clear();
+      scene.behaviours.push_back(
+          Behaving().state(side * (4.0 - 4.0 * viscosity), viscosity).behaviour);
+      scene.state_links = {{0, 1, 0, 0.0}};
+      const double largest = largest_excursion(scene);
+
+      EXPECT_TRUE(side < 1.0 ? largest < 100.0 : largest > 1e3) << viscosity << ' ' << largest;
+    }
+  }
+}
+
+TEST(LeapfrogStability, InSweepsEndsAtAStiffnessOfFourWhateverTheViscosity) {
+  for (const double viscosity : {0.31, 1.0, 1.96, 5.0, 100.0}) {
+    EXPECT_LT(largest_excursion(oscillator(1.0, 3.92, viscosity, 1.0, 0.0, 1.0)), 100.0);
+    EXPECT_GT(largest_excursion(oscillator(1.0, 4.08, viscosity, 1.0, 0.0, 1.0)), 1e3);
+  }
+}
+
+TEST(LeapfrogStability, HoldsWhereTheDampersMakeCordisDiverge) {
+  NetworkDescription scene = oscillator(1.0, 0.1, 1.96, 1.0, 0.0, 1.0);
+  World cordis = make_world(scene);
+  run(cordis, 5000);
+
+  EXPECT_GT(std::abs(cordis.position(1).x()), 1e20);  // alternates, 1 % more each step
+  EXPECT_LT(largest_excursion(scene), 1.5);
+}
+
+class LeapfrogConservation : public testing::TestWithParam<double> {};  // viscosity of the links
+
+TEST_P(LeapfrogConservation, KeepsMomentumAndAngularMomentum) {
+  World world = make_world(by_leapfrog(free_cluster(50, 203, GetParam())));
+  run(world, 1);  // before step 0 nothing has pushed: x(-1) and v(-1/2) are not those of sweeps
+  const Vec3 momentum = world.momentum();
+  const Vec3 angular = world.angular_momentum();
+  ASSERT_GT(momentum.norm(), 0.1);
+
+  run(world, 10000);
+
+  EXPECT_LT((world.momentum() - momentum).norm(), 5e-11);  // rounding: see conservation_test.cpp
+  EXPECT_LT((world.angular_momentum() - angular).norm(), 5e-11);
+}
+
+INSTANTIATE_TEST_SUITE_P(ExtrapolatedAndInSweeps, LeapfrogConservation, testing::Values(0.3, 30.0));
+
+NetworkDescription account_scene(double step, double viscosity) {
+  NetworkDescription scene = string_in_space(20, viscosity, step);
+  scene.gravity = Vec3(0.0, 0.0, -9.81);
+  scene.medium_viscosity = 1e-4;
+  scene.mats.push_back(port(Vec3(0.1, 0.0, 0.02)));
+  scene.links.push_back({10, 22, 100.0, 0.0, 0.01});
+  scene.maxwell_links = {{4, 9, 50.0, 0.5}};
+  return scene;
+}
+
+double largest_residual_of_a_stir(double step, double viscosity) {
+  World world = make_world(by_leapfrog(account_scene(step, viscosity)));
+  const int steps = static_cast<int>(std::lround(0.05 / step));
+  double largest = 0.0;
+  for (int n = 0; n < steps; ++n) {
+    const double t = n * step / 0.05;
+    world.impose_position(22, Vec3(0.1, 0.02 * t * t * (3.0 - 2.0 * t), 0.02));
+    if (n == 0) world.set_external_force(5, Vec3(0.0, 0.05, 0.0));
+    world.step();
+    largest = std::max(largest, std::abs(world.energy().residual()) / world.energy().largest);
+  }
+  EXPECT_GT(world.energy().dissipated, 1e-3 * world.energy().largest);
+  EXPECT_GT(std::abs(world.energy().port_work), 1e-3 * world.energy().largest);
+  return largest;
+}
+
+TEST(LeapfrogEnergy, ClosesWithTheSecondOrder) {
+  for (const double viscosity : {0.05, 50.0}) {
+    const double coarse = largest_residual_of_a_stir(4e-5, viscosity);
+    const double fine = largest_residual_of_a_stir(1e-5, viscosity);
+
+    EXPECT_LT(coarse, 1e-3) << viscosity;
+    EXPECT_LT(fine, 0.1 * coarse) << viscosity;  // a 16th
+  }
+}
+
+TEST(LeapfrogEnergy, CountsWhatChangesOfStateBring) {
+  NetworkDescription scene = network_of_many_states(2);
+  World world = make_world(by_leapfrog(scene));
+  double switching = 0.0;
+  for (int n = 0; n < 500; ++n) {
+    world.step();
+    for (const engine::LinkEvent& event : world.events()) switching += event.energy;
+  }
+
+  EXPECT_NE(switching, 0.0);
+  EXPECT_NEAR(world.energy().switching, switching, 1e-9 * std::abs(switching));
+}
+
+TEST(Leapfrog, GivesAPortTheForceOfItsDampersInSweepsToo) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.mats = {port(Vec3::Zero()), mass(0.1, Vec3(0.1, 0, 0))};
+  scene.links = {{0, 1, 0.0, 2000.0, 0.0}};  // Z' = 20
+  World world = make_world(by_leapfrog(scene));
+  for (int n = 1; n <= 100; ++n) {
+    world.impose_position(0, Vec3(1e-3 * n, 0, 0));  // 1 m/s
+    world.step();
+  }
+
+  // the mass has the speed of the port: what had to be given to it has come through the damper
+  EXPECT_NEAR(world.velocity(1).x(), 1.0, 1e-6);
+  const Energy energy = world.energy();
+  EXPECT_NEAR(energy.residual(), 0.0, 1e-3 * energy.largest);
+  EXPECT_NEAR(energy.kinetic, 0.05, 1e-4);
+}
+
+TEST(Leapfrog, GoesOnFromASnapshotBitForBit) {
+  for (const double viscosity : {0.05, 5.0}) {
+    World first = make_world(by_leapfrog(account_scene(1e-4, viscosity)));
+    run(first, 37);
+    World second = make_world(by_leapfrog(account_scene(1e-4, viscosity)));
+    second.restore(first.snapshot());
+    run(first, 50);
+    run(second, 50);
+
+    EXPECT_EQ(first.state_hash(), second.state_hash());
+    EXPECT_EQ(first.energy().residual(), second.energy().residual());
+  }
+}
+
+TEST(Leapfrog, IsTakenOverWithItsMotion) {
+  World first = make_world(by_leapfrog(account_scene(1e-4, 0.05)));
+  run(first, 37);
+  World second = make_world(by_leapfrog(account_scene(1e-4, 0.05)));
+  std::vector<double> room;
+  room.reserve(second.most_values_of_state());
+  ASSERT_TRUE(second.take_over(first, room));
+  run(first, 50);
+  run(second, 50);
+
+  EXPECT_EQ(first.state_hash(), second.state_hash());
+  EXPECT_FALSE(make_world(account_scene(1e-4, 0.05)).take_over(first, room));
+}
+
+TEST(Leapfrog, StepsWithoutAllocating) {
+  for (const double viscosity : {0.05, 5.0}) {
+    World world = make_world(by_leapfrog(account_scene(1e-4, viscosity)));
+    const AllocationGuard guard;
+    run(world, 20);
+    EXPECT_EQ(guard.count(), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace cordis::test

@@ -1,0 +1,74 @@
+// tests/plan/integrator_limit_test.cpp -- what the plan says of every integrator is what it does.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/oscillator_error.h"
+#include "sim_node/plan/plan.h"
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+using engine::Integrator;
+
+class EveryIntegrator : public testing::TestWithParam<Integrator> {};
+
+/// What the integrator takes: the scene, or the scene without what it refuses.
+NetworkDescription for_integrator(NetworkDescription scene, Integrator integrator) {
+  scene.integrator = integrator;
+  return scene;
+}
+
+TEST_P(EveryIntegrator, DivergesOnRandomNetworksWhereThePlanSays) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    NetworkDescription scene = for_integrator(random_network(seed), GetParam());
+    scene.step = 1e-7;
+    const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
+    EXPECT_LE(stability.certified.step, stability.diverging_step * (1.0 + 1e-6)) << seed;
+    if (!std::isfinite(stability.diverging_step)) continue;
+
+    scene.step = 0.99 * stability.diverging_step;
+    EXPECT_LT(largest_excursion(scene, 3000), 1e3) << seed;
+    scene.step = 1.01 * stability.diverging_step;
+    EXPECT_GT(largest_excursion(scene, 20000), 1e6) << seed;
+  }
+}
+
+TEST_P(EveryIntegrator, SwingsAndDecaysAsThePlanSays) {
+  // 5 Hz at 100 steps a second, and so viscous that `leapfrog` must sweep
+  const double w = 10.0 * M_PI;
+  for (const double viscosity : {0.0, 0.8, 35.0}) {
+    NetworkDescription scene =
+        for_integrator(oscillator(1.0, w * w, viscosity, 1.0, 0.0, 0.01), GetParam());
+    const double seen = scene.links[0].viscosity;  // 0 where viscosity is refused
+    World world = make_world(scene);
+    // x(n+2) = trace x(n+1) - product x(n), once the start is forgotten
+    run(world, 4);
+    const double a = world.position(1).x();
+    run(world, 1);
+    const double b = world.position(1).x();
+    run(world, 1);
+    const double c = world.position(1).x();
+    run(world, 1);
+    const double d = world.position(1).x();
+    const double product = (b * d - c * c) / (a * c - b * b);
+    const double trace = (a * d - b * c) / (a * c - b * b);
+    const double frequency = std::sqrt(w * w - 0.25 * seen * seen);
+    const double pitch =
+        std::atan2(std::sqrt(product - 0.25 * trace * trace), 0.5 * trace) / (0.01 * frequency);
+
+    const auto error = plan::oscillator_error(w, seen, 0.01, GetParam());
+
+    ASSERT_TRUE(error.oscillates);
+    EXPECT_NEAR(pitch - 1.0, error.pitch, 1e-4) << viscosity;
+    if (seen == 0.0) continue;
+    EXPECT_NEAR(-std::log(product) / (seen * 0.01) - 1.0, error.decay, 1e-4) << viscosity;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, EveryIntegrator, testing::ValuesIn(engine::kIntegrators),
+                         [](const auto& integrator) { return to_string(integrator.param); });
+
+}  // namespace
+}  // namespace cordis::test
