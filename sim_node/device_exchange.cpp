@@ -33,6 +33,7 @@ void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexc
   newest_ = before.newest_;
   has_new_ = before.has_new_;
   new_run_ = before.new_run_;
+  borne_ = before.borne_;
   if (!at_once) return;
   from_ = before.from_;
   to_ = before.to_;
@@ -51,8 +52,8 @@ double DeviceExchange::force_share() const noexcept {
 }
 
 template <class Sample, class Values>
-DeviceExchange::Reception DeviceExchange::receive(const Sample& sample,
-                                                  const Values& values) noexcept {
+DeviceExchange::Reception DeviceExchange::receive(const Sample& sample, const Values& values,
+                                                  bool borne) noexcept {
   const auto count = static_cast<std::size_t>(sample.axis_count());
   bool usable = sample.run() != 0 && count >= axis_count_ && count <= kMaxAxes;
   for (std::size_t axis = 0; usable && axis < count; ++axis) usable = std::isfinite(values[axis]);
@@ -67,6 +68,7 @@ DeviceExchange::Reception DeviceExchange::receive(const Sample& sample,
   }
   if (sample.run() == heard_run_) missed_count_ += sample.sample() - heard_sample_ - 1;
   new_run_ = new_run_ || sample.run() != heard_run_;
+  borne_ = borne;
   heard_run_ = sample.run();
   heard_sample_ = sample.sample();
   heard_time_nsec_ = sample.time_nsec();
@@ -75,17 +77,21 @@ DeviceExchange::Reception DeviceExchange::receive(const Sample& sample,
   return Reception::kNew;
 }
 
-DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample) noexcept {
-  return receive(sample, sample.position_m());
+DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample,
+                                                  bool borne) noexcept {
+  return receive(sample, sample.position_m(), borne);
 }
 
-DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample) noexcept {
-  return receive(sample, sample.force_n());
+DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample,
+                                                  bool borne) noexcept {
+  return receive(sample, sample.force_n(), borne);
 }
 
 void DeviceExchange::begin_tick() noexcept {
   from_ = to_;
-  if (has_new_) {
+  if (!borne_) {
+    silent_ticks_ = lost_after_ticks_ + 1;
+  } else if (has_new_) {
     if (is_lost() || new_run_) rejoin_left_ = rejoin_ticks_;
     new_run_ = false;
     silent_ticks_ = 0;

@@ -50,8 +50,11 @@ class DeviceExchange {
     kRepeated,  ///< the message answered last, sent again: the last answer is wanted again
     kRefused    ///< malformed, not finite, or older than what is known
   };
-  Reception receive(const msg::GesturePositions& sample) noexcept;  ///< precondition: role mass
-  Reception receive(const msg::GestureForces& sample) noexcept;     ///< precondition: role liaison
+  /// Precondition: role mass. @param borne  false: the device cannot bear the scene; it counts as
+  /// lost, though its samples are answered
+  Reception receive(const msg::GesturePositions& sample, bool borne = true) noexcept;
+  /// Precondition: role liaison.
+  Reception receive(const msg::GestureForces& sample, bool borne = true) noexcept;
 
   /// Begins a tick: takes over the newest sample.
   void begin_tick() noexcept;
@@ -83,7 +86,7 @@ class DeviceExchange {
  private:
   double force_share() const noexcept;
   template <class Sample, class Values>
-  Reception receive(const Sample& sample, const Values& values) noexcept;
+  Reception receive(const Sample& sample, const Values& values, bool borne) noexcept;
   template <class Answer>
   void fill_header(Answer& answer, std::int64_t now_nsec) noexcept;
 
@@ -100,6 +103,7 @@ class DeviceExchange {
   std::int64_t heard_time_nsec_ = 0;
   bool has_new_ = false;
   bool new_run_ = false;  // it is the first of another process
+  bool borne_ = true;
 
   std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick
   std::array<double, kMaxAxes> to_{};    // and at its end

@@ -36,6 +36,9 @@ class Director {
   /// kPatience, when they have begun.
   node::Answer obey(const msg::ControlCommand& command);
 
+  /// The scene that is played, with the parameters as they have been set.
+  const std::shared_ptr<const scene::Scene>& scene() const noexcept { return scene_; }
+
  private:
   node::Answer restart(std::shared_ptr<const scene::Scene> scene, const std::string& done);
   node::Answer step(std::uint64_t count);

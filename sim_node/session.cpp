@@ -26,6 +26,7 @@ constexpr auto kLockstepPatience =
     50ms;                    // how long a wait for a sample may keep the loop from seeing a stop
 constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene stands still
 constexpr std::uint64_t kRestsPerFrame = 8;
+constexpr auto kLongestWait = 1s;  // for a device that joins
 
 }  // namespace
 
@@ -42,6 +43,8 @@ Session::Session(const node::NodeStart& start, SimConfig config)
       force_writer_(participant_, dds::Topic::kForces),
       description_writer_(participant_, dds::Topic::kDescription),
       frames_(participant_, start.run),
+      refused_(delay_periods_of(start.launch.clock)),
+      device_reader_(participant_, dds::Topic::kDevice),
       status_(participant_, "sim_node", start.run,
               [this](msg::NodeStatus& status) { fill(status); }),
       director_(
@@ -50,12 +53,33 @@ Session::Session(const node::NodeStart& start, SimConfig config)
             return load_checked_scene(start_.launch, path, {}, force, problems);
           },
           [this](const scene::Scene& scene, std::uint64_t version) { tell(scene, version); }),
-      commands_(participant_, "sim_node",
-                [this](const msg::ControlCommand& command) { return director_.obey(command); }) {}
+      commands_(participant_, "sim_node", [this](const msg::ControlCommand& command) {
+        const auto before = director_.scene();
+        node::Answer answer = director_.obey(command);
+        if (director_.scene() != before) refused_.play(*director_.scene());
+        return answer;
+      }) {}
+
+Session::~Session() {
+  ending_ = true;
+  device_reader_.interrupt();
+  if (device_listener_.joinable()) device_listener_.join();
+}
+
+/// The thread in which devices are heard that join the session, whenever they do.
+void Session::listen_to_devices() {
+  msg::DeviceDescription told;
+  while (!ending_) {
+    while (device_reader_.take(told)) refused_.hear(told);
+    if (!ending_) device_reader_.wait(kLongestWait);
+  }
+}
 
 int Session::run() {
   tell(player_.simulation().scene(), 1);
   note_state();
+  refused_.play(player_.simulation().scene());
+  device_listener_ = std::thread([this] { listen_to_devices(); });
   commands_.start();
 
   switch (start_.launch.clock) {
@@ -168,7 +192,8 @@ void Session::receive() {
       // The other direction of the same topic is our own, or that of a device the scene has no port
       // for.
       if (device == nullptr || device->role() != role || sample.run() == start_.run) continue;
-      const bool repeated = device->receive(sample) == DeviceExchange::Reception::kRepeated;
+      const bool borne = !refused_.refuses(sample.run());
+      const bool repeated = device->receive(sample, borne) == DeviceExchange::Reception::kRepeated;
       // What is still to be played has no answer yet.
       const bool played = !device->has_new_sample() && player_.simulation().is_between_ticks();
       if (repeated && played) answer(*device);
@@ -267,6 +292,7 @@ bool Session::finished() const noexcept {
 
 void Session::fill(msg::NodeStatus& status) {
   status.phase(phase_.load());
+  status.text(refused_.text());
   status.target_rate_hz(target_rate_hz_.load());
   status.ticks(ticks_.load());
   status.overruns(overruns_.load());

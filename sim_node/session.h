@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "node/command_listener.h"
@@ -19,6 +20,7 @@
 #include "sim_node/frame_publisher.h"
 #include "sim_node/order.h"
 #include "sim_node/player.h"
+#include "sim_node/refused_devices.h"
 #include "sim_node/sim_config.h"
 
 namespace cordis::sim {
@@ -28,6 +30,9 @@ namespace cordis::sim {
 class Session {
  public:
   Session(const node::NodeStart& start, SimConfig config);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
   /// @return the exit code of the node: 0, or 1 when the scene diverged
   int run();
@@ -56,6 +61,7 @@ class Session {
   void fill(msg::NodeStatus& status);
   void tell(const scene::Scene& scene, std::uint64_t version);
   void set_phase(const char* phase) noexcept;
+  void listen_to_devices();
 
   const node::NodeStart& start_;
   double duration_s_;
@@ -90,9 +96,13 @@ class Session {
   std::atomic<std::uint64_t> overruns_{0};
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<double> target_rate_hz_{0.0};
+  RefusedDevices refused_;
+  dds::Reader<msg::DeviceDescription> device_reader_;
   node::StatusPublisher status_;
   Director director_;
-  node::CommandListener commands_;  // last: its thread uses what stands above
+  node::CommandListener commands_;  // its thread uses what stands above
+  std::atomic<bool> ending_{false};
+  std::thread device_listener_;  // likewise
 };
 
 }  // namespace cordis::sim

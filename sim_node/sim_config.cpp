@@ -6,7 +6,7 @@
 
 #include "node/config/device_limits.h"
 #include "node/config/mapping_reader.h"
-#include "sim_node/scene/port_limit.h"
+#include "sim_node/port_check.h"
 #include "sim_node/stability_check.h"
 
 namespace cordis::sim {
@@ -51,20 +51,23 @@ void warn_of_nobody(const config::Launch& launch, const std::vector<LaunchedDevi
       near.empty() ? "" : "did you mean '" + near + "'?");
 }
 
-void check_device(const config::Launch& launch, const scene::Scene& scene, const scene::Port& port,
-                  const config::DeviceLimits& limits, config::Problems& problems) {
+void check_axes(const scene::Port& port, const config::DeviceLimits& limits,
+                config::Problems& problems) {
   const int axis_count = limits.coordinate_count;
   const auto highest = *std::max_element(port.axes.begin(), port.axes.end());
-  const std::string refusal =
-      scene::refusal_of(scene, port, limits, delay_periods_of(launch.clock));
-  if (!refusal.empty()) problems.error(port.place, refusal, kHowToSoften);
-  if (static_cast<int>(highest) >= axis_count) {
-    problems.error(
-        port.place,
-        "port '" + port.name + "' wants axis " + std::to_string(highest) + " of the device '" +
-            port.device + "', which has " + std::to_string(axis_count) +
-            (axis_count == 1 ? " axis: 0" : " axes: 0 to " + std::to_string(axis_count - 1)));
-  }
+  if (static_cast<int>(highest) < axis_count) return;
+  problems.error(
+      port.place,
+      "port '" + port.name + "' wants axis " + std::to_string(highest) + " of the device '" +
+          port.device + "', which has " + std::to_string(axis_count) +
+          (axis_count == 1 ? " axis: 0" : " axes: 0 to " + std::to_string(axis_count - 1)));
+}
+
+void check_demand(const PortDemand& demand, const config::DeviceLimits& limits, int delay_periods,
+                  config::Problems& problems) {
+  const PortVerdict verdict = verdict_on(demand, limits, delay_periods);
+  if (!verdict.refusal.empty()) problems.error(demand.place, verdict.refusal, kHowToSoften);
+  if (!verdict.doubt.empty()) problems.warning(demand.place, verdict.doubt, kHowToSoften);
 }
 
 /// Every port against every node that may play its device.
@@ -76,9 +79,15 @@ void check_devices(const config::Launch& launch, const scene::Scene& scene,
     for (const LaunchedDevice& device : devices) {
       if (device.plays != port.device) continue;
       any = true;
-      if (device.limits) check_device(launch, scene, port, *device.limits, problems);
+      if (device.limits) check_axes(port, *device.limits, problems);
     }
     if (!any) warn_of_nobody(launch, devices, port, problems);
+  }
+  for (const PortDemand& demand : demands_of(scene)) {
+    for (const LaunchedDevice& device : devices) {
+      if (device.plays != demand.device || !device.limits) continue;
+      check_demand(demand, *device.limits, delay_periods_of(launch.clock), problems);
+    }
   }
 }
 

@@ -23,7 +23,7 @@ double smallest_radius(const NetworkDescription& network, const std::vector<std:
 
 Crowd crowd(const NetworkDescription& network, const std::vector<std::uint32_t>& members,
             const std::vector<std::uint32_t>& others, const Slope& slope, std::uint32_t set) {
-  Crowd side{members, others, {}, slope.stiffness, slope.viscosity, set};
+  Crowd side{members, others, {}, slope.stiffness, slope.viscosity, set, slope.bounded};
   const double smallest = smallest_radius(network, others);
   const double available = static_cast<double>(others.size() - (&members == &others ? 1 : 0));
   for (const std::uint32_t mat : members) {
@@ -92,7 +92,8 @@ LiaisonGraph liaison_graph(const NetworkDescription& network) {
                             link.mat_b,
                             slope.stiffness,
                             slope.viscosity,
-                            {LiaisonKind::kStateLink, index++}});
+                            {LiaisonKind::kStateLink, index++},
+                            slope.bounded});
   }
   index = 0;
   for (const engine::MaxwellLink& link : network.maxwell_links) {

@@ -21,6 +21,7 @@ struct Joint {
   double stiffness = 0.0;  ///< [N/m]
   double viscosity = 0.0;  ///< [N s/m]
   LiaisonId liaison;
+  bool bounded = true;  ///< false: its law has no largest slope of its own; see Reach
 };
 
 /// One side of a set liaison: each member meets at most so many of the others at once.
@@ -31,6 +32,7 @@ struct Crowd {
   double stiffness = 0.0;          ///< of one pair [N/m]
   double viscosity = 0.0;          ///< of one pair [N s/m]
   std::uint32_t set = 0;           ///< index in NetworkDescription::sets
+  bool bounded = true;             ///< as Joint::bounded
 };
 
 /// The scalar graph of a network: masses, and between them the largest slopes of all liaisons. Any

@@ -1,6 +1,7 @@
 // tests/integration/bad_input_test.cpp -- bad input ends in one clear message and leaves nothing
 // running.
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <string>
 
@@ -9,6 +10,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "idl/gesture.h"
+#include "node/dds/reader.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
@@ -110,6 +113,33 @@ TEST(BadInput, ASecondSimOfASessionEndsAndTheFirstGoesOn) {
       << said;
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
   EXPECT_EQ(session.node("sim").wait(0ms), -1) << "the first still runs";
+}
+
+TEST(BadInput, ADeviceThatJoinsLateAndCannotBearTheSceneIsGivenNoForce) {
+  LiveSession session("realtime", kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  StatusWatch status(session.participant());
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  session.start("sim_node", "sim");
+  ASSERT_TRUE(status.wait_for("sim", [](const auto& told) { return told.ticks() > 0; }));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0) + "stiffness_limit_n_per_m: 150\n");
+  session.start("device_node", "keyboard");
+
+  ASSERT_TRUE(status.wait_for("sim", [](const auto& told) {
+    return told.text().find("as stiff as 200 N/m, and the device 'keyboard' can bear 150 N/m") !=
+           std::string::npos;
+  }));
+  msg::GestureForces force;
+  ASSERT_TRUE(eventually([&] { return forces.take(force) && force.answered_sample() > 500; }));
+  EXPECT_EQ(force.force_n()[0], 0.0);
+  session.node("keyboard").signal(SIGTERM);
+  ASSERT_EQ(session.node("keyboard").wait(kLimit), 0);
+
+  session.add_file("key.yaml", steady_key(-0.01, 0.0) + "stiffness_limit_n_per_m: 250\n");
+  session.start("device_node", "keyboard");
+  EXPECT_TRUE(
+      eventually([&] { return forces.take(force) && std::abs(force.force_n()[0] - 2.0) < 1e-9; }));
 }
 
 /// A port of this machine that somebody else has.

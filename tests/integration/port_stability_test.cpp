@@ -2,7 +2,6 @@
 // processes in lockstep, with the wire 0 to 3 periods late.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include "idl/gesture.h"
 #include "node/dds/reader.h"
 #include "tests/integration/live_session.h"
+#include "tests/support/haptic_boundaries.h"
 
 namespace cordis::test {
 namespace {
@@ -23,18 +23,8 @@ constexpr int kTicks = 4000;
 
 /// K T^2 / m on the boundary for kBeta and kZ, from the reference table.
 double table_kappa(int delay) {
-  std::ifstream file(CORDIS_REFERENCE_DIR "/R20_haptic_boundaries.csv");
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    double beta = 0.0;
-    double z = 0.0;
-    double kappa = 0.0;
-    int d = 0;
-    char comma = 0;
-    cells >> beta >> comma >> z >> comma >> d >> comma >> kappa;
-    if (beta == kBeta && z == kZ && d == delay) return kappa;
+  for (const HapticBoundary& row : haptic_boundaries()) {
+    if (row.beta == kBeta && row.z == kZ && row.delay == delay) return row.stable;
   }
   ADD_FAILURE() << "not in the table";
   return 0.0;

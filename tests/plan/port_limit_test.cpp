@@ -1,12 +1,12 @@
 #include "sim_node/plan/port_limit.h"
 
-#include <cstdio>
-#include <fstream>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/plan/networks.h"
+#include "tests/support/haptic_boundaries.h"
 
 namespace cordis::test {
 namespace {
@@ -14,26 +14,33 @@ namespace {
 using plan::largest_port_stiffness;
 using plan::PortLoop;
 
-TEST(PortLimit, IsThatOfTheReferenceTable) {
+TEST(PortLimit, OfPassivityIsThatOfTheReferenceTable) {
   // With m = 1 and T = 1: device viscosity beta, port viscosity z, delay d.
-  std::ifstream table(std::string(CORDIS_REFERENCE_DIR) + "/R20_haptic_boundaries.csv");
-  std::string line;
-  std::getline(table, line);
-  int rows = 0;
-  while (std::getline(table, line)) {
-    double beta = 0.0;
-    double z = 0.0;
-    int delay = 0;
-    double stability = 0.0;
-    double passivity = 0.0;
-    ASSERT_EQ(
-        std::sscanf(line.c_str(), "%lf,%lf,%d,%lf,%lf", &beta, &z, &delay, &stability, &passivity),
-        5);
-    const double limit = largest_port_stiffness(beta, z, PortLoop{1.0, delay});
-    EXPECT_NEAR(limit, passivity, 1e-5 * beta + 1e-4 * passivity) << line;
-    ++rows;
+  const std::vector<HapticBoundary> rows = haptic_boundaries();
+  ASSERT_EQ(rows.size(), 252u);
+  for (const HapticBoundary& row : rows) {
+    const double limit = largest_port_stiffness(row.beta, row.z, PortLoop{1.0, row.delay});
+    // The least is found on a grid: to second order in its width, pi / 4000.
+    EXPECT_NEAR(limit, row.passive, 1e-5 * row.beta + 1e-4 * row.passive)
+        << row.beta << " " << row.z << " " << row.delay;
+    const double least = plan::least_device_viscosity({limit, row.z}, PortLoop{1.0, row.delay});
+    if (limit > 0.0) {
+      EXPECT_NEAR(least, row.beta, 1e-9) << "the same limit, asked the other way";
+    }
   }
-  EXPECT_GT(rows, 100);
+}
+
+TEST(PortLimit, OfADeviceAloneIsThatOfTheReferenceTable) {
+  const double mass = 0.05;
+  const double period = 0.001;
+  for (const HapticBoundary& row : haptic_boundaries()) {
+    const plan::PortDevice device{mass, row.beta * mass / period};
+    const double stiffness =
+        plan::stable_port_stiffness(device, row.z * mass / period, PortLoop{period, row.delay});
+    // The table has ten digits of a bisection.
+    EXPECT_NEAR(stiffness * period * period / mass, row.stable, 1e-6 * row.stable + 1e-8)
+        << row.beta << " " << row.z << " " << row.delay;
+  }
 }
 
 TEST(PortLimit, FallsWithEveryPeriodOfDelay) {
@@ -66,6 +73,32 @@ TEST(PortLoad, SumsWhatHangsOnThePort) {
 
   EXPECT_DOUBLE_EQ(load.stiffness, 800.0);
   EXPECT_DOUBLE_EQ(load.viscosity, 0.02 + 0.2);
+}
+
+TEST(PortLoad, OfASetIsOnePartnerAtLeastAndAllForWhichThereIsRoomAtMost) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats.resize(10);
+  scene.mats[0].kind = engine::MatKind::kPort;
+  for (std::size_t i = 1; i < 10; ++i) scene.mats[i].mass = 0.1;
+  scene.radius.assign(10, 0.01);
+  engine::Behaviour contact;
+  contact.states.resize(1);
+  contact.states[0].stiffness = 300.0;
+  contact.states[0].viscosity = 0.5;
+  scene.behaviours.push_back(contact);
+  engine::SetLiaison set;
+  set.set_p = {0};
+  set.set_q = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  set.rest_length = 0.02;
+  scene.sets.push_back(set);
+  const plan::LiaisonGraph graph = plan::liaison_graph(scene);
+
+  EXPECT_DOUBLE_EQ(plan::least_port_load(graph, 0).stiffness, 300.0);
+  EXPECT_DOUBLE_EQ(plan::least_port_load(graph, 0).viscosity, 0.5);
+  EXPECT_DOUBLE_EQ(plan::port_load(graph, 0).stiffness, 6 * 300.0) << "equal balls around a ball";
+  EXPECT_DOUBLE_EQ(plan::port_load(graph, 5).stiffness, 300.0) << "there is one port";
 }
 
 }  // namespace

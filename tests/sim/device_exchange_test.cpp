@@ -188,6 +188,28 @@ TEST(DeviceExchange, AnotherProcessOfTheDeviceTakesOverGradually) {
   EXPECT_LT(largest_rise, 2.0 * kStiffness * 0.04 / 99.0) << "share and position grow together";
 }
 
+TEST(DeviceExchange, GivesNoForceToADeviceThatCannotBearTheScene) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  std::uint64_t number = settle(exchange, world, 0.02);
+
+  for (int tick = 0; tick < 5; ++tick) {
+    exchange.receive(sample_at(++number, 0.03), /*borne=*/false);
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+  }
+  EXPECT_TRUE(exchange.is_lost());
+  EXPECT_DOUBLE_EQ(world.position(0).x(), 1.02) << "its MAT holds still";
+  const msg::GestureForces& answer = exchange.answer_forces(world, true, 0);
+  EXPECT_EQ(answer.force_n()[1], 0.0);
+  EXPECT_EQ(answer.answered_sample(), number) << "but it is answered";
+
+  exchange.receive(sample_at(++number, 0.03));
+  exchange.begin_tick();
+  EXPECT_FALSE(exchange.is_lost());
+}
+
 TEST(DeviceExchange, GivesItsForcesGraduallyToADeviceThatWasAway) {
   engine::World world = world_with_a_port();
   DeviceExchange exchange = mass_exchange();

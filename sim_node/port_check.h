@@ -1,0 +1,39 @@
+// sim_node/port_check.h -- whether a device can bear a scene at its ports.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "node/config/device_limits.h"
+#include "sim_node/plan/port_limit.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// What a port of role mass asks of its device.
+struct PortDemand {
+  std::string port;
+  std::string device;
+  std::uint32_t device_id = 0;
+  config::Place place;
+  plan::PortLoad least;  ///< as soon as its liaisons are in their stiffest states
+  plan::PortLoad most;   ///< with all the partners of its sets at once
+};
+
+/// Of all ports of role mass; a device of role liaison bears every scene. O(liaisons).
+std::vector<PortDemand> demands_of(const scene::Scene& scene);
+
+/// What is to be said about a device at a port; both empty when nothing is.
+struct PortVerdict {
+  std::string refusal;  ///< why it must not be given the port, with the number it may have
+  std::string doubt;    ///< when it may become too stiff for it
+};
+
+/// The device alone has to stay still before the port. Nothing is said of a device whose viscosity
+/// and limits are unknown. Cost: about 1 ms.
+/// @param delay_periods  of the wire: 1 in real time, 0 in lockstep
+PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
+                       int delay_periods);
+
+}  // namespace cordis::sim
