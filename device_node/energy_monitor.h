@@ -19,7 +19,7 @@ struct PassivitySettings {
   double period_s = 0.001;           ///< > 0
 };
 
-/// Energy monitor and capped passivity controller of a device of role mass.
+/// Energy monitor and, for a device of role mass, capped passivity controller.
 ///
 /// A force held over a period gives the hand exactly f[n] (x[n+1] - x[n]); of that the viscosity b
 /// of the device takes at least b (x[n+1] - x[n])^2 / T. The sum of the differences,
@@ -35,6 +35,10 @@ struct PassivitySettings {
 /// the growing share s of a force f may store up to ds |f| travel, which is added to the budget.
 /// And both accounts fall without bound in a damped scene, which would let a later fault pass for
 /// long: they are held above -tank.
+///
+/// In role liaison it watches alone. What makes a loop swing there is the age of the forces, and
+/// the viscosity that calms it is that of the scene; an elastic hand gives back whatever it takes,
+/// so that the sum at the handle stays at 0 while it swings.
 class EnergyMonitor {
  public:
   /// @throws std::invalid_argument when a setting is out of range.

@@ -4,6 +4,14 @@
 #include <utility>
 
 namespace cordis::device {
+namespace {
+
+PassivitySettings watched(PassivitySettings settings) {
+  settings.active = false;
+  return settings;
+}
+
+}  // namespace
 
 Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep,
                    Driver& driver, GestureChannel& channel, LoopMeter& meter, ClockFunction clock)
@@ -16,6 +24,7 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
       clock_(clock),
       force_guard_(config.force_guard),
       position_guard_(config.position_guard),
+      carried_energy_(watched(config.force_guard.passivity)),
       late_(static_cast<std::size_t>(config.limits.delay_periods) + 1),
       first_sample_(series.last_sample + 1) {
   sample_.run = series.run;
@@ -107,17 +116,27 @@ double Exchange::age_s() const noexcept {
   return static_cast<double>(clock_() - used_.answered_time_nsec) * 1e-9;
 }
 
+/// What goes to the motors, and the energy that passes to the hand by it: of a hand that pushes
+/// with f while it is carried by dx, -f dx.
+const AxisValues& Exchange::guarded(double age) noexcept {
+  if (role_ == Role::kMass) return force_guard_.tick(age, sensed_);
+  AxisValues given = sensed_;
+  for (double& force : given) force = -force;
+  const AxisValues& carried = position_guard_.tick(age);
+  carried_energy_.observe(given, carried);
+  return carried;
+}
+
 void Exchange::live() noexcept {
   const double age = age_s();
-  const AxisValues& commanded =
-      role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
+  const AxisValues& commanded = guarded(age);
   const bool written = driver_.write(commanded);
   if (std::exchange(unfelt_, false)) meter_.record_latency(clock_() - used_.answered_time_nsec);
   const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);
   if (!sensed) sensed_ = last_sensed_;  // a hand does not jump
   last_sensed_ = sensed_;
   meter_.count_tick();
-  if (role_ == Role::kMass) meter_.note_energy(force_guard_.energy());
+  meter_.note_energy(role_ == Role::kMass ? force_guard_.energy() : carried_energy_);
 
   present_ = written && sensed;
   if (!present_) force_guard_.let_go();  // a device that comes back is ramped up anew

@@ -66,6 +66,7 @@ class Exchange {
   bool consider(const GestureMessage& answer) noexcept;
   void accept(const GestureMessage& answer) noexcept;
   double age_s() const noexcept;
+  const AxisValues& guarded(double age) noexcept;
   void note_phase(bool in_time) noexcept;
 
   const DeviceConfig& config_;
@@ -77,6 +78,7 @@ class Exchange {
   ClockFunction clock_;
   ForceGuard force_guard_;
   PositionGuard position_guard_;
+  EnergyMonitor carried_energy_;          // role liaison: watched, and nothing done about it
   GestureMessage sample_;                 // the sample sent last
   GestureMessage used_;                   // the newest good answer
   AxisValues sensed_{};                   // for the next sample

@@ -107,18 +107,19 @@ struct Coupling {
   double mass = 0.05;        // of the tool [kg]
 };
 
-/// Nothing when the device holds the MAT of the port itself.
+/// `virtual` when the port does not say; nothing when the device holds the MAT of the port itself.
 std::optional<Coupling> read_coupling(config::MappingReader& reader, Role role,
                                       config::Problems& problems) {
-  if (!reader.has("coupling")) return {};
   if (role == Role::kLiaison) {
+    if (!reader.has("coupling")) return {};
     reader.error_at("coupling", "a port of role liaison has no 'coupling': its mass is the tool");
     reader.optional_value("coupling");
     return {};
   }
+  Coupling coupling;
+  if (!reader.has("coupling")) return coupling;
   const Value value = reader.optional_value("coupling");
   if (value.kind() == Value::Kind::kScalar && value.text() == "direct") return {};
-  Coupling coupling;
   if (value.kind() == Value::Kind::kScalar && value.text() == "virtual") return coupling;
   if (value.kind() != Value::Kind::kMapping) {
     reader.error_at("coupling", "'coupling' in " + reader.what() +

@@ -54,7 +54,7 @@ TEST_F(Checked, LinksWithStatesAndSetsHaveALineToo) {
   const std::string states =
       "  - {liaison: catch, between: [ground, bob], name: catch}\n"
       "  - {liaison: knock, within: [bob, other]}\n"
-      "ports:\n  other: {device: d, axes: [0], role: mass, at_m: 0.5}\n";
+      "ports:\n  other: {device: d, axes: [0], role: mass, coupling: direct, at_m: 0.5}\n";
   const auto soft = [&](const std::string& stiffness, const std::string& of_set) {
     write("1000", states);
     std::ifstream in(path_);
@@ -100,7 +100,7 @@ TEST_F(Checked, AProgramReadsTheSame) {
 TEST_F(Checked, PortsAreJudgedInTheirRole) {
   write("100",
         "  - {liaison: holder, between: [key, bob]}\n"
-        "ports:\n  key: {device: keyboard, axes: [0], role: mass, at_m: [0]}\n");
+        "ports:\n  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}\n");
   // K (T / 2 + d T) with T = 0.1 s: 150 N s/m with one period of delay, 250 with two
   ASSERT_EQ(run({"--device-viscosity", "200"}), kSuccess) << error_;
   EXPECT_NE(out_.find("the device needs 150 N s/m"), std::string::npos) << out_;

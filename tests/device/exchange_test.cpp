@@ -168,6 +168,21 @@ TEST(Exchange, CarriesToPositionsInRoleLiaison) {
   EXPECT_NEAR(rig.period(true, -0.04), -0.003, 1e-15);  // 2 m/s
 }
 
+TEST(Exchange, TellsTheEnergyGivenToTheHandInBothRoles) {
+  const auto given_by = [](Role role, double answer) {
+    Rig rig(false, role);
+    for (int n = 0; n < 5; ++n) rig.period(true, answer);
+    msg::NodeStatus status;
+    rig.meter.fill(status);
+    return status.port_energy_j();
+  };
+  // The sensors say -1 mm more after every period: four of them under a force of 2 N.
+  EXPECT_NEAR(given_by(Role::kMass, 2.0), 4 * 2.0 * -0.001, 1e-12);
+  // As forces they say -1 mN more. The hand is at -2 mm after the first period, is carried by -2 mm
+  // in the second, while it pushes with -1 mN, and stays: it has given 2 uJ.
+  EXPECT_NEAR(given_by(Role::kLiaison, -0.004), -0.001 * 0.002, 1e-15);
+}
+
 TEST(Exchange, ForceIsZeroOnceItsSampleIsAsOldAsTheWatchdog) {
   Rig rig(false);
   rig.period(true, 10.0);

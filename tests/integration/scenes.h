@@ -14,7 +14,7 @@ inline std::string wall_scene(double stiffness_n_per_m) {
          "}\n"
          "matter:\n  ground: {kind: fixed, at_m: [0]}\n"
          "  bob: {kind: mass, mass_kg: 1, at_m: [0.1]}\n"
-         "ports:\n  key: {device: keyboard, axes: [0], role: mass, at_m: [0]}\n"
+         "ports:\n  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}\n"
          "links:\n  - {liaison: wall, between: [key, ground]}\n";
 }
 

@@ -9,9 +9,10 @@ namespace {
 using engine::Vec3;
 
 TEST(Port, OfRoleMassIsAMatWhosePositionIsImposed) {
-  const Scene scene = scene_with_bob(2, "",
-                                     "ports:\n  key: {device: keyboard, axes: [3], role: mass, "
-                                     "at_m: [1, 2], along: y, drawn_radius_m: 0.5}\n");
+  const Scene scene =
+      scene_with_bob(2, "",
+                     "ports:\n  key: {device: keyboard, axes: [3], role: mass, "
+                     "coupling: direct, at_m: [1, 2], along: y, drawn_radius_m: 0.5}\n");
 
   ASSERT_EQ(scene.ports.size(), 1u);
   const Port& port = scene.ports[0];
@@ -50,7 +51,7 @@ TEST(Port, DirectionsAreUnitVectorsHoweverTheyAreWritten) {
     return scene_with_bob(
                space, "",
                "ports:\n  p: {device: d, axes: " + std::string(axes == 1 ? "[0]" : "[0, 1]") +
-                   ", role: mass" + at + ", along: " + along + "}\n")
+                   ", role: mass, coupling: direct" + at + ", along: " + along + "}\n")
         .ports.at(0)
         .directions;
   };
@@ -65,22 +66,24 @@ TEST(Port, DirectionsAreUnitVectorsHoweverTheyAreWritten) {
 TEST(Port, SeveralPortsShareADevice) {
   const Scene scene = scene_with_bob(
       2, "",
-      "ports:\n  left: {device: thimbles, axes: [0, 1], role: mass, at_m: [0, 0]}\n"
-      "  right: {device: thimbles, axes: [2, 3], role: mass, at_m: [1, 0]}\n"
+      "ports:\n  left: {device: thimbles, axes: [0, 1], role: mass, coupling: direct, at_m: [0, "
+      "0]}\n"
+      "  right: {device: thimbles, axes: [2, 3], role: mass, coupling: direct, at_m: [1, 0]}\n"
       "  key: {device: keyboard, axes: 0, role: liaison, at_m: [1, 0], mass_kg: 1}\n");
   EXPECT_EQ(scene.ports.size(), 3u);
   EXPECT_EQ(scene.ports[1].mat, 2u);
 }
 
 TEST(Port, IsShownBesideTheFirstMatItIsLinkedToInOneDimension) {
-  const Scene scene = sound_scene(1,
-                                  "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1}\n"
-                                  "matter:\n  a: {kind: string, count: 5, mass_kg: 1, "
-                                  "stiffness_n_per_m: 1, layout_spacing_m: 1}\n"
-                                  "ports:\n  p: {device: d, axes: [0], role: mass}\n  q: {device: "
-                                  "d, axes: [1], role: mass, layout_at_m: [7, 8]}\n"
-                                  "links:\n  - {liaison: s, between: [p, \"a[3]\"]}\n  - {liaison: "
-                                  "s, between: [q, \"a[3]\"]}\n");
+  const Scene scene = sound_scene(
+      1,
+      "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1}\n"
+      "matter:\n  a: {kind: string, count: 5, mass_kg: 1, "
+      "stiffness_n_per_m: 1, layout_spacing_m: 1}\n"
+      "ports:\n  p: {device: d, axes: [0], role: mass, coupling: direct}\n  q: {device: "
+      "d, axes: [1], role: mass, coupling: direct, layout_at_m: [7, 8]}\n"
+      "links:\n  - {liaison: s, between: [p, \"a[3]\"]}\n  - {liaison: "
+      "s, between: [q, \"a[3]\"]}\n");
   EXPECT_EQ(scene.layout[5].x, 3.0);
   EXPECT_EQ(scene.layout[6].x, 7.0);
   EXPECT_EQ(scene.layout[6].z, 8.0);
@@ -115,14 +118,15 @@ TEST(Port, ACouplingPutsAToolBetweenTheDeviceAndTheScene) {
 
 TEST(Port, ACouplingHasDefaultsAndMayBeRefusedInAWord) {
   const auto links_with = [](const std::string& coupling) {
-    return scene_with_bob(
-               1, "", "ports:\n  p: {device: d, axes: 0, role: mass, coupling: " + coupling + "}\n")
+    return scene_with_bob(1, "", "ports:\n  p: {device: d, axes: 0, role: mass" + coupling + "}\n")
         .network.links;
   };
-  EXPECT_TRUE(links_with("direct").empty());
-  ASSERT_EQ(links_with("virtual").size(), 1u);
-  EXPECT_EQ(links_with("virtual")[0].stiffness, 500.0);
-  EXPECT_EQ(links_with("{stiffness_n_per_m: 80}")[0].viscosity, 1.5);
+  EXPECT_TRUE(links_with(", coupling: direct").empty());
+  for (const char* said : {"", ", coupling: virtual"}) {
+    ASSERT_EQ(links_with(said).size(), 1u) << said;
+    EXPECT_EQ(links_with(said)[0].stiffness, 500.0);
+  }
+  EXPECT_EQ(links_with(", coupling: {stiffness_n_per_m: 80}")[0].viscosity, 1.5);
 }
 
 }  // namespace

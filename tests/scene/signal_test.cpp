@@ -99,14 +99,14 @@ TEST(SignalReader, GivesLinksInOneDimensionTheirSign) {
 }
 
 TEST(SignalReader, OfAPortOfOneAxisIsSeenAlongItFromItsRest) {
-  Observed run(
-      sound_scene(2,
-                  "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 100, rest_m: 1}\n"
-                  "matter:\n  a: {kind: mass, mass_kg: 1000000, at_m: [1, 3]}\n"
-                  "ports:\n  p: {device: d, axes: [0], role: mass, at_m: [1, 2], along: -y}\n"
-                  "links:\n  - {liaison: s, between: [p, a]}\n"
-                  "signals:\n  p: {of: p, quantity: position}\n  y: {of: p, quantity: "
-                  "position, axis: y}\n  f: {of: p, quantity: force}\n"));
+  Observed run(sound_scene(
+      2,
+      "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 100, rest_m: 1}\n"
+      "matter:\n  a: {kind: mass, mass_kg: 1000000, at_m: [1, 3]}\n"
+      "ports:\n  p: {device: d, axes: [0], role: mass, coupling: direct, at_m: [1, 2], along: -y}\n"
+      "links:\n  - {liaison: s, between: [p, a]}\n"
+      "signals:\n  p: {of: p, quantity: position}\n  y: {of: p, quantity: "
+      "position, axis: y}\n  f: {of: p, quantity: force}\n"));
 
   run.world().impose_position(1, engine::Vec3(1.0, 1.75, 0.0));
   run.step(1);

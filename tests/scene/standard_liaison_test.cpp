@@ -33,11 +33,11 @@ Scene scene_with(const std::string& body) {
 class Rig {
  public:
   explicit Rig(const std::string& links, const std::string& mass = "{mass_kg: 1, at_m: 9}")
-      : scene_(scene_with("matter:\n  wall: {kind: fixed, at_m: 0}\n  bob: {kind: mass, " +
-                          mass.substr(1) +
-                          "\nports:\n  hand: {device: d, axes: [0], role: mass, at_m: 0}\n"
-                          "links:\n" +
-                          links)),
+      : scene_(scene_with(
+            "matter:\n  wall: {kind: fixed, at_m: 0}\n  bob: {kind: mass, " + mass.substr(1) +
+            "\nports:\n  hand: {device: d, axes: [0], role: mass, coupling: direct, at_m: 0}\n"
+            "links:\n" +
+            links)),
         world_(std::make_shared<const engine::Network>(scene_.network)) {}
 
   /// Moves the hand to a place at a steady speed. @param each_step  called after each step

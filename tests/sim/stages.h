@@ -26,7 +26,7 @@ inline std::string swing_text(const std::string& name = "swing", double gesture_
          "  wall: {kind: fixed, at_m: 0}\n"
          "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.01}\n"
          "ports:\n"
-         "  key: {device: keyboard, axes: [0], role: mass, at_m: 0}\n"
+         "  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 0}\n"
          "links:\n"
          "  - {liaison: spring, between: [wall, bob], rest_m: 0}\n"
          "  - {liaison: spring, between: [key, bob], rest_m: 0}\n"
