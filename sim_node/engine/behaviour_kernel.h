@@ -118,6 +118,23 @@ struct BehaviourRows {
 /// changed, the dampers see no growth.
 using StepBehaviours = void (*)(const StateTerm* states, BehaviourRows& rows) noexcept;
 
+/// Rows in one state without exits; arrays 64-byte aligned, padded to a multiple of 8.
+struct PlainRows {
+  std::size_t count = 0;                // rows
+  const double* distance = nullptr;     // [m]
+  const double* inverse = nullptr;      // of the distance, 0 while it is 0 [1/m]
+  const double* growth = nullptr;       // [m]
+  const double* rest_length = nullptr;  // [m]
+  const double* mass_a = nullptr;       // [kg]; may be null unless its law is a function
+  const double* mass_b = nullptr;
+  double rate = 0.0;                 // 1 / dt [1/s]
+  double* factor = nullptr;          // pull / distance [N/m]
+  double* viscous_factor = nullptr;  // of the part that stores no energy
+};
+
+/// Finds the pulls of all rows; 0 while the distance is.
+using FindPulls = void (*)(const StateTerm& state, const PlainRows& rows) noexcept;
+
 /// State links, one row each; arrays 64-byte aligned, padded to a multiple of 8 with rows that join
 /// MAT 0 to itself in a state of no force.
 struct StateLinkRows {
@@ -182,6 +199,7 @@ using AddMaxwellForces = StateLinkWork (*)(const MaxwellRows& links,
 /// The loops of one width.
 struct BehaviourKernel {
   StepBehaviours step = nullptr;
+  FindPulls pulls = nullptr;
   AddStateLinkForces state_links_1d = nullptr;
   AddStateLinkForces state_links_3d = nullptr;  // for 2 dimensions too
   AddMaxwellForces maxwell_1d = nullptr;

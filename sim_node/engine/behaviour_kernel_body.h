@@ -21,6 +21,37 @@ class BehaviourLoop {
     BehaviourLoop(states, rows).step();
   }
 
+  static void find_pulls(const StateTerm& state, const PlainRows& rows) noexcept {
+    alignas(64) double elongation[Batch::kRows];
+    alignas(64) double elastic[Batch::kRows];
+    const auto quantity = [](Quantity which) { return static_cast<std::size_t>(which); };
+    BehaviourRows batch{};
+    batch.rate = rows.rate;
+    batch.elongation = elongation;
+    batch.elastic = elastic;
+    BehaviourLoop loop(&state, batch);
+    const auto per_distance = [](Row pull, Row inverse) {
+      const auto still = Lanes::equal(inverse, Lanes::zero());
+      return Lanes::select(still, Lanes::zero(), pull * inverse);
+    };
+    for (std::size_t i = 0; i < rows.count; i += Batch::kRows) {
+      Batch::each(
+          elongation, [](Row d, Row rest) { return d - rest; }, rows.distance + i,
+          rows.rest_length + i);
+      batch.quantity[quantity(Quantity::kDistance)] = rows.distance + i;
+      if (rows.mass_a != nullptr) {
+        batch.quantity[quantity(Quantity::kMassA)] = rows.mass_a + i;
+        batch.quantity[quantity(Quantity::kMassB)] = rows.mass_b + i;
+      }
+      loop.find_pull(state, Batch::kAll, rows.growth + i);
+      Batch::each(rows.factor + i, per_distance, loop.pull_, rows.inverse + i);
+      Batch::each(
+          rows.viscous_factor + i,
+          [&](Row pull, Row e, Row inverse) { return per_distance(pull - e, inverse); }, loop.pull_,
+          elastic, rows.inverse + i);
+    }
+  }
+
  private:
   BehaviourLoop(const StateTerm* states, BehaviourRows& rows) noexcept
       : states_(states), rows_(rows) {}

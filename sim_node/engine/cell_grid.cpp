@@ -80,8 +80,12 @@ void CellGrid::choose_extent(const double* position, std::size_t count) noexcept
       if (std::isfinite(value)) sample[size++] = value;
     }
     if (size == 0) continue;
-    std::sort(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(size));
-    const double bulk = sample[size - 1 - size / 32] - sample[size / 32];
+    const auto smallest = [&sample, size](std::size_t n) {  // the n-th, from 0
+      const auto nth = sample.begin() + static_cast<std::ptrdiff_t>(n);
+      std::nth_element(sample.begin(), nth, sample.begin() + static_cast<std::ptrdiff_t>(size));
+      return *nth;
+    };
+    const double bulk = smallest(size - 1 - size / 32) - smallest(size / 32);
     wanted[static_cast<std::size_t>(axis)] = bulk * cells_per_metre_ + 2.0;
   }
 

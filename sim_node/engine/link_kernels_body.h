@@ -8,7 +8,9 @@ namespace cordis::engine {
 
 template <class Lanes>
 constexpr BehaviourKernel make_behaviour_kernel() noexcept {
-  return BehaviourKernel{BehaviourLoop<Lanes>::step, StateLinkLoop<Lanes, MotionInLine>::add_forces,
+  return BehaviourKernel{BehaviourLoop<Lanes>::step,
+                         BehaviourLoop<Lanes>::find_pulls,
+                         StateLinkLoop<Lanes, MotionInLine>::add_forces,
                          StateLinkLoop<Lanes, MotionInSpace>::add_forces,
                          add_maxwell_forces<Lanes, GrowthInLine>,
                          add_maxwell_forces<Lanes, GrowthInSpace>};

@@ -1,4 +1,4 @@
-// sim_node/engine/pair_behaviours.h -- the behaviour of the pairs of a row of a set.
+// sim_node/engine/pair_behaviours.h -- the behaviour of the pairs of a set.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include "sim_node/engine/behaviour_kernel.h"
 #include "sim_node/engine/event_log.h"
 #include "sim_node/engine/network.h"
+#include "sim_node/engine/pair_block.h"
 #include "sim_node/engine/pair_kernel.h"
 #include "sim_node/engine/pair_states.h"
 #include "sim_node/engine/state_table.h"
@@ -38,23 +39,23 @@ struct PairRest {
 /// is in range, and as long as it is in another state than that of the start.
 class PairBehaviours {
  public:
-  /// @param capacity  pairs in range or bound there is room for
+  /// @param capacity        pairs in range or bound there is room for
+  /// @param block_capacity  that of the blocks it is given
   PairBehaviours(const NetworkDescription& description, const SetLiaison& set,
-                 const StateTable& table, std::size_t capacity);
+                 const StateTable& table, std::size_t capacity, std::size_t block_capacity);
 
   /// Fits what is remembered to a table that has been changed. Allocates.
   void adopt(const StateTable& table);
 
   void begin_step(const PairStep& step) noexcept;
-  /// Finds the pulls of row a. The row holds its pairs in range; it is given those besides that
-  /// are bound. @return how many there are then; what was found of them is in factor() and
-  /// viscous_factor().
-  std::size_t step_row(const PairKernel& kernel, const PairStep& step, const MemberColumns& members,
-                       std::size_t a, std::size_t count, double range_square, const PairRest& rest,
-                       const PairRow& row) noexcept;
-  const double* factor() const noexcept { return array(kPull); }  ///< pull / distance [N/m]
-  /// Of the part that stores no energy.
-  const double* viscous_factor() const noexcept { return array(kElastic); }
+  /// Adds the pairs of row a that are bound to those in range. @return how many there are then
+  std::size_t add_bound(const PairKernel& kernel, const PairStep& step,
+                        const MemberColumns& members, std::size_t a, std::size_t count,
+                        const PairRow& row) noexcept;
+  /// Finds the pulls of a padded block whose pairs have been measured. It holds the rest lengths
+  /// that new pairs have.
+  void step(const PairStep& step, const MemberColumns& members, double range_square,
+            PairBlock& block) noexcept;
 
   bool has_states() const noexcept { return !stateless_; }
   const PairStates& states() const noexcept { return states_; }
@@ -66,7 +67,6 @@ class PairBehaviours {
 
  private:
   enum Array : std::size_t {
-    kRest,
     kPull,
     kElastic,
     kElongation,
@@ -83,25 +83,30 @@ class PairBehaviours {
     kArrayCount
   };
 
-  double* array(Array which) noexcept { return values_.data() + which * row_size_; }
-  const double* array(Array which) const noexcept { return values_.data() + which * row_size_; }
-  std::size_t add_bound(const PairKernel& kernel, const MemberColumns& members, std::size_t a,
-                        std::size_t count, const PairRow& row) noexcept;
-  void recall(std::size_t a, std::size_t count, const PairRest& rest, const PairStep& step,
-              const PairRow& row) noexcept;
-  void find_quantities(const MemberColumns& members, std::size_t a, std::size_t count,
-                       const PairStep& step, const PairRow& row) noexcept;
-  void step_batch(const PairStep& step, std::size_t a, std::size_t i, const PairRow& row) noexcept;
-  void note_changes(const PairStep& step, std::size_t a, std::size_t i, const PairRow& row,
+  double* array(Array which) noexcept { return values_.data() + which * block_capacity_; }
+  bool remembers(const PairStep& step) const noexcept { return !stateless_ && !step.frozen; }
+  double* memory_of(std::size_t pair) noexcept {
+    return memory_.data() + pair / kPairBatch * states_.slot_count() * kPairBatch +
+           pair % kPairBatch;
+  }
+  void find_masses(const PairRows& rows) noexcept;
+  void find_velocities(const MemberColumns& members, const PairRows& rows) noexcept;
+  void find_plain_pulls(const PairStep& step, PairBlock& block) noexcept;
+  void recall(const PairStep& step, PairBlock& block) noexcept;
+  void begin_pair(std::size_t pair, StateIndex state, const PairStep& step) noexcept;
+  void find_quantities(const PairStep& step, PairBlock& block) noexcept;
+  void step_batches(const PairStep& step, PairBlock& block) noexcept;
+  void note_changes(const PairStep& step, std::size_t i, const PairRows& pairs,
                     const BehaviourRows& rows) noexcept;
-  void remember(std::size_t a, std::size_t count, double range_square, const PairRow& row) noexcept;
+  void remember(double range_square, PairBlock& block) noexcept;
+  void find_factors(double range_square, PairBlock& block) noexcept;
 
   std::uint32_t behaviour_;
   double dt_;
   std::size_t row_count_;
   std::vector<std::uint32_t> mat_;  // of each member
   std::vector<double> mass_;        // of each member [kg]; 0 unless a mass
-  std::size_t row_size_;
+  std::size_t block_capacity_;
   bool stateless_ = true;
   bool needs_velocity_ = false;
   bool needs_mass_ = false;
@@ -112,8 +117,8 @@ class PairBehaviours {
   PairStates states_;
   double switching_ = 0.0;
   std::uint32_t forgotten_ = 0;
-  AlignedVector<StateIndex> state_;      // of the row
-  AlignedVector<double> values_;         // kArrayCount arrays of the row
+  AlignedVector<StateIndex> state_;      // of each pair of the block
+  AlignedVector<double> values_;         // kArrayCount arrays of the block
   AlignedVector<double> memory_;         // of pair i, slot s: [(i / 8 * slots + s) * 8 + i % 8]
   AlignedVector<std::uint32_t> merged_;  // columns
 };

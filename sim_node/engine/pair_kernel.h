@@ -57,6 +57,17 @@ struct PairRow {
   double* growth = nullptr;   // of the pair along its line of centres in the last period [m]
 };
 
+/// Pairs of several rows, those of one row after those of the other: the arrays of a PairRow, and
+/// where the column of a begins, of each pair. Padded as a whole.
+struct PairRows {
+  PairRow pairs;
+  const std::uint32_t* column_a = nullptr;
+  std::size_t count = 0;               // of pairs, without padding
+  std::size_t first = 0;               // row
+  std::size_t last = 0;                // one past the last
+  const std::size_t* start = nullptr;  // of row a: start[a - first]; one past the last too
+};
+
 /// Members and their neighbours: row a has those from neighbour[start[a] - origin] on to
 /// neighbour[start[a + 1] - origin], as columns.
 struct NeighbourRows {
@@ -75,18 +86,16 @@ struct MemberColumns {
 };
 
 /// Gathers the pairs of member a and its neighbours, given as columns, that are nearer than the
-/// range, in their order. @return how many, without padding.
-using GatherRow = std::size_t (*)(const MemberColumns& members, std::size_t a,
-                                  const std::uint32_t* neighbour, std::size_t count,
-                                  double range_square, const PairRow& row) noexcept;
+/// range, in their order. @return how many; they are not padded.
+using GatherPairs = std::size_t (*)(const MemberColumns& members, std::size_t a,
+                                    const std::uint32_t* neighbour, std::size_t count,
+                                    double range_square, const PairRow& row) noexcept;
 
-/// Finds length, inverse and growth of the first `count` pairs.
-using MeasureRow = void (*)(const MemberColumns& members, std::size_t a, std::size_t count,
-                            const PairRow& row) noexcept;
+/// Finds length, inverse and growth of all pairs.
+using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows) noexcept;
 
 /// Adds factor * (vector from a to b) to member a and takes it from member b, for each pair.
-using SpreadRow = void (*)(const PairRow& row, std::size_t count, const double* factor,
-                           std::size_t a, double* force) noexcept;
+using SpreadRows = void (*)(const PairRows& rows, const double* factor, double* force) noexcept;
 
 /// A contact: pull = K e + Z / dt * growth, within least_pull and most_pull.
 struct LinearPair {
@@ -100,8 +109,8 @@ struct LinearPair {
 
 /// Finds pull / distance of each pair, and the part of it that stores no energy.
 /// @param rest  rest lengths [m]
-using LinearRow = void (*)(const LinearPair& pair, const PairRow& row, std::size_t count,
-                           const double* rest, double* factor, double* viscous_factor) noexcept;
+using LinearPairs = void (*)(const LinearPair& pair, const PairRow& row, std::size_t count,
+                             const double* rest, double* factor, double* viscous_factor) noexcept;
 
 /// Lennard-Jones: pull = (attraction / d^6 - repulsion / d^12) / d.
 struct LennardJonesPair {
@@ -119,10 +128,10 @@ using LennardJonesRows = void (*)(const LennardJonesPair& pair, const MemberColu
 struct PairKernel {
   FindNear find_near = nullptr;
   LargestMove largest_move = nullptr;
-  GatherRow gather_row = nullptr;
-  MeasureRow measure_row = nullptr;
-  SpreadRow spread_row = nullptr;
-  LinearRow linear_row = nullptr;
+  GatherPairs gather_pairs = nullptr;
+  MeasurePairs measure_pairs = nullptr;
+  SpreadRows spread_rows = nullptr;
+  LinearPairs linear_pairs = nullptr;
   LennardJonesRows lennard_jones_rows = nullptr;
 };
 

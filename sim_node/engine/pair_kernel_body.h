@@ -81,8 +81,9 @@ void pad_row(const MemberColumns& members, std::size_t count, const PairRow& row
 }
 
 template <class Lanes>
-std::size_t gather_row(const MemberColumns& members, std::size_t a, const std::uint32_t* neighbour,
-                       std::size_t candidates, double range_square, const PairRow& row) noexcept {
+std::size_t gather_pairs(const MemberColumns& members, std::size_t a,
+                         const std::uint32_t* neighbour, std::size_t candidates,
+                         double range_square, const PairRow& row) noexcept {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
   const PairRow out = row;  // whose arrays nothing written below can seem to move
@@ -108,26 +109,33 @@ std::size_t gather_row(const MemberColumns& members, std::size_t a, const std::u
     Lanes::pack(out.square + count, square, chosen);
     count += static_cast<std::size_t>(__builtin_popcount(chosen));
   }
-  pad_row<Lanes>(members, count, out);
   return count;
 }
 
 template <class Lanes>
-void measure_row(const MemberColumns& members, std::size_t a, std::size_t count,
-                 const PairRow& row) noexcept {
+std::size_t gather_row(const MemberColumns& members, std::size_t a, const std::uint32_t* neighbour,
+                       std::size_t candidates, double range_square, const PairRow& row) noexcept {
+  const std::size_t count =
+      gather_pairs<Lanes>(members, a, neighbour, candidates, range_square, row);
+  pad_row<Lanes>(members, count, row);
+  return count;
+}
+
+template <class Lanes>
+void measure_pairs(const MemberColumns& members, const PairRows& rows) noexcept {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
-  const Row moved_x = Lanes::every(members.moved[4 * a]);
-  const Row moved_y = Lanes::every(members.moved[4 * a + 1]);
-  const Row moved_z = Lanes::every(members.moved[4 * a + 2]);
-  for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
+  const PairRow row = rows.pairs;
+  const std::uint32_t* const column_a = rows.column_a;
+  const double* const moved = members.moved;
+  for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
     const Row square = Lanes::load(row.square + i);
     const Row length = Lanes::sqrt(square);
     const Row inverse = Lanes::inverse_or_zero(square, length);
-    const Row3 moved = Lanes::vectors(members.moved, row.column + i);
-    const Row along = Lanes::load(row.x + i) * (moved.x - moved_x) +
-                      Lanes::load(row.y + i) * (moved.y - moved_y) +
-                      Lanes::load(row.z + i) * (moved.z - moved_z);
+    const Row3 a = Lanes::vectors(moved, column_a + i);
+    const Row3 b = Lanes::vectors(moved, row.column + i);
+    const Row along = Lanes::load(row.x + i) * (b.x - a.x) + Lanes::load(row.y + i) * (b.y - a.y) +
+                      Lanes::load(row.z + i) * (b.z - a.z);
     Lanes::store(row.length + i, length);
     Lanes::store(row.inverse + i, inverse);
     Lanes::store(row.growth + i, along * inverse);
@@ -183,24 +191,52 @@ void give(const RowSum<Lanes>& sum, double* column) noexcept {
   column[2] += sum_of<Lanes>(sum.z);
 }
 
+alignas(64) constexpr double kLaneNumber[kPairBatch] = {0, 1, 2, 3, 4, 5, 6, 7};
+
+/// As `spread`, of pairs that begin anywhere, and of the first `count` lanes alone: what else
+/// stands in the lanes belongs to other rows, and gets nothing.
 template <class Lanes>
-void spread_row(const PairRow& all, std::size_t count, const double* factor, std::size_t a,
-                double* force) noexcept {
-  const PairRow row = all;
-  RowSum<Lanes> sum = no_force<Lanes>();
-  for (std::size_t i = 0; i < count; i += kPairBatch) {
-#pragma GCC unroll 4
-    for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
-      const std::size_t at = i + part * Lanes::kWidth;
-      spread<Lanes>(row, at, Lanes::load(factor + at), force, sum, part);
-    }
+void spread_some(const PairRow& row, std::size_t i, std::size_t count, const double* factors,
+                 double* force, RowSum<Lanes>& sum, std::size_t part) noexcept {
+  using Row = typename Lanes::Row;
+  const Row factor = Lanes::load_any(factors + i);
+  typename Lanes::Row3 pull{Lanes::load_any(row.x + i) * factor,
+                            Lanes::load_any(row.y + i) * factor,
+                            Lanes::load_any(row.z + i) * factor};
+  if (count < Lanes::kWidth) {
+    const auto own =
+        Lanes::less(Lanes::load(kLaneNumber), Lanes::every(static_cast<double>(count)));
+    pull.x = Lanes::select(own, pull.x, Lanes::zero());
+    pull.y = Lanes::select(own, pull.y, Lanes::zero());
+    pull.z = Lanes::select(own, pull.z, Lanes::zero());
   }
-  give<Lanes>(sum, force + 4 * a);
+  sum.x[part] = sum.x[part] + pull.x;
+  sum.y[part] = sum.y[part] + pull.y;
+  sum.z[part] = sum.z[part] + pull.z;
+  Lanes::subtract(force, row.column + i, pull);
 }
 
 template <class Lanes>
-void linear_row(const LinearPair& pair, const PairRow& row, std::size_t count, const double* rest,
-                double* factor, double* viscous_factor) noexcept {
+void spread_rows(const PairRows& rows, const double* factor, double* force) noexcept {
+  const PairRow row = rows.pairs;
+  for (std::size_t a = rows.first; a < rows.last; ++a) {
+    const std::size_t end = rows.start[a - rows.first + 1];
+    RowSum<Lanes> sum = no_force<Lanes>();
+    for (std::size_t i = rows.start[a - rows.first]; i < end; i += kPairBatch) {
+#pragma GCC unroll 4
+      for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
+        const std::size_t at = i + part * Lanes::kWidth;
+        if (at >= end) break;
+        spread_some<Lanes>(row, at, end - at, factor, force, sum, part);
+      }
+    }
+    give<Lanes>(sum, force + 4 * a);
+  }
+}
+
+template <class Lanes>
+void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count, const double* rest,
+                  double* factor, double* viscous_factor) noexcept {
   using Row = typename Lanes::Row;
   const Row stiffness = Lanes::every(pair.stiffness);
   const Row viscosity = Lanes::every(pair.viscosity_over_dt);
@@ -249,8 +285,8 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
 
 template <class Lanes>
 constexpr PairKernel make_pair_kernel() noexcept {
-  return PairKernel{find_near<Lanes>,         largest_move<Lanes>, gather_row<Lanes>,
-                    measure_row<Lanes>,       spread_row<Lanes>,   linear_row<Lanes>,
+  return PairKernel{find_near<Lanes>,         largest_move<Lanes>, gather_pairs<Lanes>,
+                    measure_pairs<Lanes>,     spread_rows<Lanes>,  linear_pairs<Lanes>,
                     lennard_jones_rows<Lanes>};
 }
 

@@ -7,8 +7,6 @@
 namespace cordis::engine {
 namespace {
 
-constexpr std::size_t kPairArrays = 7;  // of a PairRow
-constexpr std::size_t kRowArrays = kPairArrays + 3;
 // Entries of a neighbour list: room for all pairs where they are few, else for twice those of the
 // start with a large skin, within bounds.
 constexpr std::size_t kLeastCapacity = std::size_t{1} << 20;
@@ -63,8 +61,9 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       neighbours_(description.sets[index].set_p.size(), description.sets[index].set_q.size(),
                   description.dimension, range_,
                   list_capacity(description, description.sets[index], kernel), kernel),
+      block_(description.sets[index].set_p.size() + description.sets[index].set_q.size()),
       behaviours_(description, description.sets[index], table,
-                  state_capacity(description.sets[index])) {
+                  state_capacity(description.sets[index]), block_.capacity()) {
   const SetLiaison& set = description.sets[index];
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
@@ -72,14 +71,12 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       if (rest_length_ < 0.0) radius_.push_back(description.radius[mat]);
     }
   }
-  row_size_ = padded(column_.size()) + kPairBatch;
-  if (!radius_.empty()) radius_.resize(row_size_, 0.0);
-  position_.resize(4 * row_size_, 0.0);
+  const std::size_t padded_count = padded(column_.size()) + kPairBatch;
+  if (!radius_.empty()) radius_.resize(padded_count, 0.0);
+  position_.resize(4 * padded_count, 0.0);
   moved_.resize(position_.size(), 0.0);
   force_.resize(position_.size(), 0.0);
   viscous_.resize(position_.size(), 0.0);
-  row_column_.resize(row_size_, 0U);
-  row_values_.resize(kRowArrays * row_size_, 0.0);
   adopt(table);
 }
 
@@ -105,11 +102,6 @@ void SetPairs::adopt(const StateTable& table) {
   has_viscous_ = has_viscous_ || !conservative;  // forces of the last step may have been
 }
 
-PairRow SetPairs::row() noexcept {
-  const auto array = [this](std::size_t i) { return row_values_.data() + i * row_size_; };
-  return {row_column_.data(), array(0), array(1), array(2), array(3), array(4), array(5), array(6)};
-}
-
 MemberColumns SetPairs::members() const noexcept {
   return {position_.data(), moved_.data(), static_cast<std::uint32_t>(4 * padded(column_.size()))};
 }
@@ -133,42 +125,50 @@ StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& column
 
 void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexcept {
   if (path_ == Path::kLennardJones) {
-    kernel_.lennard_jones_rows(lennard_jones_, members(), rows, row(), force_.data());
+    block_.begin(rows.first);
+    kernel_.lennard_jones_rows(lennard_jones_, members(), rows, block_.next_row(), force_.data());
     return;
   }
-  for (std::size_t a = rows.first; a < rows.last; ++a) {
-    const std::size_t near = gather(rows, a);
-    if (path_ == Path::kLinear) {
-      if (near > 0) step_linear_row(a, near);
-      continue;
+  for (std::size_t a = rows.first; a < rows.last;) {
+    block_.begin(a);
+    for (; a < rows.last && !block_.is_full(); ++a) {
+      const std::size_t near = gather(rows, a);
+      const PairRow row = block_.next_row();
+      block_.end_row(behaviours_.add_bound(kernel_, step, members(), a, near, row));
     }
-    const std::size_t count =
-        behaviours_.step_row(kernel_, step, members(), a, near, range_ * range_, rest(), row());
-    if (count > 0) spread(a, count, behaviours_.factor(), behaviours_.viscous_factor());
+    step_block(step);
   }
 }
 
+/// To the next row of the block.
 std::size_t SetPairs::gather(const NeighbourRows& rows, std::size_t a) noexcept {
-  return kernel_.gather_row(members(), a, rows.neighbour + (rows.start[a] - rows.origin),
-                            rows.start[a + 1] - rows.start[a], range_ * range_, row());
+  return kernel_.gather_pairs(members(), a, rows.neighbour + (rows.start[a] - rows.origin),
+                              rows.start[a + 1] - rows.start[a], range_ * range_,
+                              block_.next_row());
 }
 
-void SetPairs::step_linear_row(std::size_t a, std::size_t count) noexcept {
-  double* rest_lengths = row_values_.data() + kPairArrays * row_size_;
-  double* factor = rest_lengths + row_size_;
-  double* viscous_factor = factor + row_size_;
-  for (std::size_t i = 0; i < padded(count); ++i) {
-    rest_lengths[i] = rest().of(a, row_column_[i] / 4);
+/// Those that new pairs have.
+void SetPairs::find_rest_lengths() noexcept {
+  const PairRows rows = block_.rows();
+  double* rest_length = block_.rest_length();
+  for (std::size_t i = 0; i < rows.count; ++i) {
+    rest_length[i] = rest().of(rows.column_a[i] / 4, rows.pairs.column[i] / 4);
   }
-  kernel_.measure_row(members(), a, count, row());
-  kernel_.linear_row(linear_, row(), count, rest_lengths, factor, viscous_factor);
-  spread(a, count, factor, viscous_factor);
 }
 
-void SetPairs::spread(std::size_t a, std::size_t count, const double* factor,
-                      const double* viscous_factor) noexcept {
-  kernel_.spread_row(row(), count, factor, a, force_.data());
-  if (has_viscous_) kernel_.spread_row(row(), count, viscous_factor, a, viscous_.data());
+void SetPairs::step_block(const PairStep& step) noexcept {
+  block_.pad(members());
+  find_rest_lengths();
+  const PairRows rows = block_.rows();
+  kernel_.measure_pairs(members(), rows);
+  if (path_ == Path::kLinear) {
+    kernel_.linear_pairs(linear_, rows.pairs, rows.count, block_.rest_length(), block_.factor(),
+                         block_.viscous_factor());
+  } else {
+    behaviours_.step(step, members(), range_ * range_, block_);
+  }
+  kernel_.spread_rows(rows, block_.factor(), force_.data());
+  if (has_viscous_) kernel_.spread_rows(rows, block_.viscous_factor(), viscous_.data());
 }
 
 /// Gathers the members, ends the account of the last forces and clears them.
@@ -240,10 +240,12 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
   for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
        rows = neighbours_.rows_after(rows, position_.data())) {
     for (std::size_t a = rows.first; a < rows.last; ++a) {
+      block_.begin(a);
       const std::size_t count = gather(rows, a);
+      const PairRow row = block_.next_row();
       for (std::size_t i = 0; i < count; ++i) {
-        sum += table.stored_energy(start, std::sqrt(row().square[i]),
-                                   rest_of.of(a, row_column_[i] / 4));
+        sum +=
+            table.stored_energy(start, std::sqrt(row.square[i]), rest_of.of(a, row.column[i] / 4));
       }
     }
   }

@@ -11,6 +11,7 @@
 #include "sim_node/engine/neighbour_list.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/pair_behaviours.h"
+#include "sim_node/engine/pair_block.h"
 #include "sim_node/engine/pair_kernel.h"
 #include "sim_node/engine/step_kernel.h"
 #include "sim_node/engine/world.h"
@@ -70,10 +71,8 @@ class SetPairs {
   StepEnergy give_forces(const ForceColumns& columns) const noexcept;
   void step_rows(const PairStep& step, const NeighbourRows& rows) noexcept;
   std::size_t gather(const NeighbourRows& rows, std::size_t a) noexcept;
-  void step_linear_row(std::size_t a, std::size_t count) noexcept;
-  void spread(std::size_t a, std::size_t count, const double* factor,
-              const double* viscous_factor) noexcept;
-  PairRow row() noexcept;
+  void find_rest_lengths() noexcept;
+  void step_block(const PairStep& step) noexcept;
   MemberColumns members() const noexcept;
   PairRest rest() const noexcept;
   StepEnergy work_of(std::size_t member, const double* moved) const noexcept;
@@ -88,15 +87,13 @@ class SetPairs {
   LinearPair linear_;
   LennardJonesPair lennard_jones_;
   NeighbourList neighbours_;
+  PairBlock block_;
   PairBehaviours behaviours_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches and one batch more
   AlignedVector<double> moved_;
   AlignedVector<double> force_;
   AlignedVector<double> viscous_;  // the part of the force that stores no energy
   bool has_viscous_ = false;
-  AlignedVector<std::uint32_t> row_column_;
-  AlignedVector<double> row_values_;  // the arrays of a PairRow, and those of a linear row
-  std::size_t row_size_;
 };
 
 }  // namespace cordis::engine

@@ -287,6 +287,31 @@ TEST(SetLiaison, HasNoForceBetweenBallsAtTheSamePlace) {
   EXPECT_EQ(world.link_force(0), Vec3::Zero());
 }
 
+TEST(SetLiaison, OfMorePairsThanAreTakenTogetherIsTheSumOverAllPairs) {
+  const LawCase law = laws()[3];
+  NetworkDescription scene = cloud(400, 0.8, 0.3, 2);
+  add_set(scene, law.state, kRange, law.rest_length, 400);
+  World world = make_world(scene);
+  run(world, 20);
+  std::vector<Vec3> now;
+  std::vector<Vec3> before;
+  std::size_t pairs = 0;
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    now.push_back(world.position(i));
+    before.push_back(world.position(i) - scene.step * world.velocity(i));
+    for (std::uint32_t j = 0; j < i; ++j) pairs += (now[i] - now[j]).norm() < kRange ? 1U : 0U;
+  }
+  ASSERT_GT(pairs, 3000U);
+
+  world.step();
+
+  double scale = 0.0;
+  const std::vector<Vec3> expected = forces_of_all_pairs(scene, law, now, before, scale);
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    EXPECT_LT((world.link_force(i) - expected[i]).norm(), 1e-12 * scale * 400) << i;
+  }
+}
+
 TEST(SetLiaison, IsNotDisturbedByABallThatFliesAway) {
   NetworkDescription scene = cloud(60, 0.4, 0.1, 3);
   add_set(scene, contact(100.0, 0.1), kRange, -1.0, 60);

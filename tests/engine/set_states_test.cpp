@@ -191,6 +191,26 @@ TEST(SetStates, OfABoundPairAreKeptBeyondTheRange) {
   EXPECT_LT(std::abs(world.energy().residual()), 1e-11 * world.energy().largest);
 }
 
+TEST(SetStates, OfABallThatIsNoLongerFiniteAreForgottenAndItIsReported) {
+  NetworkDescription scene = cloud(0, 0.0, 0.0, 3);
+  for (int i = 0; i < 12; ++i) scene.mats.push_back(mass(1.0, Vec3(0.055 * i, 0, 0)));
+  scene.radius.assign(12, 0.03);
+  scene.mats[5].mass = 1e-300;  // any push flings it out of all numbers
+  for (const VectorWidth width : engine::supported_vector_widths()) {
+    World world = make_world(with_set(scene, sticking(2.0, 0.0, 1.0), 0.065, -1.0), width);
+    EXPECT_EQ(world.step().non_finite_mats, 0U);  // all touch in the first step, at rest
+    EXPECT_EQ(world.bound_pairs(0).size(), 11U);
+    world.set_external_force(5, Vec3(1e10, 0, 0));
+
+    std::uint32_t lost = 0;
+    for (int n = 0; n < 200; ++n) lost = world.step().non_finite_mats;
+
+    EXPECT_EQ(lost, 1U);
+    EXPECT_EQ(world.bound_pairs(0).size(), 9U);
+    for (std::uint32_t i = 0; i < 12; ++i) EXPECT_EQ(world.position(i).allFinite(), i != 5) << i;
+  }
+}
+
 TEST(SetStates, BeginAnewWhenAFreePairComesBackIntoRange) {
   // free at 0.05 s of age in range counts as touched; the pair leaves for a while and comes back
   Behaviour behaviour = sticking(1.0, 0.0, 10.0);
