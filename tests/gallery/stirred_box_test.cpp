@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/engine/connected_pieces.h"
+#include "tests/gallery/stage.h"
+
+namespace cordis::test {
+namespace {
+
+constexpr double kTouch = 0.0063;  // two balls that touch, and a little
+
+std::vector<std::uint32_t> crowd(const Stage& stage) {
+  std::vector<std::uint32_t> balls;
+  for (const char* name : {"middle", "below", "above"}) {
+    const scene::NamedRange range = stage.mats(name);
+    for (std::uint32_t i = 0; i < range.count; ++i) balls.push_back(range.first + i);
+  }
+  return balls;
+}
+
+/// The flow along a circle about the middle of the box, from the balls near it [m^2/s].
+double circulation(const Stage& stage, double radius) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const std::uint32_t ball : crowd(stage)) {
+    const engine::Vec3 at = stage.world().position(ball);
+    if (std::abs(at.norm() - radius) > 0.01) continue;
+    const engine::Vec3 velocity = stage.world().velocity(ball);
+    sum += (at.x() * velocity.y() - at.y() * velocity.x()) / at.norm();
+    count += 1.0;
+  }
+  return 2.0 * std::numbers::pi * radius * sum / count;
+}
+
+/// The balls that six others touch: in the midst of a crystal.
+std::vector<std::uint32_t> ordered(const Stage& stage) {
+  const std::vector<std::uint32_t> balls = crowd(stage);
+  std::vector<std::uint32_t> found;
+  for (const std::uint32_t a : balls) {
+    int touching = 0;
+    for (const std::uint32_t b : balls) {
+      const double distance = (stage.world().position(b) - stage.world().position(a)).norm();
+      touching += a != b && distance < kTouch ? 1 : 0;
+    }
+    if (touching == 6) found.push_back(a);
+  }
+  return found;
+}
+
+/// Of the clusters of such balls, how many each has; the largest first.
+std::vector<std::size_t> cluster_sizes(const Stage& stage) {
+  const std::vector<std::uint32_t> balls = ordered(stage);
+  if (balls.empty()) return {};
+  engine::ConnectedPieces pieces(stage.world().network().description(), balls);
+  std::vector<std::size_t> sizes(pieces.find_near(stage.world().positions(), kTouch));
+  for (std::size_t i = 0; i < balls.size(); ++i) ++sizes[pieces.piece_of(i)];
+  std::sort(sizes.begin(), sizes.end(), std::greater<>());
+  return sizes;
+}
+
+TEST(StirredBox, TurnsWithTheSpoonAndOrdersItselfInClusters) {
+  Stage stage("stirred_box.yaml");
+  const auto count = static_cast<double>(crowd(stage).size());
+  EXPECT_LT(static_cast<double>(ordered(stage).size()), 0.02 * count);  // thrown at random
+  stage.play_until(1.0);
+
+  double inner = 0.0;
+  double outer = 0.0;
+  for (int turn = 0; turn < 2; ++turn) {
+    stage.play_until(2.0 + turn, [&] {
+      inner += circulation(stage, 0.045) / 2000.0;
+      outer += circulation(stage, 0.07) / 2000.0;
+    });
+  }
+  const std::vector<std::size_t> sizes = cluster_sizes(stage);
+  EXPECT_GT(inner, 0.01);   // the spoon goes at 0.28 m/s: 0.08 m^2/s if all balls went with it
+  EXPECT_GT(outer, 0.002);  // at the walls it is less
+  EXPECT_LT(outer, inner);
+  EXPECT_GT(static_cast<double>(ordered(stage).size()), 0.25 * count);
+  ASSERT_GE(sizes.size(), 3u);
+  EXPECT_GE(sizes[0], 100u);
+  EXPECT_GE(sizes[2], 8u);
+}
+
+}  // namespace
+}  // namespace cordis::test
