@@ -10,6 +10,8 @@ namespace {
 
 using config::number_text;
 
+constexpr double kFingertip = 2000.0;  // stiffness of one that presses [N/m]
+
 /// What a device bears at a port, and why. [N/m]
 struct Bearable {
   double stiffness = 0.0;  // 0: nothing is known
@@ -44,21 +46,29 @@ std::string trouble(const PortDemand& demand, const plan::PortLoad& load, const 
   return {};
 }
 
+/// Empty when a fingertip on the device does not make the port swing.
+std::string trouble_with_a_hand(const PortDemand& demand, const config::DeviceLimits& limits,
+                                int delay_periods) {
+  const plan::PortLoop loop{1.0 / limits.rate_hz, delay_periods + limits.delay_periods};
+  const double bearable = plan::largest_hand_stiffness(demand.least, demand.mass, loop);
+  if (bearable >= kFingertip) return {};
+  return "port '" + demand.port + "' swings when the hand at the device '" + demand.device +
+         "' is stiffer than " + number_text(std::floor(bearable)) +
+         " N/m, and a fingertip has 2000 N/m (with a mass of " + number_text(demand.mass) +
+         " kg, " + number_text(demand.least.viscosity) + " N s/m and a delay of " +
+         std::to_string(loop.delay) + " periods of " + number_text(loop.period) + " s)";
+}
+
 }  // namespace
 
 std::vector<PortDemand> demands_of(const scene::Scene& scene) {
   std::vector<PortDemand> demands;
-  for (const scene::Port& port : scene.ports) {
-    if (port.role != scene::Role::kMass) continue;
-    demands.push_back({port.name, port.device, port.device_id, port.place, {}, {}});
-  }
-  if (demands.empty()) return demands;
+  if (scene.ports.empty()) return demands;
   const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
-  std::size_t index = 0;
   for (const scene::Port& port : scene.ports) {
-    if (port.role != scene::Role::kMass) continue;
-    demands[index].least = plan::least_port_load(graph, port.mat);
-    demands[index++].most = plan::port_load(graph, port.mat);
+    demands.push_back({port.name, port.device, port.device_id, port.place, port.role,
+                       scene.network.mats[port.mat].mass, plan::least_port_load(graph, port.mat),
+                       plan::port_load(graph, port.mat)});
   }
   return demands;
 }
@@ -66,6 +76,10 @@ std::vector<PortDemand> demands_of(const scene::Scene& scene) {
 PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
                        int delay_periods) {
   PortVerdict verdict;
+  if (demand.role == scene::Role::kLiaison) {
+    verdict.doubt = trouble_with_a_hand(demand, limits, delay_periods);
+    return verdict;
+  }
   verdict.refusal = trouble(demand, demand.least, "is", limits, delay_periods);
   if (verdict.refusal.empty()) {
     verdict.doubt = trouble(demand, demand.most, "may become", limits, delay_periods);

@@ -11,17 +11,19 @@
 
 namespace cordis::sim {
 
-/// What a port of role mass asks of its device.
+/// What a port asks of its device.
 struct PortDemand {
   std::string port;
   std::string device;
   std::uint32_t device_id = 0;
   config::Place place;
+  scene::Role role = scene::Role::kMass;
+  double mass = 0.0;     ///< role liaison: of its MAT [kg]
   plan::PortLoad least;  ///< as soon as its liaisons are in their stiffest states
   plan::PortLoad most;   ///< with all the partners of its sets at once
 };
 
-/// Of all ports of role mass; a device of role liaison bears every scene. O(liaisons).
+/// Of all ports. O(liaisons).
 std::vector<PortDemand> demands_of(const scene::Scene& scene);
 
 /// What is to be said about a device at a port; both empty when nothing is.
@@ -30,8 +32,9 @@ struct PortVerdict {
   std::string doubt;    ///< when it may become too stiff for it
 };
 
-/// The device alone has to stay still before the port. Nothing is said of a device whose viscosity
-/// and limits are unknown. Cost: about 1 ms.
+/// Role mass: the device alone has to stay still before the port. Nothing is said of a device whose
+/// viscosity and limits are unknown. Role liaison: every device bears every scene, but where the
+/// age of its forces makes a fingertip too stiff for the port there is doubt. Cost: about 1 ms.
 /// @param delay_periods  of the wire: 1 in real time, 0 in lockstep
 PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
                        int delay_periods);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kHowToSoften =
     "softer links at the port, or a 'coupling' between the device and a simulated tool";
+constexpr const char* kHowToCalm = "viscosity at the port, or a softer hand";
 
 /// A device_node of the launch, and what its device file promises.
 struct LaunchedDevice {
@@ -67,7 +68,10 @@ void check_demand(const PortDemand& demand, const config::DeviceLimits& limits, 
                   config::Problems& problems) {
   const PortVerdict verdict = verdict_on(demand, limits, delay_periods);
   if (!verdict.refusal.empty()) problems.error(demand.place, verdict.refusal, kHowToSoften);
-  if (!verdict.doubt.empty()) problems.warning(demand.place, verdict.doubt, kHowToSoften);
+  const bool is_mass = demand.role == scene::Role::kMass;
+  if (!verdict.doubt.empty()) {
+    problems.warning(demand.place, verdict.doubt, is_mass ? kHowToSoften : kHowToCalm);
+  }
 }
 
 /// Every port against every node that may play its device.

@@ -77,6 +77,23 @@ TEST(PortCheck, DoubtsASetThatMayMeetTheDeviceManyTimesAtOnce) {
       << verdict.doubt;
 }
 
+TEST(PortCheck, DoubtsAPortOfRoleLiaisonWhoseViscosityIsLittleForAFingertip) {
+  PortDemand demand;
+  demand.port = "bow";
+  demand.device = "keyboard";
+  demand.role = scene::Role::kLiaison;
+  demand.mass = 0.1;
+  demand.least = {0.0, 1.5};  // 1.5 N s/m over 1 ms: 1500 N/m
+
+  EXPECT_NE(verdict_on(demand, key_limits(), 1).doubt.find("is stiffer than 1500 N/m"),
+            std::string::npos);
+  EXPECT_EQ(verdict_on(demand, key_limits(), 1).refusal, "");
+  demand.least.viscosity = 2.0;
+  EXPECT_EQ(verdict_on(demand, key_limits(), 1).doubt, "");
+  demand.least.viscosity = 0.0;
+  EXPECT_EQ(verdict_on(demand, key_limits(), 0).doubt, "") << "4 m / T^2 without delay";
+}
+
 msg::DeviceDescription description(std::uint64_t run, double viscosity) {
   msg::DeviceDescription told;
   told.device_id(config::name_hash("keyboard"));
