@@ -62,7 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "the scene has no mass that can move", ""},
         BadScene{kHead2, "matter: ^{}\n", "the scene has no mass that can move", ""},
         BadScene{kHead2,
-                 "matter: ^{}\nports: {p: {device: d, axes: 0, role: mass, at_m: [0, 0]}}\n",
+                 "matter: ^{}\nports: {p: {device: d, axes: 0, role: mass, at_m: [0, 0], coupling: "
+                 "direct}}\n",
                  "the scene has no mass that can move", ""},
         BadScene{kHead2,
                  "matter: ^{a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
