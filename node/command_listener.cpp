@@ -8,7 +8,7 @@ namespace cordis::node {
 namespace {
 
 constexpr auto kLongestWait = std::chrono::seconds(1);
-constexpr auto kFarewell = std::chrono::milliseconds(200);
+constexpr auto kLastReply = std::chrono::milliseconds(200);
 
 }  // namespace
 
@@ -22,7 +22,7 @@ CommandListener::~CommandListener() {
   reader_.interrupt();
   if (!thread_.joinable()) return;
   thread_.join();
-  writer_.wait_until_acknowledged(kFarewell);  // the last reply tells what the node ended with
+  writer_.wait_until_acknowledged(kLastReply);  // the last reply tells what the node ended with
 }
 
 void CommandListener::start() {

@@ -12,7 +12,7 @@ namespace cordis::node {
 namespace {
 
 constexpr auto kPeriod = std::chrono::milliseconds(500);
-constexpr auto kFarewell = std::chrono::milliseconds(300);
+constexpr auto kLastStatus = std::chrono::milliseconds(300);
 
 double resident_bytes() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
@@ -50,7 +50,7 @@ StatusPublisher::~StatusPublisher() {
   wake_.notify_one();
   thread_.join();
   publish();
-  writer_.wait_until_acknowledged(kFarewell);
+  writer_.wait_until_acknowledged(kLastStatus);
 }
 
 void StatusPublisher::publish_now() {

@@ -38,6 +38,8 @@ GestureMessage header_of(const Message& from) {
   return to;
 }
 
+}  // namespace
+
 /// Hands the messages of a device to its exchange in the simulation, and the answers back.
 class DirectChannel final : public device::GestureChannel {
  public:
@@ -85,6 +87,8 @@ class DirectChannel final : public device::GestureChannel {
   device::AxisValues given_{};
   bool has_answer_ = false;
 };
+
+namespace {
 
 scene::NamedRange range_of(const std::vector<scene::NamedRange>& ranges, const std::string& name) {
   for (const scene::NamedRange& range : ranges) {

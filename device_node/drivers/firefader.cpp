@@ -13,7 +13,7 @@ constexpr std::uint8_t kAnswerMark = 255;
 constexpr double kLargestForce = 126.0;
 constexpr double kLargestPosition = 254.0;
 constexpr int kMostUnanswered = 4;  // then an answer was lost, and they are counted anew
-constexpr long kBaud = 57600;
+constexpr long kFirefaderBaud = 57600;
 constexpr int kFaders = 2;
 
 }  // namespace
@@ -58,7 +58,7 @@ Hardware::Heard FireFader::hear(std::uint8_t byte) noexcept {
 std::unique_ptr<Driver> make_firefader(const config::Value& section, const AxisLayout& layout,
                                        config::Problems& problems) {
   config::MappingReader reader(section, "firefader", problems);
-  std::unique_ptr<Wire> wire = read_wire(reader, kBaud);
+  std::unique_ptr<Wire> wire = read_wire(reader, kFirefaderBaud);
   const HardwareSettings settings = read_hardware(reader, layout, problems);
   const double full_scale_n =
       reader.optional_number("full_scale_n", 2.0, config::Range::positive());

@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint8_t kConfigure = 1;
 constexpr std::uint8_t kTorques = 2;
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kLargestStep = 0.05;  // of the pen from one sample to the next [m]
-constexpr int kMostUnanswered = 4;     // then an answer was lost, and they are counted anew
-constexpr long kBaud = 57600;          // without meaning: native USB
+constexpr double kLargestStep = 0.05;      // of the pen from one sample to the next [m]
+constexpr int kMostUnansweredMotions = 4;  // then an answer was lost, and they are counted anew
+constexpr long kHaplyBaud = 57600;         // without meaning: native USB
 
 void put_float(std::uint8_t* at, double value) noexcept {
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
@@ -79,7 +79,7 @@ std::size_t Haply::request(const AxisValues& force_n, Message& message) noexcept
   add(kTorques);
   add(haply_.device_id);
   for (const std::size_t arm : order) add_float(torque[arm]);
-  if (++unanswered_ > kMostUnanswered) unanswered_ = 1;
+  if (++unanswered_ > kMostUnansweredMotions) unanswered_ = 1;
   return count;
 }
 
@@ -115,7 +115,7 @@ std::unique_ptr<Driver> make_haply(const config::Value& section, const AxisLayou
                                    config::Problems& problems) {
   using config::Range;
   config::MappingReader reader(section, "haply", problems);
-  std::unique_ptr<Wire> wire = read_wire(reader, kBaud);
+  std::unique_ptr<Wire> wire = read_wire(reader, kHaplyBaud);
   const HardwareSettings settings = read_hardware(reader, layout, problems);
   HaplySettings haply;
   haply.device_id = static_cast<std::uint8_t>(reader.optional_integer("device_id", 5, 1, 254));

@@ -16,7 +16,7 @@ enum Type : std::uint8_t { kState = 1, kForce = 2, kHello = 3, kInfo = 4 };
 
 constexpr double kFullScale = 32767.0;
 constexpr std::uint8_t kVersion = 1;
-constexpr long kBaud = 1'000'000;
+constexpr long kKfb1Baud = 1'000'000;
 
 /// CRC-16/CCITT-FALSE.
 std::uint16_t crc_of(Bytes bytes) noexcept {
@@ -156,7 +156,7 @@ Hardware::Heard Kfb1::take_state(Bytes payload) noexcept {
 std::unique_ptr<Driver> make_kfb1(const config::Value& section, const AxisLayout& layout,
                                   config::Problems& problems) {
   config::MappingReader reader(section, "kfb1", problems);
-  std::unique_ptr<Wire> wire = read_wire(reader, kBaud);
+  std::unique_ptr<Wire> wire = read_wire(reader, kKfb1Baud);
   const HardwareSettings settings = read_hardware(reader, layout, problems);
   reader.finish();
   if (problems.has_errors()) return nullptr;

@@ -32,4 +32,9 @@ struct CacheLineAllocator {
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
+/// The least multiple of `batch` that is not under `count`.
+constexpr std::size_t padded(std::size_t count, std::size_t batch) noexcept {
+  return (count + batch - 1) / batch * batch;
+}
+
 }  // namespace cordis::engine

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "sim_node/engine/instruction.h"
 #include "sim_node/engine/vector_width.h"
@@ -16,6 +17,9 @@ namespace cordis::engine {
 
 /// Rows are stepped 8 at a time, whatever the width.
 inline constexpr std::size_t kBehaviourBatch = 8;
+
+/// In a slot of the memory of a row: none yet.
+inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// Index of a state in a StateTable, which numbers the states of all its behaviours.
 using StateIndex = std::uint32_t;
@@ -100,7 +104,7 @@ struct BehaviourRows {
   double* pull = nullptr;         // of the last step, then of this one [N]
   double* impulse = nullptr;      // since entry, this step included [N s]; may be null
   double* entered = nullptr;      // step count at the entry of the present state
-  double* memory = nullptr;       // of slot s: memory[8 * s], 8 values; NaN: none yet
+  double* memory = nullptr;       // of slot s: memory[8 * s], 8 values, kNoValue at first
   std::size_t memory_slots = 0;
   std::uint32_t* forced = nullptr;  // target state or kNotForced, then kNotForced; may be null
   // found

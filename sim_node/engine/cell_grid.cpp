@@ -15,10 +15,6 @@ constexpr std::size_t kLeastExtent = 4;  // so that 3 cells in a row have 3 plac
 constexpr std::size_t kSample = 256;
 constexpr double kMostCellsPerMetre = 1e300;  // so that 0 is in cell 0
 
-bool is_finite_point(const double* point) noexcept {
-  return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
-}
-
 std::size_t power_of_two_above(std::size_t value) noexcept {
   std::size_t power = 1;
   while (power < value) power *= 2;
@@ -26,6 +22,10 @@ std::size_t power_of_two_above(std::size_t value) noexcept {
 }
 
 }  // namespace
+
+bool is_finite_point(const double* point) noexcept {
+  return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
+}
 
 CellGrid::CellGrid(std::size_t capacity, int dimension)
     : dimension_(dimension),

@@ -12,6 +12,9 @@
 
 namespace cordis::engine {
 
+/// Whether the three coordinates are.
+bool is_finite_point(const double* point) noexcept;
+
 /// Sorts points of unbounded space into cells.
 ///
 /// Cells are cubes a little longer than the reach, numbered by the whole number of cell lengths

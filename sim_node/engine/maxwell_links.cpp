@@ -4,14 +4,6 @@
 #include <algorithm>
 
 namespace cordis::engine {
-namespace {
-
-std::size_t padded(std::size_t link_count) {
-  return (link_count + kBehaviourBatch - 1) / kBehaviourBatch * kBehaviourBatch;
-}
-
-}  // namespace
-
 double share_of_decay(double x) noexcept {
   if (x > 64.0) return 1.0;
   // the series for a small part of x, then 1 - (1 - s)^2 = s (2 - s) for its double
@@ -26,7 +18,7 @@ double share_of_decay(double x) noexcept {
 MaxwellArray::MaxwellArray(const NetworkDescription& description)
     : in_line_(description.dimension == 1),
       link_count_(description.maxwell_links.size()),
-      column_a_(padded(link_count_), 0U),
+      column_a_(padded(link_count_, kBehaviourBatch), 0U),
       column_b_(column_a_.size(), 0U),
       persistence_(column_a_.size(), 0.0),
       gain_(column_a_.size(), 0.0),

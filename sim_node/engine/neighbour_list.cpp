@@ -15,11 +15,7 @@ constexpr double kBuildOverUse = 8.0;  // time to make the list over time to go 
 
 /// Columns of 4 values, as many as a whole number of batches.
 std::size_t padded_values(std::size_t member_count) {
-  return 4 * ((member_count + kPairBatch - 1) / kPairBatch * kPairBatch);
-}
-
-bool is_finite_point(const double* point) noexcept {
-  return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
+  return 4 * padded(member_count, kPairBatch);
 }
 
 }  // namespace

@@ -8,12 +8,7 @@
 namespace cordis::engine {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::size_t padded(std::size_t count) {
-  return (count + kPairBatch - 1) / kPairBatch * kPairBatch;
-}
 
 }  // namespace
 
@@ -33,7 +28,7 @@ PairBehaviours::PairBehaviours(const NetworkDescription& description, const SetL
       mass_.push_back(member.kind == MatKind::kMass ? member.mass : 0.0);
     }
   }
-  mass_.resize(padded(mat_.size()) + kPairBatch, 0.0);
+  mass_.resize(padded(mat_.size(), kPairBatch) + kPairBatch, 0.0);
   state_.resize(block_capacity_, 0U);
   values_.resize(kArrayCount * block_capacity_, 0.0);
   merged_.resize(mass_.size(), 0U);
@@ -152,7 +147,7 @@ void PairBehaviours::begin_pair(std::size_t pair, StateIndex state, const PairSt
 }
 
 void PairBehaviours::find_masses(const PairRows& rows) noexcept {
-  for (std::size_t i = 0; i < padded(rows.count); ++i) {
+  for (std::size_t i = 0; i < padded(rows.count, kPairBatch); ++i) {
     array(kMassA)[i] = mass_[rows.column_a[i] / 4];
     array(kMassB)[i] = mass_[rows.pairs.column[i] / 4];
   }
@@ -161,7 +156,7 @@ void PairBehaviours::find_masses(const PairRows& rows) noexcept {
 void PairBehaviours::find_velocities(const MemberColumns& members, const PairRows& rows) noexcept {
   const double rate = 1.0 / dt_;
   const PairRow& pairs = rows.pairs;
-  for (std::size_t i = 0; i < padded(rows.count); ++i) {
+  for (std::size_t i = 0; i < padded(rows.count, kPairBatch); ++i) {
     const double* moved_a = members.moved + rows.column_a[i];
     const double* moved_b = members.moved + pairs.column[i];
     const double along[3] = {pairs.x[i], pairs.y[i], pairs.z[i]};

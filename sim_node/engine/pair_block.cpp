@@ -4,16 +4,9 @@
 #include <algorithm>
 
 namespace cordis::engine {
-namespace {
-
-std::size_t padded(std::size_t count) {
-  return (count + kPairBatch - 1) / kPairBatch * kPairBatch;
-}
-
-}  // namespace
 
 PairBlock::PairBlock(std::size_t member_count)
-    : capacity_(padded(kEnough + member_count) + kPairBatch),
+    : capacity_(padded(kEnough + member_count, kPairBatch) + kPairBatch),
       start_(member_count + 1, 0),
       column_a_(capacity_, 0U),
       column_b_(capacity_, 0U),
@@ -45,7 +38,7 @@ void PairBlock::pad(const MemberColumns& members) noexcept {
 }
 
 std::size_t PairBlock::padded_count() const noexcept {
-  return padded(count_);
+  return padded(count_, kPairBatch);
 }
 
 PairRows PairBlock::rows() noexcept {

@@ -8,7 +8,6 @@
 namespace cordis::engine {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kValuesOfState = 6;
 
 }  // namespace

@@ -13,10 +13,6 @@ constexpr std::size_t kLeastCapacity = std::size_t{1} << 20;
 constexpr std::size_t kMostCapacity = std::size_t{1} << 25;
 constexpr std::size_t kStatesPerMember = 64;
 
-std::size_t padded(std::size_t count) {
-  return (count + kPairBatch - 1) / kPairBatch * kPairBatch;
-}
-
 std::size_t all_pairs(const SetLiaison& set) {
   const std::size_t p = set.set_p.size();
   return set.set_q.empty() ? p * (p - 1) / 2 : p * set.set_q.size();
@@ -36,7 +32,7 @@ std::size_t list_capacity(const NetworkDescription& description, const SetLiaiso
       position.insert(position.end(), {at.x(), at.y(), at.z(), 0.0});
     }
   }
-  position.resize(4 * padded(position.size() / 4), 0.0);
+  position.resize(4 * padded(position.size() / 4, kPairBatch), 0.0);
   trial.refresh(position.data());
   return std::min(all, std::clamp(2 * trial.entry_count(), kLeastCapacity, kMostCapacity));
 }
@@ -71,7 +67,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       if (rest_length_ < 0.0) radius_.push_back(description.radius[mat]);
     }
   }
-  const std::size_t padded_count = padded(column_.size()) + kPairBatch;
+  const std::size_t padded_count = padded(column_.size(), kPairBatch) + kPairBatch;
   if (!radius_.empty()) radius_.resize(padded_count, 0.0);
   position_.resize(4 * padded_count, 0.0);
   moved_.resize(position_.size(), 0.0);
@@ -103,7 +99,7 @@ void SetPairs::adopt(const StateTable& table) {
 }
 
 MemberColumns SetPairs::members() const noexcept {
-  return {position_.data(), moved_.data(), static_cast<std::uint32_t>(4 * padded(column_.size()))};
+  return {position_.data(), moved_.data(), static_cast<std::uint32_t>(4 * padded(column_.size(), kPairBatch))};
 }
 
 PairRest SetPairs::rest() const noexcept {

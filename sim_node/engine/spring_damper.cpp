@@ -7,15 +7,11 @@ namespace cordis::engine {
 namespace {
 
 // A row of padding joins MAT 0 to itself without stiffness or viscosity: its force is 0.
-std::size_t padded(std::size_t link_count) {
-  return (link_count + kLinkBatch - 1) / kLinkBatch * kLinkBatch;
-}
-
 }  // namespace
 
 SpringDamperArray::SpringDamperArray(const NetworkDescription& description)
     : in_line_(description.dimension == 1),
-      column_a_(padded(description.links.size()), 0U),
+      column_a_(padded(description.links.size(), kLinkBatch), 0U),
       column_b_(column_a_.size(), 0U),
       stiffness_(column_a_.size(), 0.0),
       viscosity_over_dt_(column_a_.size(), 0.0),

@@ -8,12 +8,6 @@
 namespace cordis::engine {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t padded(std::size_t link_count) {
-  return (link_count + kBehaviourBatch - 1) / kBehaviourBatch * kBehaviourBatch;
-}
-
 double mass_of(const Mat& mat) {
   return mat.kind == MatKind::kMass ? mat.mass : 0.0;
 }
@@ -31,7 +25,7 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
     : in_line_(description.dimension == 1),
       dt_(description.step),
       link_count_(description.state_links.size()),
-      column_a_(padded(link_count_), 0U),
+      column_a_(padded(link_count_, kBehaviourBatch), 0U),
       column_b_(column_a_.size(), 0U),
       mass_a_(column_a_.size(), 0.0),
       mass_b_(column_a_.size(), 0.0),

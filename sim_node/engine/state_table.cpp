@@ -11,7 +11,7 @@
 namespace cordis::engine {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 double call(const void* function, double distance, double elongation, double speed, double mass_a,
             double mass_b) noexcept {
@@ -19,12 +19,16 @@ double call(const void* function, double distance, double elongation, double spe
   return law(distance, elongation, speed, mass_a, mass_b);
 }
 
+}  // namespace
+
 /// A LawTerm and the arrays it points to.
 struct ReadyLaw {
   LawTerm term;
   std::vector<double> slope;
   std::vector<RingTerm> rings;
 };
+
+namespace {
 
 ReadyLaw ready(const Law& law) {
   ReadyLaw made;
@@ -54,7 +58,7 @@ ReadyLaw ready(const Law& law) {
       made.term.code = LawCode::kLennardJones;
       made.term.attraction = 24.0 * law.depth * (cube * cube);
       made.term.repulsion = 48.0 * law.depth * (cube * cube * cube * cube);
-      made.term.cut = law.cut > 0.0 ? law.cut : kInfinity;
+      made.term.cut = law.cut > 0.0 ? law.cut : kUnlimited;
       break;
     }
     case Law::Kind::kRings:
@@ -137,10 +141,10 @@ void StateTable::Content::add_state(const LinkState& state,
   term.viscosity_over_dt = state.viscosity / dt;
   term.least_pull = state.pushes ? -state.force_limit : 0.0;
   term.most_pull = state.pulls ? state.force_limit : 0.0;
-  term.least_elongation = state.pushes ? -kInfinity : 0.0;
-  term.most_elongation = state.pulls ? kInfinity : 0.0;
+  term.least_elongation = state.pushes ? -kUnlimited : 0.0;
+  term.most_elongation = state.pulls ? kUnlimited : 0.0;
   term.one_sided = !(state.pulls && state.pushes);
-  term.limited = term.one_sided || state.force_limit < kInfinity;
+  term.limited = term.one_sided || state.force_limit < kUnlimited;
   for (LawTerm* target : {&term.elasticity, &term.dissipation}) {
     laws.push_back(ready(target == &term.elasticity ? state.elasticity : state.dissipation));
     *target = laws.back().term;

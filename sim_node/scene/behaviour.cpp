@@ -17,7 +17,7 @@ using engine::Exit;
 using engine::LinkState;
 
 /// What a state's exits are read from.
-struct Source {
+struct ExitSource {
   const ParameterValues& parameters;
   const std::vector<std::string>& states;  // their names
   Problems& problems;
@@ -40,7 +40,7 @@ LinkState read_physics(config::MappingReader& reader, const ParameterValues& par
   return state;
 }
 
-void read_rest(config::MappingReader& reader, const Source& source, Exit& exit) {
+void read_rest(config::MappingReader& reader, const ExitSource& source, Exit& exit) {
   const Value rest = reader.optional_value("rest");
   if (!rest.exists() || rest.text() == "keep") return;
   if (rest.text() == "here") {
@@ -62,7 +62,7 @@ void read_rest(config::MappingReader& reader, const Source& source, Exit& exit) 
   }
 }
 
-Exit read_exit(config::MappingReader& reader, const Source& source, std::uint32_t& next_slot) {
+Exit read_exit(config::MappingReader& reader, const ExitSource& source, std::uint32_t& next_slot) {
   Exit exit;
   const std::string to = reader.required_choice("to", source.states);
   const auto target = std::find(source.states.begin(), source.states.end(), to);
@@ -87,7 +87,7 @@ Exit read_exit(config::MappingReader& reader, const Source& source, std::uint32_
   return exit;
 }
 
-void read_state(const Value::Entry& entry, const std::string& liaison, const Source& source,
+void read_state(const Value::Entry& entry, const std::string& liaison, const ExitSource& source,
                 engine::Behaviour& behaviour, BehaviourPlaces& places) {
   const std::string what = "state '" + entry.key + "' of " + liaison;
   config::MappingReader reader(entry.value, what, source.problems);
@@ -144,7 +144,7 @@ engine::Behaviour read_behaviour(config::MappingReader& reader, const ParameterV
   const std::string start = reader.optional_choice("start", names.front(), names);
   behaviour.start =
       static_cast<std::uint32_t>(std::find(names.begin(), names.end(), start) - names.begin());
-  const Source source{parameters, names, problems};
+  const ExitSource source{parameters, names, problems};
   for (const Value::Entry& entry : states.entries())
     read_state(entry, reader.what(), source, behaviour, places);
   return behaviour;

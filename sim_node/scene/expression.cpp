@@ -80,7 +80,7 @@ struct Fault {
 /// What a part of an expression is.
 enum class Type { kNumber, kTruth };
 
-struct Part {
+struct Operand {
   Type type;
   std::size_t at;
 };
@@ -91,7 +91,7 @@ class Parser {
   explicit Parser(std::string_view text) : text_(text) {}
 
   Type parse() {
-    const Part whole = read_or();
+    const Operand whole = read_or();
     skip_blanks();
     if (at_ < text_.size()) fail_at_rest();
     return whole.type;
@@ -100,9 +100,9 @@ class Parser {
   std::vector<ExpressionWord> take_words() { return std::move(words_); }
 
  private:
-  Part read_or() {
+  Operand read_or() {
     if (++level_ > kMostLevels) throw Fault{at_, "is nested too deeply", {}};
-    Part left = read_and();
+    Operand left = read_and();
     for (std::size_t at = at_; take_word("or", at); at = at_) {
       left = join(left, read_and(), Operation::kOr, Type::kTruth, Type::kTruth, at);
     }
@@ -110,38 +110,38 @@ class Parser {
     return left;
   }
 
-  Part read_and() {
-    Part left = read_not();
+  Operand read_and() {
+    Operand left = read_not();
     for (std::size_t at = at_; take_word("and", at); at = at_) {
       left = join(left, read_not(), Operation::kAnd, Type::kTruth, Type::kTruth, at);
     }
     return left;
   }
 
-  Part read_not() {
+  Operand read_not() {
     std::size_t at = at_;
     if (!take_word("not", at)) return read_comparison();
     if (++level_ > kMostLevels) throw Fault{at, "is nested too deeply", {}};
-    const Part operand = read_not();
+    const Operand operand = read_not();
     --level_;
     require(operand, Type::kTruth, "not");
     emit(Operation::kNot, at);
     return {Type::kTruth, at};
   }
 
-  Part read_comparison() {
-    const Part left = read_sum();
+  Operand read_comparison() {
+    const Operand left = read_sum();
     std::size_t at = at_;
     const std::optional<Operation> comparison = take_comparison(at);
     if (!comparison) return left;
-    const Part both = join(left, read_sum(), *comparison, Type::kNumber, Type::kTruth, at);
+    const Operand both = join(left, read_sum(), *comparison, Type::kNumber, Type::kTruth, at);
     if (take_comparison(at))
       throw Fault{at, "compares three things at once", "write a < b and b < c"};
     return both;
   }
 
-  Part read_sum() {
-    Part left = read_product();
+  Operand read_sum() {
+    Operand left = read_product();
     for (std::size_t at = at_;; at = at_) {
       if (take("+", at)) {
         left = join(left, read_product(), Operation::kAdd, Type::kNumber, Type::kNumber, at);
@@ -153,8 +153,8 @@ class Parser {
     }
   }
 
-  Part read_product() {
-    Part left = read_sign();
+  Operand read_product() {
+    Operand left = read_sign();
     for (std::size_t at = at_;; at = at_) {
       if (begins_with("**")) return left;  // told as what it is by fail_at_rest
       if (take("*", at)) {
@@ -167,24 +167,24 @@ class Parser {
     }
   }
 
-  Part read_sign() {
+  Operand read_sign() {
     std::size_t at = at_;
     const bool minus = take("-", at);
     if (!minus && !take("+", at)) return read_primary();
     if (++level_ > kMostLevels) throw Fault{at, "is nested too deeply", {}};
-    const Part operand = read_sign();
+    const Operand operand = read_sign();
     --level_;
     require(operand, Type::kNumber, minus ? "-" : "+");
     if (minus) emit(Operation::kNegate, at);
     return {Type::kNumber, at};
   }
 
-  Part read_primary() {
+  Operand read_primary() {
     skip_blanks();
     const std::size_t at = at_;
     if (at_ >= text_.size()) throw Fault{at, "ends where a number or a name should follow", {}};
     if (take("(", at_)) {
-      const Part inner = read_or();
+      const Operand inner = read_or();
       close_bracket(at);
       return {inner.type, at};
     }
@@ -203,7 +203,7 @@ class Parser {
     return {Type::kNumber, at};
   }
 
-  Part read_number() {
+  Operand read_number() {
     double number = 0.0;
     const char* const start = text_.data() + at_;
     const auto [end, failure] = std::from_chars(start, text_.data() + text_.size(), number);
@@ -217,7 +217,7 @@ class Parser {
     return {Type::kNumber, at};
   }
 
-  Part read_call(std::string_view word, std::size_t at) {
+  Operand read_call(std::string_view word, std::size_t at) {
     const FunctionWord* const function = find_function(word);
     if (function == nullptr) {
       std::vector<std::string> words;
@@ -243,7 +243,8 @@ class Parser {
     return {function->is_truth ? Type::kTruth : Type::kNumber, at};
   }
 
-  Part join(Part left, Part right, Operation operation, Type wanted, Type result, std::size_t at) {
+  Operand join(Operand left, Operand right, Operation operation, Type wanted, Type result,
+               std::size_t at) {
     const std::size_t length = is_letter(text_[at]) ? peek_word(at).size() : 1;
     const std::string_view sign = text_.substr(at, text_[at + length] == '=' ? 2 : length);
     require(left, wanted, sign);
@@ -252,7 +253,7 @@ class Parser {
     return {result, left.at};
   }
 
-  void require(Part part, Type type, std::string_view by) {
+  void require(Operand part, Type type, std::string_view by) {
     if (part.type == type) return;
     throw Fault{part.at,
                 "gives '" + std::string(by) + "' a " +

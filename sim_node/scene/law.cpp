@@ -16,7 +16,7 @@ using config::Value;
 using engine::Law;
 
 /// What a law is read from.
-struct Source {
+struct LawSource {
   config::MappingReader reader;
   const ParameterValues& parameters;
   Problems& problems;
@@ -26,7 +26,7 @@ struct Source {
   }
 };
 
-std::vector<double> read_numbers(Source& source, const char* key) {
+std::vector<double> read_numbers(LawSource& source, const char* key) {
   std::vector<double> numbers;
   for (const Value& item : source.reader.required_sequence(key).items()) {
     numbers.push_back(read_formula(item, std::string("'") + key + "' in " + source.reader.what(),
@@ -35,7 +35,7 @@ std::vector<double> read_numbers(Source& source, const char* key) {
   return numbers;
 }
 
-void read_table(Source& source, Law& law, const char* argument) {
+void read_table(LawSource& source, Law& law, const char* argument) {
   const std::size_t errors_before = source.problems.error_count();
   law.kind = Law::Kind::kTable;
   law.table.at = read_numbers(source, argument);
@@ -60,7 +60,7 @@ void read_table(Source& source, Law& law, const char* argument) {
   }
 }
 
-void read_power(Source& source, Law& law) {
+void read_power(LawSource& source, Law& law) {
   law.kind = Law::Kind::kPower;
   law.coefficient = source.required("coefficient");
   law.exponent = source.required("exponent", Range::between(0.0, engine::kMaxExponent));
@@ -71,7 +71,7 @@ void read_power(Source& source, Law& law) {
                          "give any other power as a table");
 }
 
-void read_lennard_jones(Source& source, Law& law) {
+void read_lennard_jones(LawSource& source, Law& law) {
   law.kind = Law::Kind::kLennardJones;
   constexpr double kSmallest = 1.0e-12;  // its 12th power is still a number
   law.depth = source.required("depth_j", Range::not_negative());
@@ -80,7 +80,7 @@ void read_lennard_jones(Source& source, Law& law) {
                              source.problems);
 }
 
-void read_rings(Source& source, Law& law) {
+void read_rings(LawSource& source, Law& law) {
   law.kind = Law::Kind::kRings;
   const Value rings = source.reader.required_sequence("rings");
   if (rings.exists() && rings.items().empty())
@@ -116,7 +116,7 @@ engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues
     return read_expression(value, what, parameters, problems);
 
   Law law;
-  Source source{config::MappingReader(value, what, problems), parameters, problems};
+  LawSource source{config::MappingReader(value, what, problems), parameters, problems};
   const std::string kind =
       source.reader.required_choice("kind", {"table", "power", "lennard_jones", "rings"});
   if (!source.reader.ok()) return law;
@@ -137,7 +137,7 @@ engine::Law read_dissipation(config::MappingReader& reader, const ParameterValue
     return read_expression(value, what, parameters, problems);
 
   Law law;
-  Source source{config::MappingReader(value, what, problems), parameters, problems};
+  LawSource source{config::MappingReader(value, what, problems), parameters, problems};
   const std::string kind = source.reader.required_choice("kind", {"table", "power"});
   if (!source.reader.ok()) return law;
   if (kind == "table") read_table(source, law, "at_m_per_s");

@@ -19,7 +19,7 @@ using config::Value;
 
 constexpr std::size_t kMostParts = 64;  // of a parallel liaison, those in its parts counted too
 
-constexpr const char* kRest = "rest_m";
+constexpr const char* kRestLength = "rest_m";
 
 /// A kind of liaison, and its keys that a link may give a value to.
 struct LiaisonKind {
@@ -27,7 +27,7 @@ struct LiaisonKind {
   bool has_stiffness;
   bool has_viscosity;
 };
-constexpr std::array<LiaisonKind, 6> kKinds{{
+constexpr std::array<LiaisonKind, 6> kLiaisonKinds{{
     {"spring", true, false},
     {"damper", false, true},
     {"spring_damper", true, true},
@@ -72,7 +72,7 @@ class LiaisonReader {
     std::string kind = kind_by_keys(definition);
     if (kind.empty() || reader.has("kind")) {
       std::vector<std::string> words;
-      for (const LiaisonKind& known : kKinds) words.emplace_back(known.name);
+      for (const LiaisonKind& known : kLiaisonKinds) words.emplace_back(known.name);
       kind = reader.required_choice("kind", words);
     }
     reader.optional_value("kind");
@@ -102,7 +102,7 @@ class LiaisonReader {
   LinkLaw read_linear(MappingReader& reader, const std::string& kind_name,
                       const ParameterValues& parameters) {
     const LiaisonKind& kind =
-        *std::find_if(kKinds.begin(), kKinds.end(),
+        *std::find_if(kLiaisonKinds.begin(), kLiaisonKinds.end(),
                       [&](const LiaisonKind& known) { return kind_name == known.name; });
     LinkLaw law;
     const bool maxwell = kind_name == "maxwell";
@@ -125,7 +125,7 @@ class LiaisonReader {
     if (kind.has_stiffness && !maxwell) {
       read_rest(reader, law, parameters);
     } else {
-      refuse(kRest);
+      refuse(kRestLength);
     }
     return law;
   }
@@ -134,12 +134,12 @@ class LiaisonReader {
   void read_rest(MappingReader& reader, LinkLaw& law, const ParameterValues& parameters) {
     const bool signed_length = space_ == 1 || law.kind == LinkKind::kState;
     const Range range = signed_length ? Range{} : Range::not_negative();
-    const Value rest = reader.optional_value(kRest);
+    const Value rest = reader.optional_value(kRestLength);
     if (rest.exists())
       law.rest_length =
           read_formula(rest, "'rest_m' in " + reader.what(), 0.0, range, parameters, problems_);
     law.rest_is_radii = reader.optional_choice("rest", "", {"radii"}) == "radii";
-    if (reader.has(kRest) && reader.has("rest"))
+    if (reader.has(kRestLength) && reader.has("rest"))
       reader.error_at("rest", "either 'rest_m' or 'rest' can be given in " + reader.what());
   }
 

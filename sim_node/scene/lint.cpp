@@ -17,17 +17,16 @@ using engine::Exit;
 using engine::LinkState;
 using engine::Operation;
 using engine::Program;
-using engine::Quantity;
 using Quantities = std::array<double, engine::kQuantityCount>;
 
 constexpr int kTries = 32;        // entries tried for one exit
 constexpr int kDrawsOfATry = 16;  // of a link before and after it
 constexpr int kHalvings = 40;     // of the way between them
 
-double& at(Quantities& quantities, Quantity quantity) {
+double& at(Quantities& quantities, engine::Quantity quantity) {
   return quantities[static_cast<std::size_t>(quantity)];
 }
-double at(const Quantities& quantities, Quantity quantity) {
+double at(const Quantities& quantities, engine::Quantity quantity) {
   return quantities[static_cast<std::size_t>(quantity)];
 }
 
@@ -53,7 +52,7 @@ double value_of(const Program& program, const Quantities& quantities, double edg
   return stack[0];
 }
 
-bool names(const Program& program, Quantity quantity) {
+bool names(const Program& program, engine::Quantity quantity) {
   return std::any_of(program.code.begin(), program.code.end(), [&](const auto& instruction) {
     return instruction.operation == Operation::kQuantity && instruction.quantity == quantity;
   });
@@ -132,39 +131,42 @@ class Entries {
   Quantities draw(const LinkState& from, const Program& when) {
     Quantities drawn{};
     const auto size = [&] { return sizes_[dice_.below(sizes_.size())]; };
-    for (const Quantity quantity : {Quantity::kSpeed, Quantity::kSpeedX, Quantity::kSpeedY,
-                                    Quantity::kSpeedZ, Quantity::kSlip}) {
+    for (const engine::Quantity quantity :
+         {engine::Quantity::kSpeed, engine::Quantity::kSpeedX, engine::Quantity::kSpeedY,
+          engine::Quantity::kSpeedZ, engine::Quantity::kSlip}) {
       if (names(when, quantity)) at(drawn, quantity) = size() * dice_.between(-2.0, 2.0);
     }
-    at(drawn, Quantity::kSlip) = std::abs(at(drawn, Quantity::kSlip));
+    at(drawn, engine::Quantity::kSlip) = std::abs(at(drawn, engine::Quantity::kSlip));
     double elongation = size() * dice_.between(-2.0, 2.0);
     double force = size() * dice_.between(-2.0, 2.0);
-    if (is_linear(from) && !names(when, Quantity::kForce)) force = pull_of(from, elongation);
-    const bool of_force = names(when, Quantity::kForce) && !names(when, Quantity::kElongation);
+    if (is_linear(from) && !names(when, engine::Quantity::kForce))
+      force = pull_of(from, elongation);
+    const bool of_force =
+        names(when, engine::Quantity::kForce) && !names(when, engine::Quantity::kElongation);
     if (is_linear(from) && of_force && from.stiffness > 0.0) elongation = force / from.stiffness;
-    at(drawn, Quantity::kForce) = force;
-    at(drawn, Quantity::kElongation) = elongation;
-    at(drawn, Quantity::kRestLength) = size() * dice_.between(0.0, 2.0);
-    at(drawn, Quantity::kDistance) = at(drawn, Quantity::kRestLength) + elongation;
-    at(drawn, Quantity::kImpulse) = size() * dice_.between(-2.0, 2.0);
-    at(drawn, Quantity::kAge) = size() * dice_.between(0.0, 2.0);
-    at(drawn, Quantity::kMassA) = size() * dice_.between(0.0, 2.0);
-    at(drawn, Quantity::kMassB) = size() * dice_.between(0.0, 2.0);
+    at(drawn, engine::Quantity::kForce) = force;
+    at(drawn, engine::Quantity::kElongation) = elongation;
+    at(drawn, engine::Quantity::kRestLength) = size() * dice_.between(0.0, 2.0);
+    at(drawn, engine::Quantity::kDistance) = at(drawn, engine::Quantity::kRestLength) + elongation;
+    at(drawn, engine::Quantity::kImpulse) = size() * dice_.between(-2.0, 2.0);
+    at(drawn, engine::Quantity::kAge) = size() * dice_.between(0.0, 2.0);
+    at(drawn, engine::Quantity::kMassA) = size() * dice_.between(0.0, 2.0);
+    at(drawn, engine::Quantity::kMassB) = size() * dice_.between(0.0, 2.0);
     return drawn;
   }
 
   Quantities entered(Quantities link, const Exit& exit) const {
-    const double distance = at(link, Quantity::kDistance);
-    if (exit.rest == engine::RestRule::kHere) at(link, Quantity::kRestLength) = distance;
+    const double distance = at(link, engine::Quantity::kDistance);
+    if (exit.rest == engine::RestRule::kHere) at(link, engine::Quantity::kRestLength) = distance;
     if (exit.rest == engine::RestRule::kExpression)
-      at(link, Quantity::kRestLength) = value_of(exit.rest_length, link, 0.0);
+      at(link, engine::Quantity::kRestLength) = value_of(exit.rest_length, link, 0.0);
     if (exit.rest != engine::RestRule::kKeep)
-      at(link, Quantity::kElongation) = distance - at(link, Quantity::kRestLength);
-    at(link, Quantity::kAge) = 0.0;
-    at(link, Quantity::kImpulse) = 0.0;
+      at(link, engine::Quantity::kElongation) = distance - at(link, engine::Quantity::kRestLength);
+    at(link, engine::Quantity::kAge) = 0.0;
+    at(link, engine::Quantity::kImpulse) = 0.0;
     const LinkState& state = behaviour_.states[exit.target];
     if (is_linear(state))
-      at(link, Quantity::kForce) = pull_of(state, at(link, Quantity::kElongation));
+      at(link, engine::Quantity::kForce) = pull_of(state, at(link, engine::Quantity::kElongation));
     return link;
   }
 

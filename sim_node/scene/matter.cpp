@@ -17,7 +17,7 @@ struct MatterKind {
   int lowest_space;
   int highest_space;
 };
-constexpr std::array<MatterKind, 11> kKinds{{
+constexpr std::array<MatterKind, 11> kMatterKinds{{
     {"mass", read_mass, 1, 3},
     {"fixed", read_fixed, 1, 3},
     {"string", read_string, 1, 3},
@@ -32,7 +32,7 @@ constexpr std::array<MatterKind, 11> kKinds{{
 }};
 
 const MatterKind* kind_named(const std::string& word) {
-  for (const MatterKind& kind : kKinds) {
+  for (const MatterKind& kind : kMatterKinds) {
     if (word == kind.name) return &kind;
   }
   return nullptr;
@@ -73,7 +73,7 @@ void read_drawing(config::MappingReader& reader, Piece& piece) {
 Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int space,
                  config::Problems& problems) {
   std::vector<std::string> words;
-  for (const MatterKind& kind : kKinds) words.emplace_back(kind.name);
+  for (const MatterKind& kind : kMatterKinds) words.emplace_back(kind.name);
   const std::string word = reader.required_choice("kind", words);
   if (!reader.ok()) return {};  // without its kind, nothing sure can be said about its keys
   const MatterKind& kind = *kind_named(word);

@@ -15,7 +15,7 @@ using std::chrono::nanoseconds;
 
 constexpr std::uint64_t kRun = 77;
 constexpr std::uint64_t kSceneRun = 5;
-constexpr std::int64_t kPeriod = 1'000'000;  // [ns]
+constexpr std::int64_t kPeriodNsec = 1'000'000;  // [ns]
 
 std::int64_t now_nsec = 0;
 std::int64_t now() noexcept {
@@ -100,7 +100,7 @@ struct Rig {
   double period(bool answered, double value = 0.0) {
     exchange.send_sample();
     if (answered) channel.waiting.push_back(answer(value));
-    now_nsec += kPeriod;
+    now_nsec += kPeriodNsec;
     exchange.receive();
     exchange.live();
     return driver.commands.back()[0];
@@ -337,7 +337,7 @@ TEST(Exchange, InLockstepTakesTheAnswerToItsOwnSampleAlone) {
 TEST(Exchange, InLockstepRepeatsTheVerySameSample) {
   Rig rig(true);
   rig.exchange.send_sample();
-  now_nsec += 100 * kPeriod;
+  now_nsec += 100 * kPeriodNsec;
 
   rig.exchange.repeat_sample();
 

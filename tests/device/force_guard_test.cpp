@@ -13,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;  // [N], sums of forces of 20 N round at 4e-15
 
-ForceGuardSettings settings() {
+ForceGuardSettings force_settings() {
   ForceGuardSettings guard;
   guard.limit_n = 20.0;
   guard.slew_n_per_s = 5000.0;
@@ -30,13 +30,13 @@ AxisValues all(double force) {
 }
 
 TEST(ForceGuard, GivesNothingBeforeTheFirstForces) {
-  ForceGuard guard(settings());
+  ForceGuard guard(force_settings());
 
   EXPECT_EQ(guard.tick(0.0, {}), AxisValues{});
 }
 
 TEST(ForceGuard, LetsThroughWhatIsAllowed) {
-  ForceGuard guard(settings());
+  ForceGuard guard(force_settings());
 
   guard.accept(all(3.0));
   EXPECT_EQ(guard.tick(0.001, {}), all(3.0));
@@ -45,7 +45,7 @@ TEST(ForceGuard, LetsThroughWhatIsAllowed) {
 }
 
 TEST(ForceGuard, LimitsTheForce) {
-  ForceGuard guard(settings());
+  ForceGuard guard(force_settings());
 
   guard.accept(all(1e300));
   for (int n = 0; n < 10; ++n) guard.tick(0.0, {});
@@ -54,7 +54,7 @@ TEST(ForceGuard, LimitsTheForce) {
 }
 
 TEST(ForceGuard, LimitsTheChange) {
-  ForceGuard guard(settings());
+  ForceGuard guard(force_settings());
   guard.accept(all(12.0));
 
   EXPECT_DOUBLE_EQ(guard.tick(0.0, {})[0], 5.0);
@@ -65,7 +65,7 @@ TEST(ForceGuard, LimitsTheChange) {
 }
 
 TEST(ForceGuard, RampsForcesUpFromTheStart) {
-  ForceGuardSettings ramped = settings();
+  ForceGuardSettings ramped = force_settings();
   ramped.ramp_s = 0.1;
   ForceGuard guard(ramped);
   guard.accept(all(10.0));
@@ -76,7 +76,7 @@ TEST(ForceGuard, RampsForcesUpFromTheStart) {
 }
 
 TEST(ForceGuard, FadesOutSoAsToBeAtZeroWhenTheWatchdogBites) {
-  ForceGuard guard(settings());
+  ForceGuard guard(force_settings());
   guard.accept(all(20.0));
   for (int n = 0; n < 10; ++n) guard.tick(0.0, {});
 
@@ -93,7 +93,7 @@ TEST(ForceGuard, FadesOutSoAsToBeAtZeroWhenTheWatchdogBites) {
 }
 
 TEST(ForceGuard, IsAtZeroAtOnceWhenItsTicksHadStopped) {
-  ForceGuard guard(settings());
+  ForceGuard guard(force_settings());
   guard.accept(all(20.0));
   for (int n = 0; n < 10; ++n) guard.tick(0.0, {});
 
@@ -102,7 +102,7 @@ TEST(ForceGuard, IsAtZeroAtOnceWhenItsTicksHadStopped) {
 }
 
 TEST(ForceGuard, RampsUpAnewAfterTheWatchdogHasBitten) {
-  ForceGuardSettings ramped = settings();
+  ForceGuardSettings ramped = force_settings();
   ramped.ramp_s = 0.01;
   ForceGuard guard(ramped);
   guard.accept(all(10.0));
@@ -116,7 +116,7 @@ TEST(ForceGuard, RampsUpAnewAfterTheWatchdogHasBitten) {
 
 TEST(ForceGuard, FadesToZeroWhenAnyForceIsNotANumber) {
   for (const double bad : {std::nan(""), kInfinity, -kInfinity}) {
-    ForceGuard guard(settings());
+    ForceGuard guard(force_settings());
     ASSERT_TRUE(guard.accept(all(8.0)));
     guard.tick(0.0, {});
     guard.tick(0.0, {});
@@ -144,7 +144,7 @@ TEST(ForceGuard, HoldsWhateverItIsGiven) {
     if (kind < 0.5) return sign * 20.0 * share(random);
     return sign * std::pow(10.0, exponent(random));  // overflows to infinity now and then
   };
-  ForceGuardSettings guarded = settings();
+  ForceGuardSettings guarded = force_settings();
   guarded.ramp_s = 0.05;
   guarded.passivity.active = true;
   ForceGuard guard(guarded);
@@ -183,7 +183,7 @@ TEST(ForceGuard, HoldsWhateverItIsGiven) {
 }
 
 TEST(ForceGuard, GivesAMovingAxisNoMoreThanItsPower) {
-  ForceGuardSettings weak = settings();
+  ForceGuardSettings weak = force_settings();
   weak.power_w = 2.0;
   ForceGuard guard(weak);
   guard.accept(all(8.0));
@@ -202,10 +202,10 @@ TEST(ForceGuard, GivesAMovingAxisNoMoreThanItsPower) {
 }
 
 TEST(ForceGuard, RefusesSettingsOutOfRange) {
-  ForceGuardSettings bad = settings();
+  ForceGuardSettings bad = force_settings();
   bad.limit_n = 0.0;
   EXPECT_THROW(ForceGuard{bad}, std::invalid_argument);
-  bad = settings();
+  bad = force_settings();
   bad.watchdog_s = std::nan("");
   EXPECT_THROW(ForceGuard{bad}, std::invalid_argument);
 }

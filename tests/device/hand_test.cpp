@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kH = 1e-5;  // [s]
 
-HandSettings settings() {
+HandSettings hand_settings() {
   HandSettings hand;
   hand.mass_kg = 0.15;
   hand.stiffness_n_per_m = 400.0;
@@ -27,10 +27,10 @@ Trajectory resting_at(double target) {
 TEST(Hand, FollowsAMinimumJerkMoveAsItsEquationSays) {
   // The lag e = x - target obeys m e'' + Z e' + K e = -m a(t), with a(t) the cubic acceleration of
   // the move. Its solution is a cubic, found power by power, and a damped swing from rest.
-  const HandSettings hand_settings = settings();
-  const double m = hand_settings.mass_kg;
-  const double z = hand_settings.viscosity_n_s_per_m;
-  const double k = hand_settings.stiffness_n_per_m;
+  const HandSettings steady = hand_settings();
+  const double m = steady.mass_kg;
+  const double z = steady.viscosity_n_s_per_m;
+  const double k = steady.stiffness_n_per_m;
   const double distance = -0.03;
   const double duration = 0.3;
   const double scale = m * distance / (duration * duration);
@@ -44,7 +44,7 @@ TEST(Hand, FollowsAMinimumJerkMoveAsItsEquationSays) {
   const double s = z / (2.0 * m);
   const double w = std::sqrt(k / m - s * s);
   const Trajectory target(0.0, {{0.0, duration, distance}}, Trajectory::Shape::kMinimumJerk, 0.0);
-  Hand hand(hand_settings, target);
+  Hand hand(steady, target);
 
   double largest_lag = 0.0;
   for (int n = 0; n * kH < duration; ++n) {
@@ -61,7 +61,7 @@ TEST(Hand, FollowsAMinimumJerkMoveAsItsEquationSays) {
 }
 
 TEST(Hand, YieldsToAForceByForceOverStiffness) {
-  Hand hand(settings(), resting_at(-0.01));
+  Hand hand(hand_settings(), resting_at(-0.01));
 
   for (int n = 0; n < 200000; ++n) hand.advance(n * kH, kH, 1.2);
 
@@ -69,7 +69,7 @@ TEST(Hand, YieldsToAForceByForceOverStiffness) {
 }
 
 TEST(Hand, PushesButDoesNotPull) {
-  const Hand hand(settings(), resting_at(-0.01));
+  const Hand hand(hand_settings(), resting_at(-0.01));
 
   EXPECT_EQ(hand.force_on_key_n(-0.011, 0.0), 0.0);  // key below the finger
   EXPECT_EQ(hand.force_on_key_n(-0.011, 1.0), 0.0);
@@ -78,7 +78,7 @@ TEST(Hand, PushesButDoesNotPull) {
 }
 
 TEST(Hand, PullsWhenItHolds) {
-  HandSettings holding = settings();
+  HandSettings holding = hand_settings();
   holding.holds = true;
   const Hand hand(holding, resting_at(-0.01));
 
@@ -88,7 +88,7 @@ TEST(Hand, PullsWhenItHolds) {
 }
 
 TEST(Hand, StartsAtRestAtTheBeginningOfItsTarget) {
-  Hand hand(settings(), resting_at(0.02));
+  Hand hand(hand_settings(), resting_at(0.02));
   hand.advance(0.0, kH, 5.0);
   ASSERT_NE(hand.position_m(), 0.02);
 
@@ -99,10 +99,10 @@ TEST(Hand, StartsAtRestAtTheBeginningOfItsTarget) {
 }
 
 TEST(Hand, RefusesSettingsOutOfRange) {
-  HandSettings bad = settings();
+  HandSettings bad = hand_settings();
   bad.mass_kg = -1.0;
   EXPECT_THROW(Hand(bad, resting_at(0.0)), std::invalid_argument);
-  bad = settings();
+  bad = hand_settings();
   bad.finger_n_per_m = 0.0;
   EXPECT_THROW(Hand(bad, resting_at(0.0)), std::invalid_argument);
 }

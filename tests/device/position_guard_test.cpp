@@ -10,9 +10,9 @@
 namespace cordis::device {
 namespace {
 
-constexpr double kRounding = 1e-15;  // [m]
+constexpr double kPositionRounding = 1e-15;  // [m]
 
-PositionGuardSettings settings() {
+PositionGuardSettings position_settings() {
   PositionGuardSettings guard;
   guard.lowest_m = -0.04;
   guard.highest_m = 0.0;
@@ -23,68 +23,68 @@ PositionGuardSettings settings() {
   return guard;
 }
 
-AxisValues all(double position) {
+AxisValues at_all_axes(double position) {
   AxisValues values;
   values.fill(position);
   return values;
 }
 
 TEST(PositionGuard, LetsThroughWhatIsAllowed) {
-  PositionGuard guard(settings());
+  PositionGuard guard(position_settings());
 
-  guard.accept(all(-0.001));
-  EXPECT_EQ(guard.tick(0.0), all(-0.001));
+  guard.accept(at_all_axes(-0.001));
+  EXPECT_EQ(guard.tick(0.0), at_all_axes(-0.001));
 }
 
 TEST(PositionGuard, LimitsTheSpeed) {
-  PositionGuard guard(settings());
-  guard.accept(all(-0.005));
+  PositionGuard guard(position_settings());
+  guard.accept(at_all_axes(-0.005));
 
-  EXPECT_NEAR(guard.tick(0.0)[0], -0.002, kRounding);
-  EXPECT_NEAR(guard.tick(0.0)[0], -0.004, kRounding);
-  EXPECT_NEAR(guard.tick(0.0)[0], -0.005, kRounding);
+  EXPECT_NEAR(guard.tick(0.0)[0], -0.002, kPositionRounding);
+  EXPECT_NEAR(guard.tick(0.0)[0], -0.004, kPositionRounding);
+  EXPECT_NEAR(guard.tick(0.0)[0], -0.005, kPositionRounding);
 }
 
 TEST(PositionGuard, StaysWithinTheTravel) {
-  PositionGuard guard(settings());
-  guard.accept(all(-1.0));
+  PositionGuard guard(position_settings());
+  guard.accept(at_all_axes(-1.0));
   for (int n = 0; n < 100; ++n) guard.tick(0.0);
-  EXPECT_NEAR(guard.tick(0.0)[0], -0.04, kRounding);
+  EXPECT_NEAR(guard.tick(0.0)[0], -0.04, kPositionRounding);
 
-  guard.accept(all(1.0));
+  guard.accept(at_all_axes(1.0));
   for (int n = 0; n < 100; ++n) guard.tick(0.0);
-  EXPECT_NEAR(guard.tick(0.0)[0], 0.0, kRounding);
+  EXPECT_NEAR(guard.tick(0.0)[0], 0.0, kPositionRounding);
 }
 
 TEST(PositionGuard, StaysWhereItIsWhenPositionsAreOldOrNotNumbers) {
-  PositionGuard guard(settings());
-  guard.accept(all(-0.03));
+  PositionGuard guard(position_settings());
+  guard.accept(at_all_axes(-0.03));
   for (int n = 0; n < 5; ++n) guard.tick(0.0);
 
   const AxisValues at = guard.tick(0.02);
-  EXPECT_NEAR(at[0], -0.01, kRounding);
+  EXPECT_NEAR(at[0], -0.01, kPositionRounding);
   EXPECT_EQ(guard.tick(0.0), at);  // the old positions do not come back
 
-  EXPECT_FALSE(guard.accept(all(std::nan(""))));
+  EXPECT_FALSE(guard.accept(at_all_axes(std::nan(""))));
   EXPECT_EQ(guard.tick(0.0), at);
-  EXPECT_TRUE(guard.accept(all(-0.011)));
-  EXPECT_NEAR(guard.tick(0.0)[0], -0.011, kRounding);
+  EXPECT_TRUE(guard.accept(at_all_axes(-0.011)));
+  EXPECT_NEAR(guard.tick(0.0)[0], -0.011, kPositionRounding);
 }
 
 TEST(PositionGuard, MovesSlowlyAtFirst) {
-  PositionGuardSettings ramped = settings();
+  PositionGuardSettings ramped = position_settings();
   ramped.ramp_s = 0.01;
   PositionGuard guard(ramped);
-  guard.accept(all(-0.04));
+  guard.accept(at_all_axes(-0.04));
 
-  EXPECT_NEAR(guard.tick(0.0)[0], -0.0002, kRounding);
-  EXPECT_NEAR(guard.tick(0.0)[0], -0.0006, kRounding);
+  EXPECT_NEAR(guard.tick(0.0)[0], -0.0002, kPositionRounding);
+  EXPECT_NEAR(guard.tick(0.0)[0], -0.0006, kPositionRounding);
 }
 
 TEST(PositionGuard, HoldsWhateverItIsGiven) {
   std::mt19937_64 random(2026);
   std::uniform_real_distribution<double> share(0.0, 1.0);
-  PositionGuard guard(settings());
+  PositionGuard guard(position_settings());
   AxisValues before{};
   double age = 0.0;
 
@@ -96,15 +96,15 @@ TEST(PositionGuard, HoldsWhateverItIsGiven) {
                               : kind < 0.2 ? sign * std::numeric_limits<double>::infinity()
                               : kind < 0.4 ? sign * 1e300
                                            : -0.05 * share(random);
-      guard.accept(all(position));
+      guard.accept(at_all_axes(position));
       age = 0.0;
     } else {
       age += 0.001;
     }
     const AxisValues& now = guard.tick(age);
-    ASSERT_GE(now[7], -0.04 - kRounding);
-    ASSERT_LE(now[7], 0.0 + kRounding);
-    ASSERT_LE(std::abs(now[7] - before[7]), 0.002 + kRounding);
+    ASSERT_GE(now[7], -0.04 - kPositionRounding);
+    ASSERT_LE(now[7], 0.0 + kPositionRounding);
+    ASSERT_LE(std::abs(now[7] - before[7]), 0.002 + kPositionRounding);
     if (age >= 0.02) {
       ASSERT_EQ(now, before);
     }
@@ -113,7 +113,7 @@ TEST(PositionGuard, HoldsWhateverItIsGiven) {
 }
 
 TEST(PositionGuard, RefusesSettingsOutOfRange) {
-  PositionGuardSettings bad = settings();
+  PositionGuardSettings bad = position_settings();
   bad.speed_m_per_s = 0.0;
   EXPECT_THROW(PositionGuard{bad}, std::invalid_argument);
 }

@@ -6,7 +6,7 @@
 namespace cordis::test {
 namespace {
 
-constexpr int kSteps = 10000;
+constexpr int kStepsInAll = 10000;
 
 // Each step rounds every position to half an ulp, 1e-16 m here, which is 1e-16 m / dt * 0.1 kg =
 // 1e-14 kg m/s of each of the 50 masses at random: 1e-14 * sqrt(50 * 10000) = 7e-12, and as much of
@@ -21,7 +21,7 @@ TEST_P(FreeNetwork, KeepsItsMomentum) {
   const Vec3 before = world.momentum();
   ASSERT_GT(before.norm(), 0.1);
 
-  run(world, kSteps);
+  run(world, kStepsInAll);
 
   EXPECT_LT((world.momentum() - before).norm(), kDrift);
 }
@@ -31,7 +31,7 @@ TEST_P(FreeNetwork, KeepsItsAngularMomentum) {
   const Vec3 before = world.angular_momentum();
   ASSERT_GT(before.norm(), 0.1);
 
-  run(world, kSteps);
+  run(world, kStepsInAll);
 
   EXPECT_LT((world.angular_momentum() - before).norm(), kDrift);
 }

@@ -7,8 +7,8 @@
 
 #include "tests/engine/many_states.h"
 #include "tests/engine/programs.h"
-#include "tests/engine/reference_data.h"
 #include "tests/engine/scenes.h"
+#include "tests/support/reference_data.h"
 
 namespace cordis::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/balls.h"
-#include "tests/engine/reference_data.h"
+#include "tests/support/reference_data.h"
 
 namespace cordis::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/maxwell_links.h"
-#include "tests/engine/reference_data.h"
 #include "tests/engine/scenes.h"
+#include "tests/support/reference_data.h"
 
 namespace cordis::test {
 namespace {

@@ -15,7 +15,6 @@ namespace {
 
 using engine::Network;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 NetworkDescription sound() {

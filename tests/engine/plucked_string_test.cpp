@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/engine/reference_data.h"
 #include "tests/engine/scenes.h"
+#include "tests/support/reference_data.h"
 
 namespace cordis::test {
 namespace {

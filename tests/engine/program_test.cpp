@@ -26,7 +26,6 @@ using engine::kBehaviourBatch;
 using engine::kMaxSlots;
 using engine::kQuantityCount;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUntouched = 1234.5;
 
 /// 8 rows with values for every quantity.

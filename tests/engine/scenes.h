@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <random>
 #include <utility>
@@ -19,6 +20,8 @@ using engine::NetworkDescription;
 using engine::Vec3;
 using engine::VectorWidth;
 using engine::World;
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 inline World make_world(NetworkDescription description,
                         VectorWidth width = engine::best_vector_width()) {

@@ -17,7 +17,7 @@
 namespace cordis::test {
 namespace {
 
-constexpr double kRange = 0.12;
+constexpr double kSetRange = 0.12;
 
 struct Pair {
   double distance;
@@ -124,7 +124,7 @@ NetworkDescription scene_of(const LawCase& law, int dimension, std::uint32_t spl
     scene.mats.push_back(many.mats[i]);
     scene.radius.push_back(many.radius[i]);
   }
-  add_set(scene, law.state, kRange, law.rest_length,
+  add_set(scene, law.state, kSetRange, law.rest_length,
           std::min(split, static_cast<std::uint32_t>(scene.mats.size())));
   return scene;
 }
@@ -278,7 +278,7 @@ TEST(SetLiaison, IsTheSameBitsForEverySkin) {
 
 TEST(SetLiaison, HasNoForceBetweenBallsAtTheSamePlace) {
   NetworkDescription scene = cloud(2, 0.0, 0.0, 3);
-  add_set(scene, contact(100.0, 1.0), kRange, -1.0, 2);
+  add_set(scene, contact(100.0, 1.0), kSetRange, -1.0, 2);
   World world = make_world(scene);
 
   run(world, 10);
@@ -314,7 +314,7 @@ TEST(SetLiaison, OfMorePairsThanAreTakenTogetherIsTheSumOverAllPairs) {
 
 TEST(SetLiaison, IsNotDisturbedByABallThatFliesAway) {
   NetworkDescription scene = cloud(60, 0.4, 0.1, 3);
-  add_set(scene, contact(100.0, 0.1), kRange, -1.0, 60);
+  add_set(scene, contact(100.0, 0.1), kSetRange, -1.0, 60);
   NetworkDescription alone = scene;
   scene.mats[59].velocity = Vec3(1e6, 2e5, -1e5);
   alone.mats[59].position = Vec3(1e6, 0, 0);  // far from the beginning
@@ -332,7 +332,7 @@ TEST(SetLiaison, IsNotDisturbedByABallThatFliesAway) {
 TEST(SetLiaison, GoesOnWithoutBallsThatAreNotFinite) {
   NetworkDescription scene = cloud(60, 0.4, 0.1, 3);
   scene.mats[5].mass = 1e-300;  // any push flings it out of all numbers
-  add_set(scene, contact(100.0, 0.1), kRange, -1.0, 60);
+  add_set(scene, contact(100.0, 0.1), kSetRange, -1.0, 60);
   World world = make_world(scene);
   std::uint32_t lost = 0;
 
@@ -347,7 +347,7 @@ TEST(SetLiaison, GoesOnWithoutBallsThatAreNotFinite) {
 TEST(SetLiaison, ReportsThatItHasNoRoomForItsPairsAndIsRightAllTheSame) {
   // 8,300 balls in a heap are 34 million pairs: more than a neighbour list takes
   NetworkDescription scene = cloud(8300, 0.01, 0.0, 3);
-  add_set(scene, contact(1.0, 0.0), kRange, -1.0, 8300);
+  add_set(scene, contact(1.0, 0.0), kSetRange, -1.0, 8300);
   World world = make_world(scene);
 
   const engine::StepReport report = world.step();
@@ -373,7 +373,7 @@ TEST(SetLiaison, OfPortsAndFixedPointsCountsTheWorkOfThePorts) {
     scene.mats[i].kind = MatKind::kFixed;
     scene.mats[i].velocity = Vec3::Zero();
   }
-  add_set(scene, contact(300.0, 0.2), kRange, -1.0, 40);
+  add_set(scene, contact(300.0, 0.2), kSetRange, -1.0, 40);
   World world = make_world(scene);
 
   for (int n = 0; n < 10'000; ++n) {
@@ -437,7 +437,7 @@ TEST(SetLiaison, GoesOnFromASnapshotToTheSameBits) {
 
 TEST(SetLiaison, TakesOtherParametersBetweenTwoSteps) {
   NetworkDescription scene = cloud(40, 0.3, 0.2, 3);
-  add_set(scene, contact(300.0, 0.0), kRange, -1.0, 40);
+  add_set(scene, contact(300.0, 0.0), kSetRange, -1.0, 40);
   World world = make_world(scene);
   run(world, 300);
 

@@ -28,7 +28,7 @@ void drive(World& world, int step_count) {
   }
 }
 
-void expect_same(const World& first, const World& second) {
+void expect_same_motion(const World& first, const World& second) {
   EXPECT_EQ(first.state_hash(), second.state_hash());
   EXPECT_EQ(first.step_count(), second.step_count());
   const engine::Energy one = first.energy();
@@ -56,13 +56,13 @@ TEST(Snapshot, IsGoneOnFromBitForBitInAnotherWorld) {
   second.set_external_force(11, Vec3(1, 1, 1));  // to be forgotten
   second.restore(snapshot);
 
-  expect_same(first, second);
+  expect_same_motion(first, second);
   first.step();
   second.step();
-  expect_same(first, second);
+  expect_same_motion(first, second);
   drive(first, 50);
   drive(second, 50);
-  expect_same(first, second);
+  expect_same_motion(first, second);
 }
 
 TEST(Snapshot, TakesAWorldBack) {

@@ -5,19 +5,19 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "tests/engine/reference_data.h"
 #include "tests/engine/scenes.h"
+#include "tests/support/reference_data.h"
 
 namespace cordis::test {
 namespace {
 
-constexpr int kSteps = 5000;
+constexpr int kMostSteps = 5000;
 
 /// The largest distance from 0 that a MAT ever had.
 double largest_excursion(NetworkDescription scene) {
   World world = make_world(std::move(scene));
   double largest = 0.0;
-  for (int n = 0; n < kSteps && largest < 1e100; ++n) {
+  for (int n = 0; n < kMostSteps && largest < 1e100; ++n) {
     world.step();
     largest = std::max(largest, world.positions().cwiseAbs().maxCoeff());
   }

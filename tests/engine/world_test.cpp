@@ -13,8 +13,6 @@
 namespace cordis::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// A port at 0, a mass at 1 m, a fixed point at 2 m, springs of 10 N/m between them, all at rest; 3
 /// dimensions.
 NetworkDescription three_in_a_row(double viscosity = 0.0) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kFlowing = 1;
 constexpr std::size_t kBroken = 3;
-constexpr double kLength = 0.1;
+constexpr double kHardenedLength = 0.1;
 
 TEST(EcrouissageBar, GrowsHarderAndLongerWithEveryPullUntilItBreaks) {
   Stage stage("ecrouissage_bar.yaml");
@@ -29,7 +29,7 @@ TEST(EcrouissageBar, GrowsHarderAndLongerWithEveryPullUntilItBreaks) {
         flow_force[pull] = force;
       }
     });
-    if (pull < 3) remanent[pull] = stage.position("bar", 4).x() - kLength;
+    if (pull < 3) remanent[pull] = stage.position("bar", 4).x() - kHardenedLength;
   }
 
   EXPECT_NEAR(flow_force[0], 2.0, 0.2);  // yield 1 mm, 2000 N/m

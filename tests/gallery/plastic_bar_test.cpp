@@ -11,7 +11,7 @@ namespace {
 constexpr double kLinks = 10.0;
 constexpr double kStiffness = 2000.0;
 constexpr double kYield = 0.001;
-constexpr double kLength = 0.2;
+constexpr double kPlasticLength = 0.2;
 
 TEST(PlasticBar, KeepsAllOfAPullButTheElasticPart) {
   Stage stage("plastic_bar.yaml");
@@ -41,7 +41,7 @@ TEST(PlasticBar, ComesBackFromAPullBelowItsYieldPoint) {
 
   EXPECT_GT(force, 0.5 * kStiffness * kYield);
   EXPECT_LT(force, kStiffness * kYield);
-  EXPECT_NEAR(stage.signal("end"), kLength, 1.0e-5);
+  EXPECT_NEAR(stage.signal("end"), kPlasticLength, 1.0e-5);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/engine/reference_data.h"
 #include "tests/plan/networks.h"
+#include "tests/support/reference_data.h"
 
 namespace cordis::test {
 namespace {

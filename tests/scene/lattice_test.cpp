@@ -27,16 +27,6 @@ std::map<int, int> degrees(const Scene& scene) {
   return count;
 }
 
-double smallest_distance(const Scene& scene) {
-  double smallest = 1e9;
-  const auto& mats = scene.network.mats;
-  for (std::size_t a = 0; a < mats.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b)
-      smallest = std::min(smallest, (mats[a].position - mats[b].position).norm());
-  }
-  return smallest;
-}
-
 /// Pairs at a distance, found without any knowledge of lattices.
 int pairs_at(const Scene& scene, double distance) {
   int count = 0;

@@ -16,16 +16,6 @@ Scene pack(int space, const std::string& keys) {
   return sound_scene(space, "matter:\n  a: {kind: pack, " + keys + "}\n");
 }
 
-double smallest_distance(const Scene& scene) {
-  double smallest = 1e9;
-  const auto& mats = scene.network.mats;
-  for (std::size_t a = 0; a < mats.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b)
-      smallest = std::min(smallest, (mats[a].position - mats[b].position).norm());
-  }
-  return smallest;
-}
-
 /// FNV-1a of the bits of all positions.
 std::uint64_t hash_of(const Scene& scene) {
   std::uint64_t hash = 0xcbf29ce484222325U;

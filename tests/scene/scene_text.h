@@ -1,6 +1,7 @@
 // tests/scene/scene_text.h -- scenes written down in tests.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -27,6 +28,17 @@ inline Scene scene_with_bob(int space, const std::string& matter, const std::str
   const std::string at = space == 1 ? "0" : space == 2 ? "[0, 9]" : "[0, 9, 9]";
   return sound_scene(
       space, "matter:\n" + matter + "  bob: {kind: mass, mass_kg: 1, at_m: " + at + "}\n" + rest);
+}
+
+/// Of any two MATs [m].
+inline double smallest_distance(const Scene& scene) {
+  double smallest = 1e9;
+  const auto& mats = scene.network.mats;
+  for (std::size_t a = 0; a < mats.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b)
+      smallest = std::min(smallest, (mats[a].position - mats[b].position).norm());
+  }
+  return smallest;
 }
 
 }  // namespace cordis::scene
