@@ -8,6 +8,7 @@
 
 #include "sim_node/engine/world.h"
 #include "tests/scene/scene_text.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::scene {
 namespace {
@@ -51,7 +52,7 @@ TEST(DamagedLiaison, WithWrongBytesIsASceneOrProblems) {
   std::mt19937 random(1990);
   const std::string alphabet = "\n {}[]:,-#\"'.0123456789eExyz_<>=*/+()&|^";
   const std::string text = whole_text();
-  for (int round = 0; round < 300; ++round) {
+  for (int round = 0; round < test::rounds(300); ++round) {
     std::string damaged = text;
     for (int flips = 1 + round % 4; flips > 0; --flips)
       damaged[random() % damaged.size()] = alphabet[random() % alphabet.size()];
@@ -66,7 +67,7 @@ TEST(DamagedLiaison, WithSwappedWordsIsASceneOrProblems) {
   for (std::string line; std::getline(stream, line);) {
     if (line.find('#') == std::string::npos) words.push_back(line + '\n');
   }
-  for (int round = 0; round < 300; ++round) {
+  for (int round = 0; round < test::rounds(300); ++round) {
     std::vector<std::string> damaged = words;
     damaged[random() % damaged.size()] = words[random() % words.size()];
     std::string text;

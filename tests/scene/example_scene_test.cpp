@@ -12,6 +12,7 @@
 #include "node/config/launch.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/scene.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::scene {
 namespace {
@@ -186,7 +187,7 @@ std::vector<std::pair<std::string, std::string>> small_scenes() {
   return scenes;
 }
 
-constexpr std::size_t kDamagedScenes = 1000;  // of each test
+constexpr std::size_t kDamagedScenes = test::rounds(1000);  // of each test
 
 TEST(DamagedScene, ThatIsCutOffIsASceneOrProblems) {
   const auto scenes = small_scenes();

@@ -1,0 +1,16 @@
+// tests/support/rounds.h -- how much of a long test is done under sanitizers.
+#pragma once
+
+namespace cordis::test {
+
+/// How many of so many rounds a test does: all of them, but one in ten where a sanitizer watches
+/// every access, which it does in the first rounds as well as in the last.
+constexpr int rounds(int all) noexcept {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return (all + 9) / 10;
+#else
+  return all;
+#endif
+}
+
+}  // namespace cordis::test
