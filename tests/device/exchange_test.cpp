@@ -454,7 +454,7 @@ TEST(Exchange, StandsByWhileAnotherNodeIsAnswered) {
     GestureMessage message = rig.answer(9.0);
     message.answered_run = kRun + 1;
     rig.channel.waiting.push_back(message);
-    now_nsec += kPeriod;
+    now_nsec += kPeriodNsec;
     rig.exchange.receive();
     rig.exchange.live();
     return rig.driver.commands.back()[0];
