@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/many_states.h"
-#include "tests/engine/reference_data.h"
 #include "tests/engine/scenes.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/reference_data.h"
 
 namespace cordis::test {
 namespace {
