@@ -99,7 +99,8 @@ void SetPairs::adopt(const StateTable& table) {
 }
 
 MemberColumns SetPairs::members() const noexcept {
-  return {position_.data(), moved_.data(), static_cast<std::uint32_t>(4 * padded(column_.size(), kPairBatch))};
+  return {position_.data(), moved_.data(),
+          static_cast<std::uint32_t>(4 * padded(column_.size(), kPairBatch))};
 }
 
 PairRest SetPairs::rest() const noexcept {
