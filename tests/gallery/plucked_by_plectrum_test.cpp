@@ -15,10 +15,10 @@ constexpr double kQuillStiffness = 800.0;
 constexpr double kRelease = 0.003;
 
 constexpr double kMass = 0.02;
-constexpr double kStiffness = 1100.0;
+constexpr double kStringStiffness = 1100.0;
 constexpr double kLinkViscosity = 0.02;
-constexpr double kMediumViscosity = 0.02;
-constexpr std::uint32_t kLinks = 39;
+constexpr double kAirViscosity = 0.02;
+constexpr std::uint32_t kStringLinks = 39;
 constexpr double kStep = 1.0 / 4000.0;
 
 /// One mode of the string: its amplitude and the change of it per second.
@@ -33,14 +33,14 @@ struct Swing {
 };
 
 double shape(int mode, std::uint32_t mat) {
-  return std::sin(std::numbers::pi * mode * mat / kLinks);
+  return std::sin(std::numbers::pi * mode * mat / kStringLinks);
 }
 
 Mode mode_of(const Stage& stage, int number) {
   Mode mode;
-  for (std::uint32_t i = 1; i < kLinks; ++i) {
-    mode.amplitude += 2.0 / kLinks * shape(number, i) * stage.position("string", i).x();
-    mode.speed += 2.0 / kLinks * shape(number, i) * stage.velocity("string", i).x();
+  for (std::uint32_t i = 1; i < kStringLinks; ++i) {
+    mode.amplitude += 2.0 / kStringLinks * shape(number, i) * stage.position("string", i).x();
+    mode.speed += 2.0 / kStringLinks * shape(number, i) * stage.velocity("string", i).x();
   }
   return mode;
 }
@@ -48,9 +48,9 @@ Mode mode_of(const Stage& stage, int number) {
 /// Follows q'' + 2 s q' + w^2 q = 0, with K and Z of the mode those of a link times
 /// 4 sin^2(pi j / 2 (n + 1)), and Z of the medium besides.
 Swing after(Mode mode, int number, double time_s) {
-  const double sine = std::sin(0.5 * std::numbers::pi * number / kLinks);
-  const double w2 = 4.0 * sine * sine * kStiffness / kMass;
-  const double s = 0.5 * (kMediumViscosity + 4.0 * sine * sine * kLinkViscosity) / kMass;
+  const double sine = std::sin(0.5 * std::numbers::pi * number / kStringLinks);
+  const double w2 = 4.0 * sine * sine * kStringStiffness / kMass;
+  const double s = 0.5 * (kAirViscosity + 4.0 * sine * sine * kLinkViscosity) / kMass;
   const double w = std::sqrt(w2 - s * s);
   // the velocity of a world is that in the middle of the last step
   mode.speed += 0.5 * kStep * (-w2 * mode.amplitude - 2.0 * s * mode.speed);
