@@ -11,6 +11,7 @@
 namespace cordis::engine {
 namespace {
 
+constexpr std::size_t kKeptPerMember = 64;  // pairs that there is room for
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 const SetLiaison& set_of(const NetworkDescription& network, std::size_t set) {
@@ -37,6 +38,7 @@ ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
                                  const std::vector<std::uint32_t>& set_q)
     : count_p_(set_p.size()),
       across_(!set_q.empty()),
+      dimension_(network.dimension),
       kernel_(&pair_kernel(best_vector_width())),
       grid_(count_p_, network.dimension),
       member_(network.mats.size(), kNone) {
@@ -52,7 +54,15 @@ ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
   parent_.resize(mat_.size());
   piece_.resize(mat_.size());
   found_.resize(count_p_ + kPairBatch);
-  position_.resize(4 * mat_.size());
+  position_.resize(4 * (mat_.size() + kPairBatch), 0.0);
+}
+
+void ConnectedPieces::keep_near(double distance) {
+  const std::size_t members = mat_.size();
+  const std::size_t all = across_ ? count_p_ * (members - count_p_) : members * (members - 1) / 2;
+  kept_.emplace(count_p_, members - count_p_, dimension_, distance,
+                std::min(all, kKeptPerMember * members), *kernel_);
+  kept_distance_ = distance;
 }
 
 std::size_t ConnectedPieces::find_near(const Columns& positions, double distance) noexcept {
@@ -60,6 +70,34 @@ std::size_t ConnectedPieces::find_near(const Columns& positions, double distance
   for (std::size_t m = 0; m < mat_.size(); ++m) {
     std::copy_n(positions.col(mat_[m]).data(), 4, position_.data() + 4 * m);
   }
+  if (kept_ && distance == kept_distance_) {
+    join_kept(distance);
+  } else {
+    join_found(distance);
+  }
+  return number_pieces();
+}
+
+void ConnectedPieces::join_kept(double distance) noexcept {
+  const double* position = position_.data();
+  kept_->refresh(position);
+  for (NeighbourRows rows = kept_->first_rows(position); rows.first < rows.last;
+       rows = kept_->rows_after(rows, position)) {
+    for (std::size_t a = rows.first; a < rows.last; ++a) {
+      const double* at = position + 4 * a;
+      for (std::size_t i = rows.start[a]; i < rows.start[a + 1]; ++i) {
+        const std::uint32_t column = rows.neighbour[i - rows.origin];
+        const double x = position[column] - at[0];
+        const double y = position[column + 1] - at[1];
+        const double z = position[column + 2] - at[2];
+        if (!(x * x + y * y + z * z < distance * distance)) continue;
+        join(static_cast<std::uint32_t>(a), column / 4);
+      }
+    }
+  }
+}
+
+void ConnectedPieces::join_found(double distance) noexcept {
   grid_.fill(position_.data(), count_p_, distance);
   const CellPlaces places = grid_.places();
   for (std::size_t b = across_ ? count_p_ : 0; b < mat_.size(); ++b) {
@@ -76,7 +114,6 @@ std::size_t ConnectedPieces::find_near(const Columns& positions, double distance
       for (std::size_t i = 0; i < count; ++i) join(found_[i], static_cast<std::uint32_t>(b));
     }
   }
-  return number_pieces();
 }
 
 std::size_t ConnectedPieces::find_bound(std::span<const BoundPair> pairs) noexcept {

@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "sim_node/engine/aligned_vector.h"
 #include "sim_node/engine/cell_grid.h"
+#include "sim_node/engine/neighbour_list.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/pair_kernel.h"
 #include "sim_node/engine/world.h"
@@ -29,6 +31,10 @@ class ConnectedPieces {
   /// @throws std::invalid_argument when the network has no such MAT, or one stands there twice.
   ConnectedPieces(const NetworkDescription& network, const std::vector<std::uint32_t>& mats);
 
+  /// Keeps the pairs that are about so near [m], > 0, from one find_near() to the next while no
+  /// member goes far: for who asks for the same distance again and again. Allocates.
+  void keep_near(double distance);
+
   /// Finds the pieces of members nearer than a distance [m], > 0. A member that is not finite is a
   /// piece of its own. Real time: O(members + pairs), no allocation. @return how many
   std::size_t find_near(const Columns& positions, double distance) noexcept;
@@ -48,6 +54,8 @@ class ConnectedPieces {
   ConnectedPieces(const NetworkDescription& network, const std::vector<std::uint32_t>& set_p,
                   const std::vector<std::uint32_t>& set_q);
   void begin() noexcept;
+  void join_kept(double distance) noexcept;
+  void join_found(double distance) noexcept;
   void join(const BoundPair& pair) noexcept;
   void join(std::uint32_t a, std::uint32_t b) noexcept;
   std::uint32_t root_of(std::uint32_t member) noexcept;
@@ -55,6 +63,7 @@ class ConnectedPieces {
 
   std::size_t count_p_;
   bool across_;  // two sets
+  int dimension_;
   const PairKernel* kernel_;
   CellGrid grid_;
   std::vector<std::uint32_t> mat_;     // of each member
@@ -62,7 +71,9 @@ class ConnectedPieces {
   std::vector<std::uint32_t> parent_;  // an earlier member of the same piece, or itself
   std::vector<std::uint32_t> piece_;
   std::vector<std::uint32_t> found_;
-  AlignedVector<double> position_;
+  AlignedVector<double> position_;  // 4 x members, padded to whole batches
+  std::optional<NeighbourList> kept_;
+  double kept_distance_ = 0.0;  // [m]
 };
 
 }  // namespace cordis::engine

@@ -147,6 +147,7 @@ SignalReader::SignalReader(std::vector<Signal> signals, const engine::NetworkDes
     } else {
       pieces_[s].emplace(network, signal.mats);
     }
+    if (signal.near > 0.0) pieces_[s]->keep_near(signal.near);
   }
   wants_energy_ = std::any_of(signals_.begin(), signals_.end(), [](const Signal& signal) {
     return signal.quantity >= Quantity::kEnergy;

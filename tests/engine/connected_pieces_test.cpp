@@ -2,6 +2,7 @@
 #include "sim_node/engine/connected_pieces.h"
 
 #include <limits>
+#include <numeric>
 #include <queue>
 #include <stdexcept>
 #include <vector>
@@ -61,8 +62,28 @@ TEST(ConnectedPieces, AreThoseOfAFloodFill) {
 
         EXPECT_EQ(count, 1U + *std::max_element(expected.begin(), expected.end()));
         for (std::size_t m = 0; m < 200; ++m) ASSERT_EQ(pieces.piece_of(m), expected[m]) << m;
+        pieces.keep_near(distance);
+        EXPECT_EQ(pieces.find_near(world.positions(), distance), count);
+        for (std::size_t m = 0; m < 200; ++m) ASSERT_EQ(pieces.piece_of(m), expected[m]) << m;
       }
     }
+  }
+}
+
+TEST(ConnectedPieces, AreTheSameWhetherPairsAreKeptOrNot) {
+  NetworkDescription scene = cloud(200, 1.5, 0.5, 2);
+  World world = make_world(scene);
+  std::vector<std::uint32_t> all(200);
+  std::iota(all.begin(), all.end(), 0U);
+  ConnectedPieces searching(scene, all);
+  ConnectedPieces keeping(scene, all);
+  keeping.keep_near(0.12);
+
+  for (int n = 0; n < 500; ++n) {
+    world.step();
+    ASSERT_EQ(keeping.find_near(world.positions(), 0.12),
+              searching.find_near(world.positions(), 0.12))
+        << n;
   }
 }
 
