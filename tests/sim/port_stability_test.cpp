@@ -71,7 +71,7 @@ bool key_swings_up(const Row& row, double kappa) {
   const double b = row.beta * kMass / kPeriod;
   const double lost = -std::expm1(-row.beta);  // share of the speed lost in a period
   const double tau = kMass / b;
-  const int steps = std::max(20000, static_cast<int>(400.0 / row.beta));
+  const int steps = std::max(4000, static_cast<int>(100.0 / row.beta));
   std::deque<double> past(static_cast<std::size_t>(row.delay) + 1, 0.0);
   double position = 1e-6;
   double speed = 0.0;
@@ -112,7 +112,7 @@ double liaison_boundary(double z, int delay) {
   };
   double least = curve(std::numbers::pi).real() > 0.0 ? curve(std::numbers::pi).real()
                                                       : std::numeric_limits<double>::infinity();
-  constexpr int kSteps = 200000;
+  constexpr int kSteps = 20000;
   for (int n = 2; n < kSteps; ++n) {
     const Complex before = curve(std::numbers::pi * (n - 1) / kSteps);
     const Complex now = curve(std::numbers::pi * n / kSteps);
@@ -132,7 +132,7 @@ bool mass_swings_up(double kappa, double z, int delay) {
   engine::World world = world_with(mass, 0.0, z * kMass / kPeriod);
   const double hand = kappa * kMass / (kPeriod * kPeriod);
   std::deque<double> past(static_cast<std::size_t>(delay) + 1, 0.0);
-  constexpr int kSteps = 40000;
+  constexpr int kSteps = 10000;
   Growth growth(kSteps);
   for (int n = 0; n < kSteps; ++n) {
     past.push_back(world.position(0).x());
