@@ -73,6 +73,13 @@ void Hardware::try_to_open(std::int64_t now) noexcept {
   if (greets_) wire_->send({message.data(), count});
 }
 
+void Hardware::welcome() noexcept {
+  contact_ = Contact::kPresent;
+  Message message;
+  const std::size_t count = configure(message);
+  if (count > 0) wire_->send({message.data(), count});
+}
+
 void Hardware::ask(const AxisValues& force_n) noexcept {
   Message message;
   const std::size_t count = request(force_n, message);
@@ -95,7 +102,7 @@ void Hardware::listen(std::int64_t until, Heard wanted) noexcept {
       const bool sampled = heard == Heard::kSample || heard == Heard::kOldSample;
       if (sampled) position(position_);
       const bool greeted = greets_ ? heard == Heard::kGreeted : sampled;
-      if (greeted && contact_ == Contact::kGreeting) contact_ = Contact::kPresent;
+      if (greeted && contact_ == Contact::kGreeting) welcome();
       if (greeted || sampled) last_sample_nsec_ = node::monotonic_nsec();
       bad_ += heard == Heard::kBad;
       found = found || heard == wanted;

@@ -70,6 +70,8 @@ class Hardware : public Driver {
   virtual void begin() noexcept = 0;
   /// Writes what the device is asked first; 0: it is present as soon as it has sent a sample.
   virtual std::size_t greet(Message& message) noexcept = 0;
+  /// Writes what a device that has greeted is told once; 0: nothing.
+  virtual std::size_t configure(Message&) noexcept { return 0; }
   /// Writes the request that carries forces [N].
   virtual std::size_t request(const AxisValues& force_n, Message& message) noexcept = 0;
   virtual Heard hear(std::uint8_t byte) noexcept = 0;
@@ -79,6 +81,7 @@ class Hardware : public Driver {
 
  private:
   void try_to_open(std::int64_t now) noexcept;
+  void welcome() noexcept;
   void ask(const AxisValues& force_n) noexcept;
   void listen(std::int64_t until, Heard wanted) noexcept;
   void lose() noexcept;

@@ -2,6 +2,7 @@
 #include "device_node/drivers/kfb1.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -12,7 +13,7 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-enum Type : std::uint8_t { kState = 1, kForce = 2, kHello = 3, kInfo = 4 };
+enum Type : std::uint8_t { kState = 1, kForce = 2, kHello = 3, kInfo = 4, kConfig = 5, kEvent = 6 };
 
 constexpr double kFullScale = 32767.0;
 constexpr std::uint8_t kVersion = 1;
@@ -32,6 +33,11 @@ std::uint16_t crc_of(Bytes bytes) noexcept {
 void put16(std::uint8_t* at, unsigned value) noexcept {
   at[0] = static_cast<std::uint8_t>(value & 0xffu);
   at[1] = static_cast<std::uint8_t>(value >> 8 & 0xffu);
+}
+
+void put32(std::uint8_t* at, std::uint32_t value) noexcept {
+  put16(at, value & 0xffffu);
+  put16(at + 2, value >> 16);
 }
 
 unsigned get16(Bytes bytes, std::size_t at) noexcept {
@@ -85,6 +91,7 @@ std::size_t unseal(Message& frame, std::size_t count) noexcept {
 
 void Kfb1::begin() noexcept {
   length_ = 0;
+  told_ = 0;
 }
 
 std::size_t Kfb1::greet(Message& message) noexcept {
@@ -92,6 +99,16 @@ std::size_t Kfb1::greet(Message& message) noexcept {
   payload[0] = kHello;
   payload[1] = kVersion;
   return seal(payload, 2, message);
+}
+
+std::size_t Kfb1::configure(Message& message) noexcept {
+  constexpr double kMost = 4e9;
+  Message payload{};
+  payload[0] = kConfig;
+  put16(payload.data() + 1, static_cast<unsigned>(std::min(layout().rate_hz, 65535.0)));
+  put32(payload.data() + 3,
+        static_cast<std::uint32_t>(std::min(layout().force_limit_n * 1e3, kMost)));
+  return seal(payload, 7, message);
 }
 
 std::size_t Kfb1::request(const AxisValues& force_n, Message& message) noexcept {
@@ -126,7 +143,17 @@ Hardware::Heard Kfb1::take_frame() noexcept {
   const Bytes payload(frame_.data(), count);
   if (payload[0] == kInfo) return take_info(payload);
   if (payload[0] == kState) return take_state(payload);
-  return Heard::kNothing;  // EVENT, or of a later version
+  if (payload[0] == kEvent && payload.size() > 1) take_event(payload[1]);
+  return Heard::kNothing;  // or of a later version
+}
+
+/// Tells of it, but not again and again.
+void Kfb1::take_event(std::uint8_t code) noexcept {
+  constexpr std::array<const char*, 5> kWords = {"", "it is too hot", "emergency stop",
+                                                 "a motor is saturated", "its watchdog has bitten"};
+  if (code == 0 || code >= kWords.size() || code == told_) return;
+  told_ = code;
+  spdlog::warn("kfb1: the device says: {}", kWords[code]);
 }
 
 Hardware::Heard Kfb1::take_info(Bytes payload) noexcept {

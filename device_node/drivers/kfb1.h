@@ -6,7 +6,8 @@
 namespace cordis::device {
 
 /// KFB1: COBS frames with a checksum; each FORCE is answered by one STATE with its number. The
-/// driver asks what the device is, and refuses one with another number of keys.
+/// driver asks what the device is, refuses one with another number of keys, and tells it the rate
+/// and the largest force of the device file. EVENTs are logged.
 class Kfb1 final : public Hardware {
  public:
   using Hardware::Hardware;
@@ -14,6 +15,7 @@ class Kfb1 final : public Hardware {
  protected:
   void begin() noexcept override;
   std::size_t greet(Message& message) noexcept override;
+  std::size_t configure(Message& message) noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
   Heard hear(std::uint8_t byte) noexcept override;
   void position(AxisValues& position_m) const noexcept override { position_m = newest_; }
@@ -22,12 +24,14 @@ class Kfb1 final : public Hardware {
   Heard take_frame() noexcept;
   Heard take_info(std::span<const std::uint8_t> payload) noexcept;
   Heard take_state(std::span<const std::uint8_t> payload) noexcept;
+  void take_event(std::uint8_t code) noexcept;
 
   Message frame_{};  // bytes since the last 0
   std::size_t length_ = 0;
   std::uint8_t sequence_ = 0;  // of the newest FORCE
   double travel_m_ = 0.04;     // as the device says
   double force_n_ = 20.0;      // likewise: of the largest value
+  std::uint8_t told_ = 0;      // code of the EVENT that was logged last
   AxisValues newest_{};        // [m]
 };
 

@@ -59,6 +59,21 @@ TEST_F(Kfb1Test, CarriesPositionsAndForcesBothWays) {
   EXPECT_TRUE(until(*key, {}, [&](bool) { return board.forces[0] == 0 && board.forces[1] == 0; }));
 }
 
+TEST_F(Kfb1Test, TellsTheDeviceTheLargestForceOfItsFile) {
+  Kfb1Board board;  // its own is 10 N
+  board.plug.into_serial_line(link());
+  AxisLayout layout = layout_of(2);
+  layout.force_limit_n = 4.0;
+  const auto key = driver("kfb1", port(), layout);
+  key->start(Role::kMass);
+
+  // A force above the limit, as no guard lets it through: the device itself holds it back.
+  EXPECT_TRUE(until(*key, {9.0, -9.0}, [&](bool) {
+    return std::abs(board.forces[0] - 0.4 * 32767) < 2 &&
+           std::abs(board.forces[1] + 0.4 * 32767) < 2;
+  })) << board.forces[0];
+}
+
 TEST_F(Kfb1Test, SpeaksUdpToo) {
   Kfb1Board board(16);
   board.positions[15] = -32767;
