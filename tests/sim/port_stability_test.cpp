@@ -71,7 +71,7 @@ bool key_swings_up(const Row& row, double kappa) {
   const double b = row.beta * kMass / kPeriod;
   const double lost = -std::expm1(-row.beta);  // share of the speed lost in a period
   const double tau = kMass / b;
-  const int steps = std::max(4000, static_cast<int>(100.0 / row.beta));
+  const int steps = std::max(4000, static_cast<int>(30.0 / row.beta));
   std::deque<double> past(static_cast<std::size_t>(row.delay) + 1, 0.0);
   double position = 1e-6;
   double speed = 0.0;
