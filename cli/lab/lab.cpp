@@ -126,7 +126,7 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
   const engine::NetworkDescription& network = report.lab.scene.network;
   report.stability = plan::stability_of(network, plan::liaison_graph(network));
 
-  const std::vector<std::string> integrators = plan::integrator_names();
+  const std::vector<std::string> integrators = plan::integrators_for(network);
   const double limit = report.stability.diverging_step;
   plan::Ladder ladder = plan::make_ladder(
       std::isfinite(limit) ? 1.0 / limit : 0.0,

@@ -2,12 +2,50 @@
 #include "sim_node/engine/integrator.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include "sim_node/engine/network.h"
 
 namespace cordis::engine {
+namespace {
+
+/// What keeps a behaviour from being a potential; null when it is one.
+const char* not_a_potential(const Behaviour& behaviour) {
+  if (!behaviour.is_stateless()) return "states";
+  const LinkState& state = behaviour.states[0];
+  if (state.viscosity > 0.0 || state.dissipation.kind != Law::Kind::kNone) return "viscosity";
+  if (std::isfinite(state.force_limit)) return "a force limit";
+  if (state.elasticity.kind == Law::Kind::kFunction) return "a free expression";
+  return nullptr;
+}
+
+std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
+    const NetworkDescription& network) {
+  if (network.medium_viscosity > 0.0) return IntegratorRefusal{"viscosity", {}};
+  for (const Mat& mat : network.mats) {
+    if (mat.kind == MatKind::kPort) return IntegratorRefusal{"a port with the role mass", {}};
+  }
+  const auto at = [](LiaisonKind kind, std::size_t index, const char* what) {
+    return IntegratorRefusal{what, LiaisonId{kind, static_cast<std::uint32_t>(index)}};
+  };
+  for (std::size_t l = 0; l < network.links.size(); ++l) {
+    if (network.links[l].viscosity > 0.0) return at(LiaisonKind::kLink, l, "viscosity");
+  }
+  for (std::size_t l = 0; l < network.state_links.size(); ++l) {
+    const char* what = not_a_potential(network.behaviours[network.state_links[l].behaviour]);
+    if (what != nullptr) return at(LiaisonKind::kStateLink, l, what);
+  }
+  if (!network.maxwell_links.empty()) return at(LiaisonKind::kMaxwellLink, 0, "viscosity");
+  for (std::size_t s = 0; s < network.sets.size(); ++s) {
+    const char* what = not_a_potential(network.behaviours[network.sets[s].behaviour]);
+    if (what != nullptr) return at(LiaisonKind::kSet, s, what);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 const char* to_string(Integrator integrator) noexcept {
   switch (integrator) {
@@ -15,6 +53,10 @@ const char* to_string(Integrator integrator) noexcept {
       return "cordis";
     case Integrator::kLeapfrog:
       return "leapfrog";
+    case Integrator::kSymplectic4:
+      return "symplectic4";
+    case Integrator::kImplicit:
+      return "implicit";
   }
   return "";
 }
@@ -28,11 +70,26 @@ Integrator integrator_named(const std::string& name) {
 
 int evaluations_per_step(Integrator integrator) noexcept {
   switch (integrator) {
+    case Integrator::kSymplectic4:
+      return 6;
     case Integrator::kCordis:
     case Integrator::kLeapfrog:
+    case Integrator::kImplicit:
       break;
   }
   return 1;
+}
+
+std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
+  switch (network.integrator) {
+    case Integrator::kSymplectic4:
+      return refusal_of_what_does_not_conserve(network);
+    case Integrator::kCordis:
+    case Integrator::kLeapfrog:
+    case Integrator::kImplicit:
+      break;
+  }
+  return std::nullopt;
 }
 
 double largest_extrapolated_step(const NetworkDescription& network) {

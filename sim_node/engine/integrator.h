@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
+
+#include "sim_node/engine/liaison_id.h"
 
 namespace cordis::engine {
 
@@ -12,20 +15,37 @@ struct NetworkDescription;
 /// How the MATs are moved. All go over the same links, states and sets, at the steps of the
 /// network; what each is for stands in docs/numerics.md.
 enum class Integrator : std::uint8_t {
-  kCordis = 0,   ///< the centred difference of the paper; dampers see x(n) - x(n-1)
-  kLeapfrog = 1  ///< the same with dampers of second order
+  kCordis = 0,       ///< the centred difference of the paper; dampers see x(n) - x(n-1)
+  kLeapfrog = 1,     ///< the same with dampers of second order
+  kSymplectic4 = 2,  ///< of fourth order, for scenes that conserve their energy
+  kImplicit = 3      ///< linearly implicit Euler, for very stiff cables
 };
 
 /// All of them, in the order in which they are listed to people.
-inline constexpr std::array kIntegrators{Integrator::kCordis, Integrator::kLeapfrog};
+inline constexpr std::array kIntegrators{Integrator::kCordis, Integrator::kLeapfrog,
+                                         Integrator::kSymplectic4, Integrator::kImplicit};
 
 /// As a scene writes it: "leapfrog".
 const char* to_string(Integrator integrator) noexcept;
 /// The other way round. @throws std::invalid_argument for any other word.
 Integrator integrator_named(const std::string& name);
 
+/// What an integrator does not take.
+struct IntegratorRefusal {
+  std::string what;                  ///< "viscosity"
+  std::optional<LiaisonId> liaison;  ///< which has it; none: the network
+};
+/// The first thing in the network that its integrator does not take; none when it takes it all.
+std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network);
+
 /// How often a step computes all forces.
 int evaluations_per_step(Integrator integrator) noexcept;
+
+/// The largest w dt of an undamped vibration at which `symplectic4` is stable: the trace of its
+/// period first reaches -2 there.
+inline constexpr double kSymplectic4Limit = 3.1634;
+/// Trace of what a period of `symplectic4` makes of an undamped vibration, K' = (w dt)^2.
+double symplectic4_trace(double stiffness) noexcept;
 
 /// The viscosity Z' = dt Z / m beyond which `leapfrog` takes the dampers apart from the rest.
 inline constexpr double kMostExtrapolatedViscosity = 0.3;

@@ -45,7 +45,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   pending_ = {};
   energy.port_work += world.outside.move_ports(mats);
   feel_ports(world);
-  const double half_power = add_forces(world, energy);
+  const double half_power = world.add_forces_of_moment(felt_.data(), energy);
   energy.dissipated += half_power;
   pending_.dissipated += half_power;
   energy.port_work += world.outside.work_at_ports(mats);
@@ -74,31 +74,6 @@ void Leapfrog::feel_ports(const WorldState& world) noexcept {
   }
 }
 
-/// @return half of what viscosity takes in this period [J]
-double Leapfrog::add_forces(WorldState& world, StepEnergy& energy) noexcept {
-  MatArray& mats = world.mats;
-  const ForceColumns as_it_moved = mats.force_columns();
-  ForceColumns felt = as_it_moved;
-  felt.delayed = felt_.data();
-  mats.clear_forces();
-
-  StepEnergy of_links = world.links.add_forces_of_moment(world.kernel, felt);
-  of_links.dissipated *= 0.5;
-  // Without the viscous forces of the last step, half the work of those of this one is returned.
-  if (!world.state_links.empty()) {
-    world.state_links.forget_viscous_forces();
-    of_links += world.state_links.add_forces(world.behaviours, world.table, felt, world.step_count,
-                                             world.log);
-  }
-  energy.dissipated += world.maxwell_links.add_forces(world.behaviours, as_it_moved).dissipated;
-  if (!world.sets.empty()) {
-    world.sets.start();
-    of_links += world.sets.add_forces(world.pair_step(false), felt);
-  }
-  energy.switching += of_links.switching;
-  return of_links.dissipated;
-}
-
 /// Half of the push, what dampers do in a period, the other half.
 std::uint32_t Leapfrog::advance_in_sweeps(WorldState& world, StepEnergy& energy) noexcept {
   MatArray& mats = world.mats;
@@ -122,9 +97,10 @@ std::uint32_t Leapfrog::advance_in_sweeps(WorldState& world, StepEnergy& energy)
   pending_.dissipated += loss.dissipated;
   pending_.port_work += loss.port_work;
   mats.push(0.5, velocity_);
-  const std::uint32_t non_finite = mats.drift(velocity_);
-
   const double dt = world.network->step();
+  for (double& value : velocity_) value *= dt;  // displacements now
+  const std::uint32_t non_finite = mats.move_by(velocity_);
+
   for (std::uint32_t i = 0; i < mats.count(); ++i) {
     const Vec3 moved = mats.position(i) - mats.delayed_at_rest(i);
     column(felt_, i) = mats.delayed_at_rest(i) - (moved - dt * column(felt_, i));
@@ -141,16 +117,9 @@ Vec3 Leapfrog::centred_displacement(const WorldState& world, std::uint32_t mat) 
 }
 
 Energy Leapfrog::energy(WorldState& world) const noexcept {
-  const NetworkDescription& network = world.description();
-  double kinetic = 0.0;
-  double gravity = 0.0;
-  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
-    if (network.mats[i].kind != MatKind::kMass) continue;
-    kinetic += network.mats[i].mass * centred_displacement(world, i).squaredNorm();
-    gravity -= network.mats[i].mass * network.gravity.dot(world.mats.position_of_forces(i));
-  }
-  kinetic *= 0.5 / (network.step * network.step);
-  return world.account.at_moment(kinetic, world.potential_energy(), gravity);
+  const double rate = 1.0 / world.network->step();
+  return world.energy_of_moment(
+      [&](std::uint32_t mat) { return Vec3(rate * centred_displacement(world, mat)); });
 }
 
 Vec3 Leapfrog::velocity(const WorldState& world, std::uint32_t mat) const noexcept {

@@ -39,7 +39,6 @@ class Leapfrog final : public Mover {
 
  private:
   void feel_ports(const WorldState& world) noexcept;
-  double add_forces(WorldState& world, StepEnergy& energy) noexcept;
   std::uint32_t advance_in_sweeps(WorldState& world, StepEnergy& energy) noexcept;
   Vec3 centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept;
 

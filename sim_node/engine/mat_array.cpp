@@ -27,6 +27,7 @@ MatArray::MatArray(const NetworkDescription& description)
     const Mat& mat = description.mats[i];
     set_column(position_, i, mat.position);
     set_column(delayed_, i, mat.position - dt * mat.velocity);
+    mass_.push_back(mat.kind == MatKind::kMass ? mat.mass : 0.0);
     if (mat.kind != MatKind::kMass) continue;
 
     dt2_over_mass_[i] = dt * dt / mat.mass;
@@ -101,15 +102,57 @@ void MatArray::push(double part, AlignedVector<double>& velocity) const noexcept
   }
 }
 
-std::uint32_t MatArray::drift(const AlignedVector<double>& velocity) noexcept {
+void MatArray::drift(double part, const AlignedVector<double>& velocity) noexcept {
+  const double time = part * dt_;
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      Eigen::Map<Vec3>(position_.data() + 4 * i) += time * Vec3::Map(velocity.data() + 4 * i);
+    }
+  }
+}
+
+std::uint32_t MatArray::move_by(const AlignedVector<double>& displacement) noexcept {
   for (const Range& range : masses_) {
     for (std::size_t i = range.first; i < range.last; ++i) {
       const Vec3 now = vector(position_, static_cast<std::uint32_t>(i));
       set_column(delayed_, i, now);
-      set_column(position_, i, now + dt_ * Vec3::Map(velocity.data() + 4 * i));
+      set_column(position_, i, now + Vec3::Map(displacement.data() + 4 * i));
     }
   }
   return count_non_finite();
+}
+
+std::uint32_t MatArray::delay_by(const AlignedVector<double>& velocity) noexcept {
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Vec3 now = vector(position_, static_cast<std::uint32_t>(i));
+      set_column(delayed_, i, now - dt_ * Vec3::Map(velocity.data() + 4 * i));
+    }
+  }
+  return count_non_finite();
+}
+
+void MatArray::find_displacements(AlignedVector<double>& displacement) const noexcept {
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    displacement[i] = position_[i] - delayed_[i];
+  }
+}
+
+double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
+                                     AlignedVector<double>& push) const noexcept {
+  const double dt_viscosity = medium_viscosity_over_dt_ * dt_ * dt_;
+  double product = 0.0;
+  std::fill(push.begin(), push.end(), 0.0);
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Vec3 moved = Vec3::Map(displacement.data() + 4 * i);
+      set_column(push, i,
+                 dt_ * dt_ * force(static_cast<std::uint32_t>(i)) + mass_[i] * weight_step_ -
+                     dt_viscosity * moved);
+      product += moved.x() * moved.x() + moved.y() * moved.y() + moved.z() * moved.z();
+    }
+  }
+  return 0.5 * medium_viscosity_over_dt_ * product;
 }
 
 void MatArray::add_forces(const AlignedVector<double>& more) noexcept {

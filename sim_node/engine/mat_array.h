@@ -45,8 +45,19 @@ class MatArray {
 
   /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
   void push(double part, AlignedVector<double>& velocity) const noexcept;
-  /// Moves the masses by one period at these velocities. @return how many are not finite then
-  std::uint32_t drift(const AlignedVector<double>& velocity) noexcept;
+  /// Moves the masses by a part of a period at these velocities; the delayed positions stay.
+  void drift(double part, const AlignedVector<double>& velocity) noexcept;
+  /// Moves the masses by these displacements. @return how many are not finite then
+  std::uint32_t move_by(const AlignedVector<double>& displacement) noexcept;
+  /// The delayed positions become the present ones, less a period at these velocities, if given.
+  void delay() noexcept { delayed_ = position_; }
+  std::uint32_t delay_by(const AlignedVector<double>& velocity) noexcept;
+  /// x(n) - x(n-1) of the masses and ports, 4 x N [m].
+  void find_displacements(AlignedVector<double>& displacement) const noexcept;
+  /// dt^2 times the forces and weights of the masses, and what the medium takes of these
+  /// displacements, 4 x N [kg m]. @return half of what it takes in a period [J]
+  double find_push_in_medium(const AlignedVector<double>& displacement,
+                             AlignedVector<double>& push) const noexcept;
   /// Adds to the forces on all MATs, 4 x N.
   void add_forces(const AlignedVector<double>& more) noexcept;
 
@@ -101,6 +112,7 @@ class MatArray {
   AlignedVector<double> force_;
   AlignedVector<double> dt2_over_mass_;  // [s^2/kg], 0 unless a mass
   AlignedVector<double> persistence_;    // 1 - dt Z / m
+  std::vector<double> mass_;             // [kg], 0 unless a mass
   std::vector<Range> masses_;            // rows of neighbouring masses
   double dt_;                            // [s]
   Vec3 weight_step_;                     // gravity * dt^2 [m]

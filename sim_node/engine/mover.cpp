@@ -4,7 +4,9 @@
 #include <stdexcept>
 
 #include "sim_node/engine/cordis_mover.h"
+#include "sim_node/engine/implicit_euler.h"
 #include "sim_node/engine/leapfrog.h"
+#include "sim_node/engine/symplectic4.h"
 #include "sim_node/engine/world_state.h"
 
 namespace cordis::engine {
@@ -19,6 +21,10 @@ std::unique_ptr<Mover> make_mover(const NetworkDescription& network) {
       return std::make_unique<CordisMover>();
     case Integrator::kLeapfrog:
       return std::make_unique<Leapfrog>(network);
+    case Integrator::kSymplectic4:
+      return std::make_unique<Symplectic4>(network);
+    case Integrator::kImplicit:
+      return std::make_unique<ImplicitEuler>(network);
   }
   throw std::invalid_argument("there is no such integrator");
 }

@@ -35,6 +35,8 @@ class Mover {
   virtual void start(WorldState& world) noexcept = 0;
   /// One step. Real time: no allocation, never throws.
   virtual Moved step(WorldState& world) noexcept = 0;
+  /// The parameters of liaisons have changed between two steps.
+  virtual void adopt(WorldState&) noexcept {}
   /// Energies and account as World::energy promises them.
   virtual Energy energy(WorldState& world) const noexcept = 0;
   /// [m/s]

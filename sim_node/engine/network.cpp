@@ -141,6 +141,10 @@ void check(const NetworkDescription& description) {
   check_each(description, description.state_links, "state link", check_state_link);
   check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
   check_each(description, description.sets, "set", check_set);
+  if (const auto refusal = refusal_of(description)) {
+    throw std::invalid_argument(std::string("the integrator ") + to_string(description.integrator) +
+                                " does not take " + refusal->what);
+  }
 }
 
 }  // namespace

@@ -186,6 +186,7 @@ bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   rest.switching = energy().total() - energy_before.total() - change.switching;
   rest.elastic = -rest.switching;
   state_->account.add(rest);
+  state_->mover->adopt(*state_);
   return true;
 }
 

@@ -85,6 +85,28 @@ StepEnergy WorldState::work_since_last_call() const noexcept {
   return work;
 }
 
+double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy& energy) noexcept {
+  const ForceColumns as_it_moved = mats.force_columns();
+  ForceColumns felt = as_it_moved;
+  felt.delayed = felt_positions;
+  mats.clear_forces();
+
+  StepEnergy of_links = links.add_forces_of_moment(kernel, felt);
+  of_links.dissipated *= 0.5;
+  // Without the viscous forces of the last step, half the work of those of this one is returned.
+  if (!state_links.empty()) {
+    state_links.forget_viscous_forces();
+    of_links += state_links.add_forces(behaviours, table, felt, step_count, log);
+  }
+  energy.dissipated += maxwell_links.add_forces(behaviours, as_it_moved).dissipated;
+  if (!sets.empty()) {
+    sets.start();
+    of_links += sets.add_forces(pair_step(false), felt);
+  }
+  energy.switching += of_links.switching;
+  return of_links.dissipated;
+}
+
 void WorldState::replace_behaviour(std::uint32_t index, const Behaviour& behaviour) {
   if (index >= table.behaviours().size()) {
     throw std::invalid_argument("behaviour " + std::to_string(index) + " does not exist");
@@ -105,6 +127,7 @@ void WorldState::replace_behaviour(std::uint32_t index, const Behaviour& behavio
   StepEnergy change;
   change.switching = stored_energy() - before;
   account.add(change);
+  mover->adopt(*this);
   replaced = true;
 }
 

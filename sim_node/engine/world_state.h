@@ -48,6 +48,25 @@ struct WorldState {
   double potential_energy() noexcept;
   StepEnergy work_since_last_call() const noexcept;
 
+  /// Clears the forces and adds those of all liaisons for an account that is kept at moments:
+  /// dampers and conditions see the velocity (position - felt) / dt, Maxwell elements how the MATs
+  /// have moved. Enters changes of state and what Maxwell elements have taken.
+  /// @return half of what viscosity takes in a period at this moment [J]
+  double add_forces_of_moment(const double* felt, StepEnergy& energy) noexcept;
+  /// The account at the moment of the last forces. @param velocity_of  of a MAT at that moment
+  template <class VelocityOf>
+  Energy energy_of_moment(VelocityOf velocity_of) noexcept {
+    double kinetic = 0.0;
+    double gravity = 0.0;
+    for (std::uint32_t i = 0; i < mats.count(); ++i) {
+      if (!mats.is_mass(i)) continue;
+      const double mass = description().mats[i].mass;
+      kinetic += 0.5 * mass * velocity_of(i).squaredNorm();
+      gravity -= mass * description().gravity.dot(mats.position_of_forces(i));
+    }
+    return account.at_moment(kinetic, potential_energy(), gravity);
+  }
+
   std::shared_ptr<const Network> network;
   VectorWidth width;
   const StepKernel& kernel;

@@ -5,7 +5,8 @@ namespace cordis::plan {
 
 using engine::Integrator;
 
-LimitWeights limit_weights(const engine::NetworkDescription& network) {
+LimitWeights limit_weights(const engine::NetworkDescription& network, Limit limit) {
+  constexpr double kSurelyDiverging = 5.0269;  // w dt of symplectic4
   LimitWeights weights;
   switch (network.integrator) {
     case Integrator::kCordis:
@@ -13,6 +14,14 @@ LimitWeights limit_weights(const engine::NetworkDescription& network) {
     case Integrator::kLeapfrog:  // 4 M - dt^2 K - 4 dt Z > 0, without Z in sweeps
       weights.link_viscosity = engine::damps_in_sweeps(network) ? 0.0 : 2.0;
       weights.viscosity = 2.0;
+      break;
+    case Integrator::kSymplectic4: {  // w dt below these, where `cordis` has 2
+      const double most = limit == Limit::kStable ? engine::kSymplectic4Limit : kSurelyDiverging;
+      weights.link_stiffness = weights.stiffness = 4.0 / (most * most);
+      break;
+    }
+    case Integrator::kImplicit:  // 4 M + dt^2 K + 2 dt Z, of linear links, less that of all others
+      weights.link_stiffness = weights.link_viscosity = limit == Limit::kStable ? 0.0 : -1.0;
       break;
   }
   return weights;

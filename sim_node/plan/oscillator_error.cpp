@@ -38,6 +38,12 @@ Roots roots_of(Integrator integrator, double stiffness, double viscosity) {
       const double left = std::exp(-viscosity);
       return {(1.0 + left) * (1.0 - 0.5 * stiffness), left};
     }
+    case Integrator::kSymplectic4:
+      return {engine::symplectic4_trace(stiffness), 1.0};
+    case Integrator::kImplicit: {
+      const double whole = 1.0 + viscosity + stiffness;
+      return {(2.0 + viscosity) / whole, 1.0 / whole};
+    }
   }
   return {2.0 - stiffness - viscosity, 1.0 - viscosity};
 }
@@ -58,7 +64,8 @@ OscillatorError oscillator_error(double angular_frequency, double viscosity, dou
   const double half = 0.5 * roots.trace;
   const double reached = std::atan2(std::sqrt(roots.product - half * half), half) / step;
   error.pitch = reached / frequency - 1.0;
-  if (rate > 0.0) error.decay = -0.5 * std::log1p(roots.product - 1.0) / (rate * step) - 1.0;
+  const double decay = -0.5 * std::log1p(roots.product - 1.0) / step;
+  error.decay = rate > 0.0 ? decay / rate - 1.0 : decay / frequency;
   return error;
 }
 

@@ -11,7 +11,9 @@ namespace cordis::plan {
 struct OscillatorError {
   bool oscillates = false;  ///< whether the true motion and that of the scheme do; else both are 0
   double pitch = 0.0;       ///< relative error of the frequency: + is sharp
-  double decay = 0.0;       ///< relative error of the rate of decay; 0 without viscosity
+  /// Relative error of the rate of decay; without viscosity the rate that the integrator makes up,
+  /// as a part of w.
+  double decay = 0.0;
 };
 
 /// @param angular_frequency  sqrt(K / m) [1/s], > 0

@@ -20,7 +20,7 @@ double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mat
 
 /// The step at which one contact of a set diverges by itself, by its linear part.
 double limit_of_one_contact(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
-  const LimitWeights weights = limit_weights(network);
+  const LimitWeights weights = limit_weights(network, Limit::kDiverging);
   double limit = std::numeric_limits<double>::infinity();
   for (const Crowd& crowd : graph.crowds) {
     const double inverse_mass = lightest(graph, crowd.members) + lightest(graph, crowd.others);
@@ -34,13 +34,10 @@ double limit_of_one_contact(const engine::NetworkDescription& network, const Lia
 
 /// Of the tangent at the start, or of one contact.
 double diverging_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
-  struct Limit {
-    double step;
-  };
   const auto limit_at = [&graph](const engine::NetworkDescription& at) {
-    return Limit{std::min(StartTangent(at).diverging_step(), limit_of_one_contact(at, graph))};
+    return std::min(StartTangent(at).diverging_step(), limit_of_one_contact(at, graph));
   };
-  return limit_of_all_steps(network, limit_at).step;
+  return limit_of_all_steps(network, limit_at);
 }
 
 /// Whether a liaison of this behaviour is there at some times and not at others.

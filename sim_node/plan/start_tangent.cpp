@@ -110,7 +110,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
     root_of_inverse_mass_[static_cast<Eigen::Index>(i)] =
         mat.kind == engine::MatKind::kMass ? 1.0 / std::sqrt(mat.mass) : 0.0;
   }
-  const LimitWeights weights = limit_weights(network);
+  const LimitWeights weights = limit_weights(network, Limit::kDiverging);
   medium_viscosity_ *= weights.link_viscosity;
   const auto distance = [&](std::uint32_t a, std::uint32_t b) {
     const Eigen::Vector3d along = network.mats[b].position - network.mats[a].position;
@@ -119,8 +119,10 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::Link& link : network.links) {
     const double elongation = distance(link.mat_a, link.mat_b) - link.rest_length;
     const double stiffness = weights.link_stiffness * link.stiffness;
-    add(link.mat_a, link.mat_b, network, stiffness, stiffness * elongation,
-        weights.link_viscosity * link.viscosity, 0.0);
+    const bool implicit = stiffness < 0.0;  // then a compressed link has no stiffness across
+    const double pull = stiffness * (implicit ? std::max(elongation, 0.0) : elongation);
+    add(link.mat_a, link.mat_b, network, stiffness, pull, weights.link_viscosity * link.viscosity,
+        0.0);
   }
   for (const engine::StateLink& link : network.state_links) {
     const engine::Behaviour& behaviour = network.behaviours[link.behaviour];

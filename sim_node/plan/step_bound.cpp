@@ -159,7 +159,7 @@ StepBound edge_bound(const LiaisonGraph& graph) {
 namespace {
 
 StepBound certified_bound_at(const engine::NetworkDescription& network, LiaisonGraph graph) {
-  const LimitWeights weights = limit_weights(network);
+  const LimitWeights weights = limit_weights(network, Limit::kStable);
   StepBound bound = bound_at(weighted(graph, weights));
   // A Maxwell element softens as the step grows: with its stiffness at a stable step every step up
   // to the next bound is stable too.

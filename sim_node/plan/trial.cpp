@@ -72,9 +72,12 @@ class Comparison {
 
 }  // namespace
 
-std::vector<std::string> integrator_names() {
+std::vector<std::string> integrators_for(engine::NetworkDescription network) {
   std::vector<std::string> names;
-  for (const auto integrator : engine::kIntegrators) names.emplace_back(to_string(integrator));
+  for (const auto integrator : engine::kIntegrators) {
+    network.integrator = integrator;
+    if (!engine::refusal_of(network)) names.emplace_back(to_string(integrator));
+  }
   return names;
 }
 

@@ -11,8 +11,8 @@
 
 namespace cordis::plan {
 
-/// The integrators that a trial can choose among, by the name they have in a scene.
-std::vector<std::string> integrator_names();
+/// The integrators that take the network, by the name they have in a scene.
+std::vector<std::string> integrators_for(engine::NetworkDescription network);
 /// Evaluations of all forces in one step of an integrator.
 int evaluations_per_step(const std::string& integrator);
 

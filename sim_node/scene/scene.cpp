@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "sim_node/scene/assembly.h"
+#include "sim_node/scene/naming.h"
 #include "sim_node/scene/point.h"
 
 namespace cordis::scene {
@@ -26,8 +27,10 @@ std::string nearest_multiples(double rate, double gesture_rate) {
   return below > 0.0 ? config::number_text(below) + " or " + above : above;
 }
 
-void read_step(const Value& section, Scene& scene, config::Problems& problems) {
+/// @return where the integrator is chosen
+config::Place read_step(const Value& section, Scene& scene, config::Problems& problems) {
   config::MappingReader reader(section, "step", problems);
+  const config::Place place = reader.place_of("integrator");
   std::vector<std::string> integrators;
   for (const auto integrator : engine::kIntegrators)
     integrators.emplace_back(to_string(integrator));
@@ -41,7 +44,7 @@ void read_step(const Value& section, Scene& scene, config::Problems& problems) {
                              Range::between(0.01, kHighestFrameRate));
   scene.network.step = 1.0 / scene.step_rate_hz;
   reader.finish();
-  if (!reader.ok() || !section.exists()) return;
+  if (!reader.ok() || !section.exists()) return place;
 
   const double steps = scene.step_rate_hz / scene.gesture_rate_hz;
   constexpr double kRounding = 1.0e-9;
@@ -57,6 +60,7 @@ void read_step(const Value& section, Scene& scene, config::Problems& problems) {
     reader.error_at("frame_rate_hz", "'frame_rate_hz' must not exceed the gesture rate, " +
                                          config::number_text(scene.gesture_rate_hz) + " Hz");
   }
+  return place;
 }
 
 void read_world(const Value& section, Scene& scene, config::Problems& problems) {
@@ -71,6 +75,24 @@ void read_world(const Value& section, Scene& scene, config::Problems& problems) 
 bool has_mass(const Scene& scene) {
   const auto is_mass = [](const engine::Mat& mat) { return mat.kind == engine::MatKind::kMass; };
   return std::any_of(scene.network.mats.begin(), scene.network.mats.end(), is_mass);
+}
+
+/// @return whether the integrator takes all that is in the scene
+bool check_integrator(const Scene& scene, const config::Place& place, config::Problems& problems) {
+  const auto refusal = engine::refusal_of(scene.network);
+  if (!refusal) return true;
+  std::string owner = "the scene";
+  std::string hint;
+  if (refusal->liaison) {
+    const Called liaison = call_liaison(scene, refusal->liaison);
+    owner = liaison.name;
+    if (liaison.place.line > 0) hint = owner + " stands at " + place_text(liaison.place);
+  }
+  problems.error(place,
+                 std::string("the integrator ") + to_string(scene.network.integrator) +
+                     " does not take " + refusal->what + ", which " + owner + " has",
+                 hint);
+  return false;
 }
 
 /// The engine has the last word on what it can simulate.
@@ -121,12 +143,12 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
   const long space = reader.required_integer("space", 1, 3);
   if (problems.error_count() == errors_before_space)
     scene.network.dimension = static_cast<int>(space);
-  read_step(reader.required_mapping("step"), scene, problems);
+  const config::Place integrator = read_step(reader.required_mapping("step"), scene, problems);
   read_content(reader, scene, problems);
   reader.finish();
   if (problems.error_count() != errors_before) return scene;
   if (has_mass(scene)) {
-    check_by_engine(scene, reader);
+    if (check_integrator(scene, integrator, problems)) check_by_engine(scene, reader);
   } else {
     reader.error_at("matter", "the scene has no mass that can move");
   }

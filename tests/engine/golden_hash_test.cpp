@@ -153,6 +153,21 @@ TEST_P(GoldenHash, OfTheLeapfrogStays) {
   expect(heavily_damped_net(GetParam()), "leapfrog_heavily_damped_net");
 }
 
+TEST_P(GoldenHash, OfTheOtherIntegratorsStays) {
+  NetworkDescription scene = free_cluster(40, 157, 0.0);
+  scene.integrator = Integrator::kSymplectic4;
+  scene.gravity = Vec3(0, 0, -9.81);
+  World symplectic = make_world(scene, GetParam());
+  run(symplectic, 500);
+  expect(symplectic, "symplectic4_cluster");
+  scene = string_in_space(20, 0.05, 1e-3);
+  scene.integrator = Integrator::kImplicit;
+  scene.gravity = Vec3(0, 0, -9.81);
+  World implicit = make_world(scene, GetParam());
+  run(implicit, 500);
+  expect(implicit, "implicit_string");
+}
+
 TEST_P(GoldenHash, GoesWithTheSameEnergyAccountOnEveryWidth) {
   // the account is summed in an order of its own; it must not depend on the width either
   const engine::Energy narrow = pushed_net(VectorWidth::kSse2).energy();

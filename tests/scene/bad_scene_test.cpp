@@ -47,7 +47,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kNothing,
                  "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^euler}\nmatter: {a: "
                  "{kind: mass, mass_kg: 1, at_m: 0}}\n",
-                 "'integrator' in step must be one of cordis, leapfrog, got 'euler'", ""},
+                 "'integrator' in step must be one of cordis, leapfrog, symplectic4, implicit, got "
+                 "'euler'",
+                 ""},
+        BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^symplectic4}\nmatter: "
+                 "{s: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, "
+                 "viscosity_n_s_per_m: 1, ends: fixed}}\n",
+                 "the integrator symplectic4 does not take viscosity, which s.links[0] has",
+                 "s.links[0] stands at t:4"},
         BadScene{kHead1, "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nworld: {^viscosity: 1}\n",
                  "unknown key 'viscosity' in world", "did you mean 'viscosity_n_s_per_m'?"},
         BadScene{
