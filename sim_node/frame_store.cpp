@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim_node/engine/idle_state.h"
+
 namespace cordis::sim {
 namespace {
 
 std::uint8_t shown_state(const engine::World& world, std::uint32_t link) noexcept {
-  const engine::NetworkDescription& network = world.network().description();
-  const std::uint32_t number = world.state_of(link);
-  const engine::LinkState& state =
-      network.behaviours[network.state_links[link].behaviour].states[number];
-  const bool is_idle = state.stiffness == 0.0 && state.viscosity == 0.0 &&
-                       state.elasticity.kind == engine::Law::Kind::kNone &&
-                       state.dissipation.kind == engine::Law::Kind::kNone;
-  return static_cast<std::uint8_t>(number + (is_idle ? kLinkIsIdle : 0));
+  const std::uint8_t idle = engine::is_idle(world, link) ? kLinkIsIdle : 0;
+  return static_cast<std::uint8_t>(world.state_of(link) + idle);
 }
 
 }  // namespace

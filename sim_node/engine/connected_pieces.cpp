@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sim_node/engine/idle_state.h"
 #include "sim_node/engine/vector_width.h"
 
 namespace cordis::engine {
@@ -128,6 +129,16 @@ std::size_t ConnectedPieces::find_bound(const World& world, std::size_t set) noe
     static_cast<ConnectedPieces*>(owner)->join(pair);
   };
   world.visit_bound_pairs(set, add, this);
+  return number_pieces();
+}
+
+std::size_t ConnectedPieces::find_linked(const World& world,
+                                         std::span<const std::uint32_t> state_links) noexcept {
+  begin();
+  const std::vector<StateLink>& links = world.network().description().state_links;
+  for (const std::uint32_t link : state_links) {
+    if (!is_idle(world, link)) join(BoundPair{links[link].mat_a, links[link].mat_b});
+  }
   return number_pieces();
 }
 

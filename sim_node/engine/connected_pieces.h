@@ -45,6 +45,11 @@ class ConnectedPieces {
   /// The same of the bound pairs of a set of a world. Precondition: the set exists.
   std::size_t find_bound(const World& world, std::size_t set) noexcept;
 
+  /// Finds the pieces of members joined by those of these links with states that are not idle in
+  /// their present state. Real time: O(members + links), no allocation. Precondition: the links
+  /// exist. @return how many
+  std::size_t find_linked(const World& world, std::span<const std::uint32_t> state_links) noexcept;
+
   /// Number of the piece of a member as last found, from 0 in the order of their first members.
   std::uint32_t piece_of(std::size_t member) const noexcept { return piece_[member]; }
   /// MATs of the set, P and then Q.

@@ -95,6 +95,8 @@ class Assembly {
   void add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
                const std::vector<std::uint32_t>& q);
   void read_signal(const config::Value::Entry& entry, std::vector<Signal>& signals);
+  void read_count_of_links(config::MappingReader& reader, const std::string& name,
+                           const Selection& picked, std::vector<Signal>& signals);
   void read_signal_of_set(config::MappingReader& reader, const std::string& name, std::uint32_t set,
                           std::vector<Signal>& signals);
   /// The direction of a position, velocity or force; a port of one axis needs no `axis`.

@@ -1,7 +1,10 @@
 #include "sim_node/scene/signal.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
+
+#include "sim_node/engine/idle_state.h"
 
 namespace cordis::scene {
 
@@ -108,6 +111,25 @@ double bonds_in(const engine::World& world, std::size_t set) noexcept {
   return count;
 }
 
+double bonds_of(std::span<const std::uint32_t> state_links, const engine::World& world) noexcept {
+  const auto holds = [&world](std::uint32_t link) { return !engine::is_idle(world, link); };
+  return static_cast<double>(std::ranges::count_if(state_links, holds));
+}
+
+/// The MATs that links with states join, each once.
+std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& state_links,
+                                   const engine::NetworkDescription& network) {
+  std::vector<std::uint32_t> ends;
+  for (const std::uint32_t link : state_links) {
+    ends.push_back(network.state_links[link].mat_a);
+    ends.push_back(network.state_links[link].mat_b);
+  }
+  std::ranges::sort(ends);
+  const auto twice = std::ranges::unique(ends);
+  ends.erase(twice.begin(), twice.end());
+  return ends;
+}
+
 double value_of_signal(const Signal& signal, const engine::World& world,
                        const engine::Energy& energy) noexcept {
   switch (signal.quantity) {
@@ -127,7 +149,8 @@ double value_of_signal(const Signal& signal, const engine::World& world,
     case Quantity::kRestLength:
       return value_of_link(signal, world);
     case Quantity::kBonds:
-      return bonds_in(world, signal.index);
+      return signal.state_links.empty() ? bonds_in(world, signal.index)
+                                        : bonds_of(signal.state_links, world);
     case Quantity::kChanges:
       return changes_in(world);
     default:
@@ -142,7 +165,9 @@ SignalReader::SignalReader(std::vector<Signal> signals, const engine::NetworkDes
   for (std::size_t s = 0; s < signals_.size(); ++s) {
     const Signal& signal = signals_[s];
     if (signal.quantity != Quantity::kPieces) continue;
-    if (signal.mats.empty()) {
+    if (!signal.state_links.empty()) {
+      pieces_[s].emplace(network, ends_of(signal.state_links, network));
+    } else if (signal.mats.empty()) {
       pieces_[s].emplace(network, signal.index);
     } else {
       pieces_[s].emplace(network, signal.mats);
@@ -164,8 +189,14 @@ double SignalReader::value_of(std::size_t index, const engine::World& world,
   const Signal& signal = signals_[index];
   if (!pieces_[index]) return value_of_signal(signal, world, energy);
   engine::ConnectedPieces& pieces = *pieces_[index];
-  const std::size_t count = signal.near > 0.0 ? pieces.find_near(world.positions(), signal.near)
-                                              : pieces.find_bound(world, signal.index);
+  std::size_t count = 0;
+  if (!signal.state_links.empty()) {
+    count = pieces.find_linked(world, signal.state_links);
+  } else if (signal.near > 0.0) {
+    count = pieces.find_near(world.positions(), signal.near);
+  } else {
+    count = pieces.find_bound(world, signal.index);
+  }
   return static_cast<double>(count);
 }
 

@@ -29,8 +29,9 @@ enum class Quantity : std::uint8_t {
   kState,  ///< number of the state of a link, in the order of the file
   kRestLength,  ///< present rest length of a link with states [m]
 
-  kPieces,  ///< connected pieces of the MATs of a set liaison, or of MATs
-  kBonds,   ///< pairs of a set liaison that are in another state than that of the start
+  kPieces,  ///< connected pieces of the MATs of a set liaison, of MATs, or of links with states
+  kBonds,   ///< pairs of a set liaison that are in another state than that of the start; links with
+            ///< states that are not idle
 
   kChanges,  ///< of the states of all links, since step 0
 
@@ -54,6 +55,8 @@ struct Signal {
   double offset = 0.0;                            ///< subtracted from a position [m]: a port's rest
   double near = 0.0;  ///< of pieces: within which two MATs are one piece [m]; 0: bound
   std::vector<std::uint32_t> mats;  ///< whose pieces are counted; empty: of a set
+  std::vector<std::uint32_t>
+      state_links;  ///< whose pieces or bonds are counted; empty: of no links
 };
 
 /// Evaluates the signals of a scene.
@@ -68,7 +71,7 @@ class SignalReader {
 
   /// The values of all signals in their order.
   /// Real time: no allocation; O(signals), and O(MATs + links) more when an energy is among them,
-  /// O(MATs + pairs) for each that counts pieces. Not from two threads at once.
+  /// O(MATs + pairs) for each that counts pieces or bonds. Not from two threads at once.
   /// @param world   of the network the signals were compiled for
   /// @param values  room for count() values
   void read(const engine::World& world, double* values) const noexcept;

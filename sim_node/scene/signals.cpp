@@ -23,7 +23,7 @@ struct QuantityWord {
   const char* unit;
   bool has_direction;
 };
-constexpr std::array<QuantityWord, 27> kWords{{
+constexpr std::array<QuantityWord, 29> kWords{{
     {"position", Owner::kMat, Quantity::kPosition, "m", true},
     {"velocity", Owner::kMat, Quantity::kVelocity, "m/s", true},
     {"force", Owner::kMat, Quantity::kForce, "N", true},
@@ -38,6 +38,8 @@ constexpr std::array<QuantityWord, 27> kWords{{
     {"force", Owner::kStateLink, Quantity::kPull, "N", false},
     {"state", Owner::kStateLink, Quantity::kState, "", false},
     {"rest_length", Owner::kStateLink, Quantity::kRestLength, "m", false},
+    {"pieces", Owner::kStateLink, Quantity::kPieces, "", false},
+    {"bonds", Owner::kStateLink, Quantity::kBonds, "", false},
     {"distance", Owner::kMaxwellLink, Quantity::kDistance, "m", false},
     {"speed", Owner::kMaxwellLink, Quantity::kGrowth, "m/s", false},
     {"pieces", Owner::kMat, Quantity::kPieces, "", false},
@@ -128,7 +130,11 @@ void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signa
     if (!picked) return;  // whose signal it is decides what else it may say
   }
   const bool is_link = picked && picked->kind == Named::kLinks;
-  const bool is_count = picked && !is_link && reader.optional_text("quantity", "") == "pieces";
+  const std::string word = reader.optional_text("quantity", "");
+  if (is_link && (word == "pieces" || word == "bonds")) {
+    return read_count_of_links(reader, entry.key, *picked, signals);
+  }
+  const bool is_count = picked && !is_link && word == "pieces";
   if (picked && picked->count() != 1 && !is_count) {
     reader.error_at("of",
                     "a signal is of one MAT or one link, and " +
@@ -161,6 +167,21 @@ void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signa
       reader.error_at("axis", std::string("the quantity '") + quantity->word + "' has no axis");
     }
   }
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+void Assembly::read_count_of_links(config::MappingReader& reader, const std::string& name,
+                                   const Selection& picked, std::vector<Signal>& signals) {
+  Signal signal;
+  signal.name = name;
+  Owner owner = Owner::kStateLink;
+  for (const std::uint32_t link : picked.indices) {
+    if (kind_of_link(link) != LinkKind::kState) owner = owner_of(kind_of_link(link));
+    signal.state_links.push_back(index_of_link(link));
+  }
+  const QuantityWord* quantity = read_quantity(reader, owner);
+  if (quantity != nullptr) signal.quantity = quantity->quantity;
   reader.finish();
   signals.push_back(std::move(signal));
 }

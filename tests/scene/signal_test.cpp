@@ -169,11 +169,37 @@ TEST(SignalReader, CountsThePiecesAndBondsOfASetOfBalls) {
   EXPECT_EQ(run.value("b"), 3.0);
 }
 
+TEST(SignalReader, CountsThePiecesAndBondsOfLinksThatBreak) {
+  Observed run(sound_scene(
+      2,
+      "liaisons:\n  fuse:\n    parameters: {life_s: 1}\n    states:\n"
+      "      whole: {stiffness_n_per_m: 1, exits: [{to: broken, when: age_s >= life_s}]}\n"
+      "      broken: {final: true}\n"
+      "matter:\n"
+      "  a: {kind: string, count: 4, mass_kg: 1, from_m: [0, 0], to_m: [3, 0], liaison: fuse}\n"
+      "  b: {kind: mass, mass_kg: 1, at_m: [0, 1]}\n"
+      "links:\n  - {liaison: fuse, between: [\"a[0]\", b], name: early, life_s: 0.01}\n"
+      "signals:\n  all: {of: [a.links, early], quantity: pieces}\n"
+      "  p: {of: a.links, quantity: pieces}\n  b: {of: [a.links, early], quantity: bonds}\n"));
+  EXPECT_EQ(run.value("all"), 1.0);
+  EXPECT_EQ(run.value("b"), 4.0);
+
+  run.step(100);  // 0.1 s
+  EXPECT_EQ(run.value("all"), 2.0);
+  EXPECT_EQ(run.value("p"), 1.0);
+  EXPECT_EQ(run.value("b"), 3.0);
+
+  run.step(1000);
+  EXPECT_EQ(run.value("p"), 4.0);
+  EXPECT_EQ(run.value("b"), 0.0);
+}
+
 TEST(SignalReader, SaysWhatCannotBeCounted) {
   const auto problem = [](const std::string& signal) {
     config::Problems problems;
     load_scene_text(scene_head(2) + kGlue +
                         "  - {liaison: spring, within: row, range_m: 1, name: s}\n"
+                        "  - {liaison: spring, between: [thrown, row], name: stiff}\n"
                         "signals:\n  p: " +
                         signal,
                     "t", problems);
@@ -184,6 +210,7 @@ TEST(SignalReader, SaysWhatCannotBeCounted) {
             "'near_m' in signal 'p' must be > 0, got 0");
   EXPECT_EQ(problem("{of: s, quantity: pieces}"),
             "pairs of a liaison of one state are never bound");
+  EXPECT_EQ(problem("{of: stiff, quantity: pieces}"), "a link has no quantity 'pieces'");
   EXPECT_EQ(problem("{of: glue, quantity: bonds, near_m: 1}"),
             "unknown key 'near_m' in signal 'p'");
 }
