@@ -11,8 +11,8 @@
 namespace cordis::engine {
 
 /// Room for the pairs of some consecutive rows of a set, about as many as the caches nearest to the
-/// processor hold, and for what is found of them. A ball has few later partners: batches that went
-/// over the end of its row would be half empty.
+/// processor hold, and for what is found of them. A ball has few later partners: a batch that ended
+/// with its row would be half empty.
 class PairBlock {
  public:
   explicit PairBlock(std::size_t member_count);

@@ -71,20 +71,18 @@ TEST(StirredBox, TurnsWithTheSpoonAndOrdersItselfInClusters) {
 
   double inner = 0.0;
   double outer = 0.0;
-  for (int turn = 0; turn < 2; ++turn) {
-    stage.play_until(2.0 + turn, [&] {
-      inner += circulation(stage, 0.045) / 2000.0;
-      outer += circulation(stage, 0.07) / 2000.0;
-    });
-  }
+  stage.play_until(2.0, [&] {  // one turn
+    inner += circulation(stage, 0.045) / 1000.0;
+    outer += circulation(stage, 0.07) / 1000.0;
+  });
   const std::vector<std::size_t> sizes = cluster_sizes(stage);
   EXPECT_GT(inner, 0.01);   // the spoon goes at 0.28 m/s: 0.08 m^2/s if all balls went with it
-  EXPECT_GT(outer, 0.002);  // at the walls it is less
+  EXPECT_GT(outer, 0.003);  // at the walls it is less
   EXPECT_LT(outer, inner);
   EXPECT_GT(static_cast<double>(ordered(stage).size()), 0.25 * count);
   ASSERT_GE(sizes.size(), 3u);
   EXPECT_GE(sizes[0], 100u);
-  EXPECT_GE(sizes[2], 8u);
+  EXPECT_GE(sizes[2], 10u);
 }
 
 }  // namespace
