@@ -124,9 +124,8 @@ std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& state_links
     ends.push_back(network.state_links[link].mat_a);
     ends.push_back(network.state_links[link].mat_b);
   }
-  std::ranges::sort(ends);
-  const auto twice = std::ranges::unique(ends);
-  ends.erase(twice.begin(), twice.end());
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   return ends;
 }
 
