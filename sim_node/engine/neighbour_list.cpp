@@ -27,7 +27,7 @@ NeighbourList::NeighbourList(std::size_t count_p, std::size_t count_q, int dimen
       dimension_(dimension),
       range_(range),
       capacity_(std::max(capacity, count_p + count_q)),
-      kernel_(kernel),
+      kernel_(&kernel),
       grid_(count_p, dimension),
       start_(count_p + 1, 0),
       fill_(count_p, 0),
@@ -51,7 +51,7 @@ double NeighbourList::reach_square() const noexcept {
 void NeighbourList::refresh(const double* position) noexcept {
   if (valid_ && whole_) {
     ++age_;
-    last_move_square_ = kernel_.largest_move(position, from_.data(), member_count());
+    last_move_square_ = kernel_->largest_move(position, from_.data(), member_count());
     if (last_move_square_ <= 0.25 * skin_ * skin_ * (1.0 - kMargin)) return;
     choose_skin();
   }
@@ -102,7 +102,7 @@ std::size_t NeighbourList::find_before(std::size_t b, const double* position, st
   std::size_t count = 0;
   for (std::size_t r = 0; r < around.count; ++r) {
     const CellGrid::Run run = around.runs[r];
-    count += kernel_.find_near(places, run.begin, run.end, query, found + count);
+    count += kernel_->find_near(places, run.begin, run.end, query, found + count);
   }
   return count;
 }

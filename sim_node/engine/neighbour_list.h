@@ -71,7 +71,7 @@ class NeighbourList {
   int dimension_;
   double range_;
   std::size_t capacity_;
-  const PairKernel& kernel_;
+  const PairKernel* kernel_;
   CellGrid grid_;
   std::vector<std::size_t> start_;          // by row; one past the last too
   std::vector<std::size_t> fill_;           // by row: where its next entry goes
