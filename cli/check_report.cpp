@@ -73,6 +73,23 @@ std::string accuracy_text(const SceneCheck& check) {
                      percent(edge.error.decay));
 }
 
+/// What the scene asks for, and what the plan does about it.
+std::string choice_text(const SceneCheck& check) {
+  if (!check.choice) return {};
+  const scene::Accuracy& asked = *check.scene.accuracy;
+  const plan::Choice& choice = *check.choice;
+  std::string text = fmt::format(
+      "asked       {:.4g} of {}, up to {:.4g} Hz; contacts {:.3g} %{}\n", asked.tolerance,
+      asked.over_s > 0.0 ? fmt::format("the amplitude for {:.4g} s", asked.over_s)
+                         : std::string("pitch and decay"),
+      asked.band_hz, 100.0 * asked.contact_energy, at({"", asked.place}));
+  text += fmt::format("            {:.6g} Hz {}: because of {}", choice.needed_hz,
+                      check.keeps_accuracy() ? "would do" : "are NEEDED for that", choice.because);
+  if (choice.error >= 0.0) text += fmt::format("; tried out: {:.2g}", choice.error);
+  if (!choice.doubt.empty()) text += "\n            " + choice.doubt;
+  return text + "\n";
+}
+
 std::string contact_text(const SceneCheck& check) {
   const auto& contact = check.plan.worst_contact;
   if (!contact) return {};
@@ -120,6 +137,11 @@ std::string load_text(const SceneCheck& check) {
       "{:.4g} "
       "steps per second{}\n",
       check.load(), rate, rate > slowest ? "" : ", which is unstable: make it smaller or softer");
+  if (check.choice && rate > slowest) {
+    // the errors of the scheme with viscosity are of first order
+    text += fmt::format("            at that rate the tolerance would be about {:.2g}\n",
+                        check.scene.accuracy->tolerance * check.choice->needed_hz / rate);
+  }
   return text;
 }
 
@@ -174,7 +196,7 @@ std::string text_of(const SceneCheck& check) {
                                  scene.link_count(), scene.network.sets.size(), scene.space());
   text += fmt::format("integrator  {} at {:.6g} Hz, 1 thread, no reductions\n",
                       engine::to_string(scene.network.integrator), scene.step_rate_hz);
-  text += stability_text(check) + accuracy_text(check) + contact_text(check);
+  text += choice_text(check) + stability_text(check) + accuracy_text(check) + contact_text(check);
   for (const PortCheck& port : check.ports) text += port_text(check, port);
   return text + load_text(check);
 }
@@ -207,6 +229,14 @@ std::string json_of(const SceneCheck& check) {
     json["stability"]["limit"] = {
         {"liaison", called(scene::call_liaison(check.scene, stability.certified.liaison))},
         {"mat", called(scene::call_mat(check.scene, stability.certified.mat))}};
+  }
+  if (check.choice) {
+    const scene::Accuracy& asked = *check.scene.accuracy;
+    json["asked"] = {{"tolerance", asked.tolerance},           {"band_hz", asked.band_hz},
+                     {"contact_energy", asked.contact_energy}, {"over_s", asked.over_s},
+                     {"needed_hz", check.choice->needed_hz},   {"because", check.choice->because},
+                     {"kept", check.keeps_accuracy()},         {"doubt", check.choice->doubt}};
+    if (check.choice->error >= 0.0) json["asked"]["tried_out_error"] = check.choice->error;
   }
   if (check.plan.worst_contact) {
     json["worst_contact"] = {

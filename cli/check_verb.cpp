@@ -37,7 +37,7 @@ int run(const CheckOptions& options) {
 
 struct CheckWords {
   CheckOptions options;
-  std::string band = "100";
+  std::string band;
   std::string delay = "1";
   std::string device_viscosity = "0";
 };
@@ -51,7 +51,8 @@ void add_check_verb(CommandLine& line) {
                          "Say what a scene promises before it runs, and where it would fail");
   verb.required_word("SCENE", options.scene_file, "The scene file");
   verb.option("--json", "FILE", options.json_file, "Also write it for a program; - for stdout");
-  verb.option("--band", "HZ", words->band, "Where pitch and decay are judged [100]");
+  verb.option("--band", "HZ", words->band,
+              "Where pitch and decay are judged [that of the scene, or 100]");
   verb.option("--delay", "PERIODS", words->delay,
               "Of the loop through a device: from a sample to its answer [1]");
   verb.option("--device-viscosity", "N_S_PER_M", words->device_viscosity,
@@ -59,14 +60,14 @@ void add_check_verb(CommandLine& line) {
   verb.flag("--force", options.force, "Exit code 0 even when it is unstable");
   verb.examples(
       "Stable means that the step is below the limit in every pose and every combination of\n"
-      "states (docs/numerics.md).\n"
+      "states (docs/numerics.md). A scene with `accuracy` and without a rate gets its rate here.\n"
       "Exit code: 0 stable or not certain, 1 unstable, 2 bad file or command line.\n\n"
       "Examples:\n"
       "  cordis check launch_configs/scenes/plucked_string.yaml\n"
       "  cordis check launch_configs/scenes/membrane.yaml --band 40 --device-viscosity 1\n");
   verb.action([words] {
     CheckOptions& asked = words->options;
-    asked.band_hz = parse_number("--band", words->band, 1e-3, 1e6);
+    if (!words->band.empty()) asked.band_hz = parse_number("--band", words->band, 1e-3, 1e6);
     asked.delay_periods = static_cast<int>(parse_number("--delay", words->delay, 0, 1000));
     asked.device_viscosity = parse_number("--device-viscosity", words->device_viscosity, 0.0, 1e6);
     return run(asked);

@@ -60,7 +60,7 @@ void add_lab_verb(CommandLine& line) {
   verb.required_word("SCENE", options.file, "A scene, or a launch file whose devices play");
   verb.option("--out", "DIR", options.folder, "Where the results go [lab]");
   verb.option("--duration", "TIME", words->duration,
-              "Of a run, in simulated time [2s; quick 0.5s]");
+              "Of a run, in simulated time [over_s of the scene, or 2s]");
   verb.option("--jobs", "COUNT", words->jobs, "Runs at the same time [1]");
   verb.flag("--quick", options.quick, "Few rates, within half a minute");
   verb.flag("--again", options.again, "Forget what an earlier lab has left in the folder");
@@ -76,8 +76,9 @@ void add_lab_verb(CommandLine& line) {
   verb.action([words] {
     LabOptions& asked = words->options;
     if (asked.folder.empty()) asked.folder = "lab";
-    if (words->duration.empty()) words->duration = asked.quick ? "500ms" : "2s";
-    asked.duration_s = std::chrono::duration<double>(parse_duration(words->duration)).count();
+    if (!words->duration.empty()) {
+      asked.duration_s = std::chrono::duration<double>(parse_duration(words->duration)).count();
+    }
     asked.jobs = static_cast<int>(parse_number("--jobs", words->jobs, 1, 64));
     return run(asked);
   });

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim_node/plan/load.h"
+#include "sim_node/plan/trial.h"
 
 namespace cordis::cli {
 namespace {
@@ -38,8 +39,26 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.options = options;
   check.scene = scene::load_scene(options.scene_file, problems);
   problems.throw_if_any();
+  if (const auto& asked = check.scene.accuracy) {
+    check.choice =
+        plan::choose(check.scene.network,
+                     {asked->tolerance, asked->band_hz, asked->contact_energy, asked->over_s},
+                     check.scene.gesture_rate_hz,
+                     check.scene.integrator_is_open
+                         ? plan::integrators_for(check.scene.network)
+                         : std::vector<std::string>{to_string(check.scene.network.integrator)},
+                     !check.scene.ports.empty());
+    if (check.scene.rate_is_open) {
+      scene::set_step(check.scene, check.choice->rate_hz,
+                      engine::integrator_named(check.choice->integrator));
+    }
+  }
+  constexpr double kBand = 100.0;
+  if (check.options.band_hz == 0.0) {
+    check.options.band_hz = check.scene.accuracy ? check.scene.accuracy->band_hz : kBand;
+  }
   const engine::NetworkDescription& network = check.scene.network;
-  check.plan = plan::plan_of(network, options.band_hz);
+  check.plan = plan::plan_of(network, check.options.band_hz);
   if (!check.scene.ports.empty()) {
     const plan::LiaisonGraph graph = plan::liaison_graph(network);
     for (const scene::Port& port : check.scene.ports) {

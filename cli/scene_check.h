@@ -1,9 +1,11 @@
 // cli/scene_check.h -- what `cordis check` finds out about a scene.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim_node/plan/choice.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/scene/naming.h"
 #include "sim_node/scene/scene.h"
@@ -13,8 +15,9 @@ namespace cordis::cli {
 /// What a person asked for.
 struct CheckOptions {
   std::string scene_file;
-  std::string json_file;        ///< empty: none; "-": instead of the text
-  double band_hz = 0.0;         ///< the upper end of the band that matters
+  std::string json_file;  ///< empty: none; "-": instead of the text
+  /// The upper end of the band that matters; 0: that of the scene's `accuracy`, or 100 Hz.
+  double band_hz = 0.0;
   int delay_periods = 1;        ///< of the loop through a device
   double device_viscosity = 0;  ///< of the device [N s/m]; 0: not known
   bool force = false;
@@ -33,11 +36,16 @@ struct SceneCheck {
   scene::Scene scene;
   CheckOptions options;
   plan::Plan plan;
+  std::optional<plan::Choice> choice;  ///< for the `accuracy` of the scene
   std::vector<PortCheck> ports;
   double step_nsec = 0.0;  ///< measured on this machine
 
   /// Wall time per simulated time.
   double load() const noexcept { return 1e-9 * step_nsec * scene.step_rate_hz; }
+  /// Whether the scene keeps its `accuracy`, or has none.
+  bool keeps_accuracy() const noexcept {
+    return !choice || scene.step_rate_hz >= choice->needed_hz;
+  }
   /// The lowest rate above `rate` that is a multiple of the gesture rate.
   double rate_above(double rate_hz) const noexcept;
 };

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "sim_node/scene/naming.h"
+#include "sim_node/stability_check.h"
+
 namespace cordis::sim {
 namespace {
 
@@ -94,21 +97,15 @@ double Simulation::simulated_s() const noexcept {
 
 std::string Simulation::failure() const {
   if (!failed_) return {};
-  std::string mat = "a MAT";
-  for (std::uint32_t index = 0; index < world_.network().mat_count(); ++index) {
-    if (world_.position(index).allFinite()) continue;
-    mat = "MAT " + std::to_string(index);
-    for (const scene::NamedRange& range : scene_->matter) {
-      if (index >= range.first && index < range.first + range.count) {
-        mat = "'" + range.name + "[" + std::to_string(index - range.first) + "]'";
-      }
-    }
-    break;
+  const std::string what = "the scene diverged at step " + std::to_string(world_.step_count());
+  for (std::uint32_t mat = 0; mat < world_.network().mat_count(); ++mat) {
+    if (world_.position(mat).allFinite()) continue;
+    return what + ": the position of '" + scene::call_mat(*scene_, mat).name +
+           "' is not a finite number; it is " + reason_of_divergence(*scene_, mat) +
+           ". A step rate above " + std::to_string(std::lround(scene_->step_rate_hz)) +
+           " Hz, or less stiffness or viscosity, may hold it";
   }
-  return "the scene diverged at step " + std::to_string(world_.step_count()) +
-         ": the position of " + mat + " is not a finite number; a step rate above " +
-         std::to_string(std::lround(scene_->step_rate_hz)) +
-         " Hz, or less stiffness or viscosity, may hold it";
+  return what;
 }
 
 }  // namespace cordis::sim

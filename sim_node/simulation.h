@@ -53,7 +53,8 @@ class Simulation {
 
   /// The scene diverged: a position is no longer finite. Its forces must not be used any more.
   bool failed() const noexcept { return failed_; }
-  /// Which MAT left the finite numbers first, and when; empty while nothing failed.
+  /// Which MAT left the finite numbers first, when, and which liaison is to blame; empty while
+  /// nothing failed. Not in real time.
   std::string failure() const;
 
  private:

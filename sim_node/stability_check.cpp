@@ -2,6 +2,8 @@
 #include "sim_node/stability_check.h"
 
 #include <cmath>
+#include <cstdio>
+#include <optional>
 #include <string>
 
 #include "sim_node/plan/plan.h"
@@ -36,6 +38,45 @@ void check_stability(const scene::Scene& scene, bool force, config::Problems& pr
                    "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
                    hint + "; or run it all the same with force=true of its sim_node");
   }
+}
+
+std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
+  const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
+  const double dt = scene.network.step;
+  double sum = 0.0;
+  double strongest = 0.0;
+  std::optional<plan::LiaisonId> liaison;
+  const auto add = [&](plan::LiaisonId id, double stiffness, double viscosity, double count) {
+    const double number =
+        2.0 * graph.inverse_mass[mat] * (dt * dt * stiffness + 2.0 * dt * viscosity);
+    sum += count * number;
+    if (number <= strongest) return;
+    strongest = number;
+    liaison = id;
+  };
+  for (const plan::Joint& joint : graph.joints) {
+    if (joint.mat_a != mat && joint.mat_b != mat) continue;
+    add(joint.liaison, joint.stiffness, joint.viscosity, 1.0);
+  }
+  for (const plan::Crowd& crowd : graph.crowds) {
+    for (std::size_t m = 0; m < crowd.members.size(); ++m) {
+      if (crowd.members[m] != mat) continue;
+      add({plan::LiaisonKind::kSet, crowd.set}, crowd.stiffness, crowd.viscosity,
+          crowd.neighbours[m]);
+    }
+  }
+  if (!liaison) return "nothing but what is given from outside moves it";
+  const scene::Called called = scene::call_liaison(scene, liaison);
+  const std::string name = called.name + " (" + scene::place_text(called.place) + ")";
+  char numbers[64];
+  std::snprintf(numbers, sizeof(numbers), "K' + 2 Z' = %.3g of 4", sum);
+  if (sum < 4.0) {
+    return "within its limit (" + std::string(numbers) + "): " + name +
+           " pulls the most at it, beyond what its law was taken for, or positions and forces from "
+           "outside were too large";
+  }
+  return "too stiff for " + std::to_string(std::lround(scene.step_rate_hz)) + " Hz (" + numbers +
+         "), of which the most is " + name;
 }
 
 }  // namespace cordis::sim

@@ -6,6 +6,7 @@
 
 #include "sim_node/change_counter.h"
 #include "sim_node/frame_store.h"
+#include "sim_node/limit_watch.h"
 #include "sim_node/simulation.h"
 
 namespace cordis::sim {
@@ -19,6 +20,7 @@ struct Stage {
   Simulation simulation;
   FrameStore frames;
   ChangeCounter changes;
+  LimitWatch limits;
   std::uint64_t ticks_per_frame;
 };
 

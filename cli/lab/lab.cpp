@@ -118,22 +118,58 @@ std::vector<LabRun> sorted_runs(const std::vector<TrialResult>& results,
 
 }  // namespace
 
+const LabRun* cheapest_within(const LabReport& report, double tolerance, double lowest_hz) {
+  const LabRun* cheapest = nullptr;
+  const LabRun* lowest = nullptr;  // of the integrator in question, as far as all above it keep it
+  const auto take_lowest = [&] {
+    const bool is_better = lowest != nullptr &&
+                           (cheapest == nullptr ||
+                            lowest->result.evaluations_per_s < cheapest->result.evaluations_per_s);
+    if (is_better) cheapest = lowest;
+  };
+  for (const LabRun& run : report.runs) {
+    if (lowest != nullptr && lowest->result.integrator != run.result.integrator) {
+      take_lowest();
+      lowest = nullptr;
+    }
+    if (run.result.blown_up || run.result.error > tolerance) {
+      lowest = nullptr;
+    } else if (lowest == nullptr && run.result.rate_hz >= lowest_hz) {
+      lowest = &run;
+    }
+  }
+  take_lowest();
+  return cheapest;
+}
+
 LabReport run_lab(const LabOptions& options, const std::function<void(std::string)>& progress) {
   const Effort& effort = options.quick ? kQuick : kThorough;
   progress("reading " + options.file);
   LabReport report;
   report.lab = load_lab_scene(options.file, options.duration_s);
   const engine::NetworkDescription& network = report.lab.scene.network;
-  report.stability = plan::stability_of(network, plan::liaison_graph(network));
-
-  const std::vector<std::string> integrators = plan::integrators_for(network);
-  const double limit = report.stability.diverging_step;
+  std::vector<std::string> integrators;
+  double limit = 0.0;  // the longest step that any of them bears
+  for (const std::string& integrator : plan::integrator_names()) {
+    const std::string refusal = plan::refusal_of(network, integrator);
+    if (!refusal.empty()) {
+      report.notes.push_back(integrator + " does not take this scene: " + refusal);
+      continue;
+    }
+    engine::NetworkDescription own = network;
+    own.integrator = engine::integrator_named(integrator);
+    integrators.push_back(integrator);
+    const plan::Stability stability = plan::stability_of(own, plan::liaison_graph(own));
+    report.stability[integrator] = stability;
+    if (std::isfinite(stability.diverging_step)) limit = std::max(limit, stability.diverging_step);
+  }
   plan::Ladder ladder = plan::make_ladder(
-      std::isfinite(limit) ? 1.0 / limit : 0.0,
-      {options.duration_s, report.lab.scene.step_rate_hz, effort.highest_factor, effort.coarse});
-  report.left_out =
+      limit > 0.0 ? 1.0 / limit : 0.0,
+      {report.lab.duration_s, report.lab.scene.step_rate_hz, effort.highest_factor, effort.coarse});
+  const std::string left_out =
       shorten(ladder, plan::measure_step_nsec(network),
               static_cast<double>(integrators.size()) / options.jobs, effort.all_runs_s);
+  if (!left_out.empty()) report.notes.push_back(left_out);
 
   LabStore store(options.folder,
                  plan::key_of(network, report.lab.course, ladder.sampling, effort.tolerance),

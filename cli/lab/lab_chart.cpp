@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
-#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -43,12 +42,6 @@ std::string csv_of(const LabReport& report) {
   return text;
 }
 
-std::set<std::string> names_of(const LabReport& report) {
-  std::set<std::string> names;
-  for (const LabRun& run : report.runs) names.insert(run.result.integrator);
-  return names;
-}
-
 /// The bottom of the chart, a third of a decade below the best run.
 double least_error(const LabReport& report) {
   double least = 1.0;
@@ -59,21 +52,21 @@ double least_error(const LabReport& report) {
 }
 
 /// One panel: error over a column of the table.
-std::string panel(const LabReport& report, int column, const std::string& label, bool limit) {
-  std::string text = fmt::format("set xlabel '{}'\nunset arrow\n", label);
-  const double diverging = report.stability.diverging_step;
-  if (limit && std::isfinite(diverging)) {
+std::string panel(const LabReport& report, int column, const std::string& label, bool limits) {
+  std::string text = fmt::format("set xlabel '{}'\nunset arrow\nunset label\n", label);
+  int mark = 0;
+  for (const auto& [integrator, stability] : report.stability) {
+    ++mark;
+    if (!limits || !std::isfinite(stability.diverging_step)) continue;
     text += fmt::format(
-        "set arrow from {0:.6g}, graph 0 to {0:.6g}, graph 1 nohead dashtype 2 linecolor rgb "
-        "'#888888'\nset label 1 'limit of cordis' at {0:.6g}, graph 0.97 right rotate left offset "
-        "-0.6,0 textcolor rgb '#666666'\n",
-        1.0 / diverging);
-  } else {
-    text += "unset label 1\n";
+        "set arrow {0} from {1:.6g}, graph 0 to {1:.6g}, graph 1 nohead dashtype 2 linecolor {0}\n"
+        "set label {0} 'limit of {2}' at {1:.6g}, graph {3:.2f} right rotate offset -0.6,0\n",
+        mark, plan::evaluations_per_step(integrator) / stability.diverging_step, integrator,
+        0.97 - 0.34 * (mark - 1));
   }
   text += "plot ";
   int colour = 1;
-  for (const std::string& name : names_of(report)) {
+  for (const auto& [name, stability] : report.stability) {
     const std::string own = fmt::format("(strcol(1) eq '{}' ? column({}) : NaN)", name, column);
     text += fmt::format(
         "table using {0}:6 with linespoints pointtype 7 pointsize 0.5 linecolor {1} title '{2}', "

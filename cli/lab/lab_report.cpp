@@ -27,10 +27,10 @@ std::string reference_text(const plan::Reference& reference) {
                     until);
 }
 
-const char* prediction(const LabReport& report, double rate_hz) {
+const char* prediction(const plan::Stability& stability, double rate_hz) {
   const double step = 1.0 / rate_hz;
-  if (step < report.stability.certified.step) return "stable";
-  return step > report.stability.diverging_step ? "unstable" : "not certain";
+  if (step < stability.certified.step) return "stable";
+  return step > stability.diverging_step ? "unstable" : "not certain";
 }
 
 std::string run_text(const LabReport& report, const LabRun& run) {
@@ -47,7 +47,31 @@ std::string run_text(const LabReport& report, const LabRun& run) {
     text += fmt::format("{:>11.2e}{}", result.error, run.on_front ? " *" : "  ");
     if (late) text += fmt::format("{:>+11.2e}", result.energy_error);
   }
-  return text + "   " + prediction(report, result.rate_hz) + "\n";
+  return text + "   " + prediction(report.stability.at(result.integrator), result.rate_hz) + "\n";
+}
+
+/// How the rate that the plan chose has done.
+std::string choice_text(const LabReport& report) {
+  const scene::Scene& scene = report.lab.scene;
+  if (!scene.accuracy) return {};
+  const double tolerance = scene.accuracy->tolerance;
+  std::string text;
+  const LabRun* cheapest = cheapest_within(report, tolerance, scene.gesture_rate_hz);
+  for (const LabRun& run : report.runs) {
+    if (run.result.rate_hz != scene.step_rate_hz ||
+        run.result.integrator != to_string(scene.network.integrator))
+      continue;
+    text = fmt::format(
+        "asked       {:.3g} of the amplitude: the scene has {} at {:g} Hz, off by {:.2e}",
+        tolerance, run.result.integrator, run.result.rate_hz, run.result.error);
+    if (cheapest != nullptr) {
+      text += fmt::format("; {} at {:g} Hz would do: it costs {:.2f} times that",
+                          cheapest->result.integrator, cheapest->result.rate_hz,
+                          run.result.evaluations_per_s / cheapest->result.evaluations_per_s);
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 }  // namespace
@@ -59,20 +83,22 @@ std::string text_of(const LabReport& report) {
                                  scene.link_count(), scene.network.sets.size(), scene.space());
   for (const std::string& port : report.lab.ports) text += "port        " + port + "\n";
   text += reference_text(report.reference);
-  text += fmt::format("predicted   certified from {}, surely unstable below {}\n",
-                      rate_of(report.stability.certified.step),
-                      rate_of(report.stability.diverging_step));
+  for (const auto& [integrator, stability] : report.stability) {
+    text += fmt::format("predicted   {}: certified from {}, surely unstable below {}\n", integrator,
+                        rate_of(stability.certified.step), rate_of(stability.diverging_step));
+  }
   if (report.kept_runs > 0) {
     text += fmt::format("            {} runs are kept from an earlier lab\n", report.kept_runs);
   }
-  if (!report.left_out.empty()) text += "            " + report.left_out + "\n";
+  for (const std::string& note : report.notes) text += "            " + note + "\n";
   if (!report.counts_instructions) {
     text += "            instructions cannot be counted on this machine\n";
   }
   text += fmt::format("\n{:12}{:>9}{:>14}{:>12}{:>14}{:>11}\n", "integrator", "rate_hz", "forces/s",
                       "ms/s", "instr./s", "error");
   for (const LabRun& run : report.runs) text += run_text(report, run);
-  return text + "* on the Pareto front of time and error; /s: per simulated second\n";
+  return text + choice_text(report) +
+         "* on the Pareto front of time and error; /s: per simulated second\n";
 }
 
 }  // namespace cordis::cli

@@ -3,13 +3,20 @@
 
 #include "cli/lab/stage.h"
 #include "node/config/value.h"
+#include "sim_node/rate_choice.h"
 
 namespace cordis::cli {
 namespace {
 
+double duration_of(const scene::Scene& scene, double asked_s) {
+  constexpr double kDefault = 2.0;
+  if (asked_s > 0.0) return asked_s;
+  return scene.accuracy && scene.accuracy->over_s > 0.0 ? scene.accuracy->over_s : kDefault;
+}
+
 /// Plays the launch file once, and keeps what its devices did.
-void record(Stage& stage, double duration_s, LabScene& lab) {
-  lab.scene = stage.scene();
+void record(Stage& stage, LabScene& lab) {
+  lab.scene = scene::Scene(stage.scene());
   lab.course.period = 1.0 / lab.scene.gesture_rate_hz;
   std::vector<const scene::Port*> played;
   for (const scene::Port& port : lab.scene.ports) {
@@ -25,7 +32,7 @@ void record(Stage& stage, double duration_s, LabScene& lab) {
     if (!is_force) lab.course.tracks.back().value.push_back(port.rest);
   }
   if (played.empty()) return;
-  stage.play_until(duration_s, [&] {
+  stage.play_until(lab.duration_s, [&] {
     for (std::size_t p = 0; p < played.size(); ++p) {
       lab.course.tracks[p].value.push_back(stage.given(*played[p]));
     }
@@ -41,11 +48,14 @@ LabScene load_lab_scene(const std::string& file, double duration_s) {
   LabScene lab;
   if (root.find("nodes").exists()) {
     Stage stage(file);
-    record(stage, duration_s, lab);
+    lab.duration_s = duration_of(stage.scene(), duration_s);
+    record(stage, lab);
     return lab;
   }
   lab.scene = scene::load_scene(file, problems);
   problems.throw_if_any();
+  sim::settle_rate(lab.scene, problems);
+  lab.duration_s = duration_of(lab.scene, duration_s);
   for (const scene::Port& port : lab.scene.ports) {
     lab.ports.push_back(port.name + " rests: give the launch file to have it played");
   }

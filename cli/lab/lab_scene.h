@@ -11,12 +11,15 @@ namespace cordis::cli {
 
 struct LabScene {
   scene::Scene scene;
+  double duration_s = 0.0;  ///< of a run
   plan::Course course;
   std::vector<std::string> ports;  ///< what each port does, for a person
 };
 
 /// Reads a scene, whose ports then rest, or a launch file, whose simulated devices play once at the
-/// scene's own rate: what they did is the gesture of all runs. @throws config::ConfigError
+/// scene's own rate: what they did is the gesture of all runs.
+/// @param duration_s  of a run; 0: as long as the scene asks for, or 2 s
+/// @throws config::ConfigError
 LabScene load_lab_scene(const std::string& file, double duration_s);
 
 }  // namespace cordis::cli

@@ -27,12 +27,17 @@ bool is_multiple(double value, double of) {
 Ladder make_ladder(double limit_hz, const LadderWish& wish) {
   constexpr double kLowest = 0.35;  // of the limit, half of the lowest rate
   constexpr double kNoLimit = 0.1;  // of the scene's own rate, likewise
-  const double base = round_below(limit_hz > 0.0 ? kLowest * limit_hz : kNoLimit * wish.own_hz);
-  const double highest = wish.highest_factor * std::max(limit_hz, 2.0 * base);
+  double base = round_below(limit_hz > 0.0 ? kLowest * limit_hz : kNoLimit * wish.own_hz);
+  const double lowest = 2.0 * base;
+  for (int finer = 0; finer < 9 && !is_multiple(wish.own_hz, base); ++finer) {
+    base = round_below(0.999 * base);
+  }
+  const double highest = wish.highest_factor * std::max(limit_hz, lowest);
   Ladder ladder;
   for (double rate = 2.0 * base; rate <= highest; rate *= 2.0) {
-    ladder.rates_hz.push_back(rate);
-    if (!wish.coarse && 1.5 * rate <= highest) ladder.rates_hz.push_back(1.5 * rate);
+    if (rate >= 0.7 * lowest) ladder.rates_hz.push_back(rate);
+    const bool between = !wish.coarse && 1.5 * rate >= 0.7 * lowest && 1.5 * rate <= highest;
+    if (between) ladder.rates_hz.push_back(1.5 * rate);
   }
   const auto is_there = [&](double rate) {
     return std::find(ladder.rates_hz.begin(), ladder.rates_hz.end(), rate) != ladder.rates_hz.end();

@@ -32,6 +32,22 @@ double largest_step(const BandEdge& edge, engine::Integrator integrator, double 
   return low;
 }
 
+/// A pitch that is off by e puts a vibration off by the phase e w t, and its positions over the
+/// amplitude by as much; 1 / sqrt(3) of that in the mean square up to t.
+double pitch_tolerance(const BandEdge& edge, const AccuracyWish& wish) {
+  if (wish.over_s == 0.0) return wish.tolerance;
+  const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
+  return std::sqrt(3.0) * wish.tolerance / (w * wish.over_s);
+}
+
+/// A rate of decay s that is off by e puts e^(-s t) off by e s t e^(-s t), at most e / 2.718.
+double decay_tolerance(const BandEdge& edge, const AccuracyWish& wish) {
+  if (wish.over_s == 0.0) return wish.tolerance;
+  const double lost = std::min(1.0, 0.5 * edge.viscosity * wish.over_s);
+  return lost > 0.0 ? wish.tolerance / (lost * std::exp(-lost))
+                    : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyWish& wish,
@@ -55,10 +71,10 @@ RateChoice choose_rate(const engine::NetworkDescription& network, const Accuracy
   }
   const BandEdge edge = band_edge_of(per_gesture, graph, wish.band_hz);
   const engine::Integrator integrator = network.integrator;
-  consider(largest_step(edge, integrator, wish.tolerance,
+  consider(largest_step(edge, integrator, pitch_tolerance(edge, wish),
                         [](const OscillatorError& e) { return e.pitch; }),
            RateReason::kPitch);
-  consider(largest_step(edge, integrator, wish.tolerance,
+  consider(largest_step(edge, integrator, decay_tolerance(edge, wish),
                         [](const OscillatorError& e) { return e.decay; }),
            RateReason::kDecay);
 

@@ -12,6 +12,7 @@ struct AccuracyWish {
   double tolerance = 0.01;      ///< largest relative error of the pitch and of the rate of decay
   double band_hz = 100.0;       ///< of vibrations up to this frequency
   double contact_energy = 0.1;  ///< largest part of its energy that a collision may gain or lose
+  double over_s = 0.0;          ///< [s]
 };
 
 /// What made the rate as high as it is.
@@ -29,7 +30,7 @@ struct RateChoice {
   RateReason reason = RateReason::kGesture;
 };
 
-/// The step of the network itself does not matter. O(liaisons).
+/// For the integrator of the network; its step does not matter. O(liaisons).
 RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyWish& wish,
                        double gesture_rate_hz);
 

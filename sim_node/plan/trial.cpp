@@ -81,8 +81,20 @@ std::vector<std::string> integrators_for(engine::NetworkDescription network) {
   return names;
 }
 
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const auto integrator : engine::kIntegrators) names.emplace_back(to_string(integrator));
+  return names;
+}
+
 int evaluations_per_step(const std::string& integrator) {
   return engine::evaluations_per_step(engine::integrator_named(integrator));
+}
+
+std::string refusal_of(engine::NetworkDescription network, const std::string& integrator) {
+  network.integrator = engine::integrator_named(integrator);
+  const auto refusal = engine::refusal_of(network);
+  return refusal ? refusal->what : std::string();
 }
 
 CourseRun::CourseRun(engine::NetworkDescription network, const std::string& integrator,

@@ -16,6 +16,11 @@ std::vector<std::string> integrators_for(engine::NetworkDescription network);
 /// Evaluations of all forces in one step of an integrator.
 int evaluations_per_step(const std::string& integrator);
 
+/// All integrators, by the name they have in a scene.
+std::vector<std::string> integrator_names();
+/// Why an integrator does not take a network; empty when it does.
+std::string refusal_of(engine::NetworkDescription network, const std::string& integrator);
+
 /// A network at a rate under a course.
 class CourseRun {
  public:

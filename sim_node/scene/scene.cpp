@@ -27,6 +27,20 @@ std::string nearest_multiples(double rate, double gesture_rate) {
   return below > 0.0 ? config::number_text(below) + " or " + above : above;
 }
 
+void read_accuracy(const Value& section, Scene& scene, config::Problems& problems) {
+  if (!section.exists()) return;
+  config::MappingReader reader(section, "accuracy", problems);
+  Accuracy accuracy;
+  accuracy.tolerance = reader.required_number("tolerance", Range::between(1e-9, 1.0));
+  accuracy.band_hz = reader.required_number("band_hz", Range::between(1e-3, kHighestStepRate));
+  accuracy.contact_energy =
+      reader.optional_number("contact_energy", accuracy.contact_energy, Range::between(1e-9, 1.0));
+  accuracy.over_s = reader.optional_number("over_s", 0.0, Range::not_negative());
+  accuracy.place = reader.place();
+  reader.finish();
+  scene.accuracy = accuracy;
+}
+
 /// @return where the integrator is chosen
 config::Place read_step(const Value& section, Scene& scene, config::Problems& problems) {
   config::MappingReader reader(section, "step", problems);
@@ -36,12 +50,17 @@ config::Place read_step(const Value& section, Scene& scene, config::Problems& pr
     integrators.emplace_back(to_string(integrator));
   scene.network.integrator =
       engine::integrator_named(reader.optional_choice("integrator", "cordis", integrators));
-  scene.step_rate_hz = reader.required_number("rate_hz", Range::between(1.0, kHighestStepRate));
+  scene.rate_is_open = scene.accuracy && !reader.has("rate_hz");
+  scene.integrator_is_open = scene.rate_is_open && !reader.has("integrator");
+  if (!scene.rate_is_open) {
+    scene.step_rate_hz = reader.required_number("rate_hz", Range::between(1.0, kHighestStepRate));
+  }
   scene.gesture_rate_hz =
       reader.optional_number("gesture_rate_hz", 1000.0, Range::between(1.0, kHighestGestureRate));
   scene.frame_rate_hz =
       reader.optional_number("frame_rate_hz", std::min(25.0, scene.gesture_rate_hz),
                              Range::between(0.01, kHighestFrameRate));
+  if (scene.rate_is_open) scene.step_rate_hz = scene.gesture_rate_hz;
   scene.network.step = 1.0 / scene.step_rate_hz;
   reader.finish();
   if (!reader.ok() || !section.exists()) return place;
@@ -143,7 +162,10 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
   const long space = reader.required_integer("space", 1, 3);
   if (problems.error_count() == errors_before_space)
     scene.network.dimension = static_cast<int>(space);
-  const config::Place integrator = read_step(reader.required_mapping("step"), scene, problems);
+  read_accuracy(reader.optional_mapping("accuracy"), scene, problems);
+  const config::Place integrator =
+      read_step(scene.accuracy ? reader.optional_mapping("step") : reader.required_mapping("step"),
+                scene, problems);
   read_content(reader, scene, problems);
   reader.finish();
   if (problems.error_count() != errors_before) return scene;
@@ -156,6 +178,14 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
 }
 
 }  // namespace
+
+void set_step(Scene& scene, double rate_hz, engine::Integrator integrator) {
+  scene.step_rate_hz = rate_hz;
+  scene.network.step = 1.0 / rate_hz;
+  scene.network.integrator = integrator;
+  scene.rate_is_open = false;
+  scene.integrator_is_open = false;
+}
 
 Scene load_scene(const std::string& path, config::Problems& problems,
                  const config::Place& referrer) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,11 +67,24 @@ struct LayoutPoint {
   double z = 0.0;  ///< [m]
 };
 
+/// What a scene asks for: its `accuracy`.
+struct Accuracy {
+  double tolerance = 0.01;  ///< of pitch and decay; with over_s, of positions over the amplitude
+  double band_hz = 0.0;     ///< of vibrations up to this frequency
+  double contact_energy = 0.1;  ///< part of its energy that a collision may gain or lose
+  double over_s = 0.0;          ///< for so long from the start; 0: not asked
+  config::Place place;
+};
+
 /// A scene as it was read.
 struct Scene {
   std::string name;
-  std::string file;              ///< path as it was given
-  double step_rate_hz = 0.0;     ///< an integer multiple of the gesture rate
+  std::string file;                 ///< path as it was given
+  double step_rate_hz = 0.0;        ///< an integer multiple of the gesture rate
+  bool rate_is_open = false;        ///< the file leaves the step rate to the plan; until it is set,
+                                    ///< step_rate_hz is the gesture rate. See set_step()
+  bool integrator_is_open = false;  ///< the file leaves the integrator to the plan
+  std::optional<Accuracy> accuracy;
   double gesture_rate_hz = 0.0;  ///< exchanges with a device per second
   double frame_rate_hz = 0.0;    ///< frames for the display per second, at most the gesture rate
   engine::NetworkDescription network;  ///< its dimension is the `space` of the file
@@ -95,6 +109,9 @@ struct Scene {
     return network.links.size() + network.state_links.size() + network.maxwell_links.size();
   }
 };
+
+/// Gives a scene its step rate, an integer multiple of the gesture rate, and its integrator.
+void set_step(Scene& scene, double rate_hz, engine::Integrator integrator);
 
 /// Reads a scene file and all it includes. Whatever is wrong becomes a problem of its place, all in
 /// one go. The language is described in docs/language.md.

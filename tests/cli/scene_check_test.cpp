@@ -84,6 +84,34 @@ TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
   EXPECT_EQ(run({"--force"}), kSuccess);
 }
 
+TEST_F(Checked, ASceneMayAskForAccuracyInsteadOfARate) {
+  write("1000");
+  std::ifstream in(path_);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string rate = "rate_hz: 1000, ";
+  std::string open = text;
+  open.replace(open.find(rate), rate.size(), "integrator: cordis, ");
+  std::ofstream(path_) << open << "accuracy: {tolerance: 0.001, band_hz: 16}\n";
+  // (w dt)^2 / 24 = 0.001 at w = 32 pi: 649 Hz, and a multiple of 10
+  EXPECT_EQ(run({"--json", "-"}), kSuccess) << error_;
+  const nlohmann::json json = nlohmann::json::parse(out_);
+  EXPECT_DOUBLE_EQ(json["rate_hz"].get<double>(), 650.0);
+  EXPECT_DOUBLE_EQ(json["accuracy"]["band_hz"].get<double>(), 16.0);
+  EXPECT_TRUE(json["asked"]["kept"].get<bool>());
+  EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("would do: because of the pitch"), std::string::npos) << out_;
+
+  text.replace(text.find(rate), rate.size(), "rate_hz: 500, integrator: cordis, ");
+  std::ofstream(path_) << text << "accuracy: {tolerance: 0.001, band_hz: 16}\n";
+  EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("NEEDED"), std::string::npos) << out_;
+
+  std::ofstream(path_) << open << "accuracy: {tolerance: 2}\n";
+  EXPECT_EQ(run({}), kBadInput);
+  EXPECT_NE(error_.find("tolerance"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("band_hz"), std::string::npos) << error_;
+}
+
 TEST_F(Checked, AProgramReadsTheSame) {
   write("100");
   ASSERT_EQ(run({"--json", "-", "--band", "2"}), kSuccess) << error_;

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/plan/choice.h"
 #include "sim_node/plan/oscillator_error.h"
+#include "sim_node/plan/rate_trial.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {
@@ -76,6 +78,52 @@ TEST(RateChoice, KeepsTheToleranceWhenItRuns) {
   EXPECT_LE(std::abs(errors.decay), wish.tolerance);
   const auto slower = plan::oscillator_error(w, 0.2, 1.0 / (choice.rate_hz - 100.0));
   EXPECT_GT(std::max(std::abs(slower.pitch), std::abs(slower.decay)), wish.tolerance);
+}
+
+TEST(RateChoice, PositionsOverATimeAskForThePhase) {
+  // phase w t e <= sqrt(3) tolerance with e = (w dt)^2 / 24, w = 200 pi, t = 2 s
+  AccuracyWish wish{0.01, 100.0, 0.1};
+  wish.over_s = 2.0;
+  const RateChoice choice = choose_rate(oscillator(1.0, 10.0, 0.0, 1.0, 0.0, 1.0), wish, 1000.0);
+
+  const double w = 200.0 * M_PI;
+  EXPECT_EQ(choice.reason, RateReason::kPitch);
+  EXPECT_NEAR(choice.needed_hz, w / std::sqrt(24.0 * std::sqrt(3.0) * 0.01 / (w * 2.0)), 10.0);
+}
+
+TEST(RateTrial, FindsTheRateByTrying) {
+  // The position is off by w t (w dt)^2 / 24 / sqrt(3): at w = 100 and over 1 s by 0.01 at 1552 Hz.
+  const plan::RateTrial trial = plan::find_rate(oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 1e-3),
+                                                "cordis", {0.01, 1.0, 100.0, 100.0});
+  EXPECT_EQ(trial.refusal, "");
+  EXPECT_GE(trial.rate_hz, 1552.0);
+  EXPECT_LE(trial.rate_hz, 2000.0);
+  EXPECT_LE(trial.error, 0.01);
+}
+
+TEST(RateTrial, SaysWhyItFindsNone) {
+  const NetworkDescription still = oscillator(0.1, 1000.0, 0.0, 0.0, 0.0, 1e-3);
+  EXPECT_EQ(plan::find_rate(still, "cordis", {0.01, 1.0, 100.0, 100.0}).refusal,
+            "nothing moves by itself");
+  const NetworkDescription long_run = oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 1e-3);
+  EXPECT_EQ(plan::find_rate(long_run, "cordis", {1e-6, 1e5, 100.0, 100.0}).refusal,
+            "it takes too long to try it out");
+  // Twelve masses knock about in a box of springs without friction: chaos within seconds.
+  NetworkDescription wild = free_cluster(12, 40, 0.0, 2);
+  EXPECT_NE(plan::find_rate(wild, "cordis", {1e-4, 8.0, 50.0, 50.0}).refusal.find("chaotic"),
+            std::string::npos);
+}
+
+TEST(Choice, TriesOutWhatMovesByItselfAndNotWhatIsPlayed) {
+  const NetworkDescription scene = oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 1e-3);
+  AccuracyWish wish{0.01, 5.0, 0.1};
+  wish.over_s = 1.0;
+  const plan::Choice free = plan::choose(scene, wish, 100.0, {"cordis"}, false);
+  EXPECT_GE(free.rate_hz, 1552.0);
+  EXPECT_EQ(free.doubt, "");
+  const plan::Choice played = plan::choose(scene, wish, 100.0, {"cordis"}, true);
+  EXPECT_EQ(played.rate_hz, choose_rate(scene, wish, 100.0).rate_hz);
+  EXPECT_NE(played.doubt, "");
 }
 
 }  // namespace

@@ -1,0 +1,70 @@
+// sim_node/limit_watch.cpp
+#include "sim_node/limit_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/plan/liaison_graph.h"
+
+namespace cordis::sim {
+namespace {
+
+/// A behaviour that is always in this state.
+engine::Behaviour only(const engine::Behaviour& behaviour, std::size_t state) {
+  engine::Behaviour one;
+  one.states = {behaviour.states[state]};
+  one.states[0].first_exit = one.states[0].last_exit = 0;
+  return one;
+}
+
+}  // namespace
+
+LimitWatch::LimitWatch(const engine::NetworkDescription& network)
+    : share_(network.mats.size(), 0.0),
+      steady_(network.mats.size(), 0.0),
+      sum_(network.mats.size(), 0.0) {
+  const double dt = network.step;
+  const auto number = [dt](double stiffness, double viscosity) {
+    return dt * dt * stiffness + 2.0 * dt * viscosity;
+  };
+  const plan::LiaisonGraph graph = plan::liaison_graph(network);
+  for (std::size_t i = 0; i < share_.size(); ++i) {
+    share_[i] = 2.0 * graph.inverse_mass[i];
+    steady_[i] = number(0.0, 0.5 * graph.medium_viscosity);
+  }
+  for (const plan::Joint& joint : graph.joints) {
+    if (joint.liaison.kind == plan::LiaisonKind::kStateLink) continue;
+    steady_[joint.mat_a] += number(joint.stiffness, joint.viscosity);
+    steady_[joint.mat_b] += number(joint.stiffness, joint.viscosity);
+  }
+  for (const plan::Crowd& crowd : graph.crowds) {
+    for (std::size_t m = 0; m < crowd.members.size(); ++m) {
+      steady_[crowd.members[m]] += crowd.neighbours[m] * number(crowd.stiffness, crowd.viscosity);
+    }
+  }
+  const plan::Reach reach = plan::reach_of(network);
+  for (const engine::StateLink& link : network.state_links) {
+    links_.push_back({link.mat_a, link.mat_b, static_cast<std::uint32_t>(slopes_.size())});
+    const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
+    for (std::size_t state = 0; state < behaviour.states.size(); ++state) {
+      const plan::Slope slope =
+          plan::largest_slope(only(behaviour, state), link.rest_length, network.dimension, reach);
+      slopes_.push_back(number(slope.stiffness, slope.viscosity));
+    }
+  }
+}
+
+void LimitWatch::look(const engine::World& world) noexcept {
+  std::copy(steady_.begin(), steady_.end(), sum_.begin());
+  for (std::uint32_t l = 0; l < links_.size(); ++l) {
+    const StateLink& link = links_[l];
+    const double slope = slopes_[link.first + world.state_of(l)];
+    sum_[link.mat_a] += slope;
+    sum_[link.mat_b] += slope;
+  }
+  for (std::size_t i = 0; i < sum_.size(); ++i) {
+    largest_ = std::max(largest_, share_[i] * sum_[i]);
+  }
+}
+
+}  // namespace cordis::sim

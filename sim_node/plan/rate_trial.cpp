@@ -1,0 +1,160 @@
+// sim_node/plan/rate_trial.cpp
+#include "sim_node/plan/rate_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "sim_node/plan/choice.h"
+#include "sim_node/plan/trial.h"
+
+namespace cordis::plan {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMostWork = 1e8;  // links, contacts and MATs, each once a step
+constexpr int kMostDoublings = 12;
+constexpr double kFalls = 0.9;    // from one rate to twice that, where errors fall at all
+constexpr double kMargin = 0.85;  // of the tolerance, where a rate is interpolated
+
+/// What one step costs.
+double work_of_a_step(const engine::NetworkDescription& network, const std::string& integrator) {
+  constexpr double kContacts = 12.0;
+  constexpr double kOfItsOwn = 100.0;
+  std::size_t members = 0;
+  for (const engine::SetLiaison& set : network.sets) {
+    members += set.set_p.size() + set.set_q.size();
+  }
+  const double once =
+      kOfItsOwn +
+      static_cast<double>(network.mats.size() + network.links.size() +
+                          2 * network.state_links.size() + network.maxwell_links.size()) +
+      kContacts * static_cast<double>(members);
+  return cost_of_a_step(integrator) * once;
+}
+
+/// Positions at the same moments for all rates; none where the run blew up.
+class Films {
+ public:
+  Films(const engine::NetworkDescription& network, const std::string& integrator,
+        const RateTrialWish& wish)
+      : network_(network), integrator_(integrator) {
+    constexpr double kMostSamples = 100.0;
+    const double periods = std::max(1.0, std::round(wish.over_s * wish.unit_hz));
+    const double stride = std::ceil(periods / kMostSamples);
+    period_ = stride / wish.unit_hz;
+    samples_ = static_cast<int>(std::ceil(periods / stride));
+    for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+      if (network.mats[i].kind == engine::MatKind::kMass) masses_.push_back(i);
+    }
+  }
+
+  bool can_afford(double rate) const {
+    if (films_.contains(rate)) return true;
+    return spent_ + rate * period_ * samples_ * work_of_a_step(network_, integrator_) < kMostWork;
+  }
+
+  /// Of the first from the second, over the amplitude of the second.
+  double difference(double rate, double finer) {
+    const std::vector<double>& first = film(rate);
+    const std::vector<double>& second = film(finer);
+    if (first.empty() || second.empty()) return kInfinity;
+    double square = 0.0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      square += (first[i] - second[i]) * (first[i] - second[i]);
+    }
+    return std::sqrt(square / square_about_mean(second));
+  }
+
+ private:
+  double square_about_mean(const std::vector<double>& film) const {
+    const std::size_t width = 3 * masses_.size();
+    double square = 0.0;
+    for (std::size_t i = 0; i < width; ++i) {
+      double mean = 0.0;
+      for (std::size_t at = i; at < film.size(); at += width) mean += film[at] / samples_;
+      for (std::size_t at = i; at < film.size(); at += width) {
+        square += (film[at] - mean) * (film[at] - mean);
+      }
+    }
+    return square;
+  }
+
+  const std::vector<double>& film(double rate) {
+    const auto [place, is_new] = films_.try_emplace(rate);
+    if (!is_new) return place->second;
+    std::vector<double>& film = place->second;
+    CourseRun run(network_, integrator_, rate, nothing_);
+    const auto steps = static_cast<std::uint64_t>(std::llround(period_ * rate));
+    spent_ += rate * period_ * samples_ * work_of_a_step(network_, integrator_);
+    for (int sample = 0; sample < samples_; ++sample) {
+      if (!run.advance(steps)) {
+        film.clear();
+        break;
+      }
+      for (const std::uint32_t mat : masses_) {
+        const engine::Vec3 x = run.world().position(mat);
+        film.insert(film.end(), {x.x(), x.y(), x.z()});
+      }
+    }
+    return film;
+  }
+
+  const engine::NetworkDescription& network_;
+  const std::string& integrator_;
+  Course nothing_;
+  double period_ = 0.0;
+  int samples_ = 0;
+  std::vector<std::uint32_t> masses_;
+  std::map<double, std::vector<double>> films_;
+  double spent_ = 0.0;
+};
+
+}  // namespace
+
+RateTrial find_rate(const engine::NetworkDescription& network, const std::string& integrator,
+                    const RateTrialWish& wish) {
+  constexpr double kOfFirstOrder = 4.0 / 3.0;  // e(h) - e(h/4) is 3/4 of e(h), or more
+  RateTrial trial;
+  Films films(network, integrator, wish);
+  double rate = wish.lowest_hz;
+  double before = kInfinity;
+  for (int doubling = 0; doubling < kMostDoublings; ++doubling, rate *= 2.0) {
+    if (!films.can_afford(rate) || !films.can_afford(4.0 * rate)) {
+      trial.refusal = "it takes too long to try it out";
+      return trial;
+    }
+    const double error = kOfFirstOrder * films.difference(rate, 4.0 * rate);
+    if (std::isnan(error)) {
+      trial.refusal = "nothing moves by itself";
+      return trial;
+    }
+    if (error <= wish.tolerance) {
+      trial.rate_hz = rate;
+      trial.error = error;
+      if (std::isfinite(before)) {
+        const double order = std::clamp(std::log2(before / error), 0.3, 4.0);
+        const double share = std::pow(before / (kMargin * wish.tolerance), 1.0 / order);
+        const double between = std::ceil(0.5 * rate * share / wish.unit_hz - 1e-9) * wish.unit_hz;
+        const double there =
+            between < rate ? kOfFirstOrder * films.difference(between, 4.0 * rate) : kInfinity;
+        if (there <= wish.tolerance) {
+          trial.rate_hz = between;
+          trial.error = there;
+        }
+      }
+      return trial;
+    }
+    if (doubling >= 3 && error > kFalls * before && std::isfinite(before)) {
+      trial.refusal = "its motion is chaotic: higher rates do not come nearer to each other";
+      return trial;
+    }
+    before = error;
+  }
+  trial.refusal = "no rate is high enough";
+  return trial;
+}
+
+}  // namespace cordis::plan

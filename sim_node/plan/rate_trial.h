@@ -1,0 +1,30 @@
+// sim_node/plan/rate_trial.h -- the lowest rate that keeps a tolerance, found by trying.
+#pragma once
+
+#include <string>
+
+#include "sim_node/engine/network.h"
+
+namespace cordis::plan {
+
+struct RateTrialWish {
+  double tolerance = 0.01;  ///< root of the mean square of position errors, over that of the motion
+  double over_s = 1.0;      ///< for so long from the start
+  double lowest_hz = 0.0;   ///< not below; a multiple of the next
+  double unit_hz = 1000.0;  ///< the rate is a multiple of it
+};
+
+struct RateTrial {
+  double rate_hz = 0.0;  ///< 0: none was found
+  double error = 0.0;    ///< at this rate, as estimated
+  std::string refusal;   ///< why none was found
+};
+
+/// Plays the network by itself, its ports at rest, at rates that double, and takes the difference
+/// from the rate four times as high for the error; between two of them it goes by the order they
+/// show. Gives up where the errors do not fall (the motion is chaotic) and after a fixed amount of
+/// work: a second at most, on a machine as they are. The same choice on every machine.
+RateTrial find_rate(const engine::NetworkDescription& network, const std::string& integrator,
+                    const RateTrialWish& wish);
+
+}  // namespace cordis::plan

@@ -1,0 +1,57 @@
+// tests/sim/limit_watch_test.cpp
+#include "sim_node/limit_watch.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/stages.h"
+
+namespace cordis::sim {
+namespace {
+
+/// A mass of 0.1 kg, 1000 steps per second; a link that is soft until it is drawn by 1 mm, then of
+/// the stiffness given.
+std::string snatch_text(const std::string& stiffness) {
+  return "cordis: 1\nname: snatch\nspace: 1\nstep: {rate_hz: 1000}\n"
+         "liaisons:\n"
+         "  rope:\n"
+         "    states:\n"
+         "      slack: {viscosity_n_s_per_m: 1, exits: [{to: taut, when: elongation_m > 0.001}]}\n"
+         "      taut: {stiffness_n_per_m: " +
+         stiffness +
+         ", final: true}\n"
+         "matter:\n"
+         "  hook: {kind: fixed, at_m: 0}\n"
+         "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1, velocity_m_per_s: 1}\n"
+         "links:\n"
+         "  - {liaison: rope, between: [hook, bob]}\n";
+}
+
+TEST(LimitWatch, KeepsTheLargestThatAMassHasHad) {
+  const auto stage = stage_of(snatch_text("20000"));
+  Simulation& simulation = stage->simulation;
+  EventRoom events(1);
+  stage->limits.look(simulation.world());
+  EXPECT_NEAR(stage->limits.largest(), 2.0 * 2.0 * 1e-3 / 0.1, 1e-12);  // 2 * 2 Z dt / m
+
+  for (int tick = 0; tick < 5; ++tick) simulation.advance(1, events);
+  ASSERT_EQ(simulation.world().state_of(0), 1u);
+  stage->limits.look(simulation.world());
+  EXPECT_NEAR(stage->limits.largest(), 2.0 * 2e4 * 1e-6 / 0.1, 1e-12);  // 2 K dt^2 / m
+}
+
+TEST(Divergence, IsToldWithTheLinkAndTheReason) {
+  const auto stage = stage_of(snatch_text("900000"));
+  Simulation& simulation = stage->simulation;
+  EventRoom events(1);
+  EXPECT_EQ(simulation.failure(), "");
+  for (int tick = 0; tick < 2000 && !simulation.failed(); ++tick) simulation.advance(1, events);
+
+  ASSERT_TRUE(simulation.failed());
+  const std::string told = simulation.failure();
+  EXPECT_NE(told.find("the position of 'bob' is not a finite number"), std::string::npos) << told;
+  EXPECT_NE(told.find("too stiff for 1000 Hz"), std::string::npos) << told;
+  EXPECT_NE(told.find("rope (t:14)"), std::string::npos) << told;
+}
+
+}  // namespace
+}  // namespace cordis::sim
