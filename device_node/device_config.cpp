@@ -127,6 +127,12 @@ void check_stand_in(const DeviceConfig& config, const config::LaunchNode& node, 
                     config::Problems& problems) {
   constexpr double kLowestRate = 100.0;  // two samples within the deadline of the topic, 20 ms
   if (config.name == node.name) return;
+  if (!node.section.find("plays").exists()) {
+    problems.error(node.place,
+                   "'plays' belongs in the launch file, where every node of the session "
+                   "reads it, and not in the device file of '" +
+                       node.name + "'");
+  }
   if (clock == config::Clock::kLockstep) {
     problems.error(node.place,
                    "a lockstep session has no stand-ins: '" + node.name + "' cannot play '" +

@@ -93,7 +93,8 @@ void print_problems(const std::vector<config::Problem>& problems) {
 }  // namespace
 
 dds::Membership NodeStart::membership() const {
-  return {launch.domain, launch.session, node->name, launch.clock == config::Clock::kLockstep};
+  return {launch.domain, launch.session, node->name, launch.clock == config::Clock::kLockstep,
+          launch.has_stand_ins()};
 }
 
 int node_main(int argc, char** argv, const std::string& kind,

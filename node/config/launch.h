@@ -34,6 +34,9 @@ struct Launch {
   Clock clock = Clock::kRealtime;
   std::vector<LaunchNode> nodes;  ///< in the order of the file
 
+  /// Whether a node plays the device of another (`plays` in its section).
+  bool has_stand_ins() const noexcept;
+
   /// nullptr when there is none.
   const LaunchNode* find(const std::string& name) const noexcept;
   /// A path of the file as this process can open it.

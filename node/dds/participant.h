@@ -8,10 +8,11 @@ namespace cordis::dds {
 
 /// Where a process takes part, and as what.
 struct Membership {
-  int domain = 0;         ///< DDS domain, 0..101
-  std::string session;    ///< partition: processes of other sessions hear nothing of this one
-  std::string node;       ///< name of the node, shown by DDS tools
-  bool lockstep = false;  ///< quality of service of the gesture topics
+  int domain = 0;          ///< DDS domain, 0..101
+  std::string session;     ///< partition: processes of other sessions hear nothing of this one
+  std::string node;        ///< name of the node, shown by DDS tools
+  bool lockstep = false;   ///< quality of service of the gesture topics
+  bool stand_ins = false;  ///< likewise; the same for all processes of a session
 };
 
 /// A DDS participant on UDP over 127.0.0.1, with simple discovery. One per process.

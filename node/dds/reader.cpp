@@ -36,7 +36,7 @@ struct Reader<Message>::Impl : fast::DataReaderListener {
 template <class Message>
 Reader<Message>::Reader(Participant& participant, Topic topic) : impl_(std::make_unique<Impl>()) {
   Participant::Impl& shared = participant.impl();
-  const TopicQos row = qos_of(topic, shared.membership.lockstep);
+  const TopicQos row = qos_of(topic, shared.membership.lockstep, shared.membership.stand_ins);
   fast::Topic* dds_topic =
       shared.topic(row, fast::TypeSupport(new typename TypeOf<Message>::Type()));
 

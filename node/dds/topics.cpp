@@ -3,15 +3,17 @@
 
 namespace cordis::dds {
 
-TopicQos qos_of(Topic topic, bool lockstep) noexcept {
+TopicQos qos_of(Topic topic, bool lockstep, bool stand_ins) noexcept {
+  const int exclusive_for_msec = stand_ins ? 20 : 0;
   // name, reliable, kept, depth, asynchronous, heartbeat [ms], exclusive for [ms]
   switch (topic) {
     case Topic::kPositions:
-      return lockstep ? TopicQos{"gesture/positions", true, false, 8, false, 20}
-                      : TopicQos{"gesture/positions", false, false, 1, false, 20, 20};
+      return lockstep
+                 ? TopicQos{"gesture/positions", true, false, 8, false, 20}
+                 : TopicQos{"gesture/positions", false, false, 1, false, 20, exclusive_for_msec};
     case Topic::kForces:
       return lockstep ? TopicQos{"gesture/forces", true, false, 8, false, 20}
-                      : TopicQos{"gesture/forces", false, false, 1, false, 20, 20};
+                      : TopicQos{"gesture/forces", false, false, 1, false, 20, exclusive_for_msec};
     case Topic::kDevice:
       return {"device/description", true, true, 1, false, 50};
     case Topic::kDescription:

@@ -32,8 +32,10 @@ struct TopicQos {
   int exclusive_for_msec = 0;
 };
 
-/// @param lockstep  the two gesture topics are reliable in a lockstep session; otherwise best
-/// effort, and heard of the strongest writer of a device alone
-TopicQos qos_of(Topic topic, bool lockstep) noexcept;
+/// @param lockstep   the two gesture topics are reliable in a lockstep session, and best effort
+///                   otherwise
+/// @param stand_ins  they are exclusive in a session where several nodes may play a device. The
+///                   deadline that this needs costs 40 us of CPU a message on either side.
+TopicQos qos_of(Topic topic, bool lockstep, bool stand_ins) noexcept;
 
 }  // namespace cordis::dds

@@ -22,7 +22,7 @@ Writer<Message>::Writer(Participant& participant, Topic topic, int strength)
     : impl_(std::make_unique<Impl>()) {
   using eprosima::fastrtps::Duration_t;
   Participant::Impl& shared = participant.impl();
-  const TopicQos row = qos_of(topic, shared.membership.lockstep);
+  const TopicQos row = qos_of(topic, shared.membership.lockstep, shared.membership.stand_ins);
   fast::Topic* dds_topic =
       shared.topic(row, fast::TypeSupport(new typename TypeOf<Message>::Type()));
 

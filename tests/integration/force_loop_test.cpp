@@ -15,8 +15,6 @@
 namespace cordis::test {
 namespace {
 
-constexpr int kStronger = 1000;  // than any writer of the session: it is heard alone
-
 class ForceLoop : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ForceLoop, AKeyOfRoleMassFeelsTheSpringItPresses) {
@@ -105,8 +103,7 @@ TEST(ForceLoop, SamplesThatAreNotFiniteAreRefusedAndTheLoopGoesOn) {
   session.add_file("key.yaml", steady_key(-0.01, 0.0));
   StatusWatch status(session.participant());
   dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
-  dds::Writer<msg::GesturePositions> rogue(session.participant(), dds::Topic::kPositions,
-                                           kStronger);
+  dds::Writer<msg::GesturePositions> rogue(session.participant(), dds::Topic::kPositions);
   session.start("sim_node", "sim");
   session.start("device_node", "keyboard");
   ASSERT_TRUE(status.wait_for_phase("sim", "running"));
@@ -138,7 +135,7 @@ TEST(ForceLoop, ForcesThatAreNotFiniteNeverReachTheMotor) {
   session.add_file("scene.yaml", wall_scene(200.0));
   session.add_file("key.yaml", steady_key(-0.01, 0.0));
   StatusWatch status(session.participant());
-  dds::Writer<msg::GestureForces> rogue(session.participant(), dds::Topic::kForces, kStronger);
+  dds::Writer<msg::GestureForces> rogue(session.participant(), dds::Topic::kForces);
   dds::Reader<msg::GesturePositions> positions(session.participant(), dds::Topic::kPositions);
   session.start("sim_node", "sim");
   session.start("device_node", "keyboard");
