@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim_node/plan/liaison_graph.h"
+#include "sim_node/plan/limit_weights.h"
 
 namespace cordis::sim {
 namespace {
@@ -27,7 +28,8 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
   const auto number = [dt](double stiffness, double viscosity) {
     return dt * dt * stiffness + 2.0 * dt * viscosity;
   };
-  const plan::LiaisonGraph graph = plan::liaison_graph(network);
+  const plan::LimitWeights weights = plan::limit_weights(network, plan::Limit::kStable);
+  const plan::LiaisonGraph graph = plan::weighted(plan::liaison_graph(network), weights);
   for (std::size_t i = 0; i < share_.size(); ++i) {
     share_[i] = 2.0 * graph.inverse_mass[i];
     steady_[i] = number(0.0, 0.5 * graph.medium_viscosity);
@@ -49,7 +51,8 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     for (std::size_t state = 0; state < behaviour.states.size(); ++state) {
       const plan::Slope slope =
           plan::largest_slope(only(behaviour, state), link.rest_length, network.dimension, reach);
-      slopes_.push_back(number(slope.stiffness, slope.viscosity));
+      slopes_.push_back(
+          number(weights.stiffness * slope.stiffness, weights.viscosity * slope.viscosity));
     }
   }
 }

@@ -10,8 +10,9 @@ namespace cordis::sim {
 
 /// Keeps the largest K' + 2 Z' that a mass has had, over the liaisons that pulled at it in the
 /// states they were in: 2 sum (K dt^2 + 2 Z dt) / m, as if its neighbours moved against it. Below 4
-/// nothing diverges. Liaisons count with the largest slopes of their states; sets, whose pairs come
-/// and go, with as many contacts as there is room for.
+/// nothing diverges; what they count for in the limit of the other integrators is in it
+/// (plan::LimitWeights). Liaisons count with the largest slopes of their states; sets, whose pairs
+/// come and go, with as many contacts as there is room for.
 class LimitWatch {
  public:
   explicit LimitWatch(const engine::NetworkDescription& network);

@@ -275,7 +275,9 @@ void Session::note_state() {
   // The status thread holds the lock for a copy at most; the loop never waits for it.
   const std::unique_lock lock(shown_mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
+  player_.stage().limits.look(simulation.world());
   shown_.energy = simulation.world().energy();
+  shown_.limit_number = player_.stage().limits.largest();
   shown_.step = simulation.world().step_count();
   shown_.state_hash = simulation.world().state_hash();
   shown_.version = player_.stage().frames.shape().version;
@@ -302,6 +304,10 @@ void Session::fill(msg::NodeStatus& status) {
   status.energy_j(shown_.energy.total());
   status.energy_drift(shown_.energy.largest > 0.0 ? shown_.energy.residual() / shown_.energy.largest
                                                   : 0.0);
+  status.switching_energy_j(shown_.energy.switching);
+  status.port_work_j(shown_.energy.port_work);
+  status.dissipated_j(shown_.energy.dissipated);
+  status.largest_limit_number(shown_.limit_number);
   status.step(shown_.step);
   status.state_hash(shown_.state_hash);
   status.lost_events(frames_.lost_events());

@@ -82,6 +82,7 @@ class Session {
   // What the loop tells the status thread.
   struct Shown {
     engine::Energy energy;
+    double limit_number = 0.0;
     std::uint64_t step = 0;
     std::uint64_t state_hash = 0;
     std::uint64_t version = 0;  // of the scene

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "sim_node/plan/limit_weights.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/scene/naming.h"
 
@@ -41,7 +42,8 @@ void check_stability(const scene::Scene& scene, bool force, config::Problems& pr
 }
 
 std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
-  const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
+  const plan::LiaisonGraph graph = plan::weighted(
+      plan::liaison_graph(scene.network), plan::limit_weights(scene.network, plan::Limit::kStable));
   const double dt = scene.network.step;
   double sum = 0.0;
   double strongest = 0.0;
