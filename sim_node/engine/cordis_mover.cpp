@@ -30,15 +30,7 @@ Moved CordisMover::step(WorldState& world) noexcept {
   StepEnergy& energy = moved.energy;
   energy.port_work = world.outside.move_ports(mats);
   mats.clear_forces();
-  energy += world.links.add_forces(world.kernel, mats.force_columns());
-  if (!world.state_links.empty()) {
-    energy += world.state_links.add_forces(world.behaviours, world.table, mats.force_columns(),
-                                           world.step_count, world.log);
-  }
-  energy += world.maxwell_links.add_forces(world.behaviours, mats.force_columns());
-  if (!world.sets.empty()) {
-    energy += world.sets.add_forces(world.pair_step(false), mats.force_columns());
-  }
+  world.add_forces_of_period(energy);
   energy.port_work += world.outside.work_at_ports(mats);
 
   energy.port_work += world.outside.push(mats);

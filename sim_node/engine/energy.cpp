@@ -47,9 +47,10 @@ void EnergyAccount::start(const NetworkDescription& network, const MatArray& mat
              gravity_energy(network, mats);
 }
 
-void EnergyAccount::open(double initial) noexcept {
+void EnergyAccount::open(double initial, double stored) noexcept {
   *this = EnergyAccount{};
   initial_ = initial;
+  stored_ = stored;
 }
 
 void EnergyAccount::add(const StepEnergy& step) noexcept {
@@ -62,10 +63,17 @@ void EnergyAccount::add(const StepEnergy& step) noexcept {
 
 Energy EnergyAccount::energy(const NetworkDescription& network, const MatArray& mats,
                              const StepEnergy& since, double stored) const noexcept {
+  return at_middle(
+      {kinetic_energy(network, mats), elastic_energy(network, mats), gravity_energy(network, mats)},
+      since, stored);
+}
+
+Energy EnergyAccount::at_middle(const OfMatter& matter, const StepEnergy& since,
+                                double stored) const noexcept {
   Energy energy;
-  energy.kinetic = kinetic_energy(network, mats);
-  energy.elastic = elastic_energy(network, mats) + (stored_ + since.elastic);
-  energy.gravity = gravity_energy(network, mats);
+  energy.kinetic = matter.kinetic;
+  energy.elastic = matter.elastic + (stored_ + since.elastic);
+  energy.gravity = matter.gravity;
   energy.dissipated = since.dissipated;
   enter_account(energy);
   energy.elastic_error = stored_ - stored;

@@ -78,7 +78,8 @@ class EnergyAccount {
              double since) noexcept;
 
   /// Opens the account of an integrator that keeps it at the moments x(n): with their sum [J].
-  void open(double initial) noexcept;
+  /// @param stored  as of the other start
+  void open(double initial, double stored = 0.0) noexcept;
 
   /// Enters one step, or a change between two.
   void add(const StepEnergy& step) noexcept;
@@ -92,6 +93,14 @@ class EnergyAccount {
 
   /// The same with the energies of a moment x(n), all of them in closed form [J].
   Energy at_moment(double kinetic, double elastic, double gravity) const noexcept;
+
+  /// The same as the first, with the energies of masses and linear links given [J].
+  struct OfMatter {
+    double kinetic;
+    double elastic;
+    double gravity;
+  };
+  Energy at_middle(const OfMatter& matter, const StepEnergy& since, double stored) const noexcept;
 
   static constexpr std::size_t kStateSize = 6;
   /// The state as a row of values.

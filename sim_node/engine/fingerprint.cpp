@@ -124,6 +124,7 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   if (description.integrator != Integrator::kCordis) {
     fingerprint.add(std::uint64_t{6});
     fingerprint.add(static_cast<std::uint64_t>(description.integrator));
+    fingerprint.add(description.most_mode_hz);
   }
   return fingerprint.value();
 }

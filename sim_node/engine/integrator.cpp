@@ -45,6 +45,39 @@ std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
   return std::nullopt;
 }
 
+/// Real modes need viscosities in proportion to stiffnesses and masses.
+std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescription& network) {
+  if (network.dimension != 1) return IntegratorRefusal{"2 or 3 dimensions", {}};
+  constexpr double kRounding = 1e-9;
+  const auto differ = [](double u, double v) {
+    return std::abs(u - v) > kRounding * std::max(std::abs(u), std::abs(v));
+  };
+  const Link* first = nullptr;
+  for (std::size_t l = 0; l < network.links.size(); ++l) {
+    const Link& link = network.links[l];
+    const auto is_port = [&](std::uint32_t mat) {
+      return mat < network.mats.size() && network.mats[mat].kind == MatKind::kPort;
+    };
+    if (is_port(link.mat_a) || is_port(link.mat_b)) continue;
+    if (first == nullptr) first = &link;
+    if (differ(link.viscosity * first->stiffness, first->viscosity * link.stiffness) ||
+        (link.viscosity > 0.0 && link.stiffness == 0.0)) {
+      return IntegratorRefusal{"a viscosity that is not in the same proportion to the stiffness",
+                               LiaisonId{LiaisonKind::kLink, static_cast<std::uint32_t>(l)}};
+    }
+  }
+  double mass = 0.0;
+  for (const Mat& mat : network.mats) {
+    if (mat.kind != MatKind::kMass) continue;
+    if (network.medium_viscosity > 0.0 && mass > 0.0 && differ(mass, mat.mass)) {
+      return IntegratorRefusal{"different masses in a medium", {}};
+    }
+    mass = mat.mass;
+  }
+  if (mass == 0.0) return IntegratorRefusal{"no mass", {}};
+  return std::nullopt;
+}
+
 }  // namespace
 
 const char* to_string(Integrator integrator) noexcept {
@@ -57,6 +90,8 @@ const char* to_string(Integrator integrator) noexcept {
       return "symplectic4";
     case Integrator::kImplicit:
       return "implicit";
+    case Integrator::kModal:
+      return "modal";
   }
   return "";
 }
@@ -75,6 +110,7 @@ int evaluations_per_step(Integrator integrator) noexcept {
     case Integrator::kCordis:
     case Integrator::kLeapfrog:
     case Integrator::kImplicit:
+    case Integrator::kModal:
       break;
   }
   return 1;
@@ -84,6 +120,8 @@ std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
   switch (network.integrator) {
     case Integrator::kSymplectic4:
       return refusal_of_what_does_not_conserve(network);
+    case Integrator::kModal:
+      return refusal_of_what_has_no_modes(network);
     case Integrator::kCordis:
     case Integrator::kLeapfrog:
     case Integrator::kImplicit:

@@ -18,12 +18,14 @@ enum class Integrator : std::uint8_t {
   kCordis = 0,       ///< the centred difference of the paper; dampers see x(n) - x(n-1)
   kLeapfrog = 1,     ///< the same with dampers of second order
   kSymplectic4 = 2,  ///< of fourth order, for scenes that conserve their energy
-  kImplicit = 3      ///< linearly implicit Euler, for very stiff cables
+  kImplicit = 3,     ///< linearly implicit Euler, for very stiff cables
+  kModal = 4         ///< linear networks in 1 dimension exactly, by their modes
 };
 
 /// All of them, in the order in which they are listed to people.
 inline constexpr std::array kIntegrators{Integrator::kCordis, Integrator::kLeapfrog,
-                                         Integrator::kSymplectic4, Integrator::kImplicit};
+                                         Integrator::kSymplectic4, Integrator::kImplicit,
+                                         Integrator::kModal};
 
 /// As a scene writes it: "leapfrog".
 const char* to_string(Integrator integrator) noexcept;

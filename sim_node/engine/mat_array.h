@@ -50,6 +50,11 @@ class MatArray {
   /// Moves the masses by these displacements. @return how many are not finite then
   std::uint32_t move_by(const AlignedVector<double>& displacement) noexcept;
   /// The delayed positions become the present ones, less a period at these velocities, if given.
+  /// Puts a mass of a network in 1 dimension somewhere.
+  void set_motion(std::uint32_t mat, double position, double delayed) noexcept {
+    position_[4 * std::size_t{mat}] = position;
+    delayed_[4 * std::size_t{mat}] = delayed;
+  }
   void delay() noexcept { delayed_ = position_; }
   std::uint32_t delay_by(const AlignedVector<double>& velocity) noexcept;
   /// x(n) - x(n-1) of the masses and ports, 4 x N [m].
@@ -61,8 +66,7 @@ class MatArray {
   /// Adds to the forces on all MATs, 4 x N.
   void add_forces(const AlignedVector<double>& more) noexcept;
 
-  /// Moves a port mass from where it is, its delayed position then. Precondition: `mat` is a port
-  /// mass.
+  /// Moves a MAT from where it is, its delayed position then.
   void move_port(std::uint32_t mat, const Vec3& position) noexcept;
 
   std::size_t count() const noexcept { return dt2_over_mass_.size(); }

@@ -6,6 +6,7 @@
 #include "sim_node/engine/cordis_mover.h"
 #include "sim_node/engine/implicit_euler.h"
 #include "sim_node/engine/leapfrog.h"
+#include "sim_node/engine/modal_mover.h"
 #include "sim_node/engine/symplectic4.h"
 #include "sim_node/engine/world_state.h"
 
@@ -25,6 +26,8 @@ std::unique_ptr<Mover> make_mover(const NetworkDescription& network) {
       return std::make_unique<Symplectic4>(network);
     case Integrator::kImplicit:
       return std::make_unique<ImplicitEuler>(network);
+    case Integrator::kModal:
+      return std::make_unique<ModalMover>(network);
   }
   throw std::invalid_argument("there is no such integrator");
 }

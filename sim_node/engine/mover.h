@@ -42,6 +42,10 @@ class Mover {
   /// [m/s]
   virtual Vec3 velocity(const WorldState& world, std::uint32_t mat) const noexcept;
 
+  /// Brings a MAT, or all of them, to where they are now, if steps do not.
+  virtual void show(WorldState&, std::uint32_t) const noexcept {}
+  virtual void show_all(WorldState&) const noexcept {}
+
   /// What it remembers besides the state of the MATs.
   virtual void add_to(StateHash&) const noexcept {}
   virtual std::size_t state_size() const noexcept { return 0; }

@@ -141,6 +141,8 @@ void check(const NetworkDescription& description) {
   check_each(description, description.state_links, "state link", check_state_link);
   check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
   check_each(description, description.sets, "set", check_set);
+  require(is_finite_and_at_least_zero(description.most_mode_hz), "highest frequency of modes",
+          "finite and >= 0");
   if (const auto refusal = refusal_of(description)) {
     throw std::invalid_argument(std::string("the integrator ") + to_string(description.integrator) +
                                 " does not take " + refusal->what);

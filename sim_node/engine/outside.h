@@ -28,6 +28,9 @@ class Outside {
   /// The forces of the links before step 0, which the account of the ports begins with.
   void start(const MatArray& mats) noexcept;
 
+  /// The masses that a force is held on.
+  std::size_t held_count() const noexcept { return forces_.size(); }
+  std::uint32_t held_mat(std::size_t index) const noexcept { return forces_[index].mat; }
   /// The port masses, in their order.
   const std::vector<std::uint32_t>& ports() const noexcept { return port_mats_; }
 

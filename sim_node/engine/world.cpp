@@ -94,10 +94,12 @@ std::uint64_t World::step_count() const noexcept {
 }
 
 Vec3 World::position(std::uint32_t mat) const noexcept {
+  state_->mover->show(*state_, mat);
   return state_->mats.position(mat);
 }
 
 Vec3 World::velocity(std::uint32_t mat) const noexcept {
+  state_->mover->show(*state_, mat);
   return state_->mover->velocity(*state_, mat);
 }
 
@@ -106,6 +108,7 @@ Vec3 World::link_force(std::uint32_t mat) const noexcept {
 }
 
 const Columns& World::positions() const noexcept {
+  state_->mover->show_all(*state_);
   return state_->positions;
 }
 
@@ -114,6 +117,7 @@ Energy World::energy() const noexcept {
 }
 
 Vec3 World::momentum() const noexcept {
+  state_->mover->show_all(*state_);
   const NetworkDescription& network = state_->network->description();
   Vec3 sum = Vec3::Zero();
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
@@ -124,6 +128,7 @@ Vec3 World::momentum() const noexcept {
 }
 
 Vec3 World::angular_momentum() const noexcept {
+  state_->mover->show_all(*state_);
   const NetworkDescription& network = state_->network->description();
   Vec3 sum = Vec3::Zero();
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
@@ -134,6 +139,7 @@ Vec3 World::angular_momentum() const noexcept {
 }
 
 std::uint64_t World::state_hash() const noexcept {
+  state_->mover->show_all(*state_);
   StateHash hash;
   hash.add(state_->step_count);
   for (const Columns& columns : {state_->mats.position(), state_->mats.delayed()}) {

@@ -91,7 +91,7 @@ class World {
   Vec3 velocity(std::uint32_t mat) const noexcept;
   /// Sum of the forces that the links put on the MAT in the last step [N]; 0 before the first.
   Vec3 link_force(std::uint32_t mat) const noexcept;
-  const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N
+  const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N; to be asked for in each step
 
   /// The changes of state of the last step, in the order of the force sums. There is room for as
   /// many as there are state links, and for at least 1024; those beyond are counted in the report.

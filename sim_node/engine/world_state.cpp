@@ -25,6 +25,17 @@ VectorWidth require(VectorWidth width) {
   return width;
 }
 
+/// Without those that `modal` takes as modes.
+SpringDamperArray stepped_links(const NetworkDescription& network) {
+  if (network.integrator != Integrator::kModal) return SpringDamperArray(network);
+  NetworkDescription stepped = network;
+  std::erase_if(stepped.links, [&network](const Link& link) {
+    return network.mats[link.mat_a].kind != MatKind::kPort &&
+           network.mats[link.mat_b].kind != MatKind::kPort;
+  });
+  return SpringDamperArray(stepped);
+}
+
 }  // namespace
 
 WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWidth width_of_step)
@@ -34,7 +45,7 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       behaviours(behaviour_kernel(width)),
       mats(description()),
       positions(mats.position()),
-      links(description()),
+      links(stepped_links(description())),
       table(make_table(description().behaviours)),
       state_links(description(), table),
       maxwell_links(description()),
@@ -44,7 +55,8 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       mover(make_mover(description())) {}
 
 StateTable WorldState::make_table(std::vector<Behaviour> from) const {
-  const bool whole_steps = description().integrator != Integrator::kCordis;
+  const Integrator integrator = description().integrator;
+  const bool whole_steps = integrator != Integrator::kCordis && integrator != Integrator::kModal;
   return StateTable(std::move(from), network->step(), whole_steps);
 }
 
@@ -83,6 +95,16 @@ StepEnergy WorldState::work_since_last_call() const noexcept {
   work += maxwell_links.work_since_last_call(mats);
   work += sets.work_since_last_call(mats);
   return work;
+}
+
+void WorldState::add_forces_of_period(StepEnergy& energy) noexcept {
+  const ForceColumns columns = mats.force_columns();
+  energy += links.add_forces(kernel, columns);
+  if (!state_links.empty()) {
+    energy += state_links.add_forces(behaviours, table, columns, step_count, log);
+  }
+  energy += maxwell_links.add_forces(behaviours, columns);
+  if (!sets.empty()) energy += sets.add_forces(pair_step(false), columns);
 }
 
 double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy& energy) noexcept {

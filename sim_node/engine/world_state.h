@@ -48,6 +48,8 @@ struct WorldState {
   double potential_energy() noexcept;
   StepEnergy work_since_last_call() const noexcept;
 
+  /// Adds the forces of all liaisons as `cordis` does; enters what they take.
+  void add_forces_of_period(StepEnergy& energy) noexcept;
   /// Clears the forces and adds those of all liaisons for an account that is kept at moments:
   /// dampers and conditions see the velocity (position - felt) / dt, Maxwell elements how the MATs
   /// have moved. Enters changes of state and what Maxwell elements have taken.

@@ -20,6 +20,9 @@ LimitWeights limit_weights(const engine::NetworkDescription& network, Limit limi
       weights.link_stiffness = weights.stiffness = 4.0 / (most * most);
       break;
     }
+    case Integrator::kModal:  // its linear links are exact; what drives them is checked by itself
+      weights.link_stiffness = weights.link_viscosity = 0.0;
+      break;
     case Integrator::kImplicit:  // 4 M + dt^2 K + 2 dt Z, of linear links, less that of all others
       weights.link_stiffness = weights.link_viscosity = limit == Limit::kStable ? 0.0 : -1.0;
       break;

@@ -40,6 +40,8 @@ Roots roots_of(Integrator integrator, double stiffness, double viscosity) {
     }
     case Integrator::kSymplectic4:
       return {engine::symplectic4_trace(stiffness), 1.0};
+    case Integrator::kModal:
+      break;
     case Integrator::kImplicit: {
       const double whole = 1.0 + viscosity + stiffness;
       return {(2.0 + viscosity) / whole, 1.0 / whole};
@@ -57,6 +59,10 @@ OscillatorError oscillator_error(double angular_frequency, double viscosity, dou
   const Roots roots =
       roots_of(integrator, angular_frequency * angular_frequency * step * step, viscosity * step);
   OscillatorError error;
+  if (integrator == Integrator::kModal) {  // exact
+    error.oscillates = square > 0.0;
+    return error;
+  }
   error.oscillates =
       square > 0.0 && roots.product > 0.0 && roots.trace * roots.trace < 4.0 * roots.product;
   if (!error.oscillates) return error;

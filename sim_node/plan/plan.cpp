@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sim_node/engine/modal_block.h"
 #include "sim_node/plan/limit_weights.h"
 #include "sim_node/plan/start_tangent.h"
 
@@ -40,6 +41,49 @@ double diverging_step_of(const engine::NetworkDescription& network, const Liaiso
   return limit_of_all_steps(network, limit_at);
 }
 
+/// What is fastened to a block of modes: by how much the stiffnesses together, at most, and one of
+/// them alone, at least, exceed what the block bears at the step of the network.
+struct ModalLoad {
+  double together = 0.0;
+  double alone = 0.0;
+  StepBound worst;
+};
+
+ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  const engine::ModalBlock block(network);
+  ModalLoad load;
+  if (!graph.crowds.empty()) load.together = std::numeric_limits<double>::infinity();
+  for (const Joint& joint : graph.joints) {
+    const bool to_port = network.mats[joint.mat_a].kind == engine::MatKind::kPort ||
+                         network.mats[joint.mat_b].kind == engine::MatKind::kPort;
+    if (joint.liaison.kind == LiaisonKind::kLink && !to_port) continue;
+    const double at_a = block.alternating_compliance(joint.mat_a, joint.mat_a);
+    const double at_b = block.alternating_compliance(joint.mat_b, joint.mat_b);
+    const double between = block.alternating_compliance(joint.mat_a, joint.mat_b);
+    const double stiffness = joint.stiffness + 2.0 * joint.viscosity / network.step;
+    const double root = std::sqrt(at_a) + std::sqrt(at_b);
+    load.together += stiffness * root * root;
+    const double alone = stiffness * (at_a + at_b - 2.0 * between);
+    if (alone < load.alone) continue;
+    load.alone = alone;
+    load.worst.liaison = joint.liaison;
+    load.worst.mat = at_a > at_b ? joint.mat_a : joint.mat_b;
+  }
+  return load;
+}
+
+/// Certain at the step of the network alone; for others as if the block bore 1 / dt^2.
+Stability stability_of_modes(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  const ModalLoad load = modal_load(network, graph);
+  Stability stability;
+  stability.certified = load.worst;
+  stability.certified.step = network.step / std::sqrt(load.together);
+  stability.diverging_step = network.step / std::sqrt(load.alone);
+  stability.bounded = graph.bounded;
+  stability.step = network.step;
+  return stability;
+}
+
 /// Whether a liaison of this behaviour is there at some times and not at others.
 bool switches(const engine::Behaviour& behaviour) {
   for (const engine::LinkState& state : behaviour.states) {
@@ -69,6 +113,7 @@ double Stability::margin() const noexcept {
 }
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  if (network.integrator == engine::Integrator::kModal) return stability_of_modes(network, graph);
   Stability stability;
   stability.certified = certified_bound(network, graph);
   stability.diverging_step = diverging_step_of(network, graph);

@@ -50,6 +50,9 @@ config::Place read_step(const Value& section, Scene& scene, config::Problems& pr
     integrators.emplace_back(to_string(integrator));
   scene.network.integrator =
       engine::integrator_named(reader.optional_choice("integrator", "cordis", integrators));
+  if (scene.network.integrator == engine::Integrator::kModal) {
+    scene.network.most_mode_hz = reader.optional_number("modes_to_hz", 0.0, Range::positive());
+  }
   scene.rate_is_open = scene.accuracy && !reader.has("rate_hz");
   scene.integrator_is_open = scene.rate_is_open && !reader.has("integrator");
   if (!scene.rate_is_open) {

@@ -166,6 +166,8 @@ TEST_P(GoldenHash, OfTheOtherIntegratorsStays) {
   World implicit = make_world(scene, GetParam());
   run(implicit, 500);
   expect(implicit, "implicit_string");
+  World modal = plucked_string(GetParam(), Integrator::kModal);
+  expect(modal, "modal_plucked_string");
 }
 
 TEST_P(GoldenHash, GoesWithTheSameEnergyAccountOnEveryWidth) {

@@ -17,7 +17,8 @@ class EveryIntegrator : public testing::TestWithParam<Integrator> {};
 /// What the integrator takes: the scene, or the scene without what it refuses.
 NetworkDescription for_integrator(NetworkDescription scene, Integrator integrator) {
   scene.integrator = integrator;
-  if (integrator == Integrator::kSymplectic4) {
+  const bool modal = integrator == Integrator::kModal;
+  if (integrator == Integrator::kSymplectic4 || (modal && scene.links.size() > 1)) {
     scene.medium_viscosity = 0.0;
     for (Link& link : scene.links) link.viscosity = 0.0;
   }
@@ -40,6 +41,25 @@ TEST_P(EveryIntegrator, DivergesOnRandomNetworksWhereThePlanSays) {
     scene.step = 1.01 * stability.diverging_step;
     EXPECT_GT(largest_excursion(scene, 20000), 1e6) << seed;
   }
+}
+
+TEST(IntegratorLimit, OfModesIsWhatIsFastenedToThem) {
+  NetworkDescription scene = string_in_space(20, 0.01, 4e-4);
+  scene.dimension = 1;
+  scene.integrator = Integrator::kModal;
+  for (Mat& mat : scene.mats) mat.position = Vec3(mat.position.y(), 0, 0);
+  scene.behaviours.push_back(behaviour(1000.0));
+  scene.state_links = {{0, 7, 0, 0.0}};
+  const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
+  const double load = std::pow(scene.step / stability.diverging_step, 2.0);
+  EXPECT_NEAR(stability.certified.step, stability.diverging_step, 1e-9 * scene.step);
+
+  scene.behaviours[0].states[0].stiffness = 0.98 * 1000.0 / load;
+  EXPECT_TRUE(plan::stability_of(scene, plan::liaison_graph(scene)).holds());
+  EXPECT_LT(largest_excursion(scene, 20000), 1e3);
+  scene.behaviours[0].states[0].stiffness = 1.02 * 1000.0 / load;
+  EXPECT_TRUE(plan::stability_of(scene, plan::liaison_graph(scene)).diverges());
+  EXPECT_GT(largest_excursion(scene, 20000), 1e6);
 }
 
 TEST_P(EveryIntegrator, SwingsAndDecaysAsThePlanSays) {

@@ -47,7 +47,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kNothing,
                  "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^euler}\nmatter: {a: "
                  "{kind: mass, mass_kg: 1, at_m: 0}}\n",
-                 "'integrator' in step must be one of cordis, leapfrog, symplectic4, implicit, got "
+                 "'integrator' in step must be one of cordis, leapfrog, symplectic4, implicit, "
+                 "modal, got "
                  "'euler'",
                  ""},
         BadScene{kNothing,
