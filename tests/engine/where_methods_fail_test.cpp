@@ -1,0 +1,124 @@
+// tests/engine/where_methods_fail_test.cpp -- the smallest scene in which each integrator goes
+// wrong while another does not. m = 1 and dt = 1: then K is K' and Z is Z'.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/programs.h"
+#include "tests/engine/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+using engine::Integrator;
+
+/// One mass on a spring and a damper that are those of a state, or linear.
+NetworkDescription one_mass(double stiffness, double viscosity, bool of_state) {
+  NetworkDescription scene = oscillator(1.0, stiffness, viscosity, 1.0, 0.0, 1.0);
+  if (!of_state) return scene;
+  scene.links.clear();
+  scene.behaviours.push_back(Behaving().state(stiffness, viscosity).behaviour);
+  scene.state_links = {{0, 1, 0, 0.0}};
+  return scene;
+}
+
+double largest_excursion(NetworkDescription scene, Integrator integrator, int steps = 2000) {
+  scene.integrator = integrator;
+  World world = make_world(scene);
+  double largest = 0.0;
+  for (int n = 0; n < steps && largest < 1e50; ++n) {
+    world.step();
+    largest = std::max(largest, std::abs(world.position(1).x()));
+  }
+  return largest;
+}
+
+TEST(WhereMethodsFail, CordisOnAHeavyDamperWhereTheOthersHold) {
+  const NetworkDescription scene = one_mass(0.1, 2.2, false);
+
+  EXPECT_GT(largest_excursion(scene, Integrator::kCordis), 1e20);
+  EXPECT_LT(largest_excursion(scene, Integrator::kLeapfrog), 1.5);
+  EXPECT_LT(largest_excursion(scene, Integrator::kImplicit), 1.5);
+  EXPECT_LT(largest_excursion(scene, Integrator::kModal), 1.5);
+}
+
+TEST(WhereMethodsFail, LeapfrogOnTheDamperOfAStateWhereCordisHolds) {
+  const NetworkDescription scene = one_mass(0.5, 1.0, true);
+
+  EXPECT_GT(largest_excursion(scene, Integrator::kLeapfrog), 1e3);
+  EXPECT_LT(largest_excursion(scene, Integrator::kCordis), 1.5);
+}
+
+TEST(WhereMethodsFail, EveryExplicitOneOnAStiffSpringWhereImplicitHolds) {
+  const NetworkDescription scene = one_mass(100.0, 0.0, false);
+
+  EXPECT_GT(largest_excursion(scene, Integrator::kCordis), 1e20);
+  EXPECT_GT(largest_excursion(scene, Integrator::kLeapfrog), 1e20);
+  EXPECT_GT(largest_excursion(scene, Integrator::kSymplectic4), 1e20);
+  EXPECT_LT(largest_excursion(scene, Integrator::kImplicit), 1.0);
+  EXPECT_LT(largest_excursion(scene, Integrator::kModal), 1.01);
+}
+
+TEST(WhereMethodsFail, ImplicitLetsDieWhatSwingsForeverWithTheOthers) {
+  for (const Integrator integrator :
+       {Integrator::kCordis, Integrator::kLeapfrog, Integrator::kSymplectic4, Integrator::kImplicit,
+        Integrator::kModal}) {
+    NetworkDescription scene = one_mass(0.01, 0.0, false);  // w dt = 0.1
+    scene.integrator = integrator;
+    World world = make_world(scene);
+    run(world, 1000);
+    double late = 0.0;
+    for (int n = 0; n < 70; ++n) {
+      world.step();
+      late = std::max(late, std::abs(world.position(1).x()));
+    }
+
+    if (integrator == Integrator::kImplicit) {
+      EXPECT_LT(late, 0.01);  // e^(-0.005 n)
+    } else {
+      EXPECT_NEAR(late, 1.0, 0.01) << to_string(integrator);
+    }
+  }
+}
+
+/// Speed after a bounce on a wall that only pushes, for one of many moments of arrival.
+double speed_after_bounce(double stiffness, double phase) {
+  NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 3.0 + phase, -1.0, 1.0);
+  scene.links.clear();
+  scene.behaviours.push_back(Behaving().state(stiffness).behaviour);
+  scene.behaviours[0].states[0].pulls = false;
+  scene.state_links = {{0, 1, 0, 0.0}};
+  World world = make_world(scene);
+  run(world, 30);
+  return std::abs(world.velocity(1).x());
+}
+
+TEST(WhereMethodsFail, CordisOnAStiffContactThoughItIsStable) {
+  // The energy after a bounce is between 1 - K'/4 and 1 / (1 - K'/4) of that before it.
+  const auto largest_gain = [](double stiffness) {
+    double most = 0.0;
+    for (int i = 0; i < 100; ++i) {
+      most = std::max(most, std::pow(speed_after_bounce(stiffness, 0.01 * i), 2.0));
+    }
+    return most;
+  };
+
+  EXPECT_GT(largest_gain(3.6), 5.0);
+  EXPECT_LE(largest_gain(3.6), 10.0 * (1.0 + 1e-9));
+  EXPECT_LE(largest_gain(0.04), 1.0 / 0.99 * (1.0 + 1e-9));
+}
+
+TEST(WhereMethodsFail, ModalNearItsNyquistFrequencyUnderALoadThatCordisBears) {
+  // K' = 3.9 and 0.05 besides: 3.95 < 4; of the mode K' = 4 sin^2(w dt / 2), w dt = 3.1
+  NetworkDescription scene = one_mass(9.61, 0.0, false);
+  scene.behaviours.push_back(Behaving().state(0.05).behaviour);
+  scene.state_links = {{0, 1, 0, 0.0}};
+  EXPECT_GT(largest_excursion(scene, Integrator::kModal, 20000), 1e3);
+
+  scene.links[0].stiffness = 3.9;
+  EXPECT_LT(largest_excursion(scene, Integrator::kCordis, 20000), 20.0);
+}
+
+}  // namespace
+}  // namespace cordis::test
