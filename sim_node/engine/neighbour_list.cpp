@@ -7,10 +7,10 @@
 namespace cordis::engine {
 namespace {
 
-constexpr double kMargin = 1e-9;       // relative, of squares; far above their rounding
-constexpr double kFirstSkin = 0.1;     // of the range
-constexpr double kLeastSkin = 0.02;    // of the range
-constexpr double kLargestSkin = 0.5;   // of the range
+constexpr double kMargin = 1e-9;        // relative, of squares; far above their rounding
+constexpr double kFirstSkin = 0.1;      // of the range
+constexpr double kLeastSkin = 0.02;     // of the range
+constexpr double kLargestSkin = 0.5;    // of the range
 constexpr double kBuildOverUse = 12.0;  // time to make the list over time to go through it once
 
 /// Columns of 4 values, as many as a whole number of batches.
