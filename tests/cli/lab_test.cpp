@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "cli/lab/lab_chart.h"
 
@@ -19,6 +20,10 @@ class Lab : public testing::Test {
   Lab() {
     std::filesystem::remove_all(options_.folder);
     write("");
+  }
+  ~Lab() override {
+    std::filesystem::remove_all(options_.folder);
+    std::filesystem::remove(options_.file);
   }
   void write(const std::string& more) {
     std::ofstream(options_.file)
@@ -36,8 +41,8 @@ class Lab : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  LabOptions options_{
-      testing::TempDir() + "lab_test.yaml", testing::TempDir() + "lab_test", 2.0, 2, true, false};
+  const std::string place_ = testing::TempDir() + "lab_test." + std::to_string(getpid());
+  LabOptions options_{place_ + ".yaml", place_, 2.0, 2, true, false};
 };
 
 TEST_F(Lab, TheErrorIsThatOfThePhase) {

@@ -2,11 +2,13 @@
 #include "cli/scene_check.h"
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "cli/exit_code.h"
 #include "cli/verbs.h"
@@ -17,6 +19,7 @@ namespace {
 /// A mass of 0.1 kg on a spring: K' = 4 at 50 steps per second for 1000 N/m.
 class Checked : public testing::Test {
  protected:
+  ~Checked() override { std::remove(path_.c_str()); }
   void write(const std::string& rate, const std::string& more = "") {
     std::ofstream(path_) << "cordis: 1\nname: bob\nspace: 1\nstep: {rate_hz: " << rate
                          << ", gesture_rate_hz: 10}\nmatter:\n  ground: {kind: fixed, at_m: [0]}\n"
@@ -37,7 +40,7 @@ class Checked : public testing::Test {
     return code;
   }
 
-  std::string path_ = testing::TempDir() + "scene_check_test.yaml";
+  std::string path_ = testing::TempDir() + "scene_check_test." + std::to_string(getpid()) + ".yaml";
   std::string out_;
   std::string error_;
 };

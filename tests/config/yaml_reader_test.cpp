@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "node/config/value.h"
 
@@ -249,7 +250,7 @@ class LoadFile : public testing::Test {
   }
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) /
-      ("cordis_load_file_" +
+      ("cordis_load_file_" + std::to_string(getpid()) + "_" +
        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 

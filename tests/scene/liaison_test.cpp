@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/scene/scene_text.h"
 
@@ -36,7 +37,7 @@ class Include : public testing::Test {
 
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) /
-      (std::string("cordis_include_") +
+      (std::string("cordis_include_") + std::to_string(getpid()) + "_" +
        testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 

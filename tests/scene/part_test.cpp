@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "sim_node/engine/world.h"
 #include "tests/scene/bad_scene.h"
@@ -187,7 +188,7 @@ class PartFiles : public testing::Test {
   Scene scene;
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) /
-      (std::string("cordis_parts_") +
+      (std::string("cordis_parts_") + std::to_string(getpid()) + "_" +
        testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 

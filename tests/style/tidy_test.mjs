@@ -9,7 +9,7 @@ import os from 'node:os';
 import path from 'node:path';
 import { promisify } from 'node:util';
 
-const MOST_TOGETHER = 10;
+const MOST_TOGETHER = 24;
 const [source, build] = process.argv.slice(2, 4).map((folder) => fs.realpathSync(folder));
 const beginning = process.argv[4] ?? '';
 const clean = path.join(build, 'clang-tidy');
@@ -21,20 +21,29 @@ function optionsOf(command) {
     word === '-isystem' ? [word, words[i + 1]] : /^-([ID]|std=|m)/.test(word) ? [word] : []);
 }
 
+/// What CMake has put together to be compiled at once, or the file itself.
+function sourcesIn(file) {
+  if (!/\/Unity\/unity_\d+_cxx\.cxx$/.test(file)) return [file];
+  return [...fs.readFileSync(file, 'utf8').matchAll(/^#include "(.*)"$/gm)].map((match) => match[1]);
+}
+
 /// The sources that the tree compiles, each once though two libraries compile the engine, in groups of the same folder and
 /// the same options.
 function groups() {
   const groups = new Map();
   const seen = new Set();
   for (const { file, command } of JSON.parse(fs.readFileSync(path.join(build, 'compile_commands.json')))) {
-    const name = path.relative(source, file);
-    if (name.startsWith('..') || file.startsWith(build + path.sep) || name.startsWith('tests/')) continue;
-    if (!name.startsWith(beginning) || !name.endsWith('.cpp') || seen.has(name)) continue;
-    seen.add(name);
+    const object = path.join(build, command.match(/ -o (\S+)/)[1]);
     const options = optionsOf(command);
-    const key = JSON.stringify([name.split('/').slice(0, 2).join('/'), options]);
-    if (!groups.has(key)) groups.set(key, { options, members: [] });
-    groups.get(key).members.push({ file, object: path.join(build, command.match(/ -o (\S+)/)[1]) });
+    for (const member of sourcesIn(file)) {
+      const name = path.relative(source, member);
+      if (name.startsWith('..') || member.startsWith(build + path.sep) || name.startsWith('tests/')) continue;
+      if (!name.startsWith(beginning) || !name.endsWith('.cpp') || seen.has(name)) continue;
+      seen.add(name);
+      const key = JSON.stringify([name.split('/').slice(0, 2).join('/'), options]);
+      if (!groups.has(key)) groups.set(key, { options, members: [] });
+      groups.get(key).members.push({ file: member, object });
+    }
   }
   return [...groups.values()].flatMap(({ options, members }) => {
     members.sort((a, b) => (a.file < b.file ? -1 : 1));

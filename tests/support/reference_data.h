@@ -10,8 +10,9 @@ extern template class nlohmann::basic_json<>;
 
 namespace cordis::test {
 
-/// @param name  of the file without ".json"
-nlohmann::json reference(const std::string& name);
+/// The problem, which stays where it is until the program ends. @param name  of the file without
+/// ".json"
+const nlohmann::json& reference(const std::string& name);
 
 /// The value of a decimal string of 17 digits.
 double number(const nlohmann::json& text);
