@@ -62,7 +62,7 @@ Behaviour collophane(Kind kind) {
 
 /// 708 x 708 masses, each tied to its right and its upper neighbour: a million links.
 std::shared_ptr<const Network> grid(int dimension, Kind kind) {
-  constexpr std::uint32_t kSide = 708;
+  constexpr std::uint32_t kLatticeSide = 708;
   NetworkDescription network;
   network.dimension = dimension;
   network.step = 1e-3;
@@ -77,16 +77,16 @@ std::shared_ptr<const Network> grid(int dimension, Kind kind) {
       network.state_links.push_back({a, b, kind == kMixed ? count * 2654435761U >> 31 : 0U, rest});
     }
   };
-  for (std::uint32_t row = 0; row < kSide; ++row) {
-    for (std::uint32_t column = 0; column < kSide; ++column) {
+  for (std::uint32_t row = 0; row < kLatticeSide; ++row) {
+    for (std::uint32_t column = 0; column < kLatticeSide; ++column) {
       cordis::engine::Mat mat;
       mat.mass = 0.01;
       mat.position = dimension == 1 ? Vec3(1e-4 * (row * column % 7), 0.0, 0.0)
                                     : Vec3(0.01 * column, 0.01 * row, 0.0);
       network.mats.push_back(mat);
-      const std::uint32_t here = row * kSide + column;
+      const std::uint32_t here = row * kLatticeSide + column;
       if (column > 0) tie(here - 1, here);
-      if (row > 0) tie(here - kSide, here);
+      if (row > 0) tie(here - kLatticeSide, here);
     }
   }
   return std::make_shared<const Network>(network);
