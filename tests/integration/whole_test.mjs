@@ -53,7 +53,7 @@ const cases = {
       latency: /^\d[\d.]*\s(µs|ms)$/,
       'latency-device': /keyboard/,
       energy: /^\d[\d.]*\s[µm]?J$/,
-      'energy-more': /^drift \d/,
+      'energy-more': /^drift -?\d/,
       time: /^\d+\.\d\d$/,
     };
     for (const [id, pattern] of Object.entries(figures)) {
