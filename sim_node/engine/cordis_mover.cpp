@@ -18,6 +18,7 @@ void CordisMover::start(WorldState& world) noexcept {
   world.outside.start(mats);
   mats.clear_forces();
   world.links.start();
+  world.ties.start();
   world.state_links.start();
   world.sets.start();
   world.account.start(world.description(), mats, world.stored_energy(),

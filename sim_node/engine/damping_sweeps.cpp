@@ -27,7 +27,7 @@ DampingSweeps::DampingSweeps(const NetworkDescription& description)
     if (link.viscosity == 0.0 || inverse_sum == 0.0) continue;
     dampers_.push_back({link.mat_a, link.mat_b,
                         share_of_decay(link.viscosity * half * inverse_sum) / inverse_sum,
-                        inverse(link.mat_a), inverse(link.mat_b)});
+                        inverse(link.mat_a), inverse(link.mat_b), link.isotropic});
   }
 }
 
@@ -51,15 +51,15 @@ void DampingSweeps::damp(const Damper& damper, const MatArray& mats,
                          AlignedVector<double>& velocity, Loss& loss) noexcept {
   Eigen::Map<Vec3> at_a(velocity.data() + 4 * std::size_t{damper.a});
   Eigen::Map<Vec3> at_b(velocity.data() + 4 * std::size_t{damper.b});
+  const Vec3 apart = at_b - at_a;
   Vec3 axis = Vec3::UnitX();
   if (!in_line_) {
-    axis = mats.position(damper.b) - mats.position(damper.a);
+    axis = damper.isotropic ? apart : Vec3(mats.position(damper.b) - mats.position(damper.a));
     const double length =
         std::sqrt(axis.x() * axis.x() + axis.y() * axis.y() + axis.z() * axis.z());
     if (length == 0.0) return;
     axis /= length;
   }
-  const Vec3 apart = at_b - at_a;
   const double speed = axis.x() * apart.x() + axis.y() * apart.y() + axis.z() * apart.z();
   const double impulse = damper.mass * speed;
   const Vec3 along = impulse * axis;

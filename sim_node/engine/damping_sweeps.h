@@ -16,7 +16,8 @@ namespace cordis::engine {
 ///     J = mu (1 - e^(-Z dt / 2 mu)) (speed along the link),   mu the reduced mass,
 ///
 /// forward and then backward, which makes a period symmetric in time and so of second order. No
-/// viscosity is too large for it; momentum and angular momentum are kept to rounding.
+/// viscosity is too large for it; momentum and, but for ties, angular momentum are kept to
+/// rounding.
 class DampingSweeps {
  public:
   explicit DampingSweeps(const NetworkDescription& description);
@@ -42,6 +43,7 @@ class DampingSweeps {
     double mass;            // mu (1 - e^(-Z dt / 2 mu)) [kg]
     double inverse_mass_a;  // [1/kg]
     double inverse_mass_b;
+    bool isotropic;
   };
 
   void damp(const Damper& damper, const MatArray& mats, AlignedVector<double>& velocity,

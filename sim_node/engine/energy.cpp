@@ -16,14 +16,15 @@ double kinetic_energy(const NetworkDescription& network, const MatArray& mats) n
   return 0.5 * sum / (network.step * network.step);
 }
 
-/// Of linear springs in 1 dimension.
+/// Of linear springs in 1 dimension, and of ties.
 double elastic_energy(const NetworkDescription& network, const MatArray& mats) noexcept {
-  if (network.dimension != 1) return 0.0;
   double sum = 0.0;
   for (const Link& link : network.links) {
-    const double now = (mats.position(link.mat_b) - mats.position(link.mat_a)).x();
-    const double before = (mats.delayed_at_rest(link.mat_b) - mats.delayed_at_rest(link.mat_a)).x();
-    sum += link.stiffness * (now - link.rest_length) * (before - link.rest_length);
+    if (network.dimension != 1 && !link.isotropic) continue;
+    const Vec3 rest(link.rest_length, 0.0, 0.0);
+    const Vec3 now = mats.position(link.mat_b) - mats.position(link.mat_a) - rest;
+    const Vec3 before = mats.delayed_at_rest(link.mat_b) - mats.delayed_at_rest(link.mat_a) - rest;
+    sum += link.stiffness * now.dot(before);
   }
   return 0.5 * sum;
 }

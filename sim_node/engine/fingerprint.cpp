@@ -27,6 +27,7 @@ class Fingerprint {
     add(link.stiffness);
     add(link.viscosity);
     add(link.rest_length);
+    if (link.isotropic) add(std::uint64_t{1});
   }
   void add(const Instruction& instruction) {
     add(static_cast<std::uint64_t>(instruction.operation));

@@ -30,8 +30,12 @@ void Leapfrog::start(WorldState& world) noexcept {
   world.outside.start(mats);
   mats.start();
   mats.set_forces_are_present(true);
-  if (sweeps_) world.links.drop_viscosity();
+  if (sweeps_) {
+    world.links.drop_viscosity();
+    world.ties.drop_viscosity();
+  }
   world.links.start();
+  world.ties.start();
   world.state_links.start();
   world.sets.start();
   world.account.open(energy(world).total());

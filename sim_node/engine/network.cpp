@@ -58,6 +58,8 @@ void check_link(const NetworkDescription& description, const Link& link, const s
   require(std::isfinite(link.rest_length), name + ": rest length", "finite");
   require(description.dimension == 1 || link.rest_length >= 0.0, name + ": rest length",
           ">= 0 in 2 and 3 dimensions");
+  require(!link.isotropic || link.rest_length == 0.0, name + ": rest length",
+          "0 when it is isotropic");
 }
 
 void check_states(const NetworkDescription& description, std::uint32_t behaviour,

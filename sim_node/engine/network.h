@@ -29,12 +29,18 @@ struct Mat {
 /// / dt along the line of centres (the growth taken as the relative displacement projected on that
 /// line), no force while d is 0. In 1 dimension d is signed, d = x_b - x_a, and so is the rest
 /// length: ends may cross.
+///
+/// An isotropic one is a tie: K (x_b - x_a) + Z (its growth in the last period, as a vector) / dt,
+/// the same in every direction and at distance 0, without a rest length. The damper of another link
+/// lets one end circle the other for ever; a tie calms it, and so keeps no angular momentum. In 1
+/// dimension there is no difference.
 struct Link {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
   double stiffness = 0.0;    ///< K [N/m], >= 0
   double viscosity = 0.0;    ///< Z [N s/m], >= 0
   double rest_length = 0.0;  ///< [m]; >= 0 in 2 and 3 dimensions
+  bool isotropic = false;    ///< then the rest length is 0
 };
 
 /// One LIA with states: between the two MATs, as its behaviour says. Distance, direction and growth

@@ -6,25 +6,45 @@
 namespace cordis::engine {
 namespace {
 
-// A row of padding joins MAT 0 to itself without stiffness or viscosity: its force is 0.
+using Kind = SpringDamperArray::Kind;
+
+bool is_of(Kind kind, const NetworkDescription& description, const Link& link) {
+  return (description.dimension > 1 && link.isotropic) == (kind == Kind::kTie);
+}
+
+std::size_t axes_of(Kind kind, const NetworkDescription& description) {
+  return kind == Kind::kTie ? static_cast<std::size_t>(description.dimension) : 1;
+}
+
+std::size_t row_count(Kind kind, const NetworkDescription& description) {
+  const auto links =
+      std::count_if(description.links.begin(), description.links.end(),
+                    [&](const Link& link) { return is_of(kind, description, link); });
+  return static_cast<std::size_t>(links) * axes_of(kind, description);
+}
+
 }  // namespace
 
-SpringDamperArray::SpringDamperArray(const NetworkDescription& description)
-    : in_line_(description.dimension == 1),
-      column_a_(padded(description.links.size(), kLinkBatch), 0U),
+// A row of padding joins MAT 0 to itself without stiffness or viscosity: its force is 0.
+SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind)
+    : in_line_(description.dimension == 1 || kind == Kind::kTie),
+      column_a_(padded(row_count(kind, description), kLinkBatch), 0U),
       column_b_(column_a_.size(), 0U),
       stiffness_(column_a_.size(), 0.0),
       viscosity_over_dt_(column_a_.size(), 0.0),
       rest_length_(column_a_.size(), 0.0),
       viscous_factor_(column_a_.size(), 0.0),
       elastic_factor_(in_line_ ? 0 : column_a_.size(), 0.0) {
-  for (std::size_t l = 0; l < description.links.size(); ++l) {
-    const Link& link = description.links[l];
-    column_a_[l] = 4 * link.mat_a;
-    column_b_[l] = 4 * link.mat_b;
-    stiffness_[l] = link.stiffness;
-    viscosity_over_dt_[l] = link.viscosity / description.step;
-    rest_length_[l] = link.rest_length;
+  std::size_t l = 0;
+  for (const Link& link : description.links) {
+    if (!is_of(kind, description, link)) continue;
+    for (std::uint32_t axis = 0; axis < axes_of(kind, description); ++axis, ++l) {
+      column_a_[l] = 4 * link.mat_a + axis;
+      column_b_[l] = 4 * link.mat_b + axis;
+      stiffness_[l] = link.stiffness;
+      viscosity_over_dt_[l] = link.viscosity / description.step;
+      rest_length_[l] = link.rest_length;
+    }
     viscous_ = viscous_ || link.viscosity > 0.0;
   }
 }
@@ -60,7 +80,7 @@ StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const n
     const std::uint32_t b = column_b_[l] / 4;
     const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
     const Vec3 moved = mats.position(b) - mats.position(a) - before;
-    const double product = 0.5 * (in_line_ ? moved.x() : before.dot(moved));
+    const double product = 0.5 * (in_line_ ? moved[column_a_[l] % 4] : before.dot(moved));
     work.dissipated += viscous_factor_[l] * product;
     if (!in_line_) work.elastic += elastic_factor_[l] * product;
   }
@@ -72,7 +92,8 @@ double SpringDamperArray::potential_energy(const MatArray& mats) const noexcept 
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
     const Vec3 along =
         mats.position_of_forces(column_b_[l] / 4) - mats.position_of_forces(column_a_[l] / 4);
-    const double elongation = (in_line_ ? along.x() : along.norm()) - rest_length_[l];
+    const double distance = in_line_ ? along[column_a_[l] % 4] : along.norm();
+    const double elongation = distance - rest_length_[l];
     sum += stiffness_[l] * elongation * elongation;
   }
   return 0.5 * sum;

@@ -15,15 +15,20 @@ namespace cordis::engine {
 /// Linear springs, dampers and spring-dampers: two positions in, two opposite forces out.
 ///
 /// pull = K (d - rest) + Z (growth of the link along its axis during the last period) / dt; see
-/// Link for d. Source: [Luc90 III.2.2 Modelisation of the material in its continuous behaviour].
+/// Link for d. Ties are taken apart into one such link along each axis, as in 1 dimension.
+/// Source: [Luc90 III.2.2 Modelisation of the material in its continuous behaviour].
 class SpringDamperArray {
  public:
-  explicit SpringDamperArray(const NetworkDescription& description);
+  enum class Kind : std::uint8_t {
+    kAlong,  ///< all links in 1 dimension, those that are not isotropic in 2 and 3
+    kTie     ///< the others
+  };
+  SpringDamperArray(const NetworkDescription& description, Kind kind);
 
   /// Adds the force of every link to its two MATs, in link order.
   /// @return the work [J] that went into the links with the forces of the last call, from then to
   ///         now, and with these, from the last call to now; half of each, as a force f(n) does in
-  ///         this scheme the work f(n) . (x(n+1) - x(n-1)) / 2. In 1 dimension without that of the
+  ///         this scheme the work f(n) . (x(n+1) - x(n-1)) / 2. In line without that of the
   ///         springs, which is the change of K e(n) e(n-1) / 2.
   /// Real time: O(links), no allocation.
   StepEnergy add_forces(const StepKernel& kernel, const ForceColumns& columns) noexcept;
@@ -38,7 +43,7 @@ class SpringDamperArray {
   /// Energy of the springs where the forces of the last call were computed [J].
   /// Real time: O(links), no allocation.
   double potential_energy(const MatArray& mats) const noexcept;
-  /// The same, but 0 in 1 dimension, where the account keeps K e(n) e(n-1) / 2.
+  /// The same, but 0 in line, where the account keeps K e(n) e(n-1) / 2.
   double stored_energy(const MatArray& mats) const noexcept {
     return in_line_ ? 0.0 : potential_energy(mats);
   }
@@ -59,16 +64,16 @@ class SpringDamperArray {
  private:
   LinkRows rows() noexcept;
 
-  bool in_line_;                           // 1 dimension
+  bool in_line_;                           // 1 dimension, or ties
   bool viscous_ = false;                   // a link has viscosity
-  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
+  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index, + axis of a tie
   AlignedVector<std::uint32_t>
       column_b_;                     // all arrays: one per link, padded to a multiple of kLinkBatch
   AlignedVector<double> stiffness_;  // K [N/m]
   AlignedVector<double> viscosity_over_dt_;  // Z / dt [N/m]
   AlignedVector<double> rest_length_;        // [m]
-  AlignedVector<double> viscous_factor_;     // [N/m]; in 1 dimension the viscous pull itself [N]
-  AlignedVector<double> elastic_factor_;     // [N/m]; none in 1 dimension
+  AlignedVector<double> viscous_factor_;     // [N/m]; in line the viscous pull itself [N]
+  AlignedVector<double> elastic_factor_;     // [N/m]; none in line
 };
 
 }  // namespace cordis::engine

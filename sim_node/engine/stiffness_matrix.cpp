@@ -82,7 +82,7 @@ void StiffnessMatrix::lay_out(const NetworkDescription& network) {
       slot = static_cast<std::uint32_t>(found - earlier[high].begin());
     }
     ties_.push_back({link.mat_a, link.mat_b, dt * dt * link.stiffness, dt * link.viscosity,
-                     link.rest_length, slot});
+                     link.rest_length, link.isotropic, slot});
   }
   const auto d = static_cast<std::uint32_t>(dimension_);
   column_begin_.push_back(0);
@@ -129,6 +129,7 @@ void StiffnessMatrix::find_fill() {
 StiffnessMatrix::Tangent StiffnessMatrix::tangent(const MatArray& mats,
                                                   const Tie& tie) const noexcept {
   if (dimension_ == 1) return {Vec3::UnitX(), tie.stiffness, 0.0};
+  if (tie.isotropic) return {Vec3::UnitX(), tie.stiffness, tie.stiffness};
   const Vec3 along = mats.position(tie.mat_b) - mats.position(tie.mat_a);
   const double length =
       std::sqrt(along.x() * along.x() + along.y() * along.y() + along.z() * along.z());
@@ -171,6 +172,7 @@ bool StiffnessMatrix::assemble(const MatArray& mats) noexcept {
   for (const Tie& tie : ties_) {
     Tangent part = tangent(mats, tie);
     part.along += tie.viscosity;
+    if (tie.isotropic && dimension_ > 1) part.across += tie.viscosity;
     add_tie(tie, part);
   }
   assembled_ = factor();

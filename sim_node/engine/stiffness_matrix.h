@@ -34,6 +34,7 @@ class StiffnessMatrix {
     double stiffness;  // dt^2 K [kg]
     double viscosity;  // dt Z [kg]
     double rest;
+    bool isotropic;
     std::uint32_t slot;  // of its block in the column of the later end; kNoSlot without one
   };
   struct Tangent {

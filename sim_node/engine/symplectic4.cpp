@@ -83,6 +83,7 @@ void Symplectic4::find_forces(WorldState& world) noexcept {
   at_rest.delayed = at_rest.position;
   world.mats.clear_forces();
   world.links.add_forces_of_moment(world.kernel, at_rest);
+  world.ties.add_forces_of_moment(world.kernel, at_rest);
   world.state_links.add_forces_before_start(world.behaviours, world.table, at_rest);
   world.sets.add_forces(world.pair_step(true), at_rest);
 }

@@ -27,13 +27,14 @@ VectorWidth require(VectorWidth width) {
 
 /// Without those that `modal` takes as modes.
 SpringDamperArray stepped_links(const NetworkDescription& network) {
-  if (network.integrator != Integrator::kModal) return SpringDamperArray(network);
+  constexpr auto kAlong = SpringDamperArray::Kind::kAlong;
+  if (network.integrator != Integrator::kModal) return {network, kAlong};
   NetworkDescription stepped = network;
   std::erase_if(stepped.links, [&network](const Link& link) {
     return network.mats[link.mat_a].kind != MatKind::kPort &&
            network.mats[link.mat_b].kind != MatKind::kPort;
   });
-  return SpringDamperArray(stepped);
+  return {stepped, kAlong};
 }
 
 }  // namespace
@@ -46,6 +47,7 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       mats(description()),
       positions(mats.position()),
       links(stepped_links(description())),
+      ties(description(), SpringDamperArray::Kind::kTie),
       table(make_table(description().behaviours)),
       state_links(description(), table),
       maxwell_links(description()),
@@ -75,6 +77,7 @@ StepReport WorldState::step() noexcept {
 
 void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
   links.add_forces(kernel, columns);
+  ties.add_forces(kernel, columns);
   state_links.add_forces_before_start(behaviours, table, columns);
   sets.add_forces(pair_step(true), columns);
 }
@@ -85,12 +88,14 @@ double WorldState::stored_energy() noexcept {
 }
 
 double WorldState::potential_energy() noexcept {
-  return links.potential_energy(mats) + state_links.stored_energy(table, mats) +
-         maxwell_links.stored_energy() + sets.stored_energy(table);
+  return links.potential_energy(mats) + ties.potential_energy(mats) +
+         state_links.stored_energy(table, mats) + maxwell_links.stored_energy() +
+         sets.stored_energy(table);
 }
 
 StepEnergy WorldState::work_since_last_call() const noexcept {
   StepEnergy work = links.work_since_last_call(mats);
+  work += ties.work_since_last_call(mats);
   work += state_links.work_since_last_call(mats);
   work += maxwell_links.work_since_last_call(mats);
   work += sets.work_since_last_call(mats);
@@ -100,6 +105,7 @@ StepEnergy WorldState::work_since_last_call() const noexcept {
 void WorldState::add_forces_of_period(StepEnergy& energy) noexcept {
   const ForceColumns columns = mats.force_columns();
   energy += links.add_forces(kernel, columns);
+  energy += ties.add_forces(kernel, columns);
   if (!state_links.empty()) {
     energy += state_links.add_forces(behaviours, table, columns, step_count, log);
   }
@@ -114,6 +120,7 @@ double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy
   mats.clear_forces();
 
   StepEnergy of_links = links.add_forces_of_moment(kernel, felt);
+  of_links += ties.add_forces_of_moment(kernel, felt);
   of_links.dissipated *= 0.5;
   // Without the viscous forces of the last step, half the work of those of this one is returned.
   if (!state_links.empty()) {
@@ -154,7 +161,7 @@ void WorldState::replace_behaviour(std::uint32_t index, const Behaviour& behavio
 }
 
 std::size_t WorldState::state_size_before_sets() const noexcept {
-  return mats.state_size() + links.state_size() + state_links.state_size() +
+  return mats.state_size() + links.state_size() + ties.state_size() + state_links.state_size() +
          maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize +
          mover->state_size();
 }
@@ -192,6 +199,7 @@ void WorldState::restore(const Snapshot& snapshot) {
 void WorldState::append_state(std::vector<double>& state) const {
   mats.append_state(state);
   links.append_state(state);
+  ties.append_state(state);
   state_links.append_state(state);
   maxwell_links.append_state(state);
   log.append_state(state);
@@ -204,6 +212,7 @@ void WorldState::append_state(std::vector<double>& state) const {
 void WorldState::take_state(const std::vector<double>& state) noexcept {
   const double* next = mats.take_state(state.data());
   next = links.take_state(next);
+  next = ties.take_state(next);
   next = state_links.take_state(next);
   next = maxwell_links.take_state(next);
   next = log.take_state(next);

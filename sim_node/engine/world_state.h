@@ -76,6 +76,7 @@ struct WorldState {
   MatArray mats;
   Columns positions;  // of mats
   SpringDamperArray links;
+  SpringDamperArray ties;
   StateTable table;
   StateLinkArray state_links;
   MaxwellArray maxwell_links;

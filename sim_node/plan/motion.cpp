@@ -152,6 +152,11 @@ void Motion::rate(const Values& values, Values& rate) {
   static const Present kNothing;
   for (const engine::Link& link : network_.links) {
     const Geometry at = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
+    if (link.isotropic) {
+      const Vec3 along = position(values, link.mat_b) - position(values, link.mat_a);
+      push(link.mat_a, link.mat_b, link.stiffness * along + link.viscosity * at.velocity);
+      continue;
+    }
     const double pull =
         link.stiffness * (at.distance - link.rest_length) + link.viscosity * at.speed;
     push(link.mat_a, link.mat_b, pull * at.direction);

@@ -119,6 +119,10 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::Link& link : network.links) {
     const double elongation = distance(link.mat_a, link.mat_b) - link.rest_length;
     const double stiffness = weights.link_stiffness * link.stiffness;
+    if (link.isotropic) {
+      add_tie(link, stiffness, weights.link_viscosity * link.viscosity);
+      continue;
+    }
     const bool implicit = stiffness < 0.0;  // then a compressed link has no stiffness across
     const double pull = stiffness * (implicit ? std::max(elongation, 0.0) : elongation);
     add(link.mat_a, link.mat_b, network, stiffness, pull, weights.link_viscosity * link.viscosity,
@@ -146,6 +150,13 @@ void StartTangent::add(std::uint32_t a, std::uint32_t b, const engine::NetworkDe
   } else if (length > 0.0) {
     parts_.push_back(
         {a, b, from_a_to_b / length, along, pull / length, viscosity, maxwell_viscosity});
+  }
+}
+
+void StartTangent::add_tie(const engine::Link& tie, double stiffness, double viscosity) {
+  for (int axis = 0; axis < dimension_; ++axis) {
+    parts_.push_back(
+        {tie.mat_a, tie.mat_b, Eigen::Vector3d::Unit(axis), stiffness, 0.0, viscosity, 0.0});
   }
 }
 

@@ -39,6 +39,7 @@ class StartTangent {
 
   void add(std::uint32_t a, std::uint32_t b, const engine::NetworkDescription& network,
            double along, double pull, double viscosity, double maxwell_viscosity);
+  void add_tie(const engine::Link& tie, double stiffness, double viscosity);
   /// M^-1/2 (stiffness_factor K + viscosity_factor Z) M^-1/2 x; Maxwell elements as at a step.
   Columns times(const Columns& x, double stiffness_factor, double viscosity_factor,
                 double step) const;

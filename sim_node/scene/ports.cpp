@@ -100,7 +100,8 @@ Piece read_port_mat(config::MappingReader& reader, const Port& port, int space,
 }
 
 /// A spring-damper between the handle that the device moves and a simulated tool, which the scene
-/// touches: what the hand feels is never stiffer than the coupling, whatever the scene is.
+/// touches: what the hand feels is never stiffer than the coupling, whatever the scene is. It is a
+/// tie: a damper along the line from handle to tool would let the tool circle its handle.
 struct Coupling {
   double stiffness = 500.0;  // [N/m]
   double viscosity = 1.5;    // [N s/m]
@@ -146,7 +147,7 @@ void couple(Piece& piece, const Coupling& coupling) {
   piece.radius_m.push_back(0.0);
   piece.drawn_radius_m.push_back(0.0);
   if (!piece.layout.empty()) piece.layout.push_back(piece.layout[0]);
-  piece.links.links.push_back({1, 0, coupling.stiffness, coupling.viscosity, 0.0});
+  piece.links.links.push_back({1, 0, coupling.stiffness, coupling.viscosity, 0.0, true});
 }
 
 }  // namespace

@@ -25,6 +25,24 @@ TEST(Oracle, FollowsADampedOscillationToTheLastDigits) {
   }
 }
 
+TEST(Oracle, FollowsATieInEveryDirection) {
+  // Along x a damped oscillation from 1 m, along y one that begins at 20 m/s.
+  const double w = 20.0;
+  const double s = 1.5;  // Z / 2m
+  NetworkDescription scene = oscillator(0.5, 0.5 * w * w, s, 1.0, 0.0, 1e-3);
+  scene.dimension = 2;
+  scene.mats[1].velocity = Vec3(0, 20, 0);
+  scene.links[0].isotropic = true;
+  Oracle oracle(scene);
+  const double wd = std::sqrt(w * w - s * s);
+
+  oracle.advance_to(1.0);
+
+  const double fading = std::exp(-s);
+  EXPECT_NEAR(oracle.position(1).x(), fading * (std::cos(wd) + s / wd * std::sin(wd)), 1e-12);
+  EXPECT_NEAR(oracle.position(1).y(), fading * 20.0 / wd * std::sin(wd), 1e-12);
+}
+
 TEST(Oracle, FollowsTwoBodiesAsTheReferenceDoes) {
   const nlohmann::json problem = reference("R06_two_bodies");
   const auto value = [&](const char* name) { return number(problem["params"][name]); };

@@ -67,6 +67,18 @@ TEST(StartTangent, KnowsTheLimitOfAMassOnAMaxwellElement) {
   EXPECT_NEAR(plan::certified_bound(scene, plan::liaison_graph(scene)).step, low, 1e-3 * low);
 }
 
+TEST(StartTangent, KnowsThatATieTakesEveryDirectionAlike) {
+  NetworkDescription line = random_network(3);
+  NetworkDescription space = line;
+  space.dimension = 3;
+  for (Link& link : space.links) link.isotropic = true;
+  const double limit = StartTangent(line).diverging_step();
+
+  EXPECT_NEAR(StartTangent(space).diverging_step(), limit, 1e-3 * limit);
+  EXPECT_EQ(plan::certified_bound(space, plan::liaison_graph(space)).step,
+            plan::certified_bound(line, plan::liaison_graph(line)).step);
+}
+
 TEST(StartTangent, NeverEndsWhereNothingPulls) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
 

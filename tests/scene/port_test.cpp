@@ -108,6 +108,7 @@ TEST(Port, ACouplingPutsAToolBetweenTheDeviceAndTheScene) {
   EXPECT_EQ(scene.network.links[0].stiffness, 300.0);
   EXPECT_EQ(scene.network.links[0].viscosity, 2.0);
   EXPECT_EQ(scene.network.links[0].rest_length, 0.0);
+  EXPECT_TRUE(scene.network.links[0].isotropic) << "else the tool circles its handle";
   const engine::Link& wall = scene.network.links[1];
   EXPECT_EQ(wall.mat_a == port.tool || wall.mat_b == port.tool, true) << "the scene has the tool";
   EXPECT_EQ(scene.links[0].name, "key.coupling");
