@@ -250,6 +250,11 @@ INSTANTIATE_TEST_SUITE_P(
                    "the liaison 'l' of sets reaches to any distance, it needs a 'range_m'", ""},
         BadLiaison{scene_of(kBrittle, "  - {liaison: ^l, within: a, range_m: 1}\n"),
                    "a liaison of sets whose MATs have no radius needs a 'rest_m'", ""},
+        BadLiaison{scene_of(kBrittle, "  - {liaison: l, within: ^[], range_m: 1, rest_m: 1}\n"),
+                   "'within' in a link must not be an empty list", ""},
+        BadLiaison{
+            scene_of(kBrittle, "  - {liaison: l, between_sets: [a, ^[]], range_m: 1, rest_m: 1}\n"),
+            "a set of a link must not be an empty list", ""},
         BadLiaison{
             scene_of(kBrittle, "  - {liaison: l, within: ^\"a[0]\", range_m: 1, rest_m: 1}\n"),
             "a set of one MAT has no two that could be joined", ""},

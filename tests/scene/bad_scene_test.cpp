@@ -155,6 +155,50 @@ TEST(BadScene, TellsAllItsProblemsInOneGoAndNoneThatFollowsFromAnother) {
   EXPECT_EQ(places, "3:8 5:9 5:24 7:33 8:33 10:27 13:15 18:11 ") << problems.text();
 }
 
+TEST(BadScene, OfEverySectionIsToldInOneGo) {
+  config::Problems problems;
+
+  load_scene_text(
+      "cordis: 1\n"
+      "space: 2\n"
+      "step: {rate_hz: 1000}\n"
+      "parts:\n"
+      "  wheel: {matter: {hub: {part: axle}}}\n"
+      "  axle: {matter: {pin: {part: wheel}}}\n"
+      "liaisons:\n"
+      "  asks: {states: {one: {exits: [{to: two, when: tension_n > 1}]}, two: {}}}\n"
+      "  lost: {states: {one: {}, two: {}}}\n"
+      "  shut: {states: {one: {exits: [{to: two, when: age_s > 1}]}, two: {stiffness_n_per_m: "
+      "1}}}\n"
+      "  trap: {states: {one: {exits: [{to: two, when: elongation_m > 1}]},\n"
+      "                  two: {exits: [{to: one, when: elongation_m > 0.5}]}}}\n"
+      "  bent: {elasticity: {kind: table, at_m: [1, 0], force_n: [0, 1]}}\n"
+      "matter:\n"
+      "  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
+      "  w: {part: wheel}\n"
+      "links:\n"
+      "  - {liaison: shut, within: []}\n"
+      "  - {liaison: shut, between: [\"m[0]\", \"m[7]\"]}\n",
+      "t", problems);
+
+  const std::string told = problems.text();
+  for (const char* line :
+       {"t:6:31: error: part 'wheel' contains itself: wheel > axle > wheel\n",
+        "t:8:49: error: 'when' in exit of state 'one' of liaison 'asks' names 'tension_n', which "
+        "is "
+        "no quantity and no parameter\n",
+        "t:9:28: error: state 'two' of liaison 'lost' cannot be reached from its start, 'one'\n",
+        "t:10:60: warning: no exit leads out of state 'two' of liaison 'shut'\n",
+        "t:12:46: warning: this exit of state 'two' of liaison 'trap' holds already when the state "
+        "is entered from 'one' by ends that move slowly",
+        "t:13:46: error: 'at_m' in elasticity of liaison 'bent' must ascend, got 0 after 1\n",
+        "t:18:28: error: 'within' in a link must not be an empty list\n",
+        "t:19:40: error: 'm' has the MATs 0 to 1, got 7\n"}) {
+    EXPECT_NE(told.find(line), std::string::npos) << line << "\nin\n" << told;
+  }
+  EXPECT_EQ(problems.all().size(), 8u) << told;
+}
+
 TEST(BadScene, IsPrintedWithItsLineAndACaret) {
   config::Problems problems;
   load_scene_text(

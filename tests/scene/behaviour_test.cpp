@@ -1,4 +1,7 @@
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -111,6 +114,57 @@ TEST(Behaviour, OfOneStateNeedsNoStates) {
   EXPECT_EQ(state.force_limit, 5.0);
   EXPECT_FALSE(state.pulls);
   EXPECT_TRUE(state.pushes);
+}
+
+TEST(Condition, AsksForEveryQuantityByItsName) {
+  // Two masses too heavy to be drawn together, 5 m apart in the third step, in which the link has
+  // pulled with 10 N since 2 ms: the value of the event is that of the first quantity named.
+  constexpr double kAge = 0.002;
+  const engine::Vec3 velocity(0.5, -0.25, 2.0);
+  const double speed = velocity.dot(engine::Vec3(0.6, 0.8, 0.0));
+  const std::vector<std::pair<std::string, double>> values{
+      {"distance_m", 5.0},      {"elongation_m", 1.0},
+      {"rest_m", 4.0},          {"speed_m_per_s", speed},
+      {"speed_x_m_per_s", 0.5}, {"speed_y_m_per_s", -0.25},
+      {"speed_z_m_per_s", 2.0}, {"slip_m_per_s", std::sqrt(4.3125 - speed * speed)},
+      {"force_n", 10.0},        {"impulse_n_s", 10.0 * kAge},
+      {"age_s", kAge},          {"mass_a_kg", 3.0e6},
+      {"mass_b_kg", 2.0e6}};
+  const auto place = [&](int axis) {
+    return std::to_string((axis == 2 ? 0 : axis + 3) - kAge * velocity[axis]);
+  };
+  for (const auto& [word, value] : values) {
+    const Scene scene = sound_scene(
+        3,
+        "matter:\n  a: {kind: mass, mass_kg: 3e6, at_m: [0, 0, 0]}\n  b: {kind: mass, mass_kg: "
+        "2e6, at_m: [" +
+            place(0) + ", " + place(1) + ", " + place(2) +
+            "], velocity_m_per_s: [0.5, -0.25, 2]}\n"
+            "liaisons:\n  l: {states: {x: {stiffness_n_per_m: 10, exits: [{to: y, when: " +
+            word +
+            " > -1e9 and age_s > 0.0015}]}, y: {}}}\n"
+            "links:\n  - {liaison: l, between: [a, b], rest_m: 4}\n");
+    engine::World world(std::make_shared<const engine::Network>(scene.network));
+    for (int n = 0; n < 3; ++n) world.step();
+    ASSERT_EQ(world.events().size(), 1u) << word;
+    EXPECT_NEAR(world.events()[0].value, value, 1e-3 * std::abs(value)) << word;
+  }
+}
+
+TEST(Behaviour, MayHaveALimitOfItsForceThatALinkGives) {
+  const engine::NetworkDescription network = network_of(
+      "  clutch:\n    parameters: {slip_n: 3}\n    states: {on: {stiffness_n_per_m: 9, "
+      "force_limit_n: slip_n, final: true}}\n"
+      "  rubber: {stiffness_n_per_m: 9, force_limit_n: 4}\n",
+      "  - {liaison: clutch, between: [wall, bob]}\n"
+      "  - {liaison: clutch, between: [wall, bob], slip_n: 0.5}\n"
+      "  - {liaison: rubber, between: [wall, bob], force_limit_n: 2}\n");
+  const auto limit_of = [&](std::size_t link) {
+    return network.behaviours.at(network.state_links.at(link).behaviour).states[0].force_limit;
+  };
+  EXPECT_EQ(limit_of(0), 3.0);
+  EXPECT_EQ(limit_of(1), 0.5);
+  EXPECT_EQ(limit_of(2), 2.0);
 }
 
 TEST(Law, OfEveryKindIsRead) {

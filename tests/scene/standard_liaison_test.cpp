@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <numbers>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -336,6 +339,35 @@ TEST(KelvinVoigt, CreepsToItsNewLength) {
   rig.world().set_external_force(1, engine::Vec3(1.0, 0.0, 0.0));
   while (rig.time() < 0.1) rig.step();
   EXPECT_NEAR(rig.bob(), 0.00393469340, 2e-5);
+}
+
+TEST(StandardLiaisons, SayWhatTheirStatesAndParametersMean) {
+  const std::string file =
+      std::string(CORDIS_SOURCE_DIR) + "/launch_configs/liaisons/standard.yaml";
+  std::vector<std::string> lines(1);
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  config::Problems problems;
+  const config::Value liaisons = config::load_file(file, problems).find("liaisons");
+  EXPECT_GE(liaisons.entries().size(), 14u);
+  for (const config::Value::Entry& liaison : liaisons.entries()) {
+    std::string comment;
+    for (auto line = static_cast<std::size_t>(liaison.key_place.line) - 1;
+         lines[line].starts_with("  #"); --line)
+      comment += lines[line] + ' ';
+    std::replace_if(
+        comment.begin(), comment.end(),
+        [](char c) { return std::string_view(":,.;").find(c) != std::string_view::npos; }, ' ');
+    std::vector<std::string> words;
+    for (const char* section : {"states", "parameters"}) {
+      for (const auto& entry : liaison.value.find(section).entries()) words.push_back(entry.key);
+    }
+    for (const char* key : {"stiffness_n_per_m", "viscosity_n_s_per_m"}) {
+      if (liaison.value.find(key).exists()) words.emplace_back(key);
+    }
+    for (const std::string& word : words)
+      EXPECT_NE(comment.find(' ' + word + ' '), std::string::npos) << liaison.key << ": " << word;
+  }
 }
 
 TEST(StandardLiaisons, CanAllBeUsedInASet) {
