@@ -167,7 +167,7 @@ void MappingReader::finish() {
   constexpr std::size_t kMostListed = 12;
   for (const Value::Entry& entry : value_.entries()) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
-    if (problems_.all().size() >= Problems::kMostProblems) return;
+    if (problems_.is_full()) return;
     std::string hint = did_you_mean(entry.key, known_);
     if (hint.empty() && entry.key.find(':') != std::string::npos)
       hint = "write a space after the ':'";
@@ -221,8 +221,11 @@ long MappingReader::integer_of(const Value& value, const std::string& key, long 
 
 std::string MappingReader::text_of(const Value& value, const std::string& key,
                                    std::string fallback) {
-  if (value.kind() == Value::Kind::kScalar) return value.text();
-  report(value.place(), name_of(key) + " must be a text, got " + value.described());
+  constexpr std::size_t kLongest = 1000;  // bytes
+  const bool is_text = value.kind() == Value::Kind::kScalar;
+  if (is_text && value.text().size() <= kLongest) return value.text();
+  report(value.place(), name_of(key) + (is_text ? " is longer than 1000 characters"
+                                                : " must be a text, got " + value.described()));
   return fallback;
 }
 

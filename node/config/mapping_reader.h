@@ -76,6 +76,7 @@ class MappingReader {
   bool ok() const noexcept { return ok_; }
 
   const std::string& what() const noexcept { return what_; }
+  const Problems& problems() const noexcept { return problems_; }
   const Place& place() const noexcept { return value_.place(); }
 
  private:

@@ -99,7 +99,7 @@ void Problems::add(Problem problem) {
            std::tie(problem.place.file, problem.place.line, problem.place.column, problem.message);
   });
   if (known) return;
-  if (problems_.size() >= kMostProblems) {
+  if (is_full()) {
     ++left_out_;
     return;
   }

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -106,8 +107,9 @@ class TreeBuilder : public YAML::EventHandler {
     std::vector<Value> items;
     std::vector<Value::Entry> entries;
     std::map<std::string, int> line_of_key;
-    bool has_merged = false;
-    bool has_key = false;  // of a mapping: its key has come, its value has not
+    std::map<std::string, std::size_t> merged;  // keys that '<<' brought; which entries they are
+    std::set<std::size_t> hidden;               // entries for which something is written out
+    bool has_key = false;                       // of a mapping: its key has come, its value has not
     std::string key;
     Place key_place;
   };
@@ -134,6 +136,9 @@ class TreeBuilder : public YAML::EventHandler {
     Open closed = std::move(open_.back());
     open_.pop_back();
     const std::size_t count_before = value_count_;
+    std::size_t index = 0;
+    std::erase_if(closed.entries,
+                  [&](const Value::Entry&) { return closed.hidden.contains(index++); });
     Value value = closed.is_mapping ? Value::mapping(std::move(closed.entries), closed.place)
                                     : Value::sequence(std::move(closed.items), closed.place);
     add(std::move(value), closed.anchor);
@@ -177,15 +182,12 @@ class TreeBuilder : public YAML::EventHandler {
                       "first defined at line " + std::to_string(first->second));
       return;
     }
-    if (mapping.has_merged) {  // what is written out here goes before what '<<' brought
-      std::erase_if(mapping.entries,
-                    [&](const Value::Entry& entry) { return entry.key == mapping.key; });
-    }
+    if (const auto brought = mapping.merged.find(mapping.key); brought != mapping.merged.end())
+      mapping.hidden.insert(brought->second);
     mapping.entries.push_back({mapping.key, mapping.key_place, std::move(value)});
   }
 
   void merge(Open& mapping, const Value& from) {
-    mapping.has_merged = true;
     const bool is_sequence = from.kind() == Value::Kind::kSequence;
     for (const Value& source : is_sequence ? from.items() : std::vector<Value>{from}) {
       if (source.kind() != Value::Kind::kMapping) {
@@ -193,10 +195,9 @@ class TreeBuilder : public YAML::EventHandler {
                                                source.described());
       }
       for (const Value::Entry& entry : source.entries()) {
-        const bool present =
-            std::any_of(mapping.entries.begin(), mapping.entries.end(),
-                        [&](const Value::Entry& other) { return other.key == entry.key; });
-        if (!present) mapping.entries.push_back(entry);
+        if (mapping.line_of_key.contains(entry.key)) continue;
+        if (mapping.merged.emplace(entry.key, mapping.entries.size()).second)
+          mapping.entries.push_back(entry);
       }
     }
   }
@@ -303,13 +304,21 @@ std::string hint_for_fault(const SourceText& source, const TreeBuilder& builder,
   return {};
 }
 
+/// For a file that is not UTF-8: what a terminal can show of it.
+std::string with_question_marks(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }, '?');
+  return text;
+}
+
 Value read(const std::string& given, const std::string& name, bool one_word, Problems& problems) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   const std::string text =
       given.starts_with(kByteOrderMark) ? given.substr(kByteOrderMark.size()) : given;
-  if (!one_word) problems.remember_source(name, text);
   SourceText source(text, name, one_word);
-  if (const std::optional<Place> wrong = source.place_of_no_text()) {
+  const std::optional<Place> wrong = source.place_of_no_text();
+  if (!one_word) problems.remember_source(name, wrong ? with_question_marks(text) : text);
+  if (wrong) {
     problems.error(*wrong, "this character is no text; a file must be plain UTF-8");
     return {};
   }

@@ -16,6 +16,8 @@ using config::Value;
 using engine::Exit;
 using engine::LinkState;
 
+constexpr std::size_t kMostExits = 1'000;  // of a liaison
+
 /// What a state's exits are read from.
 struct ExitSource {
   const ParameterValues& parameters;
@@ -98,7 +100,12 @@ void read_state(const Value::Entry& entry, const std::string& liaison, const Exi
   state.name = entry.key;
   state.first_exit = static_cast<std::uint32_t>(behaviour.exits.size());
   std::uint32_t next_slot = 0;
-  for (const Value& exit : reader.optional_sequence("exits").items()) {
+  const Value exits = reader.optional_sequence("exits");
+  if (behaviour.exits.size() + exits.items().size() > kMostExits) {
+    reader.error_at("exits", liaison + " has more than " + std::to_string(kMostExits) + " exits");
+    return;
+  }
+  for (const Value& exit : exits.items()) {
     config::MappingReader exit_reader(exit, "exit of " + what, source.problems);
     behaviour.exits.push_back(read_exit(exit_reader, source, next_slot));
     places.exits.push_back(exit_reader.place_of("when"));

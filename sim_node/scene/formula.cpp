@@ -16,6 +16,9 @@ using config::Value;
 using engine::Instruction;
 using engine::Operation;
 
+constexpr std::size_t kMostParameters = 1'000;  // of a liaison
+constexpr std::size_t kMostOpen = 64;           // parameters that wait for each other
+
 /// Whether a value is to be read as a number rather than as a formula: because it is one, or
 /// because what is said about a wrong number fits it best (.nan, 3 N, a sequence).
 bool is_plain_number(const Value& value) {
@@ -243,6 +246,12 @@ struct ParameterValues::Evaluation {
 
   /// The parameters that a formula names. @return false when it names itself in the end.
   bool put_names(const Value::Entry& entry, const Expression& formula) {
+    if (open.size() >= kMostOpen) {
+      problems.error(entry.value.place(),
+                     "more than " + std::to_string(kMostOpen) + " parameters of " + what +
+                         " each depend on the next, down to '" + entry.key + "'");
+      return false;
+    }
     open.push_back(entry.key);
     bool sound = true;
     for (const ExpressionWord& word : formula.words) {
@@ -275,6 +284,11 @@ ParameterValues::ParameterValues(const Value& section, const std::map<std::strin
   if (section.exists() && section.kind() != Value::Kind::kMapping) {
     problems.error(section.place(), "'parameters' in " + what + " must be a mapping of keys, got " +
                                         section.described());
+  }
+  if (section.entries().size() > kMostParameters) {
+    problems.error(section.place(), "'parameters' in " + what + " has more than " +
+                                        std::to_string(kMostParameters) + " parameters");
+    return;
   }
   for (const Value::Entry& entry : section.entries()) {
     if (!is_free_name(entry.key)) {

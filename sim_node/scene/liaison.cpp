@@ -147,14 +147,15 @@ const Liaison* Liaisons::find(const std::string& name) const noexcept {
   return found == liaisons_.end() ? nullptr : &found->second;
 }
 
-const Liaison* Liaisons::find(const Value& name, config::Problems& problems) const {
+const Liaison* Liaisons::find(const Value& name, config::Problems& problems, bool with_hint) const {
   const Liaison* const known = name.kind() == Value::Kind::kScalar ? find(name.text()) : nullptr;
   if (known != nullptr) return known->sound ? known : nullptr;
   if (name.kind() != Value::Kind::kScalar) {
     problems.error(name.place(), "a liaison is called by its name, got " + name.described());
   } else {
     problems.error(name.place(), "no liaison is named '" + name.text() + "'",
-                   config::did_you_mean(name.text(), names_));
+                   with_hint && !problems.is_full() ? config::did_you_mean(name.text(), names_)
+                                                    : std::string());
   }
   return nullptr;
 }

@@ -36,7 +36,9 @@ class Liaisons {
 
   /// The liaison that the value names. Nothing when there is none of that name, which is a problem,
   /// or when the liaison itself has one.
-  const Liaison* find(const config::Value& name, config::Problems& problems) const;
+  /// @param with_hint  whether the nearest name is told with the problem
+  const Liaison* find(const config::Value& name, config::Problems& problems,
+                      bool with_hint = true) const;
   /// nullptr when there is none.
   const Liaison* find(const std::string& name) const noexcept;
   /// In the order of the files.

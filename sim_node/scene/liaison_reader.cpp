@@ -219,6 +219,11 @@ class LiaisonReader {
                       circle + name);
       return law;
     }
+    if (open_.size() >= kMostParts) {
+      problems_.error(item.place(), "more than " + std::to_string(kMostParts) +
+                                        " liaisons stand in parallel within each other");
+      return law;
+    }
     const Liaison* const liaison = liaisons_.find(item, problems_);
     if (liaison == nullptr) return law;
     std::vector<std::string> open = open_;

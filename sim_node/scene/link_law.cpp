@@ -175,7 +175,8 @@ std::optional<LinkLaw> read_law(MappingReader& reader, LawPlace place, const Lia
   const Value name = place == LawPlace::kLink ? reader.required_value("liaison")
                                               : reader.optional_value("liaison");
   Problems of_name;
-  const Liaison* const liaison = name.exists() ? liaisons.find(name, of_name) : nullptr;
+  const bool with_hint = !reader.problems().is_full();
+  const Liaison* const liaison = name.exists() ? liaisons.find(name, of_name, with_hint) : nullptr;
   for (const config::Problem& problem : of_name.all())
     reader.error_at("liaison", problem.message, problem.hint);
   std::optional<LinkLaw> law;

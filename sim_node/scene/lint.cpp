@@ -19,9 +19,10 @@ using engine::Operation;
 using engine::Program;
 using Quantities = std::array<double, engine::kQuantityCount>;
 
-constexpr int kTries = 32;        // entries tried for one exit
-constexpr int kDrawsOfATry = 16;  // of a link before and after it
-constexpr int kHalvings = 40;     // of the way between them
+constexpr std::size_t kTries = 32;            // entries tried for one exit
+constexpr std::size_t kWordsTried = 200'000;  // of conditions in all tries of one kind
+constexpr int kDrawsOfATry = 16;              // of a link before and after it
+constexpr int kHalvings = 40;                 // of the way between them
 
 double& at(Quantities& quantities, engine::Quantity quantity) {
   return quantities[static_cast<std::size_t>(quantity)];
@@ -89,12 +90,15 @@ class Dice {
 class Entries {
  public:
   explicit Entries(const Behaviour& behaviour) : behaviour_(behaviour) {
+    std::size_t word_count = 0;
     for (const Exit& exit : behaviour.exits) {
       for (const engine::Instruction& instruction : exit.when.code) {
         const double size = std::abs(instruction.constant);
         if (instruction.operation == Operation::kConstant && size > 0.0) sizes_.push_back(size);
       }
+      word_count += exit.when.code.size();
     }
+    tries_ = std::clamp<std::size_t>(kWordsTried / std::max<std::size_t>(word_count, 1), 2, kTries);
     if (sizes_.empty()) sizes_.push_back(1.0);
   }
 
@@ -102,7 +106,7 @@ class Entries {
   /// next state finds them.
   std::vector<Quantities> through(const LinkState& from, const Exit& exit) {
     std::vector<Quantities> entries;
-    for (int t = 0; t < kTries; ++t) {
+    for (std::size_t t = 0; t < tries_; ++t) {
       if (std::optional<Quantities> entry = try_entry(from, exit)) {
         entries.push_back(entered(*entry, exit));
       }
@@ -172,6 +176,7 @@ class Entries {
 
   const Behaviour& behaviour_;
   std::vector<double> sizes_;
+  std::size_t tries_ = kTries;
   Dice dice_;
 };
 

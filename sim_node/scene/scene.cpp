@@ -19,6 +19,7 @@ using config::Value;
 constexpr double kHighestStepRate = 1.0e6;
 constexpr double kHighestGestureRate = 1.0e5;
 constexpr double kHighestFrameRate = 1.0e3;
+constexpr double kLongestPromise = 1.0e6;  // [s]
 
 /// The nearest rates that are integer multiples of the gesture rate.
 std::string nearest_multiples(double rate, double gesture_rate) {
@@ -35,7 +36,7 @@ void read_accuracy(const Value& section, Scene& scene, config::Problems& problem
   accuracy.band_hz = reader.required_number("band_hz", Range::between(1e-3, kHighestStepRate));
   accuracy.contact_energy =
       reader.optional_number("contact_energy", accuracy.contact_energy, Range::between(1e-9, 1.0));
-  accuracy.over_s = reader.optional_number("over_s", 0.0, Range::not_negative());
+  accuracy.over_s = reader.optional_number("over_s", 0.0, Range::between(0.0, kLongestPromise));
   accuracy.place = reader.place();
   reader.finish();
   scene.accuracy = accuracy;

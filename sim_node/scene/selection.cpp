@@ -180,7 +180,8 @@ class Picker {
       const std::string searched =
           with_links ? "no matter, port or links are named '" : "no matter or port is named '";
       problems_.error(value_.place(), searched + name + "'",
-                      config::did_you_mean(name, names_.words(with_links)));
+                      problems_.is_full() ? std::string()
+                                          : config::did_you_mean(name, names_.words(with_links)));
     } else if (entry->kind == Named::kLinks && !with_links) {
       problems_.error(value_.place(), what_ + " must be MATs, and '" + name + "' are links");
       return nullptr;

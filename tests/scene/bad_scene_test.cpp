@@ -188,12 +188,12 @@ TEST(BadScene, OfEverySectionIsToldInOneGo) {
         "is "
         "no quantity and no parameter\n",
         "t:9:28: error: state 'two' of liaison 'lost' cannot be reached from its start, 'one'\n",
-        "t:10:60: warning: no exit leads out of state 'two' of liaison 'shut'\n",
-        "t:12:46: warning: this exit of state 'two' of liaison 'trap' holds already when the state "
+        "t:10:63: warning: no exit leads out of state 'two' of liaison 'shut'\n",
+        "t:12:49: warning: this exit of state 'two' of liaison 'trap' holds already when the state "
         "is entered from 'one' by ends that move slowly",
         "t:13:46: error: 'at_m' in elasticity of liaison 'bent' must ascend, got 0 after 1\n",
-        "t:18:28: error: 'within' in a link must not be an empty list\n",
-        "t:19:40: error: 'm' has the MATs 0 to 1, got 7\n"}) {
+        "t:18:29: error: 'within' in a link must not be an empty list\n",
+        "t:19:39: error: 'm' has the MATs 0 to 1, got 7\n"}) {
     EXPECT_NE(told.find(line), std::string::npos) << line << "\nin\n" << told;
   }
   EXPECT_EQ(problems.all().size(), 8u) << told;
