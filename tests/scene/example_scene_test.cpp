@@ -166,7 +166,11 @@ void read_damaged(const std::string& text, const std::string& name) {
   config::Problems problems;
   const Scene scene = load_scene_text(text, name, problems);
   if (problems.has_errors()) {
-    for (const config::Problem& problem : problems.all()) ASSERT_FALSE(problem.message.empty());
+    for (const config::Problem& problem : problems.all()) {
+      ASSERT_FALSE(problem.message.empty());
+      ASSERT_LT(problem.message.size(), 400u) << problem.message;
+      ASSERT_GE(problem.place.line, 1) << problem.message;
+    }
     ASSERT_FALSE(problems.text().empty());
     return;
   }
@@ -231,6 +235,24 @@ TEST(DamagedScene, WithLostOrDoubledLinesIsASceneOrProblems) {
       std::string joined;
       for (const std::string& line : damaged) joined += line;
       read_damaged(joined, file);
+    }
+  }
+}
+
+TEST(DamagedScene, WithWordsOfTheWrongKindIsASceneOrProblems) {
+  std::mt19937 random(1990);
+  const std::vector<std::string> words{
+      ".nan", "-.inf", "1e308",  "-1e308", "1e999", "1e-320", "-1",   "0",  "99999999999999999999",
+      "0x10", "1,5",   "text",   "\"1\"",  "'",     "[]",     "{}",   "~",  "[[]]",
+      "true", "1.5e",  "\u0661", "3 N",    "$x",    "*x",     "&x 1", "!t", "[0, 0, 0, 0]"};
+  const std::string ends = " ,:[]{}\n";
+  const auto scenes = small_scenes();
+  for (const auto& [file, text] : scenes) {
+    for (std::size_t round = 0; round < kDamagedScenes / scenes.size(); ++round) {
+      const std::size_t from = text.find_first_not_of(ends, random() % text.size());
+      if (from == std::string::npos) continue;
+      const std::size_t to = std::min(text.find_first_of(ends, from), text.size());
+      read_damaged(text.substr(0, from) + words[random() % words.size()] + text.substr(to), file);
     }
   }
 }
