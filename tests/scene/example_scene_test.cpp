@@ -248,7 +248,7 @@ TEST(DamagedScene, WithWordsOfTheWrongKindIsASceneOrProblems) {
   const std::string ends = " ,:[]{}\n";
   const auto scenes = small_scenes();
   for (const auto& [file, text] : scenes) {
-    for (std::size_t round = 0; round < kDamagedScenes / scenes.size(); ++round) {
+    for (std::size_t round = 0; round < kDamagedScenes / 2 / scenes.size(); ++round) {
       const std::size_t from = text.find_first_not_of(ends, random() % text.size());
       if (from == std::string::npos) continue;
       const std::size_t to = std::min(text.find_first_of(ends, from), text.size());
