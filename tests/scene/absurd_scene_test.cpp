@@ -1,5 +1,5 @@
-// tests/scene/absurd_scene_test.cpp -- scenes that nobody would write are told in few sentences, and
-// soon: a reader that followed them to their end would need minutes, or all memory.
+// tests/scene/absurd_scene_test.cpp -- scenes that nobody would write are told in few sentences,
+// and soon: a reader that followed them to their end would need minutes, or all memory.
 #include <functional>
 #include <string>
 #include <vector>
