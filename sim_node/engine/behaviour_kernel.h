@@ -169,18 +169,13 @@ struct StateLinkRows {
   void* owner = nullptr;
 };
 
-/// Twice the works [J] that the links took, as AddLinkForces counts them: of the elastic parts of
-/// the pulls, and of the rest.
-struct StateLinkWork {
-  double elastic = 0.0;
-  double dissipated = 0.0;
-};
-
 struct ForceColumns;
+struct LinkWork;
 
-/// Steps the behaviours of all links and adds their forces, in link order.
-using AddStateLinkForces = StateLinkWork (*)(const StateLinkRows& links,
-                                             const ForceColumns& columns) noexcept;
+/// Steps the behaviours of all links and adds their forces, in link order, and their works as
+/// AddLinkForces counts them: of the elastic parts of the pulls, and of the rest.
+using AddStateLinkForces = void (*)(const StateLinkRows& links, const ForceColumns& columns,
+                                    LinkWork& work) noexcept;
 
 /// Maxwell elements, one row each; arrays 64-byte aligned, padded to a multiple of 8 with elements
 /// of no force.
@@ -195,10 +190,10 @@ struct MaxwellRows {
   double* factor;             // force of the last call = factor * vector from a to b
 };
 
-/// Adds the forces of all elements, in order. @return as AddStateLinkForces; elastic is the change
-/// of what their springs store.
-using AddMaxwellForces = StateLinkWork (*)(const MaxwellRows& links,
-                                           const ForceColumns& columns) noexcept;
+/// Adds the forces of all elements, in order, and their works as AddStateLinkForces; elastic is the
+/// change of what their springs store.
+using AddMaxwellForces = void (*)(const MaxwellRows& links, const ForceColumns& columns,
+                                  LinkWork& work) noexcept;
 
 /// The loops of one width.
 struct BehaviourKernel {

@@ -30,11 +30,12 @@ Moved CordisMover::step(WorldState& world) noexcept {
   Moved moved;
   StepEnergy& energy = moved.energy;
   energy.port_work = world.outside.move_ports(mats);
-  mats.clear_forces();
+  world.begin_forces();
   world.add_forces_of_period(energy);
   energy.port_work += world.outside.work_at_ports(mats);
 
   energy.port_work += world.outside.push(mats);
+  if (world.freezing) energy.dissipated += world.freezing->choose_movers(world, false);
   const AdvanceReport advance = mats.advance(world.kernel);
   energy.port_work += world.outside.release(mats);
 

@@ -40,6 +40,15 @@ double gravity_energy(const NetworkDescription& network, const MatArray& mats) n
 
 }  // namespace
 
+StepEnergy half_of(const LinkWork& work) noexcept {
+  StepEnergy sum;
+  for (const double value : work.elastic) sum.elastic += value;
+  for (const double value : work.dissipated) sum.dissipated += value;
+  sum.elastic *= 0.5;
+  sum.dissipated *= 0.5;
+  return sum;
+}
+
 void EnergyAccount::start(const NetworkDescription& network, const MatArray& mats, double stored,
                           double since) noexcept {
   *this = EnergyAccount{};

@@ -68,6 +68,9 @@ struct StepEnergy {
   }
 };
 
+/// The works that loops over links return, as the account takes them: half of each.
+StepEnergy half_of(const LinkWork& work) noexcept;
+
 /// Gathers the work of every step.
 class EnergyAccount {
  public:

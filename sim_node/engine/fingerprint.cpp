@@ -122,6 +122,11 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   fingerprint.add_if_any(3, description.state_links);
   fingerprint.add_if_any(4, description.maxwell_links);
   fingerprint.add_if_any(5, description.sets);
+  if (description.freeze_tolerance > 0.0) {
+    fingerprint.add(std::uint64_t{7});
+    fingerprint.add(description.freeze_tolerance);
+    fingerprint.add_all(description.kept_awake);
+  }
   if (description.integrator != Integrator::kCordis) {
     fingerprint.add(std::uint64_t{6});
     fingerprint.add(static_cast<std::uint64_t>(description.integrator));

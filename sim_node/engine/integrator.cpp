@@ -117,6 +117,14 @@ int evaluations_per_step(Integrator integrator) noexcept {
 }
 
 std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
+  if (network.freeze_tolerance > 0.0) {
+    const bool freezes =
+        network.integrator == Integrator::kCordis || network.integrator == Integrator::kLeapfrog;
+    if (!freezes) return IntegratorRefusal{"freezing", {}};
+    if (damps_in_sweeps(network)) {
+      return IntegratorRefusal{"freezing together with viscosities above Z dt / m = 0.3", {}};
+    }
+  }
   switch (network.integrator) {
     case Integrator::kSymplectic4:
       return refusal_of_what_does_not_conserve(network);

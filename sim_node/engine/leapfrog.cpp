@@ -58,6 +58,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   if (sweeps_) {
     moved.non_finite_mats = advance_in_sweeps(world, energy);
   } else {
+    if (world.freezing) energy.dissipated += stop_what_rests(world);
     const AdvanceReport advance = mats.extrapolate(world.kernel, felt_);
     moved.non_finite_mats = advance.non_finite_mats;
     energy.dissipated += 0.5 * advance.medium_work;
@@ -68,6 +69,15 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   mats.set_forces_are_present(false);
   started_ = true;
   return moved;
+}
+
+/// @return the energy of what is stopped [J]
+double Leapfrog::stop_what_rests(WorldState& world) noexcept {
+  const double energy = world.freezing->choose_movers(world, true);
+  for (const std::uint32_t mat : world.freezing->stopped()) {
+    column(felt_, mat) = world.mats.position(mat);
+  }
+  return energy;
 }
 
 /// What a port does is given from outside: it is felt as it has moved in the last period.

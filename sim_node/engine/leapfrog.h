@@ -38,6 +38,7 @@ class Leapfrog final : public Mover {
   const double* take_state(WorldState& world, const double* state) noexcept override;
 
  private:
+  double stop_what_rests(WorldState& world) noexcept;
   void feel_ports(const WorldState& world) noexcept;
   std::uint32_t advance_in_sweeps(WorldState& world, StepEnergy& energy) noexcept;
   Vec3 centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept;

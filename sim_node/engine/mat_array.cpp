@@ -35,6 +35,8 @@ MatArray::MatArray(const NetworkDescription& description)
     if (masses_.empty() || masses_.back().last != i) masses_.push_back({i, i});
     masses_.back().last = i + 1;
   }
+  moving_.reserve(description.freeze_tolerance > 0.0 ? count() / 2 + 1 : masses_.size());
+  moving_ = masses_;
 }
 
 void MatArray::start() noexcept {
@@ -52,6 +54,18 @@ void MatArray::start() noexcept {
 
 void MatArray::clear_forces() noexcept {
   std::fill(force_.begin(), force_.end(), 0.0);
+}
+
+void MatArray::clear_forces(std::span<const std::uint32_t> of_mats) noexcept {
+  for (const std::uint32_t mat : of_mats) set_column(force_, mat, Vec3::Zero());
+}
+
+void MatArray::move_only(std::span<const Range> rows) noexcept {
+  moving_.assign(rows.begin(), rows.end());
+}
+
+void MatArray::halt(std::uint32_t mat) noexcept {
+  set_column(delayed_, mat, vector(position_, mat));
 }
 
 AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
@@ -80,7 +94,7 @@ AdvanceReport MatArray::advance_rows(Advance advance_row, double* felt, double s
   AdvanceReport report;
   bool all_finite = true;
 
-  for (const Range& range : masses_) {
+  for (const Range& range : moving_) {
     row.first = range.first;
     row.last = range.last;
     const AdvanceResult result = advance_row(row);

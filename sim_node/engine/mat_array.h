@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim_node/engine/aligned_vector.h"
@@ -35,6 +36,21 @@ class MatArray {
   void start() noexcept;
 
   void clear_forces() noexcept;
+  void clear_forces(std::span<const std::uint32_t> of_mats) noexcept;
+
+  /// Rows [first, last) of masses.
+  struct Range {
+    std::size_t first;
+    std::size_t last;
+  };
+  /// From now on only these rows of masses are moved; at first all masses are.
+  void move_only(std::span<const Range> rows) noexcept;
+  /// What forces and gravity add to the displacement of a mass in this period [m].
+  Vec3 push_of_period(std::uint32_t mat) const noexcept {
+    return dt2_over_mass_[mat] * force(mat) + weight_step_;
+  }
+  /// A mass stays where it is, at rest.
+  void halt(std::uint32_t mat) noexcept;
 
   /// Moves every mass by one step. Real time: O(N), no allocation.
   AdvanceReport advance(const StepKernel& kernel) noexcept;
@@ -101,11 +117,6 @@ class MatArray {
   const double* take_state(const double* state) noexcept;
 
  private:
-  struct Range {
-    std::size_t first;
-    std::size_t last;
-  };
-
   AdvanceReport advance_rows(Advance advance_row, double* felt, double share) noexcept;
   Columns view(const AlignedVector<double>& columns) const noexcept;
   static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;
@@ -118,6 +129,7 @@ class MatArray {
   AlignedVector<double> persistence_;    // 1 - dt Z / m
   std::vector<double> mass_;             // [kg], 0 unless a mass
   std::vector<Range> masses_;            // rows of neighbouring masses
+  std::vector<Range> moving_;            // those that are moved
   double dt_;                            // [s]
   Vec3 weight_step_;                     // gravity * dt^2 [m]
   double medium_viscosity_over_dt_;      // Z / dt [N/m]

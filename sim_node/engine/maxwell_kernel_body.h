@@ -57,12 +57,16 @@ struct GrowthInSpace {
 /// F(n) = a F(n-1) + gain * growth. What the element stores is F^2 / 2K; it has taken the rest of
 /// the work of F.
 template <class Lanes, template <class> class Growth>
-StateLinkWork add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns) noexcept {
+void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
+                        LinkWork& work_of_all) noexcept {
   using Row = typename Lanes::Row;
   constexpr std::size_t kParts = kBehaviourBatch / Lanes::kWidth;
   Row stored[kParts];
   Row taken[kParts];
-  for (std::size_t part = 0; part < kParts; ++part) stored[part] = taken[part] = Lanes::zero();
+  for (std::size_t part = 0; part < kParts; ++part) {
+    stored[part] = Lanes::load(work_of_all.elastic + part * Lanes::kWidth);
+    taken[part] = Lanes::load(work_of_all.dissipated + part * Lanes::kWidth);
+  }
 
   for (std::size_t l = 0; l < links.count; l += kBehaviourBatch) {
 #pragma GCC unroll 4
@@ -85,17 +89,10 @@ StateLinkWork add_maxwell_forces(const MaxwellRows& links, const ForceColumns& c
     }
   }
 
-  alignas(64) double lane[2][kBehaviourBatch];
   for (std::size_t part = 0; part < kParts; ++part) {
-    Lanes::store(lane[0] + part * Lanes::kWidth, stored[part]);
-    Lanes::store(lane[1] + part * Lanes::kWidth, taken[part]);
+    Lanes::store(work_of_all.elastic + part * Lanes::kWidth, stored[part]);
+    Lanes::store(work_of_all.dissipated + part * Lanes::kWidth, taken[part]);
   }
-  StateLinkWork sum{};
-  for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
-    sum.elastic += lane[0][i];
-    sum.dissipated += lane[1][i];
-  }
-  return sum;
 }
 
 }  // namespace cordis::engine

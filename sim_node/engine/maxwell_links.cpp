@@ -41,8 +41,17 @@ StepEnergy MaxwellArray::add_forces(const BehaviourKernel& kernel,
   const MaxwellRows rows{column_a_.size(),    column_a_.data(), column_b_.data(),
                          persistence_.data(), gain_.data(),     compliance_.data(),
                          pull_.data(),        factor_.data()};
-  const StateLinkWork work = (in_line_ ? kernel.maxwell_1d : kernel.maxwell_3d)(rows, columns);
-  return {0.5 * work.elastic, 0.5 * work.dissipated, 0.0, 0.0};
+  LinkWork work;
+  (in_line_ ? kernel.maxwell_1d : kernel.maxwell_3d)(rows, columns, work);
+  return half_of(work);
+}
+
+void MaxwellArray::mark_ends(MatRoles& roles) const noexcept {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    for (const std::uint32_t mat : {column_a_[l] / 4, column_b_[l] / 4}) {
+      roles.add(mat, roles.has(mat, kIsMass) ? kWholeForce | kSomeForce : kSomeForce);
+    }
+  }
 }
 
 StepEnergy MaxwellArray::work_since_last_call(const MatArray& mats) const noexcept {

@@ -8,6 +8,7 @@
 #include "sim_node/engine/behaviour_kernel.h"
 #include "sim_node/engine/energy.h"
 #include "sim_node/engine/mat_array.h"
+#include "sim_node/engine/mat_roles.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/state_hash.h"
 #include "sim_node/engine/step_kernel.h"
@@ -26,6 +27,10 @@ class MaxwellArray {
   /// Adds the force of every element to its two MATs, in order. Real time: O(elements), no
   /// allocation. @return stored and dissipated energy, as EnergyAccount counts them.
   StepEnergy add_forces(const BehaviourKernel& kernel, const ForceColumns& columns) noexcept;
+
+  /// All are computed in every step, since their forces fade while nothing moves: of their ends the
+  /// whole force is needed.
+  void mark_ends(MatRoles& roles) const noexcept;
 
   /// Work of the forces of the last call up to the present positions. Real time: O(elements), no
   /// allocation.

@@ -143,6 +143,11 @@ void check(const NetworkDescription& description) {
   check_each(description, description.state_links, "state link", check_state_link);
   check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
   check_each(description, description.sets, "set", check_set);
+  require(is_finite_and_at_least_zero(description.freeze_tolerance), "tolerance of freezing",
+          "finite and >= 0");
+  for (const std::uint32_t mat : description.kept_awake) {
+    require(mat < description.mats.size(), "each MAT that is kept awake", "one of the network");
+  }
   require(is_finite_and_at_least_zero(description.most_mode_hz), "highest frequency of modes",
           "finite and >= 0");
   if (const auto refusal = refusal_of(description)) {

@@ -88,6 +88,9 @@ struct NetworkDescription {
   double most_mode_hz = 0.0;      ///< of `modal`: modes above it count as static; 0: none [Hz]
   Vec3 gravity = Vec3::Zero();    ///< [m/s^2]; components beyond the dimension must be 0
   double medium_viscosity = 0.0;  ///< Z of the medium on every mass [N s/m], >= 0
+  double freeze_tolerance = 0.0;  ///< masses that rest within it are left out, see Freezing; 0:
+                                  ///< none [m]
+  std::vector<std::uint32_t> kept_awake;  ///< MATs that never are, since their force is asked for
   std::vector<Mat> mats;
   std::vector<Link> links;
   std::vector<double> radius;  ///< [m], >= 0, one per MAT, or none at all

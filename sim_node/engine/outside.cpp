@@ -59,6 +59,10 @@ void Outside::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
   forces_[slot_[mat]].force = held;
 }
 
+Vec3 Outside::held_force(std::uint32_t mat) const noexcept {
+  return slot_[mat] == kNoSlot ? Vec3(Vec3::Zero()) : forces_[slot_[mat]].force;
+}
+
 std::uint32_t Outside::take_refused() noexcept {
   return std::exchange(refused_, 0U);
 }

@@ -22,6 +22,8 @@ class Outside {
   void impose_position(std::uint32_t mat, const Vec3& position) noexcept;
   /// The force [N] held on a mass from the next step on. Real time: O(1), no allocation.
   void hold_force(std::uint32_t mat, const Vec3& force) noexcept;
+  /// The force held on a mass [N].
+  Vec3 held_force(std::uint32_t mat) const noexcept;
   /// How many positions and forces were not finite since this was last asked.
   std::uint32_t take_refused() noexcept;
 

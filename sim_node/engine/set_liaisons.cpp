@@ -17,6 +17,10 @@ StepEnergy SetLiaisons::add_forces(const PairStep& step, const ForceColumns& col
   return energy;
 }
 
+void SetLiaisons::mark_neighbours(MatRoles& roles) const noexcept {
+  for (const SetPairs& set : sets_) set.mark_neighbours(roles);
+}
+
 StepEnergy SetLiaisons::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy energy;
   for (const SetPairs& set : sets_) energy += set.work_since_last_call(mats);

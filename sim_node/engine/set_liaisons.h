@@ -20,6 +20,7 @@ class SetLiaisons {
 
   /// As those of SetPairs, for all sets:
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  void mark_neighbours(MatRoles& roles) const noexcept;
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   double stored_energy(const StateTable& table) noexcept;
   void start() noexcept;

@@ -203,6 +203,13 @@ StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noex
   return {all - dissipated, dissipated, 0.0, 0.0};
 }
 
+void SetPairs::mark_neighbours(MatRoles& roles) const noexcept {
+  for (const std::uint32_t column : column_) {
+    const bool is_mass = roles.has(column / 4, kIsMass);
+    roles.add(column / 4, is_mass ? kWholeForce | kSomeForce : kSomeForce);
+  }
+}
+
 StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
   for (std::size_t m = 0; m < column_.size(); ++m) {

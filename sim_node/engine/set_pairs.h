@@ -8,6 +8,7 @@
 #include "sim_node/engine/aligned_vector.h"
 #include "sim_node/engine/energy.h"
 #include "sim_node/engine/mat_array.h"
+#include "sim_node/engine/mat_roles.h"
 #include "sim_node/engine/neighbour_list.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/pair_behaviours.h"
@@ -39,6 +40,9 @@ class SetPairs {
   /// works of the last forces up to now, and half of those of these from then to now.
   /// Real time: O(members + pairs), no allocation.
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+
+  /// All pairs are computed in every step: of each member the whole force is there.
+  void mark_neighbours(MatRoles& roles) const noexcept;
 
   /// What the forces of the last call have done since, up to the present positions.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;

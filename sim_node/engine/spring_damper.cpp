@@ -34,7 +34,8 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind
       viscosity_over_dt_(column_a_.size(), 0.0),
       rest_length_(column_a_.size(), 0.0),
       viscous_factor_(column_a_.size(), 0.0),
-      elastic_factor_(in_line_ ? 0 : column_a_.size(), 0.0) {
+      elastic_factor_(in_line_ ? 0 : column_a_.size(), 0.0),
+      active_(column_a_.size(), kLinkBatch) {
   std::size_t l = 0;
   for (const Link& link : description.links) {
     if (!is_of(kind, description, link)) continue;
@@ -49,18 +50,30 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind
   }
 }
 
-LinkRows SpringDamperArray::rows() noexcept {
-  return {column_a_.size(),       column_a_.data(),          column_b_.data(),
-          stiffness_.data(),      viscosity_over_dt_.data(), rest_length_.data(),
-          viscous_factor_.data(), elastic_factor_.data()};
+LinkRows SpringDamperArray::rows(const ActiveLinks::Run& run) noexcept {
+  const std::size_t first = run.first;
+  return {run.count,
+          column_a_.data() + first,
+          column_b_.data() + first,
+          stiffness_.data() + first,
+          viscosity_over_dt_.data() + first,
+          rest_length_.data() + first,
+          viscous_factor_.data() + first,
+          in_line_ ? nullptr : elastic_factor_.data() + first};
+}
+
+StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces,
+                                  const ForceColumns& columns) noexcept {
+  LinkWork work;
+  for (const ActiveLinks::Run& run : active_.runs()) add_link_forces(rows(run), columns, work);
+  return half_of(work);
 }
 
 StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel,
                                          const ForceColumns& columns) noexcept {
   const AddLinkForces in_line = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
   const AddLinkForces in_space = viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
-  const LinkWork work = (in_line_ ? in_line : in_space)(rows(), columns);
-  return {0.5 * work.elastic, 0.5 * work.dissipated, 0.0, 0.0};
+  return add(in_line_ ? in_line : in_space, columns);
 }
 
 StepEnergy SpringDamperArray::add_forces_of_moment(const StepKernel& kernel,
@@ -68,8 +81,17 @@ StepEnergy SpringDamperArray::add_forces_of_moment(const StepKernel& kernel,
   const AddLinkForces in_line = viscous_ ? kernel.moment_spring_dampers_1d : kernel.springs_1d;
   const AddLinkForces in_space =
       viscous_ ? kernel.moment_spring_dampers_3d : kernel.moment_springs_3d;
-  const LinkWork work = (in_line_ ? in_line : in_space)(rows(), columns);
-  return {0.0, work.dissipated, 0.0, 0.0};
+  return {0.0, 2.0 * add(in_line_ ? in_line : in_space, columns).dissipated, 0.0, 0.0};
+}
+
+void SpringDamperArray::mark_neighbours(MatRoles& roles) const noexcept {
+  for (std::size_t l = 0; l < column_a_.size(); ++l) {
+    roles.join(column_a_[l] / 4, column_b_[l] / 4);
+  }
+}
+
+void SpringDamperArray::choose_active(MatRoles& roles) noexcept {
+  active_.choose(column_a_.data(), column_b_.data(), roles);
 }
 
 StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const noexcept {

@@ -7,6 +7,7 @@
 #include "sim_node/engine/aligned_vector.h"
 #include "sim_node/engine/energy.h"
 #include "sim_node/engine/mat_array.h"
+#include "sim_node/engine/mat_roles.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/step_kernel.h"
 
@@ -37,6 +38,12 @@ class SpringDamperArray {
   /// take in a period at the velocity (x - delayed) / dt is returned, and nothing remembered.
   StepEnergy add_forces_of_moment(const StepKernel& kernel, const ForceColumns& columns) noexcept;
 
+  /// Masses that a link joins to one that stirs get kWholeForce.
+  void mark_neighbours(MatRoles& roles) const noexcept;
+  /// From now on only links at MATs with kWholeForce, and some beside them, are computed; of the
+  /// others neither end has moved. Real time: O(links), no allocation.
+  void choose_active(MatRoles& roles) noexcept;
+
   /// The first half alone, for the forces of the last call up to the present positions.
   /// Real time: O(links), no allocation.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
@@ -62,7 +69,8 @@ class SpringDamperArray {
   const double* take_state(const double* state) noexcept;
 
  private:
-  LinkRows rows() noexcept;
+  LinkRows rows(const ActiveLinks::Run& run) noexcept;
+  StepEnergy add(AddLinkForces add_link_forces, const ForceColumns& columns) noexcept;
 
   bool in_line_;                           // 1 dimension, or ties
   bool viscous_ = false;                   // a link has viscosity
@@ -74,6 +82,7 @@ class SpringDamperArray {
   AlignedVector<double> rest_length_;        // [m]
   AlignedVector<double> viscous_factor_;     // [N/m]; in line the viscous pull itself [N]
   AlignedVector<double> elastic_factor_;     // [N/m]; none in line
+  ActiveLinks active_;
 };
 
 }  // namespace cordis::engine

@@ -117,19 +117,19 @@ class StateLinkLoop {
   static constexpr std::size_t kParts = kBehaviourBatch / Lanes::kWidth;
 
  public:
-  static StateLinkWork add_forces(const StateLinkRows& links,
-                                  const ForceColumns& columns) noexcept {
-    return StateLinkLoop(links, columns).add_forces();
+  static void add_forces(const StateLinkRows& links, const ForceColumns& columns,
+                         LinkWork& work) noexcept {
+    StateLinkLoop(links, columns).add_forces(work);
   }
 
  private:
   StateLinkLoop(const StateLinkRows& links, const ForceColumns& columns) noexcept
       : links_(links), columns_(columns), rows_{} {}
 
-  StateLinkWork add_forces() noexcept {
+  void add_forces(LinkWork& work) noexcept {
     for (std::size_t part = 0; part < kParts; ++part) {
-      elastic_work_[part] = Lanes::zero();
-      viscous_work_[part] = Lanes::zero();
+      elastic_work_[part] = Lanes::load(work.elastic + part * Lanes::kWidth);
+      viscous_work_[part] = Lanes::load(work.dissipated + part * Lanes::kWidth);
     }
     prepare();
     for (std::size_t l = 0; l < links_.count; l += kBehaviourBatch) {
@@ -137,7 +137,10 @@ class StateLinkLoop {
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < kParts; ++part) add_part(l, part);
     }
-    return {sum(elastic_work_), sum(viscous_work_)};
+    for (std::size_t part = 0; part < kParts; ++part) {
+      Lanes::store(work.elastic + part * Lanes::kWidth, elastic_work_[part]);
+      Lanes::store(work.dissipated + part * Lanes::kWidth, viscous_work_[part]);
+    }
   }
 
   void set(Quantity quantity, const double* values) noexcept {
@@ -214,16 +217,6 @@ class StateLinkLoop {
     Lanes::store(elastic_factor, Motion<Lanes>::factor(motion_, i, elastic));
     Lanes::store(viscous_factor, Motion<Lanes>::factor(motion_, i, viscous));
     Motion<Lanes>::add(links_, columns_, l, i, motion_, Motion<Lanes>::factor(motion_, i, pull));
-  }
-
-  static double sum(const Row* work) noexcept {
-    alignas(64) double lane[kBehaviourBatch];
-    for (std::size_t part = 0; part < kParts; ++part) {
-      Lanes::store(lane + part * Lanes::kWidth, work[part]);
-    }
-    double sum = 0.0;
-    for (const double value : lane) sum += value;
-    return sum;
   }
 
   const StateLinkRows& links_;

@@ -37,7 +37,8 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
       entered_(column_a_.size(), 0.0),
       forced_(column_a_.size(), kNotForced),
       elastic_factor_(column_a_.size(), 0.0),
-      viscous_factor_(column_a_.size(), 0.0) {
+      viscous_factor_(column_a_.size(), 0.0),
+      active_(column_a_.size(), kBehaviourBatch) {
   for (std::size_t l = 0; l < link_count_; ++l) {
     const StateLink& link = description.state_links[l];
     column_a_[l] = 4 * link.mat_a;
@@ -51,24 +52,25 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
   adopt(table);
 }
 
-StateLinkRows StateLinkArray::rows(const StateTable& table) noexcept {
+StateLinkRows StateLinkArray::rows(const StateTable& table, const ActiveLinks::Run& run) noexcept {
   StateLinkRows rows;
-  rows.count = column_a_.size();
-  rows.column_a = column_a_.data();
-  rows.column_b = column_b_.data();
-  rows.mass_a = mass_a_.data();
-  rows.mass_b = mass_b_.data();
+  const std::size_t first = run.first;
+  rows.count = run.count;
+  rows.column_a = column_a_.data() + first;
+  rows.column_b = column_b_.data() + first;
+  rows.mass_a = mass_a_.data() + first;
+  rows.mass_b = mass_b_.data() + first;
   rows.states = table.terms();
-  rows.state = state_.data();
-  rows.rest_length = rest_length_.data();
-  rows.pull = pull_.data();
-  rows.impulse = table.needs(Quantity::kImpulse) ? impulse_.data() : nullptr;
-  rows.entered = entered_.data();
-  rows.memory = memory_.data();
+  rows.state = state_.data() + first;
+  rows.rest_length = rest_length_.data() + first;
+  rows.pull = pull_.data() + first;
+  rows.impulse = table.needs(Quantity::kImpulse) ? impulse_.data() + first : nullptr;
+  rows.entered = entered_.data() + first;
+  rows.memory = memory_.data() + first * slot_count_;
   rows.memory_slots = slot_count_;
-  rows.forced = any_forced_ ? forced_.data() : nullptr;
-  rows.elastic_factor = elastic_factor_.data();
-  rows.viscous_factor = viscous_factor_.data();
+  rows.forced = any_forced_ ? forced_.data() + first : nullptr;
+  rows.elastic_factor = elastic_factor_.data() + first;
+  rows.viscous_factor = viscous_factor_.data() + first;
   rows.dt = dt_;
   rows.rate = 1.0 / dt_;
   rows.needs_age = table.needs(Quantity::kAge);
@@ -81,10 +83,13 @@ StateLinkRows StateLinkArray::rows(const StateTable& table) noexcept {
 
 void StateLinkArray::add_forces_before_start(const BehaviourKernel& kernel, const StateTable& table,
                                              const ForceColumns& columns) noexcept {
-  StateLinkRows links = rows(table);
-  links.frozen = true;
-  links.impulse = nullptr;
-  (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns);
+  LinkWork none;
+  for (const ActiveLinks::Run& run : active_.runs()) {
+    StateLinkRows links = rows(table, run);
+    links.frozen = true;
+    links.impulse = nullptr;
+    (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, none);
+  }
 }
 
 void StateLinkArray::start() noexcept {
@@ -104,17 +109,15 @@ StepEnergy StateLinkArray::add_forces(const BehaviourKernel& kernel, const State
     const StateTable* table;
     EventLog* log;
     std::uint64_t step;
-    double switching;  // [J]
+    std::size_t origin;  // link
+    double switching;    // [J]
   };
-  Entry entry{this, &table, &log, step, 0.0};
-  StateLinkRows links = rows(table);
-  links.now = static_cast<double>(step);
-  links.owner = &entry;
-  links.on_change = [](void* owner, std::size_t first, const BehaviourRows& rows) noexcept {
+  Entry entry{this, &table, &log, step, 0, 0.0};
+  const auto on_change = [](void* owner, std::size_t first, const BehaviourRows& rows) noexcept {
     auto& to = *static_cast<Entry*>(owner);
     for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
       if ((rows.changed >> i & 1U) == 0) continue;
-      const std::size_t l = first + i;
+      const std::size_t l = to.origin + first + i;
       const StateIndex first_state = to.table->first_state(to.links->behaviour_[l]);
       const double energy = to.table->change_energy(rows, i);
       to.switching += energy;
@@ -124,10 +127,37 @@ StepEnergy StateLinkArray::add_forces(const BehaviourKernel& kernel, const State
                    rows.fired_value[i], energy});
     }
   };
-  const StateLinkWork work =
-      (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns);
+  LinkWork work;
+  for (const ActiveLinks::Run& run : active_.runs()) {
+    StateLinkRows links = rows(table, run);
+    entry.origin = run.first;
+    links.now = static_cast<double>(step);
+    links.owner = &entry;
+    links.on_change = on_change;
+    (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, work);
+  }
   any_forced_ = false;
-  return {0.5 * work.elastic, 0.5 * work.dissipated, entry.switching, 0.0};
+  StepEnergy energy = half_of(work);
+  energy.switching = entry.switching;
+  return energy;
+}
+
+void StateLinkArray::mark_neighbours(const std::vector<bool>& never_rests,
+                                     MatRoles& roles) const noexcept {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    const std::uint32_t a = column_a_[l] / 4;
+    const std::uint32_t b = column_b_[l] / 4;
+    roles.join(a, b);
+    if (!never_rests[behaviour_[l]]) continue;
+    const bool is_mass_a = roles.has(a, kIsMass);
+    const bool is_mass_b = roles.has(b, kIsMass);
+    if (is_mass_a || !is_mass_b) roles.add(a, kWholeForce);
+    if (is_mass_b) roles.add(b, kWholeForce);
+  }
+}
+
+void StateLinkArray::choose_active(MatRoles& roles) noexcept {
+  active_.choose(column_a_.data(), column_b_.data(), roles);
 }
 
 StepEnergy StateLinkArray::work_since_last_call(const MatArray& mats) const noexcept {

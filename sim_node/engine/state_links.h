@@ -9,6 +9,7 @@
 #include "sim_node/engine/energy.h"
 #include "sim_node/engine/event_log.h"
 #include "sim_node/engine/mat_array.h"
+#include "sim_node/engine/mat_roles.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/state_hash.h"
 #include "sim_node/engine/state_table.h"
@@ -38,6 +39,12 @@ class StateLinkArray {
   StepEnergy add_forces(const BehaviourKernel& kernel, const StateTable& table,
                         const ForceColumns& columns, std::uint64_t step, EventLog& log) noexcept;
 
+  /// As those of SpringDamperArray. Links of a behaviour whose conditions may come true while both
+  /// ends rest are always computed: their masses get kWholeForce.
+  /// @param never_rests  by behaviour
+  void mark_neighbours(const std::vector<bool>& never_rests, MatRoles& roles) const noexcept;
+  void choose_active(MatRoles& roles) noexcept;
+
   /// Works of the forces of the last call up to the present positions. Real time: O(links), no
   /// allocation.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
@@ -60,7 +67,7 @@ class StateLinkArray {
   const double* take_state(const double* state) noexcept;
 
  private:
-  StateLinkRows rows(const StateTable& table) noexcept;
+  StateLinkRows rows(const StateTable& table, const ActiveLinks::Run& run) noexcept;
   double distance_at_last_call(const MatArray& mats, std::size_t link) const noexcept;
 
   bool in_line_;  // 1 dimension
@@ -82,6 +89,7 @@ class StateLinkArray {
   AlignedVector<double> memory_;          // slot_count_ x 8 values for each batch
   std::size_t slot_count_ = 0;
   bool any_forced_ = false;
+  ActiveLinks active_;
 };
 
 }  // namespace cordis::engine

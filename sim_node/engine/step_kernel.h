@@ -39,15 +39,17 @@ struct ForceColumns {
 
 /// Twice the work [J] that forces of the links took: half of the last step's and half of this
 /// one's, so that the sum over all steps is that of f(n) . (x(n+1) - x(n-1)), twice the work of
-/// f(n) in this scheme.
-struct LinkWork {
-  double elastic =
-      0.0;  // of the elastic forces; 0 in 1 dimension, where it follows from K e(n) e(n-1)
-  double dissipated = 0.0;  // of the viscous forces
+/// f(n) in this scheme. Summed by the place in the batch, so that the sum does not depend on how
+/// many batches are taken at once, nor on those without work.
+struct alignas(64) LinkWork {
+  // of the elastic forces; 0 in 1 dimension, where it follows from K e(n) e(n-1)
+  double elastic[kLinkBatch] = {};
+  double dissipated[kLinkBatch] = {};  // of the viscous forces
 };
 
-/// Adds the forces of all links in link order.
-using AddLinkForces = LinkWork (*)(const LinkRows& links, const ForceColumns& columns) noexcept;
+/// Adds the forces of all links in link order, and their works.
+using AddLinkForces = void (*)(const LinkRows& links, const ForceColumns& columns,
+                               LinkWork& work) noexcept;
 
 /// A row of neighbouring masses, and what moves them.
 struct MassColumns {

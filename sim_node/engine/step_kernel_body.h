@@ -112,25 +112,16 @@ struct LinksInSpace {
   }
 };
 
-/// Sum of the 8 values of a batch, place by place.
-template <class Lanes>
-double sum_of_batch(const typename Lanes::Row* rows) noexcept {
-  alignas(64) double lane[kLinkBatch];
-  for (std::size_t part = 0; part < kLinkBatch / Lanes::kWidth; ++part) {
-    Lanes::store(lane + part * Lanes::kWidth, rows[part]);
-  }
-  double sum = 0.0;
-  for (const double value : lane) sum += value;
-  return sum;
-}
-
 /// A batch of 8 links at a time, in one register or in parts; the works are summed by the place in
 /// the batch.
 template <class Lanes, class Links>
-LinkWork add_link_forces(const LinkRows& links, const ForceColumns& columns) noexcept {
+void add_link_forces(const LinkRows& links, const ForceColumns& columns, LinkWork& sum) noexcept {
   constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
   WorkRows<Lanes> work[kParts];
-  for (std::size_t part = 0; part < kParts; ++part) work[part] = {Lanes::zero(), Lanes::zero()};
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const std::size_t at = part * Lanes::kWidth;
+    work[part] = {Lanes::load(sum.elastic + at), Lanes::load(sum.dissipated + at)};
+  }
 
   for (std::size_t l = 0; l < links.count; l += kLinkBatch) {
 #pragma GCC unroll 4
@@ -139,13 +130,11 @@ LinkWork add_link_forces(const LinkRows& links, const ForceColumns& columns) noe
     }
   }
 
-  typename Lanes::Row elastic[kParts];
-  typename Lanes::Row dissipated[kParts];
   for (std::size_t part = 0; part < kParts; ++part) {
-    elastic[part] = work[part].elastic;
-    dissipated[part] = work[part].dissipated;
+    const std::size_t at = part * Lanes::kWidth;
+    Lanes::store(sum.elastic + at, work[part].elastic);
+    Lanes::store(sum.dissipated + at, work[part].dissipated);
   }
-  return LinkWork{sum_of_batch<Lanes>(elastic), sum_of_batch<Lanes>(dissipated)};
 }
 
 template <class Lanes, bool kMedium>

@@ -40,7 +40,12 @@ void World::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
 }
 
 void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
+  const Vec3 before = state_->outside.held_force(mat);
   state_->outside.hold_force(mat, force);
+  if (!state_->freezing) return;
+  const Vec3 now = state_->outside.held_force(mat);
+  state_->freezing->hold(mat, !now.isZero(0.0));
+  if (now != before) state_->freezing->wake(mat);
 }
 
 StepReport World::step() noexcept {
@@ -49,10 +54,24 @@ StepReport World::step() noexcept {
 
 void World::force_state(std::uint32_t state_link, std::uint32_t state) noexcept {
   state_->state_links.force_state(state_->table, state_link, state);
+  if (!state_->freezing) return;
+  const StateLink& link = network().description().state_links[state_link];
+  const bool joins_mass = state_->mats.is_mass(link.mat_a) || state_->mats.is_mass(link.mat_b);
+  if (!joins_mass) state_->freezing->wake_all();
+  state_->freezing->wake(link.mat_a);
+  state_->freezing->wake(link.mat_b);
 }
 
 void World::replace_behaviour(std::uint32_t index, const Behaviour& behaviour) {
   state_->replace_behaviour(index, behaviour);
+}
+
+bool World::is_asleep(std::uint32_t mat) const noexcept {
+  return state_->freezing && state_->freezing->is_asleep(mat);
+}
+
+std::uint32_t World::asleep_count() const noexcept {
+  return state_->freezing ? state_->freezing->asleep_count() : 0;
 }
 
 std::span<const LinkEvent> World::events() const noexcept {
@@ -151,6 +170,7 @@ std::uint64_t World::state_hash() const noexcept {
   state_->maxwell_links.add_to(hash);
   state_->sets.add_to(hash);
   state_->mover->add_to(hash);
+  if (state_->freezing) state_->freezing->add_to(hash);
   return hash.value();
 }
 
@@ -180,6 +200,9 @@ bool World::take_over(const World& before, std::vector<double>& room) noexcept {
       network().description().integrator == before.network().description().integrator;
   if (!same_mats || !same_sets || !same_integrator || !state_->can_take(room)) return false;
 
+  const bool both_freeze = (state_->freezing == nullptr) == (before.state_->freezing == nullptr);
+  if (!both_freeze) return false;
+
   const Energy energy_before = before.energy();
   const double stored_before = before.state_->stored_energy();
   state_->take_state(room);
@@ -193,6 +216,7 @@ bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   rest.elastic = -rest.switching;
   state_->account.add(rest);
   state_->mover->adopt(*state_);
+  if (state_->freezing) state_->freezing->wake_all();
   return true;
 }
 

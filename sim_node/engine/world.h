@@ -89,9 +89,15 @@ class World {
   Vec3 position(std::uint32_t mat) const noexcept;  ///< x(n) [m]
   /// (x(n) - x(n-1)) / dt; of the integrators of second order that of the moment of x(n). [m/s]
   Vec3 velocity(std::uint32_t mat) const noexcept;
-  /// Sum of the forces that the links put on the MAT in the last step [N]; 0 before the first.
+  /// Sum of the forces that the links put on the MAT in the last step [N]; 0 before the first. With
+  /// a freeze_tolerance that of a fixed point is whole only if it stands in kept_awake.
   Vec3 link_force(std::uint32_t mat) const noexcept;
   const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N; to be asked for in each step
+
+  /// Of a network with a freeze_tolerance: masses that rest and are left out until something wakes
+  /// them, see Freezing.
+  bool is_asleep(std::uint32_t mat) const noexcept;
+  std::uint32_t asleep_count() const noexcept;
 
   /// The changes of state of the last step, in the order of the force sums. There is room for as
   /// many as there are state links, and for at least 1024; those beyond are counted in the report.

@@ -54,6 +54,8 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       sets(description(), table, pair_kernel(width)),
       log(table, std::max(kLeastEventRoom, description().state_links.size())),
       outside(description()),
+      freezing(description().freeze_tolerance > 0.0 ? std::make_unique<Freezing>(description())
+                                                    : nullptr),
       mover(make_mover(description())) {}
 
 StateTable WorldState::make_table(std::vector<Behaviour> from) const {
@@ -102,6 +104,14 @@ StepEnergy WorldState::work_since_last_call() const noexcept {
   return work;
 }
 
+void WorldState::begin_forces() noexcept {
+  if (freezing) {
+    freezing->choose_liaisons(*this, false);
+  } else {
+    mats.clear_forces();
+  }
+}
+
 void WorldState::add_forces_of_period(StepEnergy& energy) noexcept {
   const ForceColumns columns = mats.force_columns();
   energy += links.add_forces(kernel, columns);
@@ -111,13 +121,14 @@ void WorldState::add_forces_of_period(StepEnergy& energy) noexcept {
   }
   energy += maxwell_links.add_forces(behaviours, columns);
   if (!sets.empty()) energy += sets.add_forces(pair_step(false), columns);
+  if (freezing) freezing->restore_forces(mats);
 }
 
 double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy& energy) noexcept {
   const ForceColumns as_it_moved = mats.force_columns();
   ForceColumns felt = as_it_moved;
   felt.delayed = felt_positions;
-  mats.clear_forces();
+  begin_forces();
 
   StepEnergy of_links = links.add_forces_of_moment(kernel, felt);
   of_links += ties.add_forces_of_moment(kernel, felt);
@@ -132,6 +143,7 @@ double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy
     sets.start();
     of_links += sets.add_forces(pair_step(false), felt);
   }
+  if (freezing) freezing->restore_forces(mats);
   energy.switching += of_links.switching;
   return of_links.dissipated;
 }
@@ -153,6 +165,7 @@ void WorldState::replace_behaviour(std::uint32_t index, const Behaviour& behavio
   table.replace(index, behaviour);
   state_links.adopt(table);
   sets.adopt(table);
+  if (freezing) freezing->adopt(description(), table.behaviours());
   StepEnergy change;
   change.switching = stored_energy() - before;
   account.add(change);
@@ -163,7 +176,7 @@ void WorldState::replace_behaviour(std::uint32_t index, const Behaviour& behavio
 std::size_t WorldState::state_size_before_sets() const noexcept {
   return mats.state_size() + links.state_size() + ties.state_size() + state_links.state_size() +
          maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize +
-         mover->state_size();
+         mover->state_size() + (freezing ? freezing->state_size() : 0);
 }
 
 bool WorldState::can_take(const std::vector<double>& state) const noexcept {
@@ -193,6 +206,7 @@ void WorldState::restore(const Snapshot& snapshot) {
   }
   step_count = snapshot.step;
   replaced = !snapshot.behaviours.empty();
+  if (freezing) freezing->adopt(description(), table.behaviours());
   take_state(snapshot.state);
 }
 
@@ -205,6 +219,7 @@ void WorldState::append_state(std::vector<double>& state) const {
   log.append_state(state);
   account.append_state(state);
   mover->append_state(state);
+  if (freezing) freezing->append_state(state);
   sets.append_state(state);
   outside.append_state(state);
 }
@@ -218,8 +233,11 @@ void WorldState::take_state(const std::vector<double>& state) noexcept {
   next = log.take_state(next);
   next = account.take_state(next);
   next = mover->take_state(*this, next);
+  const double* rest = next;
+  if (freezing) next += freezing->state_size();
   next = sets.take_state(next);
   outside.take_state(next);
+  if (freezing) freezing->take_state(outside, rest);
 }
 
 }  // namespace cordis::engine

@@ -7,6 +7,7 @@
 
 #include "sim_node/engine/behaviour_kernel.h"
 #include "sim_node/engine/event_log.h"
+#include "sim_node/engine/freezing.h"
 #include "sim_node/engine/mat_array.h"
 #include "sim_node/engine/maxwell_links.h"
 #include "sim_node/engine/mover.h"
@@ -48,6 +49,8 @@ struct WorldState {
   double potential_energy() noexcept;
   StepEnergy work_since_last_call() const noexcept;
 
+  /// Clears the forces; of a world that freezes, chooses the liaisons that are computed.
+  void begin_forces() noexcept;
   /// Adds the forces of all liaisons as `cordis` does; enters what they take.
   void add_forces_of_period(StepEnergy& energy) noexcept;
   /// Clears the forces and adds those of all liaisons for an account that is kept at moments:
@@ -84,6 +87,7 @@ struct WorldState {
   EventLog log;
   Outside outside;
   EnergyAccount account;
+  std::unique_ptr<Freezing> freezing;  // none: every MAT is always awake
   std::unique_ptr<Mover> mover;
   std::uint64_t step_count = 0;
   bool replaced = false;  // a behaviour is no longer that of the network
