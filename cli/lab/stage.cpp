@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "device_node/gesture_wire.h"
+
 namespace cordis::cli {
 namespace {
 
@@ -17,27 +19,6 @@ std::int64_t no_time() noexcept {
   return 0;
 }
 
-template <class Message>
-void fill_header(const GestureMessage& from, std::uint32_t device_id, Message& to) {
-  to.device_id(device_id);
-  to.run(from.run);
-  to.sample(from.sample);
-  to.answered_run(from.answered_run);
-  to.answered_sample(from.answered_sample);
-  to.axis_count(from.axis_count);
-}
-
-template <class Message>
-GestureMessage header_of(const Message& from) {
-  GestureMessage to;
-  to.run = from.run();
-  to.sample = from.sample();
-  to.answered_run = from.answered_run();
-  to.answered_sample = from.answered_sample();
-  to.axis_count = from.axis_count();
-  return to;
-}
-
 }  // namespace
 
 /// Hands the messages of a device to its exchange in the simulation, and the answers back.
@@ -49,25 +30,19 @@ class DirectChannel final : public device::GestureChannel {
     given_ = sample.value;
     if (exchange_.role() == Role::kMass) {
       msg::GesturePositions positions;
-      fill_header(sample, exchange_.device_id(), positions);
-      positions.position_m(sample.value);
+      device::wire::put(sample, exchange_.device_id(), positions);
       return exchange_.receive(positions) == sim::DeviceExchange::Reception::kNew;
     }
     msg::GestureForces forces;
-    fill_header(sample, exchange_.device_id(), forces);
-    forces.force_n(sample.value);
+    device::wire::put(sample, exchange_.device_id(), forces);
     return exchange_.receive(forces) == sim::DeviceExchange::Reception::kNew;
   }
 
   void take_answer(const engine::World& world) noexcept {
     if (exchange_.role() == Role::kMass) {
-      const msg::GestureForces& forces = exchange_.answer_forces(world, true, 0);
-      answer_ = header_of(forces);
-      answer_.value = forces.force_n();
+      device::wire::take(exchange_.answer_forces(world, true, 0), answer_);
     } else {
-      const msg::GesturePositions& positions = exchange_.answer_positions(world, true, 0);
-      answer_ = header_of(positions);
-      answer_.value = positions.position_m();
+      device::wire::take(exchange_.answer_positions(world, true, 0), answer_);
     }
     has_answer_ = true;
   }

@@ -9,18 +9,7 @@ void CordisMover::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   world.add_frozen_forces(mats.force_columns());
   mats.start();
-
-  // The account of ports and state links begins with the links as they were one period ago, when
-  // nothing is known to have moved.
-  ForceColumns one_period_ago = mats.force_columns();
-  one_period_ago.position = one_period_ago.delayed;
-  world.add_frozen_forces(one_period_ago);
-  world.outside.start(mats);
-  mats.clear_forces();
-  world.links.start();
-  world.ties.start();
-  world.state_links.start();
-  world.sets.start();
+  world.start_one_period_ago();
   world.account.start(world.description(), mats, world.stored_energy(),
                       world.work_since_last_call().elastic);
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sim_node/engine/aligned_vector.h"
-#include "sim_node/engine/mover.h"
+#include "sim_node/engine/moment_mover.h"
 #include "sim_node/engine/stiffness_matrix.h"
 
 namespace cordis::engine {
@@ -23,7 +23,7 @@ namespace cordis::engine {
 /// The account belongs to the moment of the last forces, with the velocity that led there; the
 /// residual is what the scheme has taken.
 /// Source: Baraff, Witkin, Large steps in cloth simulation, 1998.
-class ImplicitEuler final : public Mover {
+class ImplicitEuler final : public MomentMover {
  public:
   explicit ImplicitEuler(const NetworkDescription& network);
 
@@ -31,16 +31,10 @@ class ImplicitEuler final : public Mover {
   Moved step(WorldState& world) noexcept override;
   Energy energy(WorldState& world) const noexcept override;
 
-  std::size_t state_size() const noexcept override { return before_.size() + 3; }
-  void append_state(std::vector<double>& state) const override;
-  const double* take_state(WorldState& world, const double* state) noexcept override;
-
  private:
   StiffnessMatrix matrix_;
   AlignedVector<double> change_;  // of the displacement of a period, then what it is solved for
-  AlignedVector<double> before_;  // dt v that led to the moment of the last forces [m], 4 x N
-  StepEnergy pending_;            // works after that moment
-  bool started_ = false;
+  AlignedVector<double>& before_ = memory_;  // dt v that led to the moment of the last forces [m]
 };
 
 }  // namespace cordis::engine

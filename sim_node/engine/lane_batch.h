@@ -48,6 +48,18 @@ struct LaneBatch {
     return bits;
   }
 
+  /// Sum of the 8 values of the registers of a batch, in the order of their places.
+  static double sum(const Row* parts) noexcept {
+    alignas(64) double lane[kRows];
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < kRows; i += Lanes::kWidth) {
+      Lanes::store(lane + i, parts[i / Lanes::kWidth]);
+    }
+    double sum = 0.0;
+    for (const double value : lane) sum += value;
+    return sum;
+  }
+
   /// The bits of the register that begins at row i.
   static std::uint32_t part(std::uint32_t rows, std::size_t i) noexcept {
     return rows >> i & ((1U << Lanes::kWidth) - 1U);

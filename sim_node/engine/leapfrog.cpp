@@ -12,14 +12,10 @@ Eigen::Map<Vec3> column(AlignedVector<double>& columns, std::size_t mat) noexcep
   return Eigen::Map<Vec3>(columns.data() + 4 * mat);
 }
 
-Vec3 column(const AlignedVector<double>& columns, std::size_t mat) noexcept {
-  return Vec3::Map(columns.data() + 4 * mat);
-}
-
 }  // namespace
 
 Leapfrog::Leapfrog(const NetworkDescription& network)
-    : felt_(4 * network.mats.size(), 0.0),
+    : MomentMover(network.mats.size()),
       sweeps_(damps_in_sweeps(network) ? std::make_unique<DampingSweeps>(network) : nullptr),
       velocity_(sweeps_ ? felt_.size() : 0, 0.0) {}
 
@@ -45,15 +41,9 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   Moved moved;
   StepEnergy& energy = moved.energy;
-  energy = pending_;
-  pending_ = {};
-  energy.port_work += world.outside.move_ports(mats);
+  begin_step(world, energy);
   feel_ports(world);
-  const double half_power = world.add_forces_of_moment(felt_.data(), energy);
-  energy.dissipated += half_power;
-  pending_.dissipated += half_power;
-  energy.port_work += world.outside.work_at_ports(mats);
-  energy.port_work += world.outside.push(mats);
+  find_forces(world, felt_.data(), energy);
 
   if (sweeps_) {
     moved.non_finite_mats = advance_in_sweeps(world, energy);
@@ -61,13 +51,11 @@ Moved Leapfrog::step(WorldState& world) noexcept {
     if (world.freezing) energy.dissipated += stop_what_rests(world);
     const AdvanceReport advance = mats.extrapolate(world.kernel, felt_);
     moved.non_finite_mats = advance.non_finite_mats;
-    energy.dissipated += 0.5 * advance.medium_work;
-    pending_.dissipated += 0.5 * advance.medium_work;
+    take_half(0.5 * advance.medium_work, energy);
   }
   pending_.port_work += world.outside.release(mats);
   if (sweeps_) mats.add_forces(sweeps_->force());
-  mats.set_forces_are_present(false);
-  started_ = true;
+  end_step(world);
   return moved;
 }
 
@@ -143,23 +131,6 @@ Vec3 Leapfrog::velocity(const WorldState& world, std::uint32_t mat) const noexce
 
 void Leapfrog::add_to(StateHash& hash) const noexcept {
   for (const double value : felt_) hash.add(value);
-}
-
-void Leapfrog::append_state(std::vector<double>& state) const {
-  state.insert(state.end(), felt_.begin(), felt_.end());
-  state.insert(state.end(),
-               {pending_.dissipated, pending_.port_work, static_cast<double>(started_)});
-}
-
-const double* Leapfrog::take_state(WorldState& world, const double* state) noexcept {
-  std::copy_n(state, felt_.size(), felt_.data());
-  state += felt_.size();
-  pending_ = {};
-  pending_.dissipated = *state++;
-  pending_.port_work = *state++;
-  started_ = *state++ != 0.0;
-  world.mats.set_forces_are_present(!started_);
-  return state;
 }
 
 }  // namespace cordis::engine

@@ -6,7 +6,7 @@
 
 #include "sim_node/engine/aligned_vector.h"
 #include "sim_node/engine/damping_sweeps.h"
-#include "sim_node/engine/mover.h"
+#include "sim_node/engine/moment_mover.h"
 
 namespace cordis::engine {
 
@@ -23,7 +23,7 @@ namespace cordis::engine {
 /// growth in the last period. The account belongs to the moment of the last forces: kinetic energy
 /// of the centred velocity (x(n+1) - x(n-1)) / 2 dt, all else in closed form; what finite steps do
 /// to it is the residual, of second order.
-class Leapfrog final : public Mover {
+class Leapfrog final : public MomentMover {
  public:
   explicit Leapfrog(const NetworkDescription& network);
 
@@ -33,9 +33,6 @@ class Leapfrog final : public Mover {
   Vec3 velocity(const WorldState& world, std::uint32_t mat) const noexcept override;
 
   void add_to(StateHash& hash) const noexcept override;
-  std::size_t state_size() const noexcept override { return felt_.size() + 3; }
-  void append_state(std::vector<double>& state) const override;
-  const double* take_state(WorldState& world, const double* state) noexcept override;
 
  private:
   double stop_what_rests(WorldState& world) noexcept;
@@ -43,11 +40,9 @@ class Leapfrog final : public Mover {
   std::uint32_t advance_in_sweeps(WorldState& world, StepEnergy& energy) noexcept;
   Vec3 centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept;
 
-  AlignedVector<double> felt_;             // x(n) - dt v(n) [m], 4 x N
+  AlignedVector<double>& felt_ = memory_;  // x(n) - dt v(n) [m]
   std::unique_ptr<DampingSweeps> sweeps_;  // none: dampers see the extrapolated velocity
   AlignedVector<double> velocity_;         // of the step in progress, of sweeps [m/s]
-  StepEnergy pending_;                     // works after the moment of the last forces
-  bool started_ = false;                   // a step has been done
 };
 
 }  // namespace cordis::engine

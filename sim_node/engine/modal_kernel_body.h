@@ -1,21 +1,10 @@
 // sim_node/engine/modal_kernel_body.h -- the loops over modes.
 #pragma once
 
+#include "sim_node/engine/lane_batch.h"
 #include "sim_node/engine/modal_kernel.h"
 
 namespace cordis::engine {
-
-/// The 8 places of a batch in the same order at every width.
-template <class Lanes>
-double sum_of_places(const typename Lanes::Row* parts) noexcept {
-  alignas(64) double lane[kModeBatch];
-  for (std::size_t part = 0; part < kModeBatch / Lanes::kWidth; ++part) {
-    Lanes::store(lane + part * Lanes::kWidth, parts[part]);
-  }
-  double sum = 0.0;
-  for (const double value : lane) sum += value;
-  return sum;
-}
 
 /// kOneDrive: the common case, without a loop over the drives.
 template <class Lanes, bool kOneDrive>
@@ -50,7 +39,7 @@ double step_driven_modes(const ModeRows& modes) noexcept {
       Lanes::store(rows.place + at, place + moving);
     }
   }
-  return sum_of_places<Lanes>(taken);
+  return LaneBatch<Lanes>::sum(taken);
 }
 
 template <class Lanes>
@@ -72,7 +61,7 @@ double read_modes(const double* shape, const double* value, std::size_t count) n
       sum[part] = sum[part] + Lanes::load(shape + at) * Lanes::load(value + at);
     }
   }
-  return sum_of_places<Lanes>(sum);
+  return LaneBatch<Lanes>::sum(sum);
 }
 
 template <class Lanes>

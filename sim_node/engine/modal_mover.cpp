@@ -78,16 +78,7 @@ void ModalMover::start(WorldState& world) noexcept {
     }
   }
   mats.clear_forces();
-
-  // As CordisMover: the account of ports and state links begins one period ago.
-  ForceColumns one_period_ago = mats.force_columns();
-  one_period_ago.position = one_period_ago.delayed;
-  world.add_frozen_forces(one_period_ago);
-  world.outside.start(mats);
-  mats.clear_forces();
-  world.links.start();
-  world.state_links.start();
-  world.sets.start();
+  world.start_one_period_ago();
   const double stored = world.stored_energy();
   world.account.open(0.0, stored);
   world.account.open(energy(world).total(), stored);

@@ -1,6 +1,7 @@
 // sim_node/engine/program.h -- an expression over a link, compiled.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,5 +20,16 @@ struct Program {
 /// operations and quantities, finite constants, one value left at the end, at most kMaxStack on the
 /// way, slots below kMaxSlots.
 void check_program(const Program& program, const std::string& name);
+
+/// How many values an operation takes from the stack.
+std::size_t operand_count(Operation operation) noexcept;
+/// Whether it is kRising or kFalling, which compare with the step before.
+bool is_trend(Operation operation) noexcept;
+/// What an operation makes of one value or of two, the lower on the stack first; 0 for trends and
+/// for those that take none.
+double apply(Operation operation, double a, double b = 0.0) noexcept;
+
+/// Whether the program asks for this quantity.
+bool asks_for(const Program& program, Quantity quantity) noexcept;
 
 }  // namespace cordis::engine

@@ -84,6 +84,18 @@ void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
   sets.add_forces(pair_step(true), columns);
 }
 
+void WorldState::start_one_period_ago() noexcept {
+  ForceColumns one_period_ago = mats.force_columns();
+  one_period_ago.position = one_period_ago.delayed;
+  add_frozen_forces(one_period_ago);
+  outside.start(mats);
+  mats.clear_forces();
+  links.start();
+  ties.start();
+  state_links.start();
+  sets.start();
+}
+
 double WorldState::stored_energy() noexcept {
   return links.stored_energy(mats) + state_links.stored_energy(table, mats) +
          maxwell_links.stored_energy() + sets.stored_energy(table);

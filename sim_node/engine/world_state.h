@@ -42,6 +42,9 @@ struct WorldState {
   /// Adds the forces of all liaisons, as they are, without testing an exit; Maxwell elements left
   /// out.
   void add_frozen_forces(const ForceColumns& columns) noexcept;
+  /// Begins the account of ports and liaisons of `cordis` with the links as they were one period
+  /// ago, when nothing is known to have moved.
+  void start_one_period_ago() noexcept;
   /// Of all links where the last forces were computed, in closed form; without linear ones in 1
   /// dimension [J].
   double stored_energy() noexcept;

@@ -12,8 +12,6 @@ using LinkQuantities = std::array<double, engine::kQuantityCount>;
 
 /// Whether `rising` or `falling` stand in it.
 bool asks_for_trend(const engine::Program& program);
-/// Whether it asks for this quantity.
-bool asks_for(const engine::Program& program, engine::Quantity quantity);
 
 /// @param before  the same link a moment earlier, for `rising` and `falling`; without it both are 0
 double value_of(const engine::Program& program, const LinkQuantities& now,

@@ -33,10 +33,6 @@ bool is_plain_number(const Value& value) {
   return !problem.hint.empty() && !parse_expression(value, "", of_formula);
 }
 
-double as_truth(bool truth) noexcept {
-  return truth ? 1.0 : 0.0;
-}
-
 /// Depth of the stack after and during a program that is well-formed.
 std::size_t deepest_stack(const engine::Program& program) {
   std::size_t depth = 0;
@@ -45,7 +41,7 @@ std::size_t deepest_stack(const engine::Program& program) {
     const bool pushes = instruction.operation == Operation::kConstant ||
                         instruction.operation == Operation::kQuantity;
     if (pushes) ++depth;
-    if (is_of_two(instruction.operation)) --depth;
+    if (engine::operand_count(instruction.operation) == 2) --depth;
     deepest = std::max(deepest, depth);
   }
   return deepest;
@@ -57,8 +53,8 @@ bool is_constant(const Instruction& instruction) {
 
 /// Adds an operation to a program, or its result when its operands are constants.
 void add_operation(std::vector<Instruction>& code, Operation operation, std::uint32_t& next_slot) {
-  const std::size_t operands = is_of_two(operation) ? 2 : 1;
-  const bool remembers = operation == Operation::kRising || operation == Operation::kFalling;
+  const std::size_t operands = engine::operand_count(operation);
+  const bool remembers = engine::is_trend(operation);
   const bool foldable =
       !remembers && code.size() >= operands &&
       std::all_of(code.end() - static_cast<std::ptrdiff_t>(operands), code.end(), is_constant);
@@ -71,74 +67,11 @@ void add_operation(std::vector<Instruction>& code, Operation operation, std::uin
     code.pop_back();
     code.back().constant = apply(operation, code.back().constant, last);
   } else {
-    code.back().constant = apply(operation, last, 0.0);
+    code.back().constant = apply(operation, last);
   }
 }
 
 }  // namespace
-
-bool is_of_two(Operation operation) noexcept {
-  switch (operation) {
-    case Operation::kConstant:
-    case Operation::kQuantity:
-    case Operation::kNegate:
-    case Operation::kAbs:
-    case Operation::kSqrt:
-    case Operation::kNot:
-    case Operation::kRising:
-    case Operation::kFalling:
-      return false;
-    default:
-      return true;
-  }
-}
-
-double apply(Operation operation, double a, double b) noexcept {
-  switch (operation) {
-    case Operation::kNegate:
-      return -a;
-    case Operation::kAbs:
-      return std::abs(a);
-    case Operation::kSqrt:
-      return std::sqrt(a);
-    case Operation::kMin:
-      return std::min(a, b);
-    case Operation::kMax:
-      return std::max(a, b);
-    case Operation::kAdd:
-      return a + b;
-    case Operation::kSubtract:
-      return a - b;
-    case Operation::kMultiply:
-      return a * b;
-    case Operation::kDivide:
-      return a / b;
-    case Operation::kLess:
-      return as_truth(a < b);
-    case Operation::kLessOrEqual:
-      return as_truth(a <= b);
-    case Operation::kGreater:
-      return as_truth(a > b);
-    case Operation::kGreaterOrEqual:
-      return as_truth(a >= b);
-    case Operation::kEqual:
-      return as_truth(a == b);
-    case Operation::kNotEqual:
-      return as_truth(a != b);
-    case Operation::kAnd:
-      return as_truth(a != 0.0 && b != 0.0);
-    case Operation::kOr:
-      return as_truth(a != 0.0 || b != 0.0);
-    case Operation::kNot:
-      return as_truth(a == 0.0);
-    case Operation::kConstant:
-    case Operation::kQuantity:
-    case Operation::kRising:
-    case Operation::kFalling:
-      break;
-  }
-  return 0.0;
-}
 
 std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
                                           const ParameterValues& parameters,

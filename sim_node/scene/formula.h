@@ -66,9 +66,4 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
                                           const ParameterValues& parameters,
                                           std::uint32_t& next_slot, config::Problems& problems);
 
-/// What an operation gives for its operands; of kRising and kFalling 0, as in the step in which a
-/// state is entered. `b` counts for operations of two alone.
-double apply(engine::Operation operation, double a, double b) noexcept;
-bool is_of_two(engine::Operation operation) noexcept;
-
 }  // namespace cordis::scene

@@ -40,23 +40,16 @@ double value_of(const Program& program, const Quantities& quantities, double edg
       stack[depth++] = instruction.constant;
     } else if (instruction.operation == Operation::kQuantity) {
       stack[depth++] = at(quantities, instruction.quantity);
-    } else if (is_of_two(instruction.operation)) {
+    } else if (engine::operand_count(instruction.operation) == 2) {
       --depth;
       stack[depth - 1] = apply(instruction.operation, stack[depth - 1], stack[depth]);
-    } else if (instruction.operation == Operation::kRising ||
-               instruction.operation == Operation::kFalling) {
+    } else if (engine::is_trend(instruction.operation)) {
       stack[depth - 1] = edge;
     } else {
-      stack[depth - 1] = apply(instruction.operation, stack[depth - 1], 0.0);
+      stack[depth - 1] = apply(instruction.operation, stack[depth - 1]);
     }
   }
   return stack[0];
-}
-
-bool names(const Program& program, engine::Quantity quantity) {
-  return std::any_of(program.code.begin(), program.code.end(), [&](const auto& instruction) {
-    return instruction.operation == Operation::kQuantity && instruction.quantity == quantity;
-  });
 }
 
 bool is_linear(const LinkState& state) {
@@ -138,15 +131,15 @@ class Entries {
     for (const engine::Quantity quantity :
          {engine::Quantity::kSpeed, engine::Quantity::kSpeedX, engine::Quantity::kSpeedY,
           engine::Quantity::kSpeedZ, engine::Quantity::kSlip}) {
-      if (names(when, quantity)) at(drawn, quantity) = size() * dice_.between(-2.0, 2.0);
+      if (engine::asks_for(when, quantity)) at(drawn, quantity) = size() * dice_.between(-2.0, 2.0);
     }
     at(drawn, engine::Quantity::kSlip) = std::abs(at(drawn, engine::Quantity::kSlip));
     double elongation = size() * dice_.between(-2.0, 2.0);
     double force = size() * dice_.between(-2.0, 2.0);
-    if (is_linear(from) && !names(when, engine::Quantity::kForce))
+    if (is_linear(from) && !engine::asks_for(when, engine::Quantity::kForce))
       force = pull_of(from, elongation);
-    const bool of_force =
-        names(when, engine::Quantity::kForce) && !names(when, engine::Quantity::kElongation);
+    const bool of_force = engine::asks_for(when, engine::Quantity::kForce) &&
+                          !engine::asks_for(when, engine::Quantity::kElongation);
     if (is_linear(from) && of_force && from.stiffness > 0.0) elongation = force / from.stiffness;
     at(drawn, engine::Quantity::kForce) = force;
     at(drawn, engine::Quantity::kElongation) = elongation;

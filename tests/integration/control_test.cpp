@@ -65,6 +65,13 @@ class Control : public ::testing::TestWithParam<const char*> {
     EXPECT_NE(outcome.output.find(text), std::string::npos) << outcome.output;
   }
 
+  /// Waits until the key is given this force [N]. @param force  then the message that gave it
+  static bool feels(double wanted, dds::Reader<msg::GestureForces>& forces,
+                    msg::GestureForces& force) {
+    return eventually(
+        [&] { return forces.take(force) && std::abs(force.force_n()[0] - wanted) < 1e-9; });
+  }
+
   /// The step of the newest frame from now on.
   std::uint64_t step_shown() {
     dds::Reader<msg::SceneFrame> frames(session_.participant(), dds::Topic::kFrame);
@@ -116,16 +123,12 @@ TEST_P(Control, LoadPlaysAnotherSceneAndTheKeyFeelsIt) {
   start();
   dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
   msg::GestureForces force;
-  const auto feels = [&](double wanted) {
-    return eventually(
-        [&] { return forces.take(force) && std::abs(force.force_n()[0] - wanted) < 1e-9; });
-  };
-  ASSERT_TRUE(feels(2.0));
+  ASSERT_TRUE(feels(2.0, forces, force));
   const std::uint64_t before = force.sample();
 
   expect_done({"load", "stiff.yaml"}, "'wall' begins; the scene before ended at step ");
 
-  ASSERT_TRUE(feels(4.0));
+  ASSERT_TRUE(feels(4.0, forces, force));
   EXPECT_GT(force.sample(), before) << "the numbers of the answers go on";
   EXPECT_EQ(status_.of("keyboard").phase(), "running");
 }
@@ -134,20 +137,16 @@ TEST_P(Control, SetChangesAParameterAndTheKeyFeelsIt) {
   start();
   dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
   msg::GestureForces force;
-  const auto feels = [&](double wanted) {
-    return eventually(
-        [&] { return forces.take(force) && std::abs(force.force_n()[0] - wanted) < 1e-9; });
-  };
-  ASSERT_TRUE(feels(2.0));
+  ASSERT_TRUE(feels(2.0, forces, force));
   expect_done({"set", "wall.stiffness_n_per_m=350"}, "sim: wall.stiffness_n_per_m = 350 at step ");
-  ASSERT_TRUE(feels(3.5));
+  ASSERT_TRUE(feels(3.5, forces, force));
 
   expect_refused({"set", "wal.stiffness_n_per_m=1"}, "did you mean 'wall'?");
   expect_refused({"set", "wall.stifness_n_per_m=1"}, "has no parameter 'stifness_n_per_m'");
   expect_refused({"set", "wall.stiffness_n_per_m=-1"}, "must be >= 0, got -1");
   expect_refused({"set", "wall.stiffness_n_per_m=soft"}, "must be a number, got 'soft'");
   expect_refused({"state", "wall", "broken"}, "'wall' has no states");
-  ASSERT_TRUE(feels(3.5));
+  ASSERT_TRUE(feels(3.5, forces, force));
 }
 
 /// A link of a liaison with states, put into its other state by hand.
@@ -230,8 +229,7 @@ TEST_F(ControlInRealtime, TheKeyFeelsNothingWhileTheScenePausesAndComesBackGradu
   start();
   dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
   msg::GestureForces force;
-  ASSERT_TRUE(
-      eventually([&] { return forces.take(force) && std::abs(force.force_n()[0] - 2.0) < 1e-9; }));
+  ASSERT_TRUE(feels(2.0, forces, force));
 
   expect_done({"pause"}, "paused");
   while (forces.take(force)) {

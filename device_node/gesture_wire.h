@@ -1,0 +1,53 @@
+// device_node/gesture_wire.h -- messages of the force loop, to and from those of idl/gesture.idl.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "device_node/gesture_channel.h"
+#include "idl/gesture.h"
+
+namespace cordis::device::wire {
+
+inline AxisValues& values_of(msg::GesturePositions& message) {
+  return message.position_m();
+}
+inline AxisValues& values_of(msg::GestureForces& message) {
+  return message.force_n();
+}
+inline const AxisValues& values_of(const msg::GesturePositions& message) {
+  return message.position_m();
+}
+inline const AxisValues& values_of(const msg::GestureForces& message) {
+  return message.force_n();
+}
+
+/// @param to  msg::GesturePositions or msg::GestureForces
+template <class Message>
+void put(const GestureMessage& from, std::uint32_t device_id, Message& to) noexcept {
+  to.device_id(device_id);
+  to.run(from.run);
+  to.sample(from.sample);
+  to.answered_run(from.answered_run);
+  to.answered_sample(from.answered_sample);
+  to.answered_time_nsec(from.answered_time_nsec);
+  to.time_nsec(from.time_nsec);
+  to.axis_count(from.axis_count);
+  values_of(to) = from.value;
+}
+
+/// Entries past the axis count become 0. @param from  msg::GesturePositions or msg::GestureForces
+template <class Message>
+void take(const Message& from, GestureMessage& to) noexcept {
+  to.run = from.run();
+  to.sample = from.sample();
+  to.answered_run = from.answered_run();
+  to.answered_sample = from.answered_sample();
+  to.answered_time_nsec = from.answered_time_nsec();
+  to.time_nsec = from.time_nsec();
+  to.axis_count = from.axis_count();
+  to.value = values_of(from);
+  for (std::size_t a = to.axis_count; a < to.value.size(); ++a) to.value[a] = 0.0;
+}
+
+}  // namespace cordis::device::wire
