@@ -102,12 +102,6 @@ std::vector<OfMat> measure(const NetworkDescription& network,
   return of_mats;
 }
 
-bool asks_for(const Program& program, Quantity quantity) {
-  return std::any_of(program.code.begin(), program.code.end(), [&](const Instruction& one) {
-    return one.operation == Operation::kQuantity && one.quantity == quantity;
-  });
-}
-
 /// Whether a condition of a behaviour may come true while nothing moves.
 bool asks_for_age(const Behaviour& behaviour) {
   return std::any_of(behaviour.exits.begin(), behaviour.exits.end(),
