@@ -30,10 +30,7 @@ double resident_bytes() {
 
 StatusPublisher::StatusPublisher(dds::Participant& participant, const std::string& kind,
                                  std::uint64_t run, Fill fill)
-    : writer_(participant, dds::Topic::kStatus),
-      fill_(std::move(fill)),
-      started_nsec_(monotonic_nsec()),
-      last_time_nsec_(started_nsec_) {
+    : writer_(participant, dds::Topic::kStatus), fill_(std::move(fill)), rate_(monotonic_nsec()) {
   const std::string& name = participant.membership().node;
   status_.node_id(config::name_hash(name));
   status_.node(name);
@@ -75,15 +72,9 @@ void StatusPublisher::loop() {
 void StatusPublisher::publish() {
   const std::int64_t now = monotonic_nsec();
   fill_(status_);
-  const auto elapsed = static_cast<double>(now - last_time_nsec_) * 1e-9;
-  const auto lifetime = static_cast<double>(now - started_nsec_) * 1e-9;
-  // Between two close calls a rate would be noise: the last one stays.
-  if (elapsed > 0.1) {
-    status_.reached_rate_hz(static_cast<double>(status_.ticks() - last_ticks_) / elapsed);
-    last_ticks_ = status_.ticks();
-    last_time_nsec_ = now;
-  }
-  if (lifetime > 0.0) status_.mean_rate_hz(static_cast<double>(status_.ticks()) / lifetime);
+  rate_.look(now, status_.ticks());
+  status_.reached_rate_hz(rate_.reached_hz());
+  status_.mean_rate_hz(rate_.mean_hz());
   status_.sequence_number(status_.sequence_number() + 1);
   status_.time_nsec(now);
   status_.memory_bytes(resident_bytes());

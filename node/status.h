@@ -10,6 +10,7 @@
 #include "idl/control.h"
 #include "node/dds/participant.h"
 #include "node/dds/writer.h"
+#include "node/tick_rate.h"
 
 namespace cordis::node {
 
@@ -17,8 +18,8 @@ namespace cordis::node {
 class StatusPublisher {
  public:
   /// Fills in phase, text, rates, counters, latency, energy and hash. Called from the publisher's
-  /// thread twice a second; must not block. Name, kind, run, time, memory and the reached rate
-  /// (from `ticks`) are filled in already.
+  /// thread twice a second; must not block. Name, kind, run, time, memory and the reached and
+  /// the mean rate (from `ticks`) are filled in already.
   using Fill = std::function<void(msg::NodeStatus&)>;
 
   /// @param kind  "sim_node", "device_node", "viz_node" or "record_node"
@@ -40,9 +41,7 @@ class StatusPublisher {
   dds::Writer<msg::NodeStatus> writer_;
   Fill fill_;
   msg::NodeStatus status_;
-  std::int64_t started_nsec_;
-  std::int64_t last_time_nsec_;
-  std::uint64_t last_ticks_ = 0;
+  TickRate rate_;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool wanted_ = false;

@@ -1,0 +1,30 @@
+// node/tick_rate.cpp
+#include "node/tick_rate.h"
+
+namespace cordis::node {
+namespace {
+
+// Between two close looks a rate would be noise.
+constexpr std::int64_t kLeastNsec = 100'000'000;
+
+}  // namespace
+
+double TickRate::rate(const Look& from, const Look& to) noexcept {
+  return static_cast<double>(to.ticks - from.ticks) /
+         (static_cast<double>(to.nsec - from.nsec) * 1e-9);
+}
+
+void TickRate::look(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
+  const Look now{now_nsec, ticks};
+  if (first_.ticks == 0) {
+    if (ticks > 0 && now.nsec > first_.nsec) mean_hz_ = rate(first_, now);
+    first_ = now;
+  } else if (now.nsec - first_.nsec >= kLeastNsec) {
+    mean_hz_ = rate(first_, now);
+  }
+  if (now.nsec - last_.nsec < kLeastNsec) return;
+  reached_hz_ = rate(last_, now);
+  last_ = now;
+}
+
+}  // namespace cordis::node

@@ -1,0 +1,32 @@
+// node/tick_rate.h -- how often a loop has turned.
+#pragma once
+
+#include <cstdint>
+
+namespace cordis::node {
+
+/// The rate of a loop, from the number of its ticks as it is looked at now and then. What the loop
+/// waited before its first tick does not count.
+class TickRate {
+ public:
+  explicit TickRate(std::int64_t now_nsec) noexcept : first_{now_nsec, 0}, last_(first_) {}
+
+  void look(std::int64_t now_nsec, std::uint64_t ticks) noexcept;
+
+  double reached_hz() const noexcept { return reached_hz_; }  ///< lately
+  double mean_hz() const noexcept { return mean_hz_; }        ///< since the ticks began
+
+ private:
+  struct Look {
+    std::int64_t nsec;
+    std::uint64_t ticks;
+  };
+  static double rate(const Look& from, const Look& to) noexcept;
+
+  Look first_;  // when ticks had begun
+  Look last_;
+  double reached_hz_ = 0.0;
+  double mean_hz_ = 0.0;
+};
+
+}  // namespace cordis::node
