@@ -12,7 +12,9 @@ namespace {
 
 PortCheck check_port(const scene::Scene& scene, const plan::LiaisonGraph& graph,
                      const scene::Port& port, const CheckOptions& options) {
-  const plan::PortLoop loop{1.0 / scene.gesture_rate_hz, options.delay_periods};
+  const plan::PortLoop loop{
+      1.0 / scene.gesture_rate_hz, options.delay_periods,
+      static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz))};
   PortCheck check;
   check.port = &port;
   check.load = plan::port_load(graph, port.mat);

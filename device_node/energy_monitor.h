@@ -35,10 +35,6 @@ struct PassivitySettings {
 /// the growing share s of a force f may store up to ds |f| travel, which is added to the budget.
 /// And both accounts fall without bound in a damped scene, which would let a later fault pass for
 /// long: they are held above -tank.
-///
-/// In role liaison it watches alone. What makes a loop swing there is the age of the forces, and
-/// the viscosity that calms it is that of the scene; an elastic hand gives back whatever it takes,
-/// so that the sum at the handle stays at 0 while it swings.
 class EnergyMonitor {
  public:
   /// @throws std::invalid_argument when a setting is out of range.

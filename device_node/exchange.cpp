@@ -4,14 +4,6 @@
 #include <utility>
 
 namespace cordis::device {
-namespace {
-
-PassivitySettings watched(PassivitySettings settings) {
-  settings.active = false;
-  return settings;
-}
-
-}  // namespace
 
 Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep,
                    Driver& driver, GestureChannel& channel, LoopMeter& meter, ClockFunction clock)
@@ -24,7 +16,6 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
       clock_(clock),
       force_guard_(config.force_guard),
       position_guard_(config.position_guard),
-      carried_energy_(watched(config.force_guard.passivity)),
       late_(static_cast<std::size_t>(config.limits.delay_periods) + 1),
       first_sample_(series.last_sample + 1) {
   sample_.run = series.run;
@@ -44,9 +35,9 @@ Exchange::~Exchange() {
 void Exchange::send_sample() noexcept {
   if (!present_ && !lockstep_) return;
   ++sample_.sample;
-  sample_.answered_run = used_.run;
-  sample_.answered_sample = used_.sample;
-  sample_.answered_time_nsec = used_.time_nsec;
+  sample_.answered_run = felt_.run;
+  sample_.answered_sample = felt_.sample;
+  sample_.answered_time_nsec = felt_.time_nsec;
   sample_.value = role_ == Role::kMass ? config_.end_piece.coordinates_of(sensed_)
                                        : config_.end_piece.coordinate_forces_of(sensed_);
   sample_.time_nsec = clock_();
@@ -99,13 +90,12 @@ void Exchange::accept(const GestureMessage& answer) noexcept {
   if (!any_answer_ || answer.answered_sample > used_.answered_sample) unfelt_ = true;
   any_answer_ = true;
   used_ = answer;
-  late_[answer.answered_sample % late_.size()] = answer.value;
-  const AxisValues&
-      value =  // with room for the delay and one: the next to be replaced is the oldest
-      lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer.value;
+  late_[answer.answered_sample % late_.size()] = answer;
+  // With room for the delay and one: the next to be replaced is the oldest.
+  felt_ = lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer;
   const bool finite = role_ == Role::kMass
-                          ? force_guard_.accept(config_.end_piece.axis_forces_of(value))
-                          : position_guard_.accept(config_.end_piece.axes_of(value));
+                          ? force_guard_.accept(config_.end_piece.axis_forces_of(felt_.value))
+                          : position_guard_.accept(config_.end_piece.axes_of(felt_.value));
   if (!finite) meter_.count_dropped();
 }
 
@@ -116,27 +106,30 @@ double Exchange::age_s() const noexcept {
   return static_cast<double>(clock_() - used_.answered_time_nsec) * 1e-9;
 }
 
-/// What goes to the motors, and the energy that passes to the hand by it: of a hand that pushes
-/// with f while it is carried by dx, -f dx.
-const AxisValues& Exchange::guarded(double age) noexcept {
-  if (role_ == Role::kMass) return force_guard_.tick(age, sensed_);
-  AxisValues given = sensed_;
-  for (double& force : given) force = -force;
-  const AxisValues& carried = position_guard_.tick(age);
-  carried_energy_.observe(given, carried);
-  return carried;
+/// Of a hand that was carried, its force known before and after: f dx, exact for one that is a
+/// spring.
+void Exchange::add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept {
+  for (std::size_t a = 0; is_carried_ && a < carried_m.size(); ++a) {
+    sample_.work_j += 0.5 * (force_before_n[a] + sensed_[a]) * (carried_m[a] - carried_[a]);
+  }
+  carried_ = carried_m;
+  is_carried_ = true;
 }
 
 void Exchange::live() noexcept {
   const double age = age_s();
-  const AxisValues& commanded = guarded(age);
+  const AxisValues& commanded =
+      role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
   const bool written = driver_.write(commanded);
   if (std::exchange(unfelt_, false)) meter_.record_latency(clock_() - used_.answered_time_nsec);
   const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);
   if (!sensed) sensed_ = last_sensed_;  // a hand does not jump
+  if (role_ == Role::kLiaison) add_work(last_sensed_, commanded);
   last_sensed_ = sensed_;
   meter_.count_tick();
-  meter_.note_energy(role_ == Role::kMass ? force_guard_.energy() : carried_energy_);
+  const EnergyMonitor& monitor = force_guard_.energy();
+  meter_.note_energy(role_ == Role::kMass ? monitor.given_j() : -sample_.work_j,
+                     role_ == Role::kMass && monitor.braking());
 
   present_ = written && sensed;
   if (!present_) force_guard_.let_go();  // a device that comes back is ramped up anew

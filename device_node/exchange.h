@@ -19,9 +19,9 @@ namespace cordis::device {
 ///
 /// Between the axes and the wire stands the end-piece of the device; the guard stands behind it, at
 /// the motors. In lockstep `delay_periods` of the device lets every answer be felt so much later,
-/// as over a slow wire; the age of what goes to the guard is counted in samples, and nothing
-/// depends on wall time. Otherwise the age counts from the moment the answered sample was sent, so
-/// that a scene that no longer hears this device counts as silent.
+/// as over a slow wire, and samples echo what is felt; the age of what goes to the guard is counted
+/// in samples, and nothing depends on wall time. Otherwise the age counts from the moment the
+/// answered sample was sent, so that a scene that no longer hears this device counts as silent.
 class Exchange {
  public:
   using ClockFunction = std::int64_t (*)() noexcept;  ///< CLOCK_MONOTONIC [ns]
@@ -66,7 +66,7 @@ class Exchange {
   bool consider(const GestureMessage& answer) noexcept;
   void accept(const GestureMessage& answer) noexcept;
   double age_s() const noexcept;
-  const AxisValues& guarded(double age) noexcept;
+  void add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept;
   void note_phase(bool in_time) noexcept;
 
   const DeviceConfig& config_;
@@ -78,12 +78,14 @@ class Exchange {
   ClockFunction clock_;
   ForceGuard force_guard_;
   PositionGuard position_guard_;
-  EnergyMonitor carried_energy_;          // role liaison: watched, and nothing done about it
   GestureMessage sample_;                 // the sample sent last
   GestureMessage used_;                   // the newest good answer
+  GestureMessage felt_;                   // that which goes to the motors: older with a delay
   AxisValues sensed_{};                   // for the next sample
   AxisValues last_sensed_{};              // all finite
-  std::vector<AxisValues> late_;          // the last answers, by the sample they answer
+  std::vector<GestureMessage> late_;      // the last answers, by the sample they answer
+  AxisValues carried_{};                  // role liaison: where the hand is [m]
+  bool is_carried_ = false;               // it is anywhere yet
   std::uint64_t first_sample_;            // of this exchange
   std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came
   bool other_answered_ = false;           // ever

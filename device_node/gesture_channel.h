@@ -18,6 +18,7 @@ struct GestureMessage {
   std::int64_t time_nsec = 0;           ///< CLOCK_MONOTONIC
   std::uint32_t axis_count = 0;         ///< valid entries of value
   AxisValues value{};                   ///< positions [m] or forces [N]
+  double work_j = 0.0;                  ///< of forces: that the hand has given in the run
 };
 
 /// Both directions of the force loop of one device.

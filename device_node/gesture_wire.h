@@ -22,6 +22,11 @@ inline const AxisValues& values_of(const msg::GestureForces& message) {
   return message.force_n();
 }
 
+inline void put_work(double, msg::GesturePositions&) noexcept {}
+inline void put_work(double work_j, msg::GestureForces& message) noexcept {
+  message.work_j(work_j);
+}
+
 /// @param to  msg::GesturePositions or msg::GestureForces
 template <class Message>
 void put(const GestureMessage& from, std::uint32_t device_id, Message& to) noexcept {
@@ -34,6 +39,7 @@ void put(const GestureMessage& from, std::uint32_t device_id, Message& to) noexc
   to.time_nsec(from.time_nsec);
   to.axis_count(from.axis_count);
   values_of(to) = from.value;
+  put_work(from.work_j, to);
 }
 
 /// Entries past the axis count become 0. @param from  msg::GesturePositions or msg::GestureForces

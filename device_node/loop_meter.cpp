@@ -36,9 +36,9 @@ void LoopMeter::count_tick() noexcept {
   if (ticks % kTicksPerPublication == 0) publish_latency();
 }
 
-void LoopMeter::note_energy(const EnergyMonitor& energy) noexcept {
-  given_j_.store(energy.given_j(), std::memory_order_relaxed);
-  if (energy.braking()) braked_ticks_.fetch_add(1, std::memory_order_relaxed);
+void LoopMeter::note_energy(double given_j, bool braking) noexcept {
+  given_j_.store(given_j, std::memory_order_relaxed);
+  if (braking) braked_ticks_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void LoopMeter::publish_latency() noexcept {

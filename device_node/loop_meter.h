@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstdint>
 
-#include "device_node/energy_monitor.h"
 #include "idl/control.h"
 #include "node/latency.h"
 
@@ -32,8 +31,8 @@ class LoopMeter {
     overruns_.fetch_add(count, std::memory_order_relaxed);
   }
 
-  /// What the monitor says after a tick: the energy given to the hand, and whether it brakes.
-  void note_energy(const EnergyMonitor& energy) noexcept;
+  /// After a tick: the energy given to the hand, and whether the motors braked it.
+  void note_energy(double given_j, bool braking) noexcept;
 
   /// From the sending of a sample to the arrival of its answer.
   void record_latency(std::int64_t nsec) noexcept { latency_.record(nsec); }

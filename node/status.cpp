@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "node/config/name_hash.h"
@@ -30,7 +31,10 @@ double resident_bytes() {
 
 StatusPublisher::StatusPublisher(dds::Participant& participant, const std::string& kind,
                                  std::uint64_t run, Fill fill)
-    : writer_(participant, dds::Topic::kStatus), fill_(std::move(fill)), rate_(monotonic_nsec()) {
+    : participant_(participant),
+      writer_(participant, dds::Topic::kStatus),
+      fill_(std::move(fill)),
+      rate_(monotonic_nsec()) {
   const std::string& name = participant.membership().node;
   status_.node_id(config::name_hash(name));
   status_.node(name);
@@ -69,9 +73,21 @@ void StatusPublisher::loop() {
   }
 }
 
+/// Of this node with another process of the session: in the status as long as it lasts, in the log
+/// once.
+void StatusPublisher::tell_mismatch() {
+  const std::string mismatch = participant_.mismatch();
+  if (mismatch != mismatch_ && !mismatch.empty()) spdlog::warn("{}", mismatch);
+  mismatch_ = mismatch;
+  if (mismatch.empty()) return;
+  status_.text(status_.text().empty() ? mismatch : status_.text() + "; " + mismatch);
+}
+
 void StatusPublisher::publish() {
   const std::int64_t now = monotonic_nsec();
+  status_.text("");
   fill_(status_);
+  tell_mismatch();
   rate_.look(now, status_.ticks());
   status_.reached_rate_hz(rate_.reached_hz());
   status_.mean_rate_hz(rate_.mean_hz());

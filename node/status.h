@@ -37,7 +37,10 @@ class StatusPublisher {
  private:
   void loop();
   void publish();
+  void tell_mismatch();
 
+  const dds::Participant& participant_;
+  std::string mismatch_;
   dds::Writer<msg::NodeStatus> writer_;
   Fill fill_;
   msg::NodeStatus status_;

@@ -84,7 +84,12 @@ DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& s
 
 DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample,
                                                   bool borne) noexcept {
-  return receive(sample, sample.force_n(), borne);
+  const Reception reception = receive(sample, sample.force_n(), borne);
+  if (reception == Reception::kNew) {
+    felt_answer_ = sample.answered_run() == run_ ? sample.answered_sample() : 0;
+    hand_work_ = sample.work_j();
+  }
+  return reception;
 }
 
 void DeviceExchange::begin_tick() noexcept {
@@ -92,7 +97,10 @@ void DeviceExchange::begin_tick() noexcept {
   if (!borne_) {
     silent_ticks_ = lost_after_ticks_ + 1;
   } else if (has_new_) {
-    if (is_lost() || new_run_) rejoin_left_ = rejoin_ticks_;
+    if (is_lost() || new_run_) {
+      rejoin_left_ = rejoin_ticks_;
+      if (brake_) brake_->start();
+    }
     new_run_ = false;
     silent_ticks_ = 0;
   } else if (!is_lost()) {
@@ -114,7 +122,8 @@ void DeviceExchange::begin_tick() noexcept {
 
 void DeviceExchange::play(engine::World& world, int number, int count) noexcept {
   const double share = static_cast<double>(number) / static_cast<double>(count);
-  for (const scene::Port& port : ports_) {
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const scene::Port& port = ports_[p];
     engine::Vec3 value = role_ == Role::kMass ? port.rest : engine::Vec3(engine::Vec3::Zero());
     for (std::size_t i = 0; i < port.axes.size(); ++i) {
       const std::size_t axis = port.axes[i];
@@ -126,10 +135,12 @@ void DeviceExchange::play(engine::World& world, int number, int count) noexcept 
     }
     if (role_ == Role::kMass) {
       world.impose_position(port.mat, value);
-    } else {
-      world.set_external_force(port.mat, value);
+      continue;
     }
+    if (brake_) value += brake_->brake(p, world, value);
+    world.set_external_force(port.mat, value);
   }
+  if (brake_ && number == 1) brake_->hear(hand_work_, felt_answer_);
 }
 
 template <class Answer>
@@ -162,6 +173,7 @@ msg::GestureForces& DeviceExchange::answer_forces(const engine::World& world, bo
 msg::GesturePositions& DeviceExchange::answer_positions(const engine::World& world, bool safe,
                                                         std::int64_t now_nsec) noexcept {
   fill_header(positions_, now_nsec);
+  if (brake_) brake_->note_answer(answers_);
   if (!safe) return positions_;
   for (const scene::Port& port : ports_) {
     const engine::Vec3 moved = world.position(port.mat) - port.rest;

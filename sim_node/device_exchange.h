@@ -3,11 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "idl/gesture.h"
 #include "sim_node/engine/world.h"
+#include "sim_node/port_brake.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
@@ -35,6 +38,9 @@ class DeviceExchange {
   /// @param run      of this sim_node; its messages carry it
   DeviceExchange(std::string device, std::uint32_t device_id, Role role,
                  std::vector<scene::Port> ports, double rate_hz, std::uint64_t run);
+
+  /// Role liaison: from now on its ports are braked when they make energy.
+  void brake_with(PortBrake brake) { brake_ = std::move(brake); }
 
   /// Goes on where the exchange of the same device was in the scene before, so that neither side
   /// takes a message twice or for one of another. The device takes over gradually as after a
@@ -82,6 +88,8 @@ class DeviceExchange {
   std::uint64_t missed_count() const noexcept {
     return missed_count_;
   }  ///< samples of the device never seen
+  /// Ticks in which a port of role liaison was braked.
+  std::uint64_t braked_ticks() const noexcept { return brake_ ? brake_->braked_ticks() : 0; }
 
  private:
   double force_share() const noexcept;
@@ -95,12 +103,15 @@ class DeviceExchange {
   Role role_;
   std::vector<scene::Port> ports_;
   std::uint64_t run_;
+  std::optional<PortBrake> brake_;
 
   // The newest sample, and the numbers of the one that the last answer took into account.
   std::array<double, kMaxAxes> newest_{};
   std::uint64_t heard_run_ = 0;
   std::uint64_t heard_sample_ = 0;
   std::int64_t heard_time_nsec_ = 0;
+  std::uint64_t felt_answer_ = 0;  // role liaison: that the newest sample speaks of
+  double hand_work_ = 0.0;         // what the hand had given there [J]
   bool has_new_ = false;
   bool new_run_ = false;  // it is the first of another process
   bool borne_ = true;

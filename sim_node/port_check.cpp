@@ -49,7 +49,8 @@ std::string trouble(const PortDemand& demand, const plan::PortLoad& load, const 
 /// Empty when a fingertip on the device does not make the port swing.
 std::string trouble_with_a_hand(const PortDemand& demand, const config::DeviceLimits& limits,
                                 int delay_periods) {
-  const plan::PortLoop loop{1.0 / limits.rate_hz, delay_periods + limits.delay_periods};
+  const plan::PortLoop loop{1.0 / limits.rate_hz, delay_periods + limits.delay_periods,
+                            demand.sub_steps};
   const double bearable = plan::largest_hand_stiffness(demand.least, demand.mass, loop);
   if (bearable >= kFingertip) return {};
   return "port '" + demand.port + "' swings when the hand at the device '" + demand.device +
@@ -65,10 +66,11 @@ std::vector<PortDemand> demands_of(const scene::Scene& scene) {
   std::vector<PortDemand> demands;
   if (scene.ports.empty()) return demands;
   const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
+  const auto sub_steps = static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
   for (const scene::Port& port : scene.ports) {
     demands.push_back({port.name, port.device, port.device_id, port.place, port.role,
                        scene.network.mats[port.mat].mass, plan::least_port_load(graph, port.mat),
-                       plan::port_load(graph, port.mat)});
+                       plan::port_load(graph, port.mat), sub_steps});
   }
   return demands;
 }

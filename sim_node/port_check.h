@@ -21,6 +21,7 @@ struct PortDemand {
   double mass = 0.0;     ///< role liaison: of its MAT [kg]
   plan::PortLoad least;  ///< as soon as its liaisons are in their stiffest states
   plan::PortLoad most;   ///< with all the partners of its sets at once
+  int sub_steps = 1;     ///< of the scene in a gesture period
 };
 
 /// Of all ports. O(liaisons).

@@ -261,12 +261,15 @@ void Session::answer(DeviceExchange& device) {
 void Session::note_state() {
   std::uint64_t dropped = frames_.frames_left_out();
   Simulation& simulation = player_.simulation();
+  std::uint64_t braked = 0;
   bool heard = simulation.devices().empty();
   for (const DeviceExchange& device : simulation.devices()) {
     dropped += device.refused_count() + device.missed_count();
     heard = heard || !device.is_lost();
+    braked += device.braked_ticks();
   }
   dropped_.store(dropped, std::memory_order_relaxed);
+  braked_ticks_.store(braked, std::memory_order_relaxed);
   set_phase(player_.is_paused() ? "paused" : heard ? "running" : "waiting");
   const bool realtime = start_.launch.clock == config::Clock::kRealtime;
   target_rate_hz_.store(realtime ? simulation.scene().gesture_rate_hz : 0.0,
@@ -299,6 +302,13 @@ void Session::fill(msg::NodeStatus& status) {
   status.ticks(ticks_.load());
   status.overruns(overruns_.load());
   status.dropped(dropped_.load());
+  status.braked_ticks(braked_ticks_.load());
+  if (status.braked_ticks() > 0 && !std::exchange(braking_told_, true)) {
+    spdlog::warn(
+        "a hand is stiffer than its scene bears in role liaison: the port is braked; more "
+        "viscosity "
+        "there helps");
+  }
 
   const std::lock_guard lock(shown_mutex_);
   status.energy_j(shown_.energy.total());

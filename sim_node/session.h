@@ -92,10 +92,12 @@ class Session {
   Shown shown_;
   std::vector<std::string> liaisons_;  // names of those whose changes are shown
   std::uint64_t liaisons_version_ = 0;
+  bool braking_told_ = false;  // of the status thread
   std::atomic<const char*> phase_{"starting"};
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<std::uint64_t> overruns_{0};
   std::atomic<std::uint64_t> dropped_{0};
+  std::atomic<std::uint64_t> braked_ticks_{0};
   std::atomic<double> target_rate_hz_{0.0};
   RefusedDevices refused_;
   dds::Reader<msg::DeviceDescription> device_reader_;

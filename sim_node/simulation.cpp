@@ -29,7 +29,8 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
       role = port.role;
       id = port.device_id;
     }
-    exchanges.emplace_back(device, id, role, std::move(ports), scene.gesture_rate_hz, run);
+    exchanges.emplace_back(device, id, role, ports, scene.gesture_rate_hz, run);
+    if (role == scene::Role::kLiaison) exchanges.back().brake_with(PortBrake(scene, ports));
   }
   return exchanges;
 }

@@ -1,6 +1,7 @@
 // node/dds/participant.cpp
 #include "node/dds/participant.h"
 
+#include <algorithm>
 #include <regex>
 #include <stdexcept>
 
@@ -11,6 +12,9 @@
 #include "node/dds/participant_impl.h"
 
 namespace cordis::dds {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
 namespace {
 
 constexpr std::uint32_t kSocketBufferBytes = 4u << 20;
@@ -48,7 +52,8 @@ Participant::Participant(const Membership& membership) : impl_(std::make_unique<
     throw std::runtime_error("DDS domain must be 0..101, got " + std::to_string(membership.domain));
   }
   impl_->participant = fast::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(membership.domain), participant_qos(membership));
+      static_cast<std::uint32_t>(membership.domain), participant_qos(membership), impl_.get(),
+      fast::StatusMask::none());
   if (impl_->participant == nullptr) {
     throw std::runtime_error("DDS could not join domain " + std::to_string(membership.domain) +
                              " on 127.0.0.1 (is the loopback interface up?)");
@@ -66,12 +71,55 @@ Participant::Participant(const Membership& membership) : impl_(std::make_unique<
 }
 
 Participant::~Participant() {
+  impl_->participant->set_listener(nullptr);
   impl_->participant->delete_contained_entities();
   fast::DomainParticipantFactory::get_instance()->delete_participant(impl_->participant);
 }
 
 const Membership& Participant::membership() const noexcept {
   return impl_->membership;
+}
+
+std::string Participant::mismatch() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->mismatches.empty() ? std::string() : impl_->mismatches.begin()->second;
+}
+
+void Participant::Impl::on_publisher_discovery(fast::DomainParticipant*,
+                                               rtps::WriterDiscoveryInfo&& found) {
+  compare(found.info, true, found.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
+}
+
+void Participant::Impl::on_subscriber_discovery(fast::DomainParticipant*,
+                                                rtps::ReaderDiscoveryInfo&& found) {
+  compare(found.info, false, found.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);
+}
+
+/// DDS would be silent about what does not fit.
+template <class Endpoint>
+void Participant::Impl::compare(const Endpoint& endpoint, bool writes, bool gone) {
+  const std::lock_guard lock(mutex);
+  mismatches.erase(endpoint.guid());
+  const std::vector<std::string> partitions = endpoint.m_qos.m_partition.names();
+  if (gone || std::ranges::find(partitions, membership.session) == partitions.end()) return;
+  for (const Topic topic : kGestureTopics) {
+    const TopicQos row = qos_of(topic, membership.lockstep, membership.stand_ins);
+    if (endpoint.topicName() != row.name) continue;
+    const bool exclusive = endpoint.m_qos.m_ownership.kind == fast::EXCLUSIVE_OWNERSHIP_QOS;
+    const bool reliable = endpoint.m_qos.m_reliability.kind == fast::RELIABLE_RELIABILITY_QOS;
+    const char* what = nullptr;
+    if (exclusive != (row.exclusive_for_msec > 0)) {
+      what = exclusive ? "names stand-ins ('plays'), and that of this node none"
+                       : "names no stand-ins ('plays'), and that of this node does";
+    } else if (reliable != row.reliable && reliable != writes) {
+      what = "has another clock than that of this node";
+    }
+    if (what == nullptr) continue;
+    mismatches[endpoint.guid()] = std::string("a process of session '") + membership.session +
+                                  "' does not share " + row.name +
+                                  " with this node: its launch file " + what +
+                                  "; start all nodes of a session with the same launch file";
+  }
 }
 
 fast::Topic* Participant::Impl::topic(const TopicQos& row, fast::TypeSupport type) {

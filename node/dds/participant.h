@@ -27,6 +27,10 @@ class Participant {
 
   const Membership& membership() const noexcept;
 
+  /// Says in a sentence which process of the session cannot be heard, or cannot hear, because it
+  /// was started with another launch file; empty while there is none.
+  std::string mismatch() const;
+
   struct Impl;
   Impl& impl() noexcept { return *impl_; }
 

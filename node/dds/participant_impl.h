@@ -2,7 +2,12 @@
 // node/dds alone.
 #pragma once
 
+#include <map>
+#include <mutex>
+#include <string>
+
 #include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
@@ -15,7 +20,9 @@ namespace cordis::dds {
 
 namespace fast = eprosima::fastdds::dds;
 
-struct Participant::Impl {
+struct Participant::Impl : fast::DomainParticipantListener {
+  using Guid = eprosima::fastrtps::rtps::GUID_t;
+
   Membership membership;
   fast::DomainParticipant* participant = nullptr;
   fast::Publisher* publisher = nullptr;
@@ -23,6 +30,18 @@ struct Participant::Impl {
 
   /// The topic of the table, made at its first use. `type` is registered when its name is new.
   fast::Topic* topic(const TopicQos& row, fast::TypeSupport type);
+
+  void on_publisher_discovery(fast::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& found) override;
+  void on_subscriber_discovery(fast::DomainParticipant*,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& found) override;
+
+  mutable std::mutex mutex;
+  std::map<Guid, std::string> mismatches;  // what is wrong with an endpoint
+
+ private:
+  template <class Endpoint>
+  void compare(const Endpoint& endpoint, bool writes, bool gone);
 };
 
 /// Reliability, durability, history, ownership and memory of a row, on a DataWriterQos or

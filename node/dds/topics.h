@@ -1,6 +1,7 @@
 // node/dds/topics.h -- the one table of topics: name, message, quality of service.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace cordis::dds {
@@ -37,5 +38,8 @@ struct TopicQos {
 /// @param stand_ins  they are exclusive in a session where several nodes may play a device. The
 ///                   deadline that this needs costs 40 us of CPU a message on either side.
 TopicQos qos_of(Topic topic, bool lockstep, bool stand_ins) noexcept;
+
+/// The topics whose quality of service depends on the launch file.
+inline constexpr std::array kGestureTopics{Topic::kPositions, Topic::kForces};
 
 }  // namespace cordis::dds

@@ -128,9 +128,11 @@ double stable_port_stiffness(const PortDevice& device, double port_viscosity,
 }
 
 double largest_hand_stiffness(const PortLoad& load, double mass, const PortLoop& loop) {
-  if (loop.delay > 0) return load.viscosity / (loop.delay * loop.period);
-  const double limit = 4.0 - 2.0 * load.viscosity * loop.period / mass;
-  return std::max(0.0, limit * mass / (loop.period * loop.period) - load.stiffness);
+  const double step = loop.period / loop.sub_steps;
+  const double limit = 4.0 - 2.0 * load.viscosity * step / mass;
+  const double of_scheme = std::max(0.0, limit * mass / (step * step) - load.stiffness);
+  const double age = loop.period * (loop.delay + 0.5 * (1.0 - 1.0 / loop.sub_steps));
+  return age > 0.0 ? std::min(load.viscosity / age, of_scheme) : of_scheme;
 }
 
 }  // namespace cordis::plan

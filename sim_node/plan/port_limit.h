@@ -13,6 +13,7 @@ namespace cordis::plan {
 struct PortLoop {
   double period = 1e-3;  ///< of the device, > 0 [s]
   int delay = 1;         ///< [periods], >= 0
+  int sub_steps = 1;     ///< of the scene in a period, over which a force of the hand is held
 };
 
 /// One axis of a device of role mass.
@@ -55,9 +56,10 @@ double largest_port_stiffness(double device_viscosity, double port_viscosity, co
 /// -z^d / G(z) - B (1 - 1/z)/T there. Cost: about 1 ms.
 double stable_port_stiffness(const PortDevice& device, double port_viscosity, const PortLoop& loop);
 
-/// Role liaison. The stiffness [N/m] that a hand may add to a port of this mass: with the delay d
-/// >= 1, (viscosity of the scene and the hand) / (d T), of which the hand's part is left out here;
-/// without delay what keeps the mass below the limit of the scheme at the device's rate.
+/// Role liaison. The stiffness [N/m] that a hand may add to a port of this mass: (viscosity of the
+/// scene and the hand) / (mean age of its force), of which the hand's part is left out here; the
+/// age is d periods and, held over r sub-steps, (1 - 1/r) / 2 more. In any case what keeps the mass
+/// below the limit of the scheme.
 double largest_hand_stiffness(const PortLoad& load, double mass, const PortLoop& loop);
 
 }  // namespace cordis::plan

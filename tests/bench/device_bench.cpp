@@ -89,6 +89,8 @@ void kfb1_at_1_khz(benchmark::State& state) {
     board_plug->say({bytes, count});
   };
   kfb1_start(&firmware, &board);
+  // The far end is a controller that does nothing else: its thread inherits the priority.
+  node::make_realtime(80);
   plug.into_serial_line(folder + "/tty");
 
   config::Problems problems;
@@ -101,7 +103,6 @@ void kfb1_at_1_khz(benchmark::State& state) {
   driver->start(Role::kMass);
   while (!driver->write({})) {
   }
-  node::make_realtime(80);
   node::LatencyHistogram round_trip;
   for (auto _ : state) {
     const std::uint64_t late = hardware.late_count();
@@ -116,6 +117,7 @@ void kfb1_at_1_khz(benchmark::State& state) {
     state.counters["lost cycles"] = static_cast<double>(hardware.late_count() - late) + absent;
     state.counters["overruns"] = static_cast<double>(pace.overruns());
   }
+  state.counters["longest [us]"] = static_cast<double>(round_trip.largest_nsec()) * 1e-3;
   state.counters["damaged"] = static_cast<double>(hardware.bad_count());
   state.counters["p50 [us]"] = round_trip.quantile_nsec(0.5) * 1e-3;
   state.counters["p99 [us]"] = round_trip.quantile_nsec(0.99) * 1e-3;

@@ -179,8 +179,8 @@ TEST(Exchange, TellsTheEnergyGivenToTheHandInBothRoles) {
   // The sensors say -1 mm more after every period: four of them under a force of 2 N.
   EXPECT_NEAR(given_by(Role::kMass, 2.0), 4 * 2.0 * -0.001, 1e-12);
   // As forces they say -1 mN more. The hand is at -2 mm after the first period, is carried by -2 mm
-  // in the second, while it pushes with -1 mN, and stays: it has given 2 uJ.
-  EXPECT_NEAR(given_by(Role::kLiaison, -0.004), -0.001 * 0.002, 1e-15);
+  // in the second, while its push grows from -1 mN to -2 mN, and stays: it has given 3 uJ.
+  EXPECT_NEAR(given_by(Role::kLiaison, -0.004), -0.0015 * 0.002, 1e-15);
 }
 
 TEST(Exchange, ForceIsZeroOnceItsSampleIsAsOldAsTheWatchdog) {

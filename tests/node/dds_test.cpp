@@ -199,5 +199,43 @@ TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
   ASSERT_TRUE(eventually([&] { return reader.take(status) && status.phase() == "stopped"; }));
 }
 
+TEST(Dds, SaysThatAProcessWasStartedWithAnotherLaunchFile) {
+  Membership with_stand_ins = member("mismatch", "sim");
+  with_stand_ins.stand_ins = true;
+  Participant sim(with_stand_ins);
+  Participant device(member("mismatch", "keyboard"));
+  Participant neighbour(member("another session", "keyboard"));
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions);
+  Writer<msg::GesturePositions> elsewhere(neighbour, Topic::kPositions);
+  std::optional<Writer<msg::GesturePositions>> writer(std::in_place, device, Topic::kPositions);
+
+  EXPECT_TRUE(eventually([&] { return !sim.mismatch().empty() && !device.mismatch().empty(); }));
+  EXPECT_NE(sim.mismatch().find("names no stand-ins"), std::string::npos) << sim.mismatch();
+  EXPECT_NE(device.mismatch().find("names stand-ins"), std::string::npos) << device.mismatch();
+  EXPECT_EQ(neighbour.mismatch(), "");
+
+  const node::StatusPublisher publisher(sim, "sim_node", 77, [](msg::NodeStatus&) {});
+  Reader<msg::NodeStatus> reports(device, Topic::kStatus);
+  msg::NodeStatus status;
+  ASSERT_TRUE(receive(reports, status));
+  EXPECT_EQ(status.text(), sim.mismatch());
+
+  writer.reset();  // it has gone
+  EXPECT_TRUE(eventually([&] { return sim.mismatch().empty(); }));
+}
+
+TEST(Dds, SaysThatAProcessHasAnotherClock) {
+  Participant sim(member("clocks", "sim", true));
+  Participant device(member("clocks", "keyboard"));
+  Participant other(member("clocks", "pedal", true));
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions);
+  Writer<msg::GesturePositions> best_effort(device, Topic::kPositions);
+  Writer<msg::GesturePositions> reliable(other, Topic::kPositions);
+
+  EXPECT_TRUE(eventually([&] { return !sim.mismatch().empty(); }));
+  EXPECT_NE(sim.mismatch().find("another clock"), std::string::npos) << sim.mismatch();
+  EXPECT_TRUE(eventually([&] { return reliable.matched_count() == 1; })) << "the same clock";
+}
+
 }  // namespace
 }  // namespace cordis::dds

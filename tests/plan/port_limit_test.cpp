@@ -60,6 +60,8 @@ TEST(PortLimit, OfAHandIsTheViscosityItMeetsOverTheDelay) {
   EXPECT_NEAR(plan::largest_hand_stiffness({80.0, 0.5}, 0.1, PortLoop{1e-3, 1}), 500.0, 1e-9);
   EXPECT_NEAR(plan::largest_hand_stiffness({80.0, 0.5}, 0.1, PortLoop{1e-3, 2}), 250.0, 1e-9);
   EXPECT_EQ(plan::largest_hand_stiffness({80.0, 0.0}, 0.1, PortLoop{1e-3, 1}), 0.0);
+  EXPECT_NEAR(plan::largest_hand_stiffness({80.0, 0.5}, 0.1, PortLoop{1e-3, 1, 10}), 0.5 / 1.45e-3,
+              1e-9);
   // (k + K) T^2 / m + 2 Z T / m < 4
   EXPECT_NEAR(plan::largest_hand_stiffness({80.0, 0.5}, 0.1, PortLoop{1e-2, 0}), 3900.0 - 80.0,
               1e-6);
