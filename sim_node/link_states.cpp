@@ -38,6 +38,9 @@ const scene::NamedRange* named(const scene::Scene& scene, const std::string& nam
 }
 
 [[noreturn]] void refuse_name(const scene::Scene& scene, const std::string& name) {
+  if (std::ranges::find(scene.set_names, name) != scene.set_names.end())
+    throw std::invalid_argument("'" + name +
+                                "' joins sets, whose pairs cannot be put into a state");
   std::vector<std::string> words;
   for (const scene::NamedRange& range : scene.links) words.push_back(range.name);
   const std::string near = config::did_you_mean(name, words);

@@ -12,6 +12,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadScene{kNothing, "^", "scene must be a mapping of keys, got nothing", ""},
         BadScene{kNothing, "^[1]\n", "scene must be a mapping of keys, got a sequence", ""},
+        BadScene{kNothing,
+                 "cordis: 1\nsession: s\nnodes:\n  ^sim: {node: sim_node, scene: s/a.yaml}\n",
+                 "this is a launch file, and a scene is wanted",
+                 "its scene is s/a.yaml, from the folder of this file"},
         BadScene{
             kNothing,
             "^space: 1\nstep: {rate_hz: 1000}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",

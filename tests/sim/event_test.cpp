@@ -156,7 +156,8 @@ TEST(LinkStates, AreFoundByTheNamesOfLinksAndStates) {
 }
 
 TEST(LinkStates, ThatDoNotExistAreRefusedInOneSentence) {
-  const auto scene = breaking_scene(6);
+  const auto scene = std::make_shared<scene::Scene>(*breaking_scene(6));
+  scene->set_names = {"glue"};
   const auto refusal = [&](const std::string& links, const std::string& state) -> std::string {
     try {
       find_states(*scene, links, state);
@@ -175,6 +176,7 @@ TEST(LinkStates, ThatDoNotExistAreRefusedInOneSentence) {
               "'" + std::string(links) + "' is not of the form name, name[3] or name[2..5]");
   }
   EXPECT_EQ(refusal("spring", "broken"), "'spring' has no states");
+  EXPECT_EQ(refusal("glue", "broken"), "'glue' joins sets, whose pairs cannot be put into a state");
 }
 
 TEST(Player, PutsLinksIntoStates) {

@@ -163,6 +163,36 @@ const cases = {
     await page.screenshot({ path: join(out, 'page_grid.png') });
   },
 
+  'what grows out of the picture is followed, until a person moves the eye': async (session) => {
+    const { page } = session;
+    await session.source.end('SIGKILL');
+    session.source = session.scene('--amplitude', '0.5'); // at first all of it is above 0, half a second later below
+    await until('the new scene is drawn', async () => (await viz(page, 'lastFrame')).matCount === 60);
+    const stage = await page.locator('#stage').boundingBox();
+    const isSeen = async () => {
+      const { y } = (await look(page, MIDDLE)).at;
+      return y > stage.y && y < stage.y + stage.height;
+    };
+    const lowest = async () => (await page.evaluate((mat) => window.viz.position(mat)[1], MIDDLE)) < -0.4;
+    await until('it has been low', lowest);
+    await drawn(page, 10);
+    await until('it is low again', lowest);
+    assert.ok(await isSeen());
+    assert.ok((await viz(page, 'camera')).orthographic);
+
+    const far = (await viz(page, 'camera')).metresPerPixel;
+    await page.mouse.move(400, 300);
+    await page.mouse.wheel(0, -1500);
+    const near = await until('the wheel has zoomed', async () => {
+      const { metresPerPixel } = await viz(page, 'camera');
+      return metresPerPixel < 0.6 * far && metresPerPixel;
+    });
+    await until('it is high', async () => !(await lowest()));
+    await until('it is low once more', lowest);
+    await drawn(page, 6);
+    assert.equal((await viz(page, 'camera')).metresPerPixel, near);
+  },
+
   'nothing went wrong in the page': async ({ page, pageErrors }) => {
     assert.deepEqual(await viz(page, 'errors'), []);
     assert.deepEqual(pageErrors, []);

@@ -2,7 +2,7 @@
 // moves by formula.
 //
 // usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
-//                     [--bad-frames]
+//                     [--amplitude METRES] [--bad-frames]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
 #include <atomic>
 #include <chrono>
@@ -40,6 +40,7 @@ struct Options {
   std::string session = "viz_test";
   std::string scene = "string";
   std::size_t mats = 60;
+  double amplitude_m = 0.0;  // of the string; 0: its own
   bool states = false;
   bool bad_frames = false;
   bool hold_domain = false;
@@ -61,6 +62,8 @@ Options read_options(int argc, char** argv) {
       options.scene = value();
     } else if (word == "--mats") {
       options.mats = std::stoul(value());
+    } else if (word == "--amplitude") {
+      options.amplitude_m = std::stod(value());
     } else if (word == "--states") {
       options.states = true;
     } else if (word == "--bad-frames") {
@@ -239,6 +242,7 @@ int publish(const Options& options) {
   dds::Participant keyboard({options.domain, options.session, "keyboard", false});
   MovingScene scene =
       options.scene == "grid" ? grid_scene(options.mats) : string_scene(options.mats);
+  if (options.amplitude_m > 0.0) scene.amplitude_m = options.amplitude_m;
   name_parts(scene, options.scene, run);
   dds::Writer<msg::SceneDescription> description_writer(sim, dds::Topic::kDescription);
   description_writer.write(scene.description);

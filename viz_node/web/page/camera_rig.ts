@@ -10,6 +10,7 @@ export interface Pose {
   target: THREE.Vector3;
   offset: THREE.Vector3; // of the eye from the target
   metresPerPixel: number;
+  moved: boolean; // by a person
 }
 
 const DIRECTIONS: Record<Preset, THREE.Vector3> = {
@@ -21,6 +22,7 @@ const DIRECTIONS: Record<Preset, THREE.Vector3> = {
 
 const FIELD_OF_VIEW = 40; // [degrees], vertical
 const ROOM = 1.12; // of a fitted scene, all around
+const FARTHEST = 4; // times the size of a scene at first, up to which it is followed
 
 export class CameraRig {
   orthographic: boolean;
@@ -31,6 +33,8 @@ export class CameraRig {
   private width = 1;
   private height = 1;
   private home = new THREE.Box3();
+  private firstSize = 0; // of the scene [m]
+  private moved = false; // by a person: then it stays where it is
 
   constructor(
     element: HTMLElement,
@@ -48,6 +52,7 @@ export class CameraRig {
       this.controls.mouseButtons = { LEFT: THREE.MOUSE.PAN, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.ROTATE };
     }
     this.controls.addEventListener('change', changed);
+    this.controls.addEventListener('start', () => (this.moved = true));
   }
 
   get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
@@ -73,18 +78,27 @@ export class CameraRig {
   }
 
   start(box: THREE.Box3): void {
+    this.firstSize = box.getSize(new THREE.Vector3()).length();
     this.look(this.first, box);
+  }
+
+  /** Steps back when the scene has outgrown the picture. */
+  follow(box: THREE.Box3): void {
+    if (this.moved || this.sees(box)) return;
+    const grown = box.clone().union(this.home);
+    if (grown.getSize(new THREE.Vector3()).length() <= FARTHEST * this.firstSize) this.fit(grown);
   }
 
   get pose(): Pose {
     const offset = this.camera.position.clone().sub(this.target);
-    return { orthographic: this.orthographic, target: this.target.clone(), offset, metresPerPixel: this.metresPerPixel };
+    return { orthographic: this.orthographic, target: this.target.clone(), offset, metresPerPixel: this.metresPerPixel, moved: this.moved };
   }
 
   /** Stands where `pose` says, before a scene of this size. */
   resume(pose: Pose, box: THREE.Box3): void {
-    this.look(this.first, box);
+    this.start(box);
     this.orthographic = pose.orthographic;
+    this.moved = pose.moved;
     this.controls.object = this.camera;
     this.target.copy(pose.target);
     this.camera.position.copy(pose.target).add(pose.offset);
@@ -157,8 +171,19 @@ export class CameraRig {
     }
     this.setFlatScale(scale);
     this.home = box;
+    this.moved = false;
     this.setDepth();
     this.changed();
+  }
+
+  private sees(box: THREE.Box3): boolean {
+    this.camera.updateMatrixWorld();
+    const ends = [box.min, box.max];
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = new THREE.Vector3(ends[corner & 1]!.x, ends[(corner >> 1) & 1]!.y, ends[corner >> 2]!.z).project(this.camera);
+      if (Math.abs(at.x) > 1 || Math.abs(at.y) > 1) return false;
+    }
+    return true;
   }
 
   private setFlatScale(metresPerPixel: number): void {

@@ -128,9 +128,9 @@ function optionsOf(unit: string, seriesCount: number): uPlot.Options {
   };
 }
 
-/** Some room around the values; a constant value lies in the middle. */
+/** Some room around the values; a constant value lies in the middle, 0 between 1 and -1. */
 function rangeOf(low: number | null, high: number | null): [number, number] {
-  if (low === null || high === null) return [-1, 1];
+  if (low === null || high === null || (low === 0 && high === 0)) return [-1, 1];
   const size = Math.max(Math.abs(low), Math.abs(high));
   const room = Math.max(0.08 * (high - low), 1e-3 * size, 1e-12);
   return [low - room, high + room];

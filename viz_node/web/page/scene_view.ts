@@ -10,6 +10,7 @@ THREE.ColorManagement.enabled = false; // colours are chosen as they are shown
 const BACKGROUND = 0x0d1117;
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
 const SAMPLE = 4000;
+const ASTRAY = 0.01; // share of the MATs that may fly off unfollowed, at either end of each axis
 
 export class SceneView {
   readonly rig: CameraRig;
@@ -119,6 +120,8 @@ export class SceneView {
       if (this.pose === null) this.rig.start(this.bounds());
       else this.rig.resume(this.pose, this.bounds());
       this.ground.lay(this.bounds(), this.space);
+    } else {
+      this.rig.follow(this.bounds(ASTRAY));
     }
   }
 
@@ -191,13 +194,23 @@ export class SceneView {
     this.renderer.domElement.remove();
   }
 
-  private bounds(): THREE.Box3 {
-    const box = new THREE.Box3();
-    const at = new THREE.Vector3();
+  /** What holds the MATs with their radii, but for this share of them at either end of each axis. */
+  private bounds(astray = 0): THREE.Box3 {
     const stride = Math.max(1, Math.floor(this.topology.matCount / SAMPLE));
-    for (let i = 0; i < this.topology.matCount; i += stride) {
-      at.fromArray(this.newest.array, 3 * i);
-      box.expandByPoint(at);
+    const count = Math.ceil(this.topology.matCount / stride);
+    const left = Math.floor(astray * count);
+    const radii = this.geometry.getAttribute('radius').array;
+    const low = new Float32Array(count);
+    const high = new Float32Array(count);
+    const box = new THREE.Box3();
+    for (let axis = 0; axis < 3; ++axis) {
+      for (let k = 0; k < count; ++k) {
+        const at = this.newest.array[3 * k * stride + axis]!;
+        low[k] = at - radii[k * stride]!;
+        high[k] = at + radii[k * stride]!;
+      }
+      box.min.setComponent(axis, low.sort()[left] ?? 0);
+      box.max.setComponent(axis, high.sort()[count - 1 - left] ?? 0);
     }
     return box;
   }
