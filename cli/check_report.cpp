@@ -83,8 +83,15 @@ std::string choice_text(const SceneCheck& check) {
       asked.over_s > 0.0 ? fmt::format("the amplitude for {:.4g} s", asked.over_s)
                          : std::string("pitch and decay"),
       asked.band_hz, 100.0 * asked.contact_energy, at({"", asked.place}));
-  text += fmt::format("            {:.6g} Hz {}: because of {}", choice.needed_hz,
-                      check.keeps_accuracy() ? "would do" : "are NEEDED for that", choice.because);
+  if (check.keeps_accuracy()) {
+    text += fmt::format("            {:.6g} Hz would do: because of {}", choice.needed_hz,
+                        choice.because);
+  } else {
+    text += fmt::format(
+        "            rate_hz is TOO LOW for that: {:.6g} Hz are needed, because of {}; it runs at "
+        "{:.6g} Hz all the same",
+        choice.needed_hz, choice.because, check.scene.step_rate_hz);
+  }
   if (choice.error >= 0.0) text += fmt::format("; tried out: {:.2g}", choice.error);
   if (!choice.doubt.empty()) text += "\n            " + choice.doubt;
   return text + "\n";
@@ -149,6 +156,19 @@ nlohmann::json finite(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
+nlohmann::json reductions_json(const std::vector<scene::Reduction>& reductions) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const scene::Reduction& reduction : reductions) {
+    list.push_back({{"name", reduction.name},
+                    {"count", reduction.count},
+                    {"what", reduction.what},
+                    {"error_budget", finite(reduction.budget)},
+                    {"bound", reduction.bound},
+                    {"doubts", reduction.doubts}});
+  }
+  return list;
+}
+
 nlohmann::json called(const scene::Called& called) {
   nlohmann::json json{{"name", called.name}};
   if (called.place.line > 0) {
@@ -189,13 +209,26 @@ const char* verdict(const plan::Stability& stability) {
 
 }  // namespace
 
+std::string reductions_text(const std::vector<scene::Reduction>& reductions) {
+  std::string text;
+  for (const scene::Reduction& reduction : reductions) {
+    text += fmt::format("reduced     {}: {}; {}\n", reduction.name, reduction.what,
+                        reduction.budget > 0.0 ? fmt::format("error at most {:.2g}: {}",
+                                                             reduction.budget, reduction.bound)
+                                               : std::string("exact to rounding"));
+    for (const std::string& doubt : reduction.doubts) text += "            " + doubt + "\n";
+  }
+  return text.empty() ? "reduced     nothing\n" : text;
+}
+
 std::string text_of(const SceneCheck& check) {
   const scene::Scene& scene = check.scene;
   std::string text = fmt::format("scene       {} ({}), {} MATs, {} links, {} sets, {}-D\n",
                                  scene.name, scene.file, scene.network.mats.size(),
                                  scene.link_count(), scene.network.sets.size(), scene.space());
-  text += fmt::format("integrator  {} at {:.6g} Hz, 1 thread, no reductions\n",
+  text += fmt::format("integrator  {} at {:.6g} Hz, 1 thread\n",
                       engine::to_string(scene.network.integrator), scene.step_rate_hz);
+  text += reductions_text(check.scene.reductions);
   text += choice_text(check) + stability_text(check) + accuracy_text(check) + contact_text(check);
   for (const PortCheck& port : check.ports) text += port_text(check, port);
   return text + load_text(check);
@@ -223,7 +256,7 @@ std::string json_of(const SceneCheck& check) {
         {"pitch_error", edge.error.pitch},
         {"decay_error", edge.error.decay}}},
       {"ports", ports_json(check)},
-      {"reductions", nlohmann::json::array()},
+      {"reductions", reductions_json(check.scene.reductions)},
       {"load", {{"step_nsec", check.step_nsec}, {"share_of_real_time", check.load()}}}};
   if (std::isfinite(stability.certified.step)) {
     json["stability"]["limit"] = {

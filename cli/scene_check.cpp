@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "sim_node/plan/load.h"
+#include "sim_node/plan/reduction/modal_truncation.h"
+#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/plan/trial.h"
 
 namespace cordis::cli {
@@ -41,11 +43,11 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.options = options;
   check.scene = scene::load_scene(options.scene_file, problems);
   problems.throw_if_any();
-  if (const auto& asked = check.scene.accuracy) {
+  check.scene = plan::reduce(std::move(check.scene), problems);
+  problems.throw_if_any();
+  if (check.scene.accuracy) {
     check.choice =
-        plan::choose(check.scene.network,
-                     {asked->tolerance, asked->band_hz, asked->contact_energy, asked->over_s},
-                     check.scene.gesture_rate_hz,
+        plan::choose(check.scene.network, plan::wish_of(check.scene), check.scene.gesture_rate_hz,
                      check.scene.integrator_is_open
                          ? plan::integrators_for(check.scene.network)
                          : std::vector<std::string>{to_string(check.scene.network.integrator)},
@@ -58,6 +60,9 @@ SceneCheck check_scene(const CheckOptions& options) {
   constexpr double kBand = 100.0;
   if (check.options.band_hz == 0.0) {
     check.options.band_hz = check.scene.accuracy ? check.scene.accuracy->band_hz : kBand;
+  }
+  if (auto modes = plan::modal_truncation(check.scene, check.options.band_hz)) {
+    check.scene.reductions.push_back(std::move(*modes));
   }
   const engine::NetworkDescription& network = check.scene.network;
   check.plan = plan::plan_of(network, check.options.band_hz);

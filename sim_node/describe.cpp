@@ -71,7 +71,8 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
   description.run(run);
   description.version(version);
   description.name(scene.name);
-  description.space(static_cast<std::uint32_t>(scene.space()));
+  const int space = scene.confinement ? scene.confinement->space : scene.space();
+  description.space(static_cast<std::uint32_t>(space));
   description.step_rate_hz(scene.step_rate_hz);
   description.gesture_rate_hz(scene.gesture_rate_hz);
   description.frame_rate_hz(scene.frame_rate_hz);
@@ -98,6 +99,12 @@ std::size_t link_count_of(const scene::Scene& scene) noexcept {
 FrameLayout layout_of(const scene::Scene& scene) {
   FrameLayout layout;
   layout.dimension = scene.space();
+  if (const auto& confinement = scene.confinement) {
+    layout.axes = confinement->axes;
+    for (int axis = 0; axis < 3; ++axis) {
+      layout.origin[static_cast<std::size_t>(axis)] = static_cast<float>(confinement->origin[axis]);
+    }
+  }
   for (const scene::LayoutPoint& point : scene.layout) {
     layout.x_z.push_back(static_cast<float>(point.x));
     layout.x_z.push_back(static_cast<float>(point.z));

@@ -14,7 +14,7 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run, std
 /// elements.
 std::size_t link_count_of(const scene::Scene& scene) noexcept;
 
-/// Where the MATs of a 1-D scene are shown; empty in 2 and 3 dimensions.
+/// Where the MATs of a scene are shown.
 FrameLayout layout_of(const scene::Scene& scene);
 
 }  // namespace cordis::sim

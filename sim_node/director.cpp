@@ -7,6 +7,7 @@
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/link_states.h"
+#include "sim_node/plan/reduction/reduce.h"
 
 namespace cordis::sim {
 namespace {
@@ -21,6 +22,11 @@ std::string at_step(const Order& order) {
   return " at step " + std::to_string(order.step);
 }
 
+/// A scene as its file says it: liaisons have their links there, merged or not.
+std::shared_ptr<const scene::Scene> whole_of(const std::shared_ptr<const scene::Scene>& scene) {
+  return scene->whole ? scene->whole : scene;
+}
+
 /// All that is wrong in the files of a scene, behind one sentence.
 std::string refusal_of(const std::string& path, const config::Problems& problems) {
   return "'" + path + "' cannot be played (" + count_of(problems.error_count(), "error") +
@@ -33,7 +39,7 @@ Director::Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, 
                    Load load, Tell tell)
     : orders_(orders),
       scene_(std::move(scene)),
-      parameters_(scene_),
+      parameters_(whole_of(scene_)),
       run_(run),
       load_(std::move(load)),
       tell_(std::move(tell)) {}
@@ -107,14 +113,14 @@ node::Answer Director::load(const std::string& path) {
   if (problems.has_errors()) return {false, refusal_of(path, problems)};
   const std::string warnings = problems.text();
   node::Answer answer = restart(scene, "'" + scene->name + "' begins");
-  if (answer.accepted) parameters_ = scene::Parameters(scene);
+  if (answer.accepted) parameters_ = scene::Parameters(whole_of(scene));
   if (answer.accepted && !warnings.empty()) answer.text += "\n" + warnings;
   return answer;
 }
 
 node::Answer Director::set(const std::vector<NewValue>& values) {
   scene::Parameters parameters = parameters_;
-  auto scene = std::make_shared<scene::Scene>(*scene_);
+  auto scene = std::make_shared<scene::Scene>(*whole_of(scene_));
   std::string done;
   for (const NewValue& wanted : values) {
     const auto outcome = parameters.set(wanted.name, wanted.parameter, wanted.value);
@@ -123,6 +129,12 @@ node::Answer Director::set(const std::vector<NewValue>& values) {
     for (const scene::Change& change : outcome.changes) scene::apply(change, scene->network);
     done += (done.empty() ? "" : ", ") + wanted.name + "." + wanted.parameter + " = " +
             config::number_text(wanted.value);
+  }
+  if (scene_->whole) {
+    config::Problems problems;
+    *scene = plan::reduce(std::move(*scene), problems);
+    if (problems.has_errors()) return {false, problems.all().front().message};
+    scene::set_step(*scene, scene_->step_rate_hz, scene_->network.integrator);
   }
   Order order;
   order.kind = Order::Kind::kExchange;

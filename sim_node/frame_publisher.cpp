@@ -50,15 +50,7 @@ void FramePublisher::publish_frame(const FrameShape& shape, const FrameBuffer& b
   std::vector<float>& position = frame_.position_m();
   position.resize(3 * shape.mat_count);
   for (std::size_t mat = 0; mat < shape.mat_count; ++mat) {
-    const double* x = buffer.positions.data() + 4 * mat;
-    float* shown = position.data() + 3 * mat;
-    if (shape.layout.dimension == 1) {
-      shown[0] = shape.layout.x_z[2 * mat];
-      shown[1] = static_cast<float>(x[0]);
-      shown[2] = shape.layout.x_z[2 * mat + 1];
-    } else {
-      for (int i = 0; i < 3; ++i) shown[i] = static_cast<float>(x[i]);
-    }
+    shape.layout.show(mat, buffer.positions.data() + 4 * mat, position.data() + 3 * mat);
   }
   frame_.link_state() = buffer.link_state;
   frame_.version(shape.version);

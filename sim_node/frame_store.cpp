@@ -16,6 +16,19 @@ std::uint8_t shown_state(const engine::World& world, std::uint32_t link) noexcep
 
 }  // namespace
 
+void FrameLayout::show(std::size_t mat, const double* position, float* shown) const noexcept {
+  if (!x_z.empty()) {
+    shown[0] = x_z[2 * mat];
+    shown[1] = static_cast<float>(position[0]);
+    shown[2] = x_z[2 * mat + 1];
+    return;
+  }
+  std::copy(origin.begin(), origin.end(), shown);
+  for (int k = 0; k < dimension; ++k) {
+    shown[axes[static_cast<std::size_t>(k)]] = static_cast<float>(position[k]);
+  }
+}
+
 FrameStore::FrameStore(FrameShape shape)
     : shape_(std::move(shape)),
       row_capacity_(shape_.rows_per_frame * kFramesOfRows),

@@ -10,11 +10,17 @@
 
 namespace cordis::sim {
 
-/// How the coordinates of the engine become those of a frame: in a 1-D scene the displacement is
-/// shown along y, at the layout's x and z; otherwise the layout is empty.
+/// How the coordinates of the engine become those of a frame: the first of them lie along these
+/// axes, and the others are those of the origin. In a 1-D scene the displacement is shown along y,
+/// at the layout's x and z.
 struct FrameLayout {
   int dimension = 3;
-  std::vector<float> x_z;  ///< 2 per MAT, 1-D scenes only [m]
+  std::vector<float> x_z;  ///< 2 per MAT of a scene written in 1-D, else empty [m]
+  std::array<int, 3> axes{0, 1, 2};
+  std::array<float, 3> origin{};  ///< [m]
+
+  /// Puts a MAT at its place in a frame. @param position  of the engine, 3 values
+  void show(std::size_t mat, const double* position, float* shown) const noexcept;
 };
 
 /// What is fixed about the frames of a scene.

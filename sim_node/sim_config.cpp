@@ -6,6 +6,7 @@
 
 #include "node/config/device_limits.h"
 #include "node/config/mapping_reader.h"
+#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/port_check.h"
 #include "sim_node/rate_choice.h"
 #include "sim_node/stability_check.h"
@@ -121,6 +122,7 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
                                 const config::Place& referrer, bool force,
                                 config::Problems& problems) {
   scene::Scene scene = scene::load_scene(launch.resolve(path).string(), problems, referrer);
+  if (!problems.has_errors()) scene = plan::reduce(std::move(scene), problems);
   if (!problems.has_errors()) settle_rate(scene, problems);
   if (!problems.has_errors()) check_devices(launch, scene, problems);
   if (!problems.has_errors()) check_stability(scene, force, problems);

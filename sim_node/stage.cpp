@@ -35,6 +35,7 @@ Stage::Stage(std::shared_ptr<const scene::Scene> scene, std::uint64_t run, std::
       frames(shape_of(simulation, version)),
       changes(simulation.scene().network.behaviours),
       limits(simulation.scene().network),
+      struts(simulation.scene()),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}
 
 }  // namespace cordis::sim

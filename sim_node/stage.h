@@ -8,6 +8,7 @@
 #include "sim_node/frame_store.h"
 #include "sim_node/limit_watch.h"
 #include "sim_node/simulation.h"
+#include "sim_node/strut_watch.h"
 
 namespace cordis::sim {
 
@@ -21,6 +22,7 @@ struct Stage {
   FrameStore frames;
   ChangeCounter changes;
   LimitWatch limits;
+  StrutWatch struts;
   std::uint64_t ticks_per_frame;
 };
 

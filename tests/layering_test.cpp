@@ -64,6 +64,8 @@ bool begins_with_any(const std::string& text, const std::vector<std::string>& be
 const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
     {"sim_node/engine/", {"sim_node/engine/"}},
     {"sim_node/scene/", {"sim_node/scene/", "sim_node/engine/", "node/config/"}},
+    {"sim_node/plan/reduction/",  // works on what a scene says
+     {"sim_node/plan/", "sim_node/scene/", "sim_node/engine/", "node/config/"}},
     {"sim_node/plan/", {"sim_node/plan/", "sim_node/engine/"}},
     {"node/config/", {"node/config/"}},
     {"node/dds/", {"node/dds/", "idl/"}},

@@ -1,8 +1,11 @@
 // cli/lab/lab_scene.cpp
 #include "cli/lab/lab_scene.h"
 
+#include <utility>
+
 #include "cli/lab/stage.h"
 #include "node/config/value.h"
+#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/rate_choice.h"
 
 namespace cordis::cli {
@@ -53,6 +56,8 @@ LabScene load_lab_scene(const std::string& file, double duration_s) {
     return lab;
   }
   lab.scene = scene::load_scene(file, problems);
+  problems.throw_if_any();
+  lab.scene = plan::reduce(std::move(lab.scene), problems);
   problems.throw_if_any();
   sim::settle_rate(lab.scene, problems);
   lab.duration_s = duration_of(lab.scene, duration_s);

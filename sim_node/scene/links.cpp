@@ -148,13 +148,20 @@ double Assembly::radius_of(std::uint32_t mat) const noexcept {
 void Assembly::finish() {
   scene_.network.behaviours = liaisons_->pool().behaviours();
   scene_.liaisons = liaisons_;
-  const LinkCounts counts = link_counts();
-  const std::array<std::uint32_t, kLinkKindCount> first{0, counts[0], counts[0] + counts[1]};
-  for (const LinkGroup& group : scene_.link_groups) {
-    scene_.links.push_back({group.name, first[static_cast<std::size_t>(group.kind)] + group.first,
-                            group.count, group.place});
+  number_links(scene_);
+}
+
+void number_links(Scene& scene) {
+  const engine::NetworkDescription& network = scene.network;
+  const std::array<std::size_t, kLinkKindCount> first{
+      0, network.links.size(), network.links.size() + network.state_links.size()};
+  scene.links.clear();
+  for (const LinkGroup& group : scene.link_groups) {
+    const std::size_t before = first[static_cast<std::size_t>(group.kind)];
+    scene.links.push_back(
+        {group.name, static_cast<std::uint32_t>(before + group.first), group.count, group.place});
   }
-  std::stable_sort(scene_.links.begin(), scene_.links.end(),
+  std::stable_sort(scene.links.begin(), scene.links.end(),
                    [](const NamedRange& a, const NamedRange& b) { return a.first < b.first; });
 }
 

@@ -17,9 +17,10 @@ struct MatterKind {
   int lowest_space;
   int highest_space;
 };
-constexpr std::array<MatterKind, 11> kMatterKinds{{
+constexpr std::array<MatterKind, 12> kMatterKinds{{
     {"mass", read_mass, 1, 3},
     {"fixed", read_fixed, 1, 3},
+    {"points", read_points, 1, 3},
     {"string", read_string, 1, 3},
     {"ring", read_ring, 1, 3},
     {"grid", read_grid, 1, 3},
@@ -71,7 +72,7 @@ void read_drawing(config::MappingReader& reader, Piece& piece) {
 }
 
 Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int space,
-                 config::Problems& problems) {
+                 bool may_be_massless, config::Problems& problems) {
   std::vector<std::string> words;
   for (const MatterKind& kind : kMatterKinds) words.emplace_back(kind.name);
   const std::string word = reader.required_choice("kind", words);
@@ -79,7 +80,7 @@ Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int sp
   const MatterKind& kind = *kind_named(word);
   if (!check_space(reader, kind, space)) return {};
 
-  Source source{reader, liaisons, space, problems};
+  Source source{reader, liaisons, space, may_be_massless, problems};
   Piece piece = kind.read(source);
   read_drawing(reader, piece);
   reader.finish();

@@ -11,8 +11,9 @@ inline constexpr long kMostMats = 1'000'000;  ///< of a scene
 
 /// Reads one piece of matter: its kind and what the kind wants. Whatever is wrong is a problem;
 /// then the piece is not to be used.
+/// @param may_be_massless  a mass of 0 is taken: a reduction is to take it out
 Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int space,
-                 config::Problems& problems);
+                 bool may_be_massless, config::Problems& problems);
 
 /// Where the MATs of a 1-D scene are shown: `layout_at_m` [x, z] and `layout_spacing_m`.
 struct Layout {

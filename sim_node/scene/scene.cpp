@@ -8,6 +8,7 @@
 #include "sim_node/scene/assembly.h"
 #include "sim_node/scene/naming.h"
 #include "sim_node/scene/point.h"
+#include "sim_node/scene/reduction_wish.h"
 
 namespace cordis::scene {
 
@@ -100,6 +101,13 @@ bool has_mass(const Scene& scene) {
   return std::any_of(scene.network.mats.begin(), scene.network.mats.end(), is_mass);
 }
 
+bool has_massless(const Scene& scene) {
+  const auto is_massless = [](const engine::Mat& mat) {
+    return mat.kind == engine::MatKind::kMass && mat.mass == 0.0;
+  };
+  return std::any_of(scene.network.mats.begin(), scene.network.mats.end(), is_massless);
+}
+
 /// @return whether the integrator takes all that is in the scene
 bool check_integrator(const Scene& scene, const config::Place& place, config::Problems& problems) {
   const auto refusal = engine::refusal_of(scene.network);
@@ -116,15 +124,6 @@ bool check_integrator(const Scene& scene, const config::Place& place, config::Pr
                      " does not take " + refusal->what + ", which " + owner + " has",
                  hint);
   return false;
-}
-
-/// The engine has the last word on what it can simulate.
-void check_by_engine(const Scene& scene, config::MappingReader& reader) {
-  try {
-    const engine::Network network(scene.network);
-  } catch (const std::invalid_argument& refusal) {
-    reader.error_at("matter", std::string("this cannot be simulated: ") + refusal.what());
-  }
 }
 
 /// The sections whose numbers depend on the space of the scene.
@@ -184,18 +183,30 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
   const config::Place integrator =
       read_step(scene.accuracy ? reader.optional_mapping("step") : reader.required_mapping("step"),
                 scene, problems);
+  scene.reduce = read_reduce(reader.optional_value("reduce"), scene.accuracy.has_value(), problems);
   read_content(reader, scene, problems);
   reader.finish();
   if (problems.error_count() != errors_before) return scene;
-  if (has_mass(scene)) {
-    if (check_integrator(scene, integrator, problems)) check_by_engine(scene, reader);
-  } else {
-    reader.error_at("matter", "the scene has no mass that can move");
-  }
+  if (has_massless(scene)) return scene;  // the engine takes it once that is taken out
+  check_network(scene, integrator, reader.place_of("matter"), problems);
   return scene;
 }
 
 }  // namespace
+
+void check_network(const Scene& scene, const config::Place& integrator, const config::Place& matter,
+                   config::Problems& problems) {
+  if (!has_mass(scene)) {
+    problems.error(matter, "the scene has no mass that can move");
+    return;
+  }
+  if (!check_integrator(scene, integrator, problems)) return;
+  try {
+    const engine::Network network(scene.network);
+  } catch (const std::invalid_argument& refusal) {
+    problems.error(matter, std::string("this cannot be simulated: ") + refusal.what());
+  }
+}
 
 void set_step(Scene& scene, double rate_hz, engine::Integrator integrator) {
   scene.step_rate_hz = rate_hz;

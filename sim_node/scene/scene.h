@@ -1,6 +1,7 @@
 // sim_node/scene/scene.h -- what a scene file says, ready to be simulated.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -76,6 +77,36 @@ struct Accuracy {
   config::Place place;
 };
 
+/// What a scene wants taken out of it: its `reduce`. See sim_node/plan/reduction.
+struct ReductionWish {
+  bool parallel = false;   ///< linear links between the same two MATs
+  bool series = false;     ///< MATs without mass between links of one kind
+  bool massless = false;   ///< those between a spring and a damper; MATs too light to matter
+  bool dimension = false;  ///< directions in which nothing can move
+  bool is_asked = false;   ///< the scene speaks of it
+
+  static ReductionWish everything() noexcept { return {true, true, true, true, true}; }
+  /// Whether a MAT may have no mass: it is taken out.
+  bool takes_out_mats() const noexcept { return series || massless; }
+};
+
+/// Something that was taken out of a scene.
+struct Reduction {
+  std::string name;                 ///< of the reduction
+  std::size_t count = 0;            ///< of what was taken out
+  std::string what;                 ///< for a person
+  double budget = 0.0;              ///< largest relative error it makes; 0: exact to rounding
+  std::string bound;                ///< of what that is the error, and what it follows from
+  std::vector<std::string> doubts;  ///< where it may be wrong all the same
+};
+
+/// A plane or a line, along the axes, that a scene of more dimensions is computed in.
+struct Confinement {
+  int space = 3;                               ///< dimensions of the scene as its file says it
+  std::array<int, 3> axes{0, 1, 2};            ///< of that space: where those of the network lie
+  engine::Vec3 origin = engine::Vec3::Zero();  ///< place along the others [m]; 0 along these
+};
+
 /// A scene as it was read.
 struct Scene {
   std::string name;
@@ -98,8 +129,14 @@ struct Scene {
   std::shared_ptr<const Liaisons> liaisons;
   std::vector<Port> ports;
   SignalReader signals;
-  std::vector<double> radius_m;     ///< per MAT, as it is drawn; 0 for a point
-  std::vector<LayoutPoint> layout;  ///< per MAT in a 1-D scene, else empty
+  std::vector<double> radius_m;            ///< per MAT, as it is drawn; 0 for a point
+  std::vector<LayoutPoint> layout;         ///< per MAT in a 1-D scene, else empty
+  std::optional<Confinement> confinement;  ///< by a reduction; then there is no layout
+  ReductionWish reduce;
+  std::vector<Reduction> reductions;  ///< that were made
+  /// Linear links in 2-D and 3-D that stand for several in a row, which would buckle when pushed.
+  std::vector<std::uint32_t> struts;
+  std::shared_ptr<const Scene> whole;  ///< before they were made; nullptr when none was
 
   int space() const noexcept { return network.dimension; }
 
@@ -112,6 +149,14 @@ struct Scene {
 
 /// Gives a scene its step rate, an integer multiple of the gesture rate, and its integrator.
 void set_step(Scene& scene, double rate_hz, engine::Integrator integrator);
+
+/// Whether the engine can simulate it; if not, a problem at one of the places: of the integrator,
+/// or of what there is.
+void check_network(const Scene& scene, const config::Place& integrator, const config::Place& matter,
+                   config::Problems& problems);
+
+/// Makes `links` anew, from `link_groups`.
+void number_links(Scene& scene);
 
 /// Reads a scene file and all it includes. Whatever is wrong becomes a problem of its place, all in
 /// one go. The language is described in docs/language.md.

@@ -44,6 +44,9 @@ enum class Quantity : std::uint8_t {
   kSwitchingEnergy    ///< brought in by changes of state since step 0 [J]
 };
 
+/// As a scene writes it.
+const char* word_of(Quantity quantity) noexcept;
+
 /// A signal, compiled: nothing is looked up by name any more.
 struct Signal {
   std::string name;

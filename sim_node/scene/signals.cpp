@@ -111,6 +111,13 @@ const QuantityWord* read_quantity(config::MappingReader& reader, Owner owner) {
 
 }  // namespace
 
+const char* word_of(Quantity quantity) noexcept {
+  for (const QuantityWord& known : kWords) {
+    if (known.quantity == quantity) return known.word;
+  }
+  return "";
+}
+
 void Assembly::read_signals(const Value& section) {
   std::vector<Signal> signals;
   for (const Value::Entry& entry : section.entries()) read_signal(entry, signals);

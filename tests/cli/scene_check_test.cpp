@@ -107,7 +107,7 @@ TEST_F(Checked, ASceneMayAskForAccuracyInsteadOfARate) {
   text.replace(text.find(rate), rate.size(), "rate_hz: 500, integrator: cordis, ");
   std::ofstream(path_) << text << "accuracy: {tolerance: 0.001, band_hz: 16}\n";
   EXPECT_EQ(run({}), kSuccess) << error_;
-  EXPECT_NE(out_.find("NEEDED"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("rate_hz is TOO LOW for that: "), std::string::npos) << out_;
 
   std::ofstream(path_) << open << "accuracy: {tolerance: 2}\n";
   EXPECT_EQ(run({}), kBadInput);

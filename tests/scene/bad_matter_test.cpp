@@ -44,10 +44,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2,
                  "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^3}\n",
                  "'velocity_m_per_s' in matter 'a' must have 2 numbers, got 1", ""},
-        BadScene{kHead2, "matter:\n  a: {kind: ^mas, mass_kg: 1, at: 0}\n",
-                 "'kind' in matter 'a' must be one of mass, fixed, string, ring, grid, lattice, "
-                 "disc, ball, pack, skin, beam, got 'mas'",
-                 "did you mean 'mass'?"},
+        BadScene{
+            kHead2, "matter:\n  a: {kind: ^mas, mass_kg: 1, at: 0}\n",
+            "'kind' in matter 'a' must be one of mass, fixed, points, string, ring, grid, lattice, "
+            "disc, ball, pack, skin, beam, got 'mas'",
+            "did you mean 'mass'?"},
         BadScene{kHead2, "matter:\n  a: ^{mass_kg: 1, at_m: [0, 0]}\n",
                  "missing key 'kind' in matter 'a'", ""},
         BadScene{kHead2, "matter:\n  a: ^3\n", "matter 'a' must be a mapping of keys, got '3'", ""},

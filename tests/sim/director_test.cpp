@@ -8,11 +8,26 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/player.h"
 #include "tests/sim/stages.h"
 
 namespace cordis::sim {
 namespace {
+
+/// The wall holds the bob by two springs that are merged.
+std::string merged_text() {
+  return "cordis: 1\nname: merged\nspace: 1\nstep: {rate_hz: 4000}\nreduce: [parallel]\n"
+         "liaisons:\n"
+         "  spring: {kind: spring, stiffness_n_per_m: 100}\n"
+         "  rubber: {kind: spring_damper, stiffness_n_per_m: 7, viscosity_n_s_per_m: 0.1}\n"
+         "matter:\n"
+         "  wall: {kind: fixed, at_m: 0}\n"
+         "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.01}\n"
+         "links:\n"
+         "  - {liaison: spring, between: [wall, bob], rest_m: 0}\n"
+         "  - {liaison: rubber, between: [wall, bob], rest_m: 0}\n";
+}
 
 /// A director and a loop in another thread that plays for it as fast as it can.
 class DirectorTest : public ::testing::Test {
@@ -22,6 +37,10 @@ class DirectorTest : public ::testing::Test {
         director_(
             orders_, player_.simulation().shared_scene(), kRunOfSim,
             [](const std::string& path, config::Problems& problems) {
+              if (path == "merged.yaml") {
+                return plan::reduce(scene::load_scene_text(merged_text(), path, problems),
+                                    problems);
+              }
               return scene::load_scene_text(
                   path == "other.yaml" ? swing_text("other") : "cordis: 2", path, problems);
             },
@@ -103,6 +122,21 @@ TEST_F(DirectorTest, LoadsAnotherSceneAndTellsOfIt) {
   EXPECT_EQ(player_.simulation().scene().name, "other");
   EXPECT_EQ(player_.stage().frames.shape().version, 3u);
   EXPECT_EQ(told_, (std::vector<std::string>{"other 2", "other 3"}));
+}
+
+TEST_F(DirectorTest, SetsParametersOfALiaisonWhoseLinksAreMergedWithOthers) {
+  ASSERT_TRUE(obey("load", "merged.yaml").accepted);
+
+  const node::Answer answer = obey("set", "{rubber.stiffness_n_per_m: 11}");
+
+  EXPECT_TRUE(answer.accepted) << answer.text;
+  EXPECT_TRUE(obey("set", "{spring.stiffness_n_per_m: 90}").accepted);
+  end_loop();
+  const engine::NetworkDescription& network = player_.simulation().scene().network;
+  ASSERT_EQ(network.links.size(), 1u);
+  EXPECT_EQ(network.links[0].stiffness, 101.0);
+  EXPECT_EQ(network.links[0].viscosity, 0.1);
+  EXPECT_GT(player_.simulation().world().step_count(), 0u);
 }
 
 TEST_F(DirectorTest, SetsParametersOfALiaisonInTheRunningScene) {

@@ -8,6 +8,7 @@ namespace cordis::scene {
 
 Piece read_mass(Source& source);     ///< masses at given points
 Piece read_fixed(Source& source);    ///< points that never move
+Piece read_points(Source& source);   ///< MATs one by one
 Piece read_string(Source& source);   ///< MATs in a row, each joined to the next
 Piece read_ring(Source& source);     ///< a string that closes in a circle
 Piece read_grid(Source& source);     ///< rows and columns

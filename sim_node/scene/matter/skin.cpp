@@ -87,7 +87,7 @@ Surface read_surface(Source& source) {
 /// One MAT in the middle, the last of the piece, joined to all of the skin.
 void add_core(Source& source, Piece& piece, const config::Value& section) {
   config::MappingReader reader(section, "'core' of " + source.reader.what(), source.problems);
-  Source inner{reader, source.liaisons, source.space, source.problems};
+  Source inner{reader, source.liaisons, source.space, false, source.problems};
   const Grain grain = read_grain(inner);
   const std::optional<LinkLaw> law = read_neighbour_law(inner);
   reader.finish();

@@ -24,7 +24,10 @@ Grain read_grain(Source& source) {
   config::MappingReader& reader = source.reader;
   const config::Value mass = reader.optional_value("mass_kg");
   const std::optional<Grain> ball = optional_ball(reader, true, source.problems);
-  if (!reader.has("ball")) return {reader.required_number("mass_kg", Range::positive()), 0.0};
+  if (!reader.has("ball")) {
+    const Range range = source.may_be_massless ? Range::not_negative() : Range::positive();
+    return {reader.required_number("mass_kg", range), 0.0};
+  }
   if (mass.exists()) {
     reader.error_at("mass_kg", "either 'mass_kg' or 'ball' can be given in " + reader.what());
   }

@@ -20,6 +20,7 @@ struct Source {
   config::MappingReader& reader;
   const Liaisons& liaisons;
   int space;
+  bool may_be_massless;  ///< a mass of 0 is taken: a reduction is to take it out
   config::Problems& problems;
 };
 

@@ -1,0 +1,137 @@
+#include "sim_node/plan/reduction/dimension.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace cordis::plan {
+namespace {
+
+using engine::Vec3;
+
+/// Whether nothing in the scene is, moves or acts along an axis but at one place.
+bool is_confined(const scene::Scene& scene, int axis) {
+  const engine::NetworkDescription& network = scene.network;
+  if (network.gravity[axis] != 0.0) return false;
+  const double place = network.mats.front().position[axis];
+  for (const engine::Mat& mat : network.mats) {
+    if (mat.position[axis] != place || mat.velocity[axis] != 0.0) return false;
+  }
+  for (const scene::Port& port : scene.ports) {
+    for (const Vec3& direction : port.directions) {
+      if (direction[axis] != 0.0) return false;
+    }
+  }
+  return true;
+}
+
+bool asks_for_an_axis(const engine::Program& program) {
+  return std::any_of(program.code.begin(), program.code.end(), [](const auto& instruction) {
+    return instruction.operation == engine::Operation::kQuantity &&
+           (instruction.quantity == engine::Quantity::kSpeedX ||
+            instruction.quantity == engine::Quantity::kSpeedY ||
+            instruction.quantity == engine::Quantity::kSpeedZ);
+  });
+}
+
+bool asks_for_an_axis(const engine::NetworkDescription& network) {
+  for (const engine::Behaviour& behaviour : network.behaviours) {
+    for (const engine::Exit& exit : behaviour.exits) {
+      if (asks_for_an_axis(exit.when) || asks_for_an_axis(exit.rest_length)) return true;
+    }
+  }
+  return false;
+}
+
+/// Whether the sign of the links of a line makes no difference.
+bool fits_a_line(const scene::Scene& scene) {
+  const engine::NetworkDescription& network = scene.network;
+  if (!network.state_links.empty()) return false;
+  for (const scene::Signal& signal : scene.signals.signals()) {
+    const bool is_of_link =
+        signal.quantity >= scene::Quantity::kDistance && signal.quantity <= scene::Quantity::kPull;
+    if (is_of_link) return false;
+  }
+  // Where both ends are at one place there is no direction, and no force, but in 1 dimension.
+  const auto begins_apart = [&network](const auto& link) {
+    const engine::Mat& a = network.mats[link.mat_a];
+    const engine::Mat& b = network.mats[link.mat_b];
+    return a.position != b.position || a.velocity == b.velocity;
+  };
+  return std::all_of(network.links.begin(), network.links.end(),
+                     [&](const engine::Link& link) {
+                       const bool has_length = link.stiffness > 0.0 && link.rest_length != 0.0;
+                       return !has_length && begins_apart(link);
+                     }) &&
+         std::all_of(network.maxwell_links.begin(), network.maxwell_links.end(), begins_apart);
+}
+
+/// The vectors of a scene in the directions that are left.
+class Projection {
+ public:
+  explicit Projection(const scene::Confinement& confinement, int dimension)
+      : confinement_(confinement), dimension_(dimension) {}
+
+  Vec3 operator()(const Vec3& vector) const {
+    Vec3 left = Vec3::Zero();
+    for (int k = 0; k < dimension_; ++k) {
+      left[k] = vector[confinement_.axes[static_cast<std::size_t>(k)]];
+    }
+    return left;
+  }
+
+ private:
+  const scene::Confinement& confinement_;
+  int dimension_;
+};
+
+void project(const scene::Confinement& confinement, int dimension, scene::Scene& scene) {
+  const Projection project(confinement, dimension);
+  engine::NetworkDescription& network = scene.network;
+  network.dimension = dimension;
+  network.gravity = project(network.gravity);
+  for (engine::Mat& mat : network.mats) {
+    mat.position = project(mat.position);
+    mat.velocity = project(mat.velocity);
+  }
+  for (scene::Port& port : scene.ports) {
+    port.rest = project(port.rest);
+    for (Vec3& direction : port.directions) direction = project(direction);
+  }
+  std::vector<scene::Signal> signals = scene.signals.signals();
+  for (scene::Signal& signal : signals) {
+    if (signal.quantity == scene::Quantity::kPosition) {
+      signal.offset -= signal.direction.dot(confinement.origin);  // what never changes
+    }
+    signal.direction = project(signal.direction);
+  }
+  scene.signals = scene::SignalReader(std::move(signals), network);
+  scene.confinement = confinement;
+}
+
+}  // namespace
+
+std::string confine(scene::Scene& scene) {
+  scene::Confinement confinement;
+  confinement.space = scene.space();
+  std::vector<int> left;
+  std::string places;
+  for (int axis = 0; axis < scene.space(); ++axis) {
+    if (!is_confined(scene, axis)) {
+      left.push_back(axis);
+      continue;
+    }
+    confinement.origin[axis] = scene.network.mats.front().position[axis];
+    places += (places.empty() ? "" : ", ") + std::string(1, static_cast<char>('x' + axis)) + " = " +
+              config::number_text(confinement.origin[axis]) + " m";
+  }
+  const auto dimension = static_cast<int>(left.size());
+  const bool fits = dimension > 1 || (dimension == 1 && fits_a_line(scene));
+  if (dimension == scene.space() || !fits || asks_for_an_axis(scene.network)) return {};
+  std::copy(left.begin(), left.end(), confinement.axes.begin());
+  const std::string before = std::to_string(scene.space());
+  project(confinement, dimension, scene);
+  return before + "-D computed as " + std::to_string(dimension) + "-D: nothing can ever leave " +
+         places;
+}
+
+}  // namespace cordis::plan

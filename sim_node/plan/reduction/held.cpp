@@ -1,0 +1,66 @@
+#include "sim_node/plan/reduction/held.h"
+
+namespace cordis::plan {
+namespace {
+
+using scene::Quantity;
+
+void hold_signal(const scene::Signal& signal, Held& held) {
+  for (const std::uint32_t mat : signal.mats) held.mats[mat] = true;
+  switch (signal.quantity) {
+    case Quantity::kPosition:
+    case Quantity::kVelocity:
+    case Quantity::kForce:
+    case Quantity::kSpeed:
+      held.mats[signal.index] = true;
+      break;
+    case Quantity::kDistance:
+    case Quantity::kElongation:
+    case Quantity::kGrowth:
+    case Quantity::kPull:
+      if (signal.kind == scene::LinkKind::kLinear) held.links[signal.index] = true;
+      break;
+    case Quantity::kEnergy:
+    case Quantity::kElasticEnergy:
+      held.energy = true;
+      break;
+    default:  // of links with states, of sets, or not in the links
+      break;
+  }
+}
+
+}  // namespace
+
+Held held_in(const scene::Scene& scene) {
+  const engine::NetworkDescription& network = scene.network;
+  Held held{std::vector<bool>(network.mats.size()), std::vector<bool>(network.links.size()), false};
+  for (std::size_t i = 0; i < network.mats.size(); ++i) {
+    held.mats[i] = network.mats[i].kind != engine::MatKind::kMass;
+  }
+  for (const std::uint32_t mat : network.kept_awake) held.mats[mat] = true;
+  const auto hold_ends = [&held](const auto& links) {
+    for (const auto& link : links) held.mats[link.mat_a] = held.mats[link.mat_b] = true;
+  };
+  hold_ends(network.state_links);
+  hold_ends(network.maxwell_links);
+  for (const engine::SetLiaison& set : network.sets) {
+    for (const std::uint32_t mat : set.set_p) held.mats[mat] = true;
+    for (const std::uint32_t mat : set.set_q) held.mats[mat] = true;
+  }
+  std::vector<bool> handles(network.mats.size());
+  for (const scene::Port& port : scene.ports) {
+    held.mats[port.mat] = held.mats[port.tool] = true;
+    handles[port.mat] = port.mat != port.tool;
+  }
+  for (std::size_t l = 0; l < network.links.size(); ++l) {
+    held.links[l] = handles[network.links[l].mat_a] || handles[network.links[l].mat_b];
+  }
+  for (const scene::Signal& signal : scene.signals.signals()) hold_signal(signal, held);
+  for (std::size_t l = 0; l < network.links.size(); ++l) {
+    if (!held.links[l]) continue;
+    held.mats[network.links[l].mat_a] = held.mats[network.links[l].mat_b] = true;
+  }
+  return held;
+}
+
+}  // namespace cordis::plan

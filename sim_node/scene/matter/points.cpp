@@ -1,0 +1,96 @@
+// MATs one by one: each with its own place, mass and velocity.
+#include <algorithm>
+
+#include "sim_node/scene/matter/generators.h"
+
+namespace cordis::scene {
+
+using config::Range;
+using engine::MatKind;
+using engine::Vec3;
+
+namespace {
+
+/// One value for all, or one for each.
+template <class Item>
+void spread(Source& source, const char* key, std::size_t count, std::vector<Item>& values) {
+  if (values.size() == 1) values.resize(count, values.front());
+  if (values.size() == count) return;
+  source.reader.error_at(key, std::string("'") + key + "' in " + source.reader.what() +
+                                  " must be one for all or one for each of the " +
+                                  std::to_string(count) + ", got " + std::to_string(values.size()));
+  values.resize(count, values.front());
+}
+
+/// `fixed`: numbers of the MATs that never move.
+std::vector<bool> read_fixed_ones(config::MappingReader& reader, std::size_t count) {
+  std::vector<bool> fixed(count);
+  const bool any = reader.optional_value("fixed").exists();
+  const auto last = static_cast<long>(count) - 1;
+  for (const long index : any ? reader.required_integers("fixed", 0, last) : std::vector<long>{}) {
+    fixed[static_cast<std::size_t>(index)] = true;
+  }
+  return fixed;
+}
+
+/// The points of a key, or these when it is not written.
+std::vector<Vec3> points_or(Source& source, const char* key, int space,
+                            std::vector<Vec3> otherwise) {
+  const bool written = source.reader.optional_value(key).exists();
+  return written ? required_points(source.reader, key, space, source.problems) : otherwise;
+}
+
+/// Where the MATs of a 1-D scene are shown unless they say it.
+std::vector<Vec3> in_a_row(std::size_t count) {
+  std::vector<Vec3> row;
+  for (std::size_t i = 0; i < count; ++i) {
+    row.emplace_back(Layout{}.spacing * static_cast<double>(i), 0.0, 0.0);
+  }
+  return row;
+}
+
+/// That masses and radii are possible.
+void check_points(Source& source, const Piece& piece) {
+  config::MappingReader& reader = source.reader;
+  for (const engine::Mat& mat : piece.mats) {
+    const bool is_possible = mat.mass > 0.0 || (mat.mass == 0.0 && source.may_be_massless);
+    if (mat.kind == MatKind::kFixed || is_possible) continue;
+    reader.error_at("mass_kg", "'mass_kg' in " + reader.what() + " must be > 0, got " +
+                                   config::number_text(mat.mass));
+  }
+  for (const double radius : piece.radius_m) {
+    if (radius >= 0.0 && radius <= kFarthest) continue;
+    reader.error_at("radius_m", "'radius_m' in " + reader.what() + " must be >= 0, got " +
+                                    config::number_text(radius));
+  }
+}
+
+}  // namespace
+
+Piece read_points(Source& source) {
+  Piece piece;
+  config::MappingReader& reader = source.reader;
+  const std::vector<Vec3> points = required_points(reader, "at_m", source.space, source.problems);
+  const std::size_t count = points.size();
+  std::vector<double> mass = reader.required_numbers("mass_kg");
+  if (mass.empty()) mass = {1.0};  // after a problem
+  std::vector<double> radius = reader.optional_numbers("radius_m", {0.0});
+  std::vector<Vec3> velocity = points_or(source, "velocity_m_per_s", source.space, {Vec3::Zero()});
+  spread(source, "mass_kg", count, mass);
+  spread(source, "radius_m", count, radius);
+  spread(source, "velocity_m_per_s", count, velocity);
+  const std::vector<bool> fixed = read_fixed_ones(reader, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    piece.mats.push_back({MatKind::kMass, mass[i], points[i], velocity[i]});
+    if (fixed[i]) piece.mats.back() = {MatKind::kFixed, 0.0, points[i], Vec3::Zero()};
+  }
+  piece.radius_m = radius;
+  check_points(source, piece);
+  if (source.space > 1) return piece;
+  std::vector<Vec3> layout = points_or(source, "layout_at_m", 2, in_a_row(count));
+  spread(source, "layout_at_m", count, layout);
+  for (const Vec3& point : layout) piece.layout.push_back({point.x(), point.y()});
+  return piece;
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,136 @@
+#include <cmath>
+
+#include "tests/reduction/scenes.h"
+
+namespace cordis::plan {
+namespace {
+
+/// A net in the plane y = 0.3 m, with balls and a port in it.
+std::string in_a_plane(const std::string& gravity, const std::string& more = {}) {
+  return "cordis: 1\nspace: 3\nstep: {rate_hz: 1000}\nreduce: [dimension]\n"
+         "world: {gravity_m_per_s2: " +
+         gravity +
+         "}\n"
+         "liaisons:\n"
+         "  push: {states: {on: {stiffness_n_per_m: 200, pulls: false, final: true}}}\n"
+         "  s: {kind: spring_damper, stiffness_n_per_m: 60, viscosity_n_s_per_m: 0.01}\n"
+         "  thread: {states: {taut: {stiffness_n_per_m: 50, pushes: false, final: true}}}\n"
+         "matter:\n"
+         "  net: {kind: grid, rows: 4, columns: 5, corner_m: [0, 0.3, 0], spacing_m: 0.1, plane: "
+         "xz,\n"
+         "        border: corners, mass_kg: 0.01, stiffness_n_per_m: 50, rest_m: 0.09}\n"
+         "  balls: {kind: mass, ball: {mass_kg: 0.01, radius_m: 0.02},\n"
+         "          at_m: [[0.1, 0.3, 0.55], [0.21, 0.3, 0.62], [0.2, 0.3, 0.7]]}\n"
+         "ports:\n"
+         "  key: {device: k, axes: [0], role: mass, at_m: [0, 0.3, 1], along: z}\n"
+         "links:\n"
+         "  - {liaison: push, within: balls, range: rest}\n"
+         "  - {liaison: s, between: [key, \"balls[2]\"]}\n"
+         "  - {liaison: thread, between: [\"net[7]\", \"balls[0]\"], rest_m: 0.2}\n" +
+         more +
+         "signals:\n"
+         "  height: {of: \"net[7]\", quantity: position, axis: z}\n"
+         "  aside: {of: \"net[7]\", quantity: position, axis: y}\n"
+         "  moved: {of: key, quantity: position}\n";
+}
+
+std::vector<double> signals_after(const scene::Scene& scene, int steps) {
+  engine::World world(std::make_shared<const engine::Network>(scene.network));
+  for (int n = 0; n < steps; ++n) world.step();
+  std::vector<double> values(scene.signals.count());
+  scene.signals.read(world, values.data());
+  return values;
+}
+
+TEST(Dimension, APlaneOf3DIsComputedIn2DToTheBit) {
+  std::string text = in_a_plane("[0, 0, -9.81]");
+  text.replace(text.find("range: rest"), 11, "range_m: 0.04");
+  const scene::Scene whole = loaded(text);
+  const scene::Scene scene = reduced(text);
+
+  ASSERT_EQ(scene.space(), 2);
+  ASSERT_TRUE(scene.confinement.has_value());
+  EXPECT_EQ(scene.confinement->space, 3);
+  EXPECT_EQ(scene.confinement->origin, engine::Vec3(0, 0.3, 0));
+  for (const char* name : {"net", "balls"}) {
+    const auto before = motion(whole, name, 1000);
+    const auto after = motion(scene, name, 1000);
+    EXPECT_GT(largest_distance(before), 0.1);
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      ASSERT_EQ(before[i], engine::Vec3(after[i].x(), 0.3, after[i].y())) << name << " " << i;
+    }
+  }
+  EXPECT_EQ(signals_after(whole, 500), signals_after(scene, 500));
+  EXPECT_EQ(signals_after(scene, 500)[1], 0.3);
+}
+
+TEST(Dimension, ASceneThatMayLeaveItsPlaneStays) {
+  std::string text = in_a_plane("[0, 0, -9.81]");
+  text.replace(text.find("range: rest"), 11, "range_m: 0.04");
+  EXPECT_EQ(reduced(text).space(), 2);
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    return reduced(changed).space();
+  };
+  EXPECT_EQ(with("[0, 0, -9.81]", "[0, 1e-9, -9.81]"), 3);
+  EXPECT_EQ(with("[0.1, 0.3, 0.55]", "[0.1, 0.300001, 0.55]"), 3);
+  EXPECT_EQ(with("along: z", "along: [0, 0.1, 1]"), 3);
+  EXPECT_EQ(with("ball: {mass_kg: 0.01, radius_m: 0.02},",
+                 "ball: {mass_kg: 0.01, radius_m: 0.02}, velocity_m_per_s: [0, 0.1, 0],"),
+            3);
+  EXPECT_EQ(with("{taut: {stiffness_n_per_m: 50, pushes: false, final: true}}",
+                 "{taut: {stiffness_n_per_m: 50, exits: [{to: off, when: speed_y_m_per_s > 1}]}, "
+                 "off: {final: true}}"),
+            3);
+}
+
+/// Three masses on the line y = 1 m, springs of this rest length between them.
+std::string on_a_line(const std::string& rest, const std::string& more = {}) {
+  return "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\nreduce: all\n"
+         "liaisons:\n"
+         "  s: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01, rest_m: " +
+         rest +
+         "}\n"
+         "  m: {kind: maxwell, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.1}\n"
+         "  push: {states: {on: {stiffness_n_per_m: 200, pulls: false, final: true}}}\n"
+         "matter:\n"
+         "  wall: {kind: fixed, at_m: [-0.3, 1]}\n"
+         "  bobs: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.05}, at_m: [[0, 1], [0.2, 1], "
+         "[0.5, 1]]}\n"
+         "  fast: {kind: mass, mass_kg: 0.1, at_m: [0.6, 1], velocity_m_per_s: [-3, 0]}\n"
+         "links:\n"
+         "  - {liaison: s, between: [wall, \"bobs[0]\"]}\n"
+         "  - {liaison: s, between: [\"bobs[2]\", \"bobs[1]\"]}\n"
+         "  - {liaison: s, between: [fast, \"bobs[1]\"]}\n"
+         "  - {liaison: m, between: [wall, fast]}\n"
+         "  - {liaison: push, within: bobs, range_m: 0.1}\n" +
+         more;
+}
+
+TEST(Dimension, ALineIsComputedIn1DWhereTheSignOfItsLinksMakesNoDifference) {
+  const scene::Scene whole = loaded(on_a_line("0"));
+  const scene::Scene scene = reduced(on_a_line("0"));
+
+  ASSERT_EQ(scene.space(), 1);
+  EXPECT_EQ(scene.confinement->origin, engine::Vec3(0, 1, 0));
+  for (const char* name : {"bobs", "fast"}) {
+    const auto before = motion(whole, name, 2000);
+    auto after = motion(scene, name, 2000);
+    for (engine::Vec3& at : after) at.y() = 1.0;
+    EXPECT_GT(largest_distance(before), 0.3) << name;  // it passes the others
+    EXPECT_LT(largest_difference(before, after), 1e-9) << name;
+  }
+}
+
+TEST(Dimension, ALineStaysWhereTheSignWouldMakeADifference) {
+  EXPECT_EQ(reduced(on_a_line("0.1")).space(), 2);
+  EXPECT_EQ(reduced(on_a_line("0", "  - {liaison: push, between: [fast, wall]}\n")).space(), 2);
+  std::string named = on_a_line("0");
+  named.replace(named.find("[fast, \"bobs[1]\"]"), 17, "[fast, \"bobs[1]\"], name: it");
+  EXPECT_EQ(reduced(named + "signals: {d: {of: it, quantity: distance}}\n").space(), 2);
+}
+
+}  // namespace
+}  // namespace cordis::plan

@@ -1,0 +1,188 @@
+#include <cmath>
+#include <numbers>
+
+#include "tests/reduction/scenes.h"
+
+namespace cordis::plan {
+namespace {
+
+/// A bob on a row of links in 1 dimension, with a MAT of this mass between each two.
+std::string row_text(const std::string& mass, const std::string& links, double rate_hz,
+                     const std::string& head = "reduce: [series, massless]\n") {
+  return "cordis: 1\nspace: 1\nstep: {rate_hz: " + std::to_string(rate_hz) + "}\n" + head +
+         "liaisons:\n"
+         "  soft: {kind: spring, stiffness_n_per_m: 60}\n"
+         "  hard: {kind: spring, stiffness_n_per_m: 120}\n"
+         "  oil: {kind: damper, viscosity_n_s_per_m: 0.8}\n"
+         "matter:\n"
+         "  wall: {kind: fixed, at_m: 0}\n"
+         "  joint: {kind: mass, mass_kg: " +
+         mass +
+         ", at_m: [0, 0]}\n"
+         "  bob: {kind: mass, mass_kg: 0.1, at_m: 0, velocity_m_per_s: 0.5}\n"
+         "links:\n" +
+         links;
+}
+
+const std::string kSprings =
+    "  - {liaison: soft, between: [wall, \"joint[0]\"], rest_m: 0}\n"
+    "  - {liaison: hard, between: [\"joint[1]\", \"joint[0]\"], rest_m: 0}\n"
+    "  - {liaison: hard, between: [\"joint[1]\", bob], rest_m: 0}\n";
+const std::string kSpringsAndOil =
+    "  - {liaison: soft, between: [wall, \"joint[0]\"], rest_m: 0}\n"
+    "  - {liaison: oil, between: [\"joint[0]\", \"joint[1]\"]}\n"
+    "  - {liaison: hard, between: [\"joint[1]\", bob], rest_m: 0}\n";
+
+TEST(Series, SpringsInARowAreOneOfTheirCompliances) {
+  const scene::Scene scene = reduced(row_text("0", kSprings, 1000));
+
+  ASSERT_EQ(scene.network.links.size(), 1u);
+  EXPECT_DOUBLE_EQ(scene.network.links[0].stiffness, 30.0);  // 1/60 + 1/120 + 1/120
+  ASSERT_EQ(scene.network.mats.size(), 2u);
+  EXPECT_EQ(matter(scene, "bob").first, 1u);
+  ASSERT_EQ(scene.reductions.size(), 1u);
+  EXPECT_EQ(scene.reductions[0].name, "series");
+  EXPECT_EQ(scene.reductions[0].count, 2u);
+}
+
+/// The largest difference between a row with light joints, taken by small steps, and one without.
+double difference_to_joints_of(double mass, const std::string& links) {
+  constexpr double kRate = 32000.0;
+  const auto without = motion(reduced(row_text("0", links, kRate)), "bob", 8000);
+  const auto with = motion(loaded(row_text(std::to_string(mass), links, kRate)), "bob", 8000);
+  EXPECT_GT(largest_distance(without), 0.02);
+  return largest_difference(with, without) / largest_distance(without);
+}
+
+TEST(Series, IsWhatTheRowTendsToAsItsMatsGetLighter) {
+  // (w / w0)^2 is 1.7e-3 and 1.7e-4 here, w t is 4.3
+  const double heavy = difference_to_joints_of(1e-3, kSprings);
+  const double light = difference_to_joints_of(1e-4, kSprings);
+
+  EXPECT_LT(light, 4e-3);
+  EXPECT_NEAR(heavy / light, 10.0, 2.0);
+}
+
+TEST(Massless, ASpringAndADamperInARowAreAMaxwellElement) {
+  const scene::Scene scene = reduced(row_text("0", kSpringsAndOil, 1000));
+
+  EXPECT_TRUE(scene.network.links.empty());
+  ASSERT_EQ(scene.network.maxwell_links.size(), 1u);
+  EXPECT_DOUBLE_EQ(scene.network.maxwell_links[0].stiffness, 40.0);  // 1/60 + 1/120
+  EXPECT_DOUBLE_EQ(scene.network.maxwell_links[0].viscosity, 0.8);
+  const double heavy = difference_to_joints_of(1e-3, kSpringsAndOil);
+  const double light = difference_to_joints_of(1e-4, kSpringsAndOil);
+  EXPECT_LT(light, 4e-3);
+  EXPECT_GT(heavy / light, 8.0);
+}
+
+TEST(Massless, AMatThatNothingTakesOutIsAnError) {
+  const std::string text = row_text("0", kSprings, 1000, "");
+  EXPECT_NE(refusal_of(text).find("'mass_kg' in matter 'joint' must be > 0, got 0"),
+            std::string::npos)
+      << refusal_of(text);
+  const std::string three = refusal_of(
+      row_text("0", kSprings + "  - {liaison: oil, between: [\"joint[0]\", wall]}\n", 1000));
+  EXPECT_NE(three.find("joint must be > 0: no reduction takes it out, for it has 3 links"),
+            std::string::npos)
+      << three;
+  const std::string drawn =
+      refusal_of(row_text("0",
+                          "  - {liaison: soft, between: [wall, \"joint[0]\"], rest_m: 0.1}\n"
+                          "  - {liaison: oil, between: [\"joint[0]\", bob]}\n"
+                          "  - {liaison: hard, between: [\"joint[1]\", bob], rest_m: 0}\n",
+                          1000));
+  EXPECT_NE(drawn.find("the spring beside it is drawn or pushed at the start"), std::string::npos)
+      << drawn;
+}
+
+TEST(Massless, AMatOfASignalIsAnError) {
+  const std::string told = refusal_of(
+      row_text("0", kSprings + "signals:\n  at: {of: \"joint[0]\", quantity: position}\n", 1000));
+  EXPECT_NE(told.find("for a port, a signal, a set"), std::string::npos) << told;
+}
+
+TEST(Series, InThePlaneAPushedRowIsRefusedAndOneAtRestWatched) {
+  const auto text = [](double x) {
+    return "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\nreduce: all\n"
+           "liaisons: {s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0.1}}\n"
+           "matter:\n"
+           "  wall: {kind: fixed, at_m: [0, 0]}\n"
+           "  joint: {kind: mass, mass_kg: 0, at_m: [0.1, 0]}\n"
+           "  bob: {kind: mass, mass_kg: 0.1, at_m: [" +
+           std::to_string(x) +
+           ", 0]}\n"
+           "links:\n"
+           "  - {liaison: s, between: [wall, joint]}\n"
+           "  - {liaison: s, between: [joint, bob]}\n";
+  };
+  EXPECT_NE(refusal_of(text(0.19)).find("its springs are pushed at the start"), std::string::npos);
+
+  const scene::Scene at_rest = reduced(text(0.2));
+  EXPECT_EQ(at_rest.struts.size(), 1u);
+  ASSERT_EQ(at_rest.reductions.size(), 1u);
+  EXPECT_EQ(at_rest.reductions[0].doubts.size(), 1u);
+
+  const scene::Scene drawn = reduced(text(0.21));
+  EXPECT_EQ(drawn.struts.size(), 1u);
+  ASSERT_EQ(drawn.reductions.size(), 1u);
+  EXPECT_TRUE(drawn.reductions[0].doubts.empty());
+}
+
+/// A string of 20 bobs in 1 dimension with a MAT of this mass between each two, struck.
+std::string string_with_light_joints(const std::string& head, double rate_hz) {
+  std::string text = "cordis: 1\nspace: 1\nstep: {rate_hz: " + std::to_string(rate_hz) + "}\n" +
+                     head +
+                     "liaisons: {s: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0}}\n"
+                     "matter:\n  wall: {kind: fixed, at_m: [0, 0]}\n"
+                     "  bob: {kind: mass, mass_kg: 0.01, at_m: [0";
+  for (int i = 1; i < 20; ++i) text += ", 0";
+  text +=
+      "]}\n  hammer: {kind: mass, mass_kg: 0.02, at_m: 0, velocity_m_per_s: 1}\n"
+      "  light: {kind: mass, mass_kg: 1.0e-4, at_m: [0";
+  for (int i = 1; i < 19; ++i) text += ", 0";
+  text +=
+      "]}\nlinks:\n"
+      "  - {liaison: s, between: [\"wall[0]\", \"bob[0]\"]}\n"
+      "  - {liaison: s, between: [\"wall[1]\", \"bob[19]\"]}\n"
+      "  - {liaison: s, between: [hammer, \"bob[6]\"]}\n"
+      "  - {liaison: s, between: [\"bob[0..18]\", light]}\n"
+      "  - {liaison: s, between: [light, \"bob[1..19]\"]}\n";
+  return text;
+}
+
+TEST(Massless, LightMatsGoWithinTheToleranceAndTheErrorIsWithinTheBudget) {
+  // w0 = sqrt(4000 / 1e-4) = 6325 /s; at the fastest vibration of the rest, 2 sqrt(1000 / 0.01)
+  // = 632 /s, (w / w0)^2 = 1e-2
+  const std::string head = "accuracy: {tolerance: 0.05, band_hz: 100, over_s: 0}\n";
+  const std::string text = string_with_light_joints(head, 200000);
+  const scene::Scene scene = reduced(text);
+
+  EXPECT_EQ(scene.network.mats.size(), 23u);
+  ASSERT_EQ(scene.reductions.size(), 1u);
+  const double w = 2.0 * std::numbers::pi * 100.0;
+  EXPECT_NEAR(scene.reductions[0].budget, w * w * 1e-4 / 4000.0, 1e-9);
+  EXPECT_NEAR(wish_of(scene).tolerance, 0.05 - scene.reductions[0].budget, 1e-15);
+  double mass = 0.0;
+  double mass_before = 0.0;
+  for (const engine::Mat& mat : scene.network.mats) mass += mat.mass;
+  for (const engine::Mat& mat : loaded(text).network.mats) mass_before += mat.mass;
+  EXPECT_NEAR(mass, mass_before, 1e-12);
+
+  // A phase error of w t times the pitch error, which is half of the budget.
+  constexpr int kSteps = 10000;  // 0.05 s
+  const auto before = motion(loaded(text), "bob", kSteps);
+  const auto after = motion(scene, "bob", kSteps);
+  const double error = largest_difference(before, after) / largest_distance(before);
+  EXPECT_LT(error, 0.5 * scene.reductions[0].budget * w * 0.05);
+  EXPECT_GT(error, 1e-5);
+}
+
+TEST(Massless, MatsStayThatAreTooHeavyForTheTolerance) {
+  const std::string head = "accuracy: {tolerance: 0.03, band_hz: 100, over_s: 0}\n";
+  EXPECT_EQ(reduced(string_with_light_joints(head, 20000)).network.mats.size(), 42u);
+  EXPECT_EQ(reduced(string_with_light_joints("reduce: all\n", 20000)).network.mats.size(), 42u);
+}
+
+}  // namespace
+}  // namespace cordis::plan
