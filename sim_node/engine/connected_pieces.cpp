@@ -13,7 +13,7 @@ namespace cordis::engine {
 namespace {
 
 constexpr std::size_t kKeptPerMember = 64;  // pairs that there is room for
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoMember = std::numeric_limits<std::uint32_t>::max();
 
 const SetLiaison& set_of(const NetworkDescription& network, std::size_t set) {
   if (set >= network.sets.size()) {
@@ -42,10 +42,10 @@ ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
       dimension_(network.dimension),
       kernel_(&pair_kernel(best_vector_width())),
       grid_(count_p_, network.dimension),
-      member_(network.mats.size(), kNone) {
+      member_(network.mats.size(), kNoMember) {
   for (const auto* half : {&set_p, &set_q}) {
     for (const std::uint32_t mat : *half) {
-      if (mat >= member_.size() || member_[mat] != kNone) {
+      if (mat >= member_.size() || member_[mat] != kNoMember) {
         throw std::invalid_argument("MAT " + std::to_string(mat) + " does not exist, or twice");
       }
       member_[mat] = static_cast<std::uint32_t>(mat_.size());
@@ -145,7 +145,7 @@ std::size_t ConnectedPieces::find_linked(const World& world,
 void ConnectedPieces::join(const BoundPair& pair) noexcept {
   const std::uint32_t a = member_[pair.mat_a];
   const std::uint32_t b = member_[pair.mat_b];
-  if (a != kNone && b != kNone) join(a, b);
+  if (a != kNoMember && b != kNoMember) join(a, b);
 }
 
 void ConnectedPieces::begin() noexcept {

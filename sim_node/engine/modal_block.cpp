@@ -43,10 +43,6 @@ bool is_of_block(const NetworkDescription& network, const Link& link) {
          network.mats[link.mat_b].kind != MatKind::kPort;
 }
 
-std::size_t padded(std::size_t count) {
-  return (count + kModeBatch - 1) / kModeBatch * kModeBatch;
-}
-
 }  // namespace
 
 ModalBlock::ModalBlock(const NetworkDescription& network) {
@@ -123,7 +119,7 @@ void ModalBlock::find_modes(const NetworkDescription& network) {
     const bool keep = network.most_mode_hz == 0.0 || square_of(m) <= most * most;
     (keep ? low : high).push_back(m);
   }
-  place_.assign(padded(low.size()), 0.0);
+  place_.assign(padded(low.size(), kModeBatch), 0.0);
   moved_.assign(place_.size(), 0.0);
   shape_.assign(network.mats.size() * place_.size(), 0.0);
   left_out_count_ = high.size();

@@ -11,7 +11,7 @@
 namespace cordis::engine {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoPlace = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void StiffnessMatrix::order_masses(const NetworkDescription& network) {
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order(count);
   if (count > 0) Eigen::AMDOrdering<int>()(graph, order);
 
-  place_.assign(network.mats.size(), kNone);
+  place_.assign(network.mats.size(), kNoPlace);
   for (int k = 0; k < count; ++k) {
     const std::uint32_t mat = masses[static_cast<std::size_t>(order.indices()[k])];
     place_[mat] = static_cast<std::uint32_t>(k);
@@ -66,7 +66,7 @@ void StiffnessMatrix::lay_out(const NetworkDescription& network) {
   };
   for (const Link& link : network.links) {
     const auto [low, high] = of_tie(link);
-    if (high != kNone) earlier[high].push_back(low);
+    if (high != kNoPlace) earlier[high].push_back(low);
   }
   for (auto& masses : earlier) {
     std::sort(masses.begin(), masses.end());
@@ -75,9 +75,9 @@ void StiffnessMatrix::lay_out(const NetworkDescription& network) {
   const double dt = network.step;
   for (const Link& link : network.links) {
     const auto [low, high] = of_tie(link);
-    if (low == kNone) continue;
-    std::uint32_t slot = kNone;
-    if (high != kNone) {
+    if (low == kNoPlace) continue;
+    std::uint32_t slot = kNoPlace;
+    if (high != kNoPlace) {
       const auto found = std::lower_bound(earlier[high].begin(), earlier[high].end(), low);
       slot = static_cast<std::uint32_t>(found - earlier[high].begin());
     }
@@ -157,9 +157,9 @@ void StiffnessMatrix::add_block(std::uint32_t row_mass, std::uint32_t column_mas
 void StiffnessMatrix::add_tie(const Tie& tie, const Tangent& part) noexcept {
   const std::uint32_t a = place_[tie.mat_a];
   const std::uint32_t b = place_[tie.mat_b];
-  if (a != kNone) add_block(a, a, 0, part, 1.0);
-  if (b != kNone) add_block(b, b, 0, part, 1.0);
-  if (tie.slot != kNone) add_block(std::min(a, b), std::max(a, b), tie.slot, part, -1.0);
+  if (a != kNoPlace) add_block(a, a, 0, part, 1.0);
+  if (b != kNoPlace) add_block(b, b, 0, part, 1.0);
+  if (tie.slot != kNoPlace) add_block(std::min(a, b), std::max(a, b), tie.slot, part, -1.0);
 }
 
 bool StiffnessMatrix::assemble(const MatArray& mats) noexcept {

@@ -40,7 +40,7 @@ function groups() {
       if (name.startsWith('..') || member.startsWith(build + path.sep) || name.startsWith('tests/')) continue;
       if (!name.startsWith(beginning) || !name.endsWith('.cpp') || seen.has(name)) continue;
       seen.add(name);
-      const key = JSON.stringify([name.split('/').slice(0, 2).join('/'), options]);
+      const key = JSON.stringify([path.dirname(name).split('/').slice(0, 2).join('/'), options]);
       if (!groups.has(key)) groups.set(key, { options, members: [] });
       groups.get(key).members.push({ file: member, object });
     }
