@@ -64,41 +64,6 @@ std::vector<Vec3> read_axis_directions(config::MappingReader& reader, std::size_
   return directions;
 }
 
-/// The role; without a known one, that which the other keys speak for.
-Role read_role(config::MappingReader& reader, config::Problems& problems) {
-  const std::size_t errors_before = problems.error_count();
-  const std::string role = reader.required_choice("role", {"mass", "liaison"});
-  if (problems.error_count() != errors_before) {
-    return reader.has("mass_kg") ? Role::kLiaison : Role::kMass;
-  }
-  return role == "mass" ? Role::kMass : Role::kLiaison;
-}
-
-/// The one MAT of a port.
-Piece read_port_mat(config::MappingReader& reader, const Port& port, int space,
-                    config::Problems& problems) {
-  Piece piece;
-  const bool is_mass = port.role == Role::kMass;
-  const std::optional<Grain> ball = optional_ball(reader, !is_mass, problems);
-  piece.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
-  piece.radius_m.push_back(ball.value_or(Grain{}).radius);
-  if (!is_mass) {
-    piece.mats[0].kind = engine::MatKind::kMass;
-    piece.mats[0].mass = ball ? ball->mass : reader.required_number("mass_kg", Range::positive());
-  }
-  if ((is_mass || ball) && reader.optional_value("mass_kg").exists()) {
-    reader.error_at("mass_kg",
-                    is_mass ? "a port of role mass has no 'mass_kg': the device itself is the mass"
-                            : "either 'mass_kg' or 'ball' can be given in " + reader.what());
-  }
-  read_drawing(reader, piece);
-  if (space == 1) {
-    const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
-    piece.layout.push_back({at[0], at[1]});
-  }
-  return piece;
-}
-
 /// A spring-damper between the handle that the device moves and a simulated tool, which the scene
 /// touches: what the hand feels is never stiffer than the coupling, whatever the scene is. It is a
 /// tie: a damper along the line from handle to tool would let the tool circle its handle.
@@ -108,15 +73,9 @@ struct Coupling {
   double mass = 0.05;        // of the tool [kg]
 };
 
-/// `virtual` when the port does not say; nothing when the device holds the MAT of the port itself.
-std::optional<Coupling> read_coupling(config::MappingReader& reader, Role role,
-                                      config::Problems& problems) {
-  if (role == Role::kLiaison) {
-    if (!reader.has("coupling")) return {};
-    reader.error_at("coupling", "a port of role liaison has no 'coupling': its mass is the tool");
-    reader.optional_value("coupling");
-    return {};
-  }
+/// What `coupling` says; nothing for `direct`: the device holds the MAT of the port itself.
+/// `virtual` when the port does not say.
+std::optional<Coupling> read_coupling(config::MappingReader& reader, config::Problems& problems) {
   Coupling coupling;
   if (!reader.has("coupling")) return coupling;
   const Value value = reader.optional_value("coupling");
@@ -138,11 +97,54 @@ std::optional<Coupling> read_coupling(config::MappingReader& reader, Role role,
   return coupling;
 }
 
+/// The ball of a port, its mass 0 when it does not say.
+Grain read_port_ball(config::MappingReader& reader, config::Problems& problems) {
+  Grain grain;
+  const Value section = reader.optional_mapping("ball");
+  if (!section.exists()) return grain;
+  config::MappingReader ball(section, "'ball' of " + reader.what(), problems);
+  ball.optional_value("mass_kg");
+  if (ball.has("mass_kg")) grain.mass = ball.required_number("mass_kg", Range::positive());
+  grain.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
+  ball.finish();
+  return grain;
+}
+
+/// The mass that the port says itself, of the simulated MAT that the scene touches: of the port in
+/// role liaison, of the tool in role mass; 0 when it does not say. The same keys serve both roles,
+/// so that the role is switched by one word.
+double read_port_mass(config::MappingReader& reader, const Grain& ball) {
+  reader.optional_value("mass_kg");
+  if (!reader.has("mass_kg")) return ball.mass;
+  if (ball.mass > 0.0) {
+    reader.error_at("mass_kg",
+                    "the mass is given twice in " + reader.what() + ", by 'mass_kg' and by 'ball'");
+  }
+  return reader.required_number("mass_kg", Range::positive());
+}
+
+/// The MAT of a port, as the device holds it.
+Piece port_piece(config::MappingReader& reader, const Port& port, double radius, int space) {
+  Piece piece;
+  piece.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
+  piece.radius_m.push_back(radius);
+  read_drawing(reader, piece);
+  if (space == 1) {
+    const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
+    piece.layout.push_back({at[0], at[1]});
+  }
+  return piece;
+}
+
+void make_tool(engine::Mat& mat, double mass) {
+  mat.kind = engine::MatKind::kMass;
+  mat.mass = mass;
+}
+
 /// Makes the MAT of the piece the tool, and adds the handle and the coupling.
-void couple(Piece& piece, const Coupling& coupling) {
-  engine::Mat handle = piece.mats[0];
-  piece.mats[0].kind = engine::MatKind::kMass;
-  piece.mats[0].mass = coupling.mass;
+void couple(Piece& piece, const Coupling& coupling, double mass) {
+  const engine::Mat handle = piece.mats[0];
+  make_tool(piece.mats[0], mass);
   piece.mats.push_back(handle);
   piece.radius_m.push_back(0.0);
   piece.drawn_radius_m.push_back(0.0);
@@ -169,10 +171,13 @@ void Assembly::read_port(const Value::Entry& entry) {
   port.device_id = config::name_hash(port.device);
   for (const long axis : reader.required_integers("axes", 0, kMostAxes - 1))
     port.axes.push_back(static_cast<std::uint32_t>(axis));
-  port.role = read_role(reader, problems_);
+  const bool is_mass = reader.required_choice("role", {"mass", "liaison"}) != "liaison";
+  port.role = is_mass ? Role::kMass : Role::kLiaison;
   port.rest = space == 1 ? optional_point(reader, "at_m", Vec3::Zero(), 1)
                          : required_point(reader, "at_m", space);
-  Piece piece = read_port_mat(reader, port, space, problems_);
+  const Grain ball = read_port_ball(reader, problems_);
+  const double own_mass = read_port_mass(reader, ball);
+  Piece piece = port_piece(reader, port, ball.radius, space);
   if (space == 1 && !reader.has("layout_at_m")) ports_without_layout_.push_back(mat_count());
   if (port.axes.size() > static_cast<std::size_t>(space)) {
     reader.error_at("axes", reader.what() + " has " + std::to_string(port.axes.size()) +
@@ -183,8 +188,14 @@ void Assembly::read_port(const Value::Entry& entry) {
   } else {
     port.directions = read_axis_directions(reader, port.axes.size(), space, problems_);
   }
-  const std::optional<Coupling> coupling = read_coupling(reader, port.role, problems_);
-  if (coupling) couple(piece, *coupling);
+  std::optional<Coupling> coupling = read_coupling(reader, problems_);
+  const double mass = own_mass > 0.0 ? own_mass : coupling.value_or(Coupling{}).mass;
+  if (!is_mass) {
+    coupling.reset();  // the mass of the port is the tool
+    make_tool(piece.mats[0], mass);
+  } else if (coupling) {
+    couple(piece, *coupling, mass);
+  }
   if (coupling && space == 1 && !reader.has("layout_at_m")) {
     ports_without_layout_.push_back(mat_count() + 1);
   }
@@ -197,9 +208,9 @@ void Assembly::read_port(const Value::Entry& entry) {
       problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
   names_.add({entry.key, Named::kPort, port.tool, 1, sound, entry.key_place}, problems_);
   scene_.matter.push_back({entry.key, port.tool, 1, entry.key_place});
+  // What the device holds has a name of its own, whether it is the same MAT or not.
+  names_.add({entry.key + ".handle", Named::kPort, port.mat, 1, sound, entry.key_place}, problems_);
   if (coupling) {
-    names_.add({entry.key + ".handle", Named::kPort, port.mat, 1, sound, entry.key_place},
-               problems_);
     scene_.matter.push_back({entry.key + ".handle", port.mat, 1, entry.key_place});
     name_links(entry.key + ".coupling", links_before, sound, entry.key_place, nullptr);
   }

@@ -67,14 +67,23 @@ BENCHMARK(device_tick)->Unit(benchmark::kMicrosecond);
 std::atomic<int> board_keys{16};
 test::Plug* board_plug = nullptr;
 
-/// 10 s at 1 kHz. Counters: cycles whose STATE did not come within their period, damaged frames,
-/// and the round trip from FORCE to STATE.
+/// 10 s at 1 kHz, over a pseudo-terminal or UDP. Counters: cycles whose STATE did not come within
+/// their period, damaged frames, the round trip from FORCE to STATE, and what of it had passed when
+/// the board had its first byte: the part of the far end and of the machine between.
 void kfb1_at_1_khz(benchmark::State& state) {
   std::string folder = (std::filesystem::temp_directory_path() / "cordis-bench-XXXXXX").string();
   folder = mkdtemp(folder.data());
+  const bool udp = state.range(0) != 0;
   kfb1 firmware{};
-  test::Plug plug([&](std::uint8_t byte) { kfb1_byte(&firmware, byte); },
-                  [&] { kfb1_tick(&firmware); });
+  std::atomic<std::int64_t> asked_nsec = 0;  // 0: the board knows already
+  node::LatencyHistogram to_board;
+  test::Plug plug(
+      [&](std::uint8_t byte) {
+        const std::int64_t asked = asked_nsec.exchange(0);
+        if (asked != 0) to_board.record(node::monotonic_nsec() - asked);
+        kfb1_byte(&firmware, byte);
+      },
+      [&] { kfb1_tick(&firmware); });
   board_plug = &plug;
   kfb1_board board{};
   board.keys = static_cast<std::uint8_t>(board_keys.load());
@@ -91,14 +100,19 @@ void kfb1_at_1_khz(benchmark::State& state) {
   kfb1_start(&firmware, &board);
   // The far end is a controller that does nothing else: its thread inherits the priority.
   node::make_realtime(80);
-  plug.into_serial_line(folder + "/tty");
+  std::string port = "port: " + folder + "/tty";
+  if (udp) {
+    port = "udp: '127.0.0.1:" + std::to_string(plug.into_udp()) + "'";
+  } else {
+    plug.into_serial_line(folder + "/tty");
+  }
 
   config::Problems problems;
   AxisLayout layout;
   layout.count = board_keys;
-  const auto driver = make_kfb1(
-      config::load_text("{port: " + folder + "/tty, answer_within_s: 0.0009}", "kfb1", problems),
-      layout, problems);
+  const auto driver =
+      make_kfb1(config::load_text("{" + port + ", answer_within_s: 0.0009}", "kfb1", problems),
+                layout, problems);
   auto& hardware = dynamic_cast<Hardware&>(*driver);
   driver->start(Role::kMass);
   while (!driver->write({})) {
@@ -111,6 +125,7 @@ void kfb1_at_1_khz(benchmark::State& state) {
     for (int n = 0; n < 10000; ++n) {
       pace.wait();
       const std::int64_t begin = node::monotonic_nsec();
+      asked_nsec = begin;
       absent += !driver->write({1.0, 2.0});
       round_trip.record(node::monotonic_nsec() - begin);
     }
@@ -122,9 +137,11 @@ void kfb1_at_1_khz(benchmark::State& state) {
   state.counters["p50 [us]"] = round_trip.quantile_nsec(0.5) * 1e-3;
   state.counters["p99 [us]"] = round_trip.quantile_nsec(0.99) * 1e-3;
   plug.pull();
+  state.counters["to board p99 [us]"] = to_board.quantile_nsec(0.99) * 1e-3;
+  state.counters["to board longest [us]"] = static_cast<double>(to_board.largest_nsec()) * 1e-3;
   std::filesystem::remove_all(folder);
 }
-BENCHMARK(kfb1_at_1_khz)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(kfb1_at_1_khz)->ArgName("udp")->Arg(0)->Arg(1)->Iterations(1)->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace cordis::device

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <numbers>
 #include <random>
+#include <regex>
 #include <sstream>
 #include <utility>
 
@@ -53,6 +54,23 @@ TEST(ExampleScene, LoadsWithoutAWord) {
     load_scene(file, problems);
     EXPECT_EQ(problems.text(), "") << file;
   }
+}
+
+TEST(ExampleScene, ChangesTheRoleOfItsDevicesByOneWord) {
+  int switched = 0;
+  for (const std::string& file : files_in(kConfigs / "scenes")) {
+    const std::string before = text_of(file);
+    const std::string after = std::regex_replace(before, std::regex("role: mass"), "role: liaison");
+    config::Problems problems;
+    const Scene scene = load_scene_text(after, file, problems);
+    EXPECT_EQ(problems.text(), "") << file;
+    for (const Port& port : scene.ports) {
+      EXPECT_EQ(port.role, Role::kLiaison);
+      EXPECT_GT(scene.network.mats[port.mat].mass, 0.0);
+      ++switched;
+    }
+  }
+  EXPECT_GE(switched, 15);
 }
 
 TEST(ExampleScene, OfEveryLaunchFileLoadsWithoutAWord) {

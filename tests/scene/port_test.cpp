@@ -117,6 +117,28 @@ TEST(Port, ACouplingPutsAToolBetweenTheDeviceAndTheScene) {
   EXPECT_EQ(scene.signals.signals()[1].direction, Vec3(Vec3::UnitY()));
 }
 
+TEST(Port, OfEitherRoleTakesTheSameKeys) {
+  const auto port_with = [](const std::string& keys) {
+    return scene_with_bob(1, "",
+                          "ports:\n  p: {device: d, axes: 0, " + keys +
+                              "}\nsignals:\n  f: {of: p.handle, quantity: force}\n");
+  };
+  const auto tool_mass = [&](const std::string& keys) {
+    const Scene scene = port_with(keys);
+    return scene.network.mats[scene.ports.at(0).tool].mass;
+  };
+  for (const std::string role : {"role: mass", "role: liaison"}) {
+    EXPECT_EQ(tool_mass(role), 0.05);
+    EXPECT_EQ(tool_mass(role + ", mass_kg: 0.3"), 0.3);
+    EXPECT_EQ(tool_mass(role + ", ball: {mass_kg: 0.2, radius_m: 0.01}"), 0.2);
+    EXPECT_EQ(tool_mass(role + ", ball: {radius_m: 0.01}"), 0.05);
+    EXPECT_EQ(tool_mass(role + ", coupling: {mass_kg: 0.1}"), 0.1);
+    const Scene direct = port_with(role + ", coupling: direct, mass_kg: 0.3");
+    EXPECT_EQ(direct.ports.at(0).mat, direct.ports.at(0).tool);
+    EXPECT_EQ(direct.signals.signals()[0].index, direct.ports.at(0).mat);
+  }
+}
+
 TEST(Port, ACouplingHasDefaultsAndMayBeRefusedInAWord) {
   const auto links_with = [](const std::string& coupling) {
     return scene_with_bob(1, "", "ports:\n  p: {device: d, axes: 0, role: mass" + coupling + "}\n")
