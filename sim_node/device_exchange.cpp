@@ -111,6 +111,7 @@ void DeviceExchange::begin_tick() noexcept {
   if (is_lost()) {
     // Positions are held where they are; the force of a hand that is gone is none.
     if (role_ == Role::kLiaison) to_.fill(0.0);
+    if (brake_) brake_->start();
     return;
   }
   const double share = 1.0 / static_cast<double>(std::max(rejoin_left_, 1));

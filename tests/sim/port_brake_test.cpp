@@ -80,6 +80,11 @@ class Loop {
     sample.force_n()[0] = force;
     if (hold_.tells_work) sample.work_j(work_);
     exchange_.receive(sample);
+    live();
+  }
+
+  /// A tick, with or without a new sample.
+  void live() {
     exchange_.begin_tick();
     for (int n = 1; n <= hold_.sub_steps; ++n) {
       exchange_.play(world_, n, hold_.sub_steps);
@@ -161,6 +166,18 @@ TEST(PortBrake, KeepsToItselfWhenTheDeviceTellsNoWork) {
   swing(loop);
 
   EXPECT_EQ(loop.braked_ticks(), 0u);
+}
+
+TEST(PortBrake, LetsGoOfAMassThatNobodyHolds) {
+  Loop loop({5.0, 1, 10.0 * 5.0 / kTick});
+  for (int n = 0; n < 700; ++n) loop.tick(0.005);
+  ASSERT_GT(loop.braked_ticks(), 0u);
+  for (int n = 0; n < 25; ++n) loop.live();  // the device is lost
+  const std::uint64_t braked = loop.braked_ticks();
+
+  for (int n = 0; n < 100; ++n) loop.live();
+
+  EXPECT_EQ(loop.braked_ticks(), braked);
 }
 
 TEST(PortBrake, HoldsAMassOfManySmallStepsToo) {
