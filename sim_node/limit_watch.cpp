@@ -45,14 +45,15 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     }
   }
   const plan::Reach reach = plan::reach_of(network);
+  std::uint32_t index = 0;
   for (const engine::StateLink& link : network.state_links) {
+    const double viscosity = weights.viscosity_of_state_link(index++);
     links_.push_back({link.mat_a, link.mat_b, static_cast<std::uint32_t>(slopes_.size())});
     const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
     for (std::size_t state = 0; state < behaviour.states.size(); ++state) {
       const plan::Slope slope =
           plan::largest_slope(only(behaviour, state), link.rest_length, network.dimension, reach);
-      slopes_.push_back(
-          number(weights.stiffness * slope.stiffness, weights.viscosity * slope.viscosity));
+      slopes_.push_back(number(weights.stiffness * slope.stiffness, viscosity * slope.viscosity));
     }
   }
 }

@@ -17,6 +17,7 @@ Eigen::Map<Vec3> column(AlignedVector<double>& columns, std::size_t mat) noexcep
 Leapfrog::Leapfrog(const NetworkDescription& network)
     : MomentMover(network.mats.size()),
       sweeps_(damps_in_sweeps(network) ? std::make_unique<DampingSweeps>(network) : nullptr),
+      steep_links_(network),
       velocity_(sweeps_ ? felt_.size() : 0, 0.0) {}
 
 void Leapfrog::start(WorldState& world) noexcept {
@@ -43,6 +44,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   StepEnergy& energy = moved.energy;
   begin_step(world, energy);
   feel_ports(world);
+  steep_links_.begin_step(world);
   find_forces(world, felt_.data(), energy);
 
   if (sweeps_) {
@@ -66,6 +68,14 @@ double Leapfrog::stop_what_rests(WorldState& world) noexcept {
     column(felt_, mat) = world.mats.position(mat);
   }
   return energy;
+}
+
+double Leapfrog::correct_forces(WorldState& world) noexcept {
+  return steep_links_.solve(world, felt_, sweeps_.get(), started_);
+}
+
+void Leapfrog::adopt(WorldState& world) noexcept {
+  steep_links_.choose(world.description(), world.table.behaviours());
 }
 
 /// What a port does is given from outside: it is felt as it has moved in the last period.

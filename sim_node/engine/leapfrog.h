@@ -7,6 +7,7 @@
 #include "sim_node/engine/aligned_vector.h"
 #include "sim_node/engine/damping_sweeps.h"
 #include "sim_node/engine/moment_mover.h"
+#include "sim_node/engine/steep_links.h"
 
 namespace cordis::engine {
 
@@ -17,7 +18,8 @@ namespace cordis::engine {
 ///
 /// Where linear links or the medium are too viscous for that (damps_in_sweeps), their viscosities
 /// act in DampingSweeps between the two halves of the push by all other forces:
-/// 4 M - dt^2 K > 0 is enough then.
+/// 4 M - dt^2 K > 0 is enough then. Where the viscosity of state links is (friction, bows), they
+/// are solved one by one (SteepLinks), with the same limit. Sets are always extrapolated.
 ///
 /// Ports are given, so their velocity is that of the last period; Maxwell elements answer to the
 /// growth in the last period. The account belongs to the moment of the last forces: kinetic energy
@@ -29,12 +31,14 @@ class Leapfrog final : public MomentMover {
 
   void start(WorldState& world) noexcept override;
   Moved step(WorldState& world) noexcept override;
+  void adopt(WorldState& world) noexcept override;
   Energy energy(WorldState& world) const noexcept override;
   Vec3 velocity(const WorldState& world, std::uint32_t mat) const noexcept override;
 
   void add_to(StateHash& hash) const noexcept override;
 
  private:
+  double correct_forces(WorldState& world) noexcept override;
   double stop_what_rests(WorldState& world) noexcept;
   void feel_ports(const WorldState& world) noexcept;
   std::uint32_t advance_in_sweeps(WorldState& world, StepEnergy& energy) noexcept;
@@ -42,7 +46,8 @@ class Leapfrog final : public MomentMover {
 
   AlignedVector<double>& felt_ = memory_;  // x(n) - dt v(n) [m]
   std::unique_ptr<DampingSweeps> sweeps_;  // none: dampers see the extrapolated velocity
-  AlignedVector<double> velocity_;         // of the step in progress, of sweeps [m/s]
+  SteepLinks steep_links_;
+  AlignedVector<double> velocity_;  // of the step in progress, of sweeps [m/s]
 };
 
 }  // namespace cordis::engine

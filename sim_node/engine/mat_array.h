@@ -79,6 +79,14 @@ class MatArray {
   /// displacements, 4 x N [kg m]. @return half of what it takes in a period [J]
   double find_push_in_medium(const AlignedVector<double>& displacement,
                              AlignedVector<double>& push) const noexcept;
+  /// What a force and gravity add to the way of a mass in a period [m].
+  Vec3 pushed_by(std::uint32_t mat, const Vec3& force) const noexcept {
+    return dt2_over_mass_[mat] * force + weight_step_;
+  }
+  /// What the medium does to a mass at x(n) - dt v(n) [N].
+  Vec3 force_of_medium(std::uint32_t mat, const Vec3& felt) const noexcept {
+    return medium_viscosity_over_dt_ * (felt - position(mat));
+  }
   /// Adds to the forces on all MATs, 4 x N.
   void add_forces(const AlignedVector<double>& more) noexcept;
 

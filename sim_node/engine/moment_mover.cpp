@@ -14,7 +14,8 @@ void MomentMover::begin_step(WorldState& world, StepEnergy& energy) noexcept {
 }
 
 void MomentMover::find_forces(WorldState& world, const double* felt, StepEnergy& energy) noexcept {
-  take_half(world.add_forces_of_moment(felt, energy), energy);
+  const double half = world.add_forces_of_moment(felt, energy);
+  take_half(half + correct_forces(world), energy);
   energy.port_work += world.outside.work_at_ports(world.mats);
   energy.port_work += world.outside.push(world.mats);
 }
@@ -43,6 +44,7 @@ const double* MomentMover::take_state(WorldState& world, const double* state) no
   pending_.port_work = *state++;
   started_ = *state++ != 0.0;
   world.mats.set_forces_are_present(!started_);
+  adopt(world);
   return state;
 }
 

@@ -24,6 +24,9 @@ class MomentMover : public Mover {
   void begin_step(WorldState& world, StepEnergy& energy) noexcept;
   /// The forces of all liaisons, where dampers see (position - felt) / dt, and those from outside.
   void find_forces(WorldState& world, const double* felt, StepEnergy& energy) noexcept;
+  /// Puts other forces in the place of some of them. @return half of what that changes in what
+  /// viscosity takes in a period [J]
+  virtual double correct_forces(WorldState&) noexcept { return 0.0; }
   /// Enters one half of a loss that lies about the moment; the other is pending.
   void take_half(double half, StepEnergy& energy) noexcept;
   /// After the MATs have moved.

@@ -58,6 +58,16 @@ class StateLinkArray {
   std::uint32_t state_of(const StateTable& table, std::uint32_t link) const noexcept;
   double rest_length(std::uint32_t link) const noexcept { return rest_length_[link]; }
   double pull(std::uint32_t link) const noexcept { return pull_[link]; }
+  StateIndex state_index(std::uint32_t link) const noexcept { return state_[link]; }
+  /// Whether a change of state has happened in this step, which is not the first.
+  bool is_new(std::uint32_t link, std::uint64_t step) const noexcept {
+    return step > 0 && entered_[link] == static_cast<double>(step);
+  }
+  /// The pull of this step is another one; its force has been put on the MATs.
+  void set_pull(std::uint32_t link, double pull) noexcept {
+    impulse_[link] += (pull - pull_[link]) * dt_;
+    pull_[link] = pull;
+  }
 
   void add_to(StateHash& hash) const noexcept;
   std::size_t state_size() const noexcept;

@@ -1,6 +1,8 @@
 // sim_node/plan/limit_weights.cpp
 #include "sim_node/plan/limit_weights.h"
 
+#include <cmath>
+
 namespace cordis::plan {
 
 using engine::Integrator;
@@ -14,6 +16,9 @@ LimitWeights limit_weights(const engine::NetworkDescription& network, Limit limi
     case Integrator::kLeapfrog:  // 4 M - dt^2 K - 4 dt Z > 0, without Z in sweeps
       weights.link_viscosity = engine::damps_in_sweeps(network) ? 0.0 : 2.0;
       weights.viscosity = 2.0;
+      for (const double step : engine::largest_extrapolated_steps(network)) {
+        weights.solved.push_back(network.step > step ? 1 : 0);
+      }
       break;
     case Integrator::kSymplectic4: {  // w dt below these, where `cordis` has 2
       const double most = limit == Limit::kStable ? engine::kSymplectic4Limit : kSurelyDiverging;
@@ -30,11 +35,24 @@ LimitWeights limit_weights(const engine::NetworkDescription& network, Limit limi
   return weights;
 }
 
+std::vector<double> changing_steps(const engine::NetworkDescription& network) {
+  if (network.integrator != Integrator::kLeapfrog) return {};
+  std::vector<double> steps = engine::largest_extrapolated_steps(network);
+  steps.push_back(engine::largest_extrapolated_step(network));
+  std::erase_if(steps, [](double step) { return !(step > 0.0 && std::isfinite(step)); });
+  std::sort(steps.begin(), steps.end());
+  return steps;
+}
+
 LiaisonGraph weighted(LiaisonGraph graph, const LimitWeights& weights) {
   for (Joint& joint : graph.joints) {
     const bool linear = joint.liaison.kind == LiaisonKind::kLink;
     joint.stiffness *= linear ? weights.link_stiffness : weights.stiffness;
     joint.viscosity *= linear ? weights.link_viscosity : weights.viscosity;
+    if (joint.liaison.kind == LiaisonKind::kStateLink &&
+        weights.viscosity_of_state_link(joint.liaison.index) == 0.0) {
+      joint.viscosity = 0.0;
+    }
   }
   for (Crowd& crowd : graph.crowds) {
     crowd.stiffness *= weights.stiffness;

@@ -2,7 +2,12 @@
 // integrator.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 #include "sim_node/engine/network.h"
+#include "sim_node/engine/steep_links.h"
 #include "sim_node/plan/liaison_graph.h"
 #include "sim_node/plan/step_bound.h"
 
@@ -15,6 +20,12 @@ struct LimitWeights {
   double link_viscosity = 1.0;  ///< of linear links and the medium
   double stiffness = 1.0;       ///< of all others
   double viscosity = 1.0;
+  std::vector<std::uint8_t> solved;  ///< by state link: solved for its speed; empty: none
+
+  /// `viscosity`, but 0 where a link is solved for its speed.
+  double viscosity_of_state_link(std::uint32_t link) const noexcept {
+    return link < solved.size() && solved[link] != 0 ? 0.0 : viscosity;
+  }
 };
 
 /// For which of the two limits: up to it surely stable, or beyond it surely diverging. Those of
@@ -36,21 +47,29 @@ inline double step_of(const StepBound& bound) {
   return bound.step;
 }
 
-/// `leapfrog` takes dampers apart beyond some step: up to there its limit is one, beyond another.
+/// The steps beyond which `leapfrog` no longer extrapolates the velocity of some damper, ascending;
+/// none for the others.
+std::vector<double> changing_steps(const engine::NetworkDescription& network);
+
+/// `leapfrog` takes dampers apart, and solves steep links, beyond some steps: up to each there is
+/// one limit, beyond it another, which is not nearer.
 /// @param limit_of  a network at its step: the step at which it ends being stable
-/// @return the limit that a network comes to as its step grows, or the one beyond when its step is
-///         there already
+/// @return the limit that a network comes to as its step grows
 template <class LimitOf>
 auto limit_of_all_steps(const engine::NetworkDescription& network, LimitOf limit_of) {
-  const double most = engine::largest_extrapolated_step(network);
-  if (network.integrator != engine::Integrator::kLeapfrog || network.step > most) {
-    return limit_of(network);
+  constexpr int kMostRounds = 16;
+  const std::vector<double> changes = changing_steps(network);
+  auto limit = limit_of(network);
+  engine::NetworkDescription at;
+  double before = network.step;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto after = std::lower_bound(changes.begin(), changes.end(), step_of(limit));
+    if (after == changes.begin() || !(*(after - 1) >= before)) break;
+    if (at.mats.empty()) at = network;
+    before = at.step = *(after - 1) * (1.0 + 1e-9);
+    limit = limit_of(at);
   }
-  auto extrapolated = limit_of(network);
-  if (!(step_of(extrapolated) > most)) return extrapolated;
-  engine::NetworkDescription in_sweeps = network;
-  in_sweeps.step = most * (1.0 + 1e-9);
-  return limit_of(in_sweeps);
+  return limit;
 }
 
 }  // namespace cordis::plan

@@ -128,12 +128,14 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
     add(link.mat_a, link.mat_b, network, stiffness, pull, weights.link_viscosity * link.viscosity,
         0.0);
   }
+  std::uint32_t index = 0;
   for (const engine::StateLink& link : network.state_links) {
     const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
     const double length = distance(link.mat_a, link.mat_b);
     const Tangent tangent = stiffest_tangent(behaviour, link.rest_length, length);
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
-        weights.stiffness * tangent.pull, weights.viscosity * tangent.viscosity, 0.0);
+        weights.stiffness * tangent.pull,
+        weights.viscosity_of_state_link(index++) * tangent.viscosity, 0.0);
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     add(link.mat_a, link.mat_b, network, weights.stiffness * link.stiffness, 0.0, 0.0,

@@ -1,0 +1,232 @@
+// tests/engine/steep_links_test.cpp -- friction that `leapfrog` solves for its speed.
+#include "sim_node/engine/steep_links.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/programs.h"
+#include "tests/engine/scenes.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cordis::test::steep {
+namespace {
+
+using engine::Integrator;
+using engine::Law;
+
+Law power_of_speed(double coefficient, double exponent) {
+  Law law;
+  law.kind = Law::Kind::kPower;
+  law.coefficient = coefficient;
+  law.exponent = exponent;
+  return law;
+}
+
+LinkState with_friction(const Law& law) {
+  LinkState state;
+  state.dissipation = law;
+  return state;
+}
+
+/// MAT 0 fixed, MAT 1 of 1 kg at 1 m with the speed v0, between them one state.
+NetworkDescription one_mass(const LinkState& state, double v0, double step) {
+  NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, v0, step);
+  scene.links.clear();
+  scene.behaviours = {Behaving().state(state).behaviour};
+  scene.state_links = {{0, 1, 0, 0.0}};
+  scene.integrator = Integrator::kLeapfrog;
+  return scene;
+}
+
+TEST(SteepLinks, FollowTheRecurrenceOfTheCentredDamper) {
+  // (1 + Z'/2) x+ = (2 - K') x - (1 - Z'/2) x-, m = 1 and dt = 1
+  constexpr double kStiffness = 1.0;
+  constexpr double kViscosity = 5.0;
+  LinkState state;
+  state.stiffness = kStiffness;
+  state.viscosity = kViscosity;
+  World world = make_world(one_mass(state, 0.0, 1.0));
+  run(world, 1);
+  double before = 1.0;
+  double now = world.position(1).x();
+  for (int n = 1; n < 200; ++n) {
+    const double next =
+        ((2.0 - kStiffness) * now - (1.0 - 0.5 * kViscosity) * before) / (1.0 + 0.5 * kViscosity);
+    world.step();
+    ASSERT_NEAR(world.position(1).x(), next, 1e-13) << n;
+    before = now;
+    now = next;
+  }
+}
+
+TEST(SteepLinks, BringDryFrictionToRestWhereItStopsAndHoldItThere) {
+  // a power of 0: 2 N against any motion. From 3 m/s 1 kg stops after 1.5 s and 2.25 m.
+  World world = make_world(one_mass(with_friction(power_of_speed(2.0, 0.0)), 3.0, 1e-3));
+  run(world, 1000);
+  EXPECT_NEAR(world.position(1).x(), 1.0 + 2.0, 1e-6);
+  run(world, 1000);
+  EXPECT_NEAR(world.position(1).x(), 1.0 + 2.25, 1e-6);
+  const double stopped = world.position(1).x();
+
+  world.set_external_force(1, Vec3(1.9, 0, 0));
+  run(world, 1000);
+  EXPECT_NEAR(world.position(1).x(), stopped, 1e-5);  // it holds
+  EXPECT_NEAR(world.pull_of(0), 1.9, 1e-6);
+
+  world.set_external_force(1, Vec3(5.0, 0, 0));
+  const double held = world.position(1).x();
+  run(world, 1000);
+  EXPECT_NEAR(world.position(1).x() - held, 1.5, 5e-3);  // 3 m/s^2 for 1 s
+}
+
+TEST(SteepLinks, AreOfSecondOrder) {
+  // a spring of 10 N/m against 50 (s/m)^3 N; 150 N s/m at 1 m/s: solved from 2 ms on
+  const auto end = [](double step) {
+    LinkState state = with_friction(power_of_speed(50.0, 3.0));
+    state.stiffness = 10.0;
+    World world = make_world(one_mass(state, 0.0, step));
+    run(world, static_cast<int>(std::lround(1.0 / step)));
+    return world.position(1).x();
+  };
+  const double truth = end(2e-5);
+
+  EXPECT_LT(std::abs(end(1e-2) - truth), 1.3e-4);
+  EXPECT_NEAR(std::log2((end(1e-2) - truth) / (end(5e-3) - truth)), 2.0, 0.1);
+}
+
+TEST(SteepLinks, InAChainAreSolvedTogether) {
+  NetworkDescription scene = free_cluster(20, 0, 0.0, 1);
+  scene.integrator = Integrator::kLeapfrog;
+  scene.behaviours = {Behaving().state(10.0, 5000.0).behaviour};  // Z' = 100 for two of 0.1 kg
+  for (std::uint32_t i = 0; i + 1 < 20; ++i) scene.state_links.push_back({i, i + 1, 0, 0.0});
+  World world = make_world(scene);
+  const Vec3 momentum = world.momentum();
+  run(world, 3000);
+
+  EXPECT_LT((world.momentum() - momentum).norm(), 1e-10);
+  const double speed = momentum.x() / 20.0 / 0.1;
+  for (std::uint32_t i = 0; i < 20; ++i)
+    EXPECT_LT(std::abs(world.velocity(i).x()), 2.0 * std::abs(speed) + 0.2);
+  EXPECT_LT(world.energy().total(), world.energy().largest);
+}
+
+/// Bow friction [N] over the speed [m/s]: steep through 0, falling beyond 0.07 m/s.
+Law bow_law(double force) {
+  Law law;
+  law.kind = Law::Kind::kTable;
+  for (int i = -1000; i <= 1000; ++i) {
+    const double speed = 1e-3 * i;
+    law.table.at.push_back(speed);
+    law.table.value.push_back(force * std::sqrt(200.0) * speed *
+                              std::exp(-100.0 * speed * speed + 0.5));
+  }
+  return law;
+}
+
+/// 60 masses of 84 mg, 100 Hz, drawn by a bow of 5 N at 0.1 m/s: while it sticks, 117 N s/m.
+NetworkDescription bowed(Integrator integrator, double rate_hz) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1.0 / rate_hz;
+  scene.integrator = integrator;
+  scene.mats.assign(62, mass(8.4e-5, Vec3::Zero()));
+  scene.mats.front() = scene.mats.back() = fixed(Vec3::Zero());
+  for (std::uint32_t i = 0; i < 61; ++i) scene.links.push_back({i, i + 1, 12490.0, 0.004, 0.0});
+  scene.mats.push_back(mass(1e3, Vec3::Zero(), Vec3(0.1, 0, 0)));
+  scene.behaviours = {Behaving().state(with_friction(bow_law(5.0))).behaviour};
+  scene.state_links = {{8, 62, 0, 0.0}};
+  return scene;
+}
+
+/// Where the string is under the bow and at two thirds, 200 times in 45 ms.
+std::vector<double> waveform(Integrator integrator, int per_sample_of_44100) {
+  World world = make_world(bowed(integrator, 44100.0 * per_sample_of_44100));
+  std::vector<double> wave;
+  for (int i = 0; i < 200; ++i) {
+    run(world, 10 * per_sample_of_44100);
+    wave.push_back(world.position(8).x());
+    wave.push_back(world.position(40).x());
+  }
+  return wave;
+}
+
+double relative_error(const std::vector<double>& wave, const std::vector<double>& truth) {
+  double error = 0.0;
+  double motion = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    error += (wave[i] - truth[i]) * (wave[i] - truth[i]);
+    motion += truth[i] * truth[i];
+  }
+  return std::sqrt(error / motion);
+}
+
+TEST(SteepLinks, PlayABowAtAudioRatesWhereAnExplicitLawChatters) {
+  const std::vector<double> truth = waveform(Integrator::kCordis, 32);  // stable from 700 kHz on
+
+  EXPECT_LT(relative_error(waveform(Integrator::kLeapfrog, 1), truth), 0.05);
+  EXPECT_LT(relative_error(waveform(Integrator::kLeapfrog, 4), truth), 0.01);
+  EXPECT_GT(relative_error(waveform(Integrator::kCordis, 4), truth), 0.5);
+}
+
+TEST(SteepLinks, KeepTheAccountOfABow) {
+  const auto residual = [](int per_sample) {
+    World world = make_world(bowed(Integrator::kLeapfrog, 44100.0 * per_sample));
+    run(world, 500 * per_sample);
+    const engine::Energy energy = world.energy();
+    return std::abs(energy.residual()) / energy.dissipated;
+  };
+
+  EXPECT_LT(residual(4), 1e-2);
+}
+
+TEST(SteepLinks, AreTheSameAtEveryVectorWidth) {
+  std::vector<std::uint64_t> hashes;
+  for (const VectorWidth width : engine::supported_vector_widths()) {
+    World world = make_world(bowed(Integrator::kLeapfrog, 44100.0), width);
+    run(world, 500);
+    hashes.push_back(world.state_hash());
+  }
+
+  for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
+}
+
+TEST(SteepLinks, GoOnFromASnapshotBitForBitWithoutAllocating) {
+  World first = make_world(bowed(Integrator::kLeapfrog, 44100.0));
+  run(first, 101);
+  World second = make_world(bowed(Integrator::kLeapfrog, 44100.0));
+  second.restore(first.snapshot());
+  const AllocationGuard guard;
+  run(first, 50);
+  run(second, 50);
+
+  EXPECT_EQ(guard.count(), 0u);
+  EXPECT_EQ(first.state_hash(), second.state_hash());
+}
+
+TEST(SteepLinks, AreChosenAnewWhenABehaviourIsReplaced) {
+  World world = make_world(one_mass(with_friction(power_of_speed(0.1, 1.0)), 1.0, 1.0));
+  world.replace_behaviour(0, Behaving().state(with_friction(power_of_speed(9.0, 1.0))).behaviour);
+  run(world, 200);
+
+  EXPECT_LT(std::abs(world.velocity(1).x()), 1e-6);  // extrapolated it would diverge from 1 on
+}
+
+TEST(SteepLinks, AreThoseBeyondThreeTenthsTogether) {
+  NetworkDescription scene = one_mass({}, 0.0, 1.0);
+  scene.behaviours = {Behaving().state(0.0, 3.0).behaviour,
+                      Behaving().state(with_friction(power_of_speed(1.0, 0.5))).behaviour,
+                      Behaving().state(5.0).behaviour};
+  scene.state_links = {{0, 1, 0, 0.0}, {0, 1, 0, 0.0}, {0, 1, 1, 0.0}, {0, 1, 2, 0.0}};
+  const std::vector<double> steps = engine::largest_extrapolated_steps(scene);
+
+  EXPECT_DOUBLE_EQ(steps[0], 0.05);  // 0.3 / (3 + 3)
+  EXPECT_DOUBLE_EQ(steps[1], 0.05);
+  EXPECT_EQ(steps[2], 0.0);
+  EXPECT_TRUE(std::isinf(steps[3]));
+}
+
+}  // namespace
+}  // namespace cordis::test::steep
