@@ -18,6 +18,7 @@ inline constexpr std::size_t kModeBatch = 8;
 struct ModeDrive {
   double force = 0.0;             // [N]
   const double* shape = nullptr;  // [1/sqrt(kg)]
+  double place = 0.0;             // sum of shape * q(n+1), found by the step [m]
 };
 
 /// One value of each mode; arrays 64-byte aligned, padded with modes that rest to a multiple of 8.
@@ -30,7 +31,7 @@ struct ModeRows {
   const double* gain = nullptr;         // what a force does [s^2]
   const double* constant = nullptr;     // gain * force that is always there
   const double* dissipation = nullptr;  // Z' / 2 gain [1/s^2]
-  const ModeDrive* drives = nullptr;
+  ModeDrive* drives = nullptr;
   std::size_t drive_count = 0;
 };
 

@@ -62,7 +62,7 @@ void ModalMover::drive(std::uint32_t mat) {
   if (is_driven_[mat] != 0 || is_mass_[mat] == 0) return;
   is_driven_[mat] = 1;
   driven_.push_back(mat);
-  drives_.push_back({0.0, block_.shape(mat)});
+  drives_.push_back({0.0, block_.shape(mat), 0.0});
 }
 
 void ModalMover::start(WorldState& world) noexcept {
@@ -108,9 +108,9 @@ Moved ModalMover::step(WorldState& world) noexcept {
   rows.drives = drives_.data();
   rows.drive_count = drives_.size();
   energy.dissipated += kernel_->step(rows);
-  for (const std::uint32_t mat : driven_) {
-    const double place = kernel_->read(block_.shape(mat), rows.place, rows.count);
-    const double next = start_[mat] + place + residual_at(mat);
+  for (std::size_t k = 0; k < driven_.size(); ++k) {
+    const std::uint32_t mat = driven_[k];
+    const double next = start_[mat] + drives_[k].place + residual_at(mat);
     mats.move_port(mat, Vec3(next, 0.0, 0.0));
     if (!std::isfinite(next)) ++moved.non_finite_mats;
   }
