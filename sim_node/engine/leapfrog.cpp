@@ -99,7 +99,7 @@ std::uint32_t Leapfrog::advance_in_sweeps(WorldState& world, StepEnergy& energy)
   }
   sweeps_->clear_force();
   if (started_) {  // before step 0 nothing is known to have pushed
-    mats.push(0.5, velocity_);
+    mats.push(world.kernel, 0.5, velocity_);
     const DampingSweeps::Loss loss = sweeps_->sweep(mats, false, velocity_);
     energy.dissipated += loss.dissipated;
     energy.port_work += loss.port_work;
@@ -108,7 +108,7 @@ std::uint32_t Leapfrog::advance_in_sweeps(WorldState& world, StepEnergy& energy)
   const DampingSweeps::Loss loss = sweeps_->sweep(mats, true, velocity_);
   pending_.dissipated += loss.dissipated;
   pending_.port_work += loss.port_work;
-  mats.push(0.5, velocity_);
+  mats.push(world.kernel, 0.5, velocity_);
   const double dt = world.network->step();
   for (double& value : velocity_) value *= dt;  // displacements now
   const std::uint32_t non_finite = mats.move_by(velocity_);

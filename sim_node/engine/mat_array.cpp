@@ -80,17 +80,22 @@ AdvanceReport MatArray::extrapolate(const StepKernel& kernel,
                       1.0);
 }
 
+/// Of no masses yet.
+MassColumns MatArray::columns(double* felt) noexcept {
+  return {0,
+          0,
+          position_.data(),
+          delayed_.data(),
+          force_.data(),
+          dt2_over_mass_.data(),
+          persistence_.data(),
+          felt,
+          {weight_step_.x(), weight_step_.y(), weight_step_.z(), 0.0}};
+}
+
 /// @param share  of moved_product in the square of a displacement
 AdvanceReport MatArray::advance_rows(Advance advance_row, double* felt, double share) noexcept {
-  MassColumns row{0,
-                  0,
-                  position_.data(),
-                  delayed_.data(),
-                  force_.data(),
-                  dt2_over_mass_.data(),
-                  persistence_.data(),
-                  felt,
-                  {weight_step_.x(), weight_step_.y(), weight_step_.z(), 0.0}};
+  MassColumns row = columns(felt);
   AdvanceReport report;
   bool all_finite = true;
 
@@ -105,24 +110,30 @@ AdvanceReport MatArray::advance_rows(Advance advance_row, double* felt, double s
   return report;
 }
 
-void MatArray::push(double part, AlignedVector<double>& velocity) const noexcept {
-  const double of_displacement = part / dt_;
+void MatArray::push(const StepKernel& kernel, double part,
+                    AlignedVector<double>& velocity) noexcept {
+  MassColumns row = columns(nullptr);
+  const Pushing by{velocity.data(), part / dt_, 0.0, nullptr};
   for (const Range& range : masses_) {
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      const Vec3 pushed =
-          dt2_over_mass_[i] * force(static_cast<std::uint32_t>(i)) + weight_step_;  // a dt^2
-      Eigen::Map<Vec3>(velocity.data() + 4 * i) += of_displacement * pushed;
-    }
+    row.first = range.first;
+    row.last = range.last;
+    kernel.push(row, by);
   }
 }
 
-void MatArray::drift(double part, const AlignedVector<double>& velocity) noexcept {
-  const double time = part * dt_;
+void MatArray::push_and_drift(const StepKernel& kernel, double push, double drift,
+                              AlignedVector<double>& velocity) noexcept {
+  MassColumns row = columns(nullptr);
+  const Pushing by{velocity.data(), push / dt_, drift * dt_, force_.data()};
+  std::size_t cleared = 0;
   for (const Range& range : masses_) {
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      Eigen::Map<Vec3>(position_.data() + 4 * i) += time * Vec3::Map(velocity.data() + 4 * i);
-    }
+    row.first = range.first;
+    row.last = range.last;
+    kernel.push_and_drift(row, by);
+    std::fill(force_.data() + 4 * cleared, force_.data() + 4 * range.first, 0.0);
+    cleared = range.last;
   }
+  std::fill(force_.data() + 4 * cleared, force_.data() + force_.size(), 0.0);
 }
 
 std::uint32_t MatArray::move_by(const AlignedVector<double>& displacement) noexcept {
@@ -136,14 +147,16 @@ std::uint32_t MatArray::move_by(const AlignedVector<double>& displacement) noexc
   return count_non_finite();
 }
 
-std::uint32_t MatArray::delay_by(const AlignedVector<double>& velocity) noexcept {
+std::uint32_t MatArray::delay_by(const StepKernel& kernel,
+                                 const AlignedVector<double>& velocity) noexcept {
+  MassColumns row = columns(nullptr);
+  bool all_finite = true;
   for (const Range& range : masses_) {
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      const Vec3 now = vector(position_, static_cast<std::uint32_t>(i));
-      set_column(delayed_, i, now - dt_ * Vec3::Map(velocity.data() + 4 * i));
-    }
+    row.first = range.first;
+    row.last = range.last;
+    all_finite = kernel.delay(row, velocity.data(), dt_).all_finite && all_finite;
   }
-  return count_non_finite();
+  return all_finite ? 0 : count_non_finite();
 }
 
 void MatArray::find_displacements(AlignedVector<double>& displacement) const noexcept {

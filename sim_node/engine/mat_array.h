@@ -60,19 +60,22 @@ class MatArray {
   AdvanceReport extrapolate(const StepKernel& kernel, AlignedVector<double>& felt) noexcept;
 
   /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
-  void push(double part, AlignedVector<double>& velocity) const noexcept;
-  /// Moves the masses by a part of a period at these velocities; the delayed positions stay.
-  void drift(double part, const AlignedVector<double>& velocity) noexcept;
+  void push(const StepKernel& kernel, double part, AlignedVector<double>& velocity) noexcept;
+  /// The same; then moves them by a part of a period at these velocities, where the delayed
+  /// positions stay, and clears all forces.
+  void push_and_drift(const StepKernel& kernel, double push, double drift,
+                      AlignedVector<double>& velocity) noexcept;
   /// Moves the masses by these displacements. @return how many are not finite then
   std::uint32_t move_by(const AlignedVector<double>& displacement) noexcept;
-  /// The delayed positions become the present ones, less a period at these velocities, if given.
   /// Puts a mass of a network in 1 dimension somewhere.
   void set_motion(std::uint32_t mat, double position, double delayed) noexcept {
     position_[4 * std::size_t{mat}] = position;
     delayed_[4 * std::size_t{mat}] = delayed;
   }
+  /// The delayed positions become the present ones, and those of the masses a period at these
+  /// velocities before them. @return how many positions are not finite
   void delay() noexcept { delayed_ = position_; }
-  std::uint32_t delay_by(const AlignedVector<double>& velocity) noexcept;
+  std::uint32_t delay_by(const StepKernel& kernel, const AlignedVector<double>& velocity) noexcept;
   /// x(n) - x(n-1) of the masses and ports, 4 x N [m].
   void find_displacements(AlignedVector<double>& displacement) const noexcept;
   /// dt^2 times the forces and weights of the masses, and what the medium takes of these
@@ -125,6 +128,7 @@ class MatArray {
   const double* take_state(const double* state) noexcept;
 
  private:
+  MassColumns columns(double* felt) noexcept;
   AdvanceReport advance_rows(Advance advance_row, double* felt, double share) noexcept;
   Columns view(const AlignedVector<double>& columns) const noexcept;
   static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;

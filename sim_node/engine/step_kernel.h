@@ -74,6 +74,20 @@ struct AdvanceResult {
 /// x(n+1) = x(n) + persistence (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2.
 using Advance = AdvanceResult (*)(const MassColumns& masses) noexcept;
 
+/// For schemes that keep velocities: v += push a, and, when it drifts, x += drift v and the forces
+/// are 0 then.
+struct Pushing {
+  double* velocity = nullptr;  // 4 x N [m/s]
+  double push_over_dt = 0.0;   // of what moves a mass by dt^2 / m f(n) + gravity dt^2 [1/s]
+  double drift = 0.0;          // [s]
+  double* force = nullptr;     // to be cleared; null: no drift
+};
+using Push = void (*)(const MassColumns& masses, const Pushing& by) noexcept;
+
+/// x(n-1) = x(n) - dt v. @param dt  [s]
+using Delay = AdvanceResult (*)(const MassColumns& masses, const double* velocity,
+                                double dt) noexcept;
+
 /// The loops of one width. Those of a moment remember nothing for an account: `elastic` is 0 and
 /// `dissipated` the viscous power of these forces times dt, once. The last two keep in `felt` the
 /// velocity that dampers and medium see, v(n) = 1.5 v(n-1/2) - 0.5 v(n-3/2): x(n+1) = x(n) + (x(n)
@@ -91,6 +105,9 @@ struct StepKernel {
   Advance advance_in_medium = nullptr;
   Advance extrapolate = nullptr;  // of `leapfrog`
   Advance extrapolate_in_medium = nullptr;
+  Push push = nullptr;
+  Push push_and_drift = nullptr;
+  Delay delay = nullptr;
 };
 
 extern const StepKernel kStepKernelSse2;

@@ -195,6 +195,44 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
   return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(blemish)};
 }
 
+template <class Lanes, bool kDrifts>
+void push_masses(const MassColumns& masses, const Pushing& by) noexcept {
+  using Column = typename Lanes::Column;
+  const Column weight_step = Lanes::load_column(masses.weight_step);
+  const Column push = Lanes::broadcast(by.push_over_dt);
+  const Column drift = Lanes::broadcast(by.drift);
+  const Column none = Lanes::broadcast(0.0);
+
+  for (std::size_t i = masses.first; i < masses.last; ++i) {
+    const Column pushed =
+        Lanes::broadcast(masses.dt2_over_mass[i]) * Lanes::load_column(masses.force + 4 * i) +
+        weight_step;
+    const Column velocity = Lanes::load_column(by.velocity + 4 * i) + push * pushed;
+    Lanes::store_column(by.velocity + 4 * i, velocity);
+    if constexpr (kDrifts) {
+      const Column position = Lanes::load_column(masses.position + 4 * i);
+      Lanes::store_column(masses.position + 4 * i, position + drift * velocity);
+      Lanes::store_column(by.force + 4 * i, none);
+    }
+  }
+}
+
+template <class Lanes>
+AdvanceResult delay_masses(const MassColumns& masses, const double* velocity, double dt) noexcept {
+  using Column = typename Lanes::Column;
+  const Column period = Lanes::broadcast(dt);
+  Column blemish = Lanes::broadcast(0.0);
+
+  for (std::size_t i = masses.first; i < masses.last; ++i) {
+    const Column position = Lanes::load_column(masses.position + 4 * i);
+    const Column delayed = position - period * Lanes::load_column(velocity + 4 * i);
+    Lanes::store_column(masses.delayed + 4 * i, delayed);
+    // 0 for finite values, else NaN
+    blemish = Lanes::unite(blemish, position - position);  // NOLINT(misc-redundant-expression)
+  }
+  return AdvanceResult{0.0, Lanes::is_zero(blemish)};
+}
+
 template <class Lanes>
 constexpr StepKernel make_step_kernel() noexcept {
   constexpr Works kPeriod = Works::kOfPeriod;
@@ -209,7 +247,10 @@ constexpr StepKernel make_step_kernel() noexcept {
                     advance_masses<Lanes, false>,
                     advance_masses<Lanes, true>,
                     extrapolate_masses<Lanes, false>,
-                    extrapolate_masses<Lanes, true>};
+                    extrapolate_masses<Lanes, true>,
+                    push_masses<Lanes, false>,
+                    push_masses<Lanes, true>,
+                    delay_masses<Lanes>};
 }
 
 }  // namespace cordis::engine

@@ -19,15 +19,15 @@ constexpr double kDrift2 = 0.604872665711080;
 constexpr double kDrift3 = 0.5 - (kDrift1 + kDrift2);
 
 struct Stage {
-  double drift;
-  double push;  // with the forces after the drift
+  double push;
+  double drift;  // at the velocity after the push
 };
-constexpr std::array<Stage, 6> kStages{{{kDrift1, kPush2},
-                                        {kDrift2, kPush3},
-                                        {kDrift3, kPush4},
-                                        {kDrift3, kPush3},
-                                        {kDrift2, kPush2},
-                                        {kDrift1, kPush1}}};
+constexpr std::array<Stage, 6> kStages{{{kPush1, kDrift1},
+                                        {kPush2, kDrift2},
+                                        {kPush3, kDrift3},
+                                        {kPush4, kDrift3},
+                                        {kPush3, kDrift2},
+                                        {kPush2, kDrift1}}};
 
 }  // namespace
 
@@ -36,11 +36,11 @@ double symplectic4_trace(double stiffness) noexcept {
   for (const bool displaced : {true, false}) {  // 1 m away, or 1 m a period fast
     double place = displaced ? 1.0 : 0.0;
     double moved = displaced ? 0.0 : 1.0;
-    moved -= kPush1 * stiffness * place;
     for (const Stage& stage : kStages) {
-      place += stage.drift * moved;
       moved -= stage.push * stiffness * place;
+      place += stage.drift * moved;
     }
+    moved -= kPush1 * stiffness * place;
     trace += displaced ? place : moved;
   }
   return trace;
@@ -59,29 +59,35 @@ void Symplectic4::start(WorldState& world) noexcept {
   world.account.open(energy(world).total());
 }
 
+void Symplectic4::adopt(WorldState& world) noexcept {
+  find_forces(world);
+}
+
 Moved Symplectic4::step(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   Moved moved;
-  mats.delay();
-  world.outside.push(mats);
-  mats.push(kPush1, velocity_);
+  if (world.outside.held_count() > 0) mats.delay();  // for the work of the held forces
   for (const Stage& stage : kStages) {
-    world.outside.release(mats);
-    mats.drift(stage.drift, velocity_);
-    find_forces(world);
     world.outside.push(mats);
-    mats.push(stage.push, velocity_);
+    mats.push_and_drift(world.kernel, stage.push, stage.drift, velocity_);
+    add_forces(world);
   }
+  world.outside.push(mats);
+  mats.push(world.kernel, kPush1, velocity_);
   moved.energy.port_work = 2.0 * world.outside.release(mats);  // over the way from x(n)
-  moved.non_finite_mats = mats.delay_by(velocity_);
+  moved.non_finite_mats = mats.delay_by(world.kernel, velocity_);
   return moved;
 }
 
-/// Without viscosity only where the MATs are matters.
 void Symplectic4::find_forces(WorldState& world) noexcept {
+  world.mats.clear_forces();
+  add_forces(world);
+}
+
+/// Without viscosity only where the MATs are matters.
+void Symplectic4::add_forces(WorldState& world) noexcept {
   ForceColumns at_rest = world.mats.force_columns();
   at_rest.delayed = at_rest.position;
-  world.mats.clear_forces();
   world.links.add_forces_of_moment(world.kernel, at_rest);
   world.ties.add_forces_of_moment(world.kernel, at_rest);
   world.state_links.add_forces_before_start(world.behaviours, world.table, at_rest);

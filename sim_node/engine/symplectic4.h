@@ -24,7 +24,7 @@ class Symplectic4 final : public Mover {
 
   void start(WorldState& world) noexcept override;
   Moved step(WorldState& world) noexcept override;
-  void adopt(WorldState& world) noexcept override { find_forces(world); }
+  void adopt(WorldState& world) noexcept override;
   Energy energy(WorldState& world) const noexcept override;
   Vec3 velocity(const WorldState& world, std::uint32_t mat) const noexcept override;
 
@@ -35,6 +35,7 @@ class Symplectic4 final : public Mover {
 
  private:
   static void find_forces(WorldState& world) noexcept;
+  static void add_forces(WorldState& world) noexcept;
 
   AlignedVector<double> velocity_;  // v(n) [m/s], 4 x N
 };
