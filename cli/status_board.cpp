@@ -34,6 +34,28 @@ Row row_of(const std::string& node, const msg::NodeStatus* status) {
   return row;
 }
 
+/// What does not fit the table, in lines.
+std::string account_of(const std::string& node, const msg::NodeStatus& status) {
+  std::string text;
+  if (status.phase() == "failed" && !status.text().empty()) {
+    text += fmt::format("{} failed: {}\n", node, status.text());
+  }
+  if (status.kind() == "device_node" &&
+      (status.port_energy_j() != 0.0 || status.braked_ticks() > 0)) {
+    text += fmt::format("{} gave the hand {:.3g} J, braked in {} ticks\n", node,
+                        status.port_energy_j(), status.braked_ticks());
+  }
+  if (status.kind() == "sim_node") {
+    text += fmt::format(
+        "energy {:.3g} J: {:.3g} J through the ports, {:.3g} J by changes of state, {:.3g} J taken "
+        "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
+        status.energy_j(), status.port_work_j(), status.switching_energy_j(), status.dissipated_j(),
+        status.largest_limit_number());
+    text += fmt::format("state hash {:016x} after {} steps\n", status.state_hash(), status.step());
+  }
+  return text;
+}
+
 std::string aligned(const std::vector<Row>& rows) {
   std::vector<std::size_t> widths(kHeader.size(), 0);
   for (const Row& row : rows) {
@@ -66,16 +88,13 @@ const msg::NodeStatus* StatusBoard::find(const std::string& node) const {
 
 std::string status_table(const std::vector<std::string>& nodes, const StatusBoard& board) {
   std::vector<Row> rows{kHeader};
-  std::string state;
+  std::string accounts;
   for (const std::string& node : nodes) {
     const msg::NodeStatus* status = board.find(node);
     rows.push_back(row_of(node, status));
-    if (status != nullptr && status->kind() == "sim_node") {
-      state +=
-          fmt::format("state hash {:016x} after {} steps\n", status->state_hash(), status->step());
-    }
+    if (status != nullptr) accounts += account_of(node, *status);
   }
-  return aligned(rows) + state;
+  return aligned(rows) + accounts;
 }
 
 }  // namespace cordis::cli

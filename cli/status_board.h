@@ -29,7 +29,8 @@ class StatusBoard {
 };
 
 /// A line per node in the order of `nodes`: rate reached, overruns, latency, energy drift; then, of
-/// a simulation, its state as `state hash 0123456789abcdef after N steps`. Ends with a newline.
+/// a simulation, its running account and its state as `state hash 0123456789abcdef after N steps`;
+/// of a device what its hand was given; of a node that failed its reason. Ends with a newline.
 std::string status_table(const std::vector<std::string>& nodes, const StatusBoard& board);
 
 }  // namespace cordis::cli

@@ -97,8 +97,14 @@ int Session::run() {
   note_state();
   const Simulation& simulation = player_.simulation();
   if (simulation.failed()) {
+    for (DeviceExchange& device : player_.simulation().devices()) answer(device);  // no force
+    const std::string failure = simulation.failure();
+    {
+      const std::lock_guard lock(shown_mutex_);
+      shown_.failure = failure;
+    }
     set_phase("failed");
-    spdlog::error("{}", simulation.failure());
+    spdlog::error("{}", failure);
     return 1;
   }
   set_phase("stopped");
@@ -313,6 +319,7 @@ void Session::fill(msg::NodeStatus& status) {
   }
 
   const std::lock_guard lock(shown_mutex_);
+  if (!shown_.failure.empty()) status.text(shown_.failure);
   status.energy_j(shown_.energy.total());
   status.energy_drift(shown_.energy.largest > 0.0 ? shown_.energy.residual() / shown_.energy.largest
                                                   : 0.0);

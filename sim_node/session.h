@@ -88,6 +88,7 @@ class Session {
     std::uint64_t state_hash = 0;
     std::uint64_t version = 0;  // of the scene
     ChangeCounter::Counts changes{};
+    std::string failure;  // why the scene diverged
   };
   std::mutex shown_mutex_;
   Shown shown_;

@@ -40,6 +40,11 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   sim.mean_rate_hz(999.96);
   sim.overruns(12);
   sim.energy_drift(1.25e-7);
+  sim.energy_j(0.0125);
+  sim.port_work_j(0.03);
+  sim.switching_energy_j(-0.0005);
+  sim.dissipated_j(0.017);
+  sim.largest_limit_number(1.75);
   sim.step(10000);
   sim.state_hash(0x0123456789abcdefull);
   board.put(sim);
@@ -51,6 +56,8 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   key.latency_p50_s(56e-6);
   key.latency_p99_s(98.4e-6);
   key.latency_max_s(2.31e-3);
+  key.port_energy_j(-0.002);
+  key.braked_ticks(7);
   board.put(key);
 
   EXPECT_EQ(
@@ -59,7 +66,20 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
       "sim          1000.0    1000        12     0                 -    -     -       1.2e-07\n"
       "keyboard     1000.0    1000         0     3                56   98  2310             -\n"
       "view      no status was received\n"
-      "state hash 0123456789abcdef after 10000 steps\n");
+      "energy 0.0125 J: 0.03 J through the ports, -0.0005 J by changes of state, 0.017 J taken by "
+      "viscosity; largest K' + 2 Z' 1.75 of 4\n"
+      "state hash 0123456789abcdef after 10000 steps\n"
+      "keyboard gave the hand -0.002 J, braked in 7 ticks\n");
+}
+
+TEST(StatusTable, TellsWhyANodeFailed) {
+  StatusBoard board(0);
+  msg::NodeStatus sim = status_of("sim", "sim_node", 1);
+  sim.phase("failed");
+  sim.text("the scene diverged");
+  board.put(sim);
+  EXPECT_NE(status_table({"sim"}, board).find("sim failed: the scene diverged\n"),
+            std::string::npos);
 }
 
 TEST(StatusTable, WritesTheWholeHash) {

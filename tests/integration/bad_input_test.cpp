@@ -220,5 +220,44 @@ TEST(BadInput, ADivergingSceneStopsWithTheReasonAndNoForce) {
   EXPECT_NE(sim.output().find("bob"), std::string::npos) << sim.output();
 }
 
+/// A bob on springs that harden with the cube of what they are stretched by, at rest; the key pulls
+/// it out 2 cm, where K' is 7: no check can know that.
+std::string hardening_scene() {
+  return "cordis: 1\nname: hardening\nspace: 1\nstep: {rate_hz: 4000}\n"
+         "liaisons:\n"
+         "  hardening: {elasticity: {kind: power, coefficient: 2.0e+9, exponent: 3}}\n"
+         "matter:\n  ground: {kind: fixed, at_m: [0]}\n"
+         "  bob: {kind: mass, mass_kg: 0.01, at_m: [0]}\n"
+         "ports:\n  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}\n"
+         "links:\n  - {liaison: hardening, between: [key, bob]}\n"
+         "  - {liaison: hardening, between: [bob, ground]}\n";
+}
+
+TEST(BadInput, ASceneThatDivergesAtRunTimeEndsTheSessionWithTheReasonAndNoForce) {
+  LiveSession session("lockstep", kSimAndKey);
+  session.add_file("scene.yaml", hardening_scene());
+  session.add_file("key.yaml", steady_key(0.02, 0));
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  ChildProcess& launcher = session.start_launcher({"--no-color"});
+
+  double largest = 0.0;
+  double last = 1.0;
+  EXPECT_TRUE(eventually([&] {
+    const bool ended = launcher.wait(0ms) == 1;
+    for (msg::GestureForces force; forces.take(force);) {
+      last = force.force_n()[0];
+      largest = std::max(largest, std::abs(last));
+    }
+    return ended;
+  }));
+  const std::string said = launcher.output();
+  EXPECT_NE(said.find("the scene diverged at step"), std::string::npos) << said;
+  EXPECT_NE(said.find("position of 'bob'"), std::string::npos) << said;
+  EXPECT_NE(said.find("hardening (scene.yaml:"), std::string::npos) << said;
+  EXPECT_NE(said.find("sim failed: the scene diverged"), std::string::npos) << said;
+  EXPECT_GT(largest, 0.0);
+  EXPECT_EQ(last, 0.0);
+}
+
 }  // namespace
 }  // namespace cordis::test

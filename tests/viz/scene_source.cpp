@@ -256,6 +256,10 @@ int publish(const Options& options) {
     status.overruns(3);
     status.energy_j(0.012);
     status.energy_drift(2.5e-9);
+    status.port_work_j(3e-3);
+    status.switching_energy_j(250e-6);
+    status.dissipated_j(1.2e-3);
+    status.largest_limit_number(1.75);
   };
   const node::StatusPublisher sim_status(sim, "sim_node", run, speak);
   const node::StatusPublisher keyboard_status(keyboard, "device_node", run,

@@ -1,5 +1,5 @@
 // The figures that are always on screen, the state of every node, and the banner when something is amiss.
-import { count, duration, joined, NONE, plain, rate, withUnit } from './format.ts';
+import { count, duration, joined, NONE, plain, rate, threeDigits, withUnit } from './format.ts';
 import { countsLine, eventLine } from './events.ts';
 import type { Description, NodeState, Status } from './protocol.ts';
 
@@ -113,6 +113,12 @@ export class Hud {
     set('energy', joined(withUnit(sim?.energy_j, 'J')));
     const drift = sim?.energy_drift;
     set('energy-more', typeof drift === 'number' ? `drift ${plain(drift)}` : '');
+    element('account').hidden = sim === undefined;
+    set('by-ports', joined(withUnit(sim?.port_work_j, 'J')));
+    set('by-switching', joined(withUnit(sim?.switching_energy_j, 'J')));
+    set('by-viscosity', joined(withUnit(sim?.dissipated_j, 'J')));
+    const limit = sim?.largest_limit_number;
+    set('limit', typeof limit === 'number' ? `${threeDigits(limit)} of 4` : NONE, typeof limit === 'number' && limit >= 4 ? 'warn' : '');
   }
 
   private writeNodes(nodes: NodeState[]): void {
@@ -192,6 +198,9 @@ function rowOf(node: NodeState): HTMLElement {
   };
   row.dataset.state = node.state;
   row.title = node.text;
+  if (node.kind === 'device_node') {
+    row.title += ` ${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.braked_ticks)} ticks braked`;
+  }
   cell(node.name, 'name');
   cell(node.state, 'state');
   cell(GONE.includes(node.state) ? NONE : rate(node.reached_rate_hz) + ' Hz');

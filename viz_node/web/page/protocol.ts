@@ -114,6 +114,12 @@ export interface NodeState {
   latency_max_s: Figure;
   energy_j: Figure;
   energy_drift: Figure;
+  switching_energy_j: Figure; // brought in by changes of state and of parameters, net
+  port_work_j: Figure; // brought in through the ports, net
+  dissipated_j: Figure; // taken by viscosity
+  largest_limit_number: Figure; // K' + 2 Z' seen: below 4 nothing diverges
+  port_energy_j: Figure; // of a device: given to the hand, net
+  braked_ticks: number;
   step: number;
   changes: LiaisonChanges[]; // since the scene began
   lost_events: number;
