@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_node/engine/network.h"
+#include "sim_node/engine/steep_links.h"
 
 namespace cordis::engine {
 namespace {
@@ -121,7 +122,7 @@ std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
     const bool freezes =
         network.integrator == Integrator::kCordis || network.integrator == Integrator::kLeapfrog;
     if (!freezes) return IntegratorRefusal{"freezing", {}};
-    if (damps_in_sweeps(network)) {
+    if (damps_in_sweeps(network) || solves_steep_links(network)) {
       return IntegratorRefusal{"freezing together with viscosities above Z dt / m = 0.3", {}};
     }
   }

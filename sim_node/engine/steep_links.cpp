@@ -215,6 +215,13 @@ std::vector<double> largest_extrapolated_steps(const NetworkDescription& network
   return steps;
 }
 
+bool solves_steep_links(const NetworkDescription& network) {
+  if (network.integrator != Integrator::kLeapfrog) return false;
+  const std::vector<double> steps = largest_extrapolated_steps(network);
+  return std::any_of(steps.begin(), steps.end(),
+                     [&network](double step) { return network.step > step; });
+}
+
 SteepLinks::SteepLinks(const NetworkDescription& network)
     : dt_(network.step),
       in_line_(network.dimension == 1),

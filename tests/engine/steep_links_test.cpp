@@ -113,6 +113,14 @@ TEST(SteepLinks, InAChainAreSolvedTogether) {
   EXPECT_LT(world.energy().total(), world.energy().largest);
 }
 
+TEST(SteepLinks, CannotBeFrozen) {
+  NetworkDescription scene = one_mass(with_friction(power_of_speed(2.0, 0.0)), 3.0, 1e-3);
+  scene.freeze_tolerance = 1e-6;
+  EXPECT_TRUE(engine::refusal_of(scene).has_value());
+  scene.integrator = Integrator::kCordis;
+  EXPECT_FALSE(engine::refusal_of(scene).has_value());
+}
+
 /// Bow friction [N] over the speed [m/s]: steep through 0, falling beyond 0.07 m/s.
 Law bow_law(double force) {
   Law law;
