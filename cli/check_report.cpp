@@ -137,19 +137,26 @@ std::string load_text(const SceneCheck& check) {
       fmt::format("load        {:.4g} us a step, {:.3g} % of real time on this machine\n",
                   1e-3 * check.step_nsec, 100.0 * check.load());
   if (check.load() < 1.0) return text;
-  const double rate = 1e9 / check.step_nsec;
-  const double slowest = 1.0 / check.plan.stability.certified.step;
+  const double rate = check.real_time_rate();
+  const bool stable = check.is_certified_at(rate);
   text += fmt::format(
       "            TOO SLOW for real time: run it with clock asap, {:.3g} times slower, or at "
       "{:.4g} "
       "steps per second{}\n",
-      check.load(), rate, rate > slowest ? "" : ", which is unstable: make it smaller or softer");
-  if (check.choice && rate > slowest) {
-    // the errors of the scheme with viscosity are of first order
+      check.load(), rate, stable ? "" : ", which is unstable: make it smaller or softer");
+  if (check.choice && stable) {
     text += fmt::format("            at that rate the tolerance would be about {:.2g}\n",
-                        check.scene.accuracy->tolerance * check.choice->needed_hz / rate);
+                        check.tolerance_at(rate));
   }
   return text;
+}
+
+/// Too slow for real time: what else there is.
+nlohmann::json alternatives_json(const SceneCheck& check) {
+  const double rate = check.real_time_rate();
+  nlohmann::json real_time{{"rate_hz", rate}, {"stable", check.is_certified_at(rate)}};
+  if (check.choice) real_time["tolerance"] = check.tolerance_at(rate);
+  return {{"asap", {{"times_slower", check.load()}}}, {"realtime", std::move(real_time)}};
 }
 
 nlohmann::json finite(double value) {
@@ -271,6 +278,7 @@ std::string json_of(const SceneCheck& check) {
                      {"kept", check.keeps_accuracy()},         {"doubt", check.choice->doubt}};
     if (check.choice->error >= 0.0) json["asked"]["tried_out_error"] = check.choice->error;
   }
+  if (check.load() >= 1.0) json["load"]["alternatives"] = alternatives_json(check);
   if (check.plan.worst_contact) {
     json["worst_contact"] = {
         {"energy_gain", finite(check.plan.worst_contact->worst)},

@@ -42,6 +42,16 @@ struct SceneCheck {
 
   /// Wall time per simulated time.
   double load() const noexcept { return 1e-9 * step_nsec * scene.step_rate_hz; }
+  /// The fastest this machine keeps up with [1/s].
+  double real_time_rate() const noexcept { return 1e9 / step_nsec; }
+  bool is_certified_at(double rate_hz) const noexcept {
+    return rate_hz * plan.stability.certified.step > 1.0;
+  }
+  /// The tolerance that the scene can have at another rate, about: the errors of the scheme with
+  /// viscosity are of first order. Precondition: it has a choice.
+  double tolerance_at(double rate_hz) const noexcept {
+    return scene.accuracy->tolerance * choice->needed_hz / rate_hz;
+  }
   /// Whether the scene keeps its `accuracy`, or has none.
   bool keeps_accuracy() const noexcept {
     return !choice || scene.step_rate_hz >= choice->needed_hz;

@@ -140,6 +140,31 @@ TEST_F(Checked, PortsAreJudgedInTheirRole) {
   EXPECT_NE(out_.find("TOO STIFF"), std::string::npos) << out_;
 }
 
+TEST_F(Checked, TooSlowForRealTimeIsToldWithBothAlternatives) {
+  write("100");
+  CheckOptions options;
+  options.scene_file = path_;
+  SceneCheck check = check_scene(options);
+
+  check.step_nsec = 1.25e7;  // 80 steps a second are what the machine can do, and 50 the limit
+  EXPECT_NE(
+      text_of(check).find("TOO SLOW for real time: run it with clock asap, 1.25 times slower, "
+                          "or at 80 steps per second\n"),
+      std::string::npos)
+      << text_of(check);
+  const nlohmann::json other = nlohmann::json::parse(json_of(check))["load"]["alternatives"];
+  EXPECT_EQ(other["asap"]["times_slower"], 1.25);
+  EXPECT_EQ(other["realtime"]["rate_hz"], 80.0);
+  EXPECT_EQ(other["realtime"]["stable"], true);
+
+  check.step_nsec = 2.5e7;
+  EXPECT_NE(text_of(check).find("40 steps per second, which is unstable"), std::string::npos);
+
+  check.step_nsec = 1e6;
+  EXPECT_EQ(text_of(check).find("TOO SLOW"), std::string::npos);
+  EXPECT_FALSE(nlohmann::json::parse(json_of(check))["load"].contains("alternatives"));
+}
+
 TEST_F(Checked, WrongWordsAndFilesAreBadInput) {
   write("100");
   EXPECT_EQ(run({"--band", "loud"}), kBadInput);
