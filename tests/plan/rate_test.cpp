@@ -1,3 +1,4 @@
+// tests/plan/rate_test.cpp -- the rate that an accuracy asks for.
 #include "sim_node/plan/rate.h"
 
 #include <cmath>
@@ -7,6 +8,8 @@
 #include "sim_node/plan/choice.h"
 #include "sim_node/plan/oscillator_error.h"
 #include "sim_node/plan/rate_trial.h"
+#include "sim_node/plan/reference.h"
+#include "sim_node/plan/trial.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {
@@ -112,6 +115,22 @@ TEST(RateTrial, SaysWhyItFindsNone) {
   NetworkDescription wild = free_cluster(12, 40, 0.0, 2);
   EXPECT_NE(plan::find_rate(wild, "cordis", {1e-4, 8.0, 50.0, 50.0}).refusal.find("chaotic"),
             std::string::npos);
+}
+
+TEST(Reference, EndsWhereAChaoticMotionHasPartedAndThenKnowsTheEnergyAlone) {
+  const NetworkDescription wild = free_cluster(12, 40, 0.0, 2);
+  const plan::Course nothing;
+  const plan::Reference reference =
+      plan::make_reference(wild, nothing, {{0.1, 300}, 1e-7, 60.0, 0.0, {}});
+  EXPECT_TRUE(reference.by_oracle);
+  EXPECT_TRUE(reference.parted);
+  EXPECT_GT(reference.compared, 10);
+  EXPECT_LT(reference.compared, 250);
+
+  const plan::TrialResult run = plan::try_out(wild, "cordis", 2000.0, nothing, reference);
+  EXPECT_FALSE(run.blown_up);
+  EXPECT_NE(run.energy_error, 0.0);
+  EXPECT_LT(std::abs(run.energy_error), 0.2);
 }
 
 TEST(Choice, TriesOutWhatMovesByItselfAndNotWhatIsPlayed) {
