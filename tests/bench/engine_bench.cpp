@@ -1,6 +1,6 @@
 // tests/bench/engine_bench.cpp -- time of a step per link, mass update included: square grids of
 // spring-dampers with their links in order and shuffled, on each vector width; and one short
-// string, where what a step costs at least shows.
+// string, where what a step costs at least shows; the integrators against each other; modes.
 //
 // usage: engine_bench --benchmark_repetitions=9 --benchmark_report_aggregates_only=true
 #include <algorithm>
@@ -15,6 +15,7 @@
 
 namespace {
 
+using cordis::engine::Integrator;
 using cordis::engine::Link;
 using cordis::engine::Mat;
 using cordis::engine::MatKind;
@@ -32,23 +33,23 @@ Link spring_damper(std::uint32_t a, std::uint32_t b, double rest) {
 
 /// 100 x 100 masses, each tied to its right and its upper neighbour: 19,800 links; with diagonals
 /// 29,601.
-NetworkDescription grid(int dimension, bool diagonals) {
+NetworkDescription grid(int dimension, bool diagonals, std::uint32_t side = kSide) {
   NetworkDescription network;
   network.dimension = dimension;
   network.step = 1e-3;
-  for (std::uint32_t row = 0; row < kSide; ++row) {
-    for (std::uint32_t column = 0; column < kSide; ++column) {
+  for (std::uint32_t row = 0; row < side; ++row) {
+    for (std::uint32_t column = 0; column < side; ++column) {
       Mat mat;
       mat.mass = 0.01;
       mat.position = dimension == 1 ? Vec3(0.001 * (row * column % 7), 0.0, 0.0)
                                     : Vec3(0.01 * column, 0.01 * row, 0.0);
       network.mats.push_back(mat);
-      const std::uint32_t here = row * kSide + column;
+      const std::uint32_t here = row * side + column;
       const double rest = dimension == 1 ? 0.0 : 0.0099;
       if (column > 0) network.links.push_back(spring_damper(here - 1, here, rest));
-      if (row > 0) network.links.push_back(spring_damper(here - kSide, here, rest));
+      if (row > 0) network.links.push_back(spring_damper(here - side, here, rest));
       if (diagonals && row > 0 && column > 0) {
-        network.links.push_back(spring_damper(here - kSide - 1, here, 1.4142 * rest));
+        network.links.push_back(spring_damper(here - side - 1, here, 1.4142 * rest));
       }
     }
   }
@@ -116,6 +117,50 @@ void step_of_a_string(benchmark::State& state) {
   step(state, string(), cordis::engine::best_vector_width());
 }
 BENCHMARK(step_of_a_string);
+
+/// Nets without viscosity, which all three take.
+void step_by_integrator(benchmark::State& state) {
+  const auto side = static_cast<std::uint32_t>(state.range(1));
+  NetworkDescription network = grid(2, false, side);
+  network.integrator = static_cast<Integrator>(state.range(0));
+  for (Link& link : network.links) link.viscosity = 0.0;
+  state.SetLabel(to_string(network.integrator));
+  step(state, network, cordis::engine::best_vector_width());
+}
+BENCHMARK(step_by_integrator)
+    ->ArgNames({"integrator", "side"})
+    ->ArgsProduct({{static_cast<long>(Integrator::kCordis),
+                    static_cast<long>(Integrator::kLeapfrog),
+                    static_cast<long>(Integrator::kSymplectic4)},
+                   {20, 60, 100}});
+
+/// 400 modes of a string; so many of its points tied to a fixed one by a link with states.
+void step_of_modes(benchmark::State& state) {
+  constexpr std::uint32_t kModes = 400;
+  NetworkDescription network;
+  network.dimension = 1;
+  network.step = 1.0 / 44100.0;
+  network.integrator = Integrator::kModal;
+  for (std::uint32_t i = 0; i < kModes + 2; ++i) {
+    Mat mat;
+    mat.kind = i == 0 || i > kModes ? MatKind::kFixed : MatKind::kMass;
+    mat.mass = 1e-4;
+    mat.position = Vec3(i == 100 ? 0.001 : 0.0, 0.0, 0.0);
+    network.mats.push_back(mat);
+    if (i > 0) network.links.push_back({i - 1, i, 1e4, 1e-4, 0.0});
+  }
+  network.behaviours.emplace_back();
+  network.behaviours[0].states.emplace_back();
+  network.behaviours[0].states[0].stiffness = 20.0;
+  network.behaviours[0].states[0].viscosity = 0.01;
+  for (std::uint32_t l = 0; l < state.range(0); ++l) {
+    network.state_links.push_back({50 + 100 * l, 0, 0, 0.0});
+  }
+  step(state, network, cordis::engine::best_vector_width());
+  state.counters["per_mode"] = benchmark::Counter(
+      kModes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(step_of_modes)->ArgName("driven")->DenseRange(0, 3);
 
 }  // namespace
 
