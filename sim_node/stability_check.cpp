@@ -46,7 +46,7 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
       plan::liaison_graph(scene.network), plan::limit_weights(scene.network, plan::Limit::kStable));
   const double dt = scene.network.step;
   double sum = 0.0;
-  double strongest = 0.0;
+  double strongest = -1.0;  // a law may be of no stiffness where it was looked at
   std::optional<plan::LiaisonId> liaison;
   const auto add = [&](plan::LiaisonId id, double stiffness, double viscosity, double count) {
     const double number =

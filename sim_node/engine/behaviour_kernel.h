@@ -140,7 +140,7 @@ struct PlainRows {
 using FindPulls = void (*)(const StateTerm& state, const PlainRows& rows) noexcept;
 
 /// State links, one row each; arrays 64-byte aligned, padded to a multiple of 8 with rows that join
-/// MAT 0 to itself in a state of no force.
+/// a MAT to itself in a state of no force.
 struct StateLinkRows {
   std::size_t count = 0;                    // rows, padding included
   const std::uint32_t* column_a = nullptr;  // 4 * MAT index

@@ -11,6 +11,12 @@
 
 namespace cordis::engine {
 
+/// Where the column begins of the MAT that a row of padding joins to itself: another for the next
+/// row, so that none waits until the one before it has added its 0.
+inline std::uint32_t column_of_padding(std::size_t row, std::size_t mat_count) noexcept {
+  return 4 * static_cast<std::uint32_t>(row % mat_count);
+}
+
 /// What moving the masses by one step has to tell.
 struct AdvanceReport {
   std::uint32_t non_finite_mats = 0;  ///< masses whose new position is not finite

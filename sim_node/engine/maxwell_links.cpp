@@ -34,10 +34,14 @@ MaxwellArray::MaxwellArray(const NetworkDescription& description)
     gain_[l] = link.viscosity / description.step * share;
     compliance_[l] = 1.0 / link.stiffness;
   }
+  for (std::size_t l = link_count_; l < column_a_.size(); ++l) {
+    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
+  }
 }
 
 StepEnergy MaxwellArray::add_forces(const BehaviourKernel& kernel,
                                     const ForceColumns& columns) noexcept {
+  if (link_count_ == 0) return {};
   const MaxwellRows rows{column_a_.size(),    column_a_.data(), column_b_.data(),
                          persistence_.data(), gain_.data(),     compliance_.data(),
                          pull_.data(),        factor_.data()};

@@ -25,7 +25,7 @@ std::size_t row_count(Kind kind, const NetworkDescription& description) {
 
 }  // namespace
 
-// A row of padding joins MAT 0 to itself without stiffness or viscosity: its force is 0.
+// A row of padding joins a MAT to itself without stiffness or viscosity: its force is 0.
 SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind)
     : in_line_(description.dimension == 1 || kind == Kind::kTie),
       column_a_(padded(row_count(kind, description), kLinkBatch), 0U),
@@ -48,6 +48,9 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind
     }
     viscous_ = viscous_ || link.viscosity > 0.0;
   }
+  for (; l < column_a_.size(); ++l) {
+    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
+  }
 }
 
 LinkRows SpringDamperArray::rows(const ActiveLinks::Run& run) noexcept {
@@ -64,6 +67,7 @@ LinkRows SpringDamperArray::rows(const ActiveLinks::Run& run) noexcept {
 
 StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces,
                                   const ForceColumns& columns) noexcept {
+  if (column_a_.empty()) return {};
   LinkWork work;
   for (const ActiveLinks::Run& run : active_.runs()) add_link_forces(rows(run), columns, work);
   return half_of(work);

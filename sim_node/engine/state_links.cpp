@@ -49,6 +49,9 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
     state_[l] = table.start_state(link.behaviour);
     rest_length_[l] = link.rest_length;
   }
+  for (std::size_t l = link_count_; l < column_a_.size(); ++l) {
+    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
+  }
   adopt(table);
 }
 

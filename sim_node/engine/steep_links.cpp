@@ -12,7 +12,7 @@
 namespace cordis::engine {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kMostSpeed = 1.0;  // at which a law without a steepest place is looked at [m/s]
 
 double inverse_mass(const Mat& mat) noexcept {
@@ -33,7 +33,7 @@ double steepest_of_function(const LinkFunction& law) noexcept {
   const auto pull = [&](int i) { return law(1.0, 0.0, kStep * i - kMostSpeed, 1.0, 1.0); };
   double most = 0.0;
   for (int i = 1; i <= kParts; ++i) most = std::max(most, (pull(i) - pull(i - 1)) / kStep);
-  return std::isfinite(most) ? most : kInfinity;
+  return std::isfinite(most) ? most : kUnbounded;
 }
 
 /// Slope of a law over the speed where it is steepest [N s/m].
@@ -43,7 +43,7 @@ double steepest(const Law& law) noexcept {
       return steepest_of_table(law.table);
     case Law::Kind::kPower:
       if (law.coefficient <= 0.0) return 0.0;
-      return law.exponent < 1.0 ? kInfinity : law.coefficient * law.exponent;
+      return law.exponent < 1.0 ? kUnbounded : law.coefficient * law.exponent;
     case Law::Kind::kFunction:
       return steepest_of_function(*law.function);
     case Law::Kind::kNone:
@@ -74,7 +74,7 @@ void find_steps(const NetworkDescription& network, const std::vector<Behaviour>&
   for (std::size_t l = 0; l < steps.size(); ++l) {
     const StateLink& link = network.state_links[l];
     const double of_ends = viscosity[link.mat_a] + viscosity[link.mat_b];
-    steps[l] = slope[link.behaviour] > 0.0 ? kMostExtrapolatedViscosity / of_ends : kInfinity;
+    steps[l] = slope[link.behaviour] > 0.0 ? kMostExtrapolatedViscosity / of_ends : kUnbounded;
     if (std::isinf(slope[link.behaviour])) steps[l] = 0.0;
   }
 }

@@ -363,7 +363,7 @@ Problem stick_slip() {
   const double hooked_at = value(problem, "period") - value(problem, "t_stick") -
                            std::acos((value(params, "Fs") - slipping) / stiffness / swing) / w;
 
-  Problem made{"R15 stick and slip", Kind::kSwitching, {}, value(problem, "period"), 4000.0, {}};
+  Problem made{"R15 stick and slip", Kind::kSwitching, {}, value(problem, "period"), 500.0, {}};
   made.network.dimension = 1;
   made.network.step = 1e-4;
   made.network.mats = {fixed(Vec3::Zero()),

@@ -121,11 +121,11 @@ TEST(Reference, EndsWhereAChaoticMotionHasPartedAndThenKnowsTheEnergyAlone) {
   const NetworkDescription wild = free_cluster(12, 40, 0.0, 2);
   const plan::Course nothing;
   const plan::Reference reference =
-      plan::make_reference(wild, nothing, {{0.1, 300}, 1e-7, 60.0, 0.0, {}});
+      plan::make_reference(wild, nothing, {{0.01, 200}, 1e-9, 60.0, 0.0, {}});
   EXPECT_TRUE(reference.by_oracle);
   EXPECT_TRUE(reference.parted);
   EXPECT_GT(reference.compared, 10);
-  EXPECT_LT(reference.compared, 250);
+  EXPECT_LT(reference.compared, 150);
 
   const plan::TrialResult run = plan::try_out(wild, "cordis", 2000.0, nothing, reference);
   EXPECT_FALSE(run.blown_up);
