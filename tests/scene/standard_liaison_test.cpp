@@ -159,7 +159,7 @@ TEST(Pluck, SlipsOffAtItsForceAndIsReadyOnceItIsOut) {
   EXPECT_NEAR(rig.pull(), -500 * 0.002, 1e-3);
 }
 
-TEST(Stick, HoldsUpToItsForceAndMaySickAgain) {
+TEST(Stick, HoldsUpToItsForceAndMayStickAgain) {
   Rig rig(link("stick", ", viscosity_n_s_per_m: 0"));
   double largest = 0.0;
   const auto watch = [&] { largest = std::max(largest, rig.pull()); };

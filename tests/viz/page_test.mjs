@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { banner, drawn, isDark, look, openPage, textOf, viz } from './browser.mjs';
 import { out, runCases, Session, until } from './session.mjs';
 
-const [MIDDLE, PORT, IDLE] = [29, 12, 32]; // MATs of the string of scene_source.cpp
+const [MIDDLE, PORT, TOOL, IDLE] = [29, 12, 15, 32]; // MATs of the string of scene_source.cpp
 
 const cases = {
   'the string is drawn where it is, and moves': async ({ page }) => {
@@ -16,7 +16,10 @@ const cases = {
     const first = await look(page, MIDDLE);
     assert.ok(first.colour[2] > 130 && first.colour[2] > first.colour[0] + 30, `a mass is blue: ${first.colour}`);
     const port = await look(page, PORT);
-    assert.ok(port.colour[0] > 130 && port.colour[0] > port.colour[2] + 60, `a port is amber: ${port.colour}`);
+    const isAmber = ([r, , b]) => r > 130 && r > b + 60;
+    assert.ok(isAmber(port.colour), `a port is amber: ${port.colour}`);
+    const tool = await look(page, TOOL);
+    assert.ok(isAmber(tool.colour), `and so is what a hand holds: ${tool.colour}`);
 
     const later = await until('the middle has moved by 30 pixels', async () => {
       const now = await look(page, MIDDLE, [first.at]);

@@ -150,7 +150,11 @@ void name_parts(MovingScene& scene, const std::string& name, std::uint64_t run) 
   msg::NamedRange matter;
   matter.name(name);
   matter.count(static_cast<std::uint32_t>(description.mat_kind().size()));
-  description.matter({matter});
+  msg::NamedRange tool;  // bears the name of the port, but is another MAT
+  tool.name("finger");
+  tool.first(scene.port_mat + 3);
+  tool.count(1);
+  description.matter({matter, tool});
   msg::PortDescription port;
   port.name("finger");
   port.device("keyboard");

@@ -7,7 +7,7 @@ import { roundLength } from './ground.ts';
 import { joined, withUnit } from './format.ts';
 import { Hud } from './hud.ts';
 import { Plots } from './plots.ts';
-import type { Description, Frame, Message, Topology } from './protocol.ts';
+import { toolsOf, type Description, type Frame, type Message, type Topology } from './protocol.ts';
 import { chooseQuality, findRenderer } from './quality.ts';
 import { SceneView } from './scene_view.ts';
 import type { SignalStore } from './signal_store.ts';
@@ -138,8 +138,9 @@ class Page {
     const size = Math.max(topology.matCount, topology.linkCount / 2);
     const quality = chooseQuality(this.renderer.software, size, window.devicePixelRatio);
     this.say(quality.note);
-    const space = this.description?.space ?? 3;
-    this.view = new SceneView(this.stage, topology, space, quality, this.pose, () => this.askToDraw());
+    const { space } = this.description;
+    const tools = toolsOf(this.description);
+    this.view = new SceneView(this.stage, topology, tools, space, quality, this.pose, () => this.askToDraw());
     this.view.colourBySpeed(this.speeds);
   }
 

@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import { KIND_FIXED } from './protocol.ts';
 
 const SHOWN_FIXED_POINT = 3;
+const SHOWN_TOOL = 4;
 
 const SPEED_COLOUR = /* glsl */ `
   // Dark blue, teal, yellow: readable for colour-blind eyes, and on a projector.
@@ -20,7 +21,7 @@ const MAT_VERTEX = /* glsl */ `
   in vec3 position;   // [m]
   in vec3 previous;   // one frame before [m]
   in float radius;    // [m]
-  in float kind;      // 0 mass, 1 fixed ball, 2 port, 3 fixed point
+  in float kind;      // 0 mass, 1 fixed ball, 2 port, 3 fixed point, 4 tool
   uniform mat4 modelViewMatrix;
   uniform mat4 projectionMatrix;
   uniform float pixels_per_unit;   // of the plane at clip w = 1
@@ -37,12 +38,12 @@ const MAT_VERTEX = /* glsl */ `
     vec4 eye = modelViewMatrix * vec4(position, 1.0);
     gl_Position = projectionMatrix * eye;
     float pixels = pixels_per_unit / gl_Position.w;
-    size = max(radius, least_pixels[k] / pixels);
+    size = max(radius, least_pixels[k == 4 ? 0 : k] / pixels);
     // A square where a punctual MAT is fixed; a sphere with a halo where a hand is.
     shape = k == 3 ? 1 : (k == 2 ? 2 : 0);
     centre = eye.xyz;
     gl_PointSize = 2.0 * size * pixels * (shape == 2 ? 1.9 : 1.0) * MARGIN;
-    colour = k == 0 ? vec3(0.42, 0.72, 0.98) : (k == 2 ? vec3(1.0, 0.68, 0.26) : vec3(0.60, 0.65, 0.72));
+    colour = k == 0 ? vec3(0.42, 0.72, 0.98) : (k == 2 || k == 4 ? vec3(1.0, 0.68, 0.26) : vec3(0.60, 0.65, 0.72));
   #ifndef SPHERES
     // Without shading neighbours would run together: each gets a brightness of its own.
     colour *= 0.7 + 0.3 * float((gl_VertexID * 40503) & 255) / 255.0;
@@ -171,8 +172,10 @@ export function sceneUniforms(): SceneUniforms {
 }
 
 /** Kinds as the shader tells them apart: a fixed point without a radius is no ball. */
-export function shownKinds(kinds: Uint8Array, radii: Float32Array): Uint8Array {
-  return kinds.map((kind, i) => (kind === KIND_FIXED && radii[i] === 0 ? SHOWN_FIXED_POINT : kind));
+export function shownKinds(kinds: Uint8Array, radii: Float32Array, tools: number[]): Uint8Array {
+  const shown = kinds.map((kind, i) => (kind === KIND_FIXED && radii[i] === 0 ? SHOWN_FIXED_POINT : kind));
+  for (const tool of tools) shown[tool] = SHOWN_TOOL;
+  return shown;
 }
 
 export function matMaterial(uniforms: SceneUniforms, spheres: boolean): THREE.RawShaderMaterial {

@@ -92,6 +92,13 @@ export interface Description {
   signals: { name: string; unit: string }[];
 }
 
+/** The MATs that hands move by a coupling: they bear the name of a port whose own MAT is the handle. */
+export function toolsOf({ ports, matter }: Description): number[] {
+  const isTool = (range: NamedRange, port: Port) =>
+    range.name === port.name && range.count === 1 && range.first !== port.mat;
+  return ports.flatMap((port) => matter.filter((range) => isTool(range, port)).map((range) => range.first));
+}
+
 /** A number that was not finite in the node comes as null. */
 type Figure = number | null;
 

@@ -32,6 +32,7 @@ export class SceneView {
   constructor(
     private readonly container: HTMLElement,
     private readonly topology: Topology,
+    private readonly tools: number[],
     private readonly space: number,
     readonly quality: Quality,
     private readonly pose: Pose | null, // where the eye stood before, if it shall stay
@@ -55,7 +56,8 @@ export class SceneView {
 
   private buildMatter(): void {
     this.geometry.setAttribute('radius', new THREE.BufferAttribute(this.topology.radii.slice(), 1));
-    this.geometry.setAttribute('kind', new THREE.BufferAttribute(shownKinds(this.topology.kinds, this.topology.radii), 1));
+    const kinds = shownKinds(this.topology.kinds, this.topology.radii, this.tools);
+    this.geometry.setAttribute('kind', new THREE.BufferAttribute(kinds, 1));
     const few = this.topology.matCount <= 3000;
     const least = this.uniforms.least_pixels.value.set(few ? 3.2 : 1.2, few ? 3.2 : 1.2, few ? 6 : 5, few ? 5 : 2);
     least.multiplyScalar(this.quality.pixelRatio);
