@@ -29,5 +29,20 @@ TEST(Regrouping, ComesApartInTwoHalvesAndIsOneAgain) {
   EXPECT_EQ(count(), 1u);
 }
 
+TEST(Regrouping, KeepsItsBallsOutOfEachOther) {
+  Stage stage("regrouping.yaml");
+  const std::uint32_t count = stage.mats("lump").count;
+  double nearest = 1.0;
+  int tick = 0;
+  stage.play_until(6.0, [&] {
+    if (++tick % 20 != 0) return;
+    for (std::uint32_t a = 0; a < count; ++a) {
+      for (std::uint32_t b = 0; b < a; ++b)
+        nearest = std::min(nearest, (stage.position("lump", a) - stage.position("lump", b)).norm());
+    }
+  });
+  EXPECT_GT(nearest, 0.85 * 0.01);  // of a diameter, when a hand drags them
+}
+
 }  // namespace
 }  // namespace cordis::test
