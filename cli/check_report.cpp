@@ -209,6 +209,17 @@ nlohmann::json ports_json(const SceneCheck& check) {
   return ports;
 }
 
+// What freezing does to positions, in tolerances: measured, docs/numerics.md.
+constexpr double kUsualError = 3.0;
+constexpr double kLargestError = 50.0;
+
+std::string freezing_text(double tolerance) {
+  if (tolerance == 0.0) return {};
+  return fmt::format(
+      "frozen      what rests within {:.2g} m: positions off by about {:.2g} m, at most {:.2g} m\n",
+      tolerance, kUsualError * tolerance, kLargestError * tolerance);
+}
+
 const char* verdict(const plan::Stability& stability) {
   if (stability.holds()) return "stable";
   return stability.diverges() ? "unstable" : "not_certain";
@@ -236,6 +247,7 @@ std::string text_of(const SceneCheck& check) {
   text += fmt::format("integrator  {} at {:.6g} Hz, 1 thread\n",
                       engine::to_string(scene.network.integrator), scene.step_rate_hz);
   text += reductions_text(check.scene.reductions);
+  text += freezing_text(scene.network.freeze_tolerance);
   text += choice_text(check) + stability_text(check) + accuracy_text(check) + contact_text(check);
   for (const PortCheck& port : check.ports) text += port_text(check, port);
   return text + load_text(check);
@@ -265,6 +277,12 @@ std::string json_of(const SceneCheck& check) {
       {"ports", ports_json(check)},
       {"reductions", reductions_json(check.scene.reductions)},
       {"load", {{"step_nsec", check.step_nsec}, {"share_of_real_time", check.load()}}}};
+  const double tolerance = check.scene.network.freeze_tolerance;
+  if (tolerance > 0.0) {
+    json["freezing"] = {{"tolerance_m", tolerance},
+                        {"usual_error_m", kUsualError * tolerance},
+                        {"largest_error_m", kLargestError * tolerance}};
+  }
   if (std::isfinite(stability.certified.step)) {
     json["stability"]["limit"] = {
         {"liaison", called(scene::call_liaison(check.scene, stability.certified.liaison))},

@@ -135,12 +135,14 @@ void CellGrid::add_run(Surroundings& found, std::size_t first, std::size_t end,
 }
 
 CellGrid::Surroundings CellGrid::around(const double* point, std::size_t last) const noexcept {
+  return around_place(place_of(point), last);
+}
+
+CellGrid::Surroundings CellGrid::around_place(std::size_t place, std::size_t last) const noexcept {
   Surroundings found;
   const auto bound = static_cast<double>(last);
-  std::array<std::size_t, kAxes> cell{};
-  for (std::size_t axis = 0; axis < kAxes; ++axis) {
-    cell[axis] = static_cast<std::size_t>(cell_along(point[axis]));
-  }
+  const std::array<std::size_t, kAxes> cell{place % extent_[0], place / extent_[0] % extent_[1],
+                                            place / extent_[0] / extent_[1]};
   const std::size_t wide_y = dimension_ > 1 ? 1 : 0;
   const std::size_t wide_z = dimension_ > 2 ? 1 : 0;
   const std::size_t x_first = (cell[0] - 1) & (extent_[0] - 1);

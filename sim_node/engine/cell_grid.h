@@ -51,7 +51,13 @@ class CellGrid {
   /// Where everything within reach of a point is, as far as its number is below `last`; much that
   /// is not may be there too. Precondition: the point is finite.
   Surroundings around(const double* point, std::size_t last) const noexcept;
+  /// The same for all points in a place.
+  Surroundings around_place(std::size_t place, std::size_t last) const noexcept;
 
+  /// Places are numbered from 0; in each the points stand by their numbers, ascending.
+  std::size_t place_count() const noexcept { return extent_[0] * extent_[1] * extent_[2]; }
+  std::size_t begin_of(std::size_t place) const noexcept { return begin_[place]; }
+  std::size_t end_of(std::size_t place) const noexcept { return begin_[place + 1]; }
   CellPlaces places() const noexcept;
 
  private:

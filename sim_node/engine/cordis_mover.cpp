@@ -19,7 +19,7 @@ Moved CordisMover::step(WorldState& world) noexcept {
   Moved moved;
   StepEnergy& energy = moved.energy;
   energy.port_work = world.outside.move_ports(mats);
-  world.begin_forces();
+  energy += world.begin_forces(mats.force_columns());
   world.add_forces_of_period(energy);
   energy.port_work += world.outside.work_at_ports(mats);
 

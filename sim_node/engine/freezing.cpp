@@ -13,6 +13,7 @@ namespace {
 // While some only fall asleep, the choice of liaisons is made anew every so many steps.
 constexpr std::uint64_t kStepsBetweenChoices = 16;
 constexpr double kLeastCarried = 0.9;  // of the weight
+constexpr double kShare = 0.25;        // of the tolerance, for one mass in one step
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double dot(const Vec3& u, const Vec3& v) noexcept {
@@ -139,7 +140,7 @@ Freezing::Freezing(const NetworkDescription& network)
 
 void Freezing::adopt(const NetworkDescription& network, const std::vector<Behaviour>& behaviours) {
   const std::vector<OfMat> of_mats = measure(network, behaviours);
-  const double tolerance = network.freeze_tolerance;
+  const double tolerance = kShare * network.freeze_tolerance;
   const double dt = network.step;
   const double weight_step = network.gravity.norm() * dt * dt;
   for (std::size_t i = 0; i < of_mats.size(); ++i) {
@@ -164,7 +165,9 @@ void Freezing::adopt(const NetworkDescription& network, const std::vector<Behavi
 void Freezing::wake(std::uint32_t mat) noexcept {
   if (is_asleep(mat)) {
     --asleep_count_;
-    roused_ = true;
+    movers_changed_ = true;
+    // those beside it may need their whole forces in the next step
+    (roles_.has(mat, kMayStir) ? changed_ : roused_) = true;
   }
   rest_[mat] = 0;
 }
@@ -173,16 +176,17 @@ void Freezing::wake_all() noexcept {
   std::fill(rest_.begin(), rest_.end(), std::uint8_t{0});
   asleep_count_ = 0;
   roused_ = true;
+  movers_changed_ = true;
 }
 
 void Freezing::choose_liaisons(WorldState& world, bool sets_changed) noexcept {
-  const bool due = settled_ && world.step_count % kStepsBetweenChoices == 0;
+  const bool due = changed_ && world.step_count % kStepsBetweenChoices == 0;
   if (roused_ || due || sets_changed) {
     choose_roles(world);
     list_mats(world.mats);
     list_movers(world.mats);
     roused_ = false;
-    settled_ = false;
+    changed_ = false;
   }
   world.mats.clear_forces(computed_);
 }
@@ -191,16 +195,19 @@ void Freezing::choose_roles(WorldState& world) noexcept {
   for (std::uint32_t i = 0; i < rest_.size(); ++i) {
     const bool is_mass = mass_over_dt2_[i] > 0.0;
     const bool stirs = kept_awake_[i] || (is_mass && rest_[i] < kAsleep);
-    roles_.set(i, (is_mass ? kIsMass : 0U) | (stirs ? kStirs | kWholeForce : 0U));
+    roles_.set(i, (is_mass ? kIsMass : 0U) | (stirs ? kStirs | kMayStir | kWholeForce : 0U));
   }
-  world.links.mark_neighbours(roles_);
-  world.ties.mark_neighbours(roles_);
-  world.state_links.mark_neighbours(never_rests_, roles_);
-  world.maxwell_links.mark_ends(roles_);
-  world.sets.mark_neighbours(roles_);
+  for (const Passing& pass : {kToThoseBeside, kToThoseBeyond}) {
+    world.links.mark_neighbours(pass, roles_);
+    world.ties.mark_neighbours(pass, roles_);
+    world.state_links.mark_neighbours(pass, never_rests_, roles_);
+    world.maxwell_links.mark_neighbours(pass, roles_);
+    world.sets.mark_neighbours(pass, never_rests_, roles_);
+  }
   world.links.choose_active(roles_);
   world.ties.choose_active(roles_);
   world.state_links.choose_active(roles_);
+  world.sets.choose_active(never_rests_, roles_);
 }
 
 /// Forces on sleepers that are no longer summed, or not whole, are kept as they are.
@@ -231,6 +238,7 @@ void Freezing::list_movers(MatArray& mats) noexcept {
     movers_.back().last = mat + 1;
   }
   mats.move_only(movers_);
+  movers_changed_ = false;
 }
 
 void Freezing::restore_forces(MatArray& mats) const noexcept {
@@ -246,18 +254,15 @@ bool Freezing::is_balanced(const MatArray& mats, std::uint32_t mat) const noexce
 double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
   MatArray& mats = world.mats;
   stopped_.clear();
-  const std::uint32_t asleep_before = asleep_count_;
   wake_where_states_change(world);
-  bool same_movers = asleep_before == asleep_count_;
   double energy = 0.0;
   for (const std::uint32_t mat : whole_) {
     const bool balanced = is_balanced(mats, mat);
     if (is_asleep(mat)) {
-      same_movers = same_movers && balanced;
       if (!balanced) {
         wake(mat);
       } else if (rest_[mat] < kAsleep && ++rest_[mat] == kAsleep) {
-        settled_ = true;
+        changed_ = true;
       }
       continue;
     }
@@ -267,10 +272,9 @@ double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
       rest_[mat] = 0;
     } else if (++rest_[mat] == kStepsToSleep) {
       energy += stop(mats, mat, at_moments);
-      same_movers = false;
     }
   }
-  if (!same_movers) list_movers(mats);
+  if (movers_changed_) list_movers(mats);
   return energy;
 }
 
@@ -281,6 +285,7 @@ double Freezing::stop(MatArray& mats, std::uint32_t mat, bool at_moments) noexce
   const Vec3 push = mats.push_of_period(mat);
   const Vec3 at_moment = moved + 0.5 * push;
   ++asleep_count_;
+  movers_changed_ = true;
   stopped_.push_back(mat);
   mats.halt(mat);
   const double square = at_moments ? square_of(at_moment) : dot(moved, moved + push);

@@ -20,13 +20,15 @@ struct WorldState;
 ///
 /// A mass falls asleep when in kStepsToSleep steps in a row
 ///
-///     it moves less than the tolerance in a step, so slowly that its dampers pull less than F, and
-///     the sum of all forces on it is below  F = tolerance * K,
+///     it moves less than e in a step, so slowly that its dampers pull less than F, and the sum of
+///     all forces on it is below  F = e K,
 ///
-/// K being its own stiffness: the sum of that of its linear links or, if they have none, the least
-/// of the laws that may act on it. A mass without stiffness never does; nor does one of whose
-/// weight more than a tenth is not carried, or on which a force from outside is held. It is stopped
-/// where it is; the energy it had counts as dissipated, exactly.
+/// e being a quarter of the tolerance and K its own stiffness: the sum of that of its linear links
+/// or, if they have none, the least of the laws that may act on it. Forces that small add up over
+/// many masses: positions are off by about 3 tolerances, where all is soft by up to 50. A mass
+/// without stiffness never does; nor does one of whose weight more than a tenth is not carried, or
+/// on which a force from outside is held. It is stopped where it is; the energy it had counts as
+/// dissipated, exactly.
 ///
 /// It wakes in the step in which the sum of all forces on it exceeds F, a link at it changes its
 /// state, or something from outside touches it. Forces are computed of each liaison at a mass that
@@ -102,8 +104,9 @@ class Freezing {
   std::vector<MatArray::Range> movers_;
   std::vector<std::uint32_t> stopped_;
   std::uint32_t asleep_count_ = 0;
-  bool roused_ = true;   // someone may have woken since the liaisons were chosen
-  bool settled_ = true;  // someone has fallen asleep
+  bool roused_ = true;   // other liaisons must be computed in the next step
+  bool changed_ = true;  // others may be left out
+  bool movers_changed_ = true;
 };
 
 }  // namespace cordis::engine

@@ -70,7 +70,9 @@ double Leapfrog::stop_what_rests(WorldState& world) noexcept {
   return energy;
 }
 
+/// A network that freezes has no links to be solved (refusal_of), whatever they are changed to.
 double Leapfrog::correct_forces(WorldState& world) noexcept {
+  if (world.freezing) return 0.0;
   return steep_links_.solve(world, felt_, sweeps_.get(), started_);
 }
 

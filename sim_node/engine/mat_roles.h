@@ -13,6 +13,16 @@ inline constexpr unsigned kIsMass = 1;  ///< may have to move: not a fixed point
 inline constexpr unsigned kStirs = 2;   ///< moves, or may begin to in this step
 inline constexpr unsigned kWholeForce = 4;  ///< each of its liaisons is computed
 inline constexpr unsigned kSomeForce = 8;   ///< some are, along with those of others
+inline constexpr unsigned kMayStir = 16;    ///< and so is each of those of its neighbours
+
+/// Who passes what on to the masses beside it: those beside what stirs may wake, and so those
+/// beside them need their whole forces.
+struct Passing {
+  unsigned from;
+  unsigned to;
+};
+inline constexpr Passing kToThoseBeside{kStirs, kMayStir | kWholeForce};
+inline constexpr Passing kToThoseBeyond{kMayStir, kWholeForce};
 
 /// The roles of all MATs.
 class MatRoles {
@@ -28,10 +38,10 @@ class MatRoles {
   void add(std::size_t mat, unsigned roles) noexcept {
     roles_[mat] = static_cast<std::uint8_t>(roles_[mat] | roles);
   }
-  /// There is a liaison between two MATs: a mass beside one that stirs needs its whole force.
-  void join(std::size_t a, std::size_t b) noexcept {
-    if (has(a, kStirs) && has(b, kIsMass)) add(b, kWholeForce);
-    if (has(b, kStirs) && has(a, kIsMass)) add(a, kWholeForce);
+  /// There is a liaison between two MATs.
+  void join(std::size_t a, std::size_t b, const Passing& pass) noexcept {
+    if (has(a, pass.from) && has(b, kIsMass)) add(b, pass.to);
+    if (has(b, pass.from) && has(a, kIsMass)) add(a, pass.to);
   }
 
  private:

@@ -50,8 +50,9 @@ StepEnergy MaxwellArray::add_forces(const BehaviourKernel& kernel,
   return half_of(work);
 }
 
-void MaxwellArray::mark_ends(MatRoles& roles) const noexcept {
+void MaxwellArray::mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept {
   for (std::size_t l = 0; l < link_count_; ++l) {
+    roles.join(column_a_[l] / 4, column_b_[l] / 4, pass);
     for (const std::uint32_t mat : {column_a_[l] / 4, column_b_[l] / 4}) {
       roles.add(mat, roles.has(mat, kIsMass) ? kWholeForce | kSomeForce : kSomeForce);
     }

@@ -28,9 +28,9 @@ class MaxwellArray {
   /// allocation. @return stored and dissipated energy, as EnergyAccount counts them.
   StepEnergy add_forces(const BehaviourKernel& kernel, const ForceColumns& columns) noexcept;
 
-  /// All are computed in every step, since their forces fade while nothing moves: of their ends the
-  /// whole force is needed.
-  void mark_ends(MatRoles& roles) const noexcept;
+  /// As that of SpringDamperArray. All are computed in every step, since their forces fade while
+  /// nothing moves: of their ends the whole force is needed.
+  void mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept;
 
   /// Work of the forces of the last call up to the present positions. Real time: O(elements), no
   /// allocation.

@@ -32,6 +32,7 @@ NeighbourList::NeighbourList(std::size_t count_p, std::size_t count_q, int dimen
       start_(count_p + 1, 0),
       fill_(count_p, 0),
       found_count_(count_p + count_q, 0U),
+      found_begin_(count_p + count_q, 0),
       found_(capacity_ + count_p + kPairBatch, 0U),
       neighbour_(capacity_ + kPairBatch, 0U),
       from_(padded_values(count_p + count_q), 0.0),
@@ -110,12 +111,13 @@ std::size_t NeighbourList::find_before(std::size_t b, const double* position, st
 std::size_t NeighbourList::find_all(const double* position) noexcept {
   std::fill(fill_.begin(), fill_.end(), std::size_t{0});
   std::size_t total = 0;
-  for (std::size_t b = count_q_ > 0 ? count_p_ : 0; b < member_count(); ++b) {
-    std::uint32_t* found = found_.data() + std::min(total, capacity_);
-    const std::size_t count = find_before(b, position, 0, count_p_, found);
-    for (std::size_t i = 0; i < count; ++i) ++fill_[found[i]];
-    found_count_[b] = static_cast<std::uint32_t>(count);
-    total += count;
+  if (count_q_ == 0) {
+    total = find_all_within(total);
+  } else {
+    for (std::size_t b = count_p_; b < member_count(); ++b) {
+      std::uint32_t* found = found_.data() + std::min(total, capacity_);
+      total = note_found(b, find_before(b, position, 0, count_p_, found), total);
+    }
   }
   start_[0] = 0;
   for (std::size_t a = 0; a < count_p_; ++a) {
@@ -124,12 +126,45 @@ std::size_t NeighbourList::find_all(const double* position) noexcept {
   return total;
 }
 
+/// Place by place, since what is around it is the same for all of its members.
+std::size_t NeighbourList::find_all_within(std::size_t total) noexcept {
+  std::fill(found_count_.begin(), found_count_.end(), 0U);
+  const CellPlaces places = grid_.places();
+  for (std::size_t place = 0; place < grid_.place_count(); ++place) {
+    const std::size_t end = grid_.end_of(place);
+    if (grid_.begin_of(place) == end) continue;
+    const CellGrid::Surroundings around = grid_.around_place(place, places.member[end - 1]);
+    for (std::size_t at = grid_.begin_of(place); at < end; ++at) {
+      const NearQuery query{places.x[at],   places.y[at], places.z[at],
+                            reach_square(), 0.0,          places.number[at]};
+      std::uint32_t* found = found_.data() + std::min(total, capacity_);
+      std::size_t count = 0;
+      for (std::size_t r = 0; r < around.count; ++r) {
+        const CellGrid::Run run = around.runs[r];
+        count += kernel_->find_near(places, run.begin, run.end, query, found + count);
+      }
+      total = note_found(places.member[at], count, total);
+    }
+  }
+  return total;
+}
+
+/// @return how many pairs there are then
+std::size_t NeighbourList::note_found(std::size_t b, std::size_t count,
+                                      std::size_t total) noexcept {
+  found_begin_[b] = std::min(total, capacity_);
+  const std::uint32_t* found = found_.data() + found_begin_[b];
+  for (std::size_t i = 0; i < count; ++i) ++fill_[found[i]];
+  found_count_[b] = static_cast<std::uint32_t>(count);
+  return total + count;
+}
+
 /// Later members are taken in ascending order, so that each row comes out in that order.
 void NeighbourList::sort_found() noexcept {
   std::copy_n(start_.begin(), count_p_, fill_.begin());
-  const std::uint32_t* found = found_.data();
   for (std::size_t b = count_q_ > 0 ? count_p_ : 0; b < member_count(); ++b) {
     const auto column = static_cast<std::uint32_t>(4 * b);
+    const std::uint32_t* found = found_.data() + found_begin_[b];
     for (std::uint32_t i = 0; i < found_count_[b]; ++i) neighbour_[fill_[*found++]++] = column;
   }
 }

@@ -61,6 +61,8 @@ class NeighbourList {
   /// Finds all pairs, keeps them in found_ as far as there is room and counts those of each row.
   /// @return how many
   std::size_t find_all(const double* position) noexcept;
+  std::size_t find_all_within(std::size_t total) noexcept;
+  std::size_t note_found(std::size_t b, std::size_t count, std::size_t total) noexcept;
   std::size_t find_before(std::size_t b, const double* position, std::size_t first,
                           std::size_t last, std::uint32_t* found) const noexcept;
   void sort_found() noexcept;
@@ -76,6 +78,7 @@ class NeighbourList {
   std::vector<std::size_t> start_;          // by row; one past the last too
   std::vector<std::size_t> fill_;           // by row: where its next entry goes
   std::vector<std::uint32_t> found_count_;  // by later member
+  std::vector<std::size_t> found_begin_;    // in found_, by later member
   std::vector<std::uint32_t> found_;        // earlier members of each pair, by the later one
   std::vector<std::uint32_t> neighbour_;    // columns
   AlignedVector<double> from_;              // positions when it was made

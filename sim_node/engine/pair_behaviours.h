@@ -57,6 +57,11 @@ class PairBehaviours {
   void step(const PairStep& step, const MemberColumns& members, double range_square,
             PairBlock& block) noexcept;
 
+  /// Rows that are left out of a step remember what they did.
+  void keep_rows(const PairStep& step, std::size_t first, std::size_t last) noexcept {
+    if (remembers(step)) forgotten_ += static_cast<std::uint32_t>(states_.keep_rows(first, last));
+  }
+
   bool has_states() const noexcept { return !stateless_; }
   const PairStates& states() const noexcept { return states_; }
   PairStates& states() noexcept { return states_; }

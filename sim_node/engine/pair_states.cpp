@@ -37,6 +37,21 @@ bool PairStates::add(const PairState& state, const double* memory, std::size_t s
   return true;
 }
 
+std::size_t PairStates::keep_rows(std::size_t first, std::size_t last) noexcept {
+  const std::size_t from = read_.start[first];
+  const std::size_t to = written_.count;
+  const std::size_t wanted = read_.start[last] - from;
+  const std::size_t kept = std::min(wanted, written_.states.size() - to);
+  std::copy_n(read_.states.data() + from, kept, written_.states.data() + to);
+  std::copy_n(read_.memory.data() + from * slot_count_, kept * slot_count_,
+              written_.memory.data() + to * slot_count_);
+  written_.count += kept;
+  for (std::size_t row = first; row < last; ++row) {
+    written_.start[row + 1] = to + std::min(read_.start[row + 1] - from, kept);
+  }
+  return wanted - kept;
+}
+
 void PairStates::change_slots(std::uint32_t slot_count) {
   slot_count_ = slot_count;
   for (Table* table : {&read_, &written_}) {

@@ -44,6 +44,9 @@ class PairStates {
   bool add(const PairState& state, const double* memory, std::size_t stride) noexcept;
   void end_row(std::size_t row) noexcept { written_.start[row + 1] = written_.count; }
 
+  /// Writes rows [first, last) as they were in the last step. @return pairs that found no room
+  std::size_t keep_rows(std::size_t first, std::size_t last) noexcept;
+
   /// The pairs of a row as last written.
   std::size_t begin(std::size_t row) const noexcept { return written_.start[row]; }
   std::size_t end(std::size_t row) const noexcept { return written_.start[row + 1]; }

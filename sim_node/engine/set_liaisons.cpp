@@ -17,8 +17,32 @@ StepEnergy SetLiaisons::add_forces(const PairStep& step, const ForceColumns& col
   return energy;
 }
 
-void SetLiaisons::mark_neighbours(MatRoles& roles) const noexcept {
-  for (const SetPairs& set : sets_) set.mark_neighbours(roles);
+StepEnergy SetLiaisons::take_positions(const ForceColumns& columns) noexcept {
+  StepEnergy energy;
+  for (SetPairs& set : sets_) energy += set.take_positions(columns);
+  return energy;
+}
+
+bool SetLiaisons::refresh() noexcept {
+  bool changed = false;
+  for (SetPairs& set : sets_) changed = set.refresh() || changed;
+  return changed;
+}
+
+StepEnergy SetLiaisons::add_pair_forces(const PairStep& step,
+                                        const ForceColumns& columns) noexcept {
+  StepEnergy energy;
+  for (SetPairs& set : sets_) energy += set.add_pair_forces(step, columns);
+  return energy;
+}
+
+void SetLiaisons::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                                  MatRoles& roles) noexcept {
+  for (SetPairs& set : sets_) set.mark_neighbours(pass, never_rests, roles);
+}
+
+void SetLiaisons::choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept {
+  for (SetPairs& set : sets_) set.choose_active(never_rests, roles);
 }
 
 StepEnergy SetLiaisons::work_since_last_call(const MatArray& mats) const noexcept {

@@ -20,7 +20,12 @@ class SetLiaisons {
 
   /// As those of SetPairs, for all sets:
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
-  void mark_neighbours(MatRoles& roles) const noexcept;
+  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  bool refresh() noexcept;
+  StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                       MatRoles& roles) noexcept;
+  void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   double stored_energy(const StateTable& table) noexcept;
   void start() noexcept;

@@ -41,8 +41,24 @@ class SetPairs {
   /// Real time: O(members + pairs), no allocation.
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
 
-  /// All pairs are computed in every step: of each member the whole force is there.
-  void mark_neighbours(MatRoles& roles) const noexcept;
+  /// The same in two halves, with a choice of the pairs that are computed between them:
+  /// takes the positions of the members and the works of the last forces up to now ...
+  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  /// ... fits the neighbour list to them; @return whether other pairs may be in range now ...
+  bool refresh() noexcept;
+  /// ... and adds the forces.
+  StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+
+  /// Passes on between members that are near each other or bound. All are beside all others where
+  /// all pairs are computed in every step: because their conditions may come true while they rest,
+  /// or because the neighbour list has no room for all of them.
+  /// @param never_rests  by behaviour
+  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                       MatRoles& roles) noexcept;
+  /// From now on only pairs with a MAT with kWholeForce, and some beside them, are computed; of the
+  /// others neither has moved. Real time: O(members + entries of the neighbour list), no
+  /// allocation.
+  void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;
 
   /// What the forces of the last call have done since, up to the present positions.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
@@ -71,7 +87,17 @@ class SetPairs {
  private:
   enum class Path { kLinear, kLennardJones, kAnyBehaviour };
 
-  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  template <class Visit>
+  void visit_active(Visit visit) const noexcept;
+  bool computes_all(const std::vector<bool>& never_rests) const noexcept {
+    return never_rests[behaviour_] || !neighbours_.is_whole();
+  }
+  void find_roles(const MatRoles& roles) noexcept;
+  void mark_bound(const Passing& pass) noexcept;
+  bool is_row_active(const NeighbourRows& rows, std::size_t a) const noexcept;
+  void add_row(std::size_t a) noexcept;
+  void clear_forces() noexcept;
+  void step_active_rows(const PairStep& step) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) const noexcept;
   void step_rows(const PairStep& step, const NeighbourRows& rows) noexcept;
   std::size_t gather(const NeighbourRows& rows, std::size_t a) noexcept;
@@ -98,6 +124,14 @@ class SetPairs {
   AlignedVector<double> force_;
   AlignedVector<double> viscous_;  // the part of the force that stores no energy
   bool has_viscous_ = false;
+
+  // What is computed, once choose_active has been called:
+  bool all_active_ = true;
+  std::vector<std::uint8_t> role_;               // of each member, bits of MatRoles
+  std::vector<std::uint32_t> active_members_;    // whose positions are taken, ascending
+  std::vector<NeighbourRows> active_rows_;       // with pairs that are
+  std::vector<std::size_t> active_start_;        // of them: by row; one past the last too
+  std::vector<std::uint32_t> active_neighbour_;  // columns
 };
 
 }  // namespace cordis::engine

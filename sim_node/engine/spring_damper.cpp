@@ -88,9 +88,9 @@ StepEnergy SpringDamperArray::add_forces_of_moment(const StepKernel& kernel,
   return {0.0, 2.0 * add(in_line_ ? in_line : in_space, columns).dissipated, 0.0, 0.0};
 }
 
-void SpringDamperArray::mark_neighbours(MatRoles& roles) const noexcept {
+void SpringDamperArray::mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept {
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
-    roles.join(column_a_[l] / 4, column_b_[l] / 4);
+    roles.join(column_a_[l] / 4, column_b_[l] / 4, pass);
   }
 }
 

@@ -38,8 +38,8 @@ class SpringDamperArray {
   /// take in a period at the velocity (x - delayed) / dt is returned, and nothing remembered.
   StepEnergy add_forces_of_moment(const StepKernel& kernel, const ForceColumns& columns) noexcept;
 
-  /// Masses that a link joins to one that stirs get kWholeForce.
-  void mark_neighbours(MatRoles& roles) const noexcept;
+  /// Passes on along each link.
+  void mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept;
   /// From now on only links at MATs with kWholeForce, and some beside them, are computed; of the
   /// others neither end has moved. Real time: O(links), no allocation.
   void choose_active(MatRoles& roles) noexcept;

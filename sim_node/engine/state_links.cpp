@@ -145,12 +145,12 @@ StepEnergy StateLinkArray::add_forces(const BehaviourKernel& kernel, const State
   return energy;
 }
 
-void StateLinkArray::mark_neighbours(const std::vector<bool>& never_rests,
+void StateLinkArray::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
                                      MatRoles& roles) const noexcept {
   for (std::size_t l = 0; l < link_count_; ++l) {
     const std::uint32_t a = column_a_[l] / 4;
     const std::uint32_t b = column_b_[l] / 4;
-    roles.join(a, b);
+    roles.join(a, b, pass);
     if (!never_rests[behaviour_[l]]) continue;
     const bool is_mass_a = roles.has(a, kIsMass);
     const bool is_mass_b = roles.has(b, kIsMass);

@@ -42,7 +42,8 @@ class StateLinkArray {
   /// As those of SpringDamperArray. Links of a behaviour whose conditions may come true while both
   /// ends rest are always computed: their masses get kWholeForce.
   /// @param never_rests  by behaviour
-  void mark_neighbours(const std::vector<bool>& never_rests, MatRoles& roles) const noexcept;
+  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                       MatRoles& roles) const noexcept;
   void choose_active(MatRoles& roles) noexcept;
 
   /// Works of the forces of the last call up to the present positions. Real time: O(links), no

@@ -116,12 +116,20 @@ StepEnergy WorldState::work_since_last_call() const noexcept {
   return work;
 }
 
-void WorldState::begin_forces() noexcept {
-  if (freezing) {
-    freezing->choose_liaisons(*this, false);
-  } else {
+StepEnergy WorldState::begin_forces(const ForceColumns& columns) noexcept {
+  if (!freezing) {
     mats.clear_forces();
+    return {};
   }
+  const StepEnergy energy = sets.take_positions(columns);
+  freezing->choose_liaisons(*this, sets.refresh());
+  return energy;
+}
+
+StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
+  if (sets.empty()) return {};
+  return freezing ? sets.add_pair_forces(pair_step(false), columns)
+                  : sets.add_forces(pair_step(false), columns);
 }
 
 void WorldState::add_forces_of_period(StepEnergy& energy) noexcept {
@@ -132,7 +140,7 @@ void WorldState::add_forces_of_period(StepEnergy& energy) noexcept {
     energy += state_links.add_forces(behaviours, table, columns, step_count, log);
   }
   energy += maxwell_links.add_forces(behaviours, columns);
-  if (!sets.empty()) energy += sets.add_forces(pair_step(false), columns);
+  energy += add_set_forces(columns);
   if (freezing) freezing->restore_forces(mats);
 }
 
@@ -140,7 +148,8 @@ double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy
   const ForceColumns as_it_moved = mats.force_columns();
   ForceColumns felt = as_it_moved;
   felt.delayed = felt_positions;
-  begin_forces();
+  sets.start();
+  const StepEnergy of_last_sets = begin_forces(felt);
 
   StepEnergy of_links = links.add_forces_of_moment(kernel, felt);
   of_links += ties.add_forces_of_moment(kernel, felt);
@@ -151,10 +160,8 @@ double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy
     of_links += state_links.add_forces(behaviours, table, felt, step_count, log);
   }
   energy.dissipated += maxwell_links.add_forces(behaviours, as_it_moved).dissipated;
-  if (!sets.empty()) {
-    sets.start();
-    of_links += sets.add_forces(pair_step(false), felt);
-  }
+  of_links += of_last_sets;
+  of_links += add_set_forces(felt);
   if (freezing) freezing->restore_forces(mats);
   energy.switching += of_links.switching;
   return of_links.dissipated;

@@ -52,8 +52,11 @@ struct WorldState {
   double potential_energy() noexcept;
   StepEnergy work_since_last_call() const noexcept;
 
-  /// Clears the forces; of a world that freezes, chooses the liaisons that are computed.
-  void begin_forces() noexcept;
+  /// Clears the forces. Of a world that freezes, ends the account of the last ones of the sets and
+  /// chooses the liaisons that are computed. @return works [J]
+  StepEnergy begin_forces(const ForceColumns& columns) noexcept;
+  /// Adds the forces of the sets after that.
+  StepEnergy add_set_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of all liaisons as `cordis` does; enters what they take.
   void add_forces_of_period(StepEnergy& energy) noexcept;
   /// Clears the forces and adds those of all liaisons for an account that is kept at moments:

@@ -19,6 +19,7 @@ engine::World world_at(engine::NetworkDescription network, const std::string& in
                        double rate_hz) {
   network.integrator = engine::integrator_named(integrator);
   network.step = 1.0 / rate_hz;
+  network.freeze_tolerance = 0.0;  // what that does is told apart
   return engine::World(std::make_shared<const engine::Network>(std::move(network)));
 }
 
@@ -92,6 +93,7 @@ int evaluations_per_step(const std::string& integrator) {
 }
 
 std::string refusal_of(engine::NetworkDescription network, const std::string& integrator) {
+  network.freeze_tolerance = 0.0;
   network.integrator = engine::integrator_named(integrator);
   const auto refusal = engine::refusal_of(network);
   return refusal ? refusal->what : std::string();

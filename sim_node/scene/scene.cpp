@@ -43,6 +43,13 @@ void read_accuracy(const Value& section, Scene& scene, config::Problems& problem
   scene.accuracy = accuracy;
 }
 
+void read_freeze(const Value& section, Scene& scene, config::Problems& problems) {
+  if (!section.exists()) return;
+  config::MappingReader reader(section, "freeze", problems);
+  scene.network.freeze_tolerance = reader.required_number("tolerance_m", Range::positive());
+  reader.finish();
+}
+
 /// @return where the integrator is chosen
 config::Place read_step(const Value& section, Scene& scene, config::Problems& problems) {
   config::MappingReader reader(section, "step", problems);
@@ -55,6 +62,7 @@ config::Place read_step(const Value& section, Scene& scene, config::Problems& pr
   if (scene.network.integrator == engine::Integrator::kModal) {
     scene.network.most_mode_hz = reader.optional_number("modes_to_hz", 0.0, Range::positive());
   }
+  read_freeze(reader.optional_mapping("freeze"), scene, problems);
   scene.rate_is_open = scene.accuracy && !reader.has("rate_hz");
   scene.integrator_is_open = scene.rate_is_open && !reader.has("integrator");
   if (!scene.rate_is_open) {

@@ -99,6 +99,9 @@ class SceneWriter {
     if (network_.most_mode_hz > 0.0) {
       text += ", modes_to_hz: " + number_text(network_.most_mode_hz);
     }
+    if (network_.freeze_tolerance > 0.0) {
+      text += ", freeze: {tolerance_m: " + number_text(network_.freeze_tolerance) + "}";
+    }
     text += "}\nreduce: none\nworld: {gravity_m_per_s2: " + point(network_.gravity) +
             ", viscosity_n_s_per_m: " + number_text(network_.medium_viscosity) + "}\n";
     return text;

@@ -173,6 +173,8 @@ SignalReader::SignalReader(std::vector<Signal> signals, const engine::NetworkDes
     }
     if (signal.near > 0.0) pieces_[s]->keep_near(signal.near);
   }
+  mass_count_ = static_cast<double>(
+      std::ranges::count(network.mats, engine::MatKind::kMass, &engine::Mat::kind));
   wants_energy_ = std::any_of(signals_.begin(), signals_.end(), [](const Signal& signal) {
     return signal.quantity >= Quantity::kEnergy;
   });
@@ -186,6 +188,7 @@ void SignalReader::read(const engine::World& world, double* values) const noexce
 double SignalReader::value_of(std::size_t index, const engine::World& world,
                               const engine::Energy& energy) const noexcept {
   const Signal& signal = signals_[index];
+  if (signal.quantity == Quantity::kAwake) return 1.0 - world.asleep_count() / mass_count_;
   if (!pieces_[index]) return value_of_signal(signal, world, energy);
   engine::ConnectedPieces& pieces = *pieces_[index];
   std::size_t count = 0;

@@ -34,6 +34,7 @@ enum class Quantity : std::uint8_t {
             ///< states that are not idle
 
   kChanges,  ///< of the states of all links, since step 0
+  kAwake,    ///< part of the masses that are not left out for being at rest, 0 to 1
 
   kEnergy,            ///< kinetic + elastic + gravity [J]
   kKineticEnergy,     ///< [J]
@@ -87,6 +88,7 @@ class SignalReader {
   // Room to count in, of those that count pieces; nothing is kept in it from one call to the next.
   mutable std::vector<std::optional<engine::ConnectedPieces>> pieces_;
   bool wants_energy_ = false;
+  double mass_count_ = 0.0;  // of the network
 };
 
 }  // namespace cordis::scene

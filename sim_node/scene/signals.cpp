@@ -23,7 +23,7 @@ struct QuantityWord {
   const char* unit;
   bool has_direction;
 };
-constexpr std::array<QuantityWord, 29> kWords{{
+constexpr std::array<QuantityWord, 30> kWords{{
     {"position", Owner::kMat, Quantity::kPosition, "m", true},
     {"velocity", Owner::kMat, Quantity::kVelocity, "m/s", true},
     {"force", Owner::kMat, Quantity::kForce, "N", true},
@@ -46,6 +46,7 @@ constexpr std::array<QuantityWord, 29> kWords{{
     {"pieces", Owner::kSet, Quantity::kPieces, "", false},
     {"bonds", Owner::kSet, Quantity::kBonds, "", false},
     {"changes", Owner::kScene, Quantity::kChanges, "", false},
+    {"awake", Owner::kScene, Quantity::kAwake, "", false},
     {"energy", Owner::kScene, Quantity::kEnergy, "J", false},
     {"kinetic_energy", Owner::kScene, Quantity::kKineticEnergy, "J", false},
     {"elastic_energy", Owner::kScene, Quantity::kElasticEnergy, "J", false},
@@ -121,6 +122,9 @@ const char* word_of(Quantity quantity) noexcept {
 void Assembly::read_signals(const Value& section) {
   std::vector<Signal> signals;
   for (const Value::Entry& entry : section.entries()) read_signal(entry, signals);
+  for (const Signal& signal : signals) {
+    if (signal.quantity == Quantity::kForce) scene_.network.kept_awake.push_back(signal.index);
+  }
   if (problems_.has_errors()) return;  // and the network is not whole
   scene_.signals = SignalReader(std::move(signals), scene_.network);
 }

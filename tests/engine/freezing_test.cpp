@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -84,17 +86,100 @@ Difference difference_after_strike(Integrator integrator, double tolerance) {
   return difference;
 }
 
-TEST(Freezing, IsOffByLessThanTenTolerances) {
+TEST(Freezing, IsOffByLessThanThreeTolerances) {
   for (const Integrator integrator : {Integrator::kCordis, Integrator::kLeapfrog}) {
     double awake_before = 1.0;
     for (const double tolerance : {4.5e-5, 4.5e-4, 4.5e-3}) {  // of the peak
       const Difference difference = difference_after_strike(integrator, tolerance * kPeak);
-      EXPECT_LT(difference.usual, 10.0 * tolerance) << to_string(integrator) << tolerance;
-      EXPECT_LT(difference.largest, 50.0 * tolerance) << to_string(integrator) << tolerance;
+      EXPECT_LT(difference.usual, 3.0 * tolerance) << to_string(integrator) << tolerance;
+      EXPECT_LT(difference.largest, 12.0 * tolerance) << to_string(integrator) << tolerance;
       EXPECT_LT(difference.awake, awake_before) << to_string(integrator);
+      RecordProperty(to_string(integrator) + std::to_string(std::lround(1e6 * tolerance)),
+                     std::to_string(difference.usual / tolerance) + ", at most " +
+                         std::to_string(difference.largest / tolerance) + ", awake " +
+                         std::to_string(difference.awake));
       awake_before = difference.awake;
     }
     EXPECT_LT(awake_before, 0.3);
+  }
+}
+
+/// Masses at rest, each on a spring of its own or on links to others, of all kinds.
+NetworkDescription resting_network(std::uint32_t seed) {
+  constexpr std::uint32_t kCount = 40;
+  NetworkDescription scene;
+  scene.dimension = static_cast<int>(seed % 3) + 1;
+  scene.step = 1e-3;
+  scene.medium_viscosity = 0.3;
+  std::mt19937 random(seed);
+  const auto uniform = [&random](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+  };
+  const auto point = [&] {
+    Vec3 at = Vec3::Zero();
+    for (int axis = 0; axis < scene.dimension; ++axis) at[axis] = uniform(0.0, 1.0);
+    return at;
+  };
+  const auto distance = [&scene](std::uint32_t a, std::uint32_t b) {
+    const Vec3 along = scene.mats[b].position - scene.mats[a].position;
+    return scene.dimension == 1 ? along.x() : along.norm();
+  };
+  for (std::uint32_t i = 0; i < kCount; ++i)
+    scene.mats.push_back(mass(uniform(0.05, 0.2), point()));
+  for (std::uint32_t i = 0; i < 12; ++i) scene.mats.push_back(fixed(point()));
+  Behaving slack;  // pulls beyond a stretch
+  slack.state(0.0).exit(q(engine::Quantity::kElongation) > 0.01, 1);
+  slack.state(20.0, 0.2).exit(q(engine::Quantity::kElongation) < 0.005, 0);
+  scene.behaviours = {slack.behaviour};
+  for (std::uint32_t i = 0; i < 160; ++i) {
+    const auto a = static_cast<std::uint32_t>(random() % kCount);
+    const auto b = static_cast<std::uint32_t>(random() % scene.mats.size());
+    if (a == b) continue;
+    if (i % 8 == 0) {
+      scene.maxwell_links.push_back({a, b, uniform(5.0, 20.0), uniform(0.1, 1.0)});
+    } else if (i % 8 == 1) {
+      scene.state_links.push_back({a, b, 0, distance(a, b)});
+    } else {
+      scene.links.push_back({a, b, uniform(20.0, 200.0), uniform(0.0, 0.3), distance(a, b)});
+    }
+  }
+  return scene;
+}
+
+TEST(Freezing, IsOffByLessThanTenTolerancesInAnyNetwork) {
+  constexpr double kTolerance = 1e-5;
+  for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+    NetworkDescription scene = resting_network(seed);
+    scene.integrator = seed % 2 == 0 ? Integrator::kCordis : Integrator::kLeapfrog;
+    World whole = make_world(scene);
+    World part = make_world(frozen(scene, kTolerance));
+    double square = 0.0;
+    double largest = 0.0;
+    double farthest = 0.0;
+    std::uint32_t most_asleep = 0;
+    constexpr int kSteps = 3000;
+    for (int n = 0; n < kSteps; ++n) {
+      for (World* world : {&whole, &part}) {
+        world->set_external_force(5, n < 100 ? Vec3(2.0, 0, 0) : Vec3(Vec3::Zero()));
+        world->step();
+      }
+      for (std::uint32_t i = 0; i < 40; ++i) {
+        const double error = (whole.position(i) - part.position(i)).norm() / kTolerance;
+        square += error * error / (40.0 * kSteps);
+        largest = std::max(largest, error);
+        farthest = std::max(farthest, (whole.position(i) - scene.mats[i].position).norm());
+      }
+      most_asleep = std::max(most_asleep, part.asleep_count());
+      if (scene.integrator != Integrator::kCordis) continue;
+      const engine::Energy energy = part.energy();
+      ASSERT_LT(std::abs(energy.residual()), 1e-9 * energy.largest) << seed << ", step " << n;
+    }
+    EXPECT_LT(std::sqrt(square), 10.0) << seed;
+    EXPECT_LT(largest, 100.0) << seed;
+    EXPECT_GT(farthest, 100.0 * kTolerance) << seed;
+    EXPECT_GT(most_asleep, 10U) << seed;
+    RecordProperty("network" + std::to_string(seed),
+                   std::to_string(std::sqrt(square)) + ", at most " + std::to_string(largest));
   }
 }
 
@@ -180,7 +265,7 @@ NetworkDescription scene_of_all_links(int dimension) {
 
 TEST(Freezing, KeepsTheAccount) {
   for (const int dimension : {1, 3}) {
-    World world = make_world(frozen(scene_of_all_links(dimension), 1e-5));
+    World world = make_world(frozen(scene_of_all_links(dimension), 1e-4));
     std::uint32_t most_asleep = 0;
     for (int n = 0; n < rounds(20000); ++n) {
       if (n == 14000) world.impose_position(30, Vec3(0.3, 0, 0));
@@ -452,7 +537,7 @@ TEST(Freezing, ShowsTheForceOnWhatSleeps) {
     world.step();
   }
 
-  ASSERT_GT(world.asleep_count(), 10U);
+  ASSERT_GT(world.asleep_count(), 0U);
   ASSERT_LT(world.asleep_count(), 50U);
   for (std::uint32_t i = 1; i <= 50; ++i) {
     if (!world.is_asleep(i)) continue;

@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kLinked, "signals:\n  s: {quantity: ^elongation}\n",
                  "the scene has no quantity 'elongation'", "say whose it is: of: name[3]"},
         BadScene{kLinked, "signals:\n  s: {quantity: ^heat}\n", "the scene has no quantity 'heat'",
-                 "it has changes, energy, kinetic_energy, elastic_energy, gravity_energy, "
+                 "it has changes, awake, energy, kinetic_energy, elastic_energy, gravity_energy, "
                  "dissipated_energy, port_work, switching_energy"},
         BadScene{kLinked, "signals:\n  s: {of: ^a, quantity: position, axis: x}\n",
                  "a signal is of one MAT or one link, and 'a' has 3", "pick one: a[0]"},

@@ -49,6 +49,14 @@ INSTANTIATE_TEST_SUITE_P(
                  "at_m: 0}}\n",
                  "'rate_hz' in step must be between 1 and 1000000, got 0", ""},
         BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, freeze: {tolerance_m: ^0}}\nmatter: "
+                 "{a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 "'tolerance_m' in freeze must be > 0, got 0", ""},
+        BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^implicit, freeze: "
+                 "{tolerance_m: 1e-6}}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 "the integrator implicit does not take freezing, which the scene has", ""},
+        BadScene{kNothing,
                  "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^euler}\nmatter: {a: "
                  "{kind: mass, mass_kg: 1, at_m: 0}}\n",
                  "'integrator' in step must be one of cordis, leapfrog, symplectic4, implicit, "

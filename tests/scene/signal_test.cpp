@@ -36,6 +36,24 @@ class Observed {
   engine::World world_;
 };
 
+TEST(SignalReader, TellsWhatPartIsAwakeAndKeepsAwakeWhoseForceIsAskedFor) {
+  config::Problems problems;
+  Observed run(load_scene_text(
+      "cordis: 1\nspace: 2\nstep: {rate_hz: 1000, freeze: {tolerance_m: 1e-6}}\n"
+      "matter:\n  s: {kind: string, count: 5, mass_kg: 0.01, from_m: [0, 0], to_m: [1, 0],\n"
+      "    ends: fixed, stiffness_n_per_m: 100, tension_n: 1}\n"
+      "signals:\n  f: {of: \"s[2]\", quantity: force, axis: x}\n  a: {quantity: awake}\n",
+      "t", problems));
+  ASSERT_EQ(problems.text(), "");
+
+  EXPECT_EQ(run.value("a"), 1.0);
+  run.step(50);
+
+  EXPECT_LT(run.value("a"), 0.5);
+  EXPECT_GT(run.value("a"), 0.1);
+  EXPECT_FALSE(run.world().is_asleep(run.scene().network.kept_awake.at(0)));
+}
+
 TEST(SignalReader, TellsPositionVelocityAndSpeedOfAFreeMass) {
   Observed run(sound_scene(
       2,
