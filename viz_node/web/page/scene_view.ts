@@ -10,6 +10,7 @@ THREE.ColorManagement.enabled = false; // colours are chosen as they are shown
 const BACKGROUND = 0x0d1117;
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
 const SAMPLE = 4000;
+const MATS_A_FRAME = 1000; // of larger scenes not every frame is looked at, whether all of it is seen
 const ASTRAY = 0.01; // share of the MATs that may fly off unfollowed, at either end of each axis
 
 export class SceneView {
@@ -25,6 +26,7 @@ export class SceneView {
   private newestS = Number.NaN;
   private shownForS = Number.NaN; // simulated time between the last two frames
   private fastest = 0; // [m/s], falls slowly
+  private framesSinceLook = 0;
   private framed = false;
   private speeds = false;
   private states = new Uint8Array(0); // per link, as they are drawn
@@ -122,7 +124,8 @@ export class SceneView {
       if (this.pose === null) this.rig.start(this.bounds());
       else this.rig.resume(this.pose, this.bounds());
       this.ground.lay(this.bounds(), this.space);
-    } else {
+    } else if (++this.framesSinceLook >= this.topology.matCount / MATS_A_FRAME) {
+      this.framesSinceLook = 0;
       this.rig.follow(this.bounds(ASTRAY));
     }
   }
