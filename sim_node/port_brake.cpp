@@ -98,6 +98,8 @@ void PortBrake::hear(double work_j, std::uint64_t answered_sample) noexcept {
   while (last_entered_ < newest_answer_) at_answer_[++last_entered_ % kRoom] = sum_;
   ++ticks_;
   if (std::exchange(braked_, false)) ++braked_ticks_;
+  // A device that has not heard for so long is led on gradually when it hears again.
+  if (answered_sample + kRoom <= last_entered_) start();
   const bool known = answered_sample != 0 && answered_sample <= last_entered_ &&
                      answered_sample + kRoom > last_entered_;
   if (!known || !std::isfinite(work_j)) return;
@@ -108,7 +110,10 @@ void PortBrake::hear(double work_j, std::uint64_t answered_sample) noexcept {
   told_ = told_ || work_j != 0.0;
   if (told_ && ticks_ > settled_after_) {
     account_ = std::max(account_ + (kept - kept_before_), -kTank);
-    if (caught_) {
+    if (caught_ && account_ < 0.0) {
+      caught_ = false;
+      strict_ = 0.0;
+    } else if (caught_) {
       strict_ = std::max(strict_ + (made - made_before_), -kTank);
     } else if (account_ > kBudget + ripple_) {
       caught_ = true;

@@ -21,10 +21,10 @@ namespace cordis::sim {
 /// does not rise while k <= 0.9 Z / (d T), whatever a hand does that is slower than k and the mass
 /// of the port swing together, but for a ripple below what f brings in one tick. An A above that
 /// and the budget shows a loop that makes energy; one that swings as far as its device lets it
-/// makes what Z takes, of which a tenth is not allowed for. From then on, until the device is heard
-/// anew, C = E - W alone is held to: while it is above 0 a damper C dt / (sum of dx^2) at the port
-/// masses takes it away, but not beyond what their step bears. Without delay, above 4 m / T^2, no
-/// damper helps.
+/// makes what Z takes, of which a tenth is not allowed for. From then on, until A is below 0 again,
+/// C = E - W alone is held to: while it is above 0 a damper C dt / (sum of dx^2) at the port masses
+/// takes it away, but not beyond what their step bears. Without delay, above 4 m / T^2, no damper
+/// helps.
 ///
 /// It counts from kSettled after the device was heard, since while hands and forces are led to each
 /// other E and W belong to different positions. The dual of EnergyMonitor in device_node.
@@ -69,7 +69,7 @@ class PortBrake {
     double brought = 0.0;  // E [J]
     double taken = 0.0;    // by Z [J]
   };
-  static constexpr std::size_t kRoom = 64;  // answers: the oldest that a sample may still speak of
+  static constexpr std::size_t kRoom = 16;  // answers: the oldest that a sample may still speak of
 
   std::vector<Braked> ports_;
   double dt_;

@@ -313,9 +313,9 @@ void Session::fill(msg::NodeStatus& status) {
   status.braked_ticks(braked_ticks_.load());
   if (status.braked_ticks() > 0 && !std::exchange(braking_told_, true)) {
     spdlog::warn(
-        "a hand is stiffer than its scene bears in role liaison: the port is braked; more "
-        "viscosity "
-        "there helps");
+        "the forces of a hand in role liaison bring in more energy than it gives, for it is too "
+        "stiff "
+        "for the viscosity of its port or its samples are late: the port is braked");
   }
 
   const std::lock_guard lock(shown_mutex_);

@@ -62,9 +62,11 @@ class Loop {
   }
 
   /// @param hand  where the hand wants to be [m]
-  void tick(double hand) {
-    const msg::GesturePositions felt = answers_.front();
+  /// @param hears  false: the answer is lost, and the hand stays where it is
+  void tick(double hand, bool hears = true) {
+    if (hears) felt_ = answers_.front();
     answers_.pop_front();
+    const msg::GesturePositions& felt = felt_;
     const double carried = felt.position_m()[0];
     const double force = std::clamp(hold_.stiffness * (hand - carried), -kMostForce, kMostForce);
     work_ += 0.5 * (force + force_) * (carried - carried_);
@@ -102,6 +104,7 @@ class Loop {
   engine::World world_;
   DeviceExchange exchange_;
   std::deque<msg::GesturePositions> answers_;
+  msg::GesturePositions felt_;
   std::uint64_t samples_ = 0;
   double carried_ = 0.0;
   double force_ = 0.0;
@@ -166,6 +169,23 @@ TEST(PortBrake, KeepsToItselfWhenTheDeviceTellsNoWork) {
   swing(loop);
 
   EXPECT_EQ(loop.braked_ticks(), 0u);
+}
+
+TEST(PortBrake, ForgetsWhatAMomentWithoutAnswersHasMade) {
+  for (const int lost : {8, 15, 30}) {
+    Loop loop({5.0, 1, 0.5 * 5.0 / kTick});
+    const auto hand = [](int n) { return 0.03 * std::sin(2.0 * std::numbers::pi * n * kTick); };
+    int n = 0;
+    for (; n < 2000; ++n) loop.tick(hand(n));
+    for (; n < 2000 + lost; ++n) loop.tick(hand(n), false);
+    for (; n < 3000; ++n) loop.tick(hand(n));
+    const std::uint64_t braked = loop.braked_ticks();
+
+    for (; n < 6000; ++n) loop.tick(hand(n));
+
+    EXPECT_EQ(loop.braked_ticks(), braked) << lost;
+    EXPECT_LT(std::abs(loop.position() - hand(n)), 0.001);
+  }
 }
 
 TEST(PortBrake, LetsGoOfAMassThatNobodyHolds) {
