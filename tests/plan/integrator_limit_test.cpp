@@ -62,6 +62,26 @@ TEST(IntegratorLimit, OfModesIsWhatIsFastenedToThem) {
   EXPECT_GT(largest_excursion(scene, 20000), 1e6);
 }
 
+TEST(IntegratorLimit, OfLeapfrogOnLinksItSolvesIsTheirStiffness) {
+  NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1e-6);
+  scene.integrator = Integrator::kLeapfrog;
+  scene.links.clear();
+  scene.behaviours = {behaviour(100.0)};
+  scene.behaviours[0].states[0].viscosity = 200.0;  // extrapolated up to 1.5 ms
+  scene.state_links = {{0, 1, 0, 0.0}};
+  const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
+  EXPECT_NEAR(stability.certified.step, 0.2, 1e-9);
+  EXPECT_NEAR(stability.diverging_step, 0.2, 1e-6);
+
+  scene.step = 0.99 * 0.2;
+  EXPECT_LT(largest_excursion(scene, 3000), 10.0);
+  scene.step = 1.01 * 0.2;
+  EXPECT_GT(largest_excursion(scene, 20000), 1e6);
+  scene.integrator = Integrator::kCordis;
+  scene.step = 1e-6;
+  EXPECT_LT(plan::stability_of(scene, plan::liaison_graph(scene)).certified.step, 0.0101);
+}
+
 TEST_P(EveryIntegrator, SwingsAndDecaysAsThePlanSays) {
   // 5 Hz at 100 steps a second, and so viscous that `leapfrog` must sweep
   const double w = 10.0 * M_PI;
