@@ -49,6 +49,12 @@ INSTANTIATE_TEST_SUITE_P(
             "'kind' in matter 'a' must be one of mass, fixed, points, string, ring, grid, lattice, "
             "disc, ball, pack, skin, beam, got 'mas'",
             "did you mean 'mass'?"},
+        BadScene{kHead1, "matter:\n  a: {kind: points, mass_kg: ^[1, 2], at_m: [0, 1, 2]}\n",
+                 "'mass_kg' in matter 'a' must be one for all or one for each of the 3, got 2", ""},
+        BadScene{kHead1, "matter:\n  a: {kind: points, mass_kg: ^[1, 0], at_m: [0, 1]}\n",
+                 "'mass_kg' in matter 'a' must be > 0, got 0", ""},
+        BadScene{kHead1, "matter:\n  a: {kind: points, mass_kg: 1, at_m: [0, 1], radius_m: ^-1}\n",
+                 "'radius_m' in matter 'a' must be >= 0, got -1", ""},
         BadScene{kHead2, "matter:\n  a: ^{mass_kg: 1, at_m: [0, 0]}\n",
                  "missing key 'kind' in matter 'a'", ""},
         BadScene{kHead2, "matter:\n  a: ^3\n", "matter 'a' must be a mapping of keys, got '3'", ""},

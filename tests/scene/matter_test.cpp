@@ -69,6 +69,25 @@ TEST(Matter, FixedNeverMoves) {
   EXPECT_EQ(mats[1].position, Vec3(4, 5, 6));
 }
 
+TEST(Matter, PointsHaveEachItsOwnPlaceMassAndVelocity) {
+  const Scene scene = sound_scene(
+      1,
+      "matter:\n  a: {kind: points, at_m: [0.1, 0.2, 0.3], mass_kg: [1, 0, 3], fixed: [1], "
+      "velocity_m_per_s: [4, 5, 6], radius_m: 0.01, layout_at_m: [[0, 1], [2, 3], [4, 5]]}\n");
+  const auto& mats = scene.network.mats;
+
+  ASSERT_EQ(mats.size(), 3u);
+  EXPECT_EQ(mats[0].mass, 1.0);
+  EXPECT_EQ(mats[2].mass, 3.0);
+  EXPECT_EQ(mats[1].kind, engine::MatKind::kFixed);
+  EXPECT_EQ(mats[1].velocity, Vec3(0, 0, 0));
+  EXPECT_EQ(mats[2].velocity, Vec3(6, 0, 0));
+  EXPECT_EQ(mats[2].position, Vec3(0.3, 0, 0));
+  EXPECT_EQ(scene.network.radius, (std::vector<double>{0.01, 0.01, 0.01}));
+  EXPECT_EQ(scene.layout[2].x, 4.0);
+  EXPECT_EQ(scene.layout[2].z, 5.0);
+}
+
 TEST(Matter, NamesTheRangesInTheOrderOfTheFile) {
   const Scene scene = sound_scene(2,
                                   "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"

@@ -1,11 +1,8 @@
 // MATs one by one: each with its own place, mass and velocity.
-#include <algorithm>
-
 #include "sim_node/scene/matter/generators.h"
 
 namespace cordis::scene {
 
-using config::Range;
 using engine::MatKind;
 using engine::Vec3;
 
