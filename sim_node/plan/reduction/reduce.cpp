@@ -40,6 +40,18 @@ struct Totals {
   LightMats mats;
 };
 
+/// In 2-D and 3-D the MATs of a row give way when it is pushed.
+void doubt_struts(const LightMats& mats, scene::Scene& scene) {
+  if (scene.struts.empty()) return;
+  std::string doubt = count_of(scene.struts.size(), "row is", "rows are") +
+                      " exact while drawn, wrong when pushed, as the MATs would give way sideways: "
+                      "node/status tells";
+  if (mats.struts > 0) {
+    doubt += "; " + count_of(mats.struts, "begins", "begin") + " at rest, the nearest to that";
+  }
+  scene.reductions.back().doubts.push_back(std::move(doubt));
+}
+
 void report(const Totals& totals, scene::Scene& scene) {
   const LightMats& mats = totals.mats;
   const auto tell = [&scene](const char* name, std::size_t count, const std::string& what) {
@@ -49,12 +61,8 @@ void report(const Totals& totals, scene::Scene& scene) {
   tell("parallel", totals.merged,
        count_of(totals.merged, "link", "links") + " merged into another between the same MATs");
   if (tell("series", mats.massless,
-           count_of(mats.massless, "MAT", "MATs") + " without mass taken out of rows of links") &&
-      mats.struts > 0) {
-    scene.reductions.back().doubts.push_back(
-        count_of(mats.struts, "row is", "rows are") +
-        " at rest at the start: exact while drawn, wrong as soon as pushed, when the MAT between "
-        "would give way sideways; status tells when that happens");
+           count_of(mats.massless, "MAT", "MATs") + " without mass taken out of rows of links")) {
+    doubt_struts(mats, scene);
   }
   if (tell("massless", mats.maxwell,
            count_of(mats.maxwell, "MAT", "MATs") +
@@ -67,6 +75,7 @@ void report(const Totals& totals, scene::Scene& scene) {
            count_of(mats.light, "light MAT", "light MATs") + " taken out, the mass put beside")) {
     scene.reductions.back().budget = mats.budget * tolerance_per_pitch(*scene.accuracy);
     scene.reductions.back().bound = "(w / w0)^2 at the end of the band, w0 that of the MAT alone";
+    doubt_struts(mats, scene);
   }
 }
 
