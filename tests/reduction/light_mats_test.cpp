@@ -45,6 +45,33 @@ TEST(Series, SpringsInARowAreOneOfTheirCompliances) {
   EXPECT_EQ(scene.reductions[0].count, 2u);
 }
 
+TEST(Series, RestLengthsAddUpWhicheverWayTheLinksAreWritten) {
+  const scene::Scene scene =
+      reduced(row_text("0",
+                       "  - {liaison: soft, between: [\"joint[0]\", wall], rest_m: -0.1}\n"
+                       "  - {liaison: hard, between: [\"joint[0]\", \"joint[1]\"], rest_m: 0.2}\n"
+                       "  - {liaison: hard, between: [bob, \"joint[1]\"], rest_m: 0.05}\n",
+                       1000));
+
+  ASSERT_EQ(scene.network.links.size(), 1u);
+  const engine::Link& link = scene.network.links[0];
+  const double from_the_wall = link.mat_a == 0 ? link.rest_length : -link.rest_length;
+  EXPECT_NEAR(from_the_wall, 0.1 + 0.2 - 0.05, 1e-15);
+}
+
+TEST(Series, DampersInARowAreOneOfTheirFluidities) {
+  const scene::Scene scene = reduced(
+      row_text("0",
+               "  - {liaison: oil, between: [wall, \"joint[0]\"]}\n"
+               "  - {liaison: oil, between: [\"joint[0]\", \"joint[1]\"]}\n"
+               "  - {liaison: oil, viscosity_n_s_per_m: 0.4, between: [\"joint[1]\", bob]}\n",
+               1000));
+
+  ASSERT_EQ(scene.network.links.size(), 1u);
+  EXPECT_EQ(scene.network.links[0].stiffness, 0.0);
+  EXPECT_DOUBLE_EQ(scene.network.links[0].viscosity, 0.2);  // 1/0.8 + 1/0.8 + 1/0.4
+}
+
 /// The largest difference between a row with light joints, taken by small steps, and one without.
 double difference_to_joints_of(double mass, const std::string& links) {
   constexpr double kRate = 32000.0;

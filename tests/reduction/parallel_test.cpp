@@ -22,7 +22,7 @@ std::string on_three_links(int space, const std::string& signals = {}) {
          "links:\n"
          "  - {liaison: a, between: [wall, bob], name: first}\n"
          "  - {liaison: b, between: [bob, wall], name: second}\n"
-         "  - {liaison: c, between: [wall, bob]}\n" +
+         "  - {liaison: c, between: [wall, bob], name: third}\n" +
          signals;
 }
 
@@ -61,6 +61,14 @@ TEST(Parallel, ALinkOfASignalStays) {
   const scene::Signal& signal = scene.signals.signals()[0];
   EXPECT_EQ(scene.network.links[signal.index].stiffness, 10.0);
   EXPECT_EQ(scene.network.links[1 - signal.index].viscosity, 0.03);
+}
+
+TEST(Parallel, ASignalIsStillOfItsLinkWhenThoseBeforeItAreGone) {
+  const scene::Scene scene =
+      reduced(on_three_links(1, "signals:\n  pull: {of: third, quantity: force}\n"));
+
+  ASSERT_EQ(scene.network.links.size(), 2u);
+  EXPECT_EQ(scene.network.links[scene.signals.signals()[0].index].viscosity, 0.03);
 }
 
 TEST(Parallel, WhereASignalTellsTheEnergyDifferentRestLengthsStay) {
