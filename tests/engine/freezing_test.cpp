@@ -148,7 +148,7 @@ NetworkDescription resting_network(std::uint32_t seed) {
 
 TEST(Freezing, IsOffByLessThanTenTolerancesInAnyNetwork) {
   constexpr double kTolerance = 1e-5;
-  for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+  for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(rounds(24)); ++seed) {
     NetworkDescription scene = resting_network(seed);
     scene.integrator = seed % 2 == 0 ? Integrator::kCordis : Integrator::kLeapfrog;
     World whole = make_world(scene);
