@@ -24,6 +24,7 @@ const double* take(const double* from, Values& values) noexcept {
 StateLinkArray::StateLinkArray(const NetworkDescription& description, const StateTable& table)
     : in_line_(description.dimension == 1),
       dt_(description.step),
+      rate_(1.0 / description.step),
       link_count_(description.state_links.size()),
       column_a_(padded(link_count_, kBehaviourBatch), 0U),
       column_b_(column_a_.size(), 0U),
@@ -67,7 +68,7 @@ StateLinkRows StateLinkArray::rows(const StateTable& table, const ActiveLinks::R
   rows.state = state_.data() + first;
   rows.rest_length = rest_length_.data() + first;
   rows.pull = pull_.data() + first;
-  rows.impulse = table.needs(Quantity::kImpulse) ? impulse_.data() + first : nullptr;
+  rows.impulse = needs_impulse_ ? impulse_.data() + first : nullptr;
   rows.entered = entered_.data() + first;
   rows.memory = memory_.data() + first * slot_count_;
   rows.memory_slots = slot_count_;
@@ -75,12 +76,9 @@ StateLinkRows StateLinkArray::rows(const StateTable& table, const ActiveLinks::R
   rows.elastic_factor = elastic_factor_.data() + first;
   rows.viscous_factor = viscous_factor_.data() + first;
   rows.dt = dt_;
-  rows.rate = 1.0 / dt_;
-  rows.needs_age = table.needs(Quantity::kAge);
-  for (const Quantity quantity :
-       {Quantity::kSpeedX, Quantity::kSpeedY, Quantity::kSpeedZ, Quantity::kSlip}) {
-    rows.needs_velocity = rows.needs_velocity || table.needs(quantity);
-  }
+  rows.rate = rate_;
+  rows.needs_age = needs_age_;
+  rows.needs_velocity = needs_velocity_;
   return rows;
 }
 
@@ -203,6 +201,13 @@ void StateLinkArray::adopt(const StateTable& table) {
   if (memory_.empty() || slot_count_ < table.slot_count()) {
     slot_count_ = table.slot_count();
     memory_.assign(slot_count_ * column_a_.size(), kNoValue);
+  }
+  needs_impulse_ = table.needs(Quantity::kImpulse);
+  needs_age_ = table.needs(Quantity::kAge);
+  needs_velocity_ = false;
+  for (const Quantity quantity :
+       {Quantity::kSpeedX, Quantity::kSpeedY, Quantity::kSpeedZ, Quantity::kSlip}) {
+    needs_velocity_ = needs_velocity_ || table.needs(quantity);
   }
 }
 

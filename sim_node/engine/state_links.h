@@ -83,6 +83,7 @@ class StateLinkArray {
 
   bool in_line_;  // 1 dimension
   double dt_;     // [s]
+  double rate_;   // 1 / dt [1/s]
   std::size_t link_count_;
   AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
   AlignedVector<std::uint32_t> column_b_;  // all arrays: padded to a multiple of kBehaviourBatch
@@ -100,6 +101,9 @@ class StateLinkArray {
   AlignedVector<double> memory_;          // slot_count_ x 8 values for each batch
   std::size_t slot_count_ = 0;
   bool any_forced_ = false;
+  bool needs_impulse_ = false;  // some program of the table does
+  bool needs_age_ = false;
+  bool needs_velocity_ = false;
   ActiveLinks active_;
 };
 
