@@ -2,10 +2,12 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_text.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::scene {
 namespace {
@@ -74,10 +76,13 @@ TEST(Pack, IsTheSameOnEveryMachineAndOtherForAnotherSeed) {
 }
 
 TEST(Pack, OfTenThousandBallsIsNoTrouble) {
-  const Scene scene = pack(3,
-                           "count: 10000, ball: {mass_kg: 1, radius_m: 0.01}, region: {from_m: [0, "
-                           "0, 0], to_m: [0.43, 0.43, 0.43]}");
-  ASSERT_EQ(scene.network.mats.size(), 10000u);  // 53 % of the box
+  const int count = test::rounds(10'000);
+  const std::string side = std::to_string(0.02 * std::cbrt(count));  // 52 % of the box
+  const Scene scene = pack(3, "count: " + std::to_string(count) +
+                                  ", ball: {mass_kg: 1, radius_m: 0.01}, region: {from_m: [0, 0, "
+                                  "0], to_m: [" +
+                                  side + ", " + side + ", " + side + "]}");
+  ASSERT_EQ(scene.network.mats.size(), static_cast<std::size_t>(count));
   EXPECT_GE(smallest_distance(scene), 0.02 * (1.0 - 1e-15));
 }
 
