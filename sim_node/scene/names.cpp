@@ -55,6 +55,14 @@ std::vector<const NameEntry*> Names::children(const std::string& name) const {
   return children;
 }
 
+bool Names::is_before_links(const std::string& name) const noexcept {
+  if (find(name) != nullptr) return false;
+  const std::string beginning = full(name) + ".";
+  const auto first = entries_.lower_bound(beginning);
+  return first != entries_.end() && first->first.starts_with(beginning) &&
+         first->second.kind == Named::kLinks;
+}
+
 bool Names::is_in_unsound(const std::string& name) const noexcept {
   for (std::size_t end = name.find_first_of(".["); end != std::string::npos;
        end = name.find_first_of(".[", end + 1)) {

@@ -95,6 +95,10 @@ class Picker {
         append_copies(*child, prefix, 0, child->copies, inside);
       return !inside.empty();
     }
+    if (with_links_ && !segment.indices && names_.is_before_links(prefix + segment.name)) {
+      inside.push_back(prefix + segment.name + ".");
+      return true;
+    }
     const NameEntry* entry = find(prefix + segment.name, false);
     if (entry == nullptr || !entry->sound) return false;
     if (!segment.indices) {

@@ -81,6 +81,9 @@ class Names {
   const NameEntry* find(const std::string& name) const noexcept;
   /// What stands directly in the entry of this name, in the order of the indices; links do not.
   std::vector<const NameEntry*> children(const std::string& name) const;
+  /// Whether nothing has this name, but links have names that go on from it: those of a parallel
+  /// liaison.
+  bool is_before_links(const std::string& name) const noexcept;
   /// Whether the name belongs to a part whose description has a problem.
   bool is_in_unsound(const std::string& name) const noexcept;
   std::vector<std::string> words(bool with_links) const;  ///< for "did you mean"

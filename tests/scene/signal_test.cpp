@@ -101,6 +101,20 @@ TEST(SignalReader, TellsDistanceElongationGrowthAndPullOfALink) {
   EXPECT_NEAR(run.value("stored"), 0.5 * 10 * 1.01 * 1.0, 1e-4);
 }
 
+TEST(SignalReader, TellsOfEachLiaisonOfSeveralInParallel) {
+  Observed run(sound_scene(
+      1,
+      "matter:\n  a: {kind: fixed, at_m: 0}\n  b: {kind: mass, mass_kg: 1, at_m: 0.5}\n"
+      "liaisons:\n  thread: {kind: spring, stiffness_n_per_m: 10, rest_m: 0.2}\n"
+      "  cord: {parallel: [thread, {kind: spring, stiffness_n_per_m: 100, rest_m: 0.5}]}\n"
+      "links:\n  - {liaison: cord, between: [a, b], name: rope}\n"
+      "signals:\n  soft: {of: rope.thread, quantity: elongation}\n"
+      "  hard: {of: rope.spring, quantity: elongation}\n"));
+
+  EXPECT_DOUBLE_EQ(run.value("soft"), 0.3);
+  EXPECT_DOUBLE_EQ(run.value("hard"), 0.0);
+}
+
 TEST(SignalReader, GivesLinksInOneDimensionTheirSign) {
   Observed run(sound_scene(
       1,
