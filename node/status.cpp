@@ -14,6 +14,8 @@ namespace {
 
 constexpr auto kPeriod = std::chrono::milliseconds(500);
 constexpr auto kLastStatus = std::chrono::milliseconds(300);
+// So long it may take until those who look on have found a node.
+constexpr auto kFound = std::chrono::milliseconds(500);
 
 double resident_bytes() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
@@ -34,6 +36,7 @@ StatusPublisher::StatusPublisher(dds::Participant& participant, const std::strin
     : participant_(participant),
       writer_(participant, dds::Topic::kStatus),
       fill_(std::move(fill)),
+      begun_(std::chrono::steady_clock::now()),
       rate_(monotonic_nsec()) {
   const std::string& name = participant.membership().node;
   status_.node_id(config::name_hash(name));
@@ -50,6 +53,7 @@ StatusPublisher::~StatusPublisher() {
   }
   wake_.notify_one();
   thread_.join();
+  std::this_thread::sleep_until(begun_ + kFound);  // when the whole run was shorter
   publish();
   writer_.wait_until_acknowledged(kLastStatus);
 }

@@ -1,6 +1,7 @@
 // node/status.h -- what a node says about itself, twice a second.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -26,7 +27,8 @@ class StatusPublisher {
   StatusPublisher(dds::Participant& participant, const std::string& kind, std::uint64_t run,
                   Fill fill);
 
-  /// Publishes the last status and waits a moment until it has arrived.
+  /// Publishes the last status, not before others can have found this node, and waits a moment
+  /// until it has arrived: 0.8 s after a run of no time at worst.
   ~StatusPublisher();
   StatusPublisher(const StatusPublisher&) = delete;
   StatusPublisher& operator=(const StatusPublisher&) = delete;
@@ -44,6 +46,7 @@ class StatusPublisher {
   dds::Writer<msg::NodeStatus> writer_;
   Fill fill_;
   msg::NodeStatus status_;
+  std::chrono::steady_clock::time_point begun_;
   TickRate rate_;
   std::mutex mutex_;
   std::condition_variable wake_;
