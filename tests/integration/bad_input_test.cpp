@@ -233,10 +233,17 @@ std::string hardening_scene() {
          "  - {liaison: hardening, between: [bob, ground]}\n";
 }
 
+/// Presses after 10,000 periods, when the reader of the test has long been found.
+std::string late_key() {
+  return "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nrate_hz: 1000\ndriver: script\n"
+         "script:\n  interpolation: linear\n  positions:\n    - {at_s: 0, m: 0}\n"
+         "    - {at_s: 10, m: 0}\n    - {at_s: 10.2, m: -0.02}\n";
+}
+
 TEST(BadInput, ASceneThatDivergesAtRunTimeEndsTheSessionWithTheReasonAndNoForce) {
   LiveSession session("lockstep", kSimAndKey);
   session.add_file("scene.yaml", hardening_scene());
-  session.add_file("key.yaml", steady_key(-0.02, 0));
+  session.add_file("key.yaml", late_key());
   dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
   ChildProcess& launcher = session.start_launcher({"--no-color"});
 
