@@ -292,19 +292,26 @@ void SetPairs::mark_neighbours(const Passing& pass, const std::vector<bool>& nev
   }
 }
 
-/// Of pairs that are beyond their range.
-void SetPairs::mark_bound(const Passing& pass) noexcept {
+/// Shows the pairs that are in another state than that of the start, with their first member.
+template <class Visit>
+void SetPairs::visit_bound(Visit visit) const {
   if (!behaviours_.has_states()) return;
   const PairStates& states = behaviours_.states();
   for (std::size_t a = 0; a < states.row_count(); ++a) {
     for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
       const PairState& pair = states.state(i);
-      if (pair.state == behaviours_.start_state()) continue;
-      const std::size_t b = pair.column / 4;
-      if ((role_[a] & pass.from) != 0) give(role_[b], pass.to);
-      if ((role_[b] & pass.from) != 0) give(role_[a], pass.to);
+      if (pair.state != behaviours_.start_state()) visit(a, pair);
     }
   }
+}
+
+/// Of pairs that are beyond their range.
+void SetPairs::mark_bound(const Passing& pass) noexcept {
+  visit_bound([&](std::size_t a, const PairState& pair) {
+    const std::size_t b = pair.column / 4;
+    if ((role_[a] & pass.from) != 0) give(role_[b], pass.to);
+    if ((role_[b] & pass.from) != 0) give(role_[a], pass.to);
+  });
 }
 
 void SetPairs::choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept {
@@ -415,16 +422,10 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
 }
 
 void SetPairs::visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const {
-  if (!behaviours_.has_states()) return;
-  const PairStates& states = behaviours_.states();
-  for (std::size_t a = 0; a < states.row_count(); ++a) {
-    for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
-      const PairState& pair = states.state(i);
-      if (pair.state == behaviours_.start_state()) continue;
-      visit(owner, {column_[a] / 4, column_[pair.column / 4] / 4,
-                    pair.state - table.first_state(behaviour_), pair.rest_length});
-    }
-  }
+  visit_bound([&](std::size_t a, const PairState& pair) {
+    visit(owner, {column_[a] / 4, column_[pair.column / 4] / 4,
+                  pair.state - table.first_state(behaviour_), pair.rest_length});
+  });
 }
 
 /// The elastic forces stay: their work up to step 0 belongs to the energy stored there.

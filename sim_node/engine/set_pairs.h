@@ -93,6 +93,8 @@ class SetPairs {
     return never_rests[behaviour_] || !neighbours_.is_whole();
   }
   void find_roles(const MatRoles& roles) noexcept;
+  template <class Visit>
+  void visit_bound(Visit visit) const;
   void mark_bound(const Passing& pass) noexcept;
   bool is_row_active(const NeighbourRows& rows, std::size_t a) const noexcept;
   void add_row(std::size_t a) noexcept;

@@ -352,32 +352,19 @@ class SceneWriter {
 
   /// Along an axis that a reduction left out.
   static bool is_constant(const Signal& signal) {
-    return (signal.quantity == Quantity::kPosition || signal.quantity == Quantity::kVelocity ||
-            signal.quantity == Quantity::kForce) &&
-           signal.direction == Vec3::Zero();
+    return has_direction(signal.quantity) && signal.direction == Vec3::Zero();
   }
 
   std::string owner_text(const Signal& signal) const {
-    switch (signal.quantity) {
-      case Quantity::kPosition:
-      case Quantity::kVelocity:
-      case Quantity::kForce:
-        return "of: " + words_.selection({signal.index}) + ", " + axis_text(signal);
-      case Quantity::kSpeed:
-        return "of: " + words_.selection({signal.index}) + ", ";
-      case Quantity::kDistance:
-      case Quantity::kElongation:
-      case Quantity::kGrowth:
-      case Quantity::kPull:
-      case Quantity::kState:
-      case Quantity::kRestLength:
-        return "of: \"" + link_words_.at({signal.kind, signal.index}) + "\", ";
-      case Quantity::kPieces:
-      case Quantity::kBonds:
-        return "of: " + counted_text(signal) + ", ";
-      default:
-        return "";
+    if (is_of_mat(signal.quantity)) {
+      const std::string axis = has_direction(signal.quantity) ? axis_text(signal) : "";
+      return "of: " + words_.selection({signal.index}) + ", " + axis;
     }
+    if (is_of_link(signal.quantity)) {
+      return "of: \"" + link_words_.at({signal.kind, signal.index}) + "\", ";
+    }
+    const bool counts = signal.quantity == Quantity::kPieces || signal.quantity == Quantity::kBonds;
+    return counts ? "of: " + counted_text(signal) + ", " : "";
   }
 
   std::string counted_text(const Signal& signal) const {

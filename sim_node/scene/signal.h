@@ -45,6 +45,17 @@ enum class Quantity : std::uint8_t {
   kSwitchingEnergy    ///< brought in by changes of state since step 0 [J]
 };
 
+/// Of a MAT along a direction.
+constexpr bool has_direction(Quantity quantity) noexcept {
+  return quantity <= Quantity::kForce;
+}
+constexpr bool is_of_mat(Quantity quantity) noexcept {
+  return quantity <= Quantity::kSpeed;
+}
+constexpr bool is_of_link(Quantity quantity) noexcept {
+  return quantity >= Quantity::kDistance && quantity <= Quantity::kRestLength;
+}
+
 /// As a scene writes it.
 const char* word_of(Quantity quantity) noexcept;
 

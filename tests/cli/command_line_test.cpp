@@ -5,6 +5,7 @@
 
 #include "cli/exit_code.h"
 #include "node/config/problem.h"
+#include "tests/cli/captured_run.h"
 
 namespace cordis::cli {
 namespace {
@@ -38,14 +39,7 @@ struct Program {
     test.action([] { return 7; });
   }
 
-  int operator()(const Words& words) {
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    const int code = line.run(words);
-    out = testing::internal::GetCapturedStdout();
-    error = testing::internal::GetCapturedStderr();
-    return code;
-  }
+  int operator()(const Words& words) { return run_captured(line, words, out, error); }
 };
 
 TEST(CommandLine, TakesAWordThatIsAlsoAVerb) {

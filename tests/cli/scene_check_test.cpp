@@ -12,6 +12,7 @@
 
 #include "cli/exit_code.h"
 #include "cli/verbs.h"
+#include "tests/cli/captured_run.h"
 
 namespace cordis::cli {
 namespace {
@@ -32,12 +33,7 @@ class Checked : public testing::Test {
     CommandLine line("cordis", "", "1");
     add_check_verb(line);
     words.insert(words.begin(), {"check", path_});
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    const int code = line.run(words);
-    out_ = testing::internal::GetCapturedStdout();
-    error_ = testing::internal::GetCapturedStderr();
-    return code;
+    return run_captured(line, words, out_, error_);
   }
 
   std::string path_ = testing::TempDir() + "scene_check_test." + std::to_string(getpid()) + ".yaml";

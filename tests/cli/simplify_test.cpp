@@ -11,7 +11,8 @@
 #include "cli/exit_code.h"
 #include "cli/scene_check.h"
 #include "cli/verbs.h"
-#include "sim_node/engine/world.h"
+#include "tests/cli/captured_run.h"
+#include "tests/reduction/scenes.h"
 
 namespace cordis::cli {
 namespace {
@@ -40,15 +41,6 @@ std::string chain_text() {
          "signals:\n"
          "  low: {of: \"ring[2]\", quantity: position, axis: y}\n"
          "  aside: {of: \"ring[2]\", quantity: position, axis: x}\n";
-}
-
-/// The signals after so many steps.
-std::vector<double> signals_after(const scene::Scene& scene, int steps) {
-  engine::World world(std::make_shared<const engine::Network>(scene.network));
-  for (int n = 0; n < steps; ++n) world.step();
-  std::vector<double> values(scene.signals.count());
-  scene.signals.read(world, values.data());
-  return values;
 }
 
 /// The same chain by hand: one spring of half the stiffness instead of two.
@@ -86,8 +78,8 @@ TEST(Simplify, WritesASceneThatLoadsAgainAndMovesAsBefore) {
   EXPECT_NE(simplified.report.find("series: 3 MATs without mass"), std::string::npos);
   EXPECT_NE(simplified.report.find("parallel: 3 links"), std::string::npos);
   EXPECT_NE(simplified.report.find("dimension: 3-D computed as 2-D"), std::string::npos);
-  const std::vector<double> by_hand = signals_after(chain_by_hand(), 3000);
-  const std::vector<double> moved = signals_after(again, 3000);
+  const std::vector<double> by_hand = plan::signals_after(chain_by_hand(), 3000);
+  const std::vector<double> moved = plan::signals_after(again, 3000);
   EXPECT_GT(std::abs(by_hand[1]), 0.005);
   for (std::size_t s = 0; s < moved.size(); ++s)
     EXPECT_NEAR(moved[s], by_hand[s], 1e-10);  // rounding
@@ -103,12 +95,7 @@ class SimplifyVerb : public testing::Test {
     CommandLine line("cordis", "", "1");
     add_simplify_verb(line);
     add_check_verb(line);
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    const int code = line.run(words);
-    out_ = testing::internal::GetCapturedStdout();
-    error_ = testing::internal::GetCapturedStderr();
-    return code;
+    return run_captured(line, words, out_, error_);
   }
 
   std::string path_ = testing::TempDir() + "simplify_test." + std::to_string(getpid()) + ".yaml";

@@ -34,14 +34,6 @@ std::string in_a_plane(const std::string& gravity, const std::string& more = {})
          "  moved: {of: key, quantity: position}\n";
 }
 
-std::vector<double> signals_after(const scene::Scene& scene, int steps) {
-  engine::World world(std::make_shared<const engine::Network>(scene.network));
-  for (int n = 0; n < steps; ++n) world.step();
-  std::vector<double> values(scene.signals.count());
-  scene.signals.read(world, values.data());
-  return values;
-}
-
 TEST(Dimension, APlaneOf3DIsComputedIn2DToTheBit) {
   std::string text = in_a_plane("[0, 0, -9.81]");
   text.replace(text.find("range: rest"), 11, "range_m: 0.04");

@@ -44,6 +44,15 @@ inline scene::NamedRange matter(const scene::Scene& scene, const std::string& na
   return {};
 }
 
+/// The signals after so many steps.
+inline std::vector<double> signals_after(const scene::Scene& scene, int steps) {
+  engine::World world(std::make_shared<const engine::Network>(scene.network));
+  for (int n = 0; n < steps; ++n) world.step();
+  std::vector<double> values(scene.signals.count());
+  scene.signals.read(world, values.data());
+  return values;
+}
+
 /// Where the MATs of a name are after each of so many steps, in one row.
 inline std::vector<engine::Vec3> motion(const scene::Scene& scene, const std::string& name,
                                         int steps) {

@@ -7,25 +7,12 @@ using scene::Quantity;
 
 void hold_signal(const scene::Signal& signal, Held& held) {
   for (const std::uint32_t mat : signal.mats) held.mats[mat] = true;
-  switch (signal.quantity) {
-    case Quantity::kPosition:
-    case Quantity::kVelocity:
-    case Quantity::kForce:
-    case Quantity::kSpeed:
-      held.mats[signal.index] = true;
-      break;
-    case Quantity::kDistance:
-    case Quantity::kElongation:
-    case Quantity::kGrowth:
-    case Quantity::kPull:
-      if (signal.kind == scene::LinkKind::kLinear) held.links[signal.index] = true;
-      break;
-    case Quantity::kEnergy:
-    case Quantity::kElasticEnergy:
-      held.energy = true;
-      break;
-    default:  // of links with states, of sets, or not in the links
-      break;
+  if (scene::is_of_mat(signal.quantity)) held.mats[signal.index] = true;
+  if (scene::is_of_link(signal.quantity) && signal.kind == scene::LinkKind::kLinear) {
+    held.links[signal.index] = true;
+  }
+  if (signal.quantity == Quantity::kEnergy || signal.quantity == Quantity::kElasticEnergy) {
+    held.energy = true;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -94,7 +95,7 @@ void refuse_massless(const scene::Scene& scene, const LightMats& mats, config::P
 scene::Scene reduce(scene::Scene scene, config::Problems& problems) {
   const scene::ReductionWish& wish = scene.reduce;
   if (!wish.parallel && !wish.takes_out_mats() && !wish.dimension) return scene;
-  const scene::Scene whole = scene;
+  auto whole = std::make_shared<const scene::Scene>(scene);
   if (wish.dimension) {
     const int space = scene.space();
     const std::string done = confine(scene);
@@ -119,7 +120,7 @@ scene::Scene reduce(scene::Scene scene, config::Problems& problems) {
   }
   report(totals, scene);
   if (!scene.reductions.empty() && !problems.has_errors()) {
-    scene.whole = std::make_shared<const scene::Scene>(whole);
+    scene.whole = std::move(whole);
     const config::Place file{scene.file, 0, 0};
     check_network(scene, file, file, problems);
   }

@@ -43,16 +43,6 @@ class Renumbering {
   std::vector<std::uint32_t> before_;  // how many stay before this one
 };
 
-bool is_of_mat(scene::Quantity quantity) {
-  return quantity == scene::Quantity::kPosition || quantity == scene::Quantity::kVelocity ||
-         quantity == scene::Quantity::kForce || quantity == scene::Quantity::kSpeed;
-}
-
-bool is_of_link(const scene::Signal& signal) {
-  return signal.kind == scene::LinkKind::kLinear && signal.quantity >= scene::Quantity::kDistance &&
-         signal.quantity <= scene::Quantity::kPull;
-}
-
 }  // namespace
 
 void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, scene::Scene& scene) {
@@ -95,8 +85,10 @@ void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, sce
   std::vector<scene::Signal> signals = scene.signals.signals();
   for (scene::Signal& signal : signals) {
     of_mats.apply(signal.mats);
-    if (is_of_mat(signal.quantity) && signal.mats.empty()) of_mats.apply(signal.index);
-    if (is_of_link(signal)) of_links.apply(signal.index);
+    if (scene::is_of_mat(signal.quantity) && signal.mats.empty()) of_mats.apply(signal.index);
+    if (scene::is_of_link(signal.quantity) && signal.kind == scene::LinkKind::kLinear) {
+      of_links.apply(signal.index);
+    }
   }
   of_links.apply(scene.struts);
   scene.signals = scene::SignalReader(std::move(signals), network);
