@@ -82,9 +82,8 @@ void Leapfrog::adopt(WorldState& world) noexcept {
 
 /// What a port does is given from outside: it is felt as it has moved in the last period.
 void Leapfrog::feel_ports(const WorldState& world) noexcept {
-  const std::vector<Mat>& mats = world.description().mats;
-  for (std::uint32_t i = 0; i < mats.size(); ++i) {
-    if (mats[i].kind == MatKind::kPort) column(felt_, i) = world.mats.delayed(i);
+  for (const std::uint32_t port : world.outside.ports()) {
+    column(felt_, port) = world.mats.delayed(port);
   }
 }
 

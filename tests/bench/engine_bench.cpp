@@ -118,21 +118,26 @@ void step_of_a_string(benchmark::State& state) {
 }
 BENCHMARK(step_of_a_string);
 
-/// Nets without viscosity, which all three take.
+/// Nets in 1 and 2 dimensions; without viscosity all three take them.
 void step_by_integrator(benchmark::State& state) {
-  const auto side = static_cast<std::uint32_t>(state.range(1));
-  NetworkDescription network = grid(2, false, side);
+  const auto dimension = static_cast<int>(state.range(1));
+  const auto side = static_cast<std::uint32_t>(state.range(2));
+  NetworkDescription network = grid(dimension, false, side);
   network.integrator = static_cast<Integrator>(state.range(0));
-  for (Link& link : network.links) link.viscosity = 0.0;
+  if (state.range(3) == 0) {
+    for (Link& link : network.links) link.viscosity = 0.0;
+  }
   state.SetLabel(to_string(network.integrator));
   step(state, network, cordis::engine::best_vector_width());
 }
 BENCHMARK(step_by_integrator)
-    ->ArgNames({"integrator", "side"})
+    ->ArgNames({"integrator", "dimension", "side", "viscous"})
     ->ArgsProduct({{static_cast<long>(Integrator::kCordis),
-                    static_cast<long>(Integrator::kLeapfrog),
-                    static_cast<long>(Integrator::kSymplectic4)},
-                   {20, 60, 100}});
+                    static_cast<long>(Integrator::kLeapfrog)},
+                   {1, 2},
+                   {20, 60, 100},
+                   {0, 1}})
+    ->ArgsProduct({{static_cast<long>(Integrator::kSymplectic4)}, {1, 2}, {20, 60, 100}, {0}});
 
 /// 400 modes of a string; so many of its points tied to a fixed one by a link with states.
 void step_of_modes(benchmark::State& state) {
