@@ -209,7 +209,7 @@ nlohmann::json ports_json(const SceneCheck& check) {
   return ports;
 }
 
-// What freezing does to positions, in tolerances: measured, docs/numerics.md.
+// What freezing does to positions, in tolerances: measured, docs/reductions.md.
 constexpr double kUsualError = 3.0;
 constexpr double kLargestError = 50.0;
 

@@ -60,7 +60,7 @@ void add_check_verb(CommandLine& line) {
   verb.flag("--force", options.force, "Exit code 0 even when it is unstable");
   verb.examples(
       "Stable means that the step is below the limit in every pose and every combination of\n"
-      "states (docs/numerics.md). A scene with `accuracy` and without a rate gets its rate here.\n"
+      "states (docs/stability.md). A scene with `accuracy` and without a rate gets its rate here.\n"
       "Exit code: 0 stable or not certain, 1 unstable, 2 bad file or command line.\n\n"
       "Examples:\n"
       "  cordis check launch_configs/scenes/plucked_string.yaml\n"

@@ -67,7 +67,7 @@ void add_lab_verb(CommandLine& line) {
   verb.examples(
       "The error of a run is the root of the mean square of its position errors against the "
       "oracle,\n"
-      "over that of the motion itself (docs/numerics.md). A lab that was interrupted goes on "
+      "over that of the motion itself (docs/lab.md). A lab that was interrupted goes on "
       "where\n"
       "it was when it is started again.\n\n"
       "Examples:\n"

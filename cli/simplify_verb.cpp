@@ -44,7 +44,7 @@ void add_simplify_verb(CommandLine& line) {
   verb.required_word("SCENE", words->scene_file, "The scene file");
   verb.option("--out", "FILE", words->out, "Where to write it [stdout]");
   verb.examples(
-      "Makes the reductions of docs/numerics.md, those that `reduce` in the scene asks for, or "
+      "Makes the reductions of docs/reductions.md, those that `reduce` in the scene asks for, or "
       "all,\n"
       "and says on stderr what each took out and what it costs. The scene is written MAT by MAT "
       "and\n"

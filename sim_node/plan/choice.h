@@ -19,7 +19,7 @@ struct Choice {
 };
 
 /// Of a step of an integrator, in evaluations of all forces of `cordis`: about, for comparisons. A
-/// step of `implicit` factorises and solves (docs/numerics.md).
+/// step of `implicit` factorises and solves (docs/integrators.md).
 double cost_of_a_step(const std::string& integrator);
 
 /// The cheapest of the integrators for what is asked. By the formulas of choose_rate; with over_s,

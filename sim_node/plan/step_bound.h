@@ -28,8 +28,7 @@ StepBound edge_bound(const LiaisonGraph& graph);
 /// The better of the edge bound and of 24 row bounds, max over i of (B x)_i / x_i, which hold for
 /// any x > 0 (B the graph's matrix with all its entries positive; Collatz); x from power iteration.
 /// Both hold in every pose and every combination of states, for the integrator of the network.
-/// O(liaisons). Source: numerics of
-/// networks, docs/numerics.md.
+/// O(liaisons). Derived in docs/stability.md.
 StepBound certified_bound(const engine::NetworkDescription& network, const LiaisonGraph& graph);
 
 /// The step at which dt^2 stiffness + 2 dt viscosity = 4, both for unit mass; infinite for 0 and 0.

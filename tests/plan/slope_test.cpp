@@ -24,7 +24,7 @@ Law lennard_jones(double depth, double diameter) {
 
 TEST(Slope, OfLennardJonesGrowsWithTheEnergyOfTheApproach) {
   // Curvature at the turning point in units of depth / diameter^2, by hand
-  // (docs/numerics.md, "Laws without a largest slope").
+  // (docs/stability.md, "Laws without a largest slope").
   const engine::Behaviour ball = behaviour(0.0, lennard_jones(2.0, 0.5));
   for (const auto& [energy, curvature] :
        {std::pair(1.0, 752.0), std::pair(5.0, 1879.0), std::pair(100.0, 32032.0)}) {
