@@ -37,13 +37,13 @@ Device::Device(LoadedDevice device, dds::Participant& participant, config::Clock
       series_{run, 0},
       status_(participant, "device_node", run, [this](msg::NodeStatus& status) {
         meter_.fill(status);
+        if (status.text().empty()) status.text(what_it_is(config_));
         // in lockstep the scene's answers set the pace
         status.target_rate_hz(clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz);
       }) {}
 
 int Device::live() {
-  spdlog::info("{} {}, driver {}, waiting for a scene that plays '{}'", config_.layout.count,
-               config_.layout.count == 1 ? "axis" : "axes", config_.driver, config_.name);
+  spdlog::info("{}, waiting for a scene that plays '{}'", what_it_is(config_), config_.name);
   describe();
   while (!node::stop_requested()) {
     if (!part_.wanted) {
@@ -74,6 +74,7 @@ void Device::describe() {
   told.rate_hz(limits.rate_hz);
   told.lowest_m(limits.lowest_m);
   told.highest_m(limits.highest_m);
+  told.slice_width_m(limits.slice_width_m);
   told.force_limit_n(limits.force_limit_n);
   told.moving_mass_kg(limits.moving_mass_kg);
   told.viscosity_n_s_per_m(limits.viscosity_n_s_per_m);

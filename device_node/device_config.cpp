@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "device_node/drivers/driver_table.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
@@ -168,6 +170,17 @@ std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig
 }
 
 }  // namespace
+
+std::string what_it_is(const DeviceConfig& config) {
+  const int count = config.layout.count;
+  const double width_mm = config.limits.slice_width_m * 1e3;
+  if (width_mm == 0.0) {
+    return fmt::format("{} {}, driver {}", count, count == 1 ? "axis" : "axes", config.driver);
+  }
+  if (count == 1) return fmt::format("1 key, {:.4g} mm wide, driver {}", width_mm, config.driver);
+  return fmt::format("{} keys of {:.4g} mm, {:.4g} mm side by side, driver {}", count, width_mm,
+                     count * width_mm, config.driver);
+}
 
 LoadedDevice read_device(const config::Value& mapping, const std::string& node,
                          config::Problems& problems) {

@@ -29,6 +29,9 @@ struct DeviceConfig {
   std::string driver;  ///< its name in the driver table
 };
 
+/// In words: how many axes or keys, how wide a keyboard is, and who drives it.
+std::string what_it_is(const DeviceConfig& config);
+
 /// A device ready to run.
 struct LoadedDevice {
   DeviceConfig config;

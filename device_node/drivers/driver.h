@@ -10,8 +10,8 @@ namespace cordis::device {
 /// What the two carry depends on the role:
 ///   role mass     read() gives positions [m], write() takes forces [N]
 ///   role liaison  read() gives forces [N],    write() takes positions [m]
-/// Only the guard's output is ever written. No function blocks, allocates or throws: a driver that
-/// waits for its hardware does so on a thread of its own, and says here that it has none.
+/// Only the guard's output is ever written. No function allocates or throws, and none waits longer
+/// than a stated part of a period, whatever the device does or says.
 class Driver {
  public:
   Driver() = default;

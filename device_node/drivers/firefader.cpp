@@ -12,7 +12,6 @@ constexpr std::uint8_t kRequestMark = 127;
 constexpr std::uint8_t kAnswerMark = 255;
 constexpr double kLargestForce = 126.0;
 constexpr double kLargestPosition = 254.0;
-constexpr int kMostUnanswered = 4;  // then an answer was lost, and they are counted anew
 constexpr long kFirefaderBaud = 57600;
 constexpr int kFaders = 2;
 
@@ -20,11 +19,14 @@ constexpr int kFaders = 2;
 
 FireFader::FireFader(std::unique_ptr<Wire> wire, const HardwareSettings& settings,
                      const AxisLayout& layout, double full_scale_n)
-    : Hardware(std::move(wire), settings, layout), full_scale_n_(full_scale_n) {}
+    : Hardware(std::move(wire), settings, layout),
+      full_scale_n_(full_scale_n),
+      jumps_(layout.rate_hz) {}
 
 void FireFader::begin() noexcept {
   length_ = kAnswer + 1;
-  unanswered_ = 0;
+  asked_ = false;
+  jumps_.forget();
 }
 
 std::size_t FireFader::request(const AxisValues& force_n, Message& message) noexcept {
@@ -34,7 +36,7 @@ std::size_t FireFader::request(const AxisValues& force_n, Message& message) noex
     message[1 + a] =
         static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(share * kLargestForce)));
   }
-  if (++unanswered_ > kMostUnanswered) unanswered_ = 1;
+  asked_ = true;
   return 1 + kFaders;
 }
 
@@ -47,12 +49,15 @@ Hardware::Heard FireFader::hear(std::uint8_t byte) noexcept {
   if (length_ >= kAnswer) return Heard::kNothing;
   answer_[length_++] = byte;
   if (length_ < kAnswer) return Heard::kNothing;
+  AxisValues place{};
   for (std::size_t a = 0; a < static_cast<std::size_t>(layout().count); ++a) {
     const double share = answer_[a] / kLargestPosition;
-    newest_[a] = layout().lowest_m + share * (layout().highest_m - layout().lowest_m);
+    place[a] = layout().lowest_m + share * (layout().highest_m - layout().lowest_m);
   }
-  unanswered_ = std::max(0, unanswered_ - 1);
-  return unanswered_ == 0 ? Heard::kSample : Heard::kOldSample;
+  const bool newest = std::exchange(asked_, false);
+  if (!jumps_.believes(place)) return Heard::kBad;
+  newest_ = place;
+  return newest ? Heard::kSample : Heard::kOldSample;
 }
 
 std::unique_ptr<Driver> make_firefader(const config::Value& section, const AxisLayout& layout,

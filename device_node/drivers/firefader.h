@@ -2,13 +2,15 @@
 #pragma once
 
 #include "device_node/drivers/hardware.h"
+#include "device_node/drivers/jump_check.h"
 
 namespace cordis::device {
 
 /// One or two motor faders. Request: 127, force A, force B (int8, never 127). Answer: 255, position
 /// A and B, analog A and B, touch A and B (0..254). No checksum and no numbers: a byte lost shows
-/// as a 255 in the wrong place, and answers are counted against requests. 57600 baud carry about
-/// 500 cycles per second. Source: E. Berdahl, A. Kontogeorgakopoulos, FireFader firmware.
+/// as a 255 in the wrong place, and a place that no hand reaches in a period is not believed before
+/// a second answer says the same. 57600 baud carry about 500 cycles per second. Source: E. Berdahl,
+/// A. Kontogeorgakopoulos, FireFader firmware.
 class FireFader final : public Hardware {
  public:
   /// @param full_scale_n  force of a fader at the largest value it can be sent
@@ -28,7 +30,8 @@ class FireFader final : public Hardware {
   double full_scale_n_;
   std::array<std::uint8_t, kAnswer> answer_{};
   std::size_t length_ = kAnswer + 1;  // of the answer so far; more: waits for a 255
-  int unanswered_ = 0;
+  bool asked_ = false;                // and not answered yet
+  JumpCheck jumps_;
   AxisValues newest_{};  // [m]
 };
 

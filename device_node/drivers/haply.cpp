@@ -1,7 +1,6 @@
 // device_node/drivers/haply.cpp
 #include "device_node/drivers/haply.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -13,9 +12,8 @@ namespace {
 constexpr std::uint8_t kConfigure = 1;
 constexpr std::uint8_t kTorques = 2;
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kLargestStep = 0.05;      // of the pen from one sample to the next [m]
-constexpr int kMostUnansweredMotions = 4;  // then an answer was lost, and they are counted anew
-constexpr long kHaplyBaud = 57600;         // without meaning: native USB
+constexpr double kFarthestTurn = 4.0 * std::numbers::pi;  // no arm is wound up like that
+constexpr long kHaplyBaud = 57600;                        // without meaning: native USB
 
 void put_float(std::uint8_t* at, double value) noexcept {
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
@@ -32,7 +30,7 @@ double get_float(const std::uint8_t* at) noexcept {
 
 Haply::Haply(std::unique_ptr<Wire> wire, const HardwareSettings& settings, const AxisLayout& layout,
              const HaplySettings& haply)
-    : Hardware(std::move(wire), settings, layout), haply_(haply) {}
+    : Hardware(std::move(wire), settings, layout), haply_(haply), jumps_(layout.rate_hz) {}
 
 std::array<std::size_t, 2> Haply::by_port() const noexcept {
   if (haply_.ports[0] < haply_.ports[1]) return {0, 1};
@@ -41,8 +39,9 @@ std::array<std::size_t, 2> Haply::by_port() const noexcept {
 
 void Haply::begin() noexcept {
   length_ = 0;
-  unanswered_ = 0;
+  asked_ = false;
   configured_ = false;
+  jumps_.forget();
   pose_.exists = false;
 }
 
@@ -75,11 +74,12 @@ std::size_t Haply::request(const AxisValues& force_n, Message& message) noexcept
     }
   }
   const Pantograph::Pair torque =
-      pose_.exists ? Pantograph::torques(pose_, {force_n[0], force_n[1]}) : Pantograph::Pair{};
+      pose_.exists ? Pantograph::torques(pose_, {force_n[0], force_n[1]}, haply_.torque_limit_n_m)
+                   : Pantograph::Pair{};
   add(kTorques);
   add(haply_.device_id);
   for (const std::size_t arm : order) add_float(torque[arm]);
-  if (++unanswered_ > kMostUnansweredMotions) unanswered_ = 1;
+  asked_ = true;
   return count;
 }
 
@@ -97,14 +97,12 @@ Hardware::Heard Haply::take_angles() noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     angle[order[i]] = get_float(answer_.data() + 1 + 4 * i) * kDegree;
   }
-  const bool finite = std::isfinite(angle[0]) && std::isfinite(angle[1]);
-  const Pantograph::Pose pose = finite ? haply_.arms.forward(angle) : Pantograph::Pose{};
-  if (!pose.exists) return Heard::kBad;
-  const double step = std::hypot(pose.pen_m[0] - pose_.pen_m[0], pose.pen_m[1] - pose_.pen_m[1]);
-  if (std::exchange(pose_.exists, false) && step > kLargestStep) return Heard::kBad;
+  const bool newest = std::exchange(asked_, false);
+  const bool sane = std::abs(angle[0]) < kFarthestTurn && std::abs(angle[1]) < kFarthestTurn;
+  const Pantograph::Pose pose = sane ? haply_.arms.forward(angle) : Pantograph::Pose{};
+  if (!pose.exists || !jumps_.believes({pose.pen_m[0], pose.pen_m[1]})) return Heard::kBad;
   pose_ = pose;
-  unanswered_ = std::max(0, unanswered_ - 1);
-  return unanswered_ == 0 ? Heard::kSample : Heard::kOldSample;
+  return newest ? Heard::kSample : Heard::kOldSample;
 }
 
 void Haply::position(AxisValues& position_m) const noexcept {
@@ -129,6 +127,9 @@ std::unique_ptr<Driver> make_haply(const config::Value& section, const AxisLayou
   haply.arms.inner_m = reader.optional_number("inner_m", haply.arms.inner_m, Range::positive());
   haply.arms.outer_m = reader.optional_number("outer_m", haply.arms.outer_m, Range::positive());
   haply.arms.base_m = reader.optional_number("base_m", haply.arms.base_m, Range::not_negative());
+  haply.torque_limit_n_m = reader.optional_number(
+      "torque_limit_n_m", layout.force_limit_n * (haply.arms.inner_m + haply.arms.outer_m),
+      Range::positive());
   reader.finish();
   if (layout.count != 2) problems.error(section.place(), "haply: it has two axes, x and y");
   Pantograph::Pair angle{};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device_node/drivers/hardware.h"
+#include "device_node/drivers/jump_check.h"
 #include "device_node/drivers/pantograph.h"
 
 namespace cordis::device {
@@ -16,14 +17,16 @@ struct HaplySettings {
   std::array<int, 2> encoder_turns = {1, 0};  ///< likewise
   std::array<double, 2> offsets_deg = {241.0, -61.0};
   std::array<double, 2> counts_per_turn = {10752.0, 10752.0};
+  double torque_limit_n_m = 0.64;  ///< of a motor: near a singular pose no torque gives the force
 };
 
 /// Request: type, device id, then bytes and floats (IEEE single, little endian). Type 1 configures
 /// the board: mask of motor ports and a direction for each; the same for encoders; no sensors; no
 /// pulses; offset and counts per turn of each encoder. Type 2 carries the torques [N m], in the
 /// order of the ports, and is answered by the device id and one angle [degrees] per encoder, in the
-/// same order. No checksum: an answer that is not finite, or that no pose of the arms has, is
-/// refused, and a byte that is not the device id where it should stand is skipped.
+/// same order. No checksum: an answer that is not finite, of more than two turns, or that no pose
+/// of the arms has, is refused; so is a byte that is not the device id where it should stand; and a
+/// place that no hand reaches in a period is not believed before a second answer says the same.
 ///
 /// Axis 0 is x to the right, axis 1 is y away from the bases.
 class Haply final : public Hardware {
@@ -36,6 +39,7 @@ class Haply final : public Hardware {
   std::size_t greet(Message& message) noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
   Heard hear(std::uint8_t byte) noexcept override;
+  void fall_silent() noexcept override { length_ = 0; }  // of an answer that lost a byte
   void position(AxisValues& position_m) const noexcept override;
 
  private:
@@ -46,8 +50,9 @@ class Haply final : public Hardware {
   HaplySettings haply_;
   std::array<std::uint8_t, kAnswer> answer_{};
   std::size_t length_ = 0;
-  int unanswered_ = 0;
+  bool asked_ = false;  // and not answered yet
   bool configured_ = false;
+  JumpCheck jumps_;
   Pantograph::Pose pose_;
 };
 

@@ -42,11 +42,11 @@ bool Hardware::read(AxisValues& sensed) noexcept {
 bool Hardware::write(const AxisValues& commanded) noexcept {
   const std::int64_t now = node::monotonic_nsec();
   if (contact_ == Contact::kLost) try_to_open(now);
+  if (contact_ != Contact::kLost) listen(now);  // what came late answers an earlier request
   if (contact_ == Contact::kGreeting && !greets_) ask({});
-  if (contact_ == Contact::kGreeting) listen(now, Heard::kGreeted);
   if (contact_ == Contact::kPresent) {
     ask(role_ == Role::kMass ? commanded : pull_to(commanded));
-    listen(now + nsec_of(settings_.answer_within_s), Heard::kSample);
+    late_ += !listen(now + nsec_of(settings_.answer_within_s));
   }
   if (contact_ != Contact::kLost &&
       node::monotonic_nsec() - last_sample_nsec_ > nsec_of(settings_.lost_after_s)) {
@@ -73,8 +73,9 @@ void Hardware::try_to_open(std::int64_t now) noexcept {
   if (greets_) wire_->send({message.data(), count});
 }
 
+/// The device is the right one, and present with its first sample.
 void Hardware::welcome() noexcept {
-  contact_ = Contact::kPresent;
+  greets_ = false;
   Message message;
   const std::size_t count = configure(message);
   if (count > 0) wire_->send({message.data(), count});
@@ -87,29 +88,50 @@ void Hardware::ask(const AxisValues& force_n) noexcept {
   if (!wire_->is_open()) lose();
 }
 
-/// Takes all that is there, and waits for what is wanted until an instant.
-void Hardware::listen(std::int64_t until, Heard wanted) noexcept {
+/// Takes what is there, and waits until an instant for the answer to the newest request; true when
+/// it has come.
+bool Hardware::listen(std::int64_t until) noexcept {
+  constexpr int kMostReads = 16;  // beyond that instant: a device that babbles does not stop a hand
   std::array<std::uint8_t, 256> bytes;
   bool found = false;
-  for (;;) {
-    const std::int64_t left = found ? 0 : until - node::monotonic_nsec();
-    const std::size_t count =
-        wire_->receive(bytes, std::chrono::nanoseconds(std::max<std::int64_t>(left, 0)));
-    if (!wire_->is_open()) return lose();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Heard heard = hear(bytes[i]);
-      if (heard == Heard::kWrong) return lose();
-      const bool sampled = heard == Heard::kSample || heard == Heard::kOldSample;
-      if (sampled) position(position_);
-      const bool greeted = greets_ ? heard == Heard::kGreeted : sampled;
-      if (greeted && contact_ == Contact::kGreeting) welcome();
-      if (greeted || sampled) last_sample_nsec_ = node::monotonic_nsec();
-      bad_ += heard == Heard::kBad;
-      found = found || heard == wanted;
+  bool any = false;
+  for (int reads_beyond = 0; reads_beyond < kMostReads;) {
+    const std::int64_t left = until - node::monotonic_nsec();
+    const std::size_t count = wire_->receive(
+        bytes, std::chrono::nanoseconds(found ? 0 : std::max<std::int64_t>(left, 0)));
+    if (!wire_->is_open()) {
+      lose();
+      return false;
     }
-    if (count == 0 && (found || node::monotonic_nsec() >= until)) break;
+    any = any || count > 0;
+    found = take({bytes.data(), count}) || found;
+    if (contact_ == Contact::kLost) return false;
+    const bool beyond = found || node::monotonic_nsec() >= until;
+    if (count == 0 && beyond) break;
+    reads_beyond += beyond;
   }
-  late_ += wanted == Heard::kSample && !found;
+  if (!any) fall_silent();
+  return found;
+}
+
+/// True when a sample among the bytes answers the newest request.
+bool Hardware::take(std::span<const std::uint8_t> bytes) noexcept {
+  bool found = false;
+  for (const std::uint8_t byte : bytes) {
+    const Heard heard = hear(byte);
+    if (heard == Heard::kWrong) {
+      lose();
+      return false;
+    }
+    const bool sampled = heard == Heard::kSample || heard == Heard::kOldSample;
+    if (heard == Heard::kGreeted && greets_) welcome();
+    if (sampled) position(position_);
+    if (sampled && contact_ == Contact::kGreeting && !greets_) contact_ = Contact::kPresent;
+    if (sampled || heard == Heard::kGreeted) last_sample_nsec_ = node::monotonic_nsec();
+    bad_ += heard == Heard::kBad;
+    found = found || heard == Heard::kSample;
+  }
+  return found;
 }
 
 void Hardware::lose() noexcept {

@@ -16,7 +16,7 @@ namespace cordis::device {
 /// How the driver stands with its device.
 enum class Contact : std::uint8_t {
   kLost,      ///< the wire is closed; it is tried again every retry_s
-  kGreeting,  ///< the wire is open, and the device has not said yet what it is
+  kGreeting,  ///< the wire is open, and the first sample of the right device has not come yet
   kPresent    ///< samples come
 };
 
@@ -31,8 +31,10 @@ struct HardwareSettings {
 };
 
 /// A device at the end of a wire that is given forces and answers with positions, request by
-/// request. The loop never waits for it longer than answer_within_s. A device that falls silent is
-/// lost: the wire is closed, opened again every retry_s, and the driver goes on by itself.
+/// request. The loop never waits for it longer than answer_within_s, and reads no more than a few
+/// kB a period, however much comes. A device that falls silent is lost: the wire is closed, opened
+/// again every retry_s, and the driver goes on by itself. What comes late, but before the next
+/// request, is taken as it comes.
 ///
 /// Role mass: as it is. Role liaison, for devices without a sensor of force: the motors pull the
 /// handle to the commanded place by a coupling, F = K (x - x_h) + Z (v - v_h), through a guard of
@@ -68,13 +70,15 @@ class Hardware : public Driver {
 
   /// Forgets half a message.
   virtual void begin() noexcept = 0;
-  /// Writes what the device is asked first; 0: it is present as soon as it has sent a sample.
+  /// Writes what the device is asked first; 0: it need not say what it is.
   virtual std::size_t greet(Message& message) noexcept = 0;
   /// Writes what a device that has greeted is told once; 0: nothing.
   virtual std::size_t configure(Message&) noexcept { return 0; }
   /// Writes the request that carries forces [N].
   virtual std::size_t request(const AxisValues& force_n, Message& message) noexcept = 0;
   virtual Heard hear(std::uint8_t byte) noexcept = 0;
+  /// It has listened, and nothing has come at all.
+  virtual void fall_silent() noexcept {}
   virtual void position(AxisValues& position_m) const noexcept = 0;  ///< of the newest sample
 
   const AxisLayout& layout() const noexcept { return layout_; }
@@ -83,7 +87,8 @@ class Hardware : public Driver {
   void try_to_open(std::int64_t now) noexcept;
   void welcome() noexcept;
   void ask(const AxisValues& force_n) noexcept;
-  void listen(std::int64_t until, Heard wanted) noexcept;
+  bool listen(std::int64_t until) noexcept;
+  bool take(std::span<const std::uint8_t> bytes) noexcept;
   void lose() noexcept;
   AxisValues pull_to(const AxisValues& wanted_m) noexcept;
 
@@ -93,7 +98,7 @@ class Hardware : public Driver {
   Role role_ = Role::kMass;
   ForceGuard guard_;
   Contact contact_ = Contact::kLost;
-  bool greets_ = true;  // it says what it is; otherwise its first sample must do
+  bool greets_ = true;  // it has yet to say what it is
   std::int64_t next_try_nsec_ = 0;
   std::int64_t last_sample_nsec_ = 0;
   AxisValues position_{};  // [m]

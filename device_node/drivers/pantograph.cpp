@@ -1,6 +1,7 @@
 // device_node/drivers/pantograph.cpp
 #include "device_node/drivers/pantograph.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cordis::device {
@@ -50,13 +51,20 @@ bool Pantograph::inverse(const Pair& pen_m, Pair& angle_rad) const noexcept {
     const double bend = std::acos(cosine);
     angle_rad[k] = std::atan2(y, x) + (k == 0 ? bend : -bend);
   }
-  return true;
+  constexpr double kSamePlace = 1e-6;  // [m]
+  const Pose pose = forward(angle_rad);
+  return pose.exists && std::hypot(pose.pen_m[0] - pen_m[0], pose.pen_m[1] - pen_m[1]) < kSamePlace;
 }
 
-Pantograph::Pair Pantograph::torques(const Pose& pose, const Pair& force_n) noexcept {
+Pantograph::Pair Pantograph::torques(const Pose& pose, const Pair& force_n,
+                                     double limit_n_m) noexcept {
   Pair torque{};
   for (std::size_t k = 0; k < 2; ++k) {
     torque[k] = pose.way_per_angle[0][k] * force_n[0] + pose.way_per_angle[1][k] * force_n[1];
+  }
+  const double largest = std::max(std::abs(torque[0]), std::abs(torque[1]));
+  if (largest > limit_n_m) {
+    for (double& value : torque) value *= limit_n_m / largest;
   }
   return torque;
 }

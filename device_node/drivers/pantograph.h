@@ -24,11 +24,14 @@ struct Pantograph {
   };
   Pose forward(const Pair& angle_rad) const noexcept;
 
-  /// The angles that hold the pen there, elbows outwards; false when it is out of reach.
+  /// The angles that hold the pen there, elbows outwards; false when it is out of reach, or would
+  /// hang on the other side of the elbows.
   bool inverse(const Pair& pen_m, Pair& angle_rad) const noexcept;
 
-  /// Torques of the motors that give a force at the pen: the transposed Jacobian [N m].
-  static Pair torques(const Pose& pose, const Pair& force_n) noexcept;
+  /// Torques of the motors that give a force at the pen: the transposed Jacobian [N m]. Where the
+  /// outer arms are nearly in line they grow beyond all bounds, and are both made smaller by the
+  /// same factor, so that none exceeds the limit.
+  static Pair torques(const Pose& pose, const Pair& force_n, double limit_n_m) noexcept;
 };
 
 }  // namespace cordis::device

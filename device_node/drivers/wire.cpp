@@ -5,6 +5,8 @@
 #include <array>
 #include <cerrno>
 #include <cstdlib>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <arpa/inet.h>
@@ -36,13 +38,15 @@ class SerialLine final : public Wire {
     file_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (file_ < 0) return false;
     termios line{};
-    if (tcgetattr(file_, &line) == 0) {  // a pipe or a pseudo-terminal without one will do as it is
-      cfmakeraw(&line);
-      line.c_cflag |= CLOCAL | CREAD;
-      cfsetspeed(&line, baud_);
-      tcsetattr(file_, TCSANOW, &line);
-      tcflush(file_, TCIOFLUSH);
+    if (tcgetattr(file_, &line) != 0) {  // nothing but a line is ever written to
+      close();
+      return false;
     }
+    cfmakeraw(&line);
+    line.c_cflag |= CLOCAL | CREAD;
+    cfsetspeed(&line, baud_);
+    tcsetattr(file_, TCSANOW, &line);
+    tcflush(file_, TCIOFLUSH);
     return true;
   }
 
@@ -107,6 +111,13 @@ std::unique_ptr<Wire> read_wire(config::MappingReader& reader, long default_baud
   const long baud = reader.optional_integer("baud", default_baud, 1, 10'000'000);
   if (path.empty() == address.empty()) {
     reader.error_at("port", reader.what() + " needs either 'port', a serial line, or 'udp'");
+    return nullptr;
+  }
+  std::error_code unknown;
+  if (!path.empty() && std::filesystem::exists(path, unknown) &&
+      !std::filesystem::is_character_file(path, unknown)) {
+    reader.error_at("port",
+                    "port must be a serial line like /dev/ttyACM0, and '" + path + "' is none");
     return nullptr;
   }
   if (!path.empty()) {

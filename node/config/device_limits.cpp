@@ -31,6 +31,7 @@ DeviceLimits read_device_limits(MappingReader& reader) {
   const std::string rest = reader.optional_choice("rest", "top", {"top", "middle", "bottom"});
   limits.lowest_m = rest == "top" ? -travel_m : rest == "middle" ? -travel_m / 2.0 : 0.0;
   limits.highest_m = limits.lowest_m + travel_m;
+  limits.slice_width_m = reader.optional_number("slice_width_m", 0.0, Range::between(0.002, 0.2));
   limits.rate_hz = reader.optional_number("rate_hz", 1000.0, Range::between(1.0, 20000.0));
   limits.force_limit_n = reader.optional_number("force_limit_n", 20.0, Range::positive());
   limits.moving_mass_kg =

@@ -13,6 +13,8 @@ struct DeviceLimits {
   double rate_hz = 1000.0;
   double lowest_m = -0.04;  ///< workspace of an axis; rest is 0, up is positive
   double highest_m = 0.0;
+  double slice_width_m =
+      0.0;  ///< of a key, which stands side by side with the next; 0: no keyboard
   double force_limit_n = 20.0;
   double moving_mass_kg = 0.05;
   double viscosity_n_s_per_m = 0.0;      ///< 0: unknown

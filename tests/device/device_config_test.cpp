@@ -86,6 +86,18 @@ TEST(DeviceConfig, GivesItsLimitsToBothGuards) {
   EXPECT_EQ(config.position_guard.period_s, 0.002);
 }
 
+TEST(DeviceConfig, KnowsHowWideItsKeysAre) {
+  const DeviceConfig one = launched("keyboard.yaml", {}).config;
+  EXPECT_EQ(one.limits.slice_width_m, 0.01375);
+  EXPECT_EQ(what_it_is(one), "1 key, 13.75 mm wide, driver mock");
+  // One number adds keys.
+  const DeviceConfig more = launched("keyboard.yaml", {"keyboard.axes=12"}).config;
+  EXPECT_EQ(what_it_is(more), "12 keys of 13.75 mm, 165 mm side by side, driver mock");
+  const DeviceConfig plane = device_of("{axes: 2, driver: mock}").config;
+  EXPECT_EQ(plane.limits.slice_width_m, 0.0);
+  EXPECT_EQ(what_it_is(plane), "2 axes, driver mock");
+}
+
 TEST(DeviceConfig, BrakesOnlyADeviceWhoseViscosityIsKnown) {
   EXPECT_FALSE(device_of("axes: 1").config.force_guard.passivity.active);
   EXPECT_EQ(device_of("axes: 1").config.force_guard.power_w, 40.0);
@@ -153,6 +165,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadDevice{"travel_m: 0.03", "device.yaml:1:1: error: "},
         BadDevice{"axes: 17", "device.yaml:1:7: error: 'axes' in device 'keyboard'"},
+        BadDevice{"{axes: 1, slice_width_m: 13.75}",
+                  "device.yaml:1:26: error: 'slice_width_m' in device 'keyboard' must be "},
         BadDevice{"{axes: 1, travel: 0.03}", "device.yaml:1:11: error: unknown key 'travel'"},
         BadDevice{"{axes: 1, driver: moc}", "did you mean 'mock'?"},
         BadDevice{"{axes: 1, driver: script}", "error: script needs positions or forces"},

@@ -69,11 +69,22 @@ void Plug::live() {
   });
 }
 
+Plug::Harm Plug::every_kind(int n) {
+  if (n % 10 == 2) return Harm::kFlipped;
+  if (n % 10 == 4) return Harm::kCut;
+  if (n % 10 == 6) return Harm::kDropped;
+  if (n % 10 == 8) return Harm::kLate;
+  return Harm::kNone;
+}
+
 void Plug::say(std::span<const std::uint8_t> bytes) {
   std::vector<std::uint8_t> frame(bytes.begin(), bytes.end());
   const Harm harmed = harm(answers_++);
   if (harmed == Harm::kDropped) return;
-  if (harmed == Harm::kFlipped) frame[frame.size() / 2] ^= 0x14;
+  const auto turn = static_cast<std::size_t>(answers_ / 10);
+  const std::size_t at = turn % frame.size();
+  if (harmed == Harm::kFlipped) frame[at] ^= static_cast<std::uint8_t>(1u << turn * 3 % 8);
+  if (harmed == Harm::kCut) frame.erase(frame.begin() + static_cast<std::ptrdiff_t>(at));
   late_.insert(late_.end(), frame.begin(), frame.end());
   if (harmed == Harm::kLate) return;  // comes together with the next one
   const ssize_t sent = udp_ ? sendto(wire_, late_.data(), late_.size(), 0,

@@ -28,8 +28,12 @@ class Plug {
   void pull();
 
   /// What happens to the n-th answer.
-  enum class Harm { kNone, kFlipped, kDropped, kLate };
+  enum class Harm { kNone, kFlipped, kCut, kDropped, kLate };
   std::function<Harm(int)> harm = [](int) { return Harm::kNone; };
+
+  /// Of every ten answers one with a wrong bit, one that lacks a byte, one that never comes and one
+  /// that comes with the next; all bits and bytes get their turn.
+  static Harm every_kind(int n);
 
   void say(std::span<const std::uint8_t> bytes);
 

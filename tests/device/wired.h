@@ -7,12 +7,13 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "device_node/drivers/driver_table.h"
 #include "device_node/drivers/hardware.h"
+#include "node/paced_loop.h"
+#include "tests/device/plug.h"
 
 namespace cordis::device {
 
@@ -43,15 +44,47 @@ class Wired : public ::testing::Test {
     return nullptr;
   }
 
-  /// Lives period after period until it is as wanted; false when that takes too long.
+  /// Lives period after period of 1 kHz until it is as wanted; false when that takes too long.
   static bool until(Driver& driver, const AxisValues& force,
                     const std::function<bool(bool there)>& wanted) {
     const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    node::PacedLoop pace(1000.0);
     while (std::chrono::steady_clock::now() < limit) {
+      pace.wait();
       if (wanted(driver.write(force))) return true;
-      std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     return false;
+  }
+
+  /// Plugs a device in and lives with it through harm of every kind, until enough of it was found
+  /// out; then unplugs it, and lives on until it is lost.
+  /// @param check  of what is sensed in every period in which the device is there
+  static void live_through_harm(Driver& driver, test::Plug& plug, const std::filesystem::path& link,
+                                const AxisValues& force,
+                                const std::function<void(const AxisValues&)>& check) {
+    auto& hardware = dynamic_cast<Hardware&>(driver);
+    const std::uint64_t bad_before = hardware.bad_count();
+    const std::uint64_t late_before = hardware.late_count();
+    int periods = 0;
+    plug.harm = &test::Plug::every_kind;
+    plug.into_serial_line(link);
+
+    ASSERT_TRUE(until(driver, force, [&](bool there) {
+      AxisValues sensed{};
+      EXPECT_EQ(driver.read(sensed), there);
+      if (there) check(sensed);
+      EXPECT_TRUE(there || periods == 0) << "no harm makes it be lost";
+      periods += there;
+      return periods >= 150 && hardware.bad_count() >= bad_before + 12 &&
+             hardware.late_count() >= late_before + 12;
+    }));
+    EXPECT_EQ(hardware.contact(), Contact::kPresent);
+
+    plug.pull();
+    ASSERT_TRUE(until(driver, force, [](bool there) { return !there; }));
+    AxisValues sensed{};
+    EXPECT_FALSE(driver.read(sensed));
+    EXPECT_NE(hardware.contact(), Contact::kPresent);
   }
 
  private:
