@@ -32,8 +32,9 @@ double elastic_energy(const NetworkDescription& network, const MatArray& mats) n
 double gravity_energy(const NetworkDescription& network, const MatArray& mats) noexcept {
   double sum = 0.0;
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
-    if (network.mats[i].kind != MatKind::kMass) continue;
-    sum -= network.mats[i].mass * network.gravity.dot(mats.position(i) + mats.delayed(i));
+    const Mat& mat = network.mats[i];
+    if (mat.kind != MatKind::kMass) continue;
+    sum -= mat.mass * network.gravity_on(mat).dot(mats.position(i) + mats.delayed(i));
   }
   return 0.5 * sum;
 }

@@ -20,6 +20,7 @@ class Fingerprint {
     add(mat.mass);
     add(mat.position);
     add(mat.velocity);
+    if (mat.weightless) add(std::uint64_t{1});
   }
   void add(const Link& link) {
     add(link.mat_a);

@@ -142,11 +142,11 @@ void Freezing::adopt(const NetworkDescription& network, const std::vector<Behavi
   const std::vector<OfMat> of_mats = measure(network, behaviours);
   const double tolerance = kShare * network.freeze_tolerance;
   const double dt = network.step;
-  const double weight_step = network.gravity.norm() * dt * dt;
   for (std::size_t i = 0; i < of_mats.size(); ++i) {
     const double stiffness = of_mats[i].stiffness();
     if (mass_over_dt2_[i] == 0.0 || stiffness == 0.0) continue;
     double push = tolerance * stiffness / mass_over_dt2_[i];
+    const double weight_step = network.gravity_on(network.mats[i]).norm() * dt * dt;
     if (weight_step > 0.0) push = std::min(push, (1.0 - kLeastCarried) * weight_step);
     const double viscosity = of_mats[i].viscosity + network.medium_viscosity;
     double moved = tolerance;

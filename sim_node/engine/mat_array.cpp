@@ -23,6 +23,7 @@ MatArray::MatArray(const NetworkDescription& description)
       medium_viscosity_over_dt_(description.medium_viscosity / description.step) {
   const double dt = description.step;
 
+  std::vector<Range> masses;
   for (std::size_t i = 0; i < description.mats.size(); ++i) {
     const Mat& mat = description.mats[i];
     set_column(position_, i, mat.position);
@@ -32,10 +33,16 @@ MatArray::MatArray(const NetworkDescription& description)
 
     dt2_over_mass_[i] = dt * dt / mat.mass;
     persistence_[i] = 1.0 - dt * description.medium_viscosity / mat.mass;
-    if (masses_.empty() || masses_.back().last != i) masses_.push_back({i, i});
-    masses_.back().last = i + 1;
+    if (masses.empty() || masses.back().last != i) masses.push_back({i, i});
+    masses.back().last = i + 1;
+    if (!mat.weightless || description.gravity.isZero(0.0)) continue;
+    weightless_.resize(count(), 0);
+    weightless_[i] = 1;
   }
-  moving_.reserve(description.freeze_tolerance > 0.0 ? count() / 2 + 1 : masses_.size());
+  masses_.reserve(count());
+  list_by_weight(masses, masses_);
+  masses_.shrink_to_fit();
+  moving_.reserve(description.freeze_tolerance > 0.0 ? count() : masses_.size());
   moving_ = masses_;
 }
 
@@ -45,7 +52,7 @@ void MatArray::start() noexcept {
       const auto mat = static_cast<std::uint32_t>(i);
       const Vec3 moved = position(mat) - delayed(mat);  // v0 dt
       const Vec3 pushed =                               // a0 dt^2
-          dt2_over_mass_[i] * force(mat) + weight_step_ - (1.0 - persistence_[i]) * moved;
+          push_of_period(mat) - (1.0 - persistence_[i]) * moved;
       set_column(delayed_, i, position(mat) - (moved - 0.5 * pushed));
     }
   }
@@ -61,7 +68,21 @@ void MatArray::clear_forces(std::span<const std::uint32_t> of_mats) noexcept {
 }
 
 void MatArray::move_only(std::span<const Range> rows) noexcept {
-  moving_.assign(rows.begin(), rows.end());
+  list_by_weight(rows, moving_);
+}
+
+/// The same rows, each of masses of one weight. The list has room.
+void MatArray::list_by_weight(std::span<const Range> rows,
+                              std::vector<Range>& listed) const noexcept {
+  listed.assign(rows.begin(), rows.end());
+  if (weightless_.empty()) return;
+  listed.clear();
+  for (const Range& row : rows) {
+    for (std::size_t i = row.first; i < row.last; ++i) {
+      if (i == row.first || weightless_[i] != weightless_[i - 1]) listed.push_back({i, i});
+      listed.back().last = i + 1;
+    }
+  }
 }
 
 void MatArray::halt(std::uint32_t mat) noexcept {
@@ -89,8 +110,14 @@ MassColumns MatArray::columns(double* felt) noexcept {
           force_.data(),
           dt2_over_mass_.data(),
           persistence_.data(),
-          felt,
-          {weight_step_.x(), weight_step_.y(), weight_step_.z(), 0.0}};
+          felt};
+}
+
+/// @param range  of one weight
+void MatArray::choose_rows(MassColumns& columns, const Range& range) const noexcept {
+  columns.first = range.first;
+  columns.last = range.last;
+  Vec3::Map(columns.weight_step) = weight_step(range.first);
 }
 
 /// @param share  of moved_product in the square of a displacement
@@ -100,8 +127,7 @@ AdvanceReport MatArray::advance_rows(Advance advance_row, double* felt, double s
   bool all_finite = true;
 
   for (const Range& range : moving_) {
-    row.first = range.first;
-    row.last = range.last;
+    choose_rows(row, range);
     const AdvanceResult result = advance_row(row);
     report.medium_work += share * medium_viscosity_over_dt_ * result.moved_product;
     all_finite = all_finite && result.all_finite;
@@ -115,8 +141,7 @@ void MatArray::push(const StepKernel& kernel, double part,
   MassColumns row = columns(nullptr);
   const Pushing by{velocity.data(), part / dt_, 0.0, nullptr};
   for (const Range& range : masses_) {
-    row.first = range.first;
-    row.last = range.last;
+    choose_rows(row, range);
     kernel.push(row, by);
   }
 }
@@ -127,8 +152,7 @@ void MatArray::push_and_drift(const StepKernel& kernel, double push, double drif
   const Pushing by{velocity.data(), push / dt_, drift * dt_, force_.data()};
   std::size_t cleared = 0;
   for (const Range& range : masses_) {
-    row.first = range.first;
-    row.last = range.last;
+    choose_rows(row, range);
     kernel.push_and_drift(row, by);
     std::fill(force_.data() + 4 * cleared, force_.data() + 4 * range.first, 0.0);
     cleared = range.last;
@@ -152,8 +176,7 @@ std::uint32_t MatArray::delay_by(const StepKernel& kernel,
   MassColumns row = columns(nullptr);
   bool all_finite = true;
   for (const Range& range : masses_) {
-    row.first = range.first;
-    row.last = range.last;
+    choose_rows(row, range);
     all_finite = kernel.delay(row, velocity.data(), dt_).all_finite && all_finite;
   }
   return all_finite ? 0 : count_non_finite();
@@ -174,7 +197,7 @@ double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
     for (std::size_t i = range.first; i < range.last; ++i) {
       const Vec3 moved = Vec3::Map(displacement.data() + 4 * i);
       set_column(push, i,
-                 dt_ * dt_ * force(static_cast<std::uint32_t>(i)) + mass_[i] * weight_step_ -
+                 dt_ * dt_ * force(static_cast<std::uint32_t>(i)) + mass_[i] * weight_step(i) -
                      dt_viscosity * moved);
       product += moved.x() * moved.x() + moved.y() * moved.y() + moved.z() * moved.z();
     }

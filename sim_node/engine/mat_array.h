@@ -52,9 +52,7 @@ class MatArray {
   /// From now on only these rows of masses are moved; at first all masses are.
   void move_only(std::span<const Range> rows) noexcept;
   /// What forces and gravity add to the displacement of a mass in this period [m].
-  Vec3 push_of_period(std::uint32_t mat) const noexcept {
-    return dt2_over_mass_[mat] * force(mat) + weight_step_;
-  }
+  Vec3 push_of_period(std::uint32_t mat) const noexcept { return pushed_by(mat, force(mat)); }
   /// A mass stays where it is, at rest.
   void halt(std::uint32_t mat) noexcept;
 
@@ -90,7 +88,7 @@ class MatArray {
                              AlignedVector<double>& push) const noexcept;
   /// What a force and gravity add to the way of a mass in a period [m].
   Vec3 pushed_by(std::uint32_t mat, const Vec3& force) const noexcept {
-    return dt2_over_mass_[mat] * force + weight_step_;
+    return dt2_over_mass_[mat] * force + weight_step(mat);
   }
   /// What the medium does to a mass at x(n) - dt v(n) [N].
   Vec3 force_of_medium(std::uint32_t mat, const Vec3& felt) const noexcept {
@@ -135,6 +133,11 @@ class MatArray {
 
  private:
   MassColumns columns(double* felt) noexcept;
+  void choose_rows(MassColumns& columns, const Range& range) const noexcept;
+  void list_by_weight(std::span<const Range> rows, std::vector<Range>& listed) const noexcept;
+  Vec3 weight_step(std::size_t mat) const noexcept {
+    return !weightless_.empty() && weightless_[mat] != 0 ? Vec3(Vec3::Zero()) : weight_step_;
+  }
   AdvanceReport advance_rows(Advance advance_row, double* felt, double share) noexcept;
   Columns view(const AlignedVector<double>& columns) const noexcept;
   static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;
@@ -143,14 +146,15 @@ class MatArray {
   AlignedVector<double> position_;
   AlignedVector<double> delayed_;
   AlignedVector<double> force_;
-  AlignedVector<double> dt2_over_mass_;  // [s^2/kg], 0 unless a mass
-  AlignedVector<double> persistence_;    // 1 - dt Z / m
-  std::vector<double> mass_;             // [kg], 0 unless a mass
-  std::vector<Range> masses_;            // rows of neighbouring masses
-  std::vector<Range> moving_;            // those that are moved
-  double dt_;                            // [s]
-  Vec3 weight_step_;                     // gravity * dt^2 [m]
-  double medium_viscosity_over_dt_;      // Z / dt [N/m]
+  AlignedVector<double> dt2_over_mass_;   // [s^2/kg], 0 unless a mass
+  AlignedVector<double> persistence_;     // 1 - dt Z / m
+  std::vector<double> mass_;              // [kg], 0 unless a mass
+  std::vector<std::uint8_t> weightless_;  // by MAT; empty: none, or no gravity
+  std::vector<Range> masses_;             // rows of neighbouring masses, of one weight
+  std::vector<Range> moving_;             // those that are moved
+  double dt_;                             // [s]
+  Vec3 weight_step_;                      // gravity * dt^2 [m]
+  double medium_viscosity_over_dt_;       // Z / dt [N/m]
   bool forces_are_present_ = false;
 };
 

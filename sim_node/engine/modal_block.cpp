@@ -67,9 +67,10 @@ ModalBlock::ModalBlock(const NetworkDescription& network) {
     }
   }
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
-    if (network.mats[i].kind != MatKind::kMass) continue;
-    const double weight = network.mats[i].mass * network.gravity.x();
-    gravity_at_start_ -= weight * network.mats[i].position.x();
+    const Mat& mat = network.mats[i];
+    if (mat.kind != MatKind::kMass) continue;
+    const double weight = mat.mass * network.gravity_on(mat).x();
+    gravity_at_start_ -= weight * mat.position.x();
     for (std::size_t m = 0; m < square_.size(); ++m) weight_[m] += weight * shape(i)[m];
   }
   for (std::size_t m = 0; m < square_.size(); ++m) {

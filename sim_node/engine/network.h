@@ -20,6 +20,7 @@ struct Mat {
   double mass = 0.0;             ///< [kg], > 0 for kMass, ignored otherwise
   Vec3 position = Vec3::Zero();  ///< at step 0 [m]; components beyond the dimension must be 0
   Vec3 velocity = Vec3::Zero();  ///< at step 0 [m/s]; must be 0 unless kMass
+  bool weightless = false;       ///< gravity leaves it alone: something outside carries it
 };
 
 /// One linear LIA: spring (viscosity 0), damper (stiffness 0) or both in parallel.
@@ -98,6 +99,10 @@ struct NetworkDescription {
   std::vector<StateLink> state_links;
   std::vector<MaxwellLink> maxwell_links;
   std::vector<SetLiaison> sets;
+
+  Vec3 gravity_on(const Mat& mat) const noexcept {
+    return mat.weightless ? Vec3(Vec3::Zero()) : gravity;
+  }
 };
 
 /// A network of MATs (its nodes) and LIAs (its arcs), checked and laid out for stepping; immutable.

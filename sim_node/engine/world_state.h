@@ -71,9 +71,9 @@ struct WorldState {
     double gravity = 0.0;
     for (std::uint32_t i = 0; i < mats.count(); ++i) {
       if (!mats.is_mass(i)) continue;
-      const double mass = description().mats[i].mass;
-      kinetic += 0.5 * mass * velocity_of(i).squaredNorm();
-      gravity -= mass * description().gravity.dot(mats.position_of_forces(i));
+      const Mat& mat = description().mats[i];
+      kinetic += 0.5 * mat.mass * velocity_of(i).squaredNorm();
+      gravity -= mat.mass * description().gravity_on(mat).dot(mats.position_of_forces(i));
     }
     return account.at_moment(kinetic, potential_energy(), gravity);
   }

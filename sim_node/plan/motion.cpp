@@ -191,7 +191,7 @@ void Motion::rate(const Values& values, Values& rate) {
     }
     acceleration =
         (acceleration + held_[i] - network_.medium_viscosity * v) / network_.mats[i].mass +
-        network_.gravity;
+        network_.gravity_on(network_.mats[i]);
   }
 }
 

@@ -136,9 +136,11 @@ Piece port_piece(config::MappingReader& reader, const Port& port, double radius,
   return piece;
 }
 
+/// It has no weight: the hand is to feel the scene, not what it holds.
 void make_tool(engine::Mat& mat, double mass) {
   mat.kind = engine::MatKind::kMass;
   mat.mass = mass;
+  mat.weightless = true;
 }
 
 /// Makes the MAT of the piece the tool, and adds the handle and the coupling.

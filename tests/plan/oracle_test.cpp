@@ -43,6 +43,17 @@ TEST(Oracle, FollowsATieInEveryDirection) {
   EXPECT_NEAR(oracle.position(1).y(), fading * 20.0 / wd * std::sin(wd), 1e-12);
 }
 
+TEST(Oracle, LetsFallWhatHasWeight) {
+  NetworkDescription scene = oscillator(0.5, 200.0, 0.0, 0.0, 0.0, 1e-3);
+  scene.gravity.x() = -9.81;
+  scene.mats[1].weightless = true;
+  scene.mats.push_back(mass(0.5, Vec3(1, 0, 0)));
+  Oracle oracle(scene);
+  oracle.advance_to(1.0);
+  EXPECT_EQ(oracle.position(1).x(), 0.0);
+  EXPECT_NEAR(oracle.position(2).x(), 1.0 - 0.5 * 9.81, 1e-12);
+}
+
 TEST(Oracle, FollowsTwoBodiesAsTheReferenceDoes) {
   const nlohmann::json problem = reference("R06_two_bodies");
   const auto value = [&](const char* name) { return number(problem["params"][name]); };

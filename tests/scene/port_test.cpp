@@ -1,6 +1,9 @@
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "node/config/name_hash.h"
+#include "sim_node/engine/world.h"
 #include "tests/scene/scene_text.h"
 
 namespace cordis::scene {
@@ -150,6 +153,22 @@ TEST(Port, ACouplingHasDefaultsAndMayBeRefusedInAWord) {
     EXPECT_EQ(links_with(said)[0].stiffness, 500.0);
   }
   EXPECT_EQ(links_with(", coupling: {stiffness_n_per_m: 80}")[0].viscosity, 1.5);
+}
+
+TEST(Port, TheToolHasNoWeight) {
+  for (const std::string role : {"role: mass", "role: liaison", "role: mass, coupling: direct"}) {
+    const Scene scene = scene_with_bob(2, "",
+                                       "world: {gravity_m_per_s2: [0, -9.81]}\n"
+                                       "ports:\n  key: {device: d, axes: [0, 1], at_m: [1, 2], "
+                                       "ball: {mass_kg: 0.3, radius_m: 0.1}, " +
+                                           role + "}\n");
+    engine::World world(std::make_shared<const engine::Network>(scene.network));
+    for (int n = 0; n < 500; ++n) world.step();
+    const Port& port = scene.ports.at(0);
+    EXPECT_EQ(world.position(port.tool), Vec3(1, 2, 0)) << role;
+    EXPECT_EQ(world.link_force(port.mat), Vec3(0, 0, 0)) << role;
+    EXPECT_LT(world.position(0).y(), 9.0 - 1.0) << "the bob falls";
+  }
 }
 
 }  // namespace
