@@ -50,6 +50,9 @@ TEST_P(Weightless, CarriesWhatHangsOnItAndFallsNot) {
     world.step();
     sum += world.position(1).x();
     const Energy energy = world.energy();
+    const double of_weights =
+        -kGravity * (kHungOnIt * world.position(2).x() + kTool * world.position(4).x());
+    ASSERT_NEAR(energy.gravity, of_weights, 0.02) << n;  // half a step apart
     ASSERT_NEAR(energy.residual(), 0.0, 1e-2 * energy.largest) << n;
   }
   const double sag = kHungOnIt * kGravity / kSpring;

@@ -119,6 +119,9 @@ TEST(Dimension, ALineIsComputedIn1DWhereTheSignOfItsLinksMakesNoDifference) {
 TEST(Dimension, ALineStaysWhereTheSignWouldMakeADifference) {
   EXPECT_EQ(reduced(on_a_line("0.1")).space(), 2);
   EXPECT_EQ(reduced(on_a_line("0", "  - {liaison: push, between: [fast, wall]}\n")).space(), 2);
+  std::string together = on_a_line("0");  // there is no direction, and so no force, but in 1-D
+  together.replace(together.find("[0.6, 1], velocity"), 8, "[0.2, 1]");
+  EXPECT_EQ(reduced(together).space(), 2);
   std::string named = on_a_line("0");
   named.replace(named.find("[fast, \"bobs[1]\"]"), 17, "[fast, \"bobs[1]\"], name: it");
   EXPECT_EQ(reduced(named + "signals: {d: {of: it, quantity: distance}}\n").space(), 2);

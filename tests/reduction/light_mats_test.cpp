@@ -123,6 +123,20 @@ TEST(Massless, AMatThatNothingTakesOutIsAnError) {
       << drawn;
 }
 
+TEST(Massless, AMatInAMediumOrOnALoopIsAnError) {
+  const std::string in_medium = refusal_of(row_text(
+      "0", kSprings, 1000, "reduce: [series, massless]\nworld: {viscosity_n_s_per_m: 0.1}\n"));
+  EXPECT_NE(in_medium.find("the medium acts on it"), std::string::npos) << in_medium;
+  const std::string loop =
+      refusal_of(row_text("0",
+                          "  - {liaison: soft, between: [wall, \"joint[0]\"], rest_m: 0}\n"
+                          "  - {liaison: hard, between: [wall, \"joint[0]\"], rest_m: 0}\n"
+                          "  - {liaison: hard, between: [wall, \"joint[1]\"], rest_m: 0}\n"
+                          "  - {liaison: hard, between: [\"joint[1]\", bob], rest_m: 0}\n",
+                          1000));
+  EXPECT_NE(loop.find("both its links lead to the same MAT"), std::string::npos) << loop;
+}
+
 TEST(Massless, AMatOfASignalIsAnError) {
   const std::string told = refusal_of(
       row_text("0", kSprings + "signals:\n  at: {of: \"joint[0]\", quantity: position}\n", 1000));
@@ -156,6 +170,31 @@ TEST(Series, InThePlaneAPushedRowIsRefusedAndOneAtRestWatched) {
   ASSERT_EQ(drawn.reductions.size(), 1u);
   ASSERT_EQ(drawn.reductions[0].doubts.size(), 1u);  // it may be pushed later
   EXPECT_EQ(drawn.reductions[0].doubts[0].find("at rest"), std::string::npos);
+}
+
+TEST(Series, InThePlaneARowStaysApartFromASpringBesideIt) {
+  const auto text = [](const std::string& beside) {
+    return "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\nreduce: all\n"
+           "liaisons:\n"
+           "  s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0.1}\n"
+           "  oil: {kind: damper, viscosity_n_s_per_m: 0.1}\n"
+           "matter:\n"
+           "  wall: {kind: fixed, at_m: [0, 0]}\n"
+           "  joint: {kind: mass, mass_kg: 0, at_m: [0.12, 0]}\n"
+           "  bob: {kind: mass, mass_kg: 0.1, at_m: [0.24, 0.01]}\n"
+           "links:\n"
+           "  - {liaison: s, between: [wall, joint]}\n"
+           "  - {liaison: s, between: [joint, bob]}\n"
+           "  - {liaison: " +
+           beside + ", between: [wall, bob]}\n";
+  };
+  const scene::Scene spring = reduced(text("s"));
+  ASSERT_EQ(spring.network.links.size(), 2u) << "its rest length tells when it is pushed";
+  ASSERT_EQ(spring.struts.size(), 1u);
+  EXPECT_EQ(spring.network.links[spring.struts[0]].rest_length, 0.2);
+  const scene::Scene damper = reduced(text("oil"));
+  EXPECT_EQ(damper.network.links.size(), 1u);
+  EXPECT_EQ(damper.struts.size(), 1u);
 }
 
 /// A string of 20 bobs in 1 dimension with a MAT of this mass between each two, struck.
@@ -205,6 +244,101 @@ TEST(Massless, LightMatsGoWithinTheToleranceAndTheErrorIsWithinTheBudget) {
   const double error = largest_difference(before, after) / largest_distance(before);
   EXPECT_LT(error, 0.5 * scene.reductions[0].budget * w * 0.05);
   EXPECT_GT(error, 1e-5);
+}
+
+constexpr double kTenHertz = 2.0 * std::numbers::pi * 10.0;  // [rad/s]
+
+/// Two bobs with light joints between them, judged at 10 Hz.
+std::string bobs_text(int space, const std::string& joints, const std::string& links,
+                      double tolerance = 0.04) {
+  return "cordis: 1\nspace: " + std::to_string(space) +
+         "\nstep: {rate_hz: 100000}\naccuracy: {tolerance: " + std::to_string(tolerance) +
+         ", band_hz: 10, over_s: 0}\n"
+         "liaisons:\n"
+         "  soft: {kind: spring, stiffness_n_per_m: 60}\n"
+         "  hard: {kind: spring, stiffness_n_per_m: 120}\n"
+         "  oil: {kind: damper, viscosity_n_s_per_m: 0.8}\n"
+         "matter:\n"
+         "  bob: {kind: points, mass_kg: 0.1, at_m: " +
+         std::string(space == 1 ? "[0, 1]" : "[[0, 0], [1, 0]]") + "}\n" + joints + "links:\n" +
+         links;
+}
+
+const std::string kSoftAndHard =
+    "  - {liaison: soft, between: [\"bob[0]\", joint], rest_m: 0}\n"
+    "  - {liaison: hard, between: [joint, \"bob[1]\"], rest_m: 0}\n";
+
+TEST(Light, TheMassGoesToTheNeighboursAsTheForceDoes) {
+  // At 2/3 the pulls of 60 and 120 N/m on it are the same.
+  const scene::Scene scene = reduced(bobs_text(
+      1, "  joint: {kind: mass, mass_kg: 0.0003, at_m: 0.66666666666666667}\n", kSoftAndHard));
+  ASSERT_EQ(scene.network.mats.size(), 2u);
+  EXPECT_NEAR(scene.network.mats[0].mass, 0.1 + 0.0001, 1e-12);
+  EXPECT_NEAR(scene.network.mats[1].mass, 0.1 + 0.0002, 1e-12);
+}
+
+TEST(Light, BetweenSpringAndDamperTheMassGoesToTheSpring) {
+  for (const bool spring_first : {true, false}) {
+    const std::string at = spring_first ? "0" : "1";
+    const std::string spring =
+        "  - {liaison: soft, between: [\"bob[" + at + "]\", joint], rest_m: 0}\n";
+    const std::string oil = "  - {liaison: oil, between: [joint, \"bob[" +
+                            std::string(spring_first ? "1" : "0") + "]\"]}\n";
+    const scene::Scene scene =
+        reduced(bobs_text(1, "  joint: {kind: mass, mass_kg: 0.00005, at_m: " + at + "}\n",
+                          spring_first ? spring + oil : oil + spring));
+    ASSERT_EQ(scene.network.maxwell_links.size(), 1u);
+    EXPECT_NEAR(scene.network.mats[spring_first ? 0 : 1].mass, 0.10005, 1e-12);
+    EXPECT_EQ(scene.network.mats[spring_first ? 1 : 0].mass, 0.1);
+    ASSERT_EQ(scene.reductions.size(), 1u);
+    EXPECT_NEAR(scene.reductions[0].budget, 2.0 * kTenHertz * kTenHertz * 0.00005 / 60.0, 1e-9);
+  }
+}
+
+TEST(Light, StaysWhereItDoesNotBeginAsItsLinksHoldIt) {
+  const auto mats_with = [](const std::string& how) {
+    return reduced(
+               bobs_text(1, "  joint: {kind: mass, mass_kg: 0.0003, " + how + "}\n", kSoftAndHard))
+        .network.mats.size();
+  };
+  const std::string balanced = "at_m: 0.66666666666666667";
+  EXPECT_EQ(mats_with(balanced), 2u);
+  EXPECT_EQ(mats_with("at_m: 0.6"), 3u);
+  EXPECT_EQ(mats_with(balanced + ", velocity_m_per_s: 0.1"), 3u);
+}
+
+TEST(Light, ErrorsOfARowAddUp) {
+  const std::string joints =
+      "  joint: {kind: points, mass_kg: 0.0003, at_m: [0.4, 0.8]}\n";  // 60 : 60 : 120 N/m
+  const std::string links =
+      "  - {liaison: soft, between: [\"bob[0]\", \"joint[0]\"], rest_m: 0}\n"
+      "  - {liaison: soft, between: [\"joint[0]\", \"joint[1]\"], rest_m: 0}\n"
+      "  - {liaison: hard, between: [\"joint[1]\", \"bob[1]\"], rest_m: 0}\n";
+  const double first = kTenHertz * kTenHertz * 0.0003 / 120.0;
+  const double second = kTenHertz * kTenHertz * 0.00045 / 150.0;  // half of the first joint on it
+
+  const scene::Scene both = reduced(bobs_text(1, joints, links, 4.2 * (first + second)));
+  EXPECT_EQ(both.network.mats.size(), 2u);
+  EXPECT_NEAR(both.reductions.at(0).budget, first + second, 1e-9);
+  const scene::Scene one = reduced(bobs_text(1, joints, links, 3.8 * (first + second)));
+  EXPECT_EQ(one.network.mats.size(), 3u);
+  EXPECT_NEAR(one.reductions.at(0).budget, first, 1e-9);
+}
+
+TEST(Light, InThePlaneItIsJudgedAcrossTheDrawnSprings) {
+  const auto scene_with = [](double rest) {
+    const std::string rest_text = ", rest_m: " + std::to_string(rest) + "}\n";
+    return reduced(bobs_text(2, "  joint: {kind: mass, mass_kg: 0.0003, at_m: [0.5, 0]}\n",
+                             "  - {liaison: soft, between: [\"bob[0]\", joint]" + rest_text +
+                                 "  - {liaison: soft, between: [joint, \"bob[1]\"]" + rest_text,
+                             0.2));
+  };
+  const scene::Scene drawn = scene_with(0.25);
+  ASSERT_EQ(drawn.network.mats.size(), 2u);
+  const double tension = 60.0 * 0.25;
+  EXPECT_NEAR(drawn.reductions.at(0).budget, kTenHertz * kTenHertz * 0.0003 / (tension * 4.0),
+              1e-9);
+  EXPECT_EQ(scene_with(0.5).network.mats.size(), 3u) << "nothing holds it across";
 }
 
 TEST(Massless, MatsStayThatAreTooHeavyForTheTolerance) {

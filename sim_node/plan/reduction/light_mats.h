@@ -36,7 +36,7 @@ struct Lightness {
 /// and the link in its place does not: where the row is pushed at the start the MAT stays, else the
 /// link is one of Scene::struts.
 ///
-/// With a mass m between springs: its share K_2 / (K_1 + K_2) goes to the first neighbour, the rest
+/// With a mass m between springs: its share K_1 / (K_1 + K_2) goes to the first neighbour, the rest
 /// to the second. Of a vibration w this changes the kinetic energy by at most (w / w_0)^2 of the
 /// energy in the springs, w_0^2 = (K_1 + K_2) / m: pitch by half of that, decay by that. Between a
 /// spring and a damper it goes to the end of the spring, w_0^2 = K / m, and twice that is counted.
