@@ -141,7 +141,7 @@ void DeviceExchange::play(engine::World& world, int number, int count) noexcept 
     if (brake_) value += brake_->brake(p, world, value);
     world.set_external_force(port.mat, value);
   }
-  if (brake_ && number == 1) brake_->hear(hand_work_, felt_answer_);
+  if (brake_ && number == 1) brake_->hear(hand_work_, felt_answer_, world.dissipated());
 }
 
 template <class Answer>

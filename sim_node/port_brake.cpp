@@ -22,21 +22,6 @@ Matrix3d projection_on(const std::vector<Vec3>& directions) {
   return projection;
 }
 
-/// Of the medium and the linear links, as they lie at the start.
-Matrix3d viscosity_at(const engine::NetworkDescription& network, std::uint32_t mat) {
-  Matrix3d viscosity = network.medium_viscosity * Matrix3d::Identity();
-  for (const engine::Link& link : network.links) {
-    if (link.mat_a != mat && link.mat_b != mat) continue;
-    const Vec3 along = network.mats[link.mat_b].position - network.mats[link.mat_a].position;
-    if (link.isotropic || network.dimension == 1) {
-      viscosity += link.viscosity * Matrix3d::Identity();
-    } else if (along.squaredNorm() > 0.0) {
-      viscosity += link.viscosity * along * along.transpose() / along.squaredNorm();
-    }
-  }
-  return viscosity;
-}
-
 /// What a step bears beside the links of the port: with K' + 2 Z' of both ends of every link, and
 /// twice its own, it stays below 4, and no braking turns the motion round.
 double most_damping(const plan::PortLoad& load, double mass, double dt) {
@@ -46,28 +31,28 @@ double most_damping(const plan::PortLoad& load, double mass, double dt) {
 
 }  // namespace
 
-PortBrake::PortBrake(const scene::Scene& scene, const std::vector<scene::Port>& ports)
-    : dt_(scene.network.step),
-      settled_after_(static_cast<int>(std::lround(kSettled * scene.gesture_rate_hz))),
+PortBrake::PortBrake(const scene::Scene& scene, const std::vector<scene::Port>& ports,
+                     std::shared_ptr<DelayAccount> account)
+    : account_(std::move(account)),
+      dt_(scene.network.step),
       steps_per_tick_(1.0 / (scene.gesture_rate_hz * scene.network.step)),
-      fading_(1.0 - 1.0 / std::max(1, settled_after_)) {
+      settled_ticks_(settled_ticks(scene)) {
   const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
   for (const scene::Port& port : ports) {
     Braked braked;
     braked.mat = port.mat;
     braked.axes = projection_on(port.directions);
-    braked.viscosity = viscosity_at(scene.network, port.mat);
     braked.most =
         most_damping(plan::port_load(graph, port.mat), scene.network.mats[port.mat].mass, dt_);
     ports_.push_back(braked);
   }
-  start();
 }
 
 void PortBrake::start() noexcept {
   ticks_ = 0;
-  told_ = caught_ = false;
-  account_ = strict_ = ripple_ = 0.0;
+  told_ = false;
+  strict_ = 0.0;
+  if (std::exchange(counts_, false)) account_->leave();
 }
 
 Vec3 PortBrake::brake(std::size_t port, const engine::World& world,
@@ -78,9 +63,8 @@ Vec3 PortBrake::brake(std::size_t port, const engine::World& world,
   const Vec3 way = position - at.now;
   const Vec3 way_before = at.now - at.before;
   // f . (x(n+1) - x(n-1)) / 2, summed by ways instead of forces.
-  sum_.brought += 0.5 * (hand_force + at.force).dot(way);
-  ripple_ = std::max(ripple_, std::abs(hand_force.dot(way)) * steps_per_tick_);
-  sum_.taken += 0.5 / dt_ * (at.viscosity * (way + way_before)).dot(way);
+  brought_ += 0.5 * (hand_force + at.force).dot(way);
+  moved_ = std::max(moved_, std::abs(hand_force.dot(way)) * steps_per_tick_);
   strict_ += 0.5 * at.braking.dot(way + way_before);
   at.before = at.now;
   at.now = position;
@@ -94,34 +78,37 @@ Vec3 PortBrake::brake(std::size_t port, const engine::World& world,
   return at.braking;
 }
 
-void PortBrake::hear(double work_j, std::uint64_t answered_sample) noexcept {
-  while (last_entered_ < newest_answer_) at_answer_[++last_entered_ % kRoom] = sum_;
+void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissipated_j) noexcept {
+  while (last_entered_ < newest_answer_)
+    at_answer_[++last_entered_ % kRoom] = {brought_, dissipated_j};
   ++ticks_;
   if (std::exchange(braked_, false)) ++braked_ticks_;
+  const double moved = std::exchange(moved_, 0.0);
   // A device that has not heard for so long is led on gradually when it hears again.
   if (answered_sample + kRoom <= last_entered_) start();
   const bool known = answered_sample != 0 && answered_sample <= last_entered_ &&
                      answered_sample + kRoom > last_entered_;
   if (!known || !std::isfinite(work_j)) return;
-  const Account& then = at_answer_[answered_sample % kRoom];
-  ripple_ *= fading_;
-  const double made = then.brought - work_j;
-  const double kept = made - kShare * then.taken;
   told_ = told_ || work_j != 0.0;
-  if (told_ && ticks_ > settled_after_) {
-    account_ = std::max(account_ + (kept - kept_before_), -kTank);
-    if (caught_ && account_ < 0.0) {
-      caught_ = false;
-      strict_ = 0.0;
-    } else if (caught_) {
-      strict_ = std::max(strict_ + (made - made_before_), -kTank);
-    } else if (account_ > kBudget + ripple_) {
-      caught_ = true;
-      strict_ = account_;
-    }
+  const Moment& then = at_answer_[answered_sample % kRoom];
+  const double made = then.brought - work_j;
+  if (told_ && ticks_ > settled_ticks_) {
+    const auto ticks_late = static_cast<double>(last_entered_ - answered_sample);
+    judge(made - made_before_, then.taken, moved * std::max(ticks_late, 1.0));
   }
   made_before_ = made;
-  kept_before_ = kept;
+}
+
+void PortBrake::judge(double made_j, double taken_j, double moved_j) noexcept {
+  if (!std::exchange(counts_, true)) account_->join(taken_j);
+  const bool made_energy = account_->makes_energy();
+  account_->enter(made_j, taken_j, moved_j);
+  if (!account_->makes_energy()) {
+    strict_ = 0.0;
+  } else {
+    const double more = made_energy ? made_j : account_->excess_j();
+    strict_ = std::max(strict_ + more, -DelayAccount::kTank);
+  }
 }
 
 }  // namespace cordis::sim

@@ -19,6 +19,7 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
     if (!known) order.push_back(port.device);
   }
   std::vector<DeviceExchange> exchanges;
+  const auto account = std::make_shared<DelayAccount>(PortBrake::settled_ticks(scene));
   for (const std::string& device : order) {
     std::vector<scene::Port> ports;
     scene::Role role = scene::Role::kMass;
@@ -30,7 +31,8 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
       id = port.device_id;
     }
     exchanges.emplace_back(device, id, role, ports, scene.gesture_rate_hz, run);
-    if (role == scene::Role::kLiaison) exchanges.back().brake_with(PortBrake(scene, ports));
+    if (role == scene::Role::kLiaison)
+      exchanges.back().brake_with(PortBrake(scene, ports, account));
   }
   return exchanges;
 }

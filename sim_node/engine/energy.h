@@ -87,6 +87,8 @@ class EnergyAccount {
   /// Enters one step, or a change between two.
   void add(const StepEnergy& step) noexcept;
 
+  double dissipated() const noexcept { return dissipated_; }  ///< as entered [J]
+
   /// @param since   works of the forces of the last step up to the present positions
   /// @param stored  what links, but for linear ones in 1 dimension, should store by the closed
   ///                forms of their laws, where the forces of the last step were computed [J]

@@ -135,6 +135,10 @@ Energy World::energy() const noexcept {
   return state_->mover->energy(*state_);
 }
 
+double World::dissipated() const noexcept {
+  return state_->account.dissipated();
+}
+
 Vec3 World::momentum() const noexcept {
   state_->mover->show_all(*state_);
   const NetworkDescription& network = state_->network->description();

@@ -127,6 +127,9 @@ class World {
   std::size_t most_values_of_state() const noexcept;
 
   Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
+  /// Energy::dissipated but for what the forces of the last step have still to take [J]. Real time:
+  /// O(1).
+  double dissipated() const noexcept;
   /// Sum of m (x(n) - x(n-1)) / dt over the masses [kg m/s]
   Vec3 momentum() const noexcept;
   /// Sum of m x(n-1) x (x(n) - x(n-1)) / dt about the origin [kg m^2/s]

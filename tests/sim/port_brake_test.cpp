@@ -7,10 +7,12 @@
 #include <functional>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
-#include "sim_node/device_exchange.h"
+#include "sim_node/simulation.h"
+#include "tests/sim/stages.h"
 #include "tests/support/rounds.h"
 
 namespace cordis::sim {
@@ -22,94 +24,156 @@ constexpr double kTick = 1e-3;        // T [s]
 constexpr double kPortMass = 0.05;    // m [kg]
 constexpr double kMostForce = 100.0;  // of the device [N]
 
+/// A hand that holds the first MAT of a scene through a device of role liaison.
 struct Hold {
   double viscosity = 5.0;  // Z of the scene at the port [N s/m]
   int delay = 1;           // d [periods]
   double stiffness = 0.0;  // k of the hand [N/m]
   int sub_steps = 1;
-  bool tells_work = true;
-  bool braked = true;
+  bool tells_work = true;  // else it is not braked
 };
 
-scene::Scene scene_of(const Hold& hold) {
+engine::Mat mass_at(const Vec3& position, double mass = kPortMass) {
+  engine::Mat mat;
+  mat.mass = mass;
+  mat.position = position;
+  return mat;
+}
+
+engine::Mat fixed_at(const Vec3& position) {
+  engine::Mat mat;
+  mat.kind = engine::MatKind::kFixed;
+  mat.position = position;
+  return mat;
+}
+
+/// Without links: a port mass on one axis for each dimension, and a fixed point.
+scene::Scene bare_scene(int dimension, int sub_steps = 1) {
   scene::Scene scene;
   scene.gesture_rate_hz = 1.0 / kTick;
-  scene.network.dimension = 1;
-  scene.network.step = kTick / hold.sub_steps;
-  engine::Mat mass;
-  mass.mass = kPortMass;
-  engine::Mat ground;
-  ground.kind = engine::MatKind::kFixed;
-  scene.network.mats = {mass, ground};
-  scene.network.links = {{0, 1, 0.0, hold.viscosity, 0.0}};
+  scene.network.dimension = dimension;
+  scene.network.step = kTick / sub_steps;
+  scene.network.mats = {mass_at(Vec3::Zero()), fixed_at(Vec3::Zero())};
   scene::Port port;
-  port.axes = {0};
-  port.directions = {Vec3::UnitX()};
+  port.device = "key";
+  port.device_id = 9;
+  port.role = Role::kLiaison;
+  for (std::uint32_t axis = 0; axis < static_cast<std::uint32_t>(dimension); ++axis) {
+    port.axes.push_back(axis);
+    port.directions.push_back(Vec3::Unit(axis));
+  }
   scene.ports = {port};
   return scene;
 }
 
-/// The mass, its device and the hand, in lockstep; answers are felt `delay` periods late.
+scene::Scene scene_of(const Hold& hold) {
+  scene::Scene scene = bare_scene(1, hold.sub_steps);
+  scene.network.links = {{0, 1, 0.0, hold.viscosity, 0.0}};
+  return scene;
+}
+
+/// The scene, its devices and a hand on each, in lockstep; answers are felt `delay` periods late.
 class Loop {
  public:
-  explicit Loop(const Hold& hold)
-      : hold_(hold),
-        scene_(scene_of(hold)),
-        world_(std::make_shared<const engine::Network>(scene_.network)),
-        exchange_("key", 9, Role::kLiaison, scene_.ports, scene_.gesture_rate_hz, 77),
-        answers_(static_cast<std::size_t>(hold.delay) + 1) {
-    if (hold.braked) exchange_.brake_with(PortBrake(scene_, scene_.ports));
+  explicit Loop(const Hold& hold) : Loop(hold, scene_of(hold)) {}
+
+  Loop(const Hold& hold, const scene::Scene& scene)
+      : tells_work_(hold.tells_work),
+        stiffness_(Vec3::Constant(hold.stiffness)),
+        simulation_(std::make_unique<Simulation>(finished(scene), kRunOfSim)) {
+    for (std::size_t i = 0; i < scene.ports.size(); ++i) {
+      hands_.emplace_back();
+      hands_.back().answers.resize(static_cast<std::size_t>(hold.delay) + 1);
+    }
   }
 
-  /// @param hand  where the hand wants to be [m]
+  void hold_with(const Vec3& stiffness) { stiffness_ = stiffness; }
+
+  /// @param target  where every hand wants to be, from the start of its port [m]
   /// @param hears  false: the answer is lost, and the hand stays where it is
-  void tick(double hand, bool hears = true) {
-    if (hears) felt_ = answers_.front();
-    answers_.pop_front();
-    const msg::GesturePositions& felt = felt_;
-    const double carried = felt.position_m()[0];
-    const double force = std::clamp(hold_.stiffness * (hand - carried), -kMostForce, kMostForce);
-    work_ += 0.5 * (force + force_) * (carried - carried_);
-    carried_ = carried;
-    force_ = force;
-    msg::GestureForces sample;
-    sample.device_id(9);
-    sample.run(5);
-    sample.sample(++samples_);
-    sample.answered_run(felt.run());
-    sample.answered_sample(felt.sample());
-    sample.axis_count(1);
-    sample.force_n()[0] = force;
-    if (hold_.tells_work) sample.work_j(work_);
-    exchange_.receive(sample);
+  void tick(const Vec3& target, bool hears = true) {
+    ++samples_;
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      DeviceExchange& device = simulation_->devices()[i];
+      msg::GestureForces sample = hands_[i].sample(stiffness_, target, hears, samples_);
+      sample.device_id(device.device_id());
+      if (!tells_work_) sample.work_j(0.0);
+      device.receive(sample);
+    }
     live();
   }
+  void tick(double target, bool hears = true) { tick(Vec3(target, 0.0, 0.0), hears); }
 
-  /// A tick, with or without a new sample.
+  /// A tick, with or without new samples.
   void live() {
-    exchange_.begin_tick();
-    for (int n = 1; n <= hold_.sub_steps; ++n) {
-      exchange_.play(world_, n, hold_.sub_steps);
-      world_.step();
+    while (!simulation_->advance(1, events_)) {
     }
-    answers_.push_back(exchange_.answer_positions(world_, true, 0));
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      hands_[i].answers.push_back(devices()[i].answer_positions(simulation_->world(), true, 0));
+    }
   }
 
-  double position() const { return world_.position(0).x(); }
-  std::uint64_t braked_ticks() const { return exchange_.braked_ticks(); }
+  Vec3 place() const { return simulation_->world().position(0); }
+  double position() const { return place().x(); }
+  std::uint64_t braked_ticks() { return devices().front().braked_ticks(); }
 
  private:
-  Hold hold_;
-  scene::Scene scene_;
-  engine::World world_;
-  DeviceExchange exchange_;
-  std::deque<msg::GesturePositions> answers_;
-  msg::GesturePositions felt_;
+  struct Hand {
+    std::deque<msg::GesturePositions> answers;
+    msg::GesturePositions felt;
+    Vec3 carried = Vec3::Zero();
+    Vec3 force = Vec3::Zero();
+    double work = 0.0;
+
+    msg::GestureForces sample(const Vec3& stiffness, const Vec3& target, bool hears,
+                              std::uint64_t number) {
+      if (hears) felt = answers.front();
+      answers.pop_front();
+      msg::GestureForces sample;
+      sample.run(5);
+      sample.sample(number);
+      sample.answered_run(felt.run());
+      sample.answered_sample(felt.sample());
+      sample.axis_count(3);
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const double now = felt.position_m()[static_cast<std::size_t>(axis)];
+        const double pull =
+            std::clamp(stiffness[axis] * (target[axis] - now), -kMostForce, kMostForce);
+        work += 0.5 * (pull + force[axis]) * (now - carried[axis]);
+        carried[axis] = now;
+        force[axis] = pull;
+        sample.force_n()[static_cast<std::size_t>(axis)] = pull;
+      }
+      sample.work_j(work);
+      return sample;
+    }
+  };
+
+  static std::shared_ptr<const scene::Scene> finished(scene::Scene scene) {
+    scene.step_rate_hz = 1.0 / scene.network.step;
+    return std::make_shared<const scene::Scene>(std::move(scene));
+  }
+  std::vector<DeviceExchange>& devices() { return simulation_->devices(); }
+
+  bool tells_work_;
+  Vec3 stiffness_;
+  std::unique_ptr<Simulation> simulation_;
+  std::vector<Hand> hands_;
+  EventRoom events_;
   std::uint64_t samples_ = 0;
-  double carried_ = 0.0;
-  double force_ = 0.0;
-  double work_ = 0.0;
 };
+
+/// Largest distance between two places of the mass along an axis, in so many ticks.
+double swing_along(Loop& loop, const Vec3& hand, Eigen::Index axis, int ticks) {
+  double least = loop.place()[axis];
+  double most = least;
+  for (int n = 0; n < ticks; ++n) {
+    loop.tick(hand);
+    least = std::min(least, loop.place()[axis]);
+    most = std::max(most, loop.place()[axis]);
+  }
+  return most - least;
+}
 
 /// Largest distance of the mass from the hand in the last of six seconds; the hand steps by 5 mm
 /// after the first.
@@ -130,7 +194,7 @@ TEST_P(Late, AHandUpToTenTimesTooStiffNoLongerSwings) {
     for (const double times : {1.5, 3.0, 10.0}) {
       Hold hold{viscosity, GetParam(), times * viscosity / (GetParam() * kTick)};
       Loop braked(hold);
-      hold.braked = false;
+      hold.tells_work = false;
       Loop unbraked(hold);
 
       EXPECT_GT(swing(unbraked), 0.01) << viscosity << " " << times;
@@ -190,7 +254,7 @@ TEST(PortBrake, ForgetsWhatAMomentWithoutAnswersHasMade) {
 
 TEST(PortBrake, LetsGoOfAMassThatNobodyHolds) {
   Loop loop({5.0, 1, 10.0 * 5.0 / kTick});
-  for (int n = 0; n < 700; ++n) loop.tick(0.005);
+  for (int n = 0; n < 1000; ++n) loop.tick(0.005);
   ASSERT_GT(loop.braked_ticks(), 0u);
   for (int n = 0; n < 25; ++n) loop.live();  // the device is lost
   const std::uint64_t braked = loop.braked_ticks();
@@ -204,6 +268,131 @@ TEST(PortBrake, HoldsAMassOfManySmallStepsToo) {
   Loop loop({5.0, 2, 10.0 * 5.0 / (2.0 * kTick), 10});
 
   EXPECT_LT(swing(loop), 1e-5);
+}
+
+/// A wall that is felt through a liaison with states: nothing beyond it, K and Z when pressed.
+scene::Scene wall_scene(double viscosity) {
+  scene::Scene scene = bare_scene(1);
+  engine::Behaviour contact;
+  contact.name = "contact";
+  engine::LinkState apart;
+  engine::LinkState touching;
+  touching.stiffness = 200.0;
+  touching.viscosity = viscosity;
+  const auto when = [](engine::Operation comparison) {
+    engine::Program program;
+    program.code = {{engine::Operation::kQuantity, engine::Quantity::kElongation, 0.0, 0},
+                    {engine::Operation::kConstant, engine::Quantity::kNone, 0.0, 0},
+                    {comparison, engine::Quantity::kNone, 0.0, 0}};
+    return program;
+  };
+  contact.exits.resize(2);
+  contact.exits[0].when = when(engine::Operation::kGreater);
+  contact.exits[0].target = 1;
+  contact.exits[1].when = when(engine::Operation::kLess);
+  contact.exits[1].target = 0;
+  apart.last_exit = 1;
+  touching.first_exit = 1;
+  touching.last_exit = 2;
+  contact.states = {apart, touching};
+  scene.network.behaviours = {contact};
+  scene.network.state_links = {{1, 0, 0, -0.001}};  // the port is pressed in by 1 mm
+  return scene;
+}
+
+TEST(PortBrake, AWallWithStatesTakesWhatItTakes) {
+  constexpr double kViscosity = 5.0;
+  Loop loop({0.0, 1, 0.85 * kViscosity / kTick}, wall_scene(kViscosity));
+
+  for (int n = 0; n < 4000; ++n) loop.tick(n % 500 < 250 ? 0.02 : 0.015);
+
+  EXPECT_EQ(loop.braked_ticks(), 0u);
+}
+
+/// A mass on a damper of 0.1 m, which a hand has led to a quarter of a circle from its start.
+Loop turned_loop(const Vec3& stiffness, bool braked = true) {
+  constexpr double kLength = 0.1;
+  scene::Scene scene = bare_scene(2);
+  scene.network.mats[1].position = Vec3(-kLength, 0.0, 0.0);
+  scene.network.links = {{0, 1, 0.0, 5.0, 0.0}};
+  scene.network.medium_viscosity = 0.2;
+  Loop loop({0.0, 1, 50.0, 1, braked}, scene);
+  for (int n = 0; n <= 3000; ++n) {
+    const double angle = 0.5 * std::numbers::pi * std::min(1.0, n / 2000.0);
+    loop.tick({kLength * (std::cos(angle) - 1.0), kLength * std::sin(angle), 0.0});
+  }
+  loop.hold_with(stiffness);
+  return loop;
+}
+
+TEST(PortBrake, AMassIsNotBrakedAlongADamperThatHasTurned) {
+  Loop loop = turned_loop(Vec3(50.0, 4000.0, 0.0));
+  const std::uint64_t before = loop.braked_ticks();
+
+  for (int n = 0; n < 4000; ++n) loop.tick({-0.1, n % 500 < 250 ? 0.1 : 0.105, 0.0});
+
+  EXPECT_EQ(loop.braked_ticks(), before);
+}
+
+TEST(PortBrake, AMassIsBrakedAcrossADamperThatHasTurned) {
+  const Vec3 hand(-0.095, 0.1, 0.0);
+  for (const bool braked : {false, true}) {
+    Loop loop = turned_loop(Vec3(500.0, 50.0, 0.0), braked);
+    swing_along(loop, hand, 0, 3000);
+    const double swing = swing_along(loop, hand, 0, 1000);
+    EXPECT_TRUE(braked ? swing < 0.001 : swing > 0.05) << swing;
+  }
+}
+
+/// The port hangs on a spring on a mass, and that mass on a damper.
+scene::Scene chain_scene(double stiffness, double between, double to_ground) {
+  scene::Scene scene = bare_scene(1);
+  scene.network.mats.push_back(mass_at(Vec3::Zero()));
+  scene.network.links = {{0, 2, stiffness, between, 0.0}, {2, 1, 0.0, to_ground, 0.0}};
+  return scene;
+}
+
+TEST(PortBrake, WhatIsTakenFarFromThePortCounts) {
+  // k d T v^2 at the port against Z v^2 of a mass that goes with it.
+  Loop loop({0.0, 1, 1000.0}, chain_scene(20000.0, 0.0, 4.0));
+
+  for (int n = 0; n < 6000; ++n) loop.tick(n % 500 < 250 ? 0.0 : 0.005);
+
+  EXPECT_EQ(loop.braked_ticks(), 0u);
+}
+
+TEST(PortBrake, ADamperWhoseEndsGoTogetherTakesNothing) {
+  for (const bool braked : {false, true}) {
+    Loop loop({0.0, 1, 200.0, 1, braked}, chain_scene(5000.0, 5.0, 0.0));
+    const double largest = swing(loop);
+    EXPECT_TRUE(braked ? largest < 0.0055 : largest > 0.02) << largest;
+  }
+}
+
+TEST(PortBrake, TwoHandsThatSwingAtOnceAreBothBraked) {
+  for (const bool braked : {false, true}) {
+    scene::Scene scene = bare_scene(1);
+    scene.network.mats.push_back(mass_at(Vec3::Zero()));
+    scene.network.links = {{0, 1, 0.0, 5.0, 0.0}, {2, 1, 0.0, 5.0, 0.0}};
+    scene.ports.push_back(scene.ports.front());
+    scene.ports.back().device = "other key";
+    scene.ports.back().device_id = 10;
+    scene.ports.back().mat = 2;
+    Loop loop({0.0, 1, 3.0 * 5.0 / kTick, 1, braked}, scene);
+    const double largest = swing(loop);
+    EXPECT_TRUE(braked ? largest < 1e-5 : largest > 0.005) << largest;
+  }
+}
+
+TEST(PortBrake, AHandThatGrowsStiffAfterLongPlayIsBraked) {
+  for (const bool braked : {false, true}) {
+    Loop loop({2.0, 1, 500.0, 1, braked});
+    for (int n = 0; n < 4000; ++n) loop.tick(0.03 * std::sin(0.01 * n));
+    loop.hold_with(Vec3(6000.0, 0.0, 0.0));
+    swing_along(loop, Vec3::Zero(), 0, 2000);
+    const double swing = swing_along(loop, Vec3(0.001, 0.0, 0.0), 0, 500);
+    EXPECT_TRUE(braked ? swing < 0.003 : swing > 0.1) << swing;
+  }
 }
 
 }  // namespace
