@@ -20,13 +20,18 @@ enum class Role : std::uint8_t {
 
 const char* name_of(Role role) noexcept;  ///< "mass" or "liaison", as a scene spells it
 
-/// What is common to all axes of a device, whoever drives it.
+/// What is common to all axes of a device, whoever drives it. SI units.
 struct AxisLayout {
   int count = 1;              ///< 1..16
   double lowest_m = -0.04;    ///< lower end of travel; rest is 0, up is positive
   double highest_m = 0.0;     ///< upper end of travel
   double rate_hz = 1000.0;    ///< samples per second
   double force_limit_n = 20;  ///< largest force the device gives or measures, either direction
+  // What else bounds the forces of a motor that a driver commands by itself, role liaison.
+  double slew_n_per_s = 5000.0;
+  double power_w = 40.0;
+  double start_ramp_s = 0.2;
+  double watchdog_s = 0.02;
 };
 
 /// The first `count` values are finite numbers.

@@ -76,8 +76,8 @@ void Device::describe() {
   told.highest_m(limits.highest_m);
   told.slice_width_m(limits.slice_width_m);
   told.force_limit_n(limits.force_limit_n);
-  told.moving_mass_kg(limits.moving_mass_kg);
-  told.viscosity_n_s_per_m(limits.viscosity_n_s_per_m);
+  told.moving_mass_kg(limits.coordinate_mass_kg());
+  told.viscosity_n_s_per_m(limits.coordinate_viscosity_n_s_per_m());
   told.stiffness_limit_n_per_m(limits.stiffness_limit_n_per_m);
   told.damping_limit_n_s_per_m(limits.damping_limit_n_s_per_m);
   told.delay_periods(static_cast<std::uint32_t>(limits.delay_periods));

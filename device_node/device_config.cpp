@@ -100,7 +100,7 @@ void read_trace(config::MappingReader& reader, TraceSettings& trace, config::Pro
 }
 
 void read_guards(config::MappingReader& reader, DeviceConfig& config, config::Problems& problems) {
-  const AxisLayout& layout = config.layout;
+  AxisLayout& layout = config.layout;
   ForceGuardSettings& force = config.force_guard;
   force.period_s = 1.0 / layout.rate_hz;
   force.limit_n = layout.force_limit_n;
@@ -121,6 +121,10 @@ void read_guards(config::MappingReader& reader, DeviceConfig& config, config::Pr
   position.ramp_s = force.ramp_s;
   position.watchdog_s = force.watchdog_s;
   position.period_s = force.period_s;
+  layout.slew_n_per_s = force.slew_n_per_s;
+  layout.power_w = force.power_w;
+  layout.start_ramp_s = force.ramp_s;
+  layout.watchdog_s = force.watchdog_s;
 }
 
 /// A node that plays another's device is heard as soon as that falls silent, which takes wall time,

@@ -120,6 +120,7 @@ void Exchange::live() noexcept {
   const double age = age_s();
   const AxisValues& commanded =
       role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
+  driver_.note_age(age);
   const bool written = driver_.write(commanded);
   if (std::exchange(unfelt_, false)) meter_.record_latency(clock_() - used_.answered_time_nsec);
   const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);

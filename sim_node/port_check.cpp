@@ -22,7 +22,8 @@ Bearable bearable_by(const config::DeviceLimits& limits, double port_viscosity, 
   if (limits.stiffness_limit_n_per_m > 0.0) return {limits.stiffness_limit_n_per_m, "declares it"};
   if (limits.viscosity_n_s_per_m <= 0.0) return {};
   const plan::PortLoop loop{1.0 / limits.rate_hz, delay_periods + limits.delay_periods};
-  const plan::PortDevice device{limits.moving_mass_kg, limits.viscosity_n_s_per_m};
+  const plan::PortDevice device{limits.coordinate_mass_kg(),
+                                limits.coordinate_viscosity_n_s_per_m()};
   return {std::max(plan::stable_port_stiffness(device, port_viscosity, loop), 1e-9),
           "with " + number_text(device.mass) + " kg, " + number_text(device.viscosity) +
               " N s/m and a delay of " + std::to_string(loop.delay) + " periods of " +

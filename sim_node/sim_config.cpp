@@ -2,6 +2,7 @@
 #include "sim_node/sim_config.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "node/config/device_limits.h"
@@ -66,6 +67,18 @@ void check_axes(const scene::Port& port, const config::DeviceLimits& limits,
           (axis_count == 1 ? " axis: 0" : " axes: 0 to " + std::to_string(axis_count - 1)));
 }
 
+/// A device of another rate than the scene counts on plays it in another time.
+void check_rate(const scene::Port& port, const config::DeviceLimits& limits, double gesture_rate_hz,
+                config::Problems& problems) {
+  if (std::abs(limits.rate_hz - gesture_rate_hz) <= 1e-9 * gesture_rate_hz) return;
+  problems.warning(port.place,
+                   "the scene counts on " + config::number_text(gesture_rate_hz) +
+                       " gestures per second, and the device '" + port.device + "' gives " +
+                       config::number_text(limits.rate_hz),
+                   "one rate in both: gesture_rate_hz in 'step' of the scene, rate_hz in the "
+                   "device file");
+}
+
 void check_demand(const PortDemand& demand, const config::DeviceLimits& limits, int delay_periods,
                   config::Problems& problems) {
   const PortVerdict verdict = verdict_on(demand, limits, delay_periods);
@@ -85,7 +98,9 @@ void check_devices(const config::Launch& launch, const scene::Scene& scene,
     for (const LaunchedDevice& device : devices) {
       if (device.plays != port.device) continue;
       any = true;
-      if (device.limits) check_axes(port, *device.limits, problems);
+      if (!device.limits) continue;
+      check_axes(port, *device.limits, problems);
+      check_rate(port, *device.limits, scene.gesture_rate_hz, problems);
     }
     if (!any) warn_of_nobody(launch, devices, port, problems);
   }

@@ -154,7 +154,7 @@ AxisValues Hardware::pull_to(const AxisValues& wanted_m) noexcept {
   position_before_ = position_;
   moving_ = true;
   guard_.accept(pull);
-  pull_ = guard_.tick(0.0, position_);
+  pull_ = guard_.tick(age_s_, position_);
   return pull_;
 }
 
@@ -174,7 +174,10 @@ HardwareSettings read_hardware(config::MappingReader& reader, const AxisLayout& 
   coupling.finish();
   settings.guard.limit_n = layout.force_limit_n;
   settings.guard.period_s = 1.0 / layout.rate_hz;
-  settings.guard.slew_n_per_s = 5.0 * layout.force_limit_n / settings.guard.watchdog_s;
+  settings.guard.slew_n_per_s = layout.slew_n_per_s;
+  settings.guard.power_w = layout.power_w;
+  settings.guard.ramp_s = layout.start_ramp_s;
+  settings.guard.watchdog_s = layout.watchdog_s;
   return settings;
 }
 

@@ -38,7 +38,7 @@ struct HardwareSettings {
 ///
 /// Role mass: as it is. Role liaison, for devices without a sensor of force: the motors pull the
 /// handle to the commanded place by a coupling, F = K (x - x_h) + Z (v - v_h), through a guard of
-/// their own, and -F is what the hand is said to give.
+/// the same limits, ramp and watchdog as in role mass, and -F is what the hand is said to give.
 class Hardware : public Driver {
  public:
   Hardware(std::unique_ptr<Wire> wire, const HardwareSettings& settings, const AxisLayout& layout);
@@ -47,6 +47,7 @@ class Hardware : public Driver {
   bool can_play(Role) const noexcept override { return true; }
   void start(Role role) noexcept override;
   bool read(AxisValues& sensed) noexcept override;
+  void note_age(double age_s) noexcept override { age_s_ = age_s; }
   bool write(const AxisValues& commanded) noexcept override;
   void stop() noexcept override;
 
@@ -103,6 +104,7 @@ class Hardware : public Driver {
   std::int64_t last_sample_nsec_ = 0;
   AxisValues position_{};  // [m]
   AxisValues pull_{};      // role liaison: on the handle [N]
+  double age_s_ = 0.0;     // of what is commanded
   AxisValues wanted_before_{};
   AxisValues position_before_{};
   bool moving_ = false;  // the two above are of the period before

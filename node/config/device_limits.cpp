@@ -1,7 +1,11 @@
 // node/config/device_limits.cpp
 #include "node/config/device_limits.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace cordis::config {
 
@@ -19,6 +23,34 @@ Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& pro
   return overlay(file, Value::mapping(std::move(others), node.section.place()));
 }
 
+namespace {
+
+/// The largest sum of a row of |A A^T|, which no eigenvalue exceeds. Faults in the map are told by
+/// the device itself.
+double leverage_of(const Value& map) {
+  Problems told_elsewhere;
+  std::vector<std::vector<double>> rows;
+  for (const Value& row : map.items()) {
+    std::vector<double>& numbers = rows.emplace_back();
+    for (const Value& entry : row.items()) {
+      numbers.push_back(read_number(entry, "an entry", 0.0, {}, told_elsewhere));
+    }
+  }
+  double largest = 0.0;
+  for (const std::vector<double>& a : rows) {
+    double sum = 0.0;
+    for (const std::vector<double>& b : rows) {
+      const std::size_t count = std::min(a.size(), b.size());
+      sum += std::abs(std::inner_product(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(count),
+                                         b.begin(), 0.0));
+    }
+    largest = std::max(largest, sum);
+  }
+  return largest > 0.0 ? largest : 1.0;
+}
+
+}  // namespace
+
 DeviceLimits read_device_limits(MappingReader& reader) {
   constexpr int kMostAxes = 16;
   constexpr int kMostDelay = 16;
@@ -26,7 +58,10 @@ DeviceLimits read_device_limits(MappingReader& reader) {
   limits.axis_count = static_cast<int>(reader.required_integer("axes", 1, kMostAxes));
   limits.coordinate_count = limits.axis_count;
   const Value map = reader.optional_mapping("end_piece").find("map");
-  if (map.exists()) limits.coordinate_count = static_cast<int>(map.items().size());
+  if (map.exists()) {
+    limits.coordinate_count = static_cast<int>(map.items().size());
+    limits.leverage = leverage_of(map);
+  }
   const double travel_m = reader.optional_number("travel_m", 0.04, Range::between(0.001, 1.0));
   const std::string rest = reader.optional_choice("rest", "top", {"top", "middle", "bottom"});
   limits.lowest_m = rest == "top" ? -travel_m : rest == "middle" ? -travel_m / 2.0 : 0.0;

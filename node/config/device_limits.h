@@ -10,6 +10,9 @@ namespace cordis::config {
 struct DeviceLimits {
   int axis_count = 1;
   int coordinate_count = 1;  ///< of the handle: the axes, or what an end-piece makes of them
+  /// At least the largest eigenvalue of A A^T, A being the map of the end-piece: by so much a
+  /// coordinate of the handle may be lighter than an axis, and have less viscosity.
+  double leverage = 1.0;
   double rate_hz = 1000.0;
   double lowest_m = -0.04;  ///< workspace of an axis; rest is 0, up is positive
   double highest_m = 0.0;
@@ -21,6 +24,10 @@ struct DeviceLimits {
   double stiffness_limit_n_per_m = 0.0;  ///< as declared; 0: what follows from the viscosity
   double damping_limit_n_s_per_m = 0.0;  ///< as declared; 0: likewise
   int delay_periods = 0;                 ///< that the device adds on purpose
+
+  /// What a hand that moves the handle along any of its coordinates has for certain.
+  double coordinate_mass_kg() const noexcept { return moving_mass_kg / leverage; }
+  double coordinate_viscosity_n_s_per_m() const noexcept { return viscosity_n_s_per_m / leverage; }
 };
 
 /// The mapping of a device_node: the file that its section names (`device: FILE`), with the other

@@ -6,15 +6,17 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
 #include "node/config/source_text.h"
-#include "node/config/tree_builder.h"
 #include "node/config/value.h"
 
 namespace cordis::config {
@@ -22,6 +24,237 @@ namespace cordis::config {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+constexpr std::size_t kMostValues = 1'000'000;
+constexpr std::size_t kMostLevels = 64;
+
+Place place_at(SourceText& source, const YAML::Mark& mark) {
+  if (mark.is_null()) return {source.name(), 0, 0};
+  return source.place(static_cast<std::size_t>(mark.line), static_cast<std::size_t>(mark.column));
+}
+
+/// Thrown to leave yaml-cpp when reading on has no use; the problem has been added by then.
+struct GivenUp {};
+
+/// Builds the Value of the first document.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  TreeBuilder(SourceText& source, Problems& problems) : source_(source), problems_(problems) {}
+
+  const Value& root() const { return root_; }
+  /// Place of the innermost [ or { that is still open.
+  std::optional<Place> open_bracket() const {
+    if (open_.empty() || !open_.back().flow) return std::nullopt;
+    return open_.back().place;
+  }
+  bool open_bracket_is_mapping() const { return !open_.empty() && open_.back().is_mapping; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (document_count_++ == 0) return;
+    problems_.error(place_at(source_, mark),
+                    "a second YAML document begins here, but a file holds one",
+                    "check the indentation of this line and of the lines above it");
+    throw GivenUp{};
+  }
+
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    Place place = place_at(source_, mark);
+    // The mark of a key without a value is that of the next key.
+    if (expects_value() && place.line != open_.back().key_place.line)
+      place = open_.back().key_place;
+    add(Value::nothing(place), anchor);
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto known = anchors_.find(anchor);
+    if (known == anchors_.end()) {
+      problems_.error(place_at(source_, mark),
+                      "an alias must not stand inside the value it repeats");
+      throw GivenUp{};
+    }
+    add(known->second, 0);
+    if (value_count_ > kMostValues) give_up_on_size(mark);
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& text) override {
+    check_tag(mark, tag);
+    const bool quoted = tag == "!";
+    if (quoted) check_closing_quote(mark);
+    add(Value::scalar(text, place_at(source_, mark), quoted, is_verbatim(mark, text, quoted)),
+        anchor);
+    if (value_count_ > kMostValues) give_up_on_size(mark);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value style) override {
+    open(mark, tag, anchor, false, style);
+  }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value style) override {
+    open(mark, tag, anchor, true, style);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {  // a sequence or mapping whose end has not come yet
+    bool is_mapping = false;
+    bool flow = false;
+    Place place;
+    YAML::anchor_t anchor = 0;
+    std::vector<Value> items;
+    std::vector<Value::Entry> entries;
+    std::map<std::string, int> line_of_key;
+    std::map<std::string, std::size_t> merged;  // keys that '<<' brought; which entries they are
+    std::set<std::size_t> hidden;               // entries for which something is written out
+    bool has_key = false;                       // of a mapping: its key has come, its value has not
+    std::string key;
+    Place key_place;
+  };
+
+  bool expects_value() const { return !open_.empty() && open_.back().has_key; }
+
+  void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, bool is_mapping,
+            YAML::EmitterStyle::value style) {
+    check_tag(mark, tag);
+    if (open_.size() >= kMostLevels) {
+      problems_.error(place_at(source_, mark),
+                      "more than " + std::to_string(kMostLevels) + " levels of nesting");
+      throw GivenUp{};
+    }
+    Open opened;
+    opened.is_mapping = is_mapping;
+    opened.flow = style == YAML::EmitterStyle::Flow;
+    opened.place = place_at(source_, mark);
+    opened.anchor = anchor;
+    open_.push_back(std::move(opened));
+  }
+
+  void close() {
+    Open closed = std::move(open_.back());
+    open_.pop_back();
+    const std::size_t count_before = value_count_;
+    std::size_t index = 0;
+    std::erase_if(closed.entries,
+                  [&](const Value::Entry&) { return closed.hidden.contains(index++); });
+    Value value = closed.is_mapping ? Value::mapping(std::move(closed.entries), closed.place)
+                                    : Value::sequence(std::move(closed.items), closed.place);
+    add(std::move(value), closed.anchor);
+    value_count_ = count_before + 1;  // what is in it has been counted before
+  }
+
+  void add(Value value, YAML::anchor_t anchor) {
+    if (anchor != 0) anchors_[anchor] = value;
+    value_count_ =
+        std::min(value_count_ + std::min(value.value_count(), kMostValues + 1), kMostValues + 1);
+    if (open_.empty()) {
+      root_ = std::move(value);
+    } else if (!open_.back().is_mapping) {
+      open_.back().items.push_back(std::move(value));
+    } else if (!open_.back().has_key) {
+      begin_entry(value);
+    } else {
+      end_entry(std::move(value));
+    }
+  }
+
+  void begin_entry(const Value& key) {
+    Open& mapping = open_.back();
+    mapping.has_key = true;
+    mapping.key = key.text();
+    mapping.key_place = key.place();
+    if (key.kind() != Value::Kind::kScalar)
+      problems_.error(key.place(), "a key must be a word, got " + key.described());
+  }
+
+  void end_entry(Value value) {
+    Open& mapping = open_.back();
+    mapping.has_key = false;
+    if (mapping.key == "<<") {
+      merge(mapping, value);
+      return;
+    }
+    const auto [first, is_new] = mapping.line_of_key.emplace(mapping.key, mapping.key_place.line);
+    if (!is_new) {
+      problems_.error(mapping.key_place, "duplicate key '" + mapping.key + "'",
+                      "first defined at line " + std::to_string(first->second));
+      return;
+    }
+    if (const auto brought = mapping.merged.find(mapping.key); brought != mapping.merged.end())
+      mapping.hidden.insert(brought->second);
+    mapping.entries.push_back({mapping.key, mapping.key_place, std::move(value)});
+  }
+
+  void merge(Open& mapping, const Value& from) {
+    const bool is_sequence = from.kind() == Value::Kind::kSequence;
+    for (const Value& source : is_sequence ? from.items() : std::vector<Value>{from}) {
+      if (source.kind() != Value::Kind::kMapping) {
+        problems_.error(mapping.key_place, "'<<' takes a mapping or a sequence of mappings, got " +
+                                               source.described());
+      }
+      for (const Value::Entry& entry : source.entries()) {
+        if (mapping.line_of_key.contains(entry.key)) continue;
+        if (mapping.merged.emplace(entry.key, mapping.entries.size()).second)
+          mapping.entries.push_back(entry);
+      }
+    }
+  }
+
+  void check_tag(const YAML::Mark& mark, const std::string& tag) {
+    if (tag.empty() || tag == "?" || tag == "!") return;
+    problems_.error(place_at(source_, mark), "tags have no meaning here, got '" + tag + "'");
+  }
+
+  /// Whether the text stands at the mark letter by letter.
+  bool is_verbatim(const YAML::Mark& mark, const std::string& text, bool quoted) const {
+    if (mark.is_null()) return false;
+    const std::string_view line = source_.line(static_cast<std::size_t>(mark.line));
+    const std::size_t start = static_cast<std::size_t>(mark.column) + (quoted ? 1 : 0);
+    return start <= line.size() && line.substr(start, text.size()) == text;
+  }
+
+  /// yaml-cpp takes the end of the file for a closing quote.
+  void check_closing_quote(const YAML::Mark& mark) {
+    auto line_index = static_cast<std::size_t>(mark.line);
+    auto byte = static_cast<std::size_t>(mark.column);
+    std::string_view line = source_.line(line_index);
+    if (byte >= line.size() || (line[byte] != '"' && line[byte] != '\''))
+      return;  // a block of text
+    const char quote = line[byte++];
+    while (line_index < source_.line_count()) {
+      for (; byte < line.size(); ++byte) {
+        if (quote == '"' && line[byte] == '\\') {
+          ++byte;
+        } else if (line[byte] == quote) {
+          const bool doubled = quote == '\'' && byte + 1 < line.size() && line[byte + 1] == quote;
+          if (!doubled) return;
+          ++byte;
+        }
+      }
+      line = source_.line(++line_index);
+      byte = 0;
+    }
+    problems_.error(place_at(source_, mark), "the text that begins here has no closing quote");
+    throw GivenUp{};
+  }
+
+  [[noreturn]] void give_up_on_size(const YAML::Mark& mark) {
+    problems_.error(
+        place_at(source_, mark),
+        "the file holds more than " + std::to_string(kMostValues) + " values, aliases included");
+    throw GivenUp{};
+  }
+
+  SourceText& source_;
+  Problems& problems_;
+  Value root_;
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, Value> anchors_;
+  std::size_t value_count_ = 0;
+  int document_count_ = 0;
+};
 
 /// The fault as a person would say it; unknown ones stay as yaml-cpp has them.
 std::string fault_in_words(const std::string& fault) {

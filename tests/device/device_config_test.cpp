@@ -1,9 +1,11 @@
 #include "device_node/device_config.h"
 
+#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "device_node/drivers/driver_table.h"
 #include "node/config/name_hash.h"
 
 namespace cordis::device {
@@ -78,6 +80,10 @@ TEST(DeviceConfig, GivesItsLimitsToBothGuards) {
   EXPECT_EQ(config.force_guard.ramp_s, 0.3);
   EXPECT_EQ(config.force_guard.watchdog_s, 0.04);
   EXPECT_EQ(config.force_guard.period_s, 0.002);
+  EXPECT_EQ(config.layout.slew_n_per_s, 900.0);
+  EXPECT_EQ(config.layout.start_ramp_s, 0.3);
+  EXPECT_EQ(config.layout.watchdog_s, 0.04);
+  EXPECT_EQ(config.layout.power_w, 8.0 * 0.7);
   EXPECT_EQ(config.position_guard.lowest_m, -0.015);
   EXPECT_EQ(config.position_guard.highest_m, 0.015);
   EXPECT_EQ(config.position_guard.speed_m_per_s, 0.7);
@@ -120,14 +126,25 @@ TEST(DeviceConfig, WatchdogOfASlowDeviceSpansItsPeriods) {
   EXPECT_DOUBLE_EQ(device_of("{axes: 1, rate_hz: 25}").config.force_guard.watchdog_s, 6.0 / 25.0);
 }
 
-TEST(DeviceConfig, ShippedDevicesAreRightWithEveryDriver) {
+TEST(DeviceConfig, ShippedDevicesAreRightWithEveryDriverTheyKnow) {
   EXPECT_EQ(launched("keyboard.yaml", {}).config.layout.count, 1);
   EXPECT_EQ(launched("keyboard_16.yaml", {}).config.layout.count, 16);
-  for (const char* file : {"keyboard.yaml", "keyboard_16.yaml"}) {
-    const LoadedDevice script = launched(file, {"keyboard.driver=script"});
-    EXPECT_EQ(script.config.driver, "script");
-    EXPECT_TRUE(script.driver->can_play(Role::kMass));
+  EXPECT_EQ(launched("handle.yaml", {}).config.end_piece.coordinate_count(), 2);
+  int devices = 0;
+  const std::filesystem::path folder = CORDIS_SOURCE_DIR "/launch_configs/devices";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    config::Problems problems;
+    const config::Value file = config::load_file(entry.path().string(), problems);
+    for (const DriverEntry& driver : driver_table()) {
+      if (!file.find(driver.name).exists()) continue;
+      const LoadedDevice device = launched(entry.path().filename().string(),
+                                           {"keyboard.driver=" + std::string(driver.name)});
+      EXPECT_EQ(device.config.driver, driver.name);
+      EXPECT_TRUE(device.driver->can_play(Role::kMass)) << entry.path();
+      ++devices;
+    }
   }
+  EXPECT_GE(devices, 9);
 }
 
 TEST(DeviceConfig, LaysTheLaunchFileAndTheCommandLineOnTheDeviceFile) {

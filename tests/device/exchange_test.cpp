@@ -51,6 +51,7 @@ class FakeDriver : public Driver {
     sensed[0] = lies ? std::nan("") : -0.001 * static_cast<double>(commands.size());
     return present;
   }
+  void note_age(double age_s) noexcept override { age = age_s; }
   bool write(const AxisValues& commanded) noexcept override {
     commands.push_back(commanded);
     return present;
@@ -59,6 +60,7 @@ class FakeDriver : public Driver {
 
   Role started_as = Role::kMass;
   std::vector<AxisValues> commands;
+  double age = -1.0;  // of the last of them [s]
   bool present = true;
   bool lies = false;
   bool stopped = false;
@@ -166,6 +168,17 @@ TEST(Exchange, CarriesToPositionsInRoleLiaison) {
 
   EXPECT_EQ(rig.period(true, -0.001), -0.001);
   EXPECT_NEAR(rig.period(true, -0.04), -0.003, 1e-15);  // 2 m/s
+}
+
+TEST(Exchange, TellsTheDriverHowOldItsCommandIs) {
+  now_nsec = 1'000'000'000;
+  Rig rig(false, Role::kLiaison);
+  rig.period(false);
+  EXPECT_GE(rig.driver.age, rig.config.force_guard.watchdog_s) << "nobody has ever commanded";
+  rig.period(true, -0.001);
+  EXPECT_NEAR(rig.driver.age, 0.001, 1e-12);
+  for (int n = 0; n < 30; ++n) rig.period(false);
+  EXPECT_NEAR(rig.driver.age, 0.031, 1e-12);
 }
 
 TEST(Exchange, TellsTheEnergyGivenToTheHandInBothRoles) {

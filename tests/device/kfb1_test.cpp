@@ -190,6 +190,45 @@ TEST_F(Kfb1Test, PlaysRoleLiaisonByACoupling) {
                     [&](bool) { return std::abs(board.forces[0] - 0.15 * 32767) < 40; }));
 }
 
+TEST_F(Kfb1Test, PullsToPlacesWithinTheLimitsOfItsFileAndLetsGoOfOldOnes) {
+  Kfb1Board board(1);
+  board.positions[0] = 0;  // -0.02 m
+  board.plug.into_serial_line(link());
+  AxisLayout layout = layout_of(1);
+  layout.force_limit_n = 4.0;
+  layout.slew_n_per_s = 400.0;
+  layout.start_ramp_s = 0.0;
+  const auto key = driver("kfb1", port(), layout);
+  key->start(Role::kLiaison);
+  double before = 0.0;
+  const auto pull = [&] {  // of the motor, in this period
+    AxisValues given{};
+    key->read(given);
+    EXPECT_LE(std::abs(given[0] - before), 0.4 + 1e-9) << "400 N/s in a millisecond";
+    EXPECT_LE(std::abs(given[0]), 4.0);
+    before = given[0];
+    return -given[0];
+  };
+
+  // A coupling of 300 N/m wants 6 N at once, over 20 mm.
+  ASSERT_TRUE(until(*key, {0.0}, [&](bool) { return pull() == 4.0; }));
+  EXPECT_TRUE(until(*key, {0.0}, [&](bool) {
+    pull();
+    return std::abs(board.forces[0] - 0.4 * 32767) < 2;
+  }));
+
+  // The scene falls silent, and its last place stands.
+  double age_s = 0.0;
+  ASSERT_TRUE(until(*key, {0.0}, [&](bool) {
+    pull();
+    key->note_age(age_s += 0.001);
+    return age_s >= layout.watchdog_s;
+  }));
+  ASSERT_TRUE(key->write({0.0}));
+  EXPECT_EQ(pull(), 0.0);
+  EXPECT_TRUE(until(*key, {0.0}, [&](bool) { return board.forces[0] == 0; }));
+}
+
 TEST(Kfb1Frame, HostAndFirmwareSpeakTheSameCode) {
   // CRC-16/CCITT-FALSE of "123456789" is 0x29B1.
   const std::uint8_t digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
 #include "sim_node/refused_devices.h"
 
@@ -49,6 +50,22 @@ TEST(PortCheck, RefusesASceneStifferThanItsPortWithTheNumberItMayHave) {
   EXPECT_NE(refusal.find("as stiff as 1002 N/m"), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("can bear 1001 N/m"), std::string::npos) << refusal;
   EXPECT_EQ(verdict(stiff, key_limits(), 0).refusal, "") << "3003 N/m without delay";
+}
+
+TEST(PortCheck, AHandleIsAsLightAsItsLeversMakeIt) {
+  config::Problems problems;
+  const config::Value file = config::load_text(
+      "{axes: 2, moving_mass_kg: 2.4, viscosity_n_s_per_m: 12, end_piece: {map: [[2, -2], [0.5, "
+      "0.5]]}}",
+      "d", problems);
+  config::MappingReader reader(file, "device", problems);
+  const config::DeviceLimits limits = config::read_device_limits(reader);
+
+  // q = 2 (x0 - x1): a mass of 2.4 kg behind a ratio of 2 at either end weighs 1/8 of it.
+  EXPECT_EQ(limits.leverage, 8.0);
+  EXPECT_DOUBLE_EQ(limits.coordinate_mass_kg(), 0.3);
+  const std::string refusal = verdict(walls_of("501"), limits, 1).refusal;
+  EXPECT_NE(refusal.find("can bear 1001 N/m"), std::string::npos) << refusal;
 }
 
 TEST(PortCheck, KnowsNothingOfADeviceThatDeclaresNothing) {
