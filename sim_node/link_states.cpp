@@ -2,35 +2,14 @@
 #include "sim_node/link_states.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <stdexcept>
 
 #include "node/config/problem.h"
+#include "sim_node/scene/selection.h"
 
 namespace cordis::sim {
 namespace {
-
-struct Range {
-  std::uint32_t first;
-  std::uint32_t last;
-};
-
-std::optional<std::uint32_t> whole_number(std::string_view text) {
-  std::uint32_t number = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
-/// The text between the brackets: 3 or 2..5.
-std::optional<Range> read_range(std::string_view text) {
-  const std::size_t dots = text.find("..");
-  const auto first = whole_number(text.substr(0, dots));
-  const auto last = dots == std::string_view::npos ? first : whole_number(text.substr(dots + 2));
-  if (!first || !last || *first > *last) return std::nullopt;
-  return Range{*first, *last};
-}
 
 const scene::NamedRange* named(const scene::Scene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.links, name, &scene::NamedRange::name);
@@ -49,7 +28,7 @@ const scene::NamedRange* named(const scene::Scene& scene, const std::string& nam
 }
 
 /// Numbers of links in the row of all kinds.
-Range find_links(const scene::Scene& scene, const std::string& links) {
+scene::IndexRange find_links(const scene::Scene& scene, const std::string& links) {
   if (const scene::NamedRange* whole = named(scene, links))
     return {whole->first, whole->first + whole->count - 1};
   const std::size_t bracket = links.ends_with(']') ? links.rfind('[') : std::string::npos;
@@ -58,7 +37,7 @@ Range find_links(const scene::Scene& scene, const std::string& links) {
   if (range == nullptr) refuse_name(scene, name);
   const std::string_view inside =
       std::string_view(links).substr(bracket + 1, links.size() - bracket - 2);
-  const std::optional<Range> picked = read_range(inside);
+  const std::optional<scene::IndexRange> picked = scene::read_index_range(inside);
   if (!picked)
     throw std::invalid_argument("'" + links + "' is not of the form name, name[3] or name[2..5]");
   if (picked->last >= range->count) {
@@ -83,7 +62,7 @@ std::uint32_t find_state(const engine::Behaviour& behaviour, const std::string& 
 
 std::vector<Order::ForcedState> find_states(const scene::Scene& scene, const std::string& links,
                                             const std::string& state) {
-  const Range range = find_links(scene, links);
+  const scene::IndexRange range = find_links(scene, links);
   const std::size_t before = scene.network.links.size();
   std::vector<Order::ForcedState> forced;
   for (std::size_t link = range.first; link <= range.last; ++link) {

@@ -1,18 +1,12 @@
 // sim_node/engine/behaviour_kernel.cpp
 #include "sim_node/engine/behaviour_kernel.h"
 
+#include "sim_node/engine/kernel_of_width.h"
+
 namespace cordis::engine {
 
 const BehaviourKernel& behaviour_kernel(VectorWidth width) noexcept {
-  switch (width) {
-    case VectorWidth::kAvx512:
-      return kBehaviourKernelAvx512;
-    case VectorWidth::kAvx2:
-      return kBehaviourKernelAvx2;
-    case VectorWidth::kSse2:
-      break;
-  }
-  return kBehaviourKernelSse2;
+  return kernel_of_width(width, kBehaviourKernelSse2, kBehaviourKernelAvx2, kBehaviourKernelAvx512);
 }
 
 }  // namespace cordis::engine

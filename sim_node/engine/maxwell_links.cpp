@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sim_node/engine/link_growth.h"
+
 namespace cordis::engine {
 double share_of_decay(double x) noexcept {
   if (x > 64.0) return 1.0;
@@ -62,11 +64,7 @@ void MaxwellArray::mark_neighbours(const Passing& pass, MatRoles& roles) const n
 StepEnergy MaxwellArray::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
   for (std::size_t l = 0; l < link_count_; ++l) {
-    const std::uint32_t a = column_a_[l] / 4;
-    const std::uint32_t b = column_b_[l] / 4;
-    const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
-    const Vec3 moved = mats.position(b) - mats.position(a) - before;
-    work.elastic += 0.5 * factor_[l] * (in_line_ ? moved.x() : before.dot(moved));
+    work.elastic += factor_[l] * half_growth(mats, column_a_[l], column_b_[l], in_line_);
   }
   return work;
 }

@@ -4,20 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim_node/engine/kernel_of_width.h"
 #include "sim_node/engine/world_state.h"
 
 namespace cordis::engine {
 
 const ModalKernel& modal_kernel(VectorWidth width) noexcept {
-  switch (width) {
-    case VectorWidth::kAvx512:
-      return kModalKernelAvx512;
-    case VectorWidth::kAvx2:
-      return kModalKernelAvx2;
-    case VectorWidth::kSse2:
-      break;
-  }
-  return kModalKernelSse2;
+  return kernel_of_width(width, kModalKernelSse2, kModalKernelAvx2, kModalKernelAvx512);
 }
 
 ModalMover::ModalMover(const NetworkDescription& network)

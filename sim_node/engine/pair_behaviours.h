@@ -66,6 +66,16 @@ class PairBehaviours {
   const PairStates& states() const noexcept { return states_; }
   PairStates& states() noexcept { return states_; }
   StateIndex start_state() const noexcept { return start_; }
+  /// Shows the pairs that are in another state than that of the start, with their first member.
+  template <class Visit>
+  void visit_bound(Visit visit) const {
+    if (stateless_) return;
+    for (std::size_t a = 0; a < states_.row_count(); ++a) {
+      for (std::size_t i = states_.begin(a); i < states_.end(a); ++i) {
+        if (states_.state(i).state != start_) visit(a, states_.state(i));
+      }
+    }
+  }
   double switching() const noexcept { return switching_; }  ///< by the changes of this step [J]
   /// Pairs of this step that could not be remembered, for lack of room.
   std::uint32_t forgotten() const noexcept { return forgotten_; }

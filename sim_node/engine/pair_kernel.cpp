@@ -1,18 +1,12 @@
 // sim_node/engine/pair_kernel.cpp
 #include "sim_node/engine/pair_kernel.h"
 
+#include "sim_node/engine/kernel_of_width.h"
+
 namespace cordis::engine {
 
 const PairKernel& pair_kernel(VectorWidth width) noexcept {
-  switch (width) {
-    case VectorWidth::kAvx512:
-      return kPairKernelAvx512;
-    case VectorWidth::kAvx2:
-      return kPairKernelAvx2;
-    case VectorWidth::kSse2:
-      break;
-  }
-  return kPairKernelSse2;
+  return kernel_of_width(width, kPairKernelSse2, kPairKernelAvx2, kPairKernelAvx512);
 }
 
 }  // namespace cordis::engine

@@ -42,10 +42,6 @@ std::size_t state_capacity(const SetLiaison& set) {
   return std::min(all_pairs(set), std::max(kLeastCapacity / 8, kStatesPerMember * members));
 }
 
-void give(std::uint8_t& role, unsigned more) noexcept {
-  role = static_cast<std::uint8_t>(role | more);
-}
-
 double dot(const double* u, const double* v) noexcept {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
@@ -78,11 +74,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
   force_.resize(position_.size(), 0.0);
   viscous_.resize(position_.size(), 0.0);
   if (description.freeze_tolerance > 0.0) {
-    role_.resize(column_.size(), 0U);
-    active_members_.reserve(column_.size());
-    active_rows_.reserve(set.set_p.size() / 2 + 1);
-    active_start_.resize(set.set_p.size() + 1, 0);
-    active_neighbour_.resize(neighbours_.capacity() + kPairBatch, 0U);
+    active_ = ActivePairs(column_.size(), set.set_p.size(), neighbours_.capacity());
   }
   adopt(table);
 }
@@ -134,7 +126,7 @@ bool SetPairs::refresh() noexcept {
 StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept {
   clear_forces();
   behaviours_.begin_step(step);
-  if (all_active_) {
+  if (active_.are_all()) {
     for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
          rows = neighbours_.rows_after(rows, position_.data())) {
       step_rows(step, rows);
@@ -149,21 +141,21 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
 
 void SetPairs::step_active_rows(const PairStep& step) noexcept {
   std::size_t next = 0;
-  for (const NeighbourRows& rows : active_rows_) {
+  for (const NeighbourRows& rows : active_.rows()) {
     behaviours_.keep_rows(step, next, rows.first);
     step_rows(step, rows);
     next = rows.last;
   }
-  behaviours_.keep_rows(step, next, active_start_.size() - 1);
+  behaviours_.keep_rows(step, next, active_.row_count());
 }
 
 /// Of members.
 template <class Visit>
 void SetPairs::visit_active(Visit visit) const noexcept {
-  if (all_active_) {
+  if (active_.are_all()) {
     for (std::size_t m = 0; m < column_.size(); ++m) visit(m);
   } else {
-    for (const std::uint32_t m : active_members_) visit(std::size_t{m});
+    for (const std::uint32_t m : active_.members()) visit(std::size_t{m});
   }
 }
 
@@ -231,12 +223,12 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns) noexcept {
 }
 
 void SetPairs::clear_forces() noexcept {
-  if (all_active_) {
+  if (active_.are_all()) {
     std::fill(force_.begin(), force_.end(), 0.0);
     if (has_viscous_) std::fill(viscous_.begin(), viscous_.end(), 0.0);
     return;
   }
-  for (const std::uint32_t m : active_members_) {
+  for (const std::uint32_t m : active_.members()) {
     std::fill_n(force_.begin() + 4 * std::ptrdiff_t{m}, 4, 0.0);
     if (has_viscous_) std::fill_n(viscous_.begin() + 4 * std::ptrdiff_t{m}, 4, 0.0);
   }
@@ -260,118 +252,24 @@ StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noex
   return {all - dissipated, dissipated, 0.0, 0.0};
 }
 
-void SetPairs::find_roles(const MatRoles& roles) noexcept {
-  for (std::size_t m = 0; m < column_.size(); ++m) {
-    role_[m] = static_cast<std::uint8_t>(roles.of(column_[m] / 4));
-  }
+PairsOfSet SetPairs::pairs() noexcept {
+  return {column_, behaviours_, neighbours_.first_rows(position_.data())};
 }
 
 void SetPairs::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
                                MatRoles& roles) noexcept {
-  find_roles(roles);
-  const auto passes_on = [&](std::uint8_t role) { return (role & pass.from) != 0; };
   if (computes_all(never_rests)) {
-    const bool any = std::any_of(role_.begin(), role_.end(), passes_on);
-    for (std::uint8_t& role : role_) give(role, any ? pass.to : kWholeForce);
+    active_.pass_to_all(column_, pass, roles);
   } else {
-    const NeighbourRows rows = neighbours_.first_rows(position_.data());
-    for (std::size_t a = rows.first; a < rows.last; ++a) {
-      const std::uint32_t* near = rows.neighbour + rows.start[a];
-      const std::uint32_t* const end = rows.neighbour + rows.start[a + 1];
-      if (passes_on(role_[a])) {
-        for (; near < end; ++near) give(role_[*near / 4], pass.to);
-      } else if (std::any_of(near, end,
-                             [&](std::uint32_t column) { return passes_on(role_[column / 4]); })) {
-        give(role_[a], pass.to);
-      }
-    }
-    mark_bound(pass);
+    active_.pass_on(pairs(), pass, roles);
   }
-  for (std::size_t m = 0; m < column_.size(); ++m) {
-    if ((role_[m] & kIsMass) != 0) roles.add(column_[m] / 4, role_[m] & pass.to);
-  }
-}
-
-/// Shows the pairs that are in another state than that of the start, with their first member.
-template <class Visit>
-void SetPairs::visit_bound(Visit visit) const {
-  if (!behaviours_.has_states()) return;
-  const PairStates& states = behaviours_.states();
-  for (std::size_t a = 0; a < states.row_count(); ++a) {
-    for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
-      const PairState& pair = states.state(i);
-      if (pair.state != behaviours_.start_state()) visit(a, pair);
-    }
-  }
-}
-
-/// Of pairs that are beyond their range.
-void SetPairs::mark_bound(const Passing& pass) noexcept {
-  visit_bound([&](std::size_t a, const PairState& pair) {
-    const std::size_t b = pair.column / 4;
-    if ((role_[a] & pass.from) != 0) give(role_[b], pass.to);
-    if ((role_[b] & pass.from) != 0) give(role_[a], pass.to);
-  });
 }
 
 void SetPairs::choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept {
-  all_active_ = computes_all(never_rests);
-  if (all_active_) {
-    for (const std::uint32_t column : column_) roles.add(column / 4, kSomeForce);
-    return;
-  }
-  find_roles(roles);
-  active_rows_.clear();
-  active_members_.clear();
-  const NeighbourRows rows = neighbours_.first_rows(position_.data());
-  std::size_t count = 0;
-  for (std::size_t a = rows.first; a < rows.last; ++a) {
-    const bool whole_row = (role_[a] & kWholeForce) != 0 || is_row_active(rows, a);
-    active_start_[a] = count;
-    for (std::size_t i = rows.start[a]; i < rows.start[a + 1]; ++i) {
-      const std::uint32_t column = rows.neighbour[i];
-      if (!whole_row && (role_[column / 4] & kWholeForce) == 0) continue;
-      give(role_[column / 4], kSomeForce);
-      active_neighbour_[count++] = column;
-    }
-    active_start_[a + 1] = count;
-    if (whole_row || count > active_start_[a]) add_row(a);
-  }
-  for (std::size_t m = 0; m < column_.size(); ++m) {
-    if ((role_[m] & (kSomeForce | kWholeForce)) == 0) continue;
-    active_members_.push_back(static_cast<std::uint32_t>(m));
-    roles.add(column_[m] / 4, kSomeForce);
-  }
-}
-
-/// Of pairs with states all those of a row are computed, or none.
-bool SetPairs::is_row_active(const NeighbourRows& rows, std::size_t a) const noexcept {
-  if (!behaviours_.has_states()) return false;
-  const auto is_whole = [this](std::uint32_t column) {
-    return (role_[column / 4] & kWholeForce) != 0;
-  };
-  const PairStates& states = behaviours_.states();
-  bool active =
-      std::any_of(rows.neighbour + rows.start[a], rows.neighbour + rows.start[a + 1], is_whole);
-  for (std::size_t i = states.begin(a); i < states.end(a) && !active; ++i) {
-    active = states.state(i).state != behaviours_.start_state() && is_whole(states.state(i).column);
-  }
-  return active;
-}
-
-/// Bound pairs beyond their range take part too.
-void SetPairs::add_row(std::size_t a) noexcept {
-  give(role_[a], kSomeForce);
-  if (behaviours_.has_states()) {
-    const PairStates& states = behaviours_.states();
-    for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
-      give(role_[states.state(i).column / 4], kSomeForce);
-    }
-  }
-  if (!active_rows_.empty() && active_rows_.back().last == a) {
-    active_rows_.back().last = a + 1;
+  if (computes_all(never_rests)) {
+    active_.choose_all(column_, roles);
   } else {
-    active_rows_.push_back({a, a + 1, active_start_.data(), active_neighbour_.data(), 0});
+    active_.choose(pairs(), roles);
   }
 }
 
@@ -422,7 +320,7 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
 }
 
 void SetPairs::visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const {
-  visit_bound([&](std::size_t a, const PairState& pair) {
+  behaviours_.visit_bound([&](std::size_t a, const PairState& pair) {
     visit(owner, {column_[a] / 4, column_[pair.column / 4] / 4,
                   pair.state - table.first_state(behaviour_), pair.rest_length});
   });
@@ -469,7 +367,7 @@ const double* SetPairs::take_state(const double* state) noexcept {
   }
   neighbours_.forget();
   neighbours_.refresh(position_.data());
-  all_active_ = true;
+  active_.choose_all();
   return behaviours_.has_states() ? behaviours_.states().take_state(state) : state;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/active_pairs.h"
 #include "sim_node/engine/aligned_vector.h"
 #include "sim_node/engine/energy.h"
 #include "sim_node/engine/mat_array.h"
@@ -92,12 +93,8 @@ class SetPairs {
   bool computes_all(const std::vector<bool>& never_rests) const noexcept {
     return never_rests[behaviour_] || !neighbours_.is_whole();
   }
-  void find_roles(const MatRoles& roles) noexcept;
-  template <class Visit>
-  void visit_bound(Visit visit) const;
-  void mark_bound(const Passing& pass) noexcept;
-  bool is_row_active(const NeighbourRows& rows, std::size_t a) const noexcept;
-  void add_row(std::size_t a) noexcept;
+  /// Precondition: the neighbour list is whole.
+  PairsOfSet pairs() noexcept;
   void clear_forces() noexcept;
   void step_active_rows(const PairStep& step) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) const noexcept;
@@ -126,14 +123,7 @@ class SetPairs {
   AlignedVector<double> force_;
   AlignedVector<double> viscous_;  // the part of the force that stores no energy
   bool has_viscous_ = false;
-
-  // What is computed, once choose_active has been called:
-  bool all_active_ = true;
-  std::vector<std::uint8_t> role_;               // of each member, bits of MatRoles
-  std::vector<std::uint32_t> active_members_;    // whose positions are taken, ascending
-  std::vector<NeighbourRows> active_rows_;       // with pairs that are
-  std::vector<std::size_t> active_start_;        // of them: by row; one past the last too
-  std::vector<std::uint32_t> active_neighbour_;  // columns
+  ActivePairs active_;
 };
 
 }  // namespace cordis::engine

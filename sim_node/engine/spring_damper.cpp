@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sim_node/engine/link_growth.h"
+
 namespace cordis::engine {
 namespace {
 
@@ -102,13 +104,9 @@ StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const n
   StepEnergy work;
   if (in_line_ && !viscous_) return work;
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
-    const std::uint32_t a = column_a_[l] / 4;
-    const std::uint32_t b = column_b_[l] / 4;
-    const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
-    const Vec3 moved = mats.position(b) - mats.position(a) - before;
-    const double product = 0.5 * (in_line_ ? moved[column_a_[l] % 4] : before.dot(moved));
-    work.dissipated += viscous_factor_[l] * product;
-    if (!in_line_) work.elastic += elastic_factor_[l] * product;
+    const double grown = half_growth(mats, column_a_[l], column_b_[l], in_line_);
+    work.dissipated += viscous_factor_[l] * grown;
+    if (!in_line_) work.elastic += elastic_factor_[l] * grown;
   }
   return work;
 }

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <limits>
 
+#include "sim_node/engine/link_growth.h"
+
 namespace cordis::engine {
 namespace {
 
@@ -164,13 +166,9 @@ void StateLinkArray::choose_active(MatRoles& roles) noexcept {
 StepEnergy StateLinkArray::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
   for (std::size_t l = 0; l < link_count_; ++l) {
-    const std::uint32_t a = column_a_[l] / 4;
-    const std::uint32_t b = column_b_[l] / 4;
-    const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
-    const Vec3 moved = mats.position(b) - mats.position(a) - before;
-    const double product = 0.5 * (in_line_ ? moved.x() : before.dot(moved));
-    work.elastic += elastic_factor_[l] * product;
-    work.dissipated += viscous_factor_[l] * product;
+    const double grown = half_growth(mats, column_a_[l], column_b_[l], in_line_);
+    work.elastic += elastic_factor_[l] * grown;
+    work.dissipated += viscous_factor_[l] * grown;
   }
   return work;
 }

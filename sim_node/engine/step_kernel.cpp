@@ -1,18 +1,12 @@
 // sim_node/engine/step_kernel.cpp
 #include "sim_node/engine/step_kernel.h"
 
+#include "sim_node/engine/kernel_of_width.h"
+
 namespace cordis::engine {
 
 const StepKernel& step_kernel(VectorWidth width) noexcept {
-  switch (width) {
-    case VectorWidth::kAvx512:
-      return kStepKernelAvx512;
-    case VectorWidth::kAvx2:
-      return kStepKernelAvx2;
-    case VectorWidth::kSse2:
-      break;
-  }
-  return kStepKernelSse2;
+  return kernel_of_width(width, kStepKernelSse2, kStepKernelAvx2, kStepKernelAvx512);
 }
 
 }  // namespace cordis::engine

@@ -2,22 +2,16 @@
 
 #include <algorithm>
 #include <charconv>
-#include <string_view>
 #include <unordered_set>
 
 namespace cordis::scene {
 
 namespace {
 
-struct Indices {
-  std::uint32_t first = 0;
-  std::uint32_t last = 0;
-};
-
 /// What stands between two dots: a name or *, and perhaps indices.
 struct Segment {
   std::string name;
-  std::optional<Indices> indices;
+  std::optional<IndexRange> indices;
 };
 
 std::optional<std::uint32_t> index_of(std::string_view text) {
@@ -25,16 +19,6 @@ std::optional<std::uint32_t> index_of(std::string_view text) {
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), index);
   if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return index;
-}
-
-/// What stands between the brackets: 3 or 2..5.
-std::optional<Indices> indices_of(std::string_view text) {
-  const std::size_t dots = text.find("..");
-  const std::optional<std::uint32_t> first = index_of(text.substr(0, dots));
-  const std::optional<std::uint32_t> last =
-      dots == std::string_view::npos ? first : index_of(text.substr(dots + 2));
-  if (!first || !last || *last < *first) return std::nullopt;
-  return Indices{*first, *last};
 }
 
 /// Empty when the text is no selection.
@@ -48,7 +32,7 @@ std::vector<Segment> segments_of(std::string_view text) {
     if (!text.empty() && text[0] == '[') {
       const std::size_t close = text.find(']');
       if (close == std::string_view::npos || segment.name == "*") return {};
-      segment.indices = indices_of(text.substr(1, close - 1));
+      segment.indices = read_index_range(text.substr(1, close - 1));
       if (!segment.indices) return {};
       text.remove_prefix(close + 1);
     }
@@ -193,7 +177,7 @@ class Picker {
     return entry;
   }
 
-  bool is_inside(const NameEntry& entry, const std::string& name, const Indices& indices) {
+  bool is_inside(const NameEntry& entry, const std::string& name, const IndexRange& indices) {
     if (!entry.sound) return false;
     if (indices.last < entry.index_count()) return true;
     problems_.error(value_.place(), "'" + name + "' has the " + kind_of(entry) + " 0 to " +
@@ -216,6 +200,15 @@ class Picker {
 };
 
 }  // namespace
+
+std::optional<IndexRange> read_index_range(std::string_view text) {
+  const std::size_t dots = text.find("..");
+  const std::optional<std::uint32_t> first = index_of(text.substr(0, dots));
+  const std::optional<std::uint32_t> last =
+      dots == std::string_view::npos ? first : index_of(text.substr(dots + 2));
+  if (!first || !last || *last < *first) return std::nullopt;
+  return IndexRange{*first, *last};
+}
 
 std::optional<Selection> select(const config::Value& value, const std::string& what,
                                 bool with_links, const Names& names, config::Problems& problems) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "node/config/value.h"
@@ -95,6 +96,16 @@ class Names {
   std::map<std::string, NameEntry> entries_;  // by full name
   std::string scope_;
 };
+
+/// Consecutive indices, both ends included.
+struct IndexRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
+/// Reads what stands between the brackets of a selection: 3 or 2..5. None when it is neither, or
+/// runs backwards.
+std::optional<IndexRange> read_index_range(std::string_view text);
 
 /// Reads `name`, `name[3]`, `name[2..5]` (both ends included, from 0), `part.name`, `part[1].name`,
 /// `part.*` (all matter in it), or a list of these. A repeated part without an index stands for all

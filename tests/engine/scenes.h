@@ -1,6 +1,7 @@
 // tests/engine/scenes.h -- networks that several tests are made of.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -42,6 +43,17 @@ inline Mat fixed(const Vec3& position) {
 
 inline Mat port(const Vec3& position) {
   return {MatKind::kPort, 0.0, position, Vec3::Zero()};
+}
+
+/// The largest coordinate [m] that a MAT has had in so many steps; when it is beyond 1e100, that.
+inline double largest_excursion(NetworkDescription scene, int steps = 5000) {
+  World world = make_world(std::move(scene));
+  double largest = 0.0;
+  for (int n = 0; n < steps && largest < 1e100; ++n) {
+    world.step();
+    largest = std::max(largest, world.positions().cwiseAbs().maxCoeff());
+  }
+  return largest;
 }
 
 /// MAT 0 fixed at 0, MAT 1 a mass at x0 with the speed v0, one spring-damper of rest length 0; 1

@@ -11,19 +11,6 @@
 namespace cordis::test {
 namespace {
 
-constexpr int kMostSteps = 5000;
-
-/// The largest distance from 0 that a MAT ever had.
-double largest_excursion(NetworkDescription scene) {
-  World world = make_world(std::move(scene));
-  double largest = 0.0;
-  for (int n = 0; n < kMostSteps && largest < 1e100; ++n) {
-    world.step();
-    largest = std::max(largest, world.positions().cwiseAbs().maxCoeff());
-  }
-  return largest;
-}
-
 // m = 1 and dt = 1: then K is K' and Z is Z'. The slowest divergence below is 1 % a step: 1e21
 // times in 5000 steps.
 NetworkDescription normalised(double stiffness, double viscosity) {

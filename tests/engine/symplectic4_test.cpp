@@ -21,14 +21,8 @@ NetworkDescription by_symplectic4(NetworkDescription scene) {
   return scene;
 }
 
-double largest_excursion(double stiffness, int steps) {
-  World world = make_world(by_symplectic4(oscillator(1.0, stiffness, 0.0, 1.0, 0.0, 1.0)));
-  double largest = 0.0;
-  for (int n = 0; n < steps && largest < 1e100; ++n) {
-    world.step();
-    largest = std::max(largest, std::abs(world.position(1).x()));
-  }
-  return largest;
+double excursion_by_symplectic4(double stiffness) {
+  return largest_excursion(by_symplectic4(oscillator(1.0, stiffness, 0.0, 1.0, 0.0, 1.0)));
 }
 
 TEST(Symplectic4, FollowsTheExactMotionWithTheFourthOrder) {
@@ -100,10 +94,10 @@ TEST(Symplectic4, KeepsMomentumAndAngularMomentum) {
 
 TEST(Symplectic4, IsStableUpToItsLimitResonatesThereAndEndsBeyond) {
   // m = 1 and dt = 1: the root of K is w dt
-  EXPECT_LT(largest_excursion(3.16 * 3.16, 5000), 100.0);
-  EXPECT_GT(largest_excursion(3.166 * 3.166, 5000), 1e3);  // 0.24 % a step
-  EXPECT_LT(largest_excursion(5.02 * 5.02, 5000), 100.0);
-  EXPECT_GT(largest_excursion(5.04 * 5.04, 5000), 1e20);
+  EXPECT_LT(excursion_by_symplectic4(3.16 * 3.16), 100.0);
+  EXPECT_GT(excursion_by_symplectic4(3.166 * 3.166), 1e3);  // 0.24 % a step
+  EXPECT_LT(excursion_by_symplectic4(5.02 * 5.02), 100.0);
+  EXPECT_GT(excursion_by_symplectic4(5.04 * 5.04), 1e20);
 }
 
 TEST(Symplectic4, CountsTheWorkOfAForceFromOutside) {

@@ -1,7 +1,6 @@
 // tests/plan/networks.h -- networks whose limits are looked for.
 #pragma once
 
-#include <algorithm>
 #include <random>
 
 #include "tests/engine/scenes.h"
@@ -35,17 +34,6 @@ inline NetworkDescription random_network(unsigned seed) {
     if (a != b) join(a, b);
   }
   return scene;
-}
-
-/// The largest distance from 0 that a MAT ever has within so many steps.
-inline double largest_excursion(NetworkDescription scene, int step_count) {
-  World world = make_world(std::move(scene));
-  double largest = 0.0;
-  for (int n = 0; n < step_count && largest < 1e100; ++n) {
-    world.step();
-    largest = std::max(largest, world.positions().cwiseAbs().maxCoeff());
-  }
-  return largest;
 }
 
 /// A behaviour of one state: a spring and a law.

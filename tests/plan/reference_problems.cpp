@@ -1,0 +1,454 @@
+// tests/plan/reference_problems.cpp
+#include "tests/plan/reference_problems.h"
+
+#include <cmath>
+
+#include "tests/engine/programs.h"
+#include "tests/support/reference_data.h"
+
+namespace cordis::test::convergence {
+namespace {
+
+double value(const nlohmann::json& params, const char* name) {
+  return number(params[name]);
+}
+
+ReferenceProblem damped_oscillator(const std::string& regime) {
+  const nlohmann::json problem = reference("R01_damped_oscillator");
+  const nlohmann::json& params = problem["params"];
+  for (const auto& of : problem["cases"]) {
+    if (of["name"] != regime) continue;
+    ReferenceProblem made{"R01 oscillator, " + regime,
+                          MotionKind::kDamped,
+                          oscillator(value(params, "m"), value(params, "k"), number(of["z"]),
+                                     value(params, "x0"), value(params, "v0"), 1e-2),
+                          5.0,
+                          100.0,
+                          {}};
+    if (number(of["z"]) == 0.0) made.kind = MotionKind::kConservative;
+    for (const auto& row : of["t_x_v"]) {
+      made.expected.push_back({number(row[0]), 1.0, number(row[1])});
+    }
+    return made;
+  }
+  throw std::runtime_error("R01 has no regime " + regime);
+}
+
+/// Masses along one line between two fixed ends; MAT 0 is the first end.
+NetworkDescription chain(std::size_t count, double mass_kg, const engine::Link& link) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.mats.push_back(fixed(Vec3::Zero()));
+  for (std::size_t i = 0; i < count; ++i) scene.mats.push_back(mass(mass_kg, Vec3::Zero()));
+  scene.mats.push_back(fixed(Vec3::Zero()));
+  for (std::uint32_t i = 0; i <= count; ++i) {
+    scene.links.push_back({i, i + 1, link.stiffness, link.viscosity, 0.0});
+  }
+  return scene;
+}
+
+ReferenceProblem chain_mode() {
+  ReferenceProblem made{"R03 chain of 10, mode 3",
+                        MotionKind::kConservative,
+                        chain(10, 1.0, {0, 1, 1.0, 0.0}),
+                        20.0,
+                        20.0,
+                        {}};
+  const double w = number(reference("R03_chain_modes")["values"]["fixed-fixed_N10"][2]);
+  for (std::uint32_t i = 1; i <= 10; ++i) {
+    made.network.mats[i].position.x() = std::sin(3.0 * M_PI * i / 11.0);
+  }
+  for (const double t : {5.0, 20.0}) {
+    made.expected.push_back({t, 2.0, std::sin(6.0 * M_PI / 11.0) * std::cos(w * t)});
+  }
+  return made;
+}
+
+ReferenceProblem membrane_mode() {
+  const nlohmann::json problem = reference("R04_membrane_modes");
+  constexpr std::uint32_t kRows = 6;
+  constexpr std::uint32_t kColumns = 9;
+  ReferenceProblem made{
+      "R04 membrane 6 x 9, mode 2 3", MotionKind::kConservative, {}, 20.0, 20.0, {}};
+  made.network.dimension = 1;
+  made.network.step = 1e-2;
+  const auto at = [](std::uint32_t row, std::uint32_t column) {
+    return row * (kColumns + 2) + column;
+  };
+  for (std::uint32_t row = 0; row < kRows + 2; ++row) {
+    for (std::uint32_t column = 0; column < kColumns + 2; ++column) {
+      const bool inside = row % (kRows + 1) != 0 && column % (kColumns + 1) != 0;
+      const Vec3 place(
+          std::sin(2.0 * M_PI * row / (kRows + 1)) * std::sin(3.0 * M_PI * column / (kColumns + 1)),
+          0, 0);
+      made.network.mats.push_back(inside ? mass(1.0, place) : fixed(Vec3::Zero()));
+      const auto join = [&](std::uint32_t to) {
+        made.network.links.push_back({to, at(row, column), 1.0, 0.0, 0.0});
+      };
+      if (row > 0 && column % (kColumns + 1) != 0) join(at(row - 1, column));
+      if (column > 0 && row % (kRows + 1) != 0) join(at(row, column - 1));
+    }
+  }
+  const double w = number(problem["w"][1][2]);
+  for (const double t : {5.0, 20.0}) {
+    made.expected.push_back({t, static_cast<double>(at(1, 2)),
+                             made.network.mats[at(1, 2)].position.x() * std::cos(w * t)});
+  }
+  return made;
+}
+
+ReferenceProblem plucked_string() {
+  const nlohmann::json problem = reference("R05_plucked_string");
+  const nlohmann::json& params = problem["params"];
+  ReferenceProblem made{
+      "R05 plucked string",
+      MotionKind::kDamped,
+      chain(20, value(params, "m"), {0, 1, value(params, "k"), value(params, "z_link")}),
+      0.1,
+      20000.0,
+      {}};
+  made.network.medium_viscosity = value(params, "z_ground");
+  for (int i = 1; i <= 20; ++i) {
+    const double share = i <= 6 ? i / 6.0 : (21 - i) / 15.0;
+    made.network.mats[static_cast<std::size_t>(i)].position.x() = value(params, "amp") * share;
+  }
+  for (const auto& row : problem["t_x_v_at_mass"]["6"]) {
+    if (number(row[0]) <= made.duration) {
+      made.expected.push_back({number(row[0]), 6.0, number(row[1])});
+    }
+  }
+  return made;
+}
+
+ReferenceProblem two_bodies() {
+  const nlohmann::json problem = reference("R06_two_bodies");
+  const nlohmann::json& params = problem["params"];
+  ReferenceProblem made{"R06 two bodies", MotionKind::kDamped, {}, 3.0, 200.0, {}};
+  made.network.dimension = 1;
+  made.network.step = 1e-3;
+  for (const char* end : {"1", "2"}) {
+    const std::string i = end;
+    made.network.mats.push_back(mass(value(params, ("m" + i).c_str()),
+                                     Vec3(value(params, ("x" + i).c_str()), 0, 0),
+                                     Vec3(value(params, ("v" + i).c_str()), 0, 0)));
+  }
+  made.network.links = {{0, 1, value(params, "k"), value(params, "z"), value(params, "L0")}};
+  for (const auto& row : problem["t_x1_x2_v1_v2"]) {
+    made.expected.push_back({number(row[0]), 1.0, number(row[2])});
+  }
+  return made;
+}
+
+engine::Law power(double coefficient, double exponent) {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kPower;
+  law.coefficient = coefficient;
+  law.exponent = exponent;
+  return law;
+}
+
+NetworkDescription with_law(NetworkDescription scene, const engine::Behaviour& behaviour) {
+  scene.links.clear();
+  scene.behaviours = {behaviour};
+  scene.state_links = {{0, 1, 0, 0.0}};
+  return scene;
+}
+
+ReferenceProblem duffing() {
+  ReferenceProblem made{
+      "R07 cubic spring",
+      MotionKind::kConservative,
+      with_law(oscillator(1.0, 0.0, 0.0, 2.0, 0.0, 1e-2), behaviour(1.0, power(0.5, 3.0))),
+      20.0,
+      50.0,
+      {}};
+  for (const auto& row : reference("R07_duffing")["t_x"]) {
+    made.expected.push_back({number(row[0]), 1.0, number(row[1])});
+  }
+  return made;
+}
+
+ReferenceProblem stiff_fpu() {
+  const nlohmann::json problem = reference("R09_stiff_fpu_hairer");
+  ReferenceProblem made{
+      "R09 stiff and soft chain", MotionKind::kConservative, chain(6, 1.0, {}), 1.0, 1000.0, {}};
+  made.network.links.clear();
+  made.network.behaviours = {behaviour(0.0, power(4.0, 3.0))};
+  for (std::uint32_t i = 0; i < 7; ++i) {
+    if (i % 2 == 0) {
+      made.network.state_links.push_back({i, i + 1, 0, 0.0});
+    } else {
+      made.network.links.push_back({i, i + 1, 50.0 * 50.0 / 2.0, 0.0, 0.0});
+    }
+    if (i == 6) continue;
+    made.network.mats[i + 1].position.x() = number(problem["initial_q"][i]);
+    made.network.mats[i + 1].velocity.x() = number(problem["initial_p"][i]);
+  }
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    made.expected.push_back({1.0, i + 1.0, number(problem["rows"][0]["q"][i])});
+  }
+  return made;
+}
+
+/// d + alpha d^2
+class QuadraticSpring final : public engine::LinkFunction {
+ public:
+  explicit QuadraticSpring(double alpha) : alpha_(alpha) {}
+  double operator()(double, double elongation, double, double, double) const noexcept override {
+    return elongation + alpha_ * elongation * elongation;
+  }
+
+ private:
+  double alpha_;
+};
+
+/// The first 20 s: its reference is the energy of its modes much later, which nonlinear_test holds.
+ReferenceProblem quadratic_chain() {
+  const nlohmann::json params = reference("R10_fpu_alpha")["params"];
+  ReferenceProblem made{
+      "R10 chain of 32, quadratic", MotionKind::kConservative, chain(32, 1.0, {}), 20.0, 20.0, {}};
+  made.network.links.clear();
+  engine::Law law;
+  law.kind = engine::Law::Kind::kFunction;
+  law.function = std::make_shared<const QuadraticSpring>(value(params, "alpha"));
+  made.network.behaviours = {behaviour(0.0, law)};
+  for (std::uint32_t i = 0; i < 33; ++i) {
+    made.network.state_links.push_back({i, i + 1, 0, 0.0});
+    made.network.mats[i].position.x() = i > 0 ? std::sin(M_PI * i / 33.0) : 0.0;
+  }
+  return made;
+}
+
+engine::Law lennard_jones() {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kLennardJones;
+  law.depth = 1.0;
+  law.diameter = 1.0;
+  return law;
+}
+
+ReferenceProblem dimer() {
+  // Half of the energy of the well: after one period it is where it was.
+  const nlohmann::json row = reference("R11_lennard_jones")["dimer"]["period_vs_energy"][2];
+  const double start = number(row[3]);
+  const double period = number(row[1]);
+  ReferenceProblem made{
+      "R11 Lennard-Jones dimer", MotionKind::kConservative, {}, period, 500.0, {}};
+  made.network.dimension = 2;
+  made.network.step = 1e-3;
+  made.network.mats = {mass(1.0, Vec3::Zero()), mass(1.0, Vec3(start, 0, 0))};
+  made.network.behaviours = {behaviour(0.0, lennard_jones())};
+  made.network.state_links = {{0, 1, 0, 0.0}};
+  made.expected = {{period, 1.0, start}};
+  return made;
+}
+
+/// Touches below the rest length; `pulls`: also while it lets go, else it lets go at no force.
+engine::Behaviour touch(double stiffness, double viscosity, bool pulls) {
+  using engine::Operation;
+  using engine::Quantity;
+  engine::Behaviour made;
+  made.states.resize(2);
+  made.exits.resize(2);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    made.states[i].first_exit = i;
+    made.states[i].last_exit = i + 1;
+    made.exits[i].target = 1 - i;
+    made.exits[i].when.code = {
+        {Operation::kQuantity, Quantity::kElongation, 0.0, 0},
+        {Operation::kConstant, Quantity::kElongation, 0.0, 0},
+        {i == 0 ? Operation::kLess : Operation::kGreaterOrEqual, Quantity::kElongation, 0.0, 0}};
+  }
+  made.states[1].stiffness = stiffness;
+  made.states[1].viscosity = viscosity;
+  made.states[1].pulls = pulls;
+  return made;
+}
+
+ReferenceProblem hertz() {
+  const nlohmann::json problem = reference("R13_hertz_bounce");
+  engine::Behaviour skin = behaviour(0.0, power(value(problem["params"], "K"), 1.5));
+  skin.states[0].pulls = false;
+  ReferenceProblem made{"R13 Hertz bounce",
+                        MotionKind::kSwitching,
+                        with_law(oscillator(value(problem["params"], "m"), 0.0, 0.0, 0.0,
+                                            -value(problem["params"], "v"), 1e-3),
+                                 skin),
+                        0.02,
+                        20000.0,
+                        {}};
+  const double contact_time = number(problem["t_c"]);
+  made.expected = {{0.5 * contact_time, 1.0, -number(problem["d_max"])},
+                   {0.02, 1.0, 0.02 - contact_time}};
+  return made;
+}
+
+ReferenceProblem bouncing_ball() {
+  const nlohmann::json problem = reference("R14_bouncing_ball");
+  const nlohmann::json& params = problem["params"];
+  ReferenceProblem made{
+      "R14 bouncing ball",
+      MotionKind::kSwitching,
+      with_law(oscillator(value(params, "m"), 0.0, 0.0, value(params, "h0"), 0.0, 1e-3),
+               touch(value(params, "K"), value(params, "Z"), false)),
+      1.5,
+      5000.0,
+      {}};
+  made.network.gravity = Vec3(-value(params, "g"), 0, 0);
+  const auto& impacts = problem["impact_times_clamped"];
+  made.expected = {{number(impacts[0]), 1.0, 0.0}, {number(impacts[1]), 1.0, 0.0}};
+  return made;
+}
+
+ReferenceProblem standard_linear_solid() {
+  const nlohmann::json params = reference("R16_rheology")["params"];
+  ReferenceProblem made{"R16 standard linear solid",
+                        MotionKind::kDamped,
+                        oscillator(0.5, value(params, "K1"), 0.0, 0.1, 0.0, 1e-3),
+                        1.0,
+                        1000.0,
+                        {}};
+  made.network.maxwell_links = {{0, 1, value(params, "K2"), value(params, "Z")}};
+  return made;
+}
+
+engine::Law always(double pull) {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kTable;
+  law.table = {{0.0}, {pull}};
+  return law;
+}
+
+/// A block on a spring under a belt, from where it is farthest on. It sticks by a spring so stiff
+/// that it is left behind by 0.04 mm at most.
+ReferenceProblem stick_slip() {
+  const nlohmann::json problem = reference("R15_stick_slip_coulomb");
+  const nlohmann::json& params = problem["params"];
+  const double stiffness = value(params, "k");
+  const double speed = value(params, "V");
+  const double slipping = value(params, "Fk");
+  constexpr double kSticking = 1e5;  // [N/m]
+  const double swing = value(problem, "x_max") - slipping / stiffness;
+  const double w = std::sqrt(stiffness / value(params, "m"));
+  const double hooks = 2.0 * slipping / stiffness - value(params, "Fs") / stiffness;  // x there
+  const double hooked_at = value(problem, "period") - value(problem, "t_stick") -
+                           std::acos((value(params, "Fs") - slipping) / stiffness / swing) / w;
+
+  ReferenceProblem made{
+      "R15 stick and slip", MotionKind::kSwitching, {}, value(problem, "period"), 500.0, {}};
+  made.network.dimension = 1;
+  made.network.step = 1e-4;
+  made.network.mats = {fixed(Vec3::Zero()),
+                       mass(value(params, "m"), Vec3(value(problem, "x_max"), 0, 0)),
+                       mass(1e9, Vec3::Zero(), Vec3(speed, 0, 0))};
+  made.network.links = {{0, 1, stiffness, 0.0, 0.0}};
+  engine::LinkState slip;
+  slip.elasticity = always(slipping);
+  engine::LinkState stick;
+  stick.stiffness = kSticking;
+  stick.viscosity = 60.0;
+  Behaving rosin;
+  rosin.state(slip)
+      .exit_to_rest(both(q(Quantity::kSpeed) < 0.0, q(Quantity::kAge) > 0.1), 1,
+                    q(Quantity::kDistance) - hooks * stiffness / kSticking)
+      .state(stick)
+      .exit(q(Quantity::kElongation) > value(params, "Fs") / kSticking, 0);
+  made.network.behaviours = {rosin.behaviour};
+  made.network.state_links = {{1, 2, 0, 0.0}};
+  made.expected = {{0.2, 1.0, slipping / stiffness + swing * std::cos(0.2 * w)},
+                   {0.6, 1.0, hooks + speed * (0.6 - hooked_at)},
+                   {made.duration, 1.0, value(problem, "x_max")}};
+  made.within = 1e-4;
+  return made;
+}
+
+ReferenceProblem rupture() {
+  const nlohmann::json of = reference("R17_hysteresis")["rupture"];
+  ReferenceProblem made{"R17 rupture", MotionKind::kSwitching, {}, 0.1, 2000.0, {}};
+  made.network.dimension = 1;
+  made.network.step = 1e-4;
+  made.network.mats = {mass(value(of, "m"), Vec3::Zero()),
+                       mass(1e12, Vec3::Zero(), Vec3(value(of, "V"), 0, 0))};
+  Behaving thread;
+  thread.state(value(of, "k")).exit(q(Quantity::kElongation) > value(of, "ub"), 1).state(0.0);
+  made.network.behaviours = {thread.behaviour};
+  made.network.state_links = {{0, 1, 0, 0.0}};
+  made.expected = {
+      {0.1, 0.0, value(of, "x_break") + value(of, "v_break") * (0.1 - value(of, "t_break"))}};
+  return made;
+}
+
+/// A rod is the limit of a stiff spring: of 1 mm, by its own weight, here.
+ReferenceProblem pendulum() {
+  const nlohmann::json row = reference("R18_rigid_pendulum_limit")["theta0_period"][2];
+  const double angle = number(row[0]);
+  ReferenceProblem made{"R18 pendulum", MotionKind::kConservative, {}, number(row[1]), 1000.0, {}};
+  made.network.dimension = 2;
+  made.network.step = 1e-3;
+  made.network.gravity = Vec3(0, -9.81, 0);
+  made.network.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(std::sin(angle), -std::cos(angle), 0))};
+  made.network.links = {{0, 1, 1e4, 0.0, 1.0}};
+  made.expected = {{made.duration, 1.0, std::sin(angle)}};
+  made.within = 5e-3;
+  return made;
+}
+
+ReferenceProblem cluster() {
+  const nlohmann::json problem = reference("R22_lammps_cluster");
+  ReferenceProblem made{
+      "R22 64 Lennard-Jones balls", MotionKind::kConservative, {}, 0.25, 400.0, {}};
+  made.network.dimension = 3;
+  made.network.step = 1e-3;
+  for (const auto& row : problem["step_0"]) {
+    const auto at = [&row](std::size_t i) { return number(row[i]); };
+    made.network.mats.push_back(mass(1.0, Vec3(at(0), at(1), at(2)), Vec3(at(3), at(4), at(5))));
+  }
+  made.network.behaviours = {behaviour(0.0, lennard_jones())};
+  std::vector<std::uint32_t> all(made.network.mats.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  made.network.sets = {{0, all, {}, 30.0, 0.0}};
+  return made;
+}
+
+}  // namespace
+
+ReferenceProblem bounce() {
+  // K = m = 1, v0 = 1, zeta = 0.1.
+  const nlohmann::json row = reference("R12_bounce_restitution")["rows"][3];
+  // Of its position the reference says nothing: see OfABounceGoesToItsRestitution.
+  return {
+      "R12 bounce, clamped",
+      MotionKind::kSwitching,
+      with_law(oscillator(1.0, 0.0, 0.0, 1.0, -1.0, 1e-2), touch(1.0, 2.0 * number(row[0]), false)),
+      6.0,
+      50.0,
+      {}};
+}
+
+ReferenceProblem collision() {
+  const nlohmann::json of = reference("R19_collisions")["case"];
+  ReferenceProblem made{"R19 two balls", MotionKind::kSwitching, {}, 0.05, 20000.0, {}};
+  made.network.dimension = 2;
+  made.network.step = 1e-3;
+  made.network.mats = {mass(value(of, "m1"), Vec3::Zero(), Vec3(value(of, "v1"), 0, 0)),
+                       mass(value(of, "m2"), Vec3(0.05, 0, 0))};
+  made.network.behaviours = {touch(value(of, "K"), value(of, "Z"), true)};
+  made.network.state_links = {{0, 1, 0, 0.04}};
+  return made;
+}
+
+std::vector<ReferenceProblem> reference_problems() {
+  std::vector<ReferenceProblem> all;
+  const nlohmann::json oscillators = reference("R01_damped_oscillator");
+  for (const auto& of : oscillators["cases"]) all.push_back(damped_oscillator(of["name"]));
+  for (const auto& make :
+       {chain_mode, membrane_mode, plucked_string, two_bodies, duffing, stiff_fpu, quadratic_chain,
+        dimer, bounce, hertz, bouncing_ball, stick_slip, standard_linear_solid, rupture, pendulum,
+        collision, cluster}) {
+    all.push_back(make());
+  }
+  return all;
+}
+
+}  // namespace cordis::test::convergence

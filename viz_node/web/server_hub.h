@@ -1,0 +1,68 @@
+// viz_node/web/server_hub.h -- what all connections of the server share.
+//
+// Boost.Beast takes half a minute to compile: the headers server_*.h are for server.cpp alone.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_set>
+#include <utility>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include "node/latency.h"
+#include "viz_node/scene_mirror.h"
+
+namespace cordis::viz {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using ErrorCode = boost::system::error_code;
+
+inline constexpr auto kRequestTimeout = std::chrono::seconds(10);
+
+class Client;
+
+/// What all connections share. Lives in the server's thread, but for the latency.
+struct Hub {
+  Hub(SceneMirror& of, std::function<void(const PageCommand&)> call)
+      : mirror(of), obey(std::move(call)) {}
+
+  SceneMirror& mirror;
+  std::function<void(const PageCommand&)> obey;
+  std::string hello;
+  std::shared_ptr<const std::string> status;  // newest text
+  std::uint64_t status_number = 0;
+  bool loopback_only = true;
+  std::size_t connections = 0;
+  std::unordered_set<Client*> clients;
+  mutable std::mutex latency_mutex;
+  node::LatencyHistogram latency;
+};
+
+/// Counts a connection for as long as it lives, as HTTP or as WebSocket.
+class Seat {
+ public:
+  explicit Seat(Hub& hub) noexcept : hub_(&hub) { ++hub_->connections; }
+  Seat(Seat&& other) noexcept : hub_(std::exchange(other.hub_, nullptr)) {}
+  Seat& operator=(Seat&&) = delete;
+  ~Seat() {
+    if (hub_ != nullptr) --hub_->connections;
+  }
+
+ private:
+  Hub* hub_;
+};
+
+}  // namespace cordis::viz
