@@ -107,12 +107,16 @@ double Exchange::age_s() const noexcept {
 }
 
 /// Of a hand that was carried, its force known before and after: f dx, exact for one that is a
-/// spring.
+/// spring. At the end of the travel the scene goes on under the force of a hand that cannot: that
+/// counts as if it did, for it is not the age of the force that makes the difference.
 void Exchange::add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept {
-  for (std::size_t a = 0; is_carried_ && a < carried_m.size(); ++a) {
-    sample_.work_j += 0.5 * (force_before_n[a] + sensed_[a]) * (carried_m[a] - carried_[a]);
+  const AxisValues& beyond_m = position_guard_.beyond_m();
+  for (std::size_t a = 0; a < carried_m.size(); ++a) {
+    const double where_m = carried_m[a] + beyond_m[a];
+    const double before_m = std::exchange(carried_[a], where_m);
+    if (is_carried_)
+      sample_.work_j += 0.5 * (force_before_n[a] + sensed_[a]) * (where_m - before_m);
   }
-  carried_ = carried_m;
   is_carried_ = true;
 }
 

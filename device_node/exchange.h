@@ -84,7 +84,7 @@ class Exchange {
   AxisValues sensed_{};                   // for the next sample
   AxisValues last_sensed_{};              // all finite
   std::vector<GestureMessage> late_;      // the last answers, by the sample they answer
-  AxisValues carried_{};                  // role liaison: where the hand is [m]
+  AxisValues carried_{};                  // role liaison: where the hand is, or would be [m]
   bool is_carried_ = false;               // it is anywhere yet
   std::uint64_t first_sample_;            // of this exchange
   std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came

@@ -15,6 +15,7 @@ PositionGuard::PositionGuard(const PositionGuardSettings& settings) : settings_(
 
 void PositionGuard::start() noexcept {
   output_.fill(std::clamp(0.0, settings_.lowest_m, settings_.highest_m));
+  beyond_.fill(0.0);
   any_accepted_ = false;
   ticks_alive_ = 0;
 }
@@ -43,6 +44,7 @@ const AxisValues& PositionGuard::tick(double age_s) noexcept {
   for (std::size_t a = 0; a < output_.size(); ++a) {
     const double wanted = std::clamp(wanted_[a], settings_.lowest_m, settings_.highest_m);
     output_[a] += std::clamp(wanted - output_[a], -largest_move_m, largest_move_m);
+    beyond_[a] = wanted_[a] - wanted;
   }
   return output_;
 }

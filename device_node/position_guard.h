@@ -38,10 +38,14 @@ class PositionGuard {
   /// @param age_s  of the newest positions accepted, >= 0; anything when there have been none
   const AxisValues& tick(double age_s) noexcept;
 
+  /// How much farther than the travel goes the axes are wanted, where age_s allows for it [m].
+  const AxisValues& beyond_m() const noexcept { return beyond_; }
+
  private:
   PositionGuardSettings settings_;
   AxisValues wanted_{};  // [m]
   AxisValues output_{};  // [m]
+  AxisValues beyond_{};  // [m]
   bool any_accepted_ = false;
   std::uint64_t ticks_alive_ = 0;  // of the ramp
 };

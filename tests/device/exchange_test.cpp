@@ -196,6 +196,16 @@ TEST(Exchange, TellsTheEnergyGivenToTheHandInBothRoles) {
   EXPECT_NEAR(given_by(Role::kLiaison, -0.004), -0.0015 * 0.002, 1e-15);
 }
 
+TEST(Exchange, BeyondItsTravelTheHandGivesAsIfItWentOn) {
+  Rig rig(false, Role::kLiaison);
+
+  EXPECT_EQ(rig.period(true, 0.001), 0.0);
+  EXPECT_EQ(rig.period(true, 0.003), 0.0);
+  rig.exchange.send_sample();
+
+  EXPECT_NEAR(rig.channel.sent.back().work_j, -0.0015 * 0.002, 1e-15);  // -1 mN, then -2 mN
+}
+
 TEST(Exchange, ForceIsZeroOnceItsSampleIsAsOldAsTheWatchdog) {
   Rig rig(false);
   rig.period(true, 10.0);

@@ -3,189 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <functional>
-#include <memory>
 #include <numbers>
-#include <utility>
 
 #include <gtest/gtest.h>
 
-#include "sim_node/simulation.h"
-#include "tests/sim/stages.h"
+#include "tests/sim/hand_loop.h"
 #include "tests/support/rounds.h"
 
 namespace cordis::sim {
 namespace {
-
-using engine::Vec3;
-
-constexpr double kTick = 1e-3;        // T [s]
-constexpr double kPortMass = 0.05;    // m [kg]
-constexpr double kMostForce = 100.0;  // of the device [N]
-
-/// A hand that holds the first MAT of a scene through a device of role liaison.
-struct Hold {
-  double viscosity = 5.0;  // Z of the scene at the port [N s/m]
-  int delay = 1;           // d [periods]
-  double stiffness = 0.0;  // k of the hand [N/m]
-  int sub_steps = 1;
-  bool tells_work = true;  // else it is not braked
-};
-
-engine::Mat mass_at(const Vec3& position, double mass = kPortMass) {
-  engine::Mat mat;
-  mat.mass = mass;
-  mat.position = position;
-  return mat;
-}
-
-engine::Mat fixed_at(const Vec3& position) {
-  engine::Mat mat;
-  mat.kind = engine::MatKind::kFixed;
-  mat.position = position;
-  return mat;
-}
-
-/// Without links: a port mass on one axis for each dimension, and a fixed point.
-scene::Scene bare_scene(int dimension, int sub_steps = 1) {
-  scene::Scene scene;
-  scene.gesture_rate_hz = 1.0 / kTick;
-  scene.network.dimension = dimension;
-  scene.network.step = kTick / sub_steps;
-  scene.network.mats = {mass_at(Vec3::Zero()), fixed_at(Vec3::Zero())};
-  scene::Port port;
-  port.device = "key";
-  port.device_id = 9;
-  port.role = Role::kLiaison;
-  for (std::uint32_t axis = 0; axis < static_cast<std::uint32_t>(dimension); ++axis) {
-    port.axes.push_back(axis);
-    port.directions.push_back(Vec3::Unit(axis));
-  }
-  scene.ports = {port};
-  return scene;
-}
-
-scene::Scene scene_of(const Hold& hold) {
-  scene::Scene scene = bare_scene(1, hold.sub_steps);
-  scene.network.links = {{0, 1, 0.0, hold.viscosity, 0.0}};
-  return scene;
-}
-
-/// The scene, its devices and a hand on each, in lockstep; answers are felt `delay` periods late.
-class Loop {
- public:
-  explicit Loop(const Hold& hold) : Loop(hold, scene_of(hold)) {}
-
-  Loop(const Hold& hold, const scene::Scene& scene)
-      : tells_work_(hold.tells_work),
-        stiffness_(Vec3::Constant(hold.stiffness)),
-        simulation_(std::make_unique<Simulation>(finished(scene), kRunOfSim)) {
-    for (std::size_t i = 0; i < scene.ports.size(); ++i) {
-      hands_.emplace_back();
-      hands_.back().answers.resize(static_cast<std::size_t>(hold.delay) + 1);
-    }
-  }
-
-  void hold_with(const Vec3& stiffness) { stiffness_ = stiffness; }
-
-  /// @param target  where every hand wants to be, from the start of its port [m]
-  /// @param hears  false: the answer is lost, and the hand stays where it is
-  void tick(const Vec3& target, bool hears = true) {
-    ++samples_;
-    for (std::size_t i = 0; i < hands_.size(); ++i) {
-      DeviceExchange& device = simulation_->devices()[i];
-      msg::GestureForces sample = hands_[i].sample(stiffness_, target, hears, samples_);
-      sample.device_id(device.device_id());
-      if (!tells_work_) sample.work_j(0.0);
-      device.receive(sample);
-    }
-    live();
-  }
-  void tick(double target, bool hears = true) { tick(Vec3(target, 0.0, 0.0), hears); }
-
-  /// A tick, with or without new samples.
-  void live() {
-    while (!simulation_->advance(1, events_)) {
-    }
-    for (std::size_t i = 0; i < hands_.size(); ++i) {
-      hands_[i].answers.push_back(devices()[i].answer_positions(simulation_->world(), true, 0));
-    }
-  }
-
-  Vec3 place() const { return simulation_->world().position(0); }
-  double position() const { return place().x(); }
-  std::uint64_t braked_ticks() { return devices().front().braked_ticks(); }
-
- private:
-  struct Hand {
-    std::deque<msg::GesturePositions> answers;
-    msg::GesturePositions felt;
-    Vec3 carried = Vec3::Zero();
-    Vec3 force = Vec3::Zero();
-    double work = 0.0;
-
-    msg::GestureForces sample(const Vec3& stiffness, const Vec3& target, bool hears,
-                              std::uint64_t number) {
-      if (hears) felt = answers.front();
-      answers.pop_front();
-      msg::GestureForces sample;
-      sample.run(5);
-      sample.sample(number);
-      sample.answered_run(felt.run());
-      sample.answered_sample(felt.sample());
-      sample.axis_count(3);
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const double now = felt.position_m()[static_cast<std::size_t>(axis)];
-        const double pull =
-            std::clamp(stiffness[axis] * (target[axis] - now), -kMostForce, kMostForce);
-        work += 0.5 * (pull + force[axis]) * (now - carried[axis]);
-        carried[axis] = now;
-        force[axis] = pull;
-        sample.force_n()[static_cast<std::size_t>(axis)] = pull;
-      }
-      sample.work_j(work);
-      return sample;
-    }
-  };
-
-  static std::shared_ptr<const scene::Scene> finished(scene::Scene scene) {
-    scene.step_rate_hz = 1.0 / scene.network.step;
-    return std::make_shared<const scene::Scene>(std::move(scene));
-  }
-  std::vector<DeviceExchange>& devices() { return simulation_->devices(); }
-
-  bool tells_work_;
-  Vec3 stiffness_;
-  std::unique_ptr<Simulation> simulation_;
-  std::vector<Hand> hands_;
-  EventRoom events_;
-  std::uint64_t samples_ = 0;
-};
-
-/// Largest distance between two places of the mass along an axis, in so many ticks.
-double swing_along(Loop& loop, const Vec3& hand, Eigen::Index axis, int ticks) {
-  double least = loop.place()[axis];
-  double most = least;
-  for (int n = 0; n < ticks; ++n) {
-    loop.tick(hand);
-    least = std::min(least, loop.place()[axis]);
-    most = std::max(most, loop.place()[axis]);
-  }
-  return most - least;
-}
-
-/// Largest distance of the mass from the hand in the last of six seconds; the hand steps by 5 mm
-/// after the first.
-double swing(Loop& loop) {
-  double largest = 0.0;
-  for (int n = 0; n < 6000; ++n) {
-    const double hand = n < 1000 ? 0.0 : 0.005;
-    loop.tick(hand);
-    if (n >= 5000) largest = std::max(largest, std::abs(loop.position() - hand));
-  }
-  return largest;
-}
 
 class Late : public ::testing::TestWithParam<int> {};
 
@@ -366,6 +193,53 @@ TEST(PortBrake, ADamperWhoseEndsGoTogetherTakesNothing) {
     Loop loop({0.0, 1, 200.0, 1, braked}, chain_scene(5000.0, 5.0, 0.0));
     const double largest = swing(loop);
     EXPECT_TRUE(braked ? largest < 0.0055 : largest > 0.02) << largest;
+  }
+}
+
+TEST(PortBrake, AHandThatIsGivenEnergyByTheDelayIsBraked) {
+  // Driven at w, the port sends m w^2 d T v^2 more than it is given, and Z takes Z v^2.
+  const Hold hold{0.5, 1, 400.0};
+  const double limit = std::sqrt(hold.viscosity / (kPortMass * hold.delay * kTick));
+  for (const double share : {0.5, 0.9, 1.1, 2.0}) {
+    const auto shake = [&](Loop& loop) {
+      for (int n = 0; n < 4000; ++n) loop.tick(0.003 * std::sin(share * limit * n * kTick));
+      const double before = loop.hand_work();
+      for (int n = 0; n < 1000; ++n) loop.tick(0.003 * std::sin(share * limit * n * kTick));
+      return loop.hand_work() - before;
+    };
+    Loop free({hold.viscosity, hold.delay, hold.stiffness, 1, false});
+    EXPECT_EQ(shake(free) > 0.0, share < 1.0) << share;
+
+    Loop braked(hold);
+    shake(braked);
+    EXPECT_EQ(braked.braked_ticks() > 0, share > 1.0) << share;
+  }
+}
+
+TEST(PortBrake, SamplesLateInBurstsBrakeNothing) {
+  Loop loop({5.0, 1, 0.8 * 5.0 / kTick});
+
+  for (int n = 0; n < 4000; ++n) {
+    loop.tick(0.03 * std::sin(2.0 * std::numbers::pi * n * kTick), n % 400 < 385);
+  }
+
+  EXPECT_EQ(loop.braked_ticks(), 0u);
+}
+
+TEST(PortBrake, KnowsWhatEveryIntegratorTakes) {
+  for (const engine::Integrator integrator :
+       {engine::Integrator::kCordis, engine::Integrator::kLeapfrog,
+        engine::Integrator::kImplicit}) {
+    for (const int sub_steps : {1, 5}) {
+      for (const double times : {0.6, 2.0}) {
+        Hold hold{5.0, 1, times * 5.0 / kTick, sub_steps};
+        scene::Scene scene = scene_of(hold);
+        scene.network.integrator = integrator;
+        Loop loop(hold, scene);
+        EXPECT_LT(swing(loop), 1e-5);
+        EXPECT_EQ(loop.braked_ticks() > 0, times > 1.0) << sub_steps;
+      }
+    }
   }
 }
 
