@@ -93,6 +93,25 @@ TEST_P(LeapfrogInSpace, IsOfSecondOrderWhereDampersTurn) {
 
 INSTANTIATE_TEST_SUITE_P(ExtrapolatedAndInSweeps, LeapfrogInSpace, testing::Values(0.3, 100.0));
 
+TEST(LeapfrogSweeps, AreOfSecondOrderOverDampersThatShareMasses) {
+  const auto end = [](double step) {
+    NetworkDescription scene;
+    scene.dimension = 1;
+    scene.step = step;
+    scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(0.1, 0, 0)), mass(1.0, Vec3(0.2, 0, 0)),
+                  mass(1.0, Vec3(0.3, 0, 0), Vec3(1, 0, 0))};
+    scene.links = {{0, 1, 100.0, 42.0, 0.1}, {1, 2, 200.0, 90.0, 0.1}, {2, 3, 100.0, 40.0, 0.1}};
+    World world = make_world(by_leapfrog(scene));
+    run(world, static_cast<int>(std::lround(0.1 / step)));
+    return world.position(1).x();
+  };
+  const double coarse = end(2.5e-3);
+  const double middle = end(2e-3);
+  const double fine = end(1.25e-3);                                             // Z' = 0.33
+  const double expected = (2.5 * 2.5 - 2.0 * 2.0) / (2.0 * 2.0 - 1.25 * 1.25);  // 0.67 of first
+  EXPECT_NEAR((coarse - middle) / (middle - fine), expected, 0.05);
+}
+
 // m = 1 and dt = 1: then K is K' and Z is Z'.
 TEST(LeapfrogStability, EndsAtStiffnessPlusFourTimesTheExtrapolatedViscosityOfFour) {
   for (const double viscosity : {0.0, 0.1, 0.2, 0.3}) {

@@ -145,5 +145,16 @@ TEST(Choice, TriesOutWhatMovesByItselfAndNotWhatIsPlayed) {
   EXPECT_NE(played.doubt, "");
 }
 
+TEST(Choice, TakesAFactorisationOnlyWhereItSavesFiftySteps) {
+  const auto chosen = [](double stiffness) {
+    const AccuracyWish wish{0.1, 1.0, 0.5};  // stability alone decides
+    return plan::choose(oscillator(0.1, stiffness, 0.0, 1.0, 0.0, 1e-3), wish, 1000.0,
+                        {"cordis", "implicit"}, false);
+  };
+  EXPECT_EQ(chosen(1e7).integrator, "cordis");  // 5,600 Hz, and 1,000 Hz
+  EXPECT_EQ(chosen(1e10).integrator, "implicit");
+  EXPECT_EQ(chosen(1e10).rate_hz, 1000.0);
+}
+
 }  // namespace
 }  // namespace cordis::test

@@ -39,6 +39,19 @@ TEST(LimitWatch, KeepsTheLargestThatAMassHasHad) {
   EXPECT_NEAR(stage->limits.largest(), 2.0 * 2e4 * 1e-6 / 0.1, 1e-12);  // 2 K dt^2 / m
 }
 
+TEST(LimitWatch, CountsTheNeighboursThatABallOfASetMayHave) {
+  const auto stage = stage_of(
+      "cordis: 1\nname: row\nspace: 1\nstep: {rate_hz: 1000}\n"
+      "liaisons: {touch: {states: {on: {stiffness_n_per_m: 3000, viscosity_n_s_per_m: 1, pulls: "
+      "false, final: true}}}}\n"
+      "matter:\n  balls: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.01}, at_m: [0, 0.03, "
+      "0.06]}\n"
+      "links:\n  - {liaison: touch, within: balls, rest: radii, range_m: 0.02}\n");
+  stage->limits.look(stage->simulation.world());
+  const double one = 3000.0 * 1e-6 + 2.0 * 1e-3;                       // K dt^2 + 2 Z dt
+  EXPECT_NEAR(stage->limits.largest(), 2.0 * 2.0 * one / 0.1, 1e-12);  // one on each side
+}
+
 TEST(Divergence, IsToldWithTheLinkAndTheReason) {
   const auto stage = stage_of(snatch_text("900000"));
   Simulation& simulation = stage->simulation;
