@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -95,6 +97,11 @@ void read_trace(config::MappingReader& reader, TraceSettings& trace, config::Pro
   if (!reader.has("trace")) return;
   config::MappingReader section(reader.optional_mapping("trace"), "trace", problems);
   trace.file = section.required_text("file");
+  const std::filesystem::path folder = std::filesystem::path(trace.file).parent_path();
+  std::error_code unknown;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, unknown)) {
+    section.error_at("file", "there is no folder '" + folder.string() + "' for the trace");
+  }
   trace.last_s = section.optional_number("last_s", 10.0, Range::between(0.001, 3600.0));
   section.finish();
 }
@@ -166,7 +173,7 @@ std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig
     const bool present = reader.has(entry.name);
     config::Value section = reader.optional_mapping(entry.name);
     if (!in_use && !present) continue;
-    if (!present) section = config::Value::mapping({}, reader.place());
+    if (!present) section = config::Value::mapping({}, reader.place_of("driver"));
     auto driver = entry.make(section, config.layout, problems);
     if (in_use) chosen = std::move(driver);
   }

@@ -154,6 +154,10 @@ std::vector<Trajectory> knead(MappingReader& reader) {
 std::vector<Trajectory> read_words(MappingReader& reader, std::size_t axis_count) {
   const std::string kind = reader.required_choice(
       "kind", {"hold", "reach_and_press", "pluck", "bow", "grasp_and_drag", "knead"});
+  if (!reader.ok()) {  // nothing is known of the other keys of a gesture without a kind
+    for (const std::string& key : reader.present_keys()) reader.optional_value(key);
+    return {};
+  }
   if ((kind == "grasp_and_drag" || kind == "knead") && axis_count != kFingerAxes) {
     reader.error_at("kind", "'" + kind + "' needs a hand on four axes: x0, y0, x1, y1");
     return {};

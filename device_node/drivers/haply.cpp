@@ -1,6 +1,7 @@
 // device_node/drivers/haply.cpp
 #include "device_node/drivers/haply.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -124,6 +125,9 @@ std::unique_ptr<Driver> make_haply(const config::Value& section, const AxisLayou
   haply.rest_m = pair("rest_m", haply.rest_m);
   haply.offsets_deg = pair("offsets_deg", haply.offsets_deg);
   haply.counts_per_turn = pair("counts_per_turn", haply.counts_per_turn);
+  if (!(std::min(haply.counts_per_turn[0], haply.counts_per_turn[1]) > 0.0)) {
+    reader.error_at("counts_per_turn", "counts_per_turn must be > 0, of both encoders");
+  }
   haply.arms.inner_m = reader.optional_number("inner_m", haply.arms.inner_m, Range::positive());
   haply.arms.outer_m = reader.optional_number("outer_m", haply.arms.outer_m, Range::positive());
   haply.arms.base_m = reader.optional_number("base_m", haply.arms.base_m, Range::not_negative());

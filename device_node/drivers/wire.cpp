@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
+#include <charconv>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -132,9 +132,13 @@ std::unique_ptr<Wire> read_wire(config::MappingReader& reader, long default_baud
   sockaddr_in peer{};
   peer.sin_family = AF_INET;
   const std::size_t colon = address.rfind(':');
-  const long number = colon == std::string::npos ? 0 : std::atol(address.c_str() + colon + 1);
-  peer.sin_port = htons(static_cast<std::uint16_t>(number));
-  if (number < 1 || number > 65535 ||
+  std::uint16_t number = 0;
+  const char* const end = address.data() + address.size();
+  const bool is_number =
+      colon != std::string::npos &&
+      std::from_chars(address.data() + colon + 1, end, number) == std::from_chars_result{end, {}};
+  peer.sin_port = htons(number);
+  if (!is_number || number == 0 ||
       inet_pton(AF_INET, address.substr(0, colon).c_str(), &peer.sin_addr) != 1) {
     reader.error_at("udp", "udp must be an address like 192.168.0.7:5005, got '" + address + "'");
     return nullptr;

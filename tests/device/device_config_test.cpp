@@ -165,6 +165,14 @@ TEST(DeviceConfig, LaysTheLaunchFileAndTheCommandLineOnTheDeviceFile) {
   EXPECT_EQ(launched("keyboard.yaml", {"keyboard.travel_m=0.05"}).config.layout.lowest_m, -0.05);
 }
 
+TEST(DeviceConfig, SaysOneThingOfAGestureThatIsNone) {
+  const std::string problems =
+      problems_of("axes: 1\nmock: {hand: {gesture: {kind: pluk, depth_m: -0.01}}}");
+  EXPECT_NE(problems.find("device.yaml:2:31: error: 'kind' in gesture"), std::string::npos);
+  EXPECT_NE(problems.find("did you mean 'pluck'?"), std::string::npos) << problems;
+  EXPECT_EQ(problems.find("error: "), problems.rfind("error: ")) << problems;
+}
+
 struct BadDevice {
   const char* text;
   const char* problem;
@@ -187,6 +195,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadDevice{"{axes: 1, travel: 0.03}", "device.yaml:1:11: error: unknown key 'travel'"},
         BadDevice{"{axes: 1, driver: moc}", "did you mean 'mock'?"},
         BadDevice{"{axes: 1, driver: script}", "error: script needs positions or forces"},
+        BadDevice{"axes: 1\ndriver: kfb1", "device.yaml:2:9: error: kfb1 needs either 'port'"},
+        BadDevice{"axes: 1\nkfb1: {udp: '127.0.0.1:50x'}", "device.yaml:2:13: error: udp must be"},
+        BadDevice{"axes: 1\nkfb1: {udp: 'localhost'}", "device.yaml:2:13: error: udp must be"},
+        BadDevice{"axes: 1\nkfb1: {port: /dev/ttyACM0, baud: 12345}",
+                  "device.yaml:2:34: error: baud must be 9600, "},
+        BadDevice{"axes: 3\nfirefader: {port: /dev/ttyUSB0}", "it has at most two axes"},
+        BadDevice{"axes: 2\nhaply: {port: /dev/ttyACM0, counts_per_turn: [10752, 0]}",
+                  "device.yaml:2:46: error: counts_per_turn must be > 0"},
+        BadDevice{"axes: 2\nhaply: {port: /dev/ttyACM0, rest_m: [0, 0.4]}",
+                  "rest_m is out of the reach of its arms"},
+        BadDevice{"axes: 1\ntrace: {file: /nowhere/at_all.csv}",
+                  "device.yaml:2:15: error: there is no folder '/nowhere' for the trace"},
         BadDevice{"{axes: 1, watchdog_s: 0.003}",
                   "device.yaml:1:23: error: watchdog_s must be more than three periods of rate_hz"},
         BadDevice{"{axes: 1, slew_limit_n_per_s: 100}",
