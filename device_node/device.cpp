@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -152,10 +153,14 @@ void Device::play_paced(Exchange& exchange) {
 }
 
 void Device::play_in_lockstep(Exchange& exchange) {
+  const auto watchdog = std::min<std::chrono::nanoseconds>(
+      std::chrono::nanoseconds(std::llround(config_.force_guard.watchdog_s * 1e9)), kRepeatAfter);
   while (!node::stop_requested()) {
     exchange.send_sample();
     auto silent = milliseconds(0);
-    while (!exchange.await_answer(kRepeatAfter)) {
+    const bool in_time = exchange.await_answer(watchdog);
+    if (!in_time) exchange.let_go();
+    while (!in_time && !exchange.await_answer(kRepeatAfter)) {
       if (node::stop_requested() || hear_scene()) return;
       silent += kRepeatAfter;
       if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {

@@ -61,6 +61,10 @@ bool Exchange::await_answer(std::chrono::nanoseconds silence) noexcept {
   return false;
 }
 
+void Exchange::let_go() noexcept {
+  if (driver_.let_go()) force_guard_.let_go();
+}
+
 /// Whether an answer is well formed, answers this process, and is newer than the one in use.
 /// A new run of the scene is recognised by what it answers alone.
 bool Exchange::consider(const GestureMessage& answer) noexcept {

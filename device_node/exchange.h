@@ -53,6 +53,9 @@ class Exchange {
   /// answer or call; true when it is answered.
   bool await_answer(std::chrono::nanoseconds silence) noexcept;
 
+  /// In lockstep, when await_answer() has been in vain: motors off, if there are any.
+  void let_go() noexcept;
+
   /// Motors, one period, sensors. Sets the phase of the meter: waiting until the first answer,
   /// running while answers come, standby while they go to another node, lost when they are older
   /// than the watchdog or the driver has no device.

@@ -29,6 +29,7 @@ class TracedDriver final : public Driver {
   bool read(AxisValues& sensed) noexcept override;
   void note_age(double age_s) noexcept override { driver_->note_age(age_s); }
   bool write(const AxisValues& commanded) noexcept override;
+  bool let_go() noexcept override { return driver_->let_go(); }
   void stop() noexcept override;
 
  private:

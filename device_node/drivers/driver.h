@@ -36,6 +36,10 @@ class Driver {
   /// here, and no other clock moves it. False when the device does not answer.
   virtual bool write(const AxisValues& commanded) noexcept = 0;
 
+  /// A scene in lockstep is silent: motors off until the next write(). True when there are any, and
+  /// forces shall grow anew; for a simulated device no time passes meanwhile.
+  virtual bool let_go() noexcept { return false; }
+
   /// Motors off, at once. start() may follow.
   virtual void stop() noexcept = 0;
 };

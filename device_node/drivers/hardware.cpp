@@ -55,6 +55,12 @@ bool Hardware::write(const AxisValues& commanded) noexcept {
   return contact_ == Contact::kPresent;
 }
 
+bool Hardware::let_go() noexcept {
+  stop();
+  guard_.start();
+  return true;
+}
+
 void Hardware::stop() noexcept {
   pull_.fill(0.0);
   if (contact_ == Contact::kPresent) ask({});

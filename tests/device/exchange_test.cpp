@@ -56,11 +56,13 @@ class FakeDriver : public Driver {
     commands.push_back(commanded);
     return present;
   }
+  bool let_go() noexcept override { return has_motors; }
   void stop() noexcept override { stopped = true; }
 
   Role started_as = Role::kMass;
   std::vector<AxisValues> commands;
   double age = -1.0;  // of the last of them [s]
+  bool has_motors = false;
   bool present = true;
   bool lies = false;
   bool stopped = false;
@@ -368,6 +370,20 @@ TEST(Exchange, InLockstepRepeatsTheVerySameSample) {
   EXPECT_EQ(rig.channel.sent[1].sample, rig.channel.sent[0].sample);
   EXPECT_EQ(rig.channel.sent[1].time_nsec, rig.channel.sent[0].time_nsec);
   EXPECT_EQ(rig.channel.sent[1].value, rig.channel.sent[0].value);
+}
+
+TEST(Exchange, InLockstepMotorsGrowAnewAfterASilence) {
+  for (const bool motors : {false, true}) {
+    Rig rig(true);
+    rig.driver.has_motors = motors;
+    for (int n = 0; n < 3; ++n) rig.period(true, 12.0);
+    ASSERT_EQ(rig.driver.commands.back()[0], 12.0);
+
+    rig.exchange.let_go();
+
+    EXPECT_EQ(rig.period(true, 12.0), motors ? 0.0 : 12.0) << "a simulated key has felt no silence";
+    EXPECT_EQ(rig.period(true, 12.0), motors ? 5.0 : 12.0);
+  }
 }
 
 TEST(Exchange, InLockstepDoesNotDependOnTheClock) {

@@ -1,7 +1,9 @@
 // tests/device/firefader_test.cpp -- the driver against an emulated FireFader on a pseudo-terminal.
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -87,6 +89,22 @@ TEST_F(FireFaderTest, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
 
     EXPECT_EQ(faders.forces[0], 63);
   }
+}
+
+TEST_F(FireFaderTest, LetsGoOfItsMotorsWhenASceneInLockstepIsSilent) {
+  Faders faders;
+  faders.plug.into_serial_line(link());
+  const auto driven = driver("firefader", port() + ", full_scale_n: 2", two_faders());
+  driven->start(Role::kMass);
+  ASSERT_TRUE(until(*driven, {1.0, 1.0}, [&](bool) { return faders.forces[0] == 63; }));
+
+  EXPECT_TRUE(driven->let_go());
+
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (faders.forces[0] != 0 && std::chrono::steady_clock::now() < limit) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(faders.forces[0], 0);
 }
 
 TEST_F(FireFaderTest, WaitsNoLongerForAnAnswerThatWasLost) {
