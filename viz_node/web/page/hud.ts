@@ -199,7 +199,7 @@ function rowOf(node: NodeState): HTMLElement {
   row.dataset.state = node.state;
   row.title = node.text;
   if (node.kind === 'device_node') {
-    row.title += ` ${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.braked_ticks)} ticks braked`;
+    row.title += `${node.text && '; '}${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.braked_ticks)} ticks braked`;
   }
   cell(node.name, 'name');
   cell(node.state, 'state');
