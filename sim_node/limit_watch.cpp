@@ -30,25 +30,32 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
   };
   const plan::LimitWeights weights = plan::limit_weights(network, plan::Limit::kStable);
   const plan::LiaisonGraph graph = plan::weighted(plan::liaison_graph(network), weights);
+  const std::vector<double> weight = plan::row_weights(graph, dt);
   for (std::size_t i = 0; i < share_.size(); ++i) {
-    share_[i] = 2.0 * graph.inverse_mass[i];
-    steady_[i] = number(0.0, 0.5 * graph.medium_viscosity);
+    if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
+    steady_[i] = number(0.0, graph.medium_viscosity) * weight[i];
   }
   for (const plan::Joint& joint : graph.joints) {
     if (joint.liaison.kind == plan::LiaisonKind::kStateLink) continue;
-    steady_[joint.mat_a] += number(joint.stiffness, joint.viscosity);
-    steady_[joint.mat_b] += number(joint.stiffness, joint.viscosity);
+    const double both = weight[joint.mat_a] + weight[joint.mat_b];
+    steady_[joint.mat_a] += number(joint.stiffness, joint.viscosity) * both;
+    steady_[joint.mat_b] += number(joint.stiffness, joint.viscosity) * both;
   }
   for (const plan::Crowd& crowd : graph.crowds) {
+    double most = 0.0;
+    for (const std::uint32_t mat : crowd.others) most = std::max(most, weight[mat]);
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
-      steady_[crowd.members[m]] += crowd.neighbours[m] * number(crowd.stiffness, crowd.viscosity);
+      const std::uint32_t mat = crowd.members[m];
+      steady_[mat] +=
+          crowd.neighbours[m] * number(crowd.stiffness, crowd.viscosity) * (weight[mat] + most);
     }
   }
   const plan::Reach reach = plan::reach_of(network);
   std::uint32_t index = 0;
   for (const engine::StateLink& link : network.state_links) {
     const double viscosity = weights.viscosity_of_state_link(index++);
-    links_.push_back({link.mat_a, link.mat_b, static_cast<std::uint32_t>(slopes_.size())});
+    links_.push_back({link.mat_a, link.mat_b, static_cast<std::uint32_t>(slopes_.size()),
+                      weight[link.mat_a] + weight[link.mat_b]});
     const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
     for (std::size_t state = 0; state < behaviour.states.size(); ++state) {
       const plan::Slope slope =
@@ -62,7 +69,7 @@ void LimitWatch::look(const engine::World& world) noexcept {
   std::copy(steady_.begin(), steady_.end(), sum_.begin());
   for (std::uint32_t l = 0; l < links_.size(); ++l) {
     const StateLink& link = links_[l];
-    const double slope = slopes_[link.first + world.state_of(l)];
+    const double slope = slopes_[link.first + world.state_of(l)] * link.both;
     sum_[link.mat_a] += slope;
     sum_[link.mat_b] += slope;
   }

@@ -105,11 +105,28 @@ void iterate(const LiaisonGraph& graph, const Rows& rows, double step, std::vect
   }
 }
 
+std::vector<double> first_weights(const LiaisonGraph& graph) {
+  std::vector<double> x;
+  for (const double inverse_mass : graph.inverse_mass) x.push_back(std::sqrt(inverse_mass));
+  return x;
+}
+
+/// Bound on the eigenvalues at a step.
+double row_number(const LiaisonGraph& graph, const std::vector<double>& x, const Rows& rows,
+                  double step) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] <= 0.0) continue;
+    const double row = step * step * rows.stiffness[i] + 2.0 * step * rows.viscosity[i];
+    most = std::max(most, row * graph.inverse_mass[i] / x[i]);
+  }
+  return most;
+}
+
 StepBound bound_at(const LiaisonGraph& graph) {
   StepBound best = edge_bound(graph);
   if (!std::isfinite(best.step)) return best;
-  std::vector<double> x;
-  for (const double inverse_mass : graph.inverse_mass) x.push_back(std::sqrt(inverse_mass));
+  std::vector<double> x = first_weights(graph);
   for (int n = 0; n < kRowBounds; ++n) {
     const Rows rows = times(graph, x);
     const StepBound bound = row_bound(graph, x, rows);
@@ -124,6 +141,22 @@ StepBound bound_at(const LiaisonGraph& graph) {
 
 double limit_step(double stiffness, double viscosity) noexcept {
   return 4.0 / (viscosity + std::sqrt(viscosity * viscosity + 4.0 * stiffness));
+}
+
+std::vector<double> row_weights(const LiaisonGraph& graph, double step) {
+  std::vector<double> x = first_weights(graph);
+  std::vector<double> best = x;
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < kRowBounds; ++n) {
+    const Rows rows = times(graph, x);
+    const double number = row_number(graph, x, rows, step);
+    if (number < least) {
+      least = number;
+      best = x;
+    }
+    iterate(graph, rows, step, x);
+  }
+  return best;
 }
 
 StepBound edge_bound(const LiaisonGraph& graph) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "sim_node/engine/network.h"
 #include "sim_node/plan/liaison_graph.h"
@@ -30,6 +31,10 @@ StepBound edge_bound(const LiaisonGraph& graph);
 /// Both hold in every pose and every combination of states, for the integrator of the network.
 /// O(liaisons). Derived in docs/stability.md.
 StepBound certified_bound(const engine::NetworkDescription& network, const LiaisonGraph& graph);
+
+/// The x > 0 of one of these row bounds, that which bounds the eigenvalues best at this step; 0
+/// where nothing moves. O(liaisons).
+std::vector<double> row_weights(const LiaisonGraph& graph, double step);
 
 /// The step at which dt^2 stiffness + 2 dt viscosity = 4, both for unit mass; infinite for 0 and 0.
 double limit_step(double stiffness, double viscosity) noexcept;

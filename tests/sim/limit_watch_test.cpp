@@ -1,6 +1,8 @@
 // tests/sim/limit_watch_test.cpp
 #include "sim_node/limit_watch.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/sim/stages.h"
@@ -31,12 +33,12 @@ TEST(LimitWatch, KeepsTheLargestThatAMassHasHad) {
   Simulation& simulation = stage->simulation;
   EventRoom events(1);
   stage->limits.look(simulation.world());
-  EXPECT_NEAR(stage->limits.largest(), 2.0 * 2.0 * 1e-3 / 0.1, 1e-12);  // 2 * 2 Z dt / m
+  EXPECT_NEAR(stage->limits.largest(), 2.0 * 1e-3 / 0.1, 1e-12);  // 2 Z dt / m
 
   for (int tick = 0; tick < 5; ++tick) simulation.advance(1, events);
   ASSERT_EQ(simulation.world().state_of(0), 1u);
   stage->limits.look(simulation.world());
-  EXPECT_NEAR(stage->limits.largest(), 2.0 * 2e4 * 1e-6 / 0.1, 1e-12);  // 2 K dt^2 / m
+  EXPECT_NEAR(stage->limits.largest(), 2e4 * 1e-6 / 0.1, 1e-12);  // K dt^2 / m
 }
 
 TEST(LimitWatch, CountsTheNeighboursThatABallOfASetMayHave) {
@@ -50,6 +52,27 @@ TEST(LimitWatch, CountsTheNeighboursThatABallOfASetMayHave) {
   stage->limits.look(stage->simulation.world());
   const double one = 3000.0 * 1e-6 + 2.0 * 1e-3;                       // K dt^2 + 2 Z dt
   EXPECT_NEAR(stage->limits.largest(), 2.0 * 2.0 * one / 0.1, 1e-12);  // one on each side
+}
+
+TEST(LimitWatch, StaysBelowFourWhereTheStepIsCertified) {
+  // Five equal masses between walls: 2 - 2 cos(5 pi / 6) = 3.73 of 4 K dt^2 / m.
+  const auto row = [](const std::string& stiffness) {
+    const auto stage = stage_of(
+        "cordis: 1\nname: row\nspace: 1\nstep: {rate_hz: 1000}\n"
+        "liaisons: {s: {kind: spring, stiffness_n_per_m: " +
+        stiffness +
+        ", rest_m: 0}}\n"
+        "matter:\n  wall: {kind: fixed, at_m: [0, 0]}\n"
+        "  bob: {kind: mass, mass_kg: 0.1, at_m: [0, 0, 0, 0, 0]}\n"
+        "links:\n  - {liaison: s, between: [\"wall[0]\", \"bob[0]\"]}\n"
+        "  - {liaison: s, between: [\"wall[1]\", \"bob[4]\"]}\n"
+        "  - {liaison: s, between: [\"bob[0..3]\", \"bob[1..4]\"]}\n");
+    stage->limits.look(stage->simulation.world());
+    return stage->limits.largest();
+  };
+  const double exact = 2.0 - 2.0 * std::cos(5.0 * M_PI / 6.0);
+  EXPECT_GE(row("100000"), exact - 1e-9);
+  EXPECT_LT(row("100000"), exact + 0.1);
 }
 
 TEST(Divergence, IsToldWithTheLinkAndTheReason) {
