@@ -110,7 +110,8 @@ std::unique_ptr<Wire> read_wire(config::MappingReader& reader, long default_baud
   const std::string address = reader.optional_text("udp", "");
   const long baud = reader.optional_integer("baud", default_baud, 1, 10'000'000);
   if (path.empty() == address.empty()) {
-    reader.error_at("port", reader.what() + " needs either 'port', a serial line, or 'udp'");
+    reader.error_at("port", reader.what() + " needs either 'port', a serial line, or 'udp'",
+                    path.empty() ? "" : "port: '' takes back a port that another file gives");
     return nullptr;
   }
   std::error_code unknown;

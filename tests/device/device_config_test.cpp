@@ -196,6 +196,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadDevice{"{axes: 1, driver: moc}", "did you mean 'mock'?"},
         BadDevice{"{axes: 1, driver: script}", "error: script needs positions or forces"},
         BadDevice{"axes: 1\ndriver: kfb1", "device.yaml:2:9: error: kfb1 needs either 'port'"},
+        BadDevice{"axes: 1\nkfb1: {port: /dev/ttyACM0, udp: '127.0.0.1:5005'}",
+                  "hint: port: '' takes back a port that another file gives"},
         BadDevice{"axes: 1\nkfb1: {udp: '127.0.0.1:50x'}", "device.yaml:2:13: error: udp must be"},
         BadDevice{"axes: 1\nkfb1: {udp: 'localhost'}", "device.yaml:2:13: error: udp must be"},
         BadDevice{"axes: 1\nkfb1: {port: /dev/ttyACM0, baud: 12345}",
