@@ -15,7 +15,7 @@ namespace cordis::sim {
 /// does not rise while the loop is passive with a tenth to spare, but for what is on its way:
 /// the spring of a hand and the scene exchange up to f . dx while an answer is late, and what the
 /// port sends off is taken somewhere else a little later. An A that has risen by twice that and
-/// the budget from its lowest is a loop that makes energy, until A is below 0 again.
+/// the budget from its lowest is a loop that makes energy, until the scene has taken that much.
 ///
 /// As long as other things in the scene lose more energy than a loop makes, it is not seen.
 class DelayAccount {
@@ -23,19 +23,14 @@ class DelayAccount {
   static constexpr double kShare = 0.9;     ///< of D
   static constexpr double kBudget = 0.001;  ///< [J]
   static constexpr double kOnItsWay = 2.0;  ///< times f . dx of the delay
-  static constexpr double kTank = 0.1;      ///< most that A remembers to be below 0 [J]
+  static constexpr double kTank = 0.05;     ///< most that A remembers to be below 0 [J]
 
-  /// @param memory_ticks  after which the largest f . dx is nearly forgotten, > 0
-  explicit DelayAccount(double memory_ticks) noexcept : memory_ticks_(memory_ticks) {}
+  /// @param memory  calls of enter() after which the largest f . dx is nearly forgotten, > 0
+  explicit DelayAccount(double memory) noexcept : memory_(memory) {}
 
-  /// One more device counts, or one less; without any the account is empty.
-  /// @param taken_j  D where it felt the answer
-  void join(double taken_j) noexcept;
-  void leave() noexcept;
-
-  /// Once a tick for every device that counts.
+  /// Once a tick for every device.
   /// @param made_j   by how much its M has grown
-  /// @param taken_j  D where it felt the answer
+  /// @param taken_j  D
   /// @param moved_j  |f . dx| over its delay
   void enter(double made_j, double taken_j, double moved_j) noexcept;
 
@@ -43,8 +38,7 @@ class DelayAccount {
   double excess_j() const noexcept { return account_; }  ///< A [J]
 
  private:
-  double memory_ticks_;
-  int devices_ = 0;
+  double memory_;
   bool makes_energy_ = false;
   double account_ = 0.0;  // A [J]
   double taken_ = 0.0;    // the largest D that was told [J]

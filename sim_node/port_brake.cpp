@@ -52,7 +52,6 @@ void PortBrake::start() noexcept {
   ticks_ = 0;
   told_ = false;
   strict_ = 0.0;
-  if (std::exchange(counts_, false)) account_->leave();
 }
 
 Vec3 PortBrake::brake(std::size_t port, const engine::World& world,
@@ -79,8 +78,7 @@ Vec3 PortBrake::brake(std::size_t port, const engine::World& world,
 }
 
 void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissipated_j) noexcept {
-  while (last_entered_ < newest_answer_)
-    at_answer_[++last_entered_ % kRoom] = {brought_, dissipated_j};
+  while (last_entered_ < newest_answer_) brought_at_answer_[++last_entered_ % kRoom] = brought_;
   ++ticks_;
   if (std::exchange(braked_, false)) ++braked_ticks_;
   const double moved = std::exchange(moved_, 0.0);
@@ -90,17 +88,15 @@ void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissip
                      answered_sample + kRoom > last_entered_;
   if (!known || !std::isfinite(work_j)) return;
   told_ = told_ || work_j != 0.0;
-  const Moment& then = at_answer_[answered_sample % kRoom];
-  const double made = then.brought - work_j;
+  const double made = brought_at_answer_[answered_sample % kRoom] - work_j;
   if (told_ && ticks_ > settled_ticks_) {
     const auto ticks_late = static_cast<double>(last_entered_ - answered_sample);
-    judge(made - made_before_, then.taken, moved * std::max(ticks_late, 1.0));
+    judge(made - made_before_, dissipated_j, moved * std::max(ticks_late, 1.0));
   }
   made_before_ = made;
 }
 
 void PortBrake::judge(double made_j, double taken_j, double moved_j) noexcept {
-  if (!std::exchange(counts_, true)) account_->join(taken_j);
   const bool made_energy = account_->makes_energy();
   account_->enter(made_j, taken_j, moved_j);
   if (!account_->makes_energy()) {

@@ -27,7 +27,7 @@ class PortBrake {
   static constexpr double kSettled = 0.5;  ///< [s]
 
   /// @param ports  of the device, role liaison
-  /// @param account  of all devices of the scene, made with settled_ticks()
+  /// @param account  of all devices of the scene
   PortBrake(const scene::Scene& scene, const std::vector<scene::Port>& ports,
             std::shared_ptr<DelayAccount> account);
 
@@ -61,11 +61,6 @@ class PortBrake {
     engine::Vec3 force = engine::Vec3::Zero();       // of the hand in the last step [N]
     engine::Vec3 braking = engine::Vec3::Zero();     // ours [N]
   };
-  /// When an answer was given.
-  struct Moment {
-    double brought = 0.0;  // E [J]
-    double taken = 0.0;    // D [J]
-  };
   static constexpr std::size_t kRoom = 16;  // answers: the oldest that a sample may still speak of
 
   void judge(double made_j, double taken_j, double moved_j) noexcept;
@@ -77,11 +72,10 @@ class PortBrake {
   double settled_ticks_;
   int ticks_ = 0;         // since the start
   bool told_ = false;     // the device tells its work
-  bool counts_ = false;   // in the account
   bool braked_ = false;   // in this tick
   double brought_ = 0.0;  // E [J]
   double moved_ = 0.0;    // the largest |f . dx| of this tick [J]
-  std::array<Moment, kRoom> at_answer_{};
+  std::array<double, kRoom> brought_at_answer_{};
   std::uint64_t newest_answer_ = 0;
   std::uint64_t last_entered_ = 0;  // of the answers in at_answer_
   double made_before_ = 0.0;        // M of the last sample [J]
