@@ -140,10 +140,11 @@ std::string load_text(const SceneCheck& check) {
   const double rate = check.real_time_rate();
   const bool stable = check.is_certified_at(rate);
   text += fmt::format(
-      "            TOO SLOW for real time: run it with clock asap, {:.3g} times slower, or at "
-      "{:.4g} "
-      "steps per second{}\n",
-      check.load(), rate, stable ? "" : ", which is unstable: make it smaller or softer");
+      "            TOO SLOW for real time: run it with clock asap, {:.3g} times slower, or ",
+      check.load());
+  if (rate == 0.0) return text + "make it smaller: a step takes longer than a gesture\n";
+  text += fmt::format("at {:.6g} steps per second{}\n", rate,
+                      stable ? "" : ", which is unstable: make it smaller or softer");
   if (check.choice && stable) {
     text += fmt::format("            at that rate the tolerance would be about {:.2g}\n",
                         check.tolerance_at(rate));
@@ -155,7 +156,7 @@ std::string load_text(const SceneCheck& check) {
 nlohmann::json alternatives_json(const SceneCheck& check) {
   const double rate = check.real_time_rate();
   nlohmann::json real_time{{"rate_hz", rate}, {"stable", check.is_certified_at(rate)}};
-  if (check.choice) real_time["tolerance"] = check.tolerance_at(rate);
+  if (check.choice && rate > 0.0) real_time["tolerance"] = check.tolerance_at(rate);
   return {{"asap", {{"times_slower", check.load()}}}, {"realtime", std::move(real_time)}};
 }
 

@@ -37,6 +37,10 @@ double SceneCheck::rate_above(double rate_hz) const noexcept {
   return (std::floor(rate_hz / scene.gesture_rate_hz) + 1.0) * scene.gesture_rate_hz;
 }
 
+double SceneCheck::real_time_rate() const noexcept {
+  return std::floor(1e9 / step_nsec / scene.gesture_rate_hz) * scene.gesture_rate_hz;
+}
+
 SceneCheck check_scene(const CheckOptions& options) {
   config::Problems problems;
   SceneCheck check;

@@ -42,8 +42,9 @@ struct SceneCheck {
 
   /// Wall time per simulated time.
   double load() const noexcept { return 1e-9 * step_nsec * scene.step_rate_hz; }
-  /// The fastest this machine keeps up with [1/s].
-  double real_time_rate() const noexcept { return 1e9 / step_nsec; }
+  /// The fastest rate of a scene that this machine keeps up with, a multiple of the gesture rate;
+  /// 0 where one step takes longer than a gesture [1/s].
+  double real_time_rate() const noexcept;
   bool is_certified_at(double rate_hz) const noexcept {
     return rate_hz * plan.stability.certified.step > 1.0;
   }

@@ -37,6 +37,10 @@ struct IntegratorRefusal {
   std::string what;                  ///< "viscosity"
   std::optional<LiaisonId> liaison;  ///< which has it; none: the network
 };
+/// Masses whose modes `modal` computes at most: their eigenvectors are a full matrix, found in a
+/// time of the third power, 8 s for these.
+inline constexpr std::size_t kMostModalMasses = 2000;
+
 /// The first thing in the network that its integrator does not take; none when it takes it all.
 std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network);
 

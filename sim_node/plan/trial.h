@@ -11,7 +11,8 @@
 
 namespace cordis::plan {
 
-/// The integrators that take the network, by the name they have in a scene.
+/// The integrators that may be taken for the network unasked, by the name they have in a scene:
+/// those that take it, `modal` only where its modes are found at once.
 std::vector<std::string> integrators_for(engine::NetworkDescription network);
 /// Evaluations of all forces in one step of an integrator.
 int evaluations_per_step(const std::string& integrator);

@@ -153,6 +153,14 @@ TEST_F(Checked, TooSlowForRealTimeIsToldWithBothAlternatives) {
   EXPECT_EQ(other["realtime"]["rate_hz"], 80.0);
   EXPECT_EQ(other["realtime"]["stable"], true);
 
+  check.step_nsec = 1.15e7;  // 86.9, but a scene has a whole number of steps per gesture
+  EXPECT_EQ(check.real_time_rate(), 80.0);
+  check.step_nsec = 1.5e8;  // not even one
+  EXPECT_NE(text_of(check).find("slower, or make it smaller: a step takes longer than a gesture\n"),
+            std::string::npos)
+      << text_of(check);
+  EXPECT_FALSE(nlohmann::json::parse(json_of(check))["load"]["alternatives"]["realtime"]["stable"]);
+
   check.step_nsec = 2.5e7;
   EXPECT_NE(text_of(check).find("40 steps per second, which is unstable"), std::string::npos);
 

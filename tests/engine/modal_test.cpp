@@ -152,6 +152,9 @@ TEST(Modal, RefusesWhatHasNoModes) {
   NetworkDescription heavy = string(0.1, 1e-4);
   heavy.mats[4].mass = 0.1;
   EXPECT_EQ(refusal(heavy), start + "different masses in a medium");
+  NetworkDescription crowd = string(0.0, 1e-4);  // whose modes would take hours, and all memory
+  crowd.mats.resize(engine::kMostModalMasses + 5, crowd.mats[5]);
+  EXPECT_EQ(refusal(crowd), start + "more than 2000 masses");
 }
 
 TEST(Modal, GoesOnFromASnapshotBitForBitAndAllocatesNothing) {

@@ -1,7 +1,10 @@
 // tests/plan/rate_test.cpp -- the rate that an accuracy asks for.
 #include "sim_node/plan/rate.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -154,6 +157,17 @@ TEST(Choice, TakesAFactorisationOnlyWhereItSavesFiftySteps) {
   EXPECT_EQ(chosen(1e7).integrator, "cordis");  // 5,600 Hz, and 1,000 Hz
   EXPECT_EQ(chosen(1e10).integrator, "implicit");
   EXPECT_EQ(chosen(1e10).rate_hz, 1000.0);
+}
+
+TEST(Choice, DoesNotThinkOfModesThatTakeLongToFind) {
+  const auto thinks_of_modes = [](std::size_t masses) {
+    NetworkDescription scene = oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 1e-3);
+    scene.mats.resize(masses + 1, scene.mats[1]);
+    const std::vector<std::string> names = plan::integrators_for(scene);
+    return std::find(names.begin(), names.end(), "modal") != names.end();
+  };
+  EXPECT_TRUE(thinks_of_modes(400));
+  EXPECT_FALSE(thinks_of_modes(401));
 }
 
 }  // namespace
