@@ -87,7 +87,7 @@ RateChoice choose_rate(const engine::NetworkDescription& network, const Accuracy
 const char* to_string(RateReason reason) noexcept {
   switch (reason) {
     case RateReason::kGesture:
-      return "one step per gesture is enough";
+      return "the gesture rate, the lowest there is";
     case RateReason::kStability:
       return "the stability in every pose and state";
     case RateReason::kContact:

@@ -28,6 +28,7 @@ TEST(RateChoice, OneStepPerGestureWhereNothingAsksForMore) {
       choose_rate(oscillator(1.0, 10.0, 0.0, 1.0, 0.0, 1.0), AccuracyWish{0.01, 0.5, 0.1}, 1000.0);
 
   EXPECT_EQ(choice.reason, RateReason::kGesture);
+  EXPECT_STREQ(to_string(choice.reason), "the gesture rate, the lowest there is");
   EXPECT_DOUBLE_EQ(choice.rate_hz, 1000.0);
 }
 
