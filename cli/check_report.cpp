@@ -28,7 +28,7 @@ std::string percent(double share) {
 
 std::string limit_text(const SceneCheck& check) {
   const plan::StepBound& bound = check.plan.stability.certified;
-  if (!std::isfinite(bound.step)) return "limit       none: nothing pulls\n";
+  if (!std::isfinite(bound.step)) return "limit       none: no step is too long\n";
   const scene::Called liaison = scene::call_liaison(check.scene, bound.liaison);
   const scene::Called mat = scene::call_mat(check.scene, bound.mat);
   return fmt::format("limit       set by {}{} at the mass {} of {:.4g} kg{}\n", liaison.name,
@@ -50,9 +50,11 @@ std::string stability_text(const SceneCheck& check) {
         "stable in all\n",
         check.rate_above(1.0 / stability.certified.step));
   }
-  text += fmt::format("            step {}; certified up to {}, surely unstable beyond {}\n",
-                      seconds(stability.step), seconds(stability.certified.step),
-                      seconds(stability.diverging_step));
+  text += fmt::format("            step {}; certified up to {}", seconds(stability.step),
+                      seconds(stability.certified.step));
+  text += std::isfinite(stability.diverging_step)
+              ? fmt::format(", surely unstable beyond {}\n", seconds(stability.diverging_step))
+              : "\n";
   if (!stability.bounded) {
     text +=
         "            a law has no largest slope: certified while no link is longer than twice its "

@@ -124,6 +124,14 @@ TEST_F(Checked, AProgramReadsTheSame) {
   EXPECT_GT(json["load"]["step_nsec"].get<double>(), 0.0);
 }
 
+TEST_F(Checked, WhatIsStableAtAnyStepHasNoLimit) {
+  write("100, integrator: implicit");
+  ASSERT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("certified up to any length\nlimit       none: no step is too long\n"),
+            std::string::npos)
+      << out_;
+}
+
 TEST_F(Checked, PortsAreJudgedInTheirRole) {
   write("100",
         "  - {liaison: holder, between: [key, bob]}\n"
