@@ -136,8 +136,10 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
 
 std::string load_text(const SceneCheck& check) {
   std::string text =
-      fmt::format("load        {:.4g} us a step, {:.3g} % of real time on this machine\n",
-                  1e-3 * check.step_nsec, 100.0 * check.load());
+      fmt::format("load        {:.4g} us a step{}, {:.3g} % of real time on this machine\n",
+                  1e-3 * check.step_nsec,
+                  check.scene.network.freeze_tolerance > 0.0 ? " with all masses awake" : "",
+                  100.0 * check.load());
   if (check.load() < 1.0) return text;
   const double rate = check.real_time_rate();
   const bool stable = check.is_certified_at(rate);

@@ -1,13 +1,16 @@
 // sim_node/stability_check.cpp
 #include "sim_node/stability_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sim_node/plan/limit_weights.h"
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/step_bound.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
@@ -45,26 +48,29 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
   const plan::LiaisonGraph graph = plan::weighted(
       plan::liaison_graph(scene.network), plan::limit_weights(scene.network, plan::Limit::kStable));
   const double dt = scene.network.step;
+  const std::vector<double> weight = plan::row_weights(graph, dt);
   double sum = 0.0;
   double strongest = -1.0;  // a law may be of no stiffness where it was looked at
   std::optional<plan::LiaisonId> liaison;
-  const auto add = [&](plan::LiaisonId id, double stiffness, double viscosity, double count) {
-    const double number =
-        2.0 * graph.inverse_mass[mat] * (dt * dt * stiffness + 2.0 * dt * viscosity);
-    sum += count * number;
+  const auto add = [&](plan::LiaisonId id, double stiffness, double viscosity, double weights) {
+    const double number = graph.inverse_mass[mat] * weights / weight[mat] *
+                          (dt * dt * stiffness + 2.0 * dt * viscosity);
+    sum += number;
     if (number <= strongest) return;
     strongest = number;
     liaison = id;
   };
   for (const plan::Joint& joint : graph.joints) {
     if (joint.mat_a != mat && joint.mat_b != mat) continue;
-    add(joint.liaison, joint.stiffness, joint.viscosity, 1.0);
+    add(joint.liaison, joint.stiffness, joint.viscosity, weight[joint.mat_a] + weight[joint.mat_b]);
   }
   for (const plan::Crowd& crowd : graph.crowds) {
+    double most = 0.0;
+    for (const std::uint32_t other : crowd.others) most = std::max(most, weight[other]);
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       if (crowd.members[m] != mat) continue;
       add({plan::LiaisonKind::kSet, crowd.set}, crowd.stiffness, crowd.viscosity,
-          crowd.neighbours[m]);
+          crowd.neighbours[m] * (weight[mat] + most));
     }
   }
   if (!liaison) return "nothing but what is given from outside moves it";

@@ -5,22 +5,24 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "sim_node/engine/world.h"
 
 namespace cordis::plan {
 
-double measure_step_nsec(const engine::NetworkDescription& network) {
+double measure_step_nsec(engine::NetworkDescription network) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kAtLeast{50};
+  constexpr std::chrono::milliseconds kAtMost{250};
   constexpr int kBatches = 10;
-  constexpr int kFewest = 3;  // steps in a batch
-  engine::World world(std::make_shared<const engine::Network>(network));
+  network.freeze_tolerance = 0.0;
+  engine::World world(std::make_shared<const engine::Network>(std::move(network)));
   const Clock::time_point begin = Clock::now();
   double quickest = std::numeric_limits<double>::infinity();
-  for (int batch = 0, steps = kFewest; batch < kBatches || Clock::now() - begin < kAtLeast;
-       ++batch) {
+  for (int batch = 0, steps = 1;; ++batch) {
     const Clock::time_point from = Clock::now();
+    if (batch > 0 && from - begin > (batch < kBatches ? kAtMost : kAtLeast)) break;
     for (int n = 0; n < steps; ++n) world.step();
     const std::chrono::duration<double, std::nano> taken = Clock::now() - from;
     quickest = std::min(quickest, taken.count() / steps);

@@ -5,10 +5,11 @@
 
 namespace cordis::plan {
 
-/// Runs the network from its start for some 50 ms of wall time, and at least 30 steps.
+/// Runs the network from its start, with all its masses awake, for some 50 ms of wall time, or one
+/// step where that takes longer.
 /// @return the time of a step [ns]: of the quickest of several batches, so that what else runs on
 ///         the machine counts little. Not a promise: a scene in motion may have more contacts.
 /// @throws std::invalid_argument when the engine does not take the network.
-double measure_step_nsec(const engine::NetworkDescription& network);
+double measure_step_nsec(engine::NetworkDescription network);
 
 }  // namespace cordis::plan
