@@ -42,8 +42,7 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     steady_[joint.mat_b] += number(joint.stiffness, joint.viscosity) * both;
   }
   for (const plan::Crowd& crowd : graph.crowds) {
-    double most = 0.0;
-    for (const std::uint32_t mat : crowd.others) most = std::max(most, weight[mat]);
+    const double most = plan::largest_of_others(crowd, weight);
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       const std::uint32_t mat = crowd.members[m];
       steady_[mat] +=

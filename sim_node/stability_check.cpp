@@ -1,7 +1,6 @@
 // sim_node/stability_check.cpp
 #include "sim_node/stability_check.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -65,8 +64,7 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
     add(joint.liaison, joint.stiffness, joint.viscosity, weight[joint.mat_a] + weight[joint.mat_b]);
   }
   for (const plan::Crowd& crowd : graph.crowds) {
-    double most = 0.0;
-    for (const std::uint32_t other : crowd.others) most = std::max(most, weight[other]);
+    const double most = plan::largest_of_others(crowd, weight);
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       if (crowd.members[m] != mat) continue;
       add({plan::LiaisonKind::kSet, crowd.set}, crowd.stiffness, crowd.viscosity,

@@ -51,6 +51,12 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
 
 }  // namespace
 
+double largest_of_others(const Crowd& crowd, const std::vector<double>& values) {
+  double most = 0.0;
+  for (const std::uint32_t mat : crowd.others) most = std::max(most, values[mat]);
+  return most;
+}
+
 double most_neighbours(int dimension, double own, double other) {
   if (dimension == 1) return 2.0;
   if (other >= own || other <= 0.0) return dimension == 2 ? 6.0 : 12.0;

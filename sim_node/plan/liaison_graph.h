@@ -35,6 +35,9 @@ struct Crowd {
   bool bounded = true;             ///< as Joint::bounded
 };
 
+/// The largest of these values, one per MAT, that a neighbour of a member may have; 0 if none.
+double largest_of_others(const Crowd& crowd, const std::vector<double>& values);
+
 /// The scalar graph of a network: masses, and between them the largest slopes of all liaisons. Any
 /// tangent, in any pose and any combination of states, is below the Laplacian of this graph.
 struct LiaisonGraph {

@@ -19,12 +19,6 @@ struct Rows {
   std::vector<double> viscosity;
 };
 
-double largest(const std::vector<double>& x, const std::vector<std::uint32_t>& mats) {
-  double most = 0.0;
-  for (const std::uint32_t mat : mats) most = std::max(most, x[mat]);
-  return most;
-}
-
 /// (D + A) x: all entries of the matrix taken as positive.
 Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
   Rows rows{std::vector<double>(x.size(), 0.0), std::vector<double>(x.size(), 0.0)};
@@ -36,7 +30,7 @@ Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
     }
   }
   for (const Crowd& crowd : graph.crowds) {
-    const double most = largest(x, crowd.others);
+    const double most = largest_of_others(crowd, x);
     for (std::size_t i = 0; i < crowd.members.size(); ++i) {
       const std::uint32_t mat = crowd.members[i];
       const double sum = crowd.neighbours[i] * (x[mat] + most);
@@ -181,8 +175,8 @@ StepBound edge_bound(const LiaisonGraph& graph) {
     consider(driven, sums.stiffness[other], sums.viscosity[other]);
   }
   for (const Crowd& crowd : graph.crowds) {
-    const double stiffness = largest(sums.stiffness, crowd.others);
-    const double viscosity = largest(sums.viscosity, crowd.others);
+    const double stiffness = largest_of_others(crowd, sums.stiffness);
+    const double viscosity = largest_of_others(crowd, sums.viscosity);
     for (const std::uint32_t mat : crowd.members) consider(mat, stiffness, viscosity);
   }
   bound.liaison = strongest_at(graph, bound.mat, bound.step);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/programs.h"
 #include "tests/plan/networks.h"
 #include "tests/support/reference_data.h"
 
@@ -98,27 +99,13 @@ NetworkDescription bouncing_ball(const nlohmann::json& params) {
   scene.step = 1e-3;
   scene.gravity = Vec3(-value("g"), 0, 0);
   scene.mats = {fixed(Vec3::Zero()), mass(value("m"), Vec3(value("h0"), 0, 0))};
-  engine::Behaviour ground;
-  ground.states.resize(2);
-  ground.states[1].stiffness = value("K");
-  ground.states[1].viscosity = value("Z");
-  const auto compare = [](engine::Operation operation) {
-    engine::Program program;
-    program.code = {{engine::Operation::kQuantity, engine::Quantity::kDistance, 0.0, 0},
-                    {engine::Operation::kConstant, engine::Quantity::kDistance, 0.0, 0},
-                    {operation, engine::Quantity::kDistance, 0.0, 0}};
-    return program;
-  };
-  ground.exits.resize(2);
-  ground.exits[0].when = compare(engine::Operation::kLess);
-  ground.exits[0].target = 1;
-  ground.exits[1].when = compare(engine::Operation::kGreater);
-  ground.exits[1].target = 0;
-  ground.states[0].first_exit = 0;
-  ground.states[0].last_exit = 1;
-  ground.states[1].first_exit = 1;
-  ground.states[1].last_exit = 2;
-  scene.behaviours = {ground};
+  const Term height = q(Quantity::kDistance);
+  scene.behaviours = {Behaving()
+                          .state(0.0)
+                          .exit(height < 0.0, 1)
+                          .state(value("K"), value("Z"))
+                          .exit(height > 0.0, 0)
+                          .behaviour};
   scene.state_links = {{0, 1, 0, 0.0}};
   return scene;
 }

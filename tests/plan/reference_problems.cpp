@@ -246,22 +246,13 @@ ReferenceProblem dimer() {
 
 /// Touches below the rest length; `pulls`: also while it lets go, else it lets go at no force.
 engine::Behaviour touch(double stiffness, double viscosity, bool pulls) {
-  using engine::Operation;
-  using engine::Quantity;
-  engine::Behaviour made;
-  made.states.resize(2);
-  made.exits.resize(2);
-  for (std::uint32_t i = 0; i < 2; ++i) {
-    made.states[i].first_exit = i;
-    made.states[i].last_exit = i + 1;
-    made.exits[i].target = 1 - i;
-    made.exits[i].when.code = {
-        {Operation::kQuantity, Quantity::kElongation, 0.0, 0},
-        {Operation::kConstant, Quantity::kElongation, 0.0, 0},
-        {i == 0 ? Operation::kLess : Operation::kGreaterOrEqual, Quantity::kElongation, 0.0, 0}};
-  }
-  made.states[1].stiffness = stiffness;
-  made.states[1].viscosity = viscosity;
+  const Term elongation = q(Quantity::kElongation);
+  engine::Behaviour made = Behaving()
+                               .state(0.0)
+                               .exit(elongation < 0.0, 1)
+                               .state(stiffness, viscosity)
+                               .exit(elongation >= 0.0, 0)
+                               .behaviour;
   made.states[1].pulls = pulls;
   return made;
 }

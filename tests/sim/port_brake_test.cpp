@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/programs.h"
 #include "tests/sim/hand_loop.h"
 #include "tests/support/rounds.h"
 
@@ -100,29 +101,14 @@ TEST(PortBrake, HoldsAMassOfManySmallStepsToo) {
 /// A wall that is felt through a liaison with states: nothing beyond it, K and Z when pressed.
 scene::Scene wall_scene(double viscosity) {
   scene::Scene scene = bare_scene(1);
-  engine::Behaviour contact;
-  contact.name = "contact";
-  engine::LinkState apart;
-  engine::LinkState touching;
-  touching.stiffness = 200.0;
-  touching.viscosity = viscosity;
-  const auto when = [](engine::Operation comparison) {
-    engine::Program program;
-    program.code = {{engine::Operation::kQuantity, engine::Quantity::kElongation, 0.0, 0},
-                    {engine::Operation::kConstant, engine::Quantity::kNone, 0.0, 0},
-                    {comparison, engine::Quantity::kNone, 0.0, 0}};
-    return program;
-  };
-  contact.exits.resize(2);
-  contact.exits[0].when = when(engine::Operation::kGreater);
-  contact.exits[0].target = 1;
-  contact.exits[1].when = when(engine::Operation::kLess);
-  contact.exits[1].target = 0;
-  apart.last_exit = 1;
-  touching.first_exit = 1;
-  touching.last_exit = 2;
-  contact.states = {apart, touching};
-  scene.network.behaviours = {contact};
+  const test::Term elongation = test::q(engine::Quantity::kElongation);
+  scene.network.behaviours = {test::Behaving()
+                                  .state(0.0)
+                                  .exit(elongation > 0.0, 1)
+                                  .state(200.0, viscosity)
+                                  .exit(elongation < 0.0, 0)
+                                  .behaviour};
+  scene.network.behaviours[0].name = "contact";
   scene.network.state_links = {{1, 0, 0, -0.001}};  // the port is pressed in by 1 mm
   return scene;
 }
