@@ -141,14 +141,20 @@ void Device::ask_for_realtime() {
 void Device::play_paced(Exchange& exchange) {
   node::PacedLoop pace(config_.layout.rate_hz);
   std::uint64_t overruns = 0;
-  while (!node::stop_requested()) {
+  bool changed = false;
+  while (!changed && !node::stop_requested()) {
     exchange.send_sample();
     pace.wait();
     exchange.receive();
     exchange.live();
     meter_.add_overruns(pace.overruns() - std::exchange(overruns, pace.overruns()));
     note_phase(exchange);
-    if (look_around()) return;
+    changed = look_around();
+  }
+  exchange.leave();
+  while (!exchange.has_left()) {
+    pace.wait();
+    exchange.live();
   }
 }
 

@@ -1,6 +1,7 @@
 // device_node/exchange.cpp
 #include "device_node/exchange.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace cordis::device {
@@ -65,6 +66,11 @@ void Exchange::let_go() noexcept {
   if (driver_.let_go()) force_guard_.let_go();
 }
 
+void Exchange::leave() noexcept {
+  const ForceGuardSettings& guard = config_.force_guard;
+  leaving_age_s_ = std::max(age_s(), guard.watchdog_s - guard.limit_n / guard.slew_n_per_s);
+}
+
 /// Whether an answer is well formed, answers this process, and is newer than the one in use.
 /// A new run of the scene is recognised by what it answers alone.
 bool Exchange::consider(const GestureMessage& answer) noexcept {
@@ -125,7 +131,9 @@ void Exchange::add_work(const AxisValues& force_before_n, const AxisValues& carr
 }
 
 void Exchange::live() noexcept {
-  const double age = age_s();
+  const bool leaving = leaving_age_s_ > 0.0;
+  if (leaving) leaving_age_s_ += 1.0 / config_.layout.rate_hz;
+  const double age = std::max(age_s(), leaving_age_s_);
   const AxisValues& commanded =
       role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
   driver_.note_age(age);
@@ -142,7 +150,7 @@ void Exchange::live() noexcept {
 
   present_ = written && sensed;
   if (!present_) force_guard_.let_go();  // a device that comes back is ramped up anew
-  note_phase(any_answer_ && age < config_.force_guard.watchdog_s);
+  if (!leaving) note_phase(any_answer_ && age < config_.force_guard.watchdog_s);
 }
 
 void Exchange::note_phase(bool in_time) noexcept {

@@ -63,6 +63,12 @@ class Exchange {
 
   bool has_device() const noexcept { return present_; }  ///< whether the driver has one
 
+  /// The part is over: motors are not switched off in the middle of a force. From now on nothing is
+  /// taken any more, and with every live() the last answer fades as an old one does, over
+  /// limit / slew.
+  void leave() noexcept;
+  bool has_left() const noexcept { return leaving_age_s_ >= config_.force_guard.watchdog_s; }
+
   std::uint64_t last_sample() const noexcept { return sample_.sample; }
 
  private:
@@ -92,6 +98,7 @@ class Exchange {
   std::uint64_t first_sample_;            // of this exchange
   std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came
   bool other_answered_ = false;           // ever
+  double leaving_age_s_ = 0.0;            // that the last answer is given; 0: it has its own
   bool present_ = false;                  // the driver has its device
   bool any_answer_ = false;
   bool unfelt_ = false;  // the newest answer has not been handed to the driver yet

@@ -7,24 +7,17 @@
 #include <utility>
 
 namespace cordis::device {
-namespace {
-
-// Instants nearer than this are one instant [s]: a time like 0.1 s has no exact binary form, and a
-// jump must not come a sample late for that.
-constexpr double kTimeGrain = 1e-9;
-
-}  // namespace
-
 Trajectory::Trajectory(double start, std::vector<Move> moves, Shape shape, double period_s)
     : start_(start), moves_(std::move(moves)), shape_(shape), period_s_(period_s) {
   double free_from = 0.0;
   for (const Move& move : moves_) {
-    if (!(move.begin_s >= free_from) || !(move.duration_s >= 0.0) || !std::isfinite(move.to)) {
+    if (!(move.begin_s >= free_from - kTimeGrain) || !(move.duration_s >= 0.0) ||
+        !std::isfinite(move.to)) {
       throw std::invalid_argument("a move begins before the one before it has ended");
     }
     free_from = move.begin_s + move.duration_s;
   }
-  if (!(period_s_ == 0.0 || period_s_ >= free_from)) {
+  if (!(period_s_ == 0.0 || period_s_ >= free_from - kTimeGrain)) {
     throw std::invalid_argument("the moves take longer than one repetition");
   }
 }

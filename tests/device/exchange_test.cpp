@@ -522,6 +522,42 @@ TEST(Exchange, StopsItsDriverAtTheEnd) {
   EXPECT_TRUE(driver.stopped);
 }
 
+TEST(Exchange, LeavesWithoutAJumpOfForce) {
+  now_nsec = 1'000'000'000;
+  Rig rig(false);
+  double before = 0.0;
+  for (int n = 0; n < 8; ++n) before = rig.period(true, 20.0);
+  EXPECT_EQ(before, 20.0);
+  double age_before = rig.driver.age;
+  rig.exchange.leave();
+
+  int periods = 0;
+  for (; !rig.exchange.has_left(); ++periods) {
+    ASSERT_LT(periods, 10);
+    rig.channel.waiting.push_back(rig.answer(20.0));  // is not taken
+    now_nsec += kPeriodNsec;
+    rig.exchange.live();
+    EXPECT_LE(before - rig.driver.commands.back()[0], 5.0 + 1e-9);  // 5000 N/s
+    EXPECT_GT(rig.driver.age, age_before) << "a driver with a guard of its own fades as well";
+    before = rig.driver.commands.back()[0];
+    age_before = rig.driver.age;
+  }
+
+  EXPECT_EQ(before, 0.0);
+  EXPECT_EQ(periods, 4) << "20 N at 5000 N/s";
+  EXPECT_EQ(rig.meter.phase(), Phase::kRunning) << "nobody is told that it was lost";
+}
+
+TEST(Exchange, LeavesAtOnceWhenNothingHoldsItsMotors) {
+  now_nsec = 1'000'000'000;
+  Rig rig(false);
+  rig.period(false);
+
+  rig.exchange.leave();
+
+  EXPECT_TRUE(rig.exchange.has_left());
+}
+
 TEST(Exchange, CountsSamplesThatCouldNotBeSent) {
   Rig rig(true);
   rig.channel.works = false;

@@ -34,6 +34,14 @@ TEST(Gestures, MovesMayGiveEachAxisItsOwnPlace) {
   EXPECT_EQ(paths[1].at(1.0), -0.02);
 }
 
+TEST(Gestures, AMoveMayBeginWhenTheOneBeforeEnds) {
+  const auto paths = gesture_of(  // 0.1 + 0.2 is more than 0.3 by the last bit
+      "{moves: [{at_s: 0.1, in_s: 0.2, to_m: 0}, {at_s: 0.3, in_s: 0, to_m: 1}], repeat_s: 0.3}",
+      1);
+
+  EXPECT_EQ(paths.size(), 1u);
+}
+
 TEST(Gestures, PluckDrawsSlowlyAndLetsGoAtOnce) {
   const auto paths = gesture_of(
       "gesture: {kind: pluck, above_m: 0.005, depth_m: -0.02, after_s: 0.2, in_s: 1, stay_s: 0.5}",

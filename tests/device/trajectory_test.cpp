@@ -81,6 +81,12 @@ TEST(Trajectory, JumpsInTheVerySampleItsTimeNames) {
   }
 }
 
+TEST(Trajectory, TakesMovesThatEndWhenTheNextBegins) {
+  // 0.1 + 0.2 is more than 0.3 by the last bit.
+  EXPECT_NO_THROW(Trajectory(0.0, {{0.1, 0.2, 1.0}, {0.3, 0.1, 0.0}}, Shape::kLinear, 0.4));
+  EXPECT_NO_THROW(Trajectory(0.0, {{0.1, 0.2, 1.0}}, Shape::kLinear, 0.3));
+}
+
 TEST(Trajectory, RefusesMovesThatDoNotFit) {
   EXPECT_THROW(Trajectory(0.0, {{0.0, 1.0, 1.0}, {0.5, 1.0, 0.0}}, Shape::kLinear, 0.0),
                std::invalid_argument);

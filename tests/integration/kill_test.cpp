@@ -110,7 +110,8 @@ TEST(Kill, ASceneThatComesBackUnderAPressedKeyIsFeltWithoutAJump) {
 
   double before = 0.0;
   int times_from_zero = 0;
-  for (const Row& row : read_trace(trace)) {
+  const std::vector<Row> rows = read_trace(trace);
+  for (const Row& row : rows) {
     EXPECT_LE(std::abs(row.commanded - before), 5.0 + 1e-9) << "slew limit of 5000 N/s";
     if (before == 0.0 && row.commanded > 0.0) {
       ++times_from_zero;
@@ -119,6 +120,8 @@ TEST(Kill, ASceneThatComesBackUnderAPressedKeyIsFeltWithoutAJump) {
     before = row.commanded;
   }
   EXPECT_GE(times_from_zero, 2) << "felt, gone, and felt again";
+  ASSERT_GT(rows.size(), 2u);
+  EXPECT_EQ(rows[rows.size() - 2].commanded, 0.0) << "it has faded before the motors are off";
 }
 
 }  // namespace
