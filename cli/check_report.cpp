@@ -107,17 +107,29 @@ std::string contact_text(const SceneCheck& check) {
                      100.0 * contact->worst, liaison.name, at(liaison));
 }
 
+std::string needs_text(const scene::PortNeeds& needs) {
+  std::string text;
+  if (needs.travel > 0.0) text = fmt::format("{:.4g} m of travel", needs.travel);
+  if (needs.force > 0.0) {
+    text += fmt::format("{}{:.4g} N", text.empty() ? "" : " and ", needs.force);
+  }
+  if (text.empty()) return {};
+  return "            needs a device of " + text + " along each of its axes\n";
+}
+
 std::string port_text(const SceneCheck& check, const PortCheck& port) {
   const double rate = check.scene.gesture_rate_hz;
   const int delay = check.options.delay_periods;
   const std::string who =
       fmt::format("port        {} ({}): ", port.port->name, place_text(port.port->place));
   if (port.port->role == scene::Role::kLiaison) {
-    return who + fmt::format(
-                     "a hand may be as stiff as {:.4g} N/m, and as its own viscosity over "
-                     "{:.3g} ms, at {:.4g} Hz and {} of delay\n",
-                     port.largest_hand_stiffness, 1e3 * delay / rate, rate,
-                     delay == 1 ? "one period" : std::to_string(delay) + " periods");
+    return who +
+           fmt::format(
+               "a hand may be as stiff as {:.4g} N/m, and as its own viscosity over "
+               "{:.3g} ms, at {:.4g} Hz and {} of delay\n",
+               port.largest_hand_stiffness, 1e3 * delay / rate, rate,
+               delay == 1 ? "one period" : std::to_string(delay) + " periods") +
+           needs_text(port.port->needs);
   }
   std::string text =
       who + fmt::format(
@@ -131,7 +143,7 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
         check.options.device_viscosity, port.largest_stiffness,
         port.load.stiffness <= port.largest_stiffness ? "safe with any hand" : "TOO STIFF");
   }
-  return text;
+  return text + needs_text(port.port->needs);
 }
 
 std::string load_text(const SceneCheck& check) {
@@ -209,6 +221,9 @@ nlohmann::json ports_json(const SceneCheck& check) {
       json["role"] = "liaison";
       json["largest_hand_stiffness_n_per_m"] = port.largest_hand_stiffness;
     }
+    const scene::PortNeeds& needs = port.port->needs;
+    if (needs.travel > 0.0) json["needs"]["travel_m"] = needs.travel;
+    if (needs.force > 0.0) json["needs"]["force_n"] = needs.force;
     ports.push_back(std::move(json));
   }
   return ports;

@@ -82,6 +82,8 @@ void Device::describe() {
   told.stiffness_limit_n_per_m(limits.stiffness_limit_n_per_m);
   told.damping_limit_n_s_per_m(limits.damping_limit_n_s_per_m);
   told.delay_periods(static_cast<std::uint32_t>(limits.delay_periods));
+  told.travel_m(limits.coordinate_travel_m);
+  told.force_n(limits.coordinate_force_n);
   told.plays_mass(driver_->can_play(Role::kMass));
   told.plays_liaison(driver_->can_play(Role::kLiaison));
   description_.write(told);

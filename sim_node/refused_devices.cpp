@@ -1,6 +1,7 @@
 // sim_node/refused_devices.cpp
 #include "sim_node/refused_devices.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -15,8 +16,10 @@ bool makes_sense(const msg::DeviceDescription& told) {
          std::isfinite(told.moving_mass_kg()) && told.moving_mass_kg() > 0.0 &&
          at_least_zero(told.viscosity_n_s_per_m()) &&
          at_least_zero(told.stiffness_limit_n_per_m()) &&
-         at_least_zero(told.damping_limit_n_s_per_m()) && told.delay_periods() < 1000 &&
-         told.run() != 0;
+         at_least_zero(told.damping_limit_n_s_per_m()) &&
+         std::all_of(told.travel_m().begin(), told.travel_m().end(), at_least_zero) &&
+         std::all_of(told.force_n().begin(), told.force_n().end(), at_least_zero) &&
+         told.delay_periods() < 1000 && told.run() != 0;
 }
 
 config::DeviceLimits limits_of(const msg::DeviceDescription& told) {
@@ -26,6 +29,8 @@ config::DeviceLimits limits_of(const msg::DeviceDescription& told) {
   limits.viscosity_n_s_per_m = told.viscosity_n_s_per_m();
   limits.stiffness_limit_n_per_m = told.stiffness_limit_n_per_m();
   limits.damping_limit_n_s_per_m = told.damping_limit_n_s_per_m();
+  limits.coordinate_travel_m = told.travel_m();
+  limits.coordinate_force_n = told.force_n();
   limits.delay_periods = static_cast<int>(told.delay_periods());
   return limits;
 }
@@ -57,7 +62,9 @@ void RefusedDevices::judge() {
     for (const PortDemand& demand : demands_) {
       if (demand.device_id != key.first) continue;
       const PortVerdict verdict = verdict_on(demand, device.limits, delay_periods_);
-      if (!verdict.refusal.empty()) why += (why.empty() ? "" : "; ") + verdict.refusal;
+      std::vector<std::string> reasons = verdict.lacks;
+      if (!verdict.refusal.empty()) reasons.push_back(verdict.refusal);
+      for (const std::string& reason : reasons) why += (why.empty() ? "" : "; ") + reason;
     }
     if (why.empty() || count == kMost) continue;
     refused_[count++].store(device.run, std::memory_order_relaxed);

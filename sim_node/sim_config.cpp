@@ -17,6 +17,7 @@ namespace {
 
 constexpr const char* kHowToSoften =
     "softer links at the port, or a 'coupling' between the device and a simulated tool";
+constexpr const char* kHowToHaveIt = "a device that has it, or less in 'needs' of the port";
 constexpr const char* kHowToCalm = "viscosity at the port, or a softer hand";
 
 /// A device_node of the launch, and what its device file promises.
@@ -82,6 +83,9 @@ void check_rate(const scene::Port& port, const config::DeviceLimits& limits, dou
 void check_demand(const PortDemand& demand, const config::DeviceLimits& limits, int delay_periods,
                   config::Problems& problems) {
   const PortVerdict verdict = verdict_on(demand, limits, delay_periods);
+  for (const std::string& lack : verdict.lacks) {
+    problems.error(demand.needs.place, lack, kHowToHaveIt);
+  }
   if (!verdict.refusal.empty()) problems.error(demand.place, verdict.refusal, kHowToSoften);
   const bool is_mass = demand.role == scene::Role::kMass;
   if (!verdict.doubt.empty()) {

@@ -25,21 +25,27 @@ Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& pro
 
 namespace {
 
-/// The largest sum of a row of |A A^T|, which no eigenvalue exceeds. Faults in the map are told by
-/// the device itself.
-double leverage_of(const Value& map) {
+using Map = std::vector<std::vector<double>>;
+
+/// One row per coordinate; none without an end-piece. Faults in it are told by the device itself.
+Map read_map(MappingReader& reader) {
   Problems told_elsewhere;
-  std::vector<std::vector<double>> rows;
-  for (const Value& row : map.items()) {
-    std::vector<double>& numbers = rows.emplace_back();
+  Map map;
+  for (const Value& row : reader.optional_mapping("end_piece").find("map").items()) {
+    std::vector<double>& numbers = map.emplace_back();
     for (const Value& entry : row.items()) {
       numbers.push_back(read_number(entry, "an entry", 0.0, {}, told_elsewhere));
     }
   }
+  return map;
+}
+
+/// The largest sum of a row of |A A^T|, which no eigenvalue exceeds.
+double leverage_of(const Map& map) {
   double largest = 0.0;
-  for (const std::vector<double>& a : rows) {
+  for (const std::vector<double>& a : map) {
     double sum = 0.0;
-    for (const std::vector<double>& b : rows) {
+    for (const std::vector<double>& b : map) {
       const std::size_t count = std::min(a.size(), b.size());
       sum += std::abs(std::inner_product(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(count),
                                          b.begin(), 0.0));
@@ -47,6 +53,23 @@ double leverage_of(const Value& map) {
     largest = std::max(largest, sum);
   }
   return largest > 0.0 ? largest : 1.0;
+}
+
+/// Of q = A x: the axes, each within its travel, carry a coordinate by the sum of |A| of its row;
+/// of f = A^T F: a force along it alone reaches the limit first at the axis of the largest |A|.
+void set_reach(DeviceLimits& limits, const Map& map) {
+  const double travel_m = limits.highest_m - limits.lowest_m;
+  for (std::size_t c = 0; c < limits.coordinate_travel_m.size(); ++c) {
+    if (c >= static_cast<std::size_t>(limits.coordinate_count)) break;
+    double sum = map.empty() ? 1.0 : 0.0;
+    double largest = sum;
+    for (const double entry : map.empty() ? std::vector<double>{} : map[c]) {
+      sum += std::abs(entry);
+      largest = std::max(largest, std::abs(entry));
+    }
+    limits.coordinate_travel_m[c] = sum * travel_m;
+    limits.coordinate_force_n[c] = largest > 0.0 ? limits.force_limit_n / largest : 0.0;
+  }
 }
 
 }  // namespace
@@ -57,9 +80,9 @@ DeviceLimits read_device_limits(MappingReader& reader) {
   DeviceLimits limits;
   limits.axis_count = static_cast<int>(reader.required_integer("axes", 1, kMostAxes));
   limits.coordinate_count = limits.axis_count;
-  const Value map = reader.optional_mapping("end_piece").find("map");
-  if (map.exists()) {
-    limits.coordinate_count = static_cast<int>(map.items().size());
+  const Map map = read_map(reader);
+  if (!map.empty()) {
+    limits.coordinate_count = static_cast<int>(map.size());
     limits.leverage = leverage_of(map);
   }
   const double travel_m = reader.optional_number("travel_m", 0.04, Range::between(0.001, 1.0));
@@ -69,6 +92,7 @@ DeviceLimits read_device_limits(MappingReader& reader) {
   limits.slice_width_m = reader.optional_number("slice_width_m", 0.0, Range::between(0.002, 0.2));
   limits.rate_hz = reader.optional_number("rate_hz", 1000.0, Range::between(1.0, 20000.0));
   limits.force_limit_n = reader.optional_number("force_limit_n", 20.0, Range::positive());
+  set_reach(limits, map);
   limits.moving_mass_kg =
       reader.optional_number("moving_mass_kg", 0.05, Range::between(1e-4, 100.0));
   limits.viscosity_n_s_per_m =

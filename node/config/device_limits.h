@@ -1,6 +1,8 @@
 // node/config/device_limits.h -- what a device file promises to everyone: its axes and its limits.
 #pragma once
 
+#include <array>
+
 #include "node/config/launch.h"
 #include "node/config/mapping_reader.h"
 
@@ -19,6 +21,9 @@ struct DeviceLimits {
   double slice_width_m =
       0.0;  ///< of a key, which stands side by side with the next; 0: no keyboard
   double force_limit_n = 20.0;
+  /// Of each coordinate, from stop to stop while the others are free; 0: unknown.
+  std::array<double, 16> coordinate_travel_m{};
+  std::array<double, 16> coordinate_force_n{};  ///< largest along each alone; 0: unknown
   double moving_mass_kg = 0.05;
   double viscosity_n_s_per_m = 0.0;      ///< 0: unknown
   double stiffness_limit_n_per_m = 0.0;  ///< as declared; 0: what follows from the viscosity

@@ -49,6 +49,11 @@ Complex mass_under_held_force(const PortDevice& device, double period, Complex z
   return (drift / b) / (z - 1.0) + (tau * lost) * (lost / b) / ((z - 1.0) * (z - 1.0 + lost));
 }
 
+/// -z^d / G(z): what a wall is on the boundary.
+Complex wall_on_boundary(const PortDevice& device, const PortLoop& loop, Complex z) {
+  return -std::pow(z, loop.delay) / mass_under_held_force(device, loop.period, z);
+}
+
 /// The least positive real value that `curve` takes on the upper half of the unit circle.
 template <class Curve>
 double least_real_value(const Curve& curve) {
@@ -115,16 +120,17 @@ double largest_port_stiffness(double device_viscosity, double port_viscosity,
   return least;
 }
 
+double stable_port_viscosity(const PortDevice& device, const PortLoop& loop) {
+  return least_real_value(
+      [&](Complex z) { return loop.period * wall_on_boundary(device, loop, z) / (1.0 - 1.0 / z); });
+}
+
 double stable_port_stiffness(const PortDevice& device, double port_viscosity,
                              const PortLoop& loop) {
-  const auto inverse = [&](Complex z) {  // -z^d / G(z)
-    return -std::pow(z, loop.delay) / mass_under_held_force(device, loop.period, z);
-  };
-  const double largest_viscosity =
-      least_real_value([&](Complex z) { return loop.period * inverse(z) / (1.0 - 1.0 / z); });
-  if (port_viscosity >= largest_viscosity) return 0.0;
-  return least_real_value(
-      [&](Complex z) { return inverse(z) - port_viscosity * (1.0 - 1.0 / z) / loop.period; });
+  if (port_viscosity >= stable_port_viscosity(device, loop)) return 0.0;
+  return least_real_value([&](Complex z) {
+    return wall_on_boundary(device, loop, z) - port_viscosity * (1.0 - 1.0 / z) / loop.period;
+  });
 }
 
 double largest_hand_stiffness(const PortLoad& load, double mass, const PortLoop& loop) {

@@ -48,6 +48,10 @@ double least_device_viscosity(const PortLoad& load, const PortLoop& loop);
 /// that the loop is passive; 0 when its own viscosity at the port is too much already.
 double largest_port_stiffness(double device_viscosity, double port_viscosity, const PortLoop& loop);
 
+/// Role mass. The viscosity [N s/m] of a wall B (1 - 1/z) / T before which the device alone does
+/// not swing, whatever its stiffness. Cost: about 1 ms.
+double stable_port_viscosity(const PortDevice& device, const PortLoop& loop);
+
 /// Role mass. The stiffness [N/m] of a wall K + B (1 - 1/z) / T before which the device alone does
 /// not swing; 0 when the viscosity B of the wall alone makes it swing.
 ///

@@ -18,6 +18,14 @@ std::string one_or_each(const std::vector<std::string>& items) {
   return in_brackets(items);
 }
 
+std::string needs_text(const PortNeeds& needs) {
+  std::vector<std::string> keys;
+  if (needs.travel > 0.0) keys.push_back("travel_m: " + number_text(needs.travel));
+  if (needs.force > 0.0) keys.push_back("force_n: " + number_text(needs.force));
+  if (keys.empty()) return {};
+  return ", needs: {" + keys.front() + (keys.size() > 1 ? ", " + keys.back() : "") + "}";
+}
+
 }  // namespace
 
 std::string point_text(const Vec3& at, int space) {
@@ -100,7 +108,7 @@ std::string MatterText::ports() const {
     text += "  " + port.name + ": {device: \"" + port.device + "\", axes: " + in_brackets(axes) +
             ", along: " + in_brackets(along) + ", role: " + (is_mass ? "mass" : "liaison") +
             ", at_m: " + point_text(port.rest, scene_.space()) +
-            (is_mass ? coupling_text(port) : "");
+            (is_mass ? coupling_text(port) : "") + needs_text(port.needs);
     const double radius = radius_of(port.tool);
     const std::string mass = "mass_kg: " + number_text(network_.mats[port.mat].mass);
     if (radius > 0.0) {

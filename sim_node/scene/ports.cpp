@@ -97,6 +97,18 @@ std::optional<Coupling> read_coupling(config::MappingReader& reader, config::Pro
   return coupling;
 }
 
+PortNeeds read_needs(config::MappingReader& reader, config::Problems& problems) {
+  PortNeeds needs;
+  needs.place = reader.place_of("needs");
+  const Value section = reader.optional_mapping("needs");
+  if (!section.exists()) return needs;
+  config::MappingReader wanted(section, "'needs' of " + reader.what(), problems);
+  needs.travel = wanted.optional_number("travel_m", 0.0, Range::positive());
+  needs.force = wanted.optional_number("force_n", 0.0, Range::positive());
+  wanted.finish();
+  return needs;
+}
+
 /// The ball of a port, its mass 0 when it does not say.
 Grain read_port_ball(config::MappingReader& reader, config::Problems& problems) {
   Grain grain;
@@ -190,6 +202,7 @@ void Assembly::read_port(const Value::Entry& entry) {
   } else {
     port.directions = read_axis_directions(reader, port.axes.size(), space, problems_);
   }
+  port.needs = read_needs(reader, problems_);
   std::optional<Coupling> coupling = read_coupling(reader, problems_);
   const double mass = own_mass > 0.0 ? own_mass : coupling.value_or(Coupling{}).mass;
   if (!is_mass) {

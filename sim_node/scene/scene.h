@@ -41,6 +41,13 @@ enum class Role : std::uint8_t {
   kLiaison = 1  ///< it gives forces and receives positions
 };
 
+/// What a port needs along each of its axes: its `needs`. 0: nothing.
+struct PortNeeds {
+  double travel = 0.0;  ///< from stop to stop [m]
+  double force = 0.0;   ///< [N]
+  config::Place place;  ///< where it is said
+};
+
 /// A MAT played by axes of a device.
 ///
 /// Role mass: an imposed position, rest + sum of axis position times direction; the force of an
@@ -59,7 +66,8 @@ struct Port {
   engine::Vec3 rest = engine::Vec3::Zero();  ///< position of the MAT when all axes are at 0 [m]
   std::vector<std::uint32_t> axes;  ///< axes of the device, each below 16, none twice in a scene
   std::vector<engine::Vec3> directions;  ///< per axis, unit length, linearly independent
-  config::Place place;                   ///< of the port in the scene file
+  PortNeeds needs;
+  config::Place place;  ///< of the port in the scene file
 };
 
 /// Where a MAT of a 1-D scene is shown; its displacement is shown along y.

@@ -144,6 +144,24 @@ TEST_F(Checked, PortsAreJudgedInTheirRole) {
   EXPECT_NE(out_.find("TOO STIFF"), std::string::npos) << out_;
 }
 
+TEST_F(Checked, WhatAPortNeedsOfItsDeviceIsSaid) {
+  for (const std::string role : {"mass", "liaison"}) {
+    const std::string port =
+        "ports:\n  key: {device: keyboard, axes: [0], at_m: [0], role: " + role;
+    write("100", port + ", needs: {travel_m: 0.05, force_n: 5}}\n");
+    ASSERT_EQ(run({}), kSuccess) << error_;
+    EXPECT_NE(out_.find("needs a device of 0.05 m of travel and 5 N along each of its axes\n"),
+              std::string::npos)
+        << out_;
+    ASSERT_EQ(run({"--json", "-"}), kSuccess) << error_;
+    EXPECT_EQ(nlohmann::json::parse(out_)["ports"][0]["needs"],
+              (nlohmann::json{{"travel_m", 0.05}, {"force_n", 5.0}}));
+    write("100", port + "}\n");
+    ASSERT_EQ(run({}), kSuccess) << error_;
+    EXPECT_EQ(out_.find("needs a device"), std::string::npos) << out_;
+  }
+}
+
 TEST_F(Checked, TooSlowForRealTimeIsToldWithBothAlternatives) {
   write("100");
   CheckOptions options;

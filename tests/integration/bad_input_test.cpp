@@ -76,6 +76,20 @@ TEST(BadInput, ADeviceWithTooFewAxesIsToldAtThePort) {
                   "scene.yaml:11:", "wants axis 3 of the device 'keyboard', which has 1 axis");
 }
 
+/// What the port needs stands in a line of its own: the twelfth.
+std::string demanding(const std::string& scene, const std::string& needs) {
+  return with(scene, "at_m: [0]}\nlinks", "at_m: [0],\n    needs: {" + needs + "}}\nlinks");
+}
+
+TEST(BadInput, ADeviceWithoutWhatAPortNeedsIsToldThereWithBothNumbers) {
+  const Outcome outcome =
+      run(demanding(wall_scene(1), "travel_m: 0.05, force_n: 25"), steady_key(0, 0));
+  expect_bad_file(outcome, "scene.yaml:12:12: error:",
+                  "needs a travel of 0.05 m, and axis 0 of the device 'keyboard' has 0.04 m");
+  expect_bad_file(outcome, "scene.yaml:12:12: error:",
+                  "needs a force of 25 N, and axis 0 of the device 'keyboard' has 20 N");
+}
+
 TEST(BadInput, ASceneWithoutMatterIsRefused) {
   expect_bad_file(
       run("cordis: 1\nname: empty\nspace: 1\nstep: {rate_hz: 1000, integrator: cordis}\n",
@@ -117,19 +131,23 @@ TEST(BadInput, ASecondSimOfASessionEndsAndTheFirstGoesOn) {
 
 TEST(BadInput, ADeviceThatJoinsLateAndCannotBearTheSceneIsGivenNoForce) {
   LiveSession session("realtime", kSimAndKey);
-  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("scene.yaml", demanding(wall_scene(200.0), "travel_m: 0.04, force_n: 20"));
   session.add_file("key.yaml", steady_key(-0.01, 0.0));
   StatusWatch status(session.participant());
   dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
   session.start("sim_node", "sim");
   ASSERT_TRUE(status.wait_for("sim", [](const auto& told) { return told.ticks() > 0; }));
-  session.add_file("key.yaml", steady_key(-0.01, 0.0) + "stiffness_limit_n_per_m: 150\n");
+  session.add_file("key.yaml", with(steady_key(-0.01, 0.0), "travel_m: 0.04", "travel_m: 0.03") +
+                                   "force_limit_n: 15\nstiffness_limit_n_per_m: 150\n");
   session.start("device_node", "keyboard");
 
-  ASSERT_TRUE(status.wait_for("sim", [](const auto& told) {
-    return told.text().find("as stiff as 200 N/m, and the device 'keyboard' can bear 150 N/m") !=
-           std::string::npos;
-  }));
+  const auto says = [&](const std::string& reason) {
+    return status.wait_for(
+        "sim", [&](const auto& told) { return told.text().find(reason) != std::string::npos; });
+  };
+  ASSERT_TRUE(says("as stiff as 200 N/m, and the device 'keyboard' can bear 150 N/m"));
+  EXPECT_TRUE(says("needs a travel of 0.04 m, and axis 0 of the device 'keyboard' has 0.03 m"));
+  EXPECT_TRUE(says("needs a force of 20 N, and axis 0 of the device 'keyboard' has 15 N"));
   msg::GestureForces force;
   ASSERT_TRUE(eventually([&] { return forces.take(force) && force.answered_sample() > 500; }));
   EXPECT_EQ(force.force_n()[0], 0.0);

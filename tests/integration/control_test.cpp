@@ -35,6 +35,9 @@ class Control : public ::testing::TestWithParam<const char*> {
     session_.add_file("scene.yaml", wall_scene(200.0));
     session_.add_file("stiff.yaml", wall_scene(400.0));
     session_.add_file("bad.yaml", "cordis: 1\nspace: 7\n");
+    std::string wide = wall_scene(200.0);
+    session_.add_file("wide.yaml",
+                      wide.insert(wide.find("at_m: [0]}\nlinks"), "needs: {travel_m: 0.05}, "));
     session_.add_file("key.yaml", steady_key(-0.01, 0.0));
   }
 
@@ -190,6 +193,9 @@ TEST_P(Control, ASceneWithErrorsIsRefusedWithThemAllAndTheOldOneGoesOn) {
   expect_refused({"load", "bad.yaml"},
                  "bad.yaml:2:8: error: 'space' in scene must be between 1 and 3, got 7");
   expect_refused({"load", "nowhere.yaml"}, "cannot be read");
+  expect_refused({"load", "wide.yaml"},
+                 "wide.yaml:11:75: error: port 'key' needs a travel of 0.05 m, and axis 0 of the "
+                 "device 'keyboard' has 0.04 m");
   EXPECT_EQ(status_.of("sim").phase(), "running");
   EXPECT_TRUE(
       status_.wait_for("sim", [](const msg::NodeStatus& status) { return status.step() > 1000; }));

@@ -1,5 +1,6 @@
 #include "sim_node/plan/port_limit.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -40,7 +41,15 @@ TEST(PortLimit, OfADeviceAloneIsThatOfTheReferenceTable) {
     // The table has ten digits of a bisection.
     EXPECT_NEAR(stiffness * period * period / mass, row.stable, 1e-6 * row.stable + 1e-8)
         << row.beta << " " << row.z << " " << row.delay;
+    const double viscosity = plan::stable_port_viscosity(device, PortLoop{period, row.delay});
+    EXPECT_EQ(row.z * mass / period<viscosity, row.stable> 0.0) << "of the port alone";
   }
+}
+
+TEST(PortLimit, OfADeviceWithoutFrictionHasAClosedForm) {
+  // The root of z^2 (z - 1) + c (z + 1), c = B T / 2 m, on the unit circle: c = sqrt(2) - 1.
+  EXPECT_NEAR(plan::stable_port_viscosity({1.0, 1e-9}, PortLoop{1.0, 1}),
+              2.0 * (std::sqrt(2.0) - 1.0), 1e-6);
 }
 
 TEST(PortLimit, FallsWithEveryPeriodOfDelay) {

@@ -49,6 +49,11 @@ void expect_alike(const scene::Scene& a, const scene::Scene& b) {
   EXPECT_EQ(before.maxwell_links.size(), after.maxwell_links.size());
   EXPECT_EQ(before.sets.size(), after.sets.size());
   EXPECT_EQ(a.signals.count(), b.signals.count());
+  ASSERT_EQ(a.ports.size(), b.ports.size());
+  for (std::size_t i = 0; i < a.ports.size(); ++i) {
+    EXPECT_EQ(a.ports[i].needs.travel, b.ports[i].needs.travel);
+    EXPECT_EQ(a.ports[i].needs.force, b.ports[i].needs.force);
+  }
 }
 
 TEST(SceneText, AnExampleIsTheSameSceneWhenItIsReadAgain) {
@@ -101,6 +106,8 @@ TEST(SceneText, PartsOfParallelLiaisonsBecomeLiaisonsOfTheirOwn) {
       "  hook: {kind: fixed, at_m: [0, 0]}\n"
       "  p: {part: pendulum, repeat: {count: 2, translate_m: [0.1, 0]}}\n"
       "world: {gravity_m_per_s2: [0, -9.81]}\n"
+      "ports:\n"
+      "  key: {device: d, axes: 0, role: mass, at_m: [5, 5], needs: {travel_m: 0.05, force_n: 5}}\n"
       "links:\n"
       "  - {liaison: both, between: [hook, \"p[0].bob\"], name: cord}\n"
       "  - {liaison: both, between: [hook, \"p[1].bob\"], k: 10, yield_m: 0.02}\n");

@@ -72,6 +72,17 @@ INSTANTIATE_TEST_SUITE_P(
                  "[-3, 0]]}\n",
                  "'along' in port 'p': the directions depend on each other",
                  "no two may be parallel, no three in one plane"},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], needs: ^0.05}\n",
+                 "'needs' in port 'p' must be a mapping of keys, got '0.05'", ""},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], needs: {force_n: "
+                 "^-5}}\n",
+                 "'force_n' in 'needs' of port 'p' must be > 0, got -5", ""},
+        BadScene{kLinked,
+                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], needs: "
+                 "{^travel: 1}}\n",
+                 "unknown key 'travel' in 'needs' of port 'p'", "did you mean 'travel_m'?"},
         BadScene{
             kLinked,
             "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], coupling: ^1}\n",

@@ -155,6 +155,19 @@ TEST(Port, ACouplingHasDefaultsAndMayBeRefusedInAWord) {
   EXPECT_EQ(links_with(", coupling: {stiffness_n_per_m: 80}")[0].viscosity, 1.5);
 }
 
+TEST(Port, SaysWhatItNeedsOfItsDevice) {
+  const auto needs = [](const std::string& keys) {
+    return scene_with_bob(1, "", "ports:\n  p: {device: d, axes: 0, role: mass" + keys + "}\n")
+        .ports.at(0)
+        .needs;
+  };
+  EXPECT_EQ(needs("").travel, 0.0);
+  EXPECT_EQ(needs("").force, 0.0);
+  EXPECT_EQ(needs(",\n needs: {travel_m: 0.05}").travel, 0.05);
+  EXPECT_EQ(needs(",\n needs: {force_n: 5}").force, 5.0);
+  EXPECT_EQ(needs(",\n needs: {force_n: 5}").place.line, 8);
+}
+
 TEST(Port, TheToolHasNoWeight) {
   for (const std::string role : {"role: mass", "role: liaison", "role: mass, coupling: direct"}) {
     const Scene scene = scene_with_bob(2, "",

@@ -15,14 +15,17 @@ namespace cordis::sim {
 namespace {
 
 /// Two walls at one key.
-scene::Scene walls_of(const std::string& stiffness) {
+/// @param needs  further keys of the port
+scene::Scene walls_of(const std::string& stiffness, const std::string& needs = {}) {
   config::Problems problems;
   scene::Scene scene = scene::load_scene_text(
       "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\n"
       "matter:\n  ground: {kind: fixed, at_m: 0}\n  bob: {kind: mass, mass_kg: 1, at_m: 0}\n"
       "liaisons:\n  wall: {kind: spring, stiffness_n_per_m: " +
           stiffness +
-          "}\nports:\n  key: {device: keyboard, axes: 0, role: mass, at_m: 0, coupling: direct}\n"
+          "}\nports:\n  key: {device: keyboard, axes: 0, role: mass, at_m: 0, coupling: direct" +
+          needs +
+          "}\n"
           "links:\n  - {liaison: wall, between: [key, ground]}\n"
           "  - {liaison: wall, between: [key, bob]}\n",
       "t", problems);
@@ -52,14 +55,74 @@ TEST(PortCheck, RefusesASceneStifferThanItsPortWithTheNumberItMayHave) {
   EXPECT_EQ(verdict(stiff, key_limits(), 0).refusal, "") << "3003 N/m without delay";
 }
 
-TEST(PortCheck, AHandleIsAsLightAsItsLeversMakeIt) {
+/// The device file `{axes: 1, ...}` with these keys.
+config::DeviceLimits limits_of(const std::string& keys) {
   config::Problems problems;
-  const config::Value file = config::load_text(
-      "{axes: 2, moving_mass_kg: 2.4, viscosity_n_s_per_m: 12, end_piece: {map: [[2, -2], [0.5, "
-      "0.5]]}}",
-      "d", problems);
+  const config::Value file = config::load_text("{" + keys + "}", "d", problems);
   config::MappingReader reader(file, "device", problems);
   const config::DeviceLimits limits = config::read_device_limits(reader);
+  EXPECT_EQ(problems.text(), "");
+  return limits;
+}
+
+TEST(PortCheck, RefusesADeviceWithoutTheTravelOrTheForceThatAPortNeeds) {
+  const scene::Scene scene = walls_of("1", ", needs: {travel_m: 0.05, force_n: 5}");
+  const auto lacks = [&](const std::string& keys) {
+    return verdict(scene, limits_of(keys), 1).lacks;
+  };
+  using Sentences = std::vector<std::string>;
+
+  EXPECT_EQ(lacks("axes: 1, travel_m: 0.05, force_limit_n: 5, rest: middle"), Sentences{});
+  EXPECT_EQ(lacks("axes: 1, travel_m: 0.04, force_limit_n: 4"),
+            (Sentences{"port 'key' needs a travel of 0.05 m, and axis 0 of the device 'keyboard' "
+                       "has 0.04 m",
+                       "port 'key' needs a force of 5 N, and axis 0 of the device 'keyboard' has "
+                       "4 N"}));
+  EXPECT_EQ(verdict(walls_of("1"), limits_of("axes: 1, travel_m: 0.001"), 1).lacks, Sentences{});
+  EXPECT_EQ(verdict(scene, config::DeviceLimits{}, 1).lacks, Sentences{}) << "nothing is known";
+}
+
+TEST(PortCheck, ALeverTradesTravelForForce) {
+  const scene::Scene scene = walls_of("1", ", needs: {travel_m: 0.05, force_n: 5}");
+  const auto lacks = [&](const std::string& map) {
+    return verdict(scene,
+                   limits_of("axes: 2, travel_m: 0.04, force_limit_n: 10, end_piece: {map: [" +
+                             map + ", [1, 1]]}"),
+                   1)
+        .lacks;
+  };
+  EXPECT_TRUE(lacks("[2, 0]").empty()) << "8 cm and 5 N";
+  EXPECT_TRUE(lacks("[1, -1]").empty()) << "8 cm by their difference, and 10 N";
+  ASSERT_EQ(lacks("[4, 0]").size(), 1u) << "16 cm and 2.5 N";
+  EXPECT_NE(lacks("[4, 0]")[0].find("has 2.5 N"), std::string::npos);
+  ASSERT_EQ(lacks("[0.5, 0.5]").size(), 1u) << "4 cm and 20 N";
+  EXPECT_NE(lacks("[0.5, 0.5]")[0].find("has 0.04 m"), std::string::npos);
+}
+
+TEST(PortCheck, RefusesASceneMoreViscousThanItsPortWithTheNumberItMayHave) {
+  PortDemand demand;
+  demand.port = "key";
+  demand.device = "keyboard";
+  demand.least = demand.most = {0.0, 251.0};
+  // A mass alone, a period of delay: z^2 (z - 1) + c (z + 1) has a root on the unit circle at
+  // c = B T / 2 m = sqrt(2) - 1: B = 248.5 N s/m, and 1.5 N s/m of its own add about as much.
+  const std::string refusal = verdict_on(demand, key_limits(), 1).refusal;
+  EXPECT_NE(refusal.find("as viscous as 251 N s/m"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("can bear 249 N s/m (with 0.3 kg"), std::string::npos) << refusal;
+  demand.least.viscosity = 248.0;
+  EXPECT_EQ(verdict_on(demand, key_limits(), 1).refusal, "");
+
+  config::DeviceLimits declared = key_limits();
+  declared.damping_limit_n_s_per_m = 2.0;
+  declared.stiffness_limit_n_per_m = 1e6;
+  EXPECT_NE(verdict_on(demand, declared, 1).refusal.find("can bear 2 N s/m (declares it)"),
+            std::string::npos);
+}
+
+TEST(PortCheck, AHandleIsAsLightAsItsLeversMakeIt) {
+  const config::DeviceLimits limits = limits_of(
+      "axes: 2, moving_mass_kg: 2.4, viscosity_n_s_per_m: 12, end_piece: {map: [[2, -2], [0.5, "
+      "0.5]]}");
 
   // q = 2 (x0 - x1): a mass of 2.4 kg behind a ratio of 2 at either end weighs 1/8 of it.
   EXPECT_EQ(limits.leverage, 8.0);
@@ -143,6 +206,32 @@ TEST(RefusedDevices, AreThoseThatCannotBearTheSceneWhicheverComesFirst) {
   EXPECT_FALSE(devices.refuses(1));
   EXPECT_FALSE(devices.refuses(3));
   EXPECT_EQ(devices.text(), "");
+}
+
+TEST(RefusedDevices, AreThoseWithoutWhatAPortNeeds) {
+  RefusedDevices devices(1);
+  devices.play(walls_of("1", ", needs: {travel_m: 0.05, force_n: 5}"));
+  msg::DeviceDescription told = description(1, 1.5);
+  told.travel_m()[0] = 0.05;
+  told.force_n()[0] = 5.0;
+  devices.hear(told);
+  EXPECT_EQ(devices.text(), "");
+
+  told.run(2);
+  told.travel_m()[0] = 0.04;
+  told.force_n()[0] = 4.0;
+  devices.hear(told);
+  EXPECT_FALSE(devices.refuses(1));
+  EXPECT_TRUE(devices.refuses(2));
+  EXPECT_EQ(devices.text(),
+            "port 'key' needs a travel of 0.05 m, and axis 0 of the device 'keyboard' has 0.04 m; "
+            "port 'key' needs a force of 5 N, and axis 0 of the device 'keyboard' has 4 N: driver "
+            "kfb1 is given no force");
+
+  told.travel_m()[1] = std::nan("");
+  told.run(3);
+  devices.hear(told);
+  EXPECT_FALSE(devices.refuses(3)) << "a number that makes no sense";
 }
 
 TEST(RefusedDevices, DoNotBelieveNumbersThatMakeNoSense) {
