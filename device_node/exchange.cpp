@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace cordis::device {
+namespace {
+
+// Of the loop itself: boards have a watchdog of 20 ms, which must not be missed by a hair.
+constexpr double kStandstill = 0.018;       // [s]
+constexpr double kStandstillPeriods = 1.9;  // of a slow device
+
+}  // namespace
 
 Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep,
                    Driver& driver, GestureChannel& channel, LoopMeter& meter, ClockFunction clock)
@@ -18,7 +25,8 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
       force_guard_(config.force_guard),
       position_guard_(config.position_guard),
       late_(static_cast<std::size_t>(config.limits.delay_periods) + 1),
-      first_sample_(series.last_sample + 1) {
+      first_sample_(series.last_sample + 1),
+      lived_nsec_(clock()) {
   sample_.run = series.run;
   sample_.sample = series.last_sample;
   sample_.axis_count = static_cast<std::uint32_t>(config.end_piece.coordinate_count());
@@ -116,6 +124,12 @@ double Exchange::age_s() const noexcept {
   return static_cast<double>(clock_() - used_.answered_time_nsec) * 1e-9;
 }
 
+bool Exchange::stood_still() noexcept {
+  const std::int64_t now = clock_();
+  const auto since_s = static_cast<double>(now - std::exchange(lived_nsec_, now)) * 1e-9;
+  return !lockstep_ && since_s > std::max(kStandstill, kStandstillPeriods / config_.layout.rate_hz);
+}
+
 /// Of a hand that was carried, its force known before and after: f dx, exact for one that is a
 /// spring. At the end of the travel the scene goes on under the force of a hand that cannot: that
 /// counts as if it did, for it is not the age of the force that makes the difference.
@@ -133,7 +147,8 @@ void Exchange::add_work(const AxisValues& force_before_n, const AxisValues& carr
 void Exchange::live() noexcept {
   const bool leaving = leaving_age_s_ > 0.0;
   if (leaving) leaving_age_s_ += 1.0 / config_.layout.rate_hz;
-  const double age = std::max(age_s(), leaving_age_s_);
+  const double least = stood_still() ? config_.force_guard.watchdog_s : leaving_age_s_;
+  const double age = std::max(age_s(), least);
   const AxisValues& commanded =
       role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
   driver_.note_age(age);

@@ -21,7 +21,9 @@ namespace cordis::device {
 /// the motors. In lockstep `delay_periods` of the device lets every answer be felt so much later,
 /// as over a slow wire, and samples echo what is felt; the age of what goes to the guard is counted
 /// in samples, and nothing depends on wall time. Otherwise the age counts from the moment the
-/// answered sample was sent, so that a scene that no longer hears this device counts as silent.
+/// answered sample was sent, so that a scene that no longer hears this device counts as silent. A
+/// loop that has itself stood still for 18 ms, or nearly two periods, begins anew whatever the
+/// watchdog: by then a device may have let go on its own (docs/kfb1.md).
 class Exchange {
  public:
   using ClockFunction = std::int64_t (*)() noexcept;  ///< CLOCK_MONOTONIC [ns]
@@ -75,6 +77,7 @@ class Exchange {
   bool consider(const GestureMessage& answer) noexcept;
   void accept(const GestureMessage& answer) noexcept;
   double age_s() const noexcept;
+  bool stood_still() noexcept;
   void add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept;
   void note_phase(bool in_time) noexcept;
 
@@ -98,6 +101,7 @@ class Exchange {
   std::uint64_t first_sample_;            // of this exchange
   std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came
   bool other_answered_ = false;           // ever
+  std::int64_t lived_nsec_;               // when live() was called last
   double leaving_age_s_ = 0.0;            // that the last answer is given; 0: it has its own
   bool present_ = false;                  // the driver has its device
   bool any_answer_ = false;

@@ -15,6 +15,7 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
       ports_(std::move(ports)),
       run_(run),
       lost_after_ticks_(std::max(3, static_cast<int>(std::lround(kLostAfter * rate_hz)))),
+      lost_after_nsec_(std::llround(lost_after_ticks_ * 1e9 / rate_hz)),
       rejoin_ticks_(std::max(1, static_cast<int>(std::lround(kRejoin * rate_hz)))),
       silent_ticks_(lost_after_ticks_ + 1) {
   for (const scene::Port& port : ports_) {
@@ -39,6 +40,7 @@ void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexc
   to_ = before.to_;
   silent_ticks_ = before.silent_ticks_;
   rejoin_left_ = before.rejoin_left_;
+  even_ticks_ = before.even_ticks_;
 }
 
 void DeviceExchange::let_go() noexcept {
@@ -66,7 +68,12 @@ DeviceExchange::Reception DeviceExchange::receive(const Sample& sample, const Va
     ++refused_count_;
     return Reception::kRefused;
   }
-  if (sample.run() == heard_run_) missed_count_ += sample.sample() - heard_sample_ - 1;
+  if (sample.run() == heard_run_) {
+    const std::uint64_t missed = sample.sample() - heard_sample_ - 1;
+    missed_count_ += missed;
+    const std::int64_t gap_nsec = sample.time_nsec() - heard_time_nsec_;
+    after_gap_ = after_gap_ || (missed > 0 && gap_nsec > lost_after_nsec_);
+  }
   new_run_ = new_run_ || sample.run() != heard_run_;
   borne_ = borne;
   heard_run_ = sample.run();
@@ -94,10 +101,13 @@ DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& samp
 
 void DeviceExchange::begin_tick() noexcept {
   from_ = to_;
+  const bool gap = std::exchange(after_gap_, false);
+  const bool stood_still = gap && even_ticks_ == rejoin_ticks_;
+  even_ticks_ = gap ? 0 : std::min(even_ticks_ + 1, rejoin_ticks_);
   if (!borne_) {
     silent_ticks_ = lost_after_ticks_ + 1;
   } else if (has_new_) {
-    if (is_lost() || new_run_) {
+    if (is_lost() || new_run_ || stood_still) {
       rejoin_left_ = rejoin_ticks_;
       if (brake_) brake_->start();
     }

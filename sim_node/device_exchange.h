@@ -27,8 +27,9 @@ constexpr std::size_t kMaxAxes = 16;
 /// is lost, and no delay added. A device that was not heard for kLostAfter is lost: its MATs hold
 /// still, its forces count as 0, and it is given none. When it is heard again, or another process
 /// is heard in its place, that takes over gradually, within kRejoin, and so do the forces it is
-/// given: neither side jumps. Both are counted in ticks. Real time: every function but the
-/// constructor is O(axes), allocates nothing and does not throw.
+/// given: neither side jumps. Both are counted in ticks. Likewise after a gap as long in its
+/// samples, when the scene itself stood still; one that is always late plays what comes. Real time:
+/// every function but the constructor is O(axes), allocates nothing and does not throw.
 class DeviceExchange {
  public:
   static constexpr double kLostAfter = 0.02;  ///< [s]
@@ -113,15 +114,18 @@ class DeviceExchange {
   std::uint64_t felt_answer_ = 0;  // role liaison: that the newest sample speaks of
   double hand_work_ = 0.0;         // what the hand had given there [J]
   bool has_new_ = false;
-  bool new_run_ = false;  // it is the first of another process
+  bool new_run_ = false;    // it is the first of another process
+  bool after_gap_ = false;  // it is the first after a gap of kLostAfter
   bool borne_ = true;
 
   std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick
   std::array<double, kMaxAxes> to_{};    // and at its end
   int lost_after_ticks_;
+  std::int64_t lost_after_nsec_;
   int rejoin_ticks_;
   int silent_ticks_;
   int rejoin_left_ = 0;
+  int even_ticks_ = 0;  // since the last gap, at most rejoin_ticks_
 
   std::uint32_t axis_count_ = 1;  // of the device, as its samples tell
   std::uint64_t answers_ = 0;

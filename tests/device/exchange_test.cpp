@@ -68,20 +68,23 @@ class FakeDriver : public Driver {
   bool stopped = false;
 };
 
-DeviceConfig config_of_two_axes() {
+DeviceConfig config_of_two_axes(double watchdog_s = 0.02) {
   DeviceConfig config;
   config.name = "keyboard";
   config.device_id = 4711;
   config.layout.count = 2;
   config.end_piece = EndPiece(2);
   config.force_guard.ramp_s = 0.0;
+  config.force_guard.watchdog_s = watchdog_s;
+  config.position_guard.watchdog_s = watchdog_s;
   config.position_guard.ramp_s = 0.0;
   return config;
 }
 
 struct Rig {
-  explicit Rig(bool lockstep, Role role = Role::kMass, Exchange::Series series = {kRun, 0})
-      : config(config_of_two_axes()),
+  explicit Rig(bool lockstep, Role role = Role::kMass, Exchange::Series series = {kRun, 0},
+               double watchdog_s = 0.02)
+      : config(config_of_two_axes(watchdog_s)),
         exchange(config, role, series, lockstep, driver, channel, meter, &now) {}
 
   /// The scene's answer to the sample sent last.
@@ -520,6 +523,18 @@ TEST(Exchange, StopsItsDriverAtTheEnd) {
     EXPECT_FALSE(driver.stopped);
   }
   EXPECT_TRUE(driver.stopped);
+}
+
+TEST(Exchange, BeginsAnewAfterItStoodStillWhateverTheWatchdog) {
+  now_nsec = 1'000'000'000;
+  Rig rig(false, Role::kMass, {kRun, 0}, /*watchdog_s=*/0.05);
+  EXPECT_EQ(rig.period(true, 3.0), 3.0);
+
+  now_nsec += 22 * kPeriodNsec;  // the board has let go, and the answers are not old yet
+
+  EXPECT_EQ(rig.period(true, 3.0), 0.0);
+  EXPECT_EQ(rig.driver.age, 0.05) << "a driver with a guard of its own begins anew as well";
+  EXPECT_EQ(rig.period(true, 3.0), 3.0);
 }
 
 TEST(Exchange, LeavesWithoutAJumpOfForce) {

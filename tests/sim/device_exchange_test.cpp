@@ -188,6 +188,45 @@ TEST(DeviceExchange, AnotherProcessOfTheDeviceTakesOverGradually) {
   EXPECT_LT(largest_rise, 2.0 * kStiffness * 0.04 / 99.0) << "share and position grow together";
 }
 
+TEST(DeviceExchange, TakesOverGraduallyWhenTheSceneItselfStoodStill) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  const std::uint64_t before = settle(exchange, world, 0.0);
+
+  // 50 samples of the device, 50 ms, went by unheard, and the hand by 20 mm.
+  double last = 0.0;
+  for (std::uint64_t tick = 0; tick < 100; ++tick) {
+    exchange.receive(sample_at(before + 50 + tick, 0.02));
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+    const double position = world.position(0).x() - 1.0;
+    EXPECT_LT(position - last, 0.02 / 99.0) << "within 0.1 s, tick " << tick;
+    EXPECT_LE(std::abs(exchange.answer_forces(world, true, 0).force_n()[1]),
+              kStiffness * 0.02 * static_cast<double>(tick + 1) / 100.0 + 1e-12);
+    last = position;
+  }
+  EXPECT_NEAR(last, 0.02, 1e-15);
+}
+
+TEST(DeviceExchange, ASceneThatIsAlwaysLatePlaysWhatComes) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  std::uint64_t number = settle(exchange, world, 0.0);
+  for (int tick = 0; tick < 150; ++tick) {
+    exchange.receive(sample_at(number += 50, 0.02));
+    exchange.begin_tick();
+    exchange.play(world, 1, 1);
+    world.step();
+  }
+  exchange.receive(sample_at(number += 50, 0.01));
+  exchange.begin_tick();
+  exchange.play(world, 1, 1);
+  world.step();
+
+  EXPECT_NEAR(world.position(0).x(), 1.01, 1e-15);
+}
+
 TEST(DeviceExchange, GivesNoForceToADeviceThatCannotBearTheScene) {
   engine::World world = world_with_a_port();
   DeviceExchange exchange = mass_exchange();
