@@ -25,7 +25,6 @@ FireFader::FireFader(std::unique_ptr<Wire> wire, const HardwareSettings& setting
 
 void FireFader::begin() noexcept {
   length_ = kAnswer + 1;
-  asked_ = false;
   jumps_.forget();
 }
 
@@ -36,7 +35,6 @@ std::size_t FireFader::request(const AxisValues& force_n, Message& message) noex
     message[1 + a] =
         static_cast<std::uint8_t>(static_cast<std::int8_t>(std::lround(share * kLargestForce)));
   }
-  asked_ = true;
   return 1 + kFaders;
 }
 
@@ -54,10 +52,9 @@ Hardware::Heard FireFader::hear(std::uint8_t byte) noexcept {
     const double share = answer_[a] / kLargestPosition;
     place[a] = layout().lowest_m + share * (layout().highest_m - layout().lowest_m);
   }
-  const bool newest = std::exchange(asked_, false);
   if (!jumps_.believes(place)) return Heard::kBad;
   newest_ = place;
-  return newest ? Heard::kSample : Heard::kOldSample;
+  return Heard::kSample;
 }
 
 std::unique_ptr<Driver> make_firefader(const config::Value& section, const AxisLayout& layout,

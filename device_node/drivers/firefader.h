@@ -30,7 +30,6 @@ class FireFader final : public Hardware {
   double full_scale_n_;
   std::array<std::uint8_t, kAnswer> answer_{};
   std::size_t length_ = kAnswer + 1;  // of the answer so far; more: waits for a 255
-  bool asked_ = false;                // and not answered yet
   JumpCheck jumps_;
   AxisValues newest_{};  // [m]
 };

@@ -40,7 +40,6 @@ std::array<std::size_t, 2> Haply::by_port() const noexcept {
 
 void Haply::begin() noexcept {
   length_ = 0;
-  asked_ = false;
   configured_ = false;
   jumps_.forget();
   pose_.exists = false;
@@ -80,7 +79,6 @@ std::size_t Haply::request(const AxisValues& force_n, Message& message) noexcept
   add(kTorques);
   add(haply_.device_id);
   for (const std::size_t arm : order) add_float(torque[arm]);
-  asked_ = true;
   return count;
 }
 
@@ -98,12 +96,11 @@ Hardware::Heard Haply::take_angles() noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     angle[order[i]] = get_float(answer_.data() + 1 + 4 * i) * kDegree;
   }
-  const bool newest = std::exchange(asked_, false);
   const bool sane = std::abs(angle[0]) < kFarthestTurn && std::abs(angle[1]) < kFarthestTurn;
   const Pantograph::Pose pose = sane ? haply_.arms.forward(angle) : Pantograph::Pose{};
   if (!pose.exists || !jumps_.believes({pose.pen_m[0], pose.pen_m[1]})) return Heard::kBad;
   pose_ = pose;
-  return newest ? Heard::kSample : Heard::kOldSample;
+  return Heard::kSample;
 }
 
 void Haply::position(AxisValues& position_m) const noexcept {

@@ -50,7 +50,6 @@ class Haply final : public Hardware {
   HaplySettings haply_;
   std::array<std::uint8_t, kAnswer> answer_{};
   std::size_t length_ = 0;
-  bool asked_ = false;  // and not answered yet
   bool configured_ = false;
   JumpCheck jumps_;
   Pantograph::Pose pose_;

@@ -65,7 +65,7 @@ class Hardware : public Driver {
     kNothing,
     kGreeted,    ///< the device is the right one
     kWrong,      ///< it is not: the wire is closed
-    kSample,     ///< a sample that answers the newest request
+    kSample,     ///< a sample that answers the newest request, as far as can be told
     kOldSample,  ///< one that answers an earlier request
     kBad         ///< damaged
   };

@@ -103,6 +103,7 @@ std::size_t Kfb1::greet(Message& message) noexcept {
 
 std::size_t Kfb1::configure(Message& message) noexcept {
   constexpr double kMost = 4e9;
+  compare_with_file();
   Message payload{};
   payload[0] = kConfig;
   put16(payload.data() + 1, static_cast<unsigned>(std::min(layout().rate_hz, 65535.0)));
@@ -168,6 +169,25 @@ Hardware::Heard Kfb1::take_info(Bytes payload) noexcept {
   travel_m_ = get32(payload, 3) * 1e-6;
   force_n_ = get32(payload, 7) * 1e-3;
   return Heard::kGreeted;
+}
+
+/// Tells where the device is not what its file promises to scenes. A device that is stronger than
+/// the file says is told to stay within it.
+void Kfb1::compare_with_file() const noexcept {
+  constexpr double kUnit = 1e-6;  // in which it tells its travel [m]
+  const double travel_m = layout().highest_m - layout().lowest_m;
+  if (std::abs(travel_m_ - travel_m) > kUnit) {
+    spdlog::warn(
+        "kfb1: the keys have a travel of {:.6g} m, and travel_m of the device file is "
+        "{:.6g} m: scenes are held against that",
+        travel_m_, travel_m);
+  }
+  if (force_n_ < layout().force_limit_n) {
+    spdlog::warn(
+        "kfb1: the motors give {:.6g} N at most, and force_limit_n of the device file is "
+        "{:.6g} N: forces above their most are cut off",
+        force_n_, layout().force_limit_n);
+  }
 }
 
 Hardware::Heard Kfb1::take_state(Bytes payload) noexcept {

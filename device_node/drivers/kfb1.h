@@ -6,8 +6,9 @@
 namespace cordis::device {
 
 /// KFB1: COBS frames with a checksum; each FORCE is answered by one STATE with its number. The
-/// driver asks what the device is, refuses one with another number of keys, and tells it the rate
-/// and the largest force of the device file. EVENTs are logged.
+/// driver asks what the device is, refuses one with another number of keys, says in the log where
+/// its travel or its force is not that of the device file, and tells it the rate and the largest
+/// force of the device file. EVENTs are logged.
 class Kfb1 final : public Hardware {
  public:
   using Hardware::Hardware;
@@ -25,6 +26,7 @@ class Kfb1 final : public Hardware {
   Heard take_info(std::span<const std::uint8_t> payload) noexcept;
   Heard take_state(std::span<const std::uint8_t> payload) noexcept;
   void take_event(std::uint8_t code) noexcept;
+  void compare_with_file() const noexcept;
 
   Message frame_{};  // bytes since the last 0
   std::size_t length_ = 0;

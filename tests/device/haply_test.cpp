@@ -7,6 +7,7 @@
 #include <cmath>
 #include <mutex>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -106,6 +107,7 @@ class BoardOfAPantograph {
   std::array<std::atomic<float>, 2> degrees{};
   std::array<std::atomic<float>, 2> torques{};
   std::atomic<int> configurations{0};
+  std::atomic<bool> says_nonsense_before{false};
 
  private:
   static constexpr std::size_t kConfiguration = 2 + 3 + 3 + 2 + 16;
@@ -127,6 +129,12 @@ class BoardOfAPantograph {
       for (const auto& angle : degrees) {
         const auto bits = std::bit_cast<std::uint32_t>(angle.load());
         for (int i = 0; i < 4; ++i) answer.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
+      }
+      if (says_nonsense_before) {  // as a damaged answer that comes together with the next
+        std::vector<std::uint8_t> nonsense(answer.size(), 0xff);
+        nonsense[0] = answer[0];
+        nonsense.insert(nonsense.end(), answer.begin(), answer.end());
+        answer = std::move(nonsense);
       }
       plug.say(answer);
     } else if (bytes_[0] != 1 && bytes_[0] != 2) {
@@ -219,6 +227,26 @@ TEST_F(HaplyTest, RefusesAnglesThatNoPenHas) {
   AxisValues sensed{};
   pen->read(sensed);
   EXPECT_NEAR(sensed[0], 0.0, 1e-6) << "the last good place";
+}
+
+TEST_F(HaplyTest, AnAnswerThatIsNotBelievedDoesNotStandForTheNext) {
+  BoardOfAPantograph board;
+  put_pen(board, {0.0, 0.1});
+  board.plug.into_serial_line(link());
+  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  auto& hardware = dynamic_cast<Hardware&>(*pen);
+  pen->start(Role::kMass);
+  ASSERT_TRUE(until(*pen, {}, [](bool there) { return there; }));
+
+  board.says_nonsense_before = true;
+  std::uint64_t late = hardware.late_count();
+  const std::uint64_t bad = hardware.bad_count();
+  int in_time = 0;
+  EXPECT_TRUE(until(*pen, {}, [&](bool) {  // sooner or later one after the other
+    in_time = hardware.late_count() == late ? in_time + 1 : 0;
+    late = hardware.late_count();
+    return in_time == 20 && hardware.bad_count() >= bad + 20;
+  }));
 }
 
 }  // namespace

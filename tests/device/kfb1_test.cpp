@@ -6,11 +6,15 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <memory>
+#include <sstream>
 #include <string>
 #include <thread>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include "device_node/drivers/kfb1.h"
 #include "tests/device/kfb1_board.h"
@@ -74,6 +78,40 @@ TEST_F(Kfb1Test, TellsTheDeviceTheLargestForceOfItsFile) {
     return std::abs(board.forces[0] - 0.4 * 32767) < 2 &&
            std::abs(board.forces[1] + 0.4 * 32767) < 2;
   })) << board.forces[0];
+}
+
+TEST_F(Kfb1Test, SaysOncePerConnectionWhereTheDeviceIsNotWhatItsFileSays) {
+  const auto said_of = [&](double travel_m, double force_limit_n) {
+    AxisLayout layout = layout_of(2);  // the board: 0.04 m, 10 N
+    layout.lowest_m = -travel_m;
+    layout.force_limit_n = force_limit_n;
+    const auto key = driver("kfb1", port(), layout);
+    std::ostringstream log;
+    const auto before = spdlog::default_logger();
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+        "", std::make_shared<spdlog::sinks::ostream_sink_st>(log)));
+    spdlog::set_pattern("%v");
+    key->start(Role::kMass);
+    for (int connection = 0; connection < 2; ++connection) {
+      Kfb1Board board;
+      board.plug.into_serial_line(link());
+      EXPECT_TRUE(until(*key, {}, [n = 0](bool there) mutable { return (n += there) == 20; }));
+      board.plug.pull();
+      EXPECT_TRUE(until(*key, {}, [](bool there) { return !there; }));
+    }
+    spdlog::set_default_logger(before);
+    return log.str();
+  };
+  const auto twice = [](const std::string& line) { return line + "\n" + line + "\n"; };
+
+  EXPECT_EQ(said_of(0.04, 10.0), "");
+  EXPECT_EQ(said_of(0.04, 4.0), "") << "a stronger device is told its limit";
+  EXPECT_EQ(said_of(0.05, 10.0),
+            twice("kfb1: the keys have a travel of 0.04 m, and travel_m of the device file is 0.05 "
+                  "m: scenes are held against that"));
+  EXPECT_EQ(said_of(0.04, 20.0),
+            twice("kfb1: the motors give 10 N at most, and force_limit_n of the device file is 20 "
+                  "N: forces above their most are cut off"));
 }
 
 TEST_F(Kfb1Test, SpeaksUdpToo) {
