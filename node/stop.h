@@ -5,7 +5,8 @@
 
 namespace cordis::node {
 
-/// SIGINT and SIGTERM become a wish to stop that every thread can ask for and wait on. SIGPIPE is
+/// SIGINT, SIGTERM and SIGHUP, unless that is ignored, become a wish to stop that every thread can
+/// ask for and wait on: a motor must not be left alone when a terminal is closed. SIGPIPE is
 /// ignored. Call once at the beginning of main, before any thread exists.
 void install_stop_signals();
 

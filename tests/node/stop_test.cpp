@@ -24,7 +24,7 @@ int exit_code_of(Body body) {
 }
 
 TEST(Stop, WaitsUntilASignalAsksForIt) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const int code = exit_code_of([signal] {
       install_stop_signals();
       if (stop_requested()) return 10;
@@ -34,6 +34,16 @@ TEST(Stop, WaitsUntilASignalAsksForIt) {
     });
     EXPECT_EQ(code, 0) << "signal " << signal;
   }
+}
+
+TEST(Stop, IsNotAskedForByAHangupThatIsIgnored) {
+  EXPECT_EQ(exit_code_of([] {
+              std::signal(SIGHUP, SIG_IGN);  // as nohup does
+              install_stop_signals();
+              raise(SIGHUP);
+              return stop_requested() ? 1 : 0;
+            }),
+            0);
 }
 
 TEST(Stop, IsAskedForByTheProcessItself) {
