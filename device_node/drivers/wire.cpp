@@ -5,6 +5,8 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -13,7 +15,10 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -42,6 +47,10 @@ class SerialLine final : public Wire {
       close();
       return false;
     }
+    if (!note_mine(flock(file_, LOCK_EX | LOCK_NB) == 0, path_.c_str())) {
+      close();
+      return false;
+    }
     cfmakeraw(&line);
     line.c_cflag |= CLOCAL | CREAD;
     cfsetspeed(&line, baud_);
@@ -57,10 +66,15 @@ class SerialLine final : public Wire {
 
 class Datagrams final : public Wire {
  public:
-  explicit Datagrams(const sockaddr_in& address) : address_(address) {}
+  Datagrams(const sockaddr_in& address, std::string name)
+      : address_(address), name_(std::move(name)) {}
+  ~Datagrams() override {
+    if (claim_ >= 0) ::close(claim_);
+  }
 
   bool open() noexcept override {
     close();
+    if (!note_mine(claim(), name_.c_str())) return false;
     file_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (file_ < 0) return false;
     if (connect(file_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_) == 0) {
@@ -71,7 +85,28 @@ class Datagrams final : public Wire {
   }
 
  private:
+  /// For good: an abstract name of this host lives as long as its socket.
+  bool claim() noexcept {
+    if (claim_ >= 0) return true;
+    sockaddr_un mine{};
+    mine.sun_family = AF_UNIX;
+    const int length =
+        std::snprintf(mine.sun_path + 1, sizeof mine.sun_path - 1, "cordis/udp/%08x:%04x",
+                      address_.sin_addr.s_addr, static_cast<unsigned>(address_.sin_port));
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1) +
+                      static_cast<socklen_t>(length);
+    claim_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (claim_ >= 0 && bind(claim_, reinterpret_cast<const sockaddr*>(&mine), size) == 0) {
+      return true;
+    }
+    if (claim_ >= 0) ::close(claim_);
+    claim_ = -1;
+    return false;
+  }
+
   sockaddr_in address_;
+  std::string name_;
+  int claim_ = -1;
 };
 
 }  // namespace
@@ -83,6 +118,13 @@ Wire::~Wire() {
 void Wire::close() noexcept {
   if (file_ >= 0) ::close(file_);
   file_ = -1;
+}
+
+bool Wire::note_mine(bool mine, const char* what) noexcept {
+  if (std::exchange(mine_, mine) && !mine) {
+    spdlog::error("{} is driven by another process; this one waits until it is free", what);
+  }
+  return mine;
 }
 
 bool Wire::send(std::span<const std::uint8_t> bytes) noexcept {
@@ -144,7 +186,7 @@ std::unique_ptr<Wire> read_wire(config::MappingReader& reader, long default_baud
     reader.error_at("udp", "udp must be an address like 192.168.0.7:5005, got '" + address + "'");
     return nullptr;
   }
-  return std::make_unique<Datagrams>(peer);
+  return std::make_unique<Datagrams>(peer, address);
 }
 
 }  // namespace cordis::device

@@ -11,7 +11,8 @@
 
 namespace cordis::device {
 
-/// A way to a device. Nothing here waits longer than it is told, allocates or throws; opening may
+/// A way to a device, which is this process' own while it is open: two that took turns would pull a
+/// motor to and fro. Nothing here waits longer than it is told, allocates or throws; opening may
 /// take the kernel some 100 us.
 class Wire {
  public:
@@ -20,7 +21,7 @@ class Wire {
   Wire& operator=(const Wire&) = delete;
   virtual ~Wire();
 
-  virtual bool open() noexcept = 0;  ///< false when the device is not there
+  virtual bool open() noexcept = 0;  ///< false when the device is not there, or not to be had
   void close() noexcept;
   bool is_open() const noexcept { return file_ >= 0; }
 
@@ -32,7 +33,13 @@ class Wire {
   std::size_t receive(std::span<std::uint8_t> room, std::chrono::nanoseconds at_most) noexcept;
 
  protected:
+  /// Says once that another process has it. @return mine
+  bool note_mine(bool mine, const char* what) noexcept;
+
   int file_ = -1;
+
+ private:
+  bool mine_ = true;
 };
 
 /// Reads `port: /dev/...` with `baud`, or `udp: ADDRESS:PORT`, from the mapping of a driver.

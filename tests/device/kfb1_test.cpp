@@ -127,6 +127,30 @@ TEST_F(Kfb1Test, SpeaksUdpToo) {
   }));
 }
 
+TEST_F(Kfb1Test, NoTwoDriversTakeTurnsAtOneBoard) {
+  for (const bool udp : {false, true}) {
+    Kfb1Board board;
+    std::string where = port();
+    if (udp) where = "udp: '127.0.0.1:" + std::to_string(board.plug.into_udp()) + "'";
+    if (!udp) board.plug.into_serial_line(link());
+    auto first = keys_at(where);
+    const auto second = keys_at(where);
+    first->start(Role::kMass);
+    ASSERT_TRUE(until(*first, {5.0, 0.0}, [&](bool) { return board.forces[0] == 16384; }));
+
+    second->start(Role::kMass);
+    node::PacedLoop pace(1000.0);
+    for (int period = 0; period < 20; ++period) {
+      pace.wait();
+      EXPECT_FALSE(second->write({-5.0, 0.0}));
+      EXPECT_GE(board.forces[0], 0);
+    }
+
+    first.reset();
+    EXPECT_TRUE(until(*second, {-5.0, 0.0}, [&](bool) { return board.forces[0] == -16384; }));
+  }
+}
+
 TEST_F(Kfb1Test, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
   const auto key = keys_at(port());
   key->start(Role::kMass);
