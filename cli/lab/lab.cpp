@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 
 #include <fmt/format.h>
@@ -95,6 +96,18 @@ void run_all(const LabScene& lab, const plan::Reference& reference,
   if (failure) std::rethrow_exception(failure);
 }
 
+/// @throws std::runtime_error when there is none; of a scene in which nothing moves it says what
+/// its ports do.
+plan::Reference reference_of(const LabScene& lab, const plan::ReferenceWish& wish) {
+  try {
+    return plan::make_reference(lab.scene.network, lab.course, wish);
+  } catch (const plan::NothingMoves& still) {
+    std::string text = still.what();
+    for (const std::string& port : lab.ports) text += "; " + port;
+    throw std::runtime_error(text);
+  }
+}
+
 std::vector<LabRun> sorted_runs(const std::vector<TrialResult>& results,
                                 const std::vector<std::string>& integrators) {
   std::vector<LabRun> runs;
@@ -178,7 +191,7 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
     plan::ReferenceWish wish{
         ladder.sampling, effort.tolerance, effort.longest_s, ladder.rates_hz.back(),
         [&progress](double done) { progress(fmt::format("the oracle: {:.0f} %", 100.0 * done)); }};
-    store.keep(plan::make_reference(network, report.lab.course, wish));
+    store.keep(reference_of(report.lab, wish));
   }
   report.reference = *store.reference();
 

@@ -68,17 +68,15 @@ std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescr
     }
   }
   double mass = 0.0;
-  std::size_t masses = 0;
   for (const Mat& mat : network.mats) {
     if (mat.kind != MatKind::kMass) continue;
-    ++masses;
     if (network.medium_viscosity > 0.0 && mass > 0.0 && differ(mass, mat.mass)) {
       return IntegratorRefusal{"different masses in a medium", {}};
     }
     mass = mat.mass;
   }
   if (mass == 0.0) return IntegratorRefusal{"no mass", {}};
-  if (masses > kMostModalMasses) {
+  if (network.mass_count() > kMostModalMasses) {
     return IntegratorRefusal{"more than " + std::to_string(kMostModalMasses) + " masses", {}};
   }
   return std::nullopt;

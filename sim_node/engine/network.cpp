@@ -1,6 +1,7 @@
 // sim_node/engine/network.cpp
 #include "sim_node/engine/network.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -157,6 +158,10 @@ void check(const NetworkDescription& description) {
 }
 
 }  // namespace
+
+std::size_t NetworkDescription::mass_count() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count(mats, MatKind::kMass, &Mat::kind));
+}
 
 Network::Network(NetworkDescription description) : description_(std::move(description)) {
   check(description_);

@@ -103,6 +103,7 @@ struct NetworkDescription {
   Vec3 gravity_on(const Mat& mat) const noexcept {
     return mat.weightless ? Vec3(Vec3::Zero()) : gravity;
   }
+  std::size_t mass_count() const noexcept;  ///< MATs of kind kMass. O(MATs)
 };
 
 /// A network of MATs (its nodes) and LIAs (its arcs), checked and laid out for stepping; immutable.

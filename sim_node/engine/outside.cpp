@@ -1,7 +1,6 @@
 // sim_node/engine/outside.cpp
 #include "sim_node/engine/outside.h"
 
-#include <algorithm>
 #include <cassert>
 #include <limits>
 #include <utility>
@@ -32,9 +31,7 @@ Outside::Outside(const NetworkDescription& description)
     ports_.push_back({static_cast<std::uint32_t>(i), description.mats[i].position});
     port_mats_.push_back(static_cast<std::uint32_t>(i));
   }
-  forces_.reserve(static_cast<std::size_t>(
-      std::count_if(description.mats.begin(), description.mats.end(),
-                    [](const Mat& mat) { return mat.kind == MatKind::kMass; })));
+  forces_.reserve(description.mass_count());
 }
 
 void Outside::impose_position(std::uint32_t mat, const Vec3& position) noexcept {

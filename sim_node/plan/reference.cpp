@@ -200,7 +200,7 @@ Reference make_reference(const engine::NetworkDescription& network, const Course
     throw std::runtime_error("no reference: the motion is too rough for the time given");
   }
   reference.amplitude = amplitude_of(reference);
-  if (!(reference.amplitude > 0.0)) throw std::runtime_error("nothing moves");
+  if (!(reference.amplitude > 0.0)) throw NothingMoves();
   hold_against(second, reference);
   if (reference.compared == 0) throw std::runtime_error("no reference: two oracles never agree");
   return reference;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,11 @@ struct Reference {
   double distance(int sample, const double* positions) const noexcept;
 };
 
+/// There is no motion to be referred to.
+struct NothingMoves : std::runtime_error {
+  NothingMoves() : std::runtime_error("nothing moves") {}
+};
+
 struct ReferenceWish {
   Sampling sampling;
   double tolerance = 1e-10;  ///< of the better of the two oracles
@@ -53,7 +59,7 @@ struct ReferenceWish {
   std::function<void(double)> progress;  ///< told the part that is done, 0 to 1; may be empty
 };
 
-/// @throws std::runtime_error when nothing moves, or not even the first sample can be reached.
+/// @throws NothingMoves; std::runtime_error when not even the first sample can be reached.
 Reference make_reference(const engine::NetworkDescription& network, const Course& course,
                          const ReferenceWish& wish);
 

@@ -74,10 +74,8 @@ class Comparison {
 }  // namespace
 
 std::vector<std::string> integrators_for(engine::NetworkDescription network) {
-  constexpr long kMostUnaskedModes = 400;  // found in 0.04 s, however often a rate is tried out
-  const long masses =
-      std::count_if(network.mats.begin(), network.mats.end(),
-                    [](const engine::Mat& mat) { return mat.kind == engine::MatKind::kMass; });
+  constexpr std::size_t kMostUnaskedModes = 400;  // found in 0.04 s, however often it is tried out
+  const std::size_t masses = network.mass_count();
   std::vector<std::string> names;
   for (const auto integrator : engine::kIntegrators) {
     if (integrator == engine::Integrator::kModal && masses > kMostUnaskedModes) continue;

@@ -61,6 +61,13 @@ config::Place read_step(const Value& section, Scene& scene, config::Problems& pr
       engine::integrator_named(reader.optional_choice("integrator", "cordis", integrators));
   if (scene.network.integrator == engine::Integrator::kModal) {
     scene.network.most_mode_hz = reader.optional_number("modes_to_hz", 0.0, Range::positive());
+  } else if (reader.optional_value("modes_to_hz").exists() && reader.ok()) {
+    reader.error_at(
+        "modes_to_hz",
+        "'modes_to_hz' in step belongs to the integrator modal, and the scene " +
+            (reader.has("integrator") ? "has " + std::string(to_string(scene.network.integrator))
+                                      : std::string("names none")),
+        "write integrator: modal, or leave it out");
   }
   read_freeze(reader.optional_mapping("freeze"), scene, problems);
   scene.rate_is_open = scene.accuracy && !reader.has("rate_hz");
@@ -102,11 +109,6 @@ void read_world(const Value& section, Scene& scene, config::Problems& problems) 
   scene.network.medium_viscosity =
       reader.optional_number("viscosity_n_s_per_m", 0.0, Range::not_negative());
   reader.finish();
-}
-
-bool has_mass(const Scene& scene) {
-  const auto is_mass = [](const engine::Mat& mat) { return mat.kind == engine::MatKind::kMass; };
-  return std::any_of(scene.network.mats.begin(), scene.network.mats.end(), is_mass);
 }
 
 bool has_massless(const Scene& scene) {
@@ -204,7 +206,7 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
 
 void check_network(const Scene& scene, const config::Place& integrator, const config::Place& matter,
                    config::Problems& problems) {
-  if (!has_mass(scene)) {
+  if (scene.network.mass_count() == 0) {
     problems.error(matter, "the scene has no mass that can move");
     return;
   }

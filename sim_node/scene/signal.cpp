@@ -173,8 +173,7 @@ SignalReader::SignalReader(std::vector<Signal> signals, const engine::NetworkDes
     }
     if (signal.near > 0.0) pieces_[s]->keep_near(signal.near);
   }
-  mass_count_ = static_cast<double>(
-      std::ranges::count(network.mats, engine::MatKind::kMass, &engine::Mat::kind));
+  mass_count_ = static_cast<double>(network.mass_count());
   wants_energy_ = std::any_of(signals_.begin(), signals_.end(), [](const Signal& signal) {
     return signal.quantity >= Quantity::kEnergy;
   });

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -104,6 +105,22 @@ TEST_F(Lab, WritesATableAndAScriptForItsChart) {
             report.runs.size() + 1);
   EXPECT_NE(read("chart.gp").find("limit of cordis"), std::string::npos);
   EXPECT_NE(text_of(report).find("blew up"), std::string::npos);
+}
+
+TEST_F(Lab, ASceneThatOnlyADeviceMovesIsRefusedWithWhatItNeeds) {
+  std::ofstream(options_.file)
+      << "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\n"
+         "matter: {bob: {kind: mass, mass_kg: 0.1, at_m: 0}}\n"
+         "ports: {key: {device: keyboard, axes: [0], role: mass, coupling: direct}}\n"
+         "liaisons: {holder: {kind: spring, stiffness_n_per_m: 1000}}\n"
+         "links: [{liaison: holder, between: [key, bob]}]\n";
+  try {
+    run();
+    FAIL() << "nothing moves";
+  } catch (const std::runtime_error& refusal) {
+    EXPECT_STREQ(refusal.what(),
+                 "nothing moves; key rests: give the launch file to have it played");
+  }
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "sim_node/plan/reduction/modal_truncation.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "sim_node/engine/modal_block.h"
@@ -10,9 +9,7 @@ namespace cordis::plan {
 std::optional<scene::Reduction> modal_truncation(const scene::Scene& scene, double band_hz) {
   const engine::NetworkDescription& network = scene.network;
   if (network.integrator != engine::Integrator::kModal || network.most_mode_hz == 0.0) return {};
-  const auto masses = static_cast<std::size_t>(
-      std::count_if(network.mats.begin(), network.mats.end(),
-                    [](const engine::Mat& mat) { return mat.kind == engine::MatKind::kMass; }));
+  const std::size_t masses = network.mass_count();
   const std::size_t kept = engine::ModalBlock(network).mode_count();
   if (kept == masses) return {};
   const double ratio = band_hz / network.most_mode_hz;
