@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -35,7 +36,9 @@ const node::ControlVerb& verb_named(const std::string& name) {
 }
 
 std::string path_argument(const std::string& path) {
-  return quoted(std::filesystem::exists(path) ? std::filesystem::absolute(path).string() : path);
+  std::error_code unknown;  // whether it is a path at all
+  return quoted(std::filesystem::exists(path, unknown) ? std::filesystem::absolute(path).string()
+                                                       : path);
 }
 
 /// NAME.PARAMETER=VALUE words as a mapping.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -24,6 +25,13 @@ constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
 constexpr double kLooksPerSecond = 50.0;               // for a change of scene, while one is played
 constexpr int kBadInput = 2;
+
+/// CLOCK_BOOTTIME [ns]: CLOCK_MONOTONIC stands still while the machine sleeps.
+std::int64_t since_boot_nsec() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_BOOTTIME, &now);
+  return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+}
 
 }  // namespace
 
@@ -121,7 +129,7 @@ void Device::play() {
   if (clock_ == config::Clock::kRealtime) ask_for_realtime();
   const bool lockstep = clock_ == config::Clock::kLockstep;
   Exchange exchange(config_, part_.role, series_, lockstep, *driver_, *channel, meter_,
-                    &node::monotonic_nsec);
+                    &node::monotonic_nsec, &since_boot_nsec);
   noted_phase_ = Phase::kWaiting;
   if (lockstep) {
     play_in_lockstep(exchange);

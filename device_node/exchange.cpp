@@ -14,7 +14,8 @@ constexpr double kStandstillPeriods = 1.9;  // of a slow device
 }  // namespace
 
 Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep,
-                   Driver& driver, GestureChannel& channel, LoopMeter& meter, ClockFunction clock)
+                   Driver& driver, GestureChannel& channel, LoopMeter& meter, ClockFunction clock,
+                   ClockFunction since_boot)
     : config_(config),
       role_(role),
       lockstep_(lockstep),
@@ -22,11 +23,12 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
       channel_(channel),
       meter_(meter),
       clock_(clock),
+      since_boot_(since_boot != nullptr ? since_boot : clock),
       force_guard_(config.force_guard),
       position_guard_(config.position_guard),
       late_(static_cast<std::size_t>(config.limits.delay_periods) + 1),
       first_sample_(series.last_sample + 1),
-      lived_nsec_(clock()) {
+      lived_nsec_(since_boot_()) {
   sample_.run = series.run;
   sample_.sample = series.last_sample;
   sample_.axis_count = static_cast<std::uint32_t>(config.end_piece.coordinate_count());
@@ -125,7 +127,7 @@ double Exchange::age_s() const noexcept {
 }
 
 bool Exchange::stood_still() noexcept {
-  const std::int64_t now = clock_();
+  const std::int64_t now = since_boot_();
   const auto since_s = static_cast<double>(now - std::exchange(lived_nsec_, now)) * 1e-9;
   return !lockstep_ && since_s > std::max(kStandstill, kStandstillPeriods / config_.layout.rate_hz);
 }

@@ -23,7 +23,8 @@ namespace cordis::device {
 /// in samples, and nothing depends on wall time. Otherwise the age counts from the moment the
 /// answered sample was sent, so that a scene that no longer hears this device counts as silent. A
 /// loop that has itself stood still for 18 ms, or nearly two periods, begins anew whatever the
-/// watchdog: by then a device may have let go on its own (docs/kfb1.md).
+/// watchdog, and so after a sleep of the machine, in which nothing ages: by then a device may have
+/// let go on its own (docs/kfb1.md).
 class Exchange {
  public:
   using ClockFunction = std::int64_t (*)() noexcept;  ///< CLOCK_MONOTONIC [ns]
@@ -35,8 +36,11 @@ class Exchange {
   };
 
   /// Starts the driver in the role. What is referred to must outlive the exchange.
+  /// @param since_boot  a clock that goes on while the machine sleeps; nullptr: `clock`, which
+  /// stops
   Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep, Driver& driver,
-           GestureChannel& channel, LoopMeter& meter, ClockFunction clock);
+           GestureChannel& channel, LoopMeter& meter, ClockFunction clock,
+           ClockFunction since_boot = nullptr);
 
   /// Stops the driver.
   ~Exchange();
@@ -88,6 +92,7 @@ class Exchange {
   GestureChannel& channel_;
   LoopMeter& meter_;
   ClockFunction clock_;
+  ClockFunction since_boot_;
   ForceGuard force_guard_;
   PositionGuard position_guard_;
   GestureMessage sample_;                 // the sample sent last

@@ -35,6 +35,8 @@ TEST(ControlWords, MakeAPathThatExistsHereAbsoluteAndQuoteIt) {
   const std::string here = std::filesystem::current_path().string();
   EXPECT_EQ(read_control_words("load", {"."}).argument, "'" + here + "/.'");
   EXPECT_EQ(read_control_words("load", {"no such: 'file'"}).argument, "'no such: ''file'''");
+  const std::string too_long(5000, 'x');
+  EXPECT_EQ(read_control_words("load", {too_long}).argument, "'" + too_long + "'");
 }
 
 TEST(ControlWords, MakeAMappingOfNewValues) {

@@ -22,6 +22,11 @@ std::int64_t now() noexcept {
   return now_nsec;
 }
 
+std::int64_t slept_nsec = 0;
+std::int64_t since_boot() noexcept {
+  return now_nsec + slept_nsec;
+}
+
 /// A scene that answers what the test puts into it.
 class FakeChannel : public GestureChannel {
  public:
@@ -85,7 +90,7 @@ struct Rig {
   explicit Rig(bool lockstep, Role role = Role::kMass, Exchange::Series series = {kRun, 0},
                double watchdog_s = 0.02)
       : config(config_of_two_axes(watchdog_s)),
-        exchange(config, role, series, lockstep, driver, channel, meter, &now) {}
+        exchange(config, role, series, lockstep, driver, channel, meter, &now, &since_boot) {}
 
   /// The scene's answer to the sample sent last.
   GestureMessage answer(double value) {
@@ -534,6 +539,17 @@ TEST(Exchange, BeginsAnewAfterItStoodStillWhateverTheWatchdog) {
 
   EXPECT_EQ(rig.period(true, 3.0), 0.0);
   EXPECT_EQ(rig.driver.age, 0.05) << "a driver with a guard of its own begins anew as well";
+  EXPECT_EQ(rig.period(true, 3.0), 3.0);
+}
+
+TEST(Exchange, BeginsAnewAfterTheMachineHasSlept) {
+  now_nsec = 1'000'000'000;
+  Rig rig(false);
+  EXPECT_EQ(rig.period(true, 3.0), 3.0);
+
+  slept_nsec += 3'600'000'000'000;  // no time passes for the scene, but for a board
+
+  EXPECT_EQ(rig.period(true, 3.0), 0.0);
   EXPECT_EQ(rig.period(true, 3.0), 3.0);
 }
 
