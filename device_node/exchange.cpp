@@ -148,7 +148,10 @@ void Exchange::add_work(const AxisValues& force_before_n, const AxisValues& carr
 
 void Exchange::live() noexcept {
   const bool leaving = leaving_age_s_ > 0.0;
-  if (leaving) leaving_age_s_ += 1.0 / config_.layout.rate_hz;
+  if (leaving) {
+    leaving_s_ += 1.0 / config_.layout.rate_hz;
+    leaving_age_s_ += 1.0 / config_.layout.rate_hz;
+  }
   const double least = stood_still() ? config_.force_guard.watchdog_s : leaving_age_s_;
   const double age = std::max(age_s(), least);
   const AxisValues& commanded =

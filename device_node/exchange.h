@@ -71,13 +71,17 @@ class Exchange {
 
   /// The part is over: motors are not switched off in the middle of a force. From now on nothing is
   /// taken any more, and with every live() the last answer fades as an old one does, over
-  /// limit / slew.
+  /// limit / slew; but not for longer than 0.5 s, for a stop is a stop.
   void leave() noexcept;
-  bool has_left() const noexcept { return leaving_age_s_ >= config_.force_guard.watchdog_s; }
+  bool has_left() const noexcept {
+    return leaving_age_s_ >= config_.force_guard.watchdog_s || leaving_s_ >= kLongestLeave;
+  }
 
   std::uint64_t last_sample() const noexcept { return sample_.sample; }
 
  private:
+  static constexpr double kLongestLeave = 0.5;  // [s]
+
   bool consider(const GestureMessage& answer) noexcept;
   void accept(const GestureMessage& answer) noexcept;
   double age_s() const noexcept;
@@ -107,6 +111,7 @@ class Exchange {
   std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came
   bool other_answered_ = false;           // ever
   std::int64_t lived_nsec_;               // when live() was called last
+  double leaving_s_ = 0.0;                // since leave()
   double leaving_age_s_ = 0.0;            // that the last answer is given; 0: it has its own
   bool present_ = false;                  // the driver has its device
   bool any_answer_ = false;

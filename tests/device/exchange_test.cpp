@@ -579,6 +579,22 @@ TEST(Exchange, LeavesWithoutAJumpOfForce) {
   EXPECT_EQ(rig.meter.phase(), Phase::kRunning) << "nobody is told that it was lost";
 }
 
+TEST(Exchange, LeavesWithinHalfASecondHoweverSlowlyForcesMayFade) {
+  now_nsec = 1'000'000'000;
+  Rig rig(false, Role::kMass, {kRun, 0}, /*watchdog_s=*/60.0);
+  rig.config.force_guard.slew_n_per_s = 1.0;
+  rig.period(true, 20.0);
+  rig.exchange.leave();
+
+  int periods = 0;
+  for (; !rig.exchange.has_left() && periods < 1000; ++periods) {
+    now_nsec += kPeriodNsec;
+    rig.exchange.live();
+  }
+
+  EXPECT_NEAR(periods, 500, 1);
+}
+
 TEST(Exchange, LeavesAtOnceWhenNothingHoldsItsMotors) {
   now_nsec = 1'000'000'000;
   Rig rig(false);
