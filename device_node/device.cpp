@@ -208,7 +208,7 @@ void Device::note_phase(const Exchange& exchange) {
   } else if (phase == Phase::kLost) {
     lost_since_nsec_ = node::monotonic_nsec();
     if (!exchange.has_device()) {
-      spdlog::warn("driver {}: the device is not there; trying again", config_.driver);
+      spdlog::warn("driver {}: the device does not answer; trying again", config_.driver);
     } else {
       spdlog::warn("no answer from the scene for more than {} ms: motors at zero",
                    clock_ == config::Clock::kLockstep

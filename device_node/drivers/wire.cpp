@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -41,9 +42,10 @@ class SerialLine final : public Wire {
   bool open() noexcept override {
     close();
     file_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (file_ < 0) return false;
     termios line{};
-    if (tcgetattr(file_, &line) != 0) {  // nothing but a line is ever written to
+    const bool opened = file_ >= 0 && tcgetattr(file_, &line) == 0;  // writes to nothing but a line
+    tell(opened ? 0 : errno);
+    if (!opened) {
       close();
       return false;
     }
@@ -60,8 +62,16 @@ class SerialLine final : public Wire {
   }
 
  private:
+  /// Says why the line cannot be opened, once until the reason changes.
+  void tell(int reason) noexcept {
+    if (std::exchange(told_, reason) == reason || reason == 0) return;
+    spdlog::warn("{} cannot be opened: {}{}", path_, std::strerror(reason),
+                 reason == EACCES ? "; is this user in the group 'dialout'?" : "");
+  }
+
   std::string path_;
   speed_t baud_;
+  int told_ = 0;  // errno
 };
 
 class Datagrams final : public Wire {

@@ -7,14 +7,11 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <thread>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include "device_node/drivers/kfb1.h"
 #include "tests/device/kfb1_board.h"
@@ -86,11 +83,7 @@ TEST_F(Kfb1Test, SaysOncePerConnectionWhereTheDeviceIsNotWhatItsFileSays) {
     layout.lowest_m = -travel_m;
     layout.force_limit_n = force_limit_n;
     const auto key = driver("kfb1", port(), layout);
-    std::ostringstream log;
-    const auto before = spdlog::default_logger();
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-        "", std::make_shared<spdlog::sinks::ostream_sink_st>(log)));
-    spdlog::set_pattern("%v");
+    const CapturedLog log;
     key->start(Role::kMass);
     for (int connection = 0; connection < 2; ++connection) {
       Kfb1Board board;
@@ -99,8 +92,7 @@ TEST_F(Kfb1Test, SaysOncePerConnectionWhereTheDeviceIsNotWhatItsFileSays) {
       board.plug.pull();
       EXPECT_TRUE(until(*key, {}, [](bool there) { return !there; }));
     }
-    spdlog::set_default_logger(before);
-    return log.str();
+    return log.lines("kfb1:");
   };
   const auto twice = [](const std::string& line) { return line + "\n" + line + "\n"; };
 
@@ -112,6 +104,31 @@ TEST_F(Kfb1Test, SaysOncePerConnectionWhereTheDeviceIsNotWhatItsFileSays) {
   EXPECT_EQ(said_of(0.04, 20.0),
             twice("kfb1: the motors give 10 N at most, and force_limit_n of the device file is 20 "
                   "N: forces above their most are cut off"));
+}
+
+TEST_F(Kfb1Test, SaysOnceWhyASerialLineCannotBeOpened) {
+  const CapturedLog log;
+  const auto keys = keys_at(port(), 2);
+  const auto live = [&] { until(*keys, {}, [n = 0](bool) mutable { return ++n == 50; }); };
+  const std::string begins = link().string() + " cannot be opened: ";
+  const std::string absent = begins + "No such file or directory\n";
+  keys->start(Role::kMass);
+  live();
+  EXPECT_EQ(log.lines("/"), absent) << "of five tries";
+
+  std::filesystem::create_symlink("/dev/null", link());
+  live();
+  const std::string no_line = begins + "Inappropriate ioctl for device\n";
+  EXPECT_EQ(log.lines("/"), absent + no_line) << "another reason is told";
+
+  std::filesystem::remove(link());
+  Kfb1Board board;
+  board.plug.into_serial_line(link());
+  EXPECT_TRUE(until(*keys, {}, [](bool there) { return there; }));
+  board.plug.pull();
+  EXPECT_TRUE(until(*keys, {}, [](bool there) { return !there; }));
+  live();
+  EXPECT_EQ(log.lines("/"), absent + no_line + absent) << "and so is the same one, once unplugged";
 }
 
 TEST_F(Kfb1Test, SpeaksUdpToo) {

@@ -133,6 +133,29 @@ const cases = {
     await drawn(page, 3);
   },
 
+  'a narrow window shows all of it, and nothing upon something else': async ({ page }) => {
+    const boxesOf = (selector) => page.locator(selector).evaluateAll((all) => all.map((one) => one.getBoundingClientRect().toJSON()));
+    for (const width of [1024, 480, 360]) {
+      await page.setViewportSize({ width, height: 720 });
+      for (const selector of ['.figure', '#control button', '#tools button', '#legend li', '.plot', '#nodes tr']) {
+        const boxes = await boxesOf(selector);
+        const beyond = boxes.filter(({ left, right, width: own }) => own === 0 || left < 0 || right > width);
+        assert.deepEqual(beyond, [], `${selector} at ${width}`);
+      }
+      const [plots] = await boxesOf('#plots');
+      const plotted = (await boxesOf('.plot')).reduce((sum, { height }) => sum + height, 0);
+      assert.ok(plotted > 300 && plots.height > plotted - 1, `plots at ${width}: ${plotted} of ${plots.height}`);
+      const marks = (await Promise.all(['#legend', '#control', '#ruler', '#tools'].map(boxesOf))).flat();
+      for (const [i, a] of marks.entries()) {
+        for (const b of marks.slice(i + 1)) {
+          const apart = a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+          assert.ok(apart, `at ${width}: ${JSON.stringify([a, b])}`);
+        }
+      }
+    }
+    await page.setViewportSize({ width: 1280, height: 720 });
+  },
+
   'a second page shows the same': async ({ browser, url, page }) => {
     const second = await browser.newPage();
     await second.goto(url);
