@@ -13,6 +13,17 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
+/// "a.b" as a file says it: "a: {b: ...}".
+std::string nested(const std::string& dotted) {
+  std::string text;
+  std::string ends = " ...";
+  for (const char c : dotted) {
+    if (c == '.') ends += '}';
+    text += c == '.' ? std::string(": {") : std::string(1, c);
+  }
+  return text + ":" + ends;
+}
+
 /// What a required number is taken for after a problem: in range, so that no second problem follows
 /// from it.
 double stand_in(const Range& range) {
@@ -171,6 +182,8 @@ void MappingReader::finish() {
     std::string hint = did_you_mean(entry.key, known_);
     if (hint.empty() && entry.key.find(':') != std::string::npos)
       hint = "write a space after the ':'";
+    if (hint.empty() && entry.key.find('.') != std::string::npos)
+      hint = "the dots are for the command line; write " + nested(entry.key);
     if (hint.empty() && known_.size() <= kMostListed) hint = "known keys: " + listed(known_);
     report(entry.key_place, "unknown key '" + entry.key + "' in " + what_, hint);
   }

@@ -115,6 +115,9 @@ TEST(MappingReader, SuggestsTheKnownKeyNextToAnUnknownOne) {
   EXPECT_EQ(problems_of("{zzz:3}\n", read),
             "t:1:2: error: unknown key 'zzz:3' in thing\n{zzz:3}\n ^\n  hint: write a space after "
             "the ':'");
+  EXPECT_EQ(problems_of("hand.finger.mass_kg: 3\n", read),
+            "t:1:1: error: unknown key 'hand.finger.mass_kg' in thing\nhand.finger.mass_kg: 3\n^\n"
+            "  hint: the dots are for the command line; write hand: {finger: {mass_kg: ...}}");
 }
 
 TEST(MappingReader, AsksForAMappingOnceAndIsSilentAfterwards) {
