@@ -53,14 +53,24 @@ EndPiece read_end_piece(config::MappingReader& reader, int axis_count, config::P
   }
 }
 
+constexpr double kLongestWatchdog = 0.2;  // [s]
+constexpr double kUsualWatchdog = 6.0;    // periods, where these last longer than 20 ms
+
 /// The watchdog must leave room for the life of an ordinary answer, up to three periods, and for
-/// bringing the largest force to zero at the slew rate.
+/// bringing the largest force to zero at the slew rate. It must not be so long, by milliseconds
+/// taken for seconds for instance, that a motor pulls on when the scene has died.
 void check_watchdog(config::MappingReader& reader, const ForceGuardSettings& guard) {
   const double ordinary_age_s = 3.0 * guard.period_s;
   if (guard.watchdog_s <= ordinary_age_s) {
     reader.error_at("watchdog_s", "watchdog_s must be more than three periods of rate_hz, " +
                                       number_text(ordinary_age_s) + ", got " +
                                       number_text(guard.watchdog_s));
+    return;
+  }
+  const double longest_s = std::max(kLongestWatchdog, kUsualWatchdog * guard.period_s);
+  if (guard.watchdog_s > longest_s) {
+    reader.error_at("watchdog_s", "watchdog_s must be at most " + number_text(longest_s) +
+                                      ", got " + number_text(guard.watchdog_s));
     return;
   }
   const double lowest_slew = guard.limit_n / (guard.watchdog_s - ordinary_age_s);
@@ -111,8 +121,8 @@ void read_guards(config::MappingReader& reader, DeviceConfig& config, config::Pr
   ForceGuardSettings& force = config.force_guard;
   force.period_s = 1.0 / layout.rate_hz;
   force.limit_n = layout.force_limit_n;
-  force.watchdog_s =
-      reader.optional_number("watchdog_s", std::max(0.02, 6.0 * force.period_s), Range::positive());
+  force.watchdog_s = reader.optional_number(
+      "watchdog_s", std::max(0.02, kUsualWatchdog * force.period_s), Range::positive());
   force.ramp_s = reader.optional_number("start_ramp_s", 0.2, Range::between(0.0, 60.0));
   force.slew_n_per_s = reader.optional_number(
       "slew_limit_n_per_s", 5.0 * force.limit_n / force.watchdog_s, Range::positive());

@@ -211,6 +211,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "device.yaml:2:15: error: there is no folder '/nowhere' for the trace"},
         BadDevice{"{axes: 1, watchdog_s: 0.003}",
                   "device.yaml:1:23: error: watchdog_s must be more than three periods of rate_hz"},
+        BadDevice{"{axes: 1, watchdog_s: 20}",
+                  "device.yaml:1:23: error: watchdog_s must be at most 0.2, got 20"},
         BadDevice{"{axes: 1, slew_limit_n_per_s: 100}",
                   "device.yaml:1:31: error: slew_limit_n_per_s must be at least 1177 so that "
                   "force_limit_n falls to zero within watchdog_s, got 100"},
