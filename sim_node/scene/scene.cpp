@@ -22,6 +22,19 @@ constexpr double kHighestGestureRate = 1.0e5;
 constexpr double kHighestFrameRate = 1.0e3;
 constexpr double kLongestPromise = 1.0e6;  // [s]
 
+/// The whole gesture rate nearest to the wanted one that divides the step rate, within a fifth of
+/// it, as a hint says it.
+std::string divisor_near(double step_rate_hz, double wanted_hz) {
+  double best = 0.0;
+  for (long whole = std::lround(0.8 * wanted_hz); whole <= std::lround(1.2 * wanted_hz); ++whole) {
+    const auto rate = static_cast<double>(whole);
+    const bool divides = whole > 0 && std::fmod(step_rate_hz, rate) == 0.0;
+    if (divides && std::abs(rate - wanted_hz) < std::abs(best - wanted_hz)) best = rate;
+  }
+  if (best == 0.0) return "";
+  return " to " + config::number_text(best) + ", and 'rate_hz' of the device";
+}
+
 /// The nearest rates that are integer multiples of the gesture rate.
 std::string nearest_multiples(double rate, double gesture_rate) {
   const double below = std::floor(rate / gesture_rate) * gesture_rate;
@@ -93,7 +106,8 @@ config::Place read_step(const Value& section, Scene& scene, config::Problems& pr
                         config::number_text(scene.gesture_rate_hz) + " Hz, got " +
                         config::number_text(scene.step_rate_hz),
                     "take " + nearest_multiples(scene.step_rate_hz, scene.gesture_rate_hz) +
-                        ", or set 'gesture_rate_hz'");
+                        ", or set 'gesture_rate_hz'" +
+                        divisor_near(scene.step_rate_hz, scene.gesture_rate_hz));
   }
   if (scene.frame_rate_hz > scene.gesture_rate_hz) {
     reader.error_at("frame_rate_hz", "'frame_rate_hz' must not exceed the gesture rate, " +

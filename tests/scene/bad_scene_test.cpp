@@ -41,6 +41,12 @@ INSTANTIATE_TEST_SUITE_P(
                  "'rate_hz' must be an integer multiple of the gesture rate, 1000 Hz, got 500",
                  "take 1000, or set 'gesture_rate_hz'"},
         BadScene{kNothing,
+                 "cordis: 1\nspace: 1\nstep: {rate_hz: ^44100}\nmatter: {a: {kind: mass, mass_kg: "
+                 "1, at_m: 0}}\n",
+                 "'rate_hz' must be an integer multiple of the gesture rate, 1000 Hz, got 44100",
+                 "take 44000 or 45000, or set 'gesture_rate_hz' to 980, and 'rate_hz' of the "
+                 "device"},
+        BadScene{kNothing,
                  "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, frame_rate_hz: ^999, gesture_rate_hz: "
                  "500}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
                  "'frame_rate_hz' must not exceed the gesture rate, 500 Hz", ""},
