@@ -84,6 +84,9 @@ const cases = {
     for (const [id, pattern] of Object.entries(figures)) assert.match(await textOf(page, `#${id}`), pattern, id);
     const rows = await page.locator('#nodes tr').allTextContents();
     assert.deepEqual(rows.map((row) => row.match(/^(sim|keyboard|view)/)[0]), ['sim', 'keyboard', 'view']);
+    const lost = page.locator('#nodes td.lost').first();
+    assert.equal(await lost.textContent(), '7 lost');
+    assert.match(await lost.getAttribute('title'), /^messages lost, late or refused/);
     const view = (await viz(page, 'nodes')).find((node) => node.kind === 'viz_node');
     assert.equal(view.text, url);
     await page.screenshot({ path: join(out, 'page_string.png') });

@@ -258,6 +258,7 @@ int publish(const Options& options) {
     status.ticks((static_cast<std::uint64_t>(node::monotonic_nsec()) - run) / 1000000);
     status.step(step);
     status.overruns(3);
+    status.dropped(7);
     status.energy_j(0.012);
     status.energy_drift(2.5e-9);
     status.port_work_j(3e-3);

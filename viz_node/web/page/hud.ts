@@ -190,8 +190,9 @@ function fate(node: NodeState): string {
 
 function rowOf(node: NodeState): HTMLElement {
   const row = document.createElement('tr');
-  const cell = (text: string, kind = '') => {
+  const cell = (text: string, kind = '', title = '') => {
     const data = document.createElement('td');
+    if (title !== '') data.title = title;
     data.textContent = text;
     data.className = kind;
     row.append(data);
@@ -204,7 +205,7 @@ function rowOf(node: NodeState): HTMLElement {
   cell(node.name, 'name');
   cell(node.state, 'state');
   cell(GONE.includes(node.state) ? NONE : rate(node.reached_rate_hz) + ' Hz');
-  cell(node.dropped > 0 ? `${count(node.dropped)} lost` : '');
+  cell(node.dropped > 0 ? `${count(node.dropped)} lost` : '', 'lost', 'messages lost, late or refused since it began');
   cell(joined(withUnit(node.memory_bytes, 'B')));
   return row;
 }
