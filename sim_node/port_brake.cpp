@@ -77,28 +77,42 @@ Vec3 PortBrake::brake(std::size_t port, const engine::World& world,
   return at.braking;
 }
 
+/// Once a tick: what the work of hands whose force bends between two samples may be less than
+/// their samples say [J].
+double PortBrake::doubt() noexcept {
+  double sum = 0.0;
+  for (Braked& at : ports_) {
+    const double way = (at.now - std::exchange(at.place, at.now)).norm();
+    const Vec3 change = at.force - std::exchange(at.force_before, at.force);
+    const double bend = (change - std::exchange(at.change, change)).norm();
+    sum += bend * std::max(way, std::exchange(at.way, way)) / 8.0;
+  }
+  return sum;
+}
+
 void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissipated_j) noexcept {
   while (last_entered_ < newest_answer_) brought_at_answer_[++last_entered_ % kRoom] = brought_;
   ++ticks_;
   if (std::exchange(braked_, false)) ++braked_ticks_;
   const double moved = std::exchange(moved_, 0.0);
+  const double doubt_j = doubt();
   // A device that has not heard for so long is led on gradually when it hears again.
   if (answered_sample + kRoom <= last_entered_) start();
   const bool known = answered_sample != 0 && answered_sample <= last_entered_ &&
                      answered_sample + kRoom > last_entered_;
   if (!known || !std::isfinite(work_j)) return;
   told_ = told_ || work_j != 0.0;
+  const auto ticks_late = static_cast<double>(last_entered_ - answered_sample);
   const double made = brought_at_answer_[answered_sample % kRoom] - work_j;
   if (told_ && ticks_ > settled_ticks_) {
-    const auto ticks_late = static_cast<double>(last_entered_ - answered_sample);
-    judge(made - made_before_, dissipated_j, moved * std::max(ticks_late, 1.0));
+    judge(made - made_before_, doubt_j, dissipated_j, moved * std::max(ticks_late, 1.0));
   }
   made_before_ = made;
 }
 
-void PortBrake::judge(double made_j, double taken_j, double moved_j) noexcept {
+void PortBrake::judge(double made_j, double doubt_j, double taken_j, double moved_j) noexcept {
   const bool made_energy = account_->makes_energy();
-  account_->enter(made_j, taken_j, moved_j);
+  account_->enter(made_j, doubt_j, taken_j, moved_j);
   if (!account_->makes_energy()) {
     strict_ = 0.0;
   } else {

@@ -60,10 +60,16 @@ class PortBrake {
     engine::Vec3 before = engine::Vec3::Zero();      // x(n-2)
     engine::Vec3 force = engine::Vec3::Zero();       // of the hand in the last step [N]
     engine::Vec3 braking = engine::Vec3::Zero();     // ours [N]
+    // Of the last ticks:
+    engine::Vec3 place = engine::Vec3::Zero();         // [m]
+    double way = 0.0;                                  // [m]
+    engine::Vec3 force_before = engine::Vec3::Zero();  // [N]
+    engine::Vec3 change = engine::Vec3::Zero();        // of the force [N]
   };
   static constexpr std::size_t kRoom = 16;  // answers: the oldest that a sample may still speak of
 
-  void judge(double made_j, double taken_j, double moved_j) noexcept;
+  double doubt() noexcept;
+  void judge(double made_j, double doubt_j, double taken_j, double moved_j) noexcept;
 
   std::vector<Braked> ports_;
   std::shared_ptr<DelayAccount> account_;

@@ -19,9 +19,8 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
     if (!known) order.push_back(port.device);
   }
   std::vector<DeviceExchange> exchanges;
-  const auto account =
-      std::make_shared<DelayAccount>(PortBrake::settled_ticks(scene) *
-                                     static_cast<double>(std::max<std::size_t>(order.size(), 1)));
+  const auto account = std::make_shared<DelayAccount>(
+      static_cast<int>(PortBrake::settled_ticks(scene) * static_cast<double>(order.size())));
   for (const std::string& device : order) {
     std::vector<scene::Port> ports;
     scene::Role role = scene::Role::kMass;

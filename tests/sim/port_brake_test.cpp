@@ -43,7 +43,7 @@ TEST_P(Late, AHandWithinTheLimitIsNeverBraked) {
     for (const int sub_steps : {1, 5}) {
       // What is held over a period is half a period older still when it is taken in parts.
       const double age = GetParam() + 0.5 * (1.0 - 1.0 / sub_steps);
-      Hold hold{viscosity, GetParam(), 0.85 * viscosity / (age * kTick), sub_steps};
+      Hold hold{viscosity, GetParam(), 0.95 * viscosity / (age * kTick), sub_steps};
       for (std::size_t g = 0; g < std::size(gestures); ++g) {
         Loop loop(hold);
         for (int n = 0; n < test::rounds(6000); ++n) loop.tick(gestures[g](n * kTick));
