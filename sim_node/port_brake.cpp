@@ -85,12 +85,14 @@ double PortBrake::doubt() noexcept {
     const double way = (at.now - std::exchange(at.place, at.now)).norm();
     const Vec3 change = at.force - std::exchange(at.force_before, at.force);
     const double bend = (change - std::exchange(at.change, change)).norm();
-    sum += bend * std::max(way, std::exchange(at.way, way)) / 8.0;
+    sum += bend * way / 8.0;
   }
   return sum;
 }
 
 void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissipated_j) noexcept {
+  // After a reset the scene has answers long before those that samples still speak of.
+  if (newest_answer_ > kRoom) last_entered_ = std::max(last_entered_, newest_answer_ - kRoom);
   while (last_entered_ < newest_answer_) brought_at_answer_[++last_entered_ % kRoom] = brought_;
   ++ticks_;
   if (std::exchange(braked_, false)) ++braked_ticks_;
@@ -104,7 +106,7 @@ void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissip
   told_ = told_ || work_j != 0.0;
   const auto ticks_late = static_cast<double>(last_entered_ - answered_sample);
   const double made = brought_at_answer_[answered_sample % kRoom] - work_j;
-  if (told_ && ticks_ > settled_ticks_) {
+  if (told_ && static_cast<double>(ticks_) > settled_ticks_) {
     judge(made - made_before_, doubt_j, dissipated_j, moved * std::max(ticks_late, 1.0));
   }
   made_before_ = made;

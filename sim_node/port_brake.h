@@ -62,7 +62,6 @@ class PortBrake {
     engine::Vec3 braking = engine::Vec3::Zero();     // ours [N]
     // Of the last ticks:
     engine::Vec3 place = engine::Vec3::Zero();         // [m]
-    double way = 0.0;                                  // [m]
     engine::Vec3 force_before = engine::Vec3::Zero();  // [N]
     engine::Vec3 change = engine::Vec3::Zero();        // of the force [N]
   };
@@ -76,11 +75,11 @@ class PortBrake {
   double dt_;
   double steps_per_tick_;
   double settled_ticks_;
-  int ticks_ = 0;         // since the start
-  bool told_ = false;     // the device tells its work
-  bool braked_ = false;   // in this tick
-  double brought_ = 0.0;  // E [J]
-  double moved_ = 0.0;    // the largest |f . dx| of this tick [J]
+  std::uint64_t ticks_ = 0;  // since the start
+  bool told_ = false;        // the device tells its work
+  bool braked_ = false;      // in this tick
+  double brought_ = 0.0;     // E [J]
+  double moved_ = 0.0;       // the largest |f . dx| of this tick [J]
   std::array<double, kRoom> brought_at_answer_{};
   std::uint64_t newest_answer_ = 0;
   std::uint64_t last_entered_ = 0;  // of the answers in at_answer_

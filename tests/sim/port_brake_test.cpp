@@ -8,12 +8,21 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/recent_peak.h"
 #include "tests/engine/programs.h"
 #include "tests/sim/hand_loop.h"
 #include "tests/support/rounds.h"
 
 namespace cordis::sim {
 namespace {
+
+TEST(RecentPeak, LastsOnceToTwiceItsMemory) {
+  RecentPeak peak(3);
+  for (const double value : {0.0, 0.0, 5.0, 1.0, 1.0, 1.0}) peak.enter(value);
+  EXPECT_EQ(peak.value(), 5.0);  // three values ago
+  peak.enter(2.0);
+  EXPECT_EQ(peak.value(), 2.0);
+}
 
 class Late : public ::testing::TestWithParam<int> {};
 
