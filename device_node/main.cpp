@@ -26,7 +26,7 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
   cordis::node::claim(
       session + std::to_string(device.config.device_id) + "/" + strength,
       "a node that plays '" + device.config.name + "' with strength " + strength + where.substr(1));
-  cordis::dds::Participant participant(start.membership());
+  cordis::dds::Participant participant = start.join_for_force_loop();
   cordis::node::CommandListener commands(
       participant, "device_node", [](const cordis::msg::ControlCommand& command) {
         return cordis::node::nothing_to_do(command, "device_node");

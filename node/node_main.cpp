@@ -10,6 +10,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "node/inherited_priority.h"
 #include "node/log.h"
 #include "node/stop.h"
 #include "node/time.h"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int kRuntimeFailure = 1;
 constexpr int kBadInput = 2;
+constexpr int kDdsPriority = 40;  // SCHED_FIFO; the loops have 80
 
 struct Arguments {
   std::string launch_file;
@@ -95,6 +97,12 @@ void print_problems(const std::vector<config::Problem>& problems) {
 dds::Membership NodeStart::membership() const {
   return {launch.domain, launch.session, node->name, launch.clock == config::Clock::kLockstep,
           launch.has_stand_ins()};
+}
+
+dds::Participant NodeStart::join_for_force_loop() const {
+  if (launch.clock != config::Clock::kRealtime) return dds::Participant(membership());
+  const InheritedPriority priority(kDdsPriority);
+  return dds::Participant(membership());
 }
 
 int node_main(int argc, char** argv, const std::string& kind,

@@ -17,6 +17,11 @@ struct NodeStart {
   std::uint64_t run = 0;  ///< identifies this life of the process: its start time [ns]
 
   dds::Membership membership() const;
+
+  /// Joins the session for the force loop. In the realtime clock the threads of DDS have realtime
+  /// priority, below that of the loops: without it forces come late on a busy machine.
+  /// @throws std::runtime_error as Participant
+  dds::Participant join_for_force_loop() const;
 };
 
 /// Reads `LAUNCH.yaml --name NAME [--check] [name.key=value ...]`, installs log and stop signals,

@@ -33,7 +33,7 @@ constexpr auto kLongestWait = 1s;  // for a device that joins
 Session::Session(const node::NodeStart& start, SimConfig config)
     : start_(start),
       duration_s_(config.duration_s),
-      participant_(start.membership()),
+      participant_(start.join_for_force_loop()),
       player_(std::make_unique<Stage>(std::make_shared<const scene::Scene>(std::move(config.scene)),
                                       start.run, 1),
               start.launch.clock == config::Clock::kLockstep),

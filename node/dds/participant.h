@@ -16,7 +16,7 @@ struct Membership {
 };
 
 /// A DDS participant on UDP over 127.0.0.1, with simple discovery. One per process.
-/// Create it before raising the priority of any thread: its threads inherit the creator's.
+/// Its threads inherit the priority of the thread that makes it.
 class Participant {
  public:
   /// @throws std::runtime_error when DDS refuses (domain out of range, no loopback interface, ...).
