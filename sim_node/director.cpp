@@ -36,12 +36,13 @@ std::string refusal_of(const std::string& path, const config::Problems& problems
 }  // namespace
 
 Director::Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, std::uint64_t run,
-                   Load load, Tell tell)
+                   Load load, Check check, Tell tell)
     : orders_(orders),
       scene_(std::move(scene)),
       parameters_(whole_of(scene_)),
       run_(run),
       load_(std::move(load)),
+      check_(std::move(check)),
       tell_(std::move(tell)) {}
 
 node::Answer Director::obey(const msg::ControlCommand& message) {
@@ -130,12 +131,14 @@ node::Answer Director::set(const std::vector<NewValue>& values) {
     done += (done.empty() ? "" : ", ") + wanted.name + "." + wanted.parameter + " = " +
             config::number_text(wanted.value);
   }
+  config::Problems problems;
   if (scene_->whole) {
-    config::Problems problems;
     *scene = plan::reduce(std::move(*scene), problems);
     if (problems.has_errors()) return {false, problems.all().front().message};
     scene::set_step(*scene, scene_->step_rate_hz, scene_->network.integrator);
   }
+  check_(*scene, problems);
+  if (problems.has_errors()) return {false, "the values stay as they are\n" + problems.text()};
   Order order;
   order.kind = Order::Kind::kExchange;
   try {
@@ -144,11 +147,12 @@ node::Answer Director::set(const std::vector<NewValue>& values) {
     return {false, std::string("this cannot be simulated: ") + refusal.what()};
   }
   order.room.reserve(order.stage->simulation.world().most_values_of_state());
-  const node::Answer answer = give(order, done);
+  node::Answer answer = give(order, done);
   if (!order.done) return {false, "this changes more than parameters; load the scene anew"};
   if (!answer.accepted) return answer;
   scene_ = std::move(scene);
   parameters_ = std::move(parameters);
+  if (!problems.all().empty()) answer.text += "\n" + problems.text();
   return answer;
 }
 

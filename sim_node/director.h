@@ -24,13 +24,15 @@ class Director {
 
   /// Reads the scene of a path; whatever is wrong becomes a problem.
   using Load = std::function<scene::Scene(const std::string& path, config::Problems& problems)>;
+  /// Holds a scene that differs in parameters from the one that is played against its limits.
+  using Check = std::function<void(const scene::Scene& scene, config::Problems& problems)>;
   /// Tells the other processes of a scene that is played now.
   using Tell = std::function<void(const scene::Scene& scene, std::uint64_t version)>;
 
   /// @param scene  the one that is played at first, version 1
   /// @param run    of this sim_node
   Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, std::uint64_t run,
-           Load load, Tell tell);
+           Load load, Check check, Tell tell);
 
   /// Returns when the loop has done what was wanted; of single steps that take longer than
   /// kPatience, when they have begun.
@@ -53,6 +55,7 @@ class Director {
   std::uint64_t run_;
   std::uint64_t version_ = 1;
   Load load_;
+  Check check_;
   Tell tell_;
 };
 

@@ -11,6 +11,7 @@
 #include "node/stop.h"
 #include "node/time.h"
 #include "sim_node/describe.h"
+#include "sim_node/stability_check.h"
 
 namespace cordis::sim {
 namespace {
@@ -51,6 +52,9 @@ Session::Session(const node::NodeStart& start, SimConfig config)
           orders_, player_.simulation().shared_scene(), start.run,
           [this, force = config.force](const std::string& path, config::Problems& problems) {
             return load_checked_scene(start_.launch, path, {}, force, problems);
+          },
+          [force = config.force](const scene::Scene& scene, config::Problems& problems) {
+            check_stability(scene, force, problems);
           },
           [this](const scene::Scene& scene, std::uint64_t version) { tell(scene, version); }),
       commands_(participant_, "sim_node", [this](const msg::ControlCommand& command) {

@@ -10,6 +10,7 @@
 
 #include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/player.h"
+#include "sim_node/stability_check.h"
 #include "tests/sim/stages.h"
 
 namespace cordis::sim {
@@ -43,6 +44,9 @@ class DirectorTest : public ::testing::Test {
               }
               return scene::load_scene_text(
                   path == "other.yaml" ? swing_text("other") : "cordis: 2", path, problems);
+            },
+            [](const scene::Scene& scene, config::Problems& problems) {
+              check_stability(scene, false, problems);
             },
             [this](const scene::Scene& scene, std::uint64_t version) {
               told_.push_back(scene.name + " " + std::to_string(version));
@@ -164,6 +168,16 @@ TEST_F(DirectorTest, SetsAllOrNothing) {
   EXPECT_NE(answer.text.find("did you mean 'spring'?"), std::string::npos) << answer.text;
   EXPECT_FALSE(obey("set", "{spring.stifness_n_per_m: 250}").accepted);
   EXPECT_FALSE(obey("set", "{spring.stiffness_n_per_m: -5}").accepted);
+  EXPECT_TRUE(obey("set", "{spring.viscosity_n_s_per_m: 0.2}").accepted);
+  end_loop();
+  EXPECT_EQ(player_.simulation().world().network().description().links[0].stiffness, 100.0);
+}
+
+TEST_F(DirectorTest, RefusesAValueWithWhichTheSceneDiverges) {
+  const node::Answer answer = obey("set", "{spring.stiffness_n_per_m: 1.0e+9}");
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_EQ(answer.text.find("the values stay as they are\n"), 0u) << answer.text;
+  EXPECT_NE(answer.text.find("at 4000 Hz the scene is unstable"), std::string::npos) << answer.text;
   EXPECT_TRUE(obey("set", "{spring.viscosity_n_s_per_m: 0.2}").accepted);
   end_loop();
   EXPECT_EQ(player_.simulation().world().network().description().links[0].stiffness, 100.0);
