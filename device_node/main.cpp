@@ -4,6 +4,7 @@
 
 #include "device_node/device.h"
 #include "device_node/device_config.h"
+#include "node/claim.h"
 #include "node/command_listener.h"
 #include "node/dds/participant.h"
 #include "node/node_main.h"

@@ -6,10 +6,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
-
 #include "node/inherited_priority.h"
 #include "node/log.h"
 #include "node/stop.h"
@@ -138,21 +134,6 @@ int node_main(int argc, char** argv, const std::string& kind,
 void report(const config::Problems& problems) {
   problems.throw_if_any();
   print_problems(problems.all());
-}
-
-void claim(const std::string& name, const std::string& refusal) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  // The leading zero makes the name abstract: it lives as long as the socket, and leaves no file.
-  const std::size_t length = std::min(name.size(), sizeof address.sun_path - 1);
-  std::memcpy(address.sun_path + 1, name.data(), length);
-  const int socket_file = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
-  if (socket_file < 0 ||
-      bind(socket_file, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
-    if (socket_file >= 0) close(socket_file);
-    throw std::runtime_error(refusal);
-  }
 }
 
 }  // namespace cordis::node

@@ -37,9 +37,4 @@ int node_main(int argc, char** argv, const std::string& kind,
 /// @throws ConfigError when there is an error among the problems
 void report(const config::Problems& problems);
 
-/// Claims a name on this machine until the process ends, whichever way: an abstract socket, so
-/// nothing is left behind.
-/// @throws std::runtime_error with `refusal` when another process holds it.
-void claim(const std::string& name, const std::string& refusal);
-
 }  // namespace cordis::node

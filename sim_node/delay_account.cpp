@@ -14,7 +14,6 @@ void DelayAccount::enter(double made_j, double doubt_j, double taken_j, double m
   // When less is allowed than before, what was allowed is no fault: only what is made from now on.
   account_ = std::min(account_, allowed) + made_j + doubt_j - kShare * newly_taken;
   account_ = std::max(account_, -kTank);
-  if (!makes_energy_) excess_ = account_;
   makes_energy_ = account_ > (makes_energy_ ? 0.0 : allowed);
 }
 

@@ -41,13 +41,12 @@ class DelayAccount {
   void enter(double made_j, double doubt_j, double taken_j, double moved_j) noexcept;
 
   bool makes_energy() const noexcept { return makes_energy_; }
-  double excess_j() const noexcept { return excess_; }  ///< A when it was too much [J]
+  double excess_j() const noexcept { return account_; }  ///< A [J]
 
  private:
   RecentPeak moved_;      // [J]
   double account_ = 0.0;  // A [J]
   double taken_ = 0.0;    // the largest D that was told [J]
-  double excess_ = 0.0;   // [J]
   bool makes_energy_ = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "node/claim.h"
 #include "node/command_listener.h"
 #include "node/node_main.h"
 #include "node/status.h"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -19,9 +18,10 @@
 #include <spdlog/spdlog.h>
 #include <sys/file.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <termios.h>
 #include <unistd.h>
+
+#include "node/claim.h"
 
 namespace cordis::device {
 namespace {
@@ -95,23 +95,14 @@ class Datagrams final : public Wire {
   }
 
  private:
-  /// For good: an abstract name of this host lives as long as its socket.
+  /// For good, for the wire is opened anew again and again.
   bool claim() noexcept {
     if (claim_ >= 0) return true;
-    sockaddr_un mine{};
-    mine.sun_family = AF_UNIX;
-    const int length =
-        std::snprintf(mine.sun_path + 1, sizeof mine.sun_path - 1, "cordis/udp/%08x:%04x",
-                      address_.sin_addr.s_addr, static_cast<unsigned>(address_.sin_port));
-    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1) +
-                      static_cast<socklen_t>(length);
-    claim_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    if (claim_ >= 0 && bind(claim_, reinterpret_cast<const sockaddr*>(&mine), size) == 0) {
-      return true;
-    }
-    if (claim_ >= 0) ::close(claim_);
-    claim_ = -1;
-    return false;
+    char mine[32];
+    std::snprintf(mine, sizeof mine, "cordis/udp/%08x:%04x", address_.sin_addr.s_addr,
+                  static_cast<unsigned>(address_.sin_port));
+    claim_ = node::try_to_claim(mine);
+    return claim_ >= 0;
   }
 
   sockaddr_in address_;

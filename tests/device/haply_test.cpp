@@ -169,14 +169,19 @@ class HaplyTest : public Wired {
     board.degrees[1] = static_cast<float>(angle[0] * 180.0 / std::numbers::pi);
   }
 
+  /// The driver of a board that is plugged in.
+  std::unique_ptr<Driver> pen_of(BoardOfAPantograph& board, const Pantograph::Pair& place) {
+    put_pen(board, place);
+    board.plug.into_serial_line(link());
+    return driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  }
+
   AxisLayout layout_;
 };
 
 TEST_F(HaplyTest, TurnsAnglesIntoThePenAndForcesIntoTorques) {
   BoardOfAPantograph board;
-  put_pen(board, {0.02, 0.09});
-  board.plug.into_serial_line(link());
-  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  const auto pen = pen_of(board, {0.02, 0.09});
   pen->start(Role::kMass);
 
   Pantograph::Pair angle{};
@@ -215,9 +220,7 @@ TEST_F(HaplyTest, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
 
 TEST_F(HaplyTest, RefusesAnglesThatNoPenHas) {
   BoardOfAPantograph board;
-  put_pen(board, {0.0, 0.1});
-  board.plug.into_serial_line(link());
-  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  const auto pen = pen_of(board, {0.0, 0.1});
   auto& hardware = dynamic_cast<Hardware&>(*pen);
   pen->start(Role::kMass);
   ASSERT_TRUE(until(*pen, {}, [](bool there) { return there; }));
@@ -231,9 +234,7 @@ TEST_F(HaplyTest, RefusesAnglesThatNoPenHas) {
 
 TEST_F(HaplyTest, AnAnswerThatIsNotBelievedDoesNotStandForTheNext) {
   BoardOfAPantograph board;
-  put_pen(board, {0.0, 0.1});
-  board.plug.into_serial_line(link());
-  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  const auto pen = pen_of(board, {0.0, 0.1});
   auto& hardware = dynamic_cast<Hardware&>(*pen);
   pen->start(Role::kMass);
   ASSERT_TRUE(until(*pen, {}, [](bool there) { return there; }));

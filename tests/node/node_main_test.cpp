@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "node/claim.h"
+
 namespace cordis::node {
 namespace {
 
