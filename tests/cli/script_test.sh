@@ -30,6 +30,18 @@ fake_ninja() {  # -C TREE, then -n or -j N, then targets
   printf x >"$built"
 }
 
+fake_ctest() {  # one test passes, one is skipped and one fails
+  local name end log=${0%/*/bin/*}/Testing/Temporary/LastTest.log
+  mkdir -p "${log%/*}"
+  printf 'Start testing: Nov 22\n---\n' >"$log"
+  for name in 'good Test Passed.' 'left SKIP_RETURN_CODE=77' 'bad Test Failed.'; do
+    end=${name#* }
+    name=${name%% *}
+    printf '1/3 Testing: %s\nOutput:\n---\nwords of %s\n<end of output>\n%s\n"%s" end time: 1\n\n' \
+      "$name" "$name" "$end" "$name" >>"$log"
+  done
+}
+
 fake_cmake() {  # -S SOURCE --preset PRESET
   note "cmake $4"
   local cache=$2/build/$4/CMakeCache.txt
@@ -41,7 +53,7 @@ fake_cmake() {  # -S SOURCE --preset PRESET
 case ${0##*/} in
   apt-get) fake_apt_get "$@"; exit ;;
   cmake) fake_cmake "$@"; exit ;;
-  cordis) printf 'program:'; printf ' [%s]' "$@"; printf '\n'; exit 7 ;;
+  cordis) printf 'program:'; printf ' [%s]' "$@"; printf '\n'; [[ $1 != test ]] || fake_ctest; exit 7 ;;
   dpkg-query) while read -r package; do printf '=installed=%s=' "$package"; done <"$PLACE/installed"; exit ;;
   ninja) fake_ninja "$@"; exit ;;
   npm) note "npm $1"; [[ ! -e $PLACE/offline ]] || exit 1; mkdir -p "$3/node_modules"; printf x >"$3/node_modules/.package-lock.json"; exit ;;
@@ -59,7 +71,7 @@ touch "$PLACE/installed" "$PLACE/calls"
 cp "$0" "$PLACE/fake"
 chmod +x "$PLACE/fake"
 for name in apt-get cmake dpkg-query ninja sudo; do ln -s "$PLACE/fake" "$PLACE/tools/$name"; done
-for name in bash cksum dirname env find flock ln mkdir nproc readlink rm tail; do
+for name in awk bash cksum dirname env find flock ln mkdir nproc readlink rm tail; do
   ln -s "$(type -P "$name")" "$PLACE/tools/$name"
 done
 
@@ -133,6 +145,14 @@ cordis: building (asan)*
 cordis: configuring (tsan)
 cordis: building (tsan)*
 program: \[test\] \[-R\] \[a b\]
+cordis: once more, what the tests that failed have printed (all: build/Testing/Temporary/LastTest.log)
+1/3 Testing: bad
+Output:
+---
+words of bad
+<end of output>
+Test Failed.
+\"bad\" end time: 1
 cordis: building and testing took 0 min * s"
 expect 'tests are built only for test' "$calls" "*
 ninja release: all tests/all

@@ -60,7 +60,7 @@ class Program {
     for (const stream of [this.child.stdout, this.child.stderr]) stream.on('data', (text) => (this.log += text));
     this.ended = new Promise((resolve) => {
       this.child.on('error', (error) => resolve(`not started: ${error.message}`));
-      this.child.on('exit', (code, signal) => resolve(signal ?? code));
+      this.child.on('close', (code, signal) => resolve(signal ?? code)); // after 'exit', when all it said has been read
     });
     this.running = true;
     void this.ended.then(() => (this.running = false));
