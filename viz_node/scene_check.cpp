@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 namespace cordis::viz {
@@ -22,11 +21,6 @@ bool ranges_fit(const std::vector<msg::NamedRange>& ranges, std::size_t count) {
 
 bool is_rate(double rate_hz) {
   return std::isfinite(rate_hz) && rate_hz > 0.0;
-}
-
-std::string run_fault(const char* what, std::uint64_t run, std::uint64_t described) {
-  if (run == described) return {};
-  return std::string(what) + " of another run of sim_node than its description";
 }
 
 }  // namespace
@@ -62,8 +56,6 @@ std::string fault_of(const msg::SceneDescription& description) {
 std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& description) {
   const std::size_t coordinates = 3 * description.mat_kind().size();
   const std::size_t links = description.link_ends().size() / 2;
-  std::string fault = run_fault("a frame", frame.run(), description.run());
-  if (!fault.empty()) return fault;
   if (frame.position_m().size() != coordinates)
     return count_fault("coordinates in a frame", frame.position_m().size(), coordinates);
   if (!frame.link_state().empty() && frame.link_state().size() != links)
@@ -77,8 +69,6 @@ std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& 
 std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription& description) {
   const std::size_t mats = description.mat_kind().size();
   const std::size_t links = description.link_ends().size() / 2;
-  std::string fault = run_fault("events", events.run(), description.run());
-  if (!fault.empty()) return fault;
   const auto is_foreign = [&](const msg::LinkEvent& event) {
     return (event.link() >= links && event.link() != kNoLink) || event.mat_a() >= mats ||
            event.mat_b() >= mats;
@@ -90,8 +80,6 @@ std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription
 
 std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescription& description) {
   const std::size_t columns = description.signals().size();
-  std::string fault = run_fault("signals", signals.run(), description.run());
-  if (!fault.empty()) return fault;
   if (signals.signal_count() != columns || columns == 0)
     return count_fault("signals in a batch", signals.signal_count(), columns);
   if (signals.value().size() % columns != 0 || signals.value().size() > kMostBatchValues)

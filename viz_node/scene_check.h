@@ -14,20 +14,20 @@ inline constexpr std::size_t kMostLinks = 8'000'000;
 inline constexpr std::size_t kMostSignals = 256;
 inline constexpr std::size_t kMostBatchValues = 1'000'000;
 
-/// Each returns what is wrong, one sentence for a person, or an empty string when nothing is.
+/// Each returns what is wrong, one sentence for a person, or an empty string when nothing is. What
+/// is held against a description has its run and version.
 /// A description is sound when its lengths agree, its indices exist and its rates are positive and
 /// finite.
 std::string fault_of(const msg::SceneDescription& description);
 
-/// A frame is sound when it belongs to the run of `description`, has its counts and only finite
-/// positions.
+/// A frame is sound when it has the counts of `description` and only finite positions.
 std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& description);
 
-/// A batch is sound when it belongs to the run of `description` and holds whole rows of its
-/// signals. Values need not be finite: a signal may have none for a while.
+/// A batch is sound when it holds whole rows of the signals of `description`. Values need not be
+/// finite: a signal may have none for a while.
 std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescription& description);
 
-/// Events are sound when they belong to the run of `description` and name links and MATs of it.
+/// Events are sound when they name links and MATs of `description`.
 std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription& description);
 
 inline constexpr std::uint32_t kNoLink = 0xffffffff;  ///< in an event: a pair of a set liaison

@@ -16,11 +16,11 @@ constexpr std::size_t kBatchesKept = 64;
 constexpr std::size_t kBatchBytesKept = 16u << 20;
 constexpr std::size_t kMostNodes = 64;
 
-/// Whether a message belongs to the scene that sim_node played before, or to the one that it has
-/// not described yet: for a moment around a change of scene, both come.
+/// Whether a message belongs to the scene that sim_node played before, or to one whose description
+/// has not come yet: for a moment around a change of scene or a restart, both come.
 template <class Message>
 bool is_of_another_scene(const Message& message, const msg::SceneDescription& description) {
-  return message.run() == description.run() && message.version() != description.version();
+  return message.run() != description.run() || message.version() != description.version();
 }
 
 }  // namespace

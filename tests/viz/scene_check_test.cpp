@@ -60,7 +60,6 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
 
 TEST(SceneCheck, FindsFramesThatDoNotFitTheirDescription) {
   const std::vector<std::pair<const char*, std::function<void(msg::SceneFrame&)>>> faults = {
-      {"another run", [](auto& f) { f.run(1); }},
       {"coordinates", [](auto& f) { f.position_m().pop_back(); }},
       {"coordinates", [](auto& f) { f.position_m().clear(); }},
       {"link states", [](auto& f) { f.link_state({0}); }},
@@ -76,14 +75,12 @@ TEST(SceneCheck, FindsFramesThatDoNotFitTheirDescription) {
 
 TEST(SceneCheck, FindsEventsOfWhatDoesNotExist) {
   msg::SceneEvents events;
-  events.run(kRun);
   events.event().resize(2);
   events.event()[1].link(kNoLink);
   events.event()[1].mat_b(2);
   EXPECT_EQ(fault_of(events, row_of_three()), "");
 
   const std::vector<std::pair<const char*, std::function<void(msg::SceneEvents&)>>> faults = {
-      {"another run", [](auto& e) { e.run(1); }},
       {"does not exist", [](auto& e) { e.event()[0].link(2); }},
       {"does not exist", [](auto& e) { e.event()[1].mat_a(3); }},
       {"does not exist", [](auto& e) { e.event()[0].mat_b(3); }},
@@ -97,7 +94,6 @@ TEST(SceneCheck, FindsEventsOfWhatDoesNotExist) {
 
 TEST(SceneCheck, FindsBatchesThatAreNoWholeRows) {
   const std::vector<std::pair<const char*, std::function<void(msg::SceneSignals&)>>> faults = {
-      {"another run", [](auto& s) { s.run(1); }},
       {"signals", [](auto& s) { s.signal_count(3); }},
       {"values", [](auto& s) { s.value().pop_back(); }},
       {"values", [](auto& s) { s.value().resize(kMostBatchValues + 2); }},

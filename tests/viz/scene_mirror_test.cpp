@@ -90,6 +90,10 @@ TEST_F(SceneMirrorTest, CountsFramesThatNeverCame) {
 
 TEST_F(SceneMirrorTest, StartsAnewWithAnotherRun) {
   take_frame(900);
+  msg::SceneFrame early = frame_of_three(1);
+  early.run(kRun + 1);
+  EXPECT_EQ(mirror.take(std::move(early), arrival(900)), "") << "its description is on its way";
+  EXPECT_EQ(mirror.frame()->frame.frame(), 900u);
   msg::SceneDescription next = row_of_three();
   next.run(kRun + 1);
   mirror.take(std::move(next));
@@ -101,7 +105,9 @@ TEST_F(SceneMirrorTest, StartsAnewWithAnotherRun) {
   EXPECT_EQ(mirror.frame()->sequence, 2u) << "the sequence goes on: clients count by it";
   EXPECT_EQ(mirror.frame()->scene, 2u);
   EXPECT_EQ(mirror.figures().lost, 0u);
-  EXPECT_NE(take_frame(902), "") << "a frame of the run before, late";
+  EXPECT_EQ(take_frame(902), "");
+  EXPECT_EQ(mirror.frame()->frame.run(), kRun + 1) << "not a frame of the run before, late";
+  EXPECT_EQ(mirror.figures().refused, 0u);
 }
 
 TEST_F(SceneMirrorTest, IgnoresAnOlderVersionOfTheSameScene) {
