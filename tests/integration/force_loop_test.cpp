@@ -1,8 +1,18 @@
 // tests/integration/force_loop_test.cpp -- key to force and back, through real processes.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
 
 #include "idl/gesture.h"
 #include "node/dds/reader.h"
@@ -47,6 +57,54 @@ TEST_P(ForceLoop, NodesClaimTheRateThatTheyKeepAndNoneInLockstep) {
   for (const char* node : {"sim", "keyboard"}) {
     ASSERT_TRUE(status.wait_for_phase(node, "running")) << node;
     EXPECT_EQ(status.of(node).target_rate_hz(), kept) << node;
+  }
+}
+
+/// How many threads of a process have each priority of SCHED_FIFO.
+std::map<int, int> realtime_threads_of(pid_t process) {
+  std::map<int, int> counts;
+  const std::string tasks = "/proc/" + std::to_string(process) + "/task";
+  for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+    std::ifstream file(task.path() / "stat");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::istringstream words(text.substr(text.rfind(')') + 1));  // from the third one on
+    const std::vector<std::string> fields{std::istream_iterator<std::string>(words), {}};
+    if (fields.size() > 38 && fields[38] == std::to_string(SCHED_FIFO))
+      ++counts[std::stoi(fields[37])];
+  }
+  return counts;
+}
+
+bool may_have_realtime_priority() {
+  bool may = false;
+  std::thread([&may] {
+    sched_param parameters{};
+    parameters.sched_priority = 1;
+    may = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+  }).join();
+  return may;
+}
+
+TEST_P(ForceLoop, ThreadsOfLoopAndDdsHaveRealtimePriorityAndNoneInLockstep) {
+  constexpr int kLoop = 80;
+  constexpr int kDds = 40;
+  const bool realtime = GetParam() == std::string("realtime");
+  if (realtime && !may_have_realtime_priority())
+    GTEST_SKIP() << "realtime priority is not permitted here";
+  LiveSession session(GetParam(), kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  StatusWatch status(session.participant());
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard");
+
+  for (const char* node : {"sim", "keyboard"}) {
+    ASSERT_TRUE(status.wait_for_phase(node, "running")) << node;
+    std::map<int, int> threads = realtime_threads_of(session.node(node).id());
+    EXPECT_EQ(threads[kLoop], realtime ? 1 : 0) << node;
+    EXPECT_GE(threads[kDds], realtime ? 4 : 0) << node << ": those that receive, at least";
+    EXPECT_LE(threads[kDds], realtime ? 10 : 0) << node;
+    EXPECT_EQ(threads.size(), 2u) << node << ": none has another priority";
   }
 }
 
