@@ -23,7 +23,8 @@ constexpr int kLoopPriority = 80;                      // SCHED_FIFO
 constexpr auto kLookAround = milliseconds(100);        // for a scene, while there is none
 constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
-constexpr double kLooksPerSecond = 50.0;               // for a change of scene, while one is played
+constexpr auto kLongSilence = std::chrono::seconds(2);  // after which its cause is looked for
+constexpr double kLooksPerSecond = 50.0;  // for a change of scene, while one is played
 constexpr int kBadInput = 2;
 
 /// CLOCK_BOOTTIME [ns]: CLOCK_MONOTONIC stands still while the machine sleeps.
@@ -136,6 +137,7 @@ void Device::play() {
   } else {
     play_paced(exchange);
   }
+  leave(exchange);
   series_.last_sample = exchange.last_sample();
   meter_.set_phase(Phase::kWaiting);
 }
@@ -161,11 +163,6 @@ void Device::play_paced(Exchange& exchange) {
     note_phase(exchange);
     changed = look_around();
   }
-  exchange.leave();
-  while (!exchange.has_left()) {
-    pace.wait();
-    exchange.live();
-  }
 }
 
 void Device::play_in_lockstep(Exchange& exchange) {
@@ -173,21 +170,44 @@ void Device::play_in_lockstep(Exchange& exchange) {
       std::chrono::nanoseconds(std::llround(config_.force_guard.watchdog_s * 1e9)), kRepeatAfter);
   while (!node::stop_requested()) {
     exchange.send_sample();
-    auto silent = milliseconds(0);
-    const bool in_time = exchange.await_answer(watchdog);
-    if (!in_time) exchange.let_go();
-    while (!in_time && !exchange.await_answer(kRepeatAfter)) {
-      if (node::stop_requested() || hear_scene()) return;
-      silent += kRepeatAfter;
-      if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
-        meter_.set_phase(Phase::kLost);
-        note_phase(exchange);
-      }
-      exchange.repeat_sample();
-    }
+    if (!exchange.await_answer(watchdog) && !keep_asking(exchange)) return;
     exchange.live();
     note_phase(exchange);
     if (look_around()) return;
+  }
+}
+
+/// Sends the last sample again and again, motors off, until it is answered; false when the part is
+/// over first.
+bool Device::keep_asking(Exchange& exchange) {
+  exchange.let_go();
+  auto silent = milliseconds(0);
+  while (!exchange.await_answer(kRepeatAfter)) {
+    if (node::stop_requested() || hear_scene()) return false;
+    silent += kRepeatAfter;
+    if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
+      meter_.set_phase(Phase::kLost);
+      note_phase(exchange);
+    }
+    const bool never_answered = meter_.phase() == Phase::kWaiting;
+    if (silent >= kLongSilence && never_answered && !std::exchange(silence_told_, true)) {
+      spdlog::warn(
+          "no answer to the first sample for {} s: {} in the session reads what '{}' sends",
+          kLongSilence.count(), exchange.reader_count() == 0 ? "nobody" : "somebody", config_.name);
+    }
+    exchange.repeat_sample();
+  }
+  return true;
+}
+
+/// Lets the forces fade. A simulated device in lockstep stays as it is: time stands still.
+void Device::leave(Exchange& exchange) {
+  if (clock_ == config::Clock::kLockstep && !exchange.has_motors()) return;
+  node::PacedLoop pace(config_.layout.rate_hz);
+  exchange.leave();
+  while (!exchange.has_left()) {
+    pace.wait();
+    exchange.live();
   }
 }
 

@@ -38,6 +38,8 @@ class Device {
   void play();
   void play_paced(Exchange& exchange);
   void play_in_lockstep(Exchange& exchange);
+  bool keep_asking(Exchange& exchange);
+  void leave(Exchange& exchange);
   void ask_for_realtime();
   void note_phase(const Exchange& exchange);
   void end(Phase phase);
@@ -55,6 +57,7 @@ class Device {
   Phase noted_phase_ = Phase::kWaiting;
   std::int64_t lost_since_nsec_ = 0;
   bool realtime_asked_ = false;
+  bool silence_told_ = false;
   node::StatusPublisher status_;  // last: its thread reads what stands above
 };
 

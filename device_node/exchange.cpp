@@ -73,7 +73,9 @@ bool Exchange::await_answer(std::chrono::nanoseconds silence) noexcept {
 }
 
 void Exchange::let_go() noexcept {
-  if (driver_.let_go()) force_guard_.let_go();
+  if (!driver_.has_motors()) return;
+  driver_.let_go();
+  force_guard_.let_go();
 }
 
 void Exchange::leave() noexcept {

@@ -68,6 +68,8 @@ class Exchange {
   void live() noexcept;
 
   bool has_device() const noexcept { return present_; }  ///< whether the driver has one
+  bool has_motors() const noexcept { return driver_.has_motors(); }
+  int reader_count() const noexcept { return channel_.reader_count(); }
 
   /// The part is over: motors are not switched off in the middle of a force. From now on nothing is
   /// taken any more, and with every live() the last answer fades as an old one does, over

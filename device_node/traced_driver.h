@@ -29,7 +29,8 @@ class TracedDriver final : public Driver {
   bool read(AxisValues& sensed) noexcept override;
   void note_age(double age_s) noexcept override { driver_->note_age(age_s); }
   bool write(const AxisValues& commanded) noexcept override;
-  bool let_go() noexcept override { return driver_->let_go(); }
+  bool has_motors() const noexcept override { return driver_->has_motors(); }
+  void let_go() noexcept override { driver_->let_go(); }
   void stop() noexcept override;
 
  private:

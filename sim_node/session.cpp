@@ -27,7 +27,8 @@ constexpr auto kLockstepPatience =
     50ms;                    // how long a wait for a sample may keep the loop from seeing a stop
 constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene stands still
 constexpr std::uint64_t kRestsPerFrame = 8;
-constexpr auto kLongestWait = 1s;  // for a device that joins
+constexpr auto kLongestWait = 1s;                  // for a device that joins
+constexpr std::int64_t kLongWait = 2'000'000'000;  // of a scene in lockstep for a sample [ns]
 
 }  // namespace
 
@@ -140,7 +141,10 @@ void Session::run_realtime() {
 
 void Session::run_lockstep() {
   while (!finished()) {
-    if (!obey_or_rest()) continue;
+    if (!obey_or_rest()) {
+      waits_since_nsec_ = 0;
+      continue;
+    }
     if (player_.simulation().is_between_ticks() && !receive_lockstep()) continue;
     if (!advance()) continue;
     for (DeviceExchange& device : player_.simulation().devices()) answer(device);
@@ -217,6 +221,7 @@ bool Session::receive_lockstep() {
   receive();
   for (const DeviceExchange& device : player_.simulation().devices()) {
     if (device.has_new_sample()) continue;
+    tell_wait(device);
     if (device.role() == Role::kMass) {
       position_reader_.wait(kLockstepPatience);
     } else {
@@ -224,7 +229,24 @@ bool Session::receive_lockstep() {
     }
     return false;
   }
+  waits_since_nsec_ = 0;
   return true;
+}
+
+/// Says once for whom a scene in lockstep has long been waiting.
+void Session::tell_wait(const DeviceExchange& device) {
+  const std::int64_t now = node::monotonic_nsec();
+  if (waits_since_nsec_ == 0) {
+    waits_since_nsec_ = now;
+    wait_told_ = false;
+  }
+  if (now - waits_since_nsec_ < kLongWait || std::exchange(wait_told_, true)) return;
+  const bool is_mass = device.role() == Role::kMass;
+  const int writers = is_mass ? position_reader_.matched_count() : force_reader_.matched_count();
+  const bool others = writers > 1;  // one is of this node itself
+  spdlog::warn("has been waiting for the device '{}' for {} s: {} in the session writes {}",
+               device.device(), kLongWait / 1'000'000'000, others ? "somebody else" : "nobody else",
+               is_mass ? "gesture/positions" : "gesture/forces");
 }
 
 bool Session::advance() {

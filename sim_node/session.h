@@ -51,6 +51,7 @@ class Session {
   /// Takes what the devices have sent, and answers again what was asked again.
   void receive();
   bool receive_lockstep();  ///< false when a sample is still missing
+  void tell_wait(const DeviceExchange& device);
   /// One turn of the player, and what follows from it. @return whether a tick is complete
   bool advance();
   void answer(DeviceExchange& device);
@@ -77,7 +78,9 @@ class Session {
   msg::GestureForces force_sample_;
   FramePublisher frames_;
   std::uint64_t turns_ = 0;  // of the loop, for the pace of frames while the scene stands still
-  std::uint64_t tick_count_ = 0;  // over all stages
+  std::uint64_t tick_count_ = 0;       // over all stages
+  std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
+  bool wait_told_ = false;
 
   // What the loop tells the status thread.
   struct Shown {

@@ -36,9 +36,12 @@ class Driver {
   /// here, and no other clock moves it. False when the device does not answer.
   virtual bool write(const AxisValues& commanded) noexcept = 0;
 
-  /// A scene in lockstep is silent: motors off until the next write(). True when there are any, and
-  /// forces shall grow anew; for a simulated device no time passes meanwhile.
-  virtual bool let_go() noexcept { return false; }
+  /// Whether it drives motors of this world. For a simulated device no time passes while a scene in
+  /// lockstep is silent or over; a hand at a real one lives on.
+  virtual bool has_motors() const noexcept { return false; }
+
+  /// A scene in lockstep is silent: motors off until the next write(), for then forces grow anew.
+  virtual void let_go() noexcept {}
 
   /// Motors off, at once. start() may follow.
   virtual void stop() noexcept = 0;

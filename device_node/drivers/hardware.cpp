@@ -55,10 +55,9 @@ bool Hardware::write(const AxisValues& commanded) noexcept {
   return contact_ == Contact::kPresent;
 }
 
-bool Hardware::let_go() noexcept {
+void Hardware::let_go() noexcept {
   stop();
   guard_.start();
-  return true;
 }
 
 void Hardware::stop() noexcept {

@@ -49,7 +49,8 @@ class Hardware : public Driver {
   bool read(AxisValues& sensed) noexcept override;
   void note_age(double age_s) noexcept override { age_s_ = age_s; }
   bool write(const AxisValues& commanded) noexcept override;
-  bool let_go() noexcept override;
+  bool has_motors() const noexcept override { return true; }
+  void let_go() noexcept override;
   void stop() noexcept override;
 
   Contact contact() const noexcept { return contact_; }

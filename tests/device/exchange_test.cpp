@@ -61,13 +61,13 @@ class FakeDriver : public Driver {
     commands.push_back(commanded);
     return present;
   }
-  bool let_go() noexcept override { return has_motors; }
+  bool has_motors() const noexcept override { return motors; }
   void stop() noexcept override { stopped = true; }
 
   Role started_as = Role::kMass;
   std::vector<AxisValues> commands;
   double age = -1.0;  // of the last of them [s]
-  bool has_motors = false;
+  bool motors = false;
   bool present = true;
   bool lies = false;
   bool stopped = false;
@@ -383,7 +383,7 @@ TEST(Exchange, InLockstepRepeatsTheVerySameSample) {
 TEST(Exchange, InLockstepMotorsGrowAnewAfterASilence) {
   for (const bool motors : {false, true}) {
     Rig rig(true);
-    rig.driver.has_motors = motors;
+    rig.driver.motors = motors;
     for (int n = 0; n < 3; ++n) rig.period(true, 12.0);
     ASSERT_EQ(rig.driver.commands.back()[0], 12.0);
 

@@ -177,5 +177,36 @@ TEST_F(Failover, AStandInPlaysWhileTheHardwareIsUnplugged) {
   EXPECT_LE(largest_board_change_, kJitter * kSlew);
 }
 
+TEST(LockstepWithMotors, ForcesFadeWhenTheDeviceIsAskedToStop) {
+  LiveSession session("lockstep", kSimAndKey);
+  const std::string trace = (session.folder() / "trace.csv").string();
+  const std::string line = (session.folder() / "tty").string();
+  session.add_file("scene.yaml", wall_scene(kStiffness));
+  session.add_file("key.yaml", std::string(kLimits) +
+                                   "watchdog_s: 0.1\ndriver: kfb1\nkfb1: {port: " + line +
+                                   ", lost_after_s: 5}\ntrace: {file: " + trace + "}\n");
+  Kfb1Board board(1);
+  board.positions[0] = 16384;
+  board.plug.into_serial_line(line);
+  session.start("sim_node", "sim");
+  ChildProcess& device = session.start("device_node", "keyboard");
+  const auto force = [&] { return board.forces[0].load() * kFullScale / 32767.0; };
+  ASSERT_TRUE(eventually([&] { return std::abs(force() - kHardwareForce) < 2e-3; }));
+
+  device.signal(SIGTERM);
+  ASSERT_EQ(device.wait(kPatience), 0);
+
+  double last = 0.0;  // force that its driver was given
+  std::ifstream file(trace);
+  std::string row;
+  std::getline(file, row);
+  while (std::getline(file, row)) {
+    const double given = std::atof(row.substr(row.find(',') + 1).c_str());
+    if (given != 0.0) last = given;
+  }
+  EXPECT_GT(last, 0.0);
+  EXPECT_LE(last, kSlew * (1.0 + 1e-9));
+}
+
 }  // namespace
 }  // namespace cordis::test

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "idl/scene.h"
+#include "node/config/name_hash.h"
+#include "node/dds/writer.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
@@ -107,6 +110,42 @@ TEST_P(Restart, OfTheDisplayDisturbsNobody) {
 
 INSTANTIATE_TEST_SUITE_P(Clocks, Restart, ::testing::Values("realtime", "lockstep"),
                          [](const auto& instance) { return std::string(instance.param); });
+
+TEST(Lockstep, WhoWaitsLongSaysForWhomAndWhetherAnybodyIsThereAndForgetsNobody) {
+  LiveSession session("lockstep", kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  StatusWatch status(session.participant());
+  LiveSession sceneless("lockstep", kSimAndKey, "sceneless");
+  sceneless.add_file("scene.yaml", wall_scene(200.0));
+  sceneless.add_file("key.yaml", steady_key(-0.01, 0.0));
+  dds::Writer<msg::SceneDescription> scenes(sceneless.participant(), dds::Topic::kDescription);
+  msg::SceneDescription scene;
+  scene.ports().emplace_back();
+  scene.ports().back().device_id(config::name_hash("keyboard"));
+  scene.ports().back().axes({0});
+  scenes.write(scene);
+
+  ChildProcess& sim = session.start("sim_node", "sim");
+  ChildProcess& alone = sceneless.start("device_node", "keyboard");
+
+  EXPECT_TRUE(sim.wait_for_output(
+      "waiting for the device 'keyboard' for 2 s: nobody else in the session writes gesture/posi",
+      kPatience));
+  EXPECT_TRUE(alone.wait_for_output(
+      "no answer to the first sample for 2 s: nobody in the session reads what 'keyboard' sends",
+      kPatience));
+
+  ChildProcess& device = session.start("device_node", "keyboard");
+  ASSERT_TRUE(status.wait_for_phase("keyboard", "running"));
+  device.signal(SIGSTOP);
+  EXPECT_TRUE(sim.wait_for_output("2 s: somebody else in the session writes", kPatience))
+      << "it is forgotten, though it only stands still";
+  device.signal(SIGCONT);
+
+  const std::uint64_t ticks = status.of("keyboard").ticks();
+  EXPECT_TRUE(status.wait_for("keyboard", [&](const auto& s) { return s.ticks() > ticks + 100; }));
+}
 
 }  // namespace
 }  // namespace cordis::test
