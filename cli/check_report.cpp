@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/scene_check.h"
+#include "node/config/count_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -119,7 +120,8 @@ std::string needs_text(const scene::PortNeeds& needs) {
 
 std::string port_text(const SceneCheck& check, const PortCheck& port) {
   const double rate = check.scene.gesture_rate_hz;
-  const int delay = check.options.delay_periods;
+  const int delay_periods = check.options.delay_periods;
+  const std::string delay = config::count_text(static_cast<std::size_t>(delay_periods), "period");
   const std::string who =
       fmt::format("port        {} ({}): ", port.port->name, place_text(port.port->place));
   if (port.port->role == scene::Role::kLiaison) {
@@ -127,16 +129,14 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
            fmt::format(
                "a hand may be as stiff as {:.4g} N/m, and as its own viscosity over "
                "{:.3g} ms, at {:.4g} Hz and {} of delay\n",
-               port.largest_hand_stiffness, 1e3 * delay / rate, rate,
-               delay == 1 ? "one period" : std::to_string(delay) + " periods") +
+               port.largest_hand_stiffness, 1e3 * delay_periods / rate, rate, delay) +
            needs_text(port.port->needs);
   }
   std::string text =
       who + fmt::format(
                 "{:.4g} N/m and {:.3g} N s/m; the device needs {:.3g} N s/m of its own, at "
                 "{:.4g} Hz and {} of delay\n",
-                port.load.stiffness, port.load.viscosity, port.least_device_viscosity, rate,
-                delay == 1 ? "one period" : std::to_string(delay) + " periods");
+                port.load.stiffness, port.load.viscosity, port.least_device_viscosity, rate, delay);
   if (check.options.device_viscosity > 0.0) {
     text += fmt::format(
         "            a device of {:.3g} N s/m bears {:.4g} N/m: {}\n",
@@ -261,9 +261,8 @@ std::string reductions_text(const std::vector<scene::Reduction>& reductions) {
 
 std::string text_of(const SceneCheck& check) {
   const scene::Scene& scene = check.scene;
-  std::string text = fmt::format("scene       {} ({}), {} MATs, {} links, {} sets, {}-D\n",
-                                 scene.name, scene.file, scene.network.mats.size(),
-                                 scene.link_count(), scene.network.sets.size(), scene.space());
+  std::string text =
+      fmt::format("scene       {} ({}), {}\n", scene.name, scene.file, scene::size_text(scene));
   text += fmt::format("integrator  {} at {:.6g} Hz, 1 thread\n",
                       engine::to_string(scene.network.integrator), scene.step_rate_hz);
   text += reductions_text(check.scene.reductions);

@@ -5,9 +5,10 @@
 #include <cerrno>
 #include <cstdlib>
 
-#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
+
+#include "node/config/count_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -31,8 +32,8 @@ void Console::line(Stream stream, std::string_view text) {
     return;
   }
   if (pending.dropped > 0) {
-    pending.text +=
-        fmt::format("... {} lines are missing here: nobody read them in time\n", pending.dropped);
+    pending.text += "... " + config::count_text(pending.dropped, "line is", "lines are") +
+                    " missing here: nobody read them in time\n";
     pending.dropped = 0;
   }
   pending.text += text;

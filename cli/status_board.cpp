@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "node/config/count_text.h"
+
 namespace cordis::cli {
 namespace {
 
@@ -42,8 +44,8 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   }
   if (status.kind() == "device_node" &&
       (status.port_energy_j() != 0.0 || status.braked_ticks() > 0)) {
-    text += fmt::format("{} gave the hand {:.3g} J, braked in {} ticks\n", node,
-                        status.port_energy_j(), status.braked_ticks());
+    text += fmt::format("{} gave the hand {:.3g} J, braked in {}\n", node, status.port_energy_j(),
+                        config::count_text(status.braked_ticks(), "tick"));
   }
   if (status.kind() == "sim_node") {
     text += fmt::format(
@@ -51,7 +53,8 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
         "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
         status.energy_j(), status.port_work_j(), status.switching_energy_j(), status.dissipated_j(),
         status.largest_limit_number());
-    text += fmt::format("state hash {:016x} after {} steps\n", status.state_hash(), status.step());
+    text += fmt::format("state hash {:016x} after {}\n", status.state_hash(),
+                        config::count_text(status.step(), "step"));
   }
   return text;
 }

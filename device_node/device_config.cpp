@@ -12,12 +12,14 @@
 #include <fmt/format.h>
 
 #include "device_node/drivers/driver_table.h"
+#include "node/config/count_text.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
 
 namespace cordis::device {
 namespace {
 
+using config::count_text;
 using config::number_text;
 using config::Range;
 
@@ -196,7 +198,8 @@ std::string what_it_is(const DeviceConfig& config) {
   const int count = config.layout.count;
   const double width_mm = config.limits.slice_width_m * 1e3;
   if (width_mm == 0.0) {
-    return fmt::format("{} {}, driver {}", count, count == 1 ? "axis" : "axes", config.driver);
+    return count_text(static_cast<std::size_t>(count), "axis", "axes") + ", driver " +
+           config.driver;
   }
   if (count == 1) return fmt::format("1 key, {:.4g} mm wide, driver {}", width_mm, config.driver);
   return fmt::format("{} keys of {:.4g} mm, {:.4g} mm side by side, driver {}", count, width_mm,

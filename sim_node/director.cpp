@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "node/config/count_text.h"
 #include "node/config/mapping_reader.h"
 #include "sim_node/link_states.h"
 #include "sim_node/plan/reduction/reduce.h"
@@ -13,10 +14,6 @@ namespace cordis::sim {
 namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(1);  // for the end of single steps
-
-std::string count_of(std::uint64_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
 
 std::string at_step(const Order& order) {
   return " at step " + std::to_string(order.step);
@@ -29,7 +26,7 @@ std::shared_ptr<const scene::Scene> whole_of(const std::shared_ptr<const scene::
 
 /// All that is wrong in the files of a scene, behind one sentence.
 std::string refusal_of(const std::string& path, const config::Problems& problems) {
-  return "'" + path + "' cannot be played (" + count_of(problems.error_count(), "error") +
+  return "'" + path + "' cannot be played (" + config::count_text(problems.error_count(), "error") +
          "), the present scene goes on\n" + problems.text();
 }
 
@@ -91,7 +88,7 @@ node::Answer Director::step(std::uint64_t count) {
   const auto limit = std::chrono::steady_clock::now() + kPatience;
   while (orders_.steps_left() > 0 && !orders_.is_closed()) {
     if (std::chrono::steady_clock::now() > limit)
-      return {true, count_of(count, "step") + " begun" + at_step(order)};
+      return {true, config::count_text(count, "step") + " begun" + at_step(order)};
     std::this_thread::sleep_for(kLook);
   }
   return {true, "paused at step " + std::to_string(order.step + count - orders_.steps_left())};
@@ -164,7 +161,7 @@ node::Answer Director::force(const std::string& links, const std::string& state)
   } catch (const std::invalid_argument& refusal) {
     return {false, refusal.what()};
   }
-  return give(order, count_of(order.forced.size(), "link") + " put into '" + state + "'");
+  return give(order, config::count_text(order.forced.size(), "link") + " put into '" + state + "'");
 }
 
 }  // namespace cordis::sim

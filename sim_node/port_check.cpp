@@ -3,11 +3,13 @@
 
 #include <cmath>
 
+#include "node/config/count_text.h"
 #include "node/config/mapping_reader.h"
 
 namespace cordis::sim {
 namespace {
 
+using config::count_text;
 using config::number_text;
 
 constexpr double kFingertip = 2000.0;  // stiffness of one that presses [N/m]
@@ -51,8 +53,8 @@ class Borne {
   static Bearable declared(double limit) { return {limit, "declares it"}; }
   std::string reason() const {
     return "with " + number_text(device_.mass) + " kg, " + number_text(device_.viscosity) +
-           " N s/m and a delay of " + std::to_string(loop_.delay) + " periods of " +
-           number_text(loop_.period) + " s";
+           " N s/m and a delay of " + count_text(static_cast<std::size_t>(loop_.delay), "period") +
+           " of " + number_text(loop_.period) + " s";
   }
 
   const config::DeviceLimits& limits_;
@@ -110,7 +112,8 @@ std::string trouble_with_a_hand(const PortDemand& demand, const config::DeviceLi
          "' is stiffer than " + number_text(std::floor(bearable)) +
          " N/m, and a fingertip has 2000 N/m (with a mass of " + number_text(demand.mass) +
          " kg, " + number_text(demand.least.viscosity) + " N s/m and a delay of " +
-         std::to_string(loop.delay) + " periods of " + number_text(loop.period) + " s)";
+         count_text(static_cast<std::size_t>(loop.delay), "period") + " of " +
+         number_text(loop.period) + " s)";
 }
 
 }  // namespace

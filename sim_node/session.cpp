@@ -8,9 +8,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include "node/config/count_text.h"
 #include "node/stop.h"
 #include "node/time.h"
 #include "sim_node/describe.h"
+#include "sim_node/scene/naming.h"
 #include "sim_node/stability_check.h"
 
 namespace cordis::sim {
@@ -52,7 +54,7 @@ Session::Session(const node::NodeStart& start, SimConfig config)
       director_(
           orders_, player_.simulation().shared_scene(), start.run,
           [this, force = config.force](const std::string& path, config::Problems& problems) {
-            return load_checked_scene(start_.launch, path, {}, force, problems);
+            return load_next_scene(start_.launch, path, force, problems);
           },
           [force = config.force](const scene::Scene& scene, config::Problems& problems) {
             check_stability(scene, force, problems);
@@ -113,8 +115,8 @@ int Session::run() {
     return 1;
   }
   set_phase("stopped");
-  spdlog::info("state hash {:016x} after {} steps", simulation.world().state_hash(),
-               simulation.world().step_count());
+  spdlog::info("state hash {:016x} after {}", simulation.world().state_hash(),
+               config::count_text(simulation.world().step_count(), "step"));
   return 0;
 }
 
@@ -376,8 +378,8 @@ void Session::tell(const scene::Scene& scene, std::uint64_t version) {
   }
   msg::SceneDescription description = describe(scene, start_.run, version);
   description_writer_.write(description);
-  spdlog::info("scene '{}': {} MATs, {} links, {} steps per second, {} per gesture", scene.name,
-               scene.network.mats.size(), link_count_of(scene), scene.step_rate_hz,
+  spdlog::info("scene '{}': {}, {} steps per second, {} per gesture", scene.name,
+               scene::size_text(scene), scene.step_rate_hz,
                std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "node/config/device_limits.h"
@@ -146,6 +147,18 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
   if (!problems.has_errors()) check_devices(launch, scene, problems);
   if (!problems.has_errors()) check_stability(scene, force, problems);
   return scene;
+}
+
+scene::Scene load_next_scene(const config::Launch& launch, const std::string& path, bool force,
+                             config::Problems& problems) {
+  const std::filesystem::path beside = std::filesystem::absolute(launch.file).parent_path();
+  std::error_code unknown;
+  if (std::filesystem::path(path).is_absolute() ||
+      std::filesystem::exists((beside / path).parent_path(), unknown))
+    return load_checked_scene(launch, path, {}, force, problems);
+  problems.error({}, "there is no such file, neither where `cordis ctl` was called nor in '" +
+                         beside.string() + "', the folder of the launch file");
+  return {};
 }
 
 }  // namespace cordis::sim

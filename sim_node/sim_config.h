@@ -29,4 +29,9 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
                                 const config::Place& referrer, bool force,
                                 config::Problems& problems);
 
+/// The same of a path that a command names. `cordis ctl` sends a whole path when it finds the file
+/// where it is called, else the path as it was written.
+scene::Scene load_next_scene(const config::Launch& launch, const std::string& path, bool force,
+                             config::Problems& problems);
+
 }  // namespace cordis::sim

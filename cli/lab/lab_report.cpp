@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "cli/lab/lab.h"
+#include "node/config/count_text.h"
+#include "sim_node/scene/naming.h"
 
 namespace cordis::cli {
 namespace {
@@ -78,9 +80,8 @@ std::string choice_text(const LabReport& report) {
 
 std::string text_of(const LabReport& report) {
   const scene::Scene& scene = report.lab.scene;
-  std::string text = fmt::format("lab         {} ({}), {} MATs, {} links, {} sets, {}-D\n",
-                                 scene.name, scene.file, scene.network.mats.size(),
-                                 scene.link_count(), scene.network.sets.size(), scene.space());
+  std::string text =
+      fmt::format("lab         {} ({}), {}\n", scene.name, scene.file, scene::size_text(scene));
   for (const std::string& port : report.lab.ports) text += "port        " + port + "\n";
   text += reference_text(report.reference);
   for (const auto& [integrator, stability] : report.stability) {
@@ -88,7 +89,9 @@ std::string text_of(const LabReport& report) {
                         rate_of(stability.certified.step), rate_of(stability.diverging_step));
   }
   if (report.kept_runs > 0) {
-    text += fmt::format("            {} runs are kept from an earlier lab\n", report.kept_runs);
+    text += fmt::format(
+        "            {} kept from an earlier lab\n",
+        config::count_text(static_cast<std::size_t>(report.kept_runs), "run is", "runs are"));
   }
   for (const std::string& note : report.notes) text += "            " + note + "\n";
   if (!report.counts_instructions) {

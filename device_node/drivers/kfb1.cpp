@@ -8,6 +8,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "node/config/count_text.h"
+
 namespace cordis::device {
 namespace {
 
@@ -161,9 +163,9 @@ Hardware::Heard Kfb1::take_info(Bytes payload) noexcept {
   if (payload.size() < 17) return Heard::kBad;
   const int keys = payload[2];
   if (payload[1] != kVersion || keys != layout().count || get32(payload, 7) == 0) {
-    spdlog::error(
-        "kfb1: the device has {} keys and speaks version {}; the device file says {} axes", keys,
-        payload[1], layout().count);
+    spdlog::error("kfb1: the device has {} and speaks version {}; the device file says {}",
+                  config::count_text(payload[2], "key"), payload[1],
+                  config::count_text(static_cast<std::size_t>(layout().count), "axis", "axes"));
     return Heard::kWrong;
   }
   travel_m_ = get32(payload, 3) * 1e-6;

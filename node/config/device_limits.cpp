@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "node/config/file_kind.h"
+
 namespace cordis::config {
 
 Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& problems) {
@@ -19,7 +21,7 @@ Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& pro
     if (entry.key != "device") others.push_back(entry);
   }
   const Value file = load_file(launch.resolve(path).string(), problems);
-  if (!file.exists()) return {};
+  if (!file.exists() || !is_file_of(FileKind::kDevice, file, problems)) return {};
   return overlay(file, Value::mapping(std::move(others), node.section.place()));
 }
 

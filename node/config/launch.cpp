@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "node/config/file_kind.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
 
@@ -16,8 +17,7 @@ constexpr long kHighestDomain =
 constexpr std::size_t kLongestName = 64;
 
 const std::vector<std::string>& programs() {
-  static const std::vector<std::string> kPrograms{"sim_node", "device_node", "viz_node",
-                                                  "record_node"};
+  static const std::vector<std::string> kPrograms{"sim_node", "device_node", "viz_node"};
   return kPrograms;
 }
 
@@ -149,17 +149,9 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
   Launch launch;
   launch.file = path;
   launch.directory = std::filesystem::path(path).parent_path();
-  if (!root.exists()) return launch;
+  if (!root.exists() || !is_file_of(FileKind::kLaunch, root, problems)) return launch;
 
-  if (root.kind() == Value::Kind::kMapping) {
-    if (!root.find("nodes").exists() && root.find("matter").exists()) {
-      problems.error(root.place(), "this is a scene; a launch file has a key 'nodes'",
-                     "give it to a launch file that is there: cordis run LAUNCH.yaml "
-                     "sim.scene=SCENE.yaml, the path seen from the launch file");
-      return launch;
-    }
-    root = with_overrides(root, overrides, problems);
-  }
+  if (root.kind() == Value::Kind::kMapping) root = with_overrides(root, overrides, problems);
   MappingReader reader(root, "launch file", problems);
   reader.required_integer("cordis", 1, 1);
   launch.session = read_session(reader, path);

@@ -19,7 +19,7 @@ enum class Clock {
 /// One node of a launch file: a process.
 struct LaunchNode {
   std::string name;  ///< unique within the session; also the name of the device for a device_node
-  std::string program;   ///< sim_node, device_node, viz_node or record_node
+  std::string program;   ///< sim_node, device_node or viz_node
   bool required = true;  ///< whether the session ends when this node ends
   Value section;  ///< its mapping without the keys `node` and `required`; the node reads it itself
   Place place;    ///< of the name

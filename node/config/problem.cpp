@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "node/config/count_text.h"
+
 namespace cordis::config {
 
 namespace {
@@ -142,7 +144,7 @@ std::vector<Problem> Problems::in_order() const {
   std::stable_sort(sorted.begin(), sorted.end(), earlier);
   if (left_out_ > 0) {
     Problem others;
-    others.message = "there are " + std::to_string(left_out_) + " more problems that are not shown";
+    others.message = count_text(left_out_, "more problem is", "more problems are") + " not shown";
     sorted.push_back(std::move(others));
   }
   return sorted;

@@ -1,6 +1,8 @@
 // sim_node/scene/naming.cpp
 #include "sim_node/scene/naming.h"
 
+#include "node/config/count_text.h"
+
 namespace cordis::scene {
 namespace {
 
@@ -37,6 +39,14 @@ Called call_liaison(const Scene& scene, std::optional<engine::LiaisonId> liaison
       return {scene.set_names[index] + " of sets", scene.set_places[index]};
   }
   return {};
+}
+
+std::string size_text(const Scene& scene) {
+  const engine::NetworkDescription& network = scene.network;
+  return config::count_text(network.mats.size(), "MAT") + ", " +
+         config::count_text(scene.link_count(), "link") + ", " +
+         config::count_text(network.sets.size(), "set") + ", " + std::to_string(scene.space()) +
+         "-D";
 }
 
 std::string place_text(const config::Place& place) {

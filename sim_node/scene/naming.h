@@ -21,6 +21,9 @@ Called call_mat(const Scene& scene, std::uint32_t mat);
 /// The same of a liaison; without one it is the viscosity of the medium. O(names).
 Called call_liaison(const Scene& scene, std::optional<engine::LiaisonId> liaison);
 
+/// How large it is: "3 MATs, 1 link, 0 sets, 2-D".
+std::string size_text(const Scene& scene);
+
 /// file:line of a place, or the file alone.
 std::string place_text(const config::Place& place);
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "node/config/file_kind.h"
 #include "sim_node/scene/assembly.h"
 #include "sim_node/scene/naming.h"
 #include "sim_node/scene/point.h"
@@ -175,25 +176,11 @@ void read_content(config::MappingReader& reader, Scene& scene, config::Problems&
   if (std::none_of(radius.begin(), radius.end(), is_ball)) radius.clear();
 }
 
-/// A hint for who gives a launch file where a scene is wanted.
-std::string scenes_of_launch(const Value& nodes) {
-  for (const Value::Entry& node : nodes.entries()) {
-    const Value scene = node.value.find("scene");
-    if (scene.exists()) return "its scene is " + scene.text() + ", from the folder of this file";
-  }
-  return {};
-}
-
 Scene read_scene(const Value& root, const std::string& path, config::Problems& problems) {
   Scene scene;
   scene.file = path;
   scene.network.dimension = 0;
-  if (!root.exists()) return scene;
-  if (const Value nodes = root.find("nodes"); nodes.exists() && !root.find("matter").exists()) {
-    problems.error(nodes.place(), "this is a launch file, and a scene is wanted",
-                   scenes_of_launch(nodes));
-    return scene;
-  }
+  if (!root.exists() || !config::is_file_of(config::FileKind::kScene, root, problems)) return scene;
 
   const std::size_t errors_before = problems.error_count();
   config::MappingReader reader(root, "scene", problems);

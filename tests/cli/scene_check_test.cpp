@@ -44,6 +44,7 @@ class Checked : public testing::Test {
 TEST_F(Checked, AStableSceneHasItsMarginAndItsLimitByNameAndLine) {
   write("100");
   EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("), 2 MATs, 1 link, 0 sets, 1-D\n"), std::string::npos) << out_;
   EXPECT_NE(out_.find("margin 75 % of stiffness"), std::string::npos) << out_;
   EXPECT_NE(out_.find("set by holder (" + path_ + ":11)"), std::string::npos) << out_;
   EXPECT_NE(out_.find("mass bob of 0.1 kg (" + path_ + ":7)"), std::string::npos) << out_;
@@ -71,6 +72,7 @@ TEST_F(Checked, LinksWithStatesAndSetsHaveALineToo) {
   EXPECT_NE(out_.find("set by catch (" + path_ + ":14)"), std::string::npos) << out_;
   soft("100", "9000");
   EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("), 3 MATs, 2 links, 1 set, 1-D\n"), std::string::npos) << out_;
   EXPECT_NE(out_.find("set by knock of sets (" + path_ + ":15)"), std::string::npos) << out_;
   EXPECT_NE(out_.find("at worst: knock of sets (" + path_ + ":15)"), std::string::npos) << out_;
 }
@@ -139,6 +141,7 @@ TEST_F(Checked, PortsAreJudgedInTheirRole) {
   // K (T / 2 + d T) with T = 0.1 s: 150 N s/m with one period of delay, 250 with two
   ASSERT_EQ(run({"--device-viscosity", "200"}), kSuccess) << error_;
   EXPECT_NE(out_.find("the device needs 150 N s/m"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("and 1 period of delay\n"), std::string::npos) << out_;
   EXPECT_NE(out_.find("safe with any hand"), std::string::npos) << out_;
   ASSERT_EQ(run({"--device-viscosity", "200", "--delay", "2"}), kSuccess) << error_;
   EXPECT_NE(out_.find("TOO STIFF"), std::string::npos) << out_;

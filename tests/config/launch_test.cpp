@@ -48,7 +48,9 @@ TEST(Launch, TellsASceneFromALaunchFileInOneProblem) {
                    problems);
 
   ASSERT_EQ(problems.all().size(), 1u) << problems.text();
-  EXPECT_NE(problems.text().find("bow.yaml:1:1: error: this is a scene"), std::string::npos)
+  EXPECT_NE(
+      problems.text().find("bow.yaml:4:1: error: this is a scene, and a launch file is wanted"),
+      std::string::npos)
       << problems.text();
   EXPECT_NE(problems.text().find("sim.scene="), std::string::npos) << problems.text();
 }
@@ -127,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"sim.x=[1", "YAML syntax: expected ',' or ']'", "the '[' is still open"},
         BadOverride{"sim.node=sin_node",
                     "'node' in node 'sim' must be one of sim_node, device_node, viz_node, "
-                    "record_node, got 'sin_node'",
+                    "got 'sin_node'",
                     "did you mean 'sim_node'?"}));
 
 struct BadLaunch {
@@ -183,7 +185,7 @@ INSTANTIATE_TEST_SUITE_P(
                   ""},
         BadLaunch{"cordis: 1\nnodes:\n  view: {node: vis_node}\n",
                   "l.yaml:3:16: error: 'node' in node 'view' must be one of sim_node, device_node, "
-                  "viz_node, record_node, got 'vis_node'",
+                  "viz_node, got 'vis_node'",
                   "did you mean 'viz_node'?"},
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: sim_node}\n  b: {node: sim_node}\n",
                   "l.yaml:4:3: error: a session has one sim_node, and 'a' is one already",

@@ -49,6 +49,16 @@ TEST(DeviceConfig, NeedsNothingButItsAxes) {
   EXPECT_NE(device.driver, nullptr);
 }
 
+TEST(DeviceConfig, ASceneInItsPlaceIsOneProblem) {
+  try {
+    launched("../scenes/membrane.yaml", {});
+    FAIL() << "a scene was taken for a device";
+  } catch (const config::ConfigError& error) {
+    ASSERT_EQ(error.problems().size(), 1u) << error.what();
+    EXPECT_EQ(error.problems()[0].message, "this is a scene, and a device file is wanted");
+  }
+}
+
 TEST(DeviceConfig, MayPlayTheDeviceOfAnotherNode) {
   const DeviceConfig own = launched("keyboard.yaml", {}).config;
   EXPECT_EQ(own.strength, 10);

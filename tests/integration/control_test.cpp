@@ -193,6 +193,8 @@ TEST_P(Control, ASceneWithErrorsIsRefusedWithThemAllAndTheOldOneGoesOn) {
   expect_refused({"load", "bad.yaml"},
                  "bad.yaml:2:8: error: 'space' in scene must be between 1 and 3, got 7");
   expect_refused({"load", "nowhere.yaml"}, "cannot be read");
+  expect_refused({"load", "nowhere/scene.yaml"},
+                 "error: there is no such file, neither where `cordis ctl` was called nor in '");
   expect_refused({"load", "wide.yaml"},
                  "wide.yaml:11:75: error: port 'key' needs a travel of 0.05 m, and axis 0 of the "
                  "device 'keyboard' has 0.04 m");

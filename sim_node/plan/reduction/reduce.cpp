@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "node/config/count_text.h"
 #include "sim_node/plan/reduction/dimension.h"
 #include "sim_node/plan/reduction/light_mats.h"
 #include "sim_node/plan/reduction/parallel.h"
@@ -14,12 +15,10 @@
 namespace cordis::plan {
 namespace {
 
+using config::count_text;
+
 /// The part of the tolerance that reductions may use up; the step gets the rest.
 constexpr double kShareOfReductions = 0.25;
-
-std::string count_of(std::size_t count, const char* one, const char* many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
 
 /// What a relative error of pitch at the end of the band is of the tolerance: with over_s that of
 /// positions, which a phase error makes.
@@ -44,11 +43,11 @@ struct Totals {
 /// In 2-D and 3-D the MATs of a row give way when it is pushed.
 void doubt_struts(const LightMats& mats, scene::Scene& scene) {
   if (scene.struts.empty()) return;
-  std::string doubt = count_of(scene.struts.size(), "row is", "rows are") +
+  std::string doubt = count_text(scene.struts.size(), "row is", "rows are") +
                       " exact while drawn, wrong when pushed, as the MATs would give way sideways: "
                       "node/status tells";
   if (mats.struts > 0) {
-    doubt += "; " + count_of(mats.struts, "begins", "begin") + " at rest, the nearest to that";
+    doubt += "; " + count_text(mats.struts, "begins", "begin") + " at rest, the nearest to that";
   }
   scene.reductions.back().doubts.push_back(std::move(doubt));
 }
@@ -60,20 +59,20 @@ void report(const Totals& totals, scene::Scene& scene) {
     return count > 0;
   };
   tell("parallel", totals.merged,
-       count_of(totals.merged, "link", "links") + " merged into another between the same MATs");
+       count_text(totals.merged, "link") + " merged into another between the same MATs");
   if (tell("series", mats.massless,
-           count_of(mats.massless, "MAT", "MATs") + " without mass taken out of rows of links")) {
+           count_text(mats.massless, "MAT") + " without mass taken out of rows of links")) {
     doubt_struts(mats, scene);
   }
   if (tell("massless", mats.maxwell,
-           count_of(mats.maxwell, "MAT", "MATs") +
+           count_text(mats.maxwell, "MAT") +
                " without mass between a spring and a damper made a Maxwell element") &&
       scene.space() > 1) {
     scene.reductions.back().doubts.emplace_back(
         "a Maxwell element that is pushed does not give way sideways, as the MAT would");
   }
   if (tell("massless", mats.light,
-           count_of(mats.light, "light MAT", "light MATs") + " taken out, the mass put beside")) {
+           count_text(mats.light, "light MAT") + " taken out, the mass put beside")) {
     scene.reductions.back().budget = mats.budget * tolerance_per_pitch(*scene.accuracy);
     scene.reductions.back().bound = "(w / w0)^2 at the end of the band, w0 that of the MAT alone";
     doubt_struts(mats, scene);

@@ -1,0 +1,14 @@
+// node/config/file_kind.h -- what a file is, when it is not what is wanted.
+#pragma once
+
+#include "node/config/value.h"
+
+namespace cordis::config {
+
+enum class FileKind { kLaunch, kScene, kDevice, kParts };
+
+/// Whether a file may be of the kind that is wanted, as its keys tell: `nodes` of a launch file,
+/// `matter` of a scene, `axes` of a device file; else one problem that says what it is.
+bool is_file_of(FileKind wanted, const Value& root, Problems& problems);
+
+}  // namespace cordis::config
