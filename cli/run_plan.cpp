@@ -16,10 +16,9 @@ struct Role {
   int start_place;
   int stop_stage;
 };
-// A device stops first, so that the hand is released before the scene is gone; the recorder stops
-// last and misses nothing.
-constexpr std::array<Role, 4> kRoles{
-    {{"sim_node", 0, 2}, {"device_node", 1, 0}, {"viz_node", 2, 1}, {"record_node", 3, 3}}};
+// A device stops first, so that the hand is released before the scene is gone.
+constexpr std::array<Role, 3> kRoles{
+    {{"sim_node", 0, 2}, {"device_node", 1, 0}, {"viz_node", 2, 1}}};
 
 const Role& role_of(const std::string& program) {
   for (const Role& role : kRoles) {

@@ -31,8 +31,7 @@ struct PlannedNode {
 };
 
 struct RunPlan {
-  std::vector<PlannedNode>
-      nodes;  ///< in the order of their start: sim, devices, displays, recorders
+  std::vector<PlannedNode> nodes;  ///< in the order of their start: sim, devices, displays
   /// Wall time from the moment all nodes run until they are stopped; absent when sim_node ends by
   /// itself or never.
   std::optional<std::chrono::nanoseconds> wall_duration;

@@ -61,7 +61,7 @@ void add_run_verb(CommandLine& line) {
   verb.examples(
       "--duration is simulated time in a lockstep or asap session; in a realtime session\n"
       "it counts from the moment all nodes run.\n"
-      "Ctrl-C stops the devices first and the recorder last; a second one kills.\n"
+      "Ctrl-C stops the devices first, the scene last; a second one kills.\n"
       "Exit code: 0 all well, 1 failed at run time, 2 bad file or command line,\n"
       "128 + signal when a required node was killed.\n\n"
       "Examples:\n"

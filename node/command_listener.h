@@ -16,7 +16,7 @@ namespace cordis::node {
 /// it before raising the priority of any thread.
 class CommandListener {
  public:
-  /// @param kind  "sim_node", "device_node", "viz_node" or "record_node"
+  /// @param kind  "sim_node", "device_node" or "viz_node"
   CommandListener(dds::Participant& participant, const std::string& kind, Obey obey);
   /// Waits until the command being obeyed, if any, is done.
   ~CommandListener();

@@ -23,7 +23,7 @@ class StatusPublisher {
   /// the mean rate (from `ticks`) are filled in already.
   using Fill = std::function<void(msg::NodeStatus&)>;
 
-  /// @param kind  "sim_node", "device_node", "viz_node" or "record_node"
+  /// @param kind  "sim_node", "device_node" or "viz_node"
   StatusPublisher(dds::Participant& participant, const std::string& kind, std::uint64_t run,
                   Fill fill);
 

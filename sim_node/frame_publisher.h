@@ -1,4 +1,4 @@
-// sim_node/frame_publisher.h -- tells the display and the recorder, without ever holding the loop.
+// sim_node/frame_publisher.h -- tells the display, without ever holding the loop.
 #pragma once
 
 #include <atomic>

@@ -14,8 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kRoot = CORDIS_SOURCE_DIR;
-const std::vector<std::string> kFolders = {"node",     "sim_node",    "device_node",
-                                           "viz_node", "record_node", "cli"};
+const std::vector<std::string> kFolders = {"node", "sim_node", "device_node", "viz_node", "cli"};
 
 struct Include {
   std::string file;  // from the root
@@ -69,18 +68,13 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
     {"sim_node/plan/", {"sim_node/plan/", "sim_node/engine/"}},
     {"node/config/", {"node/config/"}},
     {"node/dds/", {"node/dds/", "idl/"}},
-    {"record_node/mcap/", {"record_node/mcap/"}},
-    {"viz_node/render/", {"viz_node/render/"}},
     {"node/", {"node/", "idl/"}},
     {"sim_node/", {"sim_node/", "node/", "idl/"}},
     {"device_node/", {"device_node/", "node/", "idl/"}},
     {"viz_node/", {"viz_node/", "node/", "idl/"}},
-    {"record_node/", {"record_node/", "node/", "idl/"}},
     {"cli/lab/",  // plays a session in one process
      {"cli/", "node/", "idl/", "sim_node/", "device_node/"}},
-    {"cli/",
-     {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/", "record_node/mcap/",
-      "viz_node/render/"}},
+    {"cli/", {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/"}},
 };
 
 TEST(Layering, EveryIncludePointsToItsOwnLevelOrDownwards) {

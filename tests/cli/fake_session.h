@@ -22,7 +22,7 @@ namespace cordis::test {
 /// Longer than anything here can take; only a test that fails waits for so long.
 inline constexpr std::chrono::seconds kPatience{30};
 
-/// A launch file with the nodes sim, key, view (not required) and tape, and how each behaves.
+/// A launch file with the nodes sim, key and view (not required), and how each behaves.
 class FakeSession {
  public:
   FakeSession() {
@@ -43,7 +43,7 @@ class FakeSession {
   }
   /// Every node says `pid N` once it listens to signals.
   void announce() {
-    for (const char* name : {"sim", "key", "view", "tape"}) node(name, "pid");
+    for (const char* name : {"sim", "key", "view"}) node(name, "pid");
   }
   void clock(const std::string& clock) { clock_ = clock; }
 
@@ -58,10 +58,10 @@ class FakeSession {
   }
 
   std::unique_ptr<ChildProcess> start_words(const std::vector<std::string>& words) {
-    std::ofstream(launch_file())
-        << "cordis: 1\nsession: fake\ndomain: " << own_domain() << "\nclock: " << clock_
-        << "\nnodes:\n  tape: {node: record_node}\n  view: {node: viz_node, required: false}\n"
-           "  key: {node: device_node}\n  sim: {node: sim_node}\n";
+    std::ofstream(launch_file()) << "cordis: 1\nsession: fake\ndomain: " << own_domain()
+                                 << "\nclock: " << clock_
+                                 << "\nnodes:\n  view: {node: viz_node, required: false}\n"
+                                    "  key: {node: device_node}\n  sim: {node: sim_node}\n";
     return std::make_unique<ChildProcess>(words, environment_);
   }
 
@@ -89,7 +89,7 @@ inline int end_of(ChildProcess& run) {
 
 /// Waits until all nodes of a session that announces them listen to signals.
 inline bool wait_for_all(ChildProcess& run) {
-  for (const char* line : {"sim    | pid", "key    | pid", "view   | pid", "tape   | pid"}) {
+  for (const char* line : {"sim    | pid", "key    | pid", "view   | pid"}) {
     if (!run.wait_for_output(line, kPatience)) return false;
   }
   return true;

@@ -14,11 +14,8 @@ config::Launch launch_of(config::Clock clock) {
   config::Launch launch;
   launch.file = "dir/l.yaml";
   launch.clock = clock;
-  const std::vector<std::pair<std::string, std::string>> nodes{{"memory", "record_node"},
-                                                               {"view", "viz_node"},
-                                                               {"left", "device_node"},
-                                                               {"right", "device_node"},
-                                                               {"sim", "sim_node"}};
+  const std::vector<std::pair<std::string, std::string>> nodes{
+      {"view", "viz_node"}, {"left", "device_node"}, {"right", "device_node"}, {"sim", "sim_node"}};
   for (const auto& [name, program] : nodes) {
     config::LaunchNode node;
     node.name = name;
@@ -35,24 +32,23 @@ Words names_of(const RunPlan& plan) {
   return names;
 }
 
-TEST(RunPlan, StartsSimDevicesDisplaysRecordersInThisOrder) {
+TEST(RunPlan, StartsSimDevicesDisplaysInThisOrder) {
   const RunPlan plan = plan_run(launch_of(config::Clock::kRealtime), {}, "/bin dir");
 
-  EXPECT_EQ(names_of(plan), (Words{"sim", "left", "right", "view", "memory"}));
+  EXPECT_EQ(names_of(plan), (Words{"sim", "left", "right", "view"}));
   EXPECT_EQ(plan.nodes[1].command.words,
             (Words{"/bin dir/device_node", "dir/l.yaml", "--name", "left"}));
   EXPECT_TRUE(plan.nodes[0].required);
   EXPECT_FALSE(plan.nodes[3].required);
 }
 
-TEST(RunPlan, StopsDevicesFirstThenDisplaysSimAndRecorders) {
+TEST(RunPlan, StopsDevicesFirstThenDisplaysThenSim) {
   const RunPlan plan = plan_run(launch_of(config::Clock::kRealtime), {}, "/bin");
 
   const auto stage = [&](std::size_t i) { return plan.nodes[i].command.stop_stage; };
   EXPECT_EQ(stage(1), stage(2));  // left, right
   EXPECT_LT(stage(1), stage(3));  // devices, view
   EXPECT_LT(stage(3), stage(0));  // view, sim
-  EXPECT_LT(stage(0), stage(4));  // sim, memory
 }
 
 TEST(RunPlan, GivesEveryNodeTheSameOverrides) {

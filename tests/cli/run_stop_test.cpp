@@ -4,7 +4,7 @@
 namespace cordis::test {
 namespace {
 
-TEST(RunStop, StopsDeviceThenDisplayThenSimThenRecorder) {
+TEST(RunStop, StopsDeviceThenDisplayThenSim) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     FakeSession session;
     session.announce();
@@ -18,11 +18,9 @@ TEST(RunStop, StopsDeviceThenDisplayThenSimThenRecorder) {
     const std::size_t key = output.find("key    | stopped");
     const std::size_t view = output.find("view   | stopped");
     const std::size_t sim = output.find("sim    | stopped");
-    const std::size_t tape = output.find("tape   | stopped");
     EXPECT_LT(key, view);
     EXPECT_LT(view, sim);
-    EXPECT_LT(sim, tape);
-    EXPECT_NE(tape, std::string::npos) << output;
+    EXPECT_NE(sim, std::string::npos) << output;
   }
 }
 
@@ -38,7 +36,7 @@ TEST(RunStop, KillsANodeThatDoesNotListenAndStopsTheRest) {
   EXPECT_EQ(end_of(*run), 128 + SIGKILL);
   EXPECT_NE(run->output().find("cordis | key: did not stop in time and is killed\n"),
             std::string::npos);
-  EXPECT_NE(run->output().find("tape   | stopped\n"), std::string::npos);
+  EXPECT_NE(run->output().find("sim    | stopped\n"), std::string::npos);
 }
 
 TEST(RunStop, KillsAllAtTheSecondSignal) {
@@ -55,7 +53,7 @@ TEST(RunStop, KillsAllAtTheSecondSignal) {
 
   EXPECT_EQ(end_of(*run), 128 + SIGKILL);
   EXPECT_NE(run->output().find("cordis | killing all nodes\n"), std::string::npos);
-  EXPECT_EQ(run->output().find("tape   | stopped\n"), std::string::npos);
+  EXPECT_EQ(run->output().find("sim    | stopped\n"), std::string::npos);
 }
 
 TEST(RunStop, TakesTheDoubleSignalOfTimeoutForOneWish) {
@@ -67,7 +65,7 @@ TEST(RunStop, TakesTheDoubleSignalOfTimeoutForOneWish) {
   for (int i = 0; i < 5; ++i) run->signal(SIGTERM);
 
   EXPECT_EQ(end_of(*run), 0);
-  EXPECT_NE(run->output().find("tape   | stopped\n"), std::string::npos);
+  EXPECT_NE(run->output().find("sim    | stopped\n"), std::string::npos);
 }
 
 TEST(RunStop, HearsSigintEvenWhenTheShellIgnoredIt) {
@@ -94,7 +92,7 @@ TEST(RunStop, LeavesNothingBehindWhenItIsKilled) {
 
   EXPECT_EQ(end_of(*run), 128 + SIGKILL);
   const std::vector<pid_t> pids = pids_in(run->output());
-  ASSERT_EQ(pids.size(), 4u);
+  ASSERT_EQ(pids.size(), 3u);
   for (const pid_t pid : pids) EXPECT_TRUE(is_gone(pid)) << pid;
 }
 
@@ -132,14 +130,14 @@ TEST(RunStop, LeavesNothingBehindWhenAProgramIsMissing) {
   FakeSession session;
   const auto copies = session.directory() / "bin";
   std::filesystem::create_directories(copies);
-  for (const char* program : {"cordis", "sim_node", "device_node", "viz_node"}) {
+  for (const char* program : {"cordis", "sim_node", "device_node"}) {
     std::filesystem::copy(std::filesystem::path(CORDIS_FAKE_SESSION) / program, copies / program);
   }
   session.check("sim", "child;pid;exit 0");
   const auto run = session.start_words({copies / "cordis", "run", session.launch_file()});
 
   EXPECT_EQ(end_of(*run), 1);
-  EXPECT_EQ(run->output(), "cordis run: cannot start " + (copies / "record_node").string() +
+  EXPECT_EQ(run->output(), "cordis run: cannot start " + (copies / "viz_node").string() +
                                ": No such file or directory\n");
 }
 

@@ -118,7 +118,7 @@ TEST(Run, EndsWellWhenARequiredNodeEndsWell) {
 
   EXPECT_EQ(end_of(*run), 0);
   EXPECT_TRUE(contains(run->output(), "cordis | sim: has ended; stopping the others\n"));
-  EXPECT_TRUE(contains(run->output(), "tape   | stopped\n"));
+  EXPECT_TRUE(contains(run->output(), "key    | stopped\n"));
 }
 
 TEST(Run, NamesTheSignalThatKilledARequiredNode) {
@@ -173,7 +173,7 @@ TEST(Run, ShowsThePageAndEndsWithATable) {
 
 TEST(Run, EndsByItselfOnceAllNodesHaveRunForTheDuration) {
   FakeSession session;
-  for (const char* name : {"sim", "key", "view", "tape"}) session.node(name, "run");
+  for (const char* name : {"sim", "key", "view"}) session.node(name, "run");
   const auto run = session.start({"--duration", "100ms"});
 
   EXPECT_EQ(end_of(*run), 0);

@@ -122,7 +122,7 @@ export class Hud {
   }
 
   private writeNodes(nodes: NodeState[]): void {
-    const order = ['sim_node', 'device_node', 'viz_node', 'record_node'];
+    const order = ['sim_node', 'device_node', 'viz_node'];
     const sorted = [...nodes].sort((a, b) => order.indexOf(a.kind) - order.indexOf(b.kind) || a.name.localeCompare(b.name));
     element('nodes').replaceChildren(...sorted.map(rowOf));
   }
