@@ -146,6 +146,11 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
   return text + needs_text(port.port->needs);
 }
 
+/// The clock for a scene that has more time than the wall: simulated hands wait for it.
+const char* slow_clock_of(const SceneCheck& check) {
+  return check.scene.ports.empty() ? "asap" : "lockstep";
+}
+
 std::string load_text(const SceneCheck& check) {
   std::string text =
       fmt::format("load        {:.4g} us a step{}, {:.3g} % of real time on this machine\n",
@@ -156,8 +161,8 @@ std::string load_text(const SceneCheck& check) {
   const double rate = check.real_time_rate();
   const bool stable = check.is_certified_at(rate);
   text += fmt::format(
-      "            TOO SLOW for real time: run it with clock asap, {:.3g} times slower, or ",
-      check.load());
+      "            TOO SLOW for real time: run it with clock {}, {:.3g} times slower, or ",
+      slow_clock_of(check), check.load());
   if (rate == 0.0) return text + "make it smaller: a step takes longer than a gesture\n";
   text += fmt::format("at {:.6g} steps per second{}\n", rate,
                       stable ? "" : ", which is unstable: make it smaller or softer");
@@ -173,7 +178,8 @@ nlohmann::json alternatives_json(const SceneCheck& check) {
   const double rate = check.real_time_rate();
   nlohmann::json real_time{{"rate_hz", rate}, {"stable", check.is_certified_at(rate)}};
   if (check.choice && rate > 0.0) real_time["tolerance"] = check.tolerance_at(rate);
-  return {{"asap", {{"times_slower", check.load()}}}, {"realtime", std::move(real_time)}};
+  return {{slow_clock_of(check), {{"times_slower", check.load()}}},
+          {"realtime", std::move(real_time)}};
 }
 
 nlohmann::json finite(double value) {

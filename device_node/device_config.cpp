@@ -230,6 +230,13 @@ LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode&
                          config::Problems& problems) {
   const config::Value mapping = config::device_mapping(launch, node, problems);
   problems.throw_if_any();
+  if (launch.clock == config::Clock::kAsap) {
+    problems.error(
+        node.place,
+        "'" + node.name +
+            "' has no place in a session with clock: asap, whose time is not that of a hand",
+        "clock: lockstep for simulated hands, clock: realtime for real ones");
+  }
   LoadedDevice device = read_device(mapping, node.name, problems);
   check_stand_in(device.config, node, launch.clock, problems);
   problems.throw_if_any();

@@ -54,7 +54,9 @@ void Player::exchange(Order& order) noexcept {
 }
 
 bool Player::advance() noexcept {
-  if (paused_) hold();
+  if (paused_ && !devices_wait_) {
+    for (DeviceExchange& device : simulation().devices()) device.let_go();
+  }
   if (!moves()) return false;
   auto steps = static_cast<std::uint64_t>(simulation().steps_left_in_tick());
   if (paused_) {
@@ -62,11 +64,6 @@ bool Player::advance() noexcept {
     steps_left_ -= steps;
   }
   return simulation().advance(static_cast<int>(steps), stage_->frames.events());
-}
-
-void Player::hold() noexcept {
-  if (devices_wait_) return;
-  for (DeviceExchange& device : simulation().devices()) device.let_go();
 }
 
 double Player::played_s() const noexcept {

@@ -33,9 +33,6 @@ class Player {
   /// scene stands still. @return whether a tick is complete, and its answers are due.
   bool advance() noexcept;
 
-  /// A turn without steps: the devices are let go of.
-  void hold() noexcept;
-
   Stage& stage() noexcept { return *stage_; }
   const Simulation& simulation() const noexcept { return stage_->simulation; }
   Simulation& simulation() noexcept { return stage_->simulation; }

@@ -153,26 +153,10 @@ void Session::run_lockstep() {
   }
 }
 
+/// Without devices: a scene whose time is not that of a hand has no force for it.
 void Session::run_asap() {
   while (!finished()) {
-    if (!obey_or_rest()) {
-      receive();
-      player_.hold();
-      answer_all();
-      continue;
-    }
-    receive();
-    std::array<bool, kMaxAxes>
-        fresh{};  // whether a device waits for an answer; more devices than this are answered late
-    std::size_t index = 0;
-    for (const DeviceExchange& device : player_.simulation().devices()) {
-      if (index < fresh.size()) fresh[index++] = device.has_new_sample();
-    }
-    advance();
-    index = 0;
-    for (DeviceExchange& device : player_.simulation().devices()) {
-      if (index < fresh.size() && fresh[index++]) answer(device);
-    }
+    if (obey_or_rest()) advance();
   }
 }
 
@@ -296,7 +280,8 @@ void Session::note_state() {
   std::uint64_t dropped = frames_.frames_left_out();
   Simulation& simulation = player_.simulation();
   std::uint64_t braked = 0;
-  bool heard = simulation.devices().empty();
+  const config::Clock clock = start_.launch.clock;
+  bool heard = simulation.devices().empty() || clock == config::Clock::kAsap;
   for (const DeviceExchange& device : simulation.devices()) {
     dropped += device.refused_count() + device.missed_count();
     heard = heard || !device.is_lost();
@@ -305,7 +290,7 @@ void Session::note_state() {
   dropped_.store(dropped, std::memory_order_relaxed);
   braked_ticks_.store(braked, std::memory_order_relaxed);
   set_phase(player_.is_paused() ? "paused" : heard ? "running" : "waiting");
-  const bool realtime = start_.launch.clock == config::Clock::kRealtime;
+  const bool realtime = clock == config::Clock::kRealtime;
   target_rate_hz_.store(realtime ? simulation.scene().gesture_rate_hz : 0.0,
                         std::memory_order_relaxed);
 

@@ -13,7 +13,7 @@ namespace cordis::config {
 enum class Clock {
   kRealtime,  ///< sim_node keeps absolute deadlines
   kLockstep,  ///< each device sample is one tick; the result does not depend on timing
-  kAsap       ///< sim_node steps as fast as it can and takes the newest device sample
+  kAsap       ///< sim_node steps as fast as it can, without devices
 };
 
 /// One node of a launch file: a process.

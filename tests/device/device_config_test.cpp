@@ -59,6 +59,19 @@ TEST(DeviceConfig, ASceneInItsPlaceIsOneProblem) {
   }
 }
 
+TEST(DeviceConfig, IsRefusedWhereTimeIsNotThatOfAHand) {
+  EXPECT_NO_THROW(launched("keyboard.yaml", {"clock=lockstep"}));
+  try {
+    launched("keyboard.yaml", {"clock=asap"});
+    ADD_FAILURE() << "it is let in";
+  } catch (const config::ConfigError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("'keyboard' has no place in a session with clock: asap"), text.npos)
+        << text;
+    EXPECT_NE(text.find("clock: lockstep for simulated hands"), text.npos) << text;
+  }
+}
+
 TEST(DeviceConfig, MayPlayTheDeviceOfAnotherNode) {
   const DeviceConfig own = launched("keyboard.yaml", {}).config;
   EXPECT_EQ(own.strength, 10);
