@@ -7,6 +7,7 @@ import { out, program, runCases, Session, source, until } from '../viz/session.m
 
 // MATs of launch_configs/scenes/plucked_string.yaml
 const [PLUCKED, MIDDLE, KEY] = [13, 20, 40];
+const BESIDE = 9; // a mass so far from a place does not cover it [pixels]
 
 /** Height of a MAT in the newest frame [m]. */
 const height = async (page, mat) => (await page.evaluate((index) => window.viz.position(index), mat))[1];
@@ -27,9 +28,8 @@ const cases = {
     const pulled = await until('the key is 10 mm down, and the string 4 mm', async () => {
       const down = (await height(page, KEY)) < -0.11 && (await height(page, PLUCKED)) < -0.004;
       const seen = down && (await look(page, PLUCKED, [before.at]));
-      return seen && seen.at.y > before.at.y + 5 && seen;
+      return seen && seen.at.y > before.at.y + BESIDE && seen;
     });
-    assert.ok(pulled.at.y > before.at.y + 5, `pixels: from ${before.at.y} down to ${pulled.at.y}`);
     assert.ok(!isDark(pulled.colour), `a mass is drawn at its new place: ${pulled.colour}`);
     assert.ok(isDark(pulled.others[0]), `and no longer at the old one: ${pulled.others[0]}`);
     await page.screenshot({ path: join(out, 'whole_pulled.png') });
@@ -37,7 +37,7 @@ const cases = {
 
   'let go, the string swings to both sides while the key rests': async ({ page }) => {
     await until('the key is up again', async () => (await height(page, KEY)) > -0.102);
-    for (const [side, there] of [['above', (y) => y > 0.003], ['below', (y) => y < -0.003], ['above', (y) => y > 0.003]]) {
+    for (const [side, there] of [['above', (y) => y > 0.001], ['below', (y) => y < -0.003], ['above', (y) => y > 0.001]]) {
       await until(`the middle is ${side} its rest`, async () => there(await height(page, MIDDLE)));
     }
     assert.ok((await height(page, KEY)) > -0.105, 'the key does not follow');
