@@ -154,6 +154,32 @@ TEST(EnergyMonitor, BrakesAgainstTheMotionAndNeverBeyondItsCap) {
   EXPECT_EQ(monitor.brake_n(1), 0.0);
 }
 
+TEST(EnergyMonitor, TakesBackWhatTheLoopHasMadeAndThenLeavesTheHandFree) {
+  ForceGuardSettings settings = guarded(true);
+  settings.passivity.travel_m = 1e-4;  // nearly nothing is allowed for the ramp
+  ForceGuard guard(settings);
+  AxisValues wanted{};
+  AxisValues position{};
+  double taken = 0.0;  // from the hand, less what it was given [J]
+  const auto move_on = [&] {
+    const double held = guard.accept(wanted) ? guard.tick(0.0, position)[0] : 0.0;
+    position[0] += 1e-4;
+    taken -= held * 1e-4;
+  };
+  wanted[0] = 10.0;
+  for (int n = 0; n < 10; ++n) move_on();  // 10 mJ
+  ASSERT_LT(taken, -0.005);
+
+  wanted[0] = 0.0;  // as from a scene that is paused
+  for (int n = 0; n < 20; ++n) move_on();
+  EXPECT_TRUE(guard.energy().braking());
+  for (int n = 0; n < 80; ++n) move_on();
+
+  EXPECT_FALSE(guard.energy().braking());
+  EXPECT_EQ(guard.tick(0.0, position)[0], 0.0);
+  EXPECT_NEAR(taken, 0.0, 0.0003) << "what the largest braking takes in a period";
+}
+
 TEST(EnergyMonitor, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
   ForceGuardSettings settings = guarded(true);
   settings.ramp_s = 0.2;
