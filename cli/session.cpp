@@ -98,12 +98,25 @@ class Session : public Watcher {
     output_.say("page of " + status.node() + ": " + shown);
   }
 
+  /// Whether nothing more is to be waited for: a device that the scene does not play stays unused,
+  /// and a scene without any other waits for nobody of this launch.
   bool all_run() const {
+    bool sim_waits = false;
+    bool device_is_played = false;
     for (std::size_t i = 0; i < present_.size(); ++i) {
+      if (!present_[i]) continue;
       const msg::NodeStatus* status = board_.find(plan_.nodes[i].name);
-      if (present_[i] && (status == nullptr || status->phase() != "running")) return false;
+      if (status == nullptr) return false;
+      const std::string& phase = status->phase();
+      if (phase == "unused") continue;
+      if (phase == "waiting" && status->kind() == "sim_node") {
+        sim_waits = true;
+        continue;
+      }
+      if (phase != "running" && phase != "standby") return false;
+      device_is_played = device_is_played || status->kind() == "device_node";
     }
-    return true;
+    return !(sim_waits && device_is_played);
   }
 
   bool is_over(std::chrono::nanoseconds duration) {

@@ -57,6 +57,7 @@ int Device::live() {
   describe();
   while (!node::stop_requested()) {
     if (!part_.wanted) {
+      note_unused();
       scenes_.wait(kLookAround);
       hear_scene();
       continue;
@@ -103,16 +104,22 @@ void Device::end(Phase phase) {
   meter_.set_phase(phase);
 }
 
+/// Tells once that the scene, if there is one, does not play the device.
+void Device::note_unused() {
+  const bool heard = scene_.run() != 0;
+  if (!heard || meter_.phase() == Phase::kUnused) return;
+  meter_.set_phase(Phase::kUnused);
+  spdlog::info("scene '{}' does not play '{}'; waiting for one that does", scene_.name(),
+               config_.name);
+  status_.publish_now();
+}
+
 /// Takes what is said about scenes; true when the part of this device is no longer the same.
 bool Device::hear_scene() {
   if (!scenes_.take_newest(scene_)) return false;
   const ScenePart part = part_of(scene_, config_, *driver_);
   const bool changed =
       part.wanted != part_.wanted || part.role != part_.role || part.impossible != part_.impossible;
-  if (changed && !part.wanted) {
-    spdlog::info("scene '{}' does not play '{}'; waiting for one that does", scene_.name(),
-                 config_.name);
-  }
   if (changed && part.wanted && part.impossible.empty()) {
     spdlog::info("role {} in scene '{}'", name_of(part.role), scene_.name());
   }

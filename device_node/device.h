@@ -33,6 +33,7 @@ class Device {
 
  private:
   void describe();
+  void note_unused();
   bool hear_scene();
   bool look_around();
   void play();

@@ -15,6 +15,8 @@ PhaseWords words_of(Phase phase) noexcept {
   switch (phase) {
     case Phase::kWaiting:
       return {"waiting", "waits for a scene that plays this device; motors off"};
+    case Phase::kUnused:
+      return {"unused", "the scene does not play this device; motors off"};
     case Phase::kRunning:
       return {"running", ""};
     case Phase::kStandby:

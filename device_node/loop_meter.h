@@ -11,7 +11,8 @@ namespace cordis::device {
 
 /// How a device stands with the scene.
 enum class Phase : std::uint8_t {
-  kWaiting,  ///< no scene names it yet, or no answer has come yet; motors off
+  kWaiting,  ///< no scene is there yet, or no answer has come yet; motors off
+  kUnused,   ///< the scene does not name the device; motors off
   kRunning,  ///< answers come in time
   kStandby,  ///< the scene answers another node that plays the same device; motors off
   kLost,     ///< answers no longer come, or the driver has no device; motors at zero

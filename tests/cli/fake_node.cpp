@@ -8,6 +8,7 @@
 //   a line `pid N` deaf          ignores SIGINT and SIGTERM  flood        a line on stdout, again
 //   and again, without end exit N        ends                        die N        is killed by
 //   signal N run TEXT      publishes node/status: phase running, text TEXT, some figures
+//   phase PHASE   the same in another phase
 // At the end it waits for SIGINT or SIGTERM, says `stopped`, and ends with exit code 0.
 #include <csignal>
 #include <cstdlib>
@@ -52,11 +53,12 @@ Self read_words(int argc, char** argv) {
 /// Says what a node says of itself, as long as it lives.
 class FakeStatus {
  public:
-  FakeStatus(const Self& self, const std::string& text) : participant_(membership(self)) {
+  FakeStatus(const Self& self, const std::string& phase, const std::string& text)
+      : participant_(membership(self)) {
     const auto run = static_cast<std::uint64_t>(node::monotonic_nsec());
     publisher_ = std::make_unique<node::StatusPublisher>(participant_, self.kind, run,
-                                                         [text](msg::NodeStatus& status) {
-                                                           status.phase("running");
+                                                         [phase, text](msg::NodeStatus& status) {
+                                                           status.phase(phase);
                                                            status.text(text);
                                                            status.target_rate_hz(1000);
                                                            status.ticks(status.ticks() + 1);
@@ -117,7 +119,8 @@ void obey(const std::string& command, const Self& self, std::unique_ptr<FakeStat
   if (verb == "await") wait_for({SIGUSR1});
   if (verb == "exit") std::exit(std::stoi(rest));
   if (verb == "die") raise(std::stoi(rest));
-  if (verb == "run") status = std::make_unique<FakeStatus>(self, rest);
+  if (verb == "run") status = std::make_unique<FakeStatus>(self, "running", rest);
+  if (verb == "phase") status = std::make_unique<FakeStatus>(self, rest, "");
 }
 
 }  // namespace

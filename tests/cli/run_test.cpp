@@ -171,6 +171,17 @@ TEST(Run, ShowsThePageAndEndsWithATable) {
   EXPECT_TRUE(contains(run->output(), "\nkey   no status was received\n"));
 }
 
+TEST(Run, CountsTheDurationAtOnceWhereTheSceneWaitsForNobody) {
+  FakeSession session;
+  session.node("sim", "phase waiting");
+  session.node("key", "phase unused");
+  session.node("view", "run");
+  const auto run = session.start({"--duration", "100ms"});
+
+  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_FALSE(contains(run->output(), "not all nodes run yet"));
+}
+
 TEST(Run, EndsByItselfOnceAllNodesHaveRunForTheDuration) {
   FakeSession session;
   for (const char* name : {"sim", "key", "view"}) session.node(name, "run");

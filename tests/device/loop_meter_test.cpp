@@ -28,6 +28,8 @@ TEST(LoopMeter, TellsWhatWasCounted) {
 TEST(LoopMeter, TellsItsPhase) {
   LoopMeter meter;
   EXPECT_EQ(status_of(meter).phase(), "waiting");
+  meter.set_phase(Phase::kUnused);
+  EXPECT_EQ(status_of(meter).phase(), "unused");
   meter.set_phase(Phase::kRunning);
   EXPECT_EQ(status_of(meter).phase(), "running");
   EXPECT_EQ(status_of(meter).text(), "");
