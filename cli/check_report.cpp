@@ -110,10 +110,13 @@ std::string contact_text(const SceneCheck& check) {
 
 std::string needs_text(const scene::PortNeeds& needs) {
   std::string text;
-  if (needs.travel > 0.0) text = fmt::format("{:.4g} m of travel", needs.travel);
-  if (needs.force > 0.0) {
-    text += fmt::format("{}{:.4g} N", text.empty() ? "" : " and ", needs.force);
-  }
+  const auto add = [&text](double needed, const char* what) {
+    if (needed > 0.0) text += fmt::format("{}{:.4g} {}", text.empty() ? "" : " and ", needed, what);
+  };
+  add(needs.travel, "m of travel");
+  add(needs.up, "m above its rest");
+  add(needs.down, "m below its rest");
+  add(needs.force, "N");
   if (text.empty()) return {};
   return "            needs a device of " + text + " along each of its axes\n";
 }
@@ -229,6 +232,8 @@ nlohmann::json ports_json(const SceneCheck& check) {
     }
     const scene::PortNeeds& needs = port.port->needs;
     if (needs.travel > 0.0) json["needs"]["travel_m"] = needs.travel;
+    if (needs.up > 0.0) json["needs"]["up_m"] = needs.up;
+    if (needs.down > 0.0) json["needs"]["down_m"] = needs.down;
     if (needs.force > 0.0) json["needs"]["force_n"] = needs.force;
     ports.push_back(std::move(json));
   }

@@ -86,9 +86,10 @@ std::string trouble(const PortDemand& demand, const plan::PortLoad& load, const 
 std::vector<std::string> lacks_of(const PortDemand& demand, const config::DeviceLimits& limits) {
   constexpr double kRounding = 1e-9;
   std::vector<std::string> lacks;
-  const auto compare = [&](double needed, const auto& of_axes, const char* what, const char* unit) {
+  const auto compare = [&](double needed, const auto& known, const auto& of_axes, const char* what,
+                           const char* unit) {
     for (const std::uint32_t axis : demand.axes) {
-      if (axis >= of_axes.size() || of_axes[axis] <= 0.0) continue;  // unknown
+      if (axis >= of_axes.size() || known[axis] <= 0.0) continue;
       if (of_axes[axis] >= needed * (1.0 - kRounding)) continue;
       lacks.push_back("port '" + demand.port + "' needs a " + what + " of " + number_text(needed) +
                       unit + ", and axis " + std::to_string(axis) + " of the device '" +
@@ -96,8 +97,19 @@ std::vector<std::string> lacks_of(const PortDemand& demand, const config::Device
       return;  // one sentence about all axes
     }
   };
-  compare(demand.needs.travel, limits.coordinate_travel_m, "travel", " m");
-  compare(demand.needs.force, limits.coordinate_force_n, "force", " N");
+  const auto& highest = limits.coordinate_highest_m;
+  auto depth = limits.coordinate_lowest_m;
+  auto reach = highest;
+  for (std::size_t axis = 0; axis < depth.size(); ++axis) {
+    depth[axis] = -depth[axis];
+    reach[axis] = highest[axis] + depth[axis];
+  }
+  const auto& travel = limits.coordinate_travel_m;
+  compare(demand.needs.travel, travel, travel, "travel", " m");
+  compare(demand.needs.up, reach, highest, "travel", " m above its rest");
+  compare(demand.needs.down, reach, depth, "travel", " m below its rest");
+  const auto& force = limits.coordinate_force_n;
+  compare(demand.needs.force, force, force, "force", " N");
   return lacks;
 }
 

@@ -60,16 +60,20 @@ double leverage_of(const Map& map) {
 /// Of q = A x: the axes, each within its travel, carry a coordinate by the sum of |A| of its row;
 /// of f = A^T F: a force along it alone reaches the limit first at the axis of the largest |A|.
 void set_reach(DeviceLimits& limits, const Map& map) {
-  const double travel_m = limits.highest_m - limits.lowest_m;
+  const std::vector<double> one{1.0};
   for (std::size_t c = 0; c < limits.coordinate_travel_m.size(); ++c) {
     if (c >= static_cast<std::size_t>(limits.coordinate_count)) break;
-    double sum = map.empty() ? 1.0 : 0.0;
-    double largest = sum;
-    for (const double entry : map.empty() ? std::vector<double>{} : map[c]) {
-      sum += std::abs(entry);
+    double lowest = 0.0;
+    double highest = 0.0;
+    double largest = 0.0;
+    for (const double entry : map.empty() ? one : map[c]) {
+      lowest += entry * (entry > 0.0 ? limits.lowest_m : limits.highest_m);
+      highest += entry * (entry > 0.0 ? limits.highest_m : limits.lowest_m);
       largest = std::max(largest, std::abs(entry));
     }
-    limits.coordinate_travel_m[c] = sum * travel_m;
+    limits.coordinate_lowest_m[c] = lowest;
+    limits.coordinate_highest_m[c] = highest;
+    limits.coordinate_travel_m[c] = highest - lowest;
     limits.coordinate_force_n[c] = largest > 0.0 ? limits.force_limit_n / largest : 0.0;
   }
 }

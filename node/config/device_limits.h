@@ -23,6 +23,9 @@ struct DeviceLimits {
   double force_limit_n = 20.0;
   /// Of each coordinate, from stop to stop while the others are free; 0: unknown.
   std::array<double, 16> coordinate_travel_m{};
+  /// From its rest to its stops, likewise; both 0: unknown.
+  std::array<double, 16> coordinate_lowest_m{};
+  std::array<double, 16> coordinate_highest_m{};
   std::array<double, 16> coordinate_force_n{};  ///< largest along each alone; 0: unknown
   double moving_mass_kg = 0.05;
   double viscosity_n_s_per_m = 0.0;      ///< 0: unknown

@@ -19,11 +19,15 @@ std::string one_or_each(const std::vector<std::string>& items) {
 }
 
 std::string needs_text(const PortNeeds& needs) {
-  std::vector<std::string> keys;
-  if (needs.travel > 0.0) keys.push_back("travel_m: " + number_text(needs.travel));
-  if (needs.force > 0.0) keys.push_back("force_n: " + number_text(needs.force));
-  if (keys.empty()) return {};
-  return ", needs: {" + keys.front() + (keys.size() > 1 ? ", " + keys.back() : "") + "}";
+  std::string keys;
+  const auto add = [&keys](const char* key, double value) {
+    if (value > 0.0) keys += (keys.empty() ? "" : ", ") + std::string(key) + number_text(value);
+  };
+  add("travel_m: ", needs.travel);
+  add("up_m: ", needs.up);
+  add("down_m: ", needs.down);
+  add("force_n: ", needs.force);
+  return keys.empty() ? keys : ", needs: {" + keys + "}";
 }
 
 }  // namespace

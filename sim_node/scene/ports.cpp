@@ -104,6 +104,8 @@ PortNeeds read_needs(config::MappingReader& reader, config::Problems& problems) 
   if (!section.exists()) return needs;
   config::MappingReader wanted(section, "'needs' of " + reader.what(), problems);
   needs.travel = wanted.optional_number("travel_m", 0.0, Range::positive());
+  needs.up = wanted.optional_number("up_m", 0.0, Range::positive());
+  needs.down = wanted.optional_number("down_m", 0.0, Range::positive());
   needs.force = wanted.optional_number("force_n", 0.0, Range::positive());
   wanted.finish();
   return needs;

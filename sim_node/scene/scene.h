@@ -44,6 +44,8 @@ enum class Role : std::uint8_t {
 /// What a port needs along each of its axes: its `needs`. 0: nothing.
 struct PortNeeds {
   double travel = 0.0;  ///< from stop to stop [m]
+  double up = 0.0;      ///< from its rest to the upper stop [m]
+  double down = 0.0;    ///< and to the lower one [m]
   double force = 0.0;   ///< [N]
   config::Place place;  ///< where it is said
 };

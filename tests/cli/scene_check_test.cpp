@@ -151,14 +151,15 @@ TEST_F(Checked, WhatAPortNeedsOfItsDeviceIsSaid) {
   for (const std::string role : {"mass", "liaison"}) {
     const std::string port =
         "ports:\n  key: {device: keyboard, axes: [0], at_m: [0], role: " + role;
-    write("100", port + ", needs: {travel_m: 0.05, force_n: 5}}\n");
+    write("100", port + ", needs: {travel_m: 0.05, down_m: 0.03, force_n: 5}}\n");
     ASSERT_EQ(run({}), kSuccess) << error_;
-    EXPECT_NE(out_.find("needs a device of 0.05 m of travel and 5 N along each of its axes\n"),
+    EXPECT_NE(out_.find("needs a device of 0.05 m of travel and 0.03 m below its rest and 5 N "
+                        "along each of its axes\n"),
               std::string::npos)
         << out_;
     ASSERT_EQ(run({"--json", "-"}), kSuccess) << error_;
     EXPECT_EQ(nlohmann::json::parse(out_)["ports"][0]["needs"],
-              (nlohmann::json{{"travel_m", 0.05}, {"force_n", 5.0}}));
+              (nlohmann::json{{"travel_m", 0.05}, {"down_m", 0.03}, {"force_n", 5.0}}));
     write("100", port + "}\n");
     ASSERT_EQ(run({}), kSuccess) << error_;
     EXPECT_EQ(out_.find("needs a device"), std::string::npos) << out_;

@@ -52,6 +52,8 @@ void expect_alike(const scene::Scene& a, const scene::Scene& b) {
   ASSERT_EQ(a.ports.size(), b.ports.size());
   for (std::size_t i = 0; i < a.ports.size(); ++i) {
     EXPECT_EQ(a.ports[i].needs.travel, b.ports[i].needs.travel);
+    EXPECT_EQ(a.ports[i].needs.up, b.ports[i].needs.up);
+    EXPECT_EQ(a.ports[i].needs.down, b.ports[i].needs.down);
     EXPECT_EQ(a.ports[i].needs.force, b.ports[i].needs.force);
   }
 }

@@ -82,6 +82,26 @@ TEST(PortCheck, RefusesADeviceWithoutTheTravelOrTheForceThatAPortNeeds) {
   EXPECT_EQ(verdict(scene, config::DeviceLimits{}, 1).lacks, Sentences{}) << "nothing is known";
 }
 
+TEST(PortCheck, OnlyTheTravelOnTheNeededSideOfTheRestCounts) {
+  const scene::Scene presses = walls_of("1", ", needs: {down_m: 0.03}");
+  const scene::Scene pulls = walls_of("1", ", needs: {up_m: 0.03}");
+  const auto lacks = [&](const scene::Scene& scene, const std::string& keys) {
+    return verdict(scene, limits_of("travel_m: 0.04, " + keys), 1).lacks;
+  };
+
+  EXPECT_TRUE(lacks(presses, "axes: 1, rest: top").empty());
+  EXPECT_TRUE(lacks(pulls, "axes: 1, rest: bottom").empty());
+  EXPECT_EQ(lacks(presses, "axes: 1, rest: middle"),
+            std::vector<std::string>{"port 'key' needs a travel of 0.03 m below its rest, and axis "
+                                     "0 of the device 'keyboard' has 0.02 m below its rest"});
+  EXPECT_EQ(lacks(pulls, "axes: 1, rest: top"),
+            std::vector<std::string>{"port 'key' needs a travel of 0.03 m above its rest, and axis "
+                                     "0 of the device 'keyboard' has 0 m above its rest"});
+  EXPECT_TRUE(lacks(pulls, "axes: 1, rest: top, end_piece: {map: [[-1]]}").empty()) << "turned";
+  EXPECT_EQ(lacks(presses, "axes: 1, rest: top, end_piece: {map: [[-1]]}").size(), 1u);
+  EXPECT_EQ(verdict(presses, config::DeviceLimits{}, 1).lacks.size(), 0u) << "nothing is known";
+}
+
 TEST(PortCheck, ALeverTradesTravelForForce) {
   const scene::Scene scene = walls_of("1", ", needs: {travel_m: 0.05, force_n: 5}");
   const auto lacks = [&](const std::string& map) {
