@@ -1,19 +1,17 @@
-// viz_node/web/server_client.h -- what a page is sent, and when.
+// viz_node/web/server_client.h -- the connection to one page.
 #pragma once
 
-#include <array>
+#include <chrono>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
 
-#include <boost/asio/buffer.hpp>
 #include <spdlog/spdlog.h>
 
 #include "node/time.h"
-#include "viz_node/frame_encoder.h"
 #include "viz_node/page_text.h"
-#include "viz_node/web/client_credit.h"
-#include "viz_node/web/server_hub.h"
+#include "viz_node/web/server_feed.h"
 
 namespace cordis::viz {
 
@@ -28,7 +26,7 @@ class Client : public std::enable_shared_from_this<Client> {
       : stream_(std::move(stream)), seat_(std::move(seat)), hub_(hub) {}
   ~Client() {
     hub_.clients.erase(this);
-    if (joined_) spdlog::debug("a page left, {} frames passed it by", credit_.dropped());
+    if (joined_) spdlog::debug("a page left, {} frames passed it by", feed_.credit().dropped());
   }
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -51,79 +49,14 @@ class Client : public std::enable_shared_from_this<Client> {
   /// Sends the next thing that is due, unless a message is still on its way into the socket.
   void pump() {
     if (writing_) return;
-    if (!hello_sent_) {
-      hello_sent_ = true;
-      return send_text(hub_.hello);
-    }
-    if (send_scene() || send_status() || send_signals()) return;
-    send_frame();
+    if (const auto message = feed_.next()) send(*message);
   }
 
  private:
-  bool send_scene() {
-    if (topology_due_ != nullptr) {
-      kept_scene_ = std::exchange(topology_due_, nullptr);
-      send_binary({asio::buffer(kept_scene_->topology)});
-      return true;
-    }
-    auto scene = hub_.mirror.scene();
-    if (scene == nullptr || scene->scene == scene_) return false;
-    scene_ = scene->scene;
-    kept_scene_ = topology_due_ = std::move(scene);
-    send_text(kept_scene_->text);
-    return true;
-  }
-
-  bool send_status() {
-    if (hub_.status == nullptr || status_number_ == hub_.status_number) return false;
-    status_number_ = hub_.status_number;
-    kept_status_ = hub_.status;
-    send_text(*kept_status_);
-    return true;
-  }
-
-  bool send_signals() {
-    kept_signals_ = hub_.mirror.signals_after(signals_number_);
-    if (kept_signals_ == nullptr) return false;
-    signals_number_ = kept_signals_->number;
-    send_binary({asio::buffer(kept_signals_->bytes)});
-    return true;
-  }
-
-  void send_frame() {
-    kept_frame_ = hub_.mirror.frame();
-    if (kept_frame_ == nullptr || kept_frame_->scene != scene_) return;
-    if (!credit_.may_send(kept_frame_->sequence)) return;
-    const msg::SceneFrame& frame = kept_frame_->frame;
-    const bool played = frame.action_time_nsec() != 0;
-    credit_.sent(kept_frame_->sequence, played ? frame.action_time_nsec() : frame.time_nsec());
-    header_ = encode({.sequence = kept_frame_->sequence,
-                      .scene = kept_frame_->scene,
-                      .frame = frame.frame(),
-                      .step = frame.step(),
-                      .taken_nsec = frame.time_nsec(),
-                      .sent_nsec = node::monotonic_nsec(),
-                      .simulated_s = frame.simulated_s(),
-                      .mat_count = static_cast<std::uint32_t>(frame.position_m().size() / 3),
-                      .link_state_count = static_cast<std::uint32_t>(frame.link_state().size()),
-                      .dropped = credit_.dropped()});
-    send_binary({asio::buffer(header_), asio::buffer(frame.position_m()),
-                 asio::buffer(frame.link_state())});
-  }
-
-  void send_text(const std::string& text) {
-    stream_.text(true);
-    send({asio::buffer(text)});
-  }
-
-  void send_binary(const std::array<asio::const_buffer, 3>& parts) {
-    stream_.binary(true);
-    send(parts);
-  }
-
-  void send(const std::array<asio::const_buffer, 3>& parts) {
+  void send(const Feed::Message& message) {
     writing_ = true;
-    stream_.async_write(parts, [self = shared_from_this()](ErrorCode error, std::size_t) {
+    stream_.binary(!message.is_text);
+    stream_.async_write(message.parts, [self = shared_from_this()](ErrorCode error, std::size_t) {
       self->writing_ = false;
       if (error) return self->leave();
       self->pump();
@@ -146,7 +79,7 @@ class Client : public std::enable_shared_from_this<Client> {
       if (const auto command = read_page_command(text)) hub_.obey(*command);
       return;
     }
-    const auto taken_nsec = credit_.acknowledge(word->sequence);
+    const auto taken_nsec = feed_.credit().acknowledge(word->sequence);
     if (taken_nsec && word->drawn) {
       const std::lock_guard lock(hub_.latency_mutex);
       hub_.latency.record(node::monotonic_nsec() - *taken_nsec);
@@ -162,21 +95,10 @@ class Client : public std::enable_shared_from_this<Client> {
   websocket::stream<beast::tcp_stream> stream_;
   Seat seat_;
   Hub& hub_;
-  ClientCredit credit_;
+  Feed feed_{hub_};
   beast::flat_buffer incoming_;
   bool joined_ = false;
   bool writing_ = false;
-  bool hello_sent_ = false;
-  std::uint32_t scene_ = 0;
-  std::uint64_t status_number_ = 0;
-  std::uint64_t signals_number_ = 0;
-  std::shared_ptr<const ShownScene> topology_due_;
-  // What the message on its way is made of.
-  std::shared_ptr<const ShownScene> kept_scene_;
-  std::shared_ptr<const std::string> kept_status_;
-  std::shared_ptr<const ShownSignals> kept_signals_;
-  std::shared_ptr<const ShownFrame> kept_frame_;
-  std::array<std::uint8_t, kFrameHeaderBytes> header_{};
 };
 
 }  // namespace cordis::viz

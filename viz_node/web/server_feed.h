@@ -1,0 +1,107 @@
+// viz_node/web/server_feed.h -- what a page is sent, and when.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <boost/asio/buffer.hpp>
+
+#include "node/time.h"
+#include "viz_node/frame_encoder.h"
+#include "viz_node/web/client_credit.h"
+#include "viz_node/web/server_hub.h"
+
+namespace cordis::viz {
+
+/// What one page has not been sent yet, the most due first.
+class Feed {
+ public:
+  struct Message {
+    bool is_text = false;
+    std::array<asio::const_buffer, 3> parts;  ///< stay until next() is called again
+  };
+
+  explicit Feed(Hub& hub) : hub_(hub) {}
+
+  /// The next thing that is due, which counts as sent; nothing when the page has it all.
+  std::optional<Message> next() {
+    if (!std::exchange(hello_sent_, true)) return text(hub_.hello);
+    if (auto scene = next_of_scene()) return scene;
+    if (auto status = next_status()) return status;
+    if (auto signals = next_signals()) return signals;
+    return next_frame();
+  }
+
+  ClientCredit& credit() noexcept { return credit_; }
+
+ private:
+  static Message text(const std::string& text) { return {true, {asio::buffer(text)}}; }
+
+  std::optional<Message> next_of_scene() {
+    if (topology_due_ != nullptr) {
+      kept_scene_ = std::exchange(topology_due_, nullptr);
+      return Message{false, {asio::buffer(kept_scene_->topology)}};
+    }
+    auto scene = hub_.mirror.scene();
+    if (scene == nullptr || scene->scene == scene_) return {};
+    scene_ = scene->scene;
+    kept_scene_ = topology_due_ = std::move(scene);
+    return text(kept_scene_->text);
+  }
+
+  std::optional<Message> next_status() {
+    if (hub_.status == nullptr || status_number_ == hub_.status_number) return {};
+    status_number_ = hub_.status_number;
+    kept_status_ = hub_.status;
+    return text(*kept_status_);
+  }
+
+  std::optional<Message> next_signals() {
+    kept_signals_ = hub_.mirror.signals_after(signals_number_);
+    if (kept_signals_ == nullptr) return {};
+    signals_number_ = kept_signals_->number;
+    return Message{false, {asio::buffer(kept_signals_->bytes)}};
+  }
+
+  std::optional<Message> next_frame() {
+    kept_frame_ = hub_.mirror.frame();
+    if (kept_frame_ == nullptr || kept_frame_->scene != scene_) return {};
+    if (!credit_.may_send(kept_frame_->sequence)) return {};
+    const msg::SceneFrame& frame = kept_frame_->frame;
+    const bool played = frame.action_time_nsec() != 0;
+    credit_.sent(kept_frame_->sequence, played ? frame.action_time_nsec() : frame.time_nsec());
+    header_ = encode({.sequence = kept_frame_->sequence,
+                      .scene = kept_frame_->scene,
+                      .frame = frame.frame(),
+                      .step = frame.step(),
+                      .taken_nsec = frame.time_nsec(),
+                      .sent_nsec = node::monotonic_nsec(),
+                      .simulated_s = frame.simulated_s(),
+                      .mat_count = static_cast<std::uint32_t>(frame.position_m().size() / 3),
+                      .link_state_count = static_cast<std::uint32_t>(frame.link_state().size()),
+                      .dropped = credit_.dropped()});
+    return Message{false,
+                   {asio::buffer(header_), asio::buffer(frame.position_m()),
+                    asio::buffer(frame.link_state())}};
+  }
+
+  Hub& hub_;
+  ClientCredit credit_;
+  bool hello_sent_ = false;
+  std::uint32_t scene_ = 0;
+  std::uint64_t status_number_ = 0;
+  std::uint64_t signals_number_ = 0;
+  std::shared_ptr<const ShownScene> topology_due_;
+  // What the message on its way is made of.
+  std::shared_ptr<const ShownScene> kept_scene_;
+  std::shared_ptr<const std::string> kept_status_;
+  std::shared_ptr<const ShownSignals> kept_signals_;
+  std::shared_ptr<const ShownFrame> kept_frame_;
+  std::array<std::uint8_t, kFrameHeaderBytes> header_{};
+};
+
+}  // namespace cordis::viz
