@@ -68,7 +68,7 @@ void add_check_verb(CommandLine& line) {
   verb.action([words] {
     CheckOptions& asked = words->options;
     if (!words->band.empty()) asked.band_hz = parse_number("--band", words->band, 1e-3, 1e6);
-    asked.delay_periods = static_cast<int>(parse_number("--delay", words->delay, 0, 1000));
+    asked.delay_periods = parse_whole_number("--delay", words->delay, 0, 1000);
     asked.device_viscosity = parse_number("--device-viscosity", words->device_viscosity, 0.0, 1e6);
     return run(asked);
   });

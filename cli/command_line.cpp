@@ -129,7 +129,7 @@ CommandLine::CommandLine(const std::string& program, const std::string& summary,
   app.name(program);
   app.description(summary);
   app.set_help_flag("-h,--help", "Print this help");
-  app.set_version_flag("--version", program + " " + version);
+  app.set_version_flag("--version", program + " " + version, "Print the version");
   app.formatter(std::make_shared<HelpText>(program + " VERB [words]"));
   app.allow_extras();
 }

@@ -79,7 +79,7 @@ void add_lab_verb(CommandLine& line) {
     if (!words->duration.empty()) {
       asked.duration_s = std::chrono::duration<double>(parse_duration(words->duration)).count();
     }
-    asked.jobs = static_cast<int>(parse_number("--jobs", words->jobs, 1, 64));
+    asked.jobs = parse_whole_number("--jobs", words->jobs, 1, 64);
     return run(asked);
   });
 }

@@ -68,7 +68,12 @@ void each_field(File& file, Of& reference, Step step) {
 
 LabStore::LabStore(std::filesystem::path folder, std::uint64_t key, bool again)
     : folder_(std::move(folder)), key_(key) {
-  std::filesystem::create_directories(folder_);
+  std::error_code failure;
+  std::filesystem::create_directories(folder_, failure);
+  if (failure) {
+    throw std::runtime_error("cannot make the folder '" + folder_.string() +
+                             "': " + failure.message());
+  }
   if (!again) {
     read_runs();
     read_reference();

@@ -113,8 +113,10 @@ long read_integer(const Value& value, const std::string& what, long fallback, lo
     return fallback;
   }
   if (failure != std::errc{} || number < lowest || number > highest) {
-    problems.error(value.place(), what + " must be between " + std::to_string(lowest) + " and " +
-                                      std::to_string(highest) + ", got " + value.text());
+    const std::string range =
+        lowest == highest ? std::to_string(lowest)
+                          : "between " + std::to_string(lowest) + " and " + std::to_string(highest);
+    problems.error(value.place(), what + " must be " + range + ", got " + value.text());
     return fallback;
   }
   return number;

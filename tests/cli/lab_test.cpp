@@ -107,6 +107,17 @@ TEST_F(Lab, WritesATableAndAScriptForItsChart) {
   EXPECT_NE(text_of(report).find("blew up"), std::string::npos);
 }
 
+TEST_F(Lab, AFolderThatCannotBeMadeIsNamed) {
+  LabOptions options = options_;
+  options.folder = options.file + "/lab";
+  try {
+    run_lab(options, [](const std::string&) {});
+    FAIL() << "a file was taken for a folder";
+  } catch (const std::runtime_error& refusal) {
+    EXPECT_EQ(refusal.what(), "cannot make the folder '" + options.folder + "': Not a directory");
+  }
+}
+
 TEST_F(Lab, ASceneThatOnlyADeviceMovesIsRefusedWithWhatItNeeds) {
   std::ofstream(options_.file)
       << "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\n"

@@ -208,6 +208,10 @@ TEST_F(Checked, WrongWordsAndFilesAreBadInput) {
   write("100");
   EXPECT_EQ(run({"--band", "loud"}), kBadInput);
   EXPECT_NE(error_.find("--band must be a number"), std::string::npos) << error_;
+  EXPECT_EQ(run({"--delay", "1.5"}), kBadInput);
+  EXPECT_NE(error_.find("--delay must be a whole number from 0 to 1000, got '1.5'"),
+            std::string::npos)
+      << error_;
   write("100", "tuning: 440\n");
   EXPECT_EQ(run({}), kBadInput);
   EXPECT_NE(error_.find(":12:1: error"), std::string::npos) << error_;

@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLaunch{"nodes: {sim: {node: sim_node}}\n",
                   "l.yaml:1:1: error: missing key 'cordis' in launch file", ""},
         BadLaunch{"cordis: 2\nnodes: {sim: {node: sim_node}}\n",
-                  "l.yaml:1:9: error: 'cordis' in launch file must be between 1 and 1, got 2", ""},
+                  "l.yaml:1:9: error: 'cordis' in launch file must be 1, got 2", ""},
         BadLaunch{"cordis: 1\n", "l.yaml:1:1: error: missing key 'nodes' in launch file", ""},
         BadLaunch{"cordis: 1\nnodes: {}\n",
                   "l.yaml:2:8: error: a launch file needs at least one node", ""},
