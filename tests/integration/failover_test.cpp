@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -31,6 +32,22 @@ constexpr double kJitter = 1.2;         // times of rows are taken some us after
 
 const char* const kLimits =
     "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nforce_limit_n: 5\nslew_limit_n_per_s: 300\n";
+
+/// What the driver of a device with one axis was given.
+struct Given {
+  std::int64_t time_nsec = 0;
+  double force_n = 0.0;
+};
+
+std::vector<Given> read_trace(const std::string& path) {
+  std::vector<Given> rows;
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line))
+    rows.push_back({std::atoll(line.c_str()), std::atof(line.substr(line.find(',') + 1).c_str())});
+  return rows;
+}
 
 /// One key of which two nodes are the device: the hardware, and a script of lower strength.
 class Failover : public ::testing::Test {
@@ -91,27 +108,20 @@ class Failover : public ::testing::Test {
   void end_and_check(const std::string& node, double force, int unplugged = 0) {
     session_.node(node).signal(SIGTERM);
     ASSERT_EQ(session_.node(node).wait(kPatience), 0);
-    std::ifstream file(trace(node));
-    std::string line;
-    std::getline(file, line);
-    std::int64_t time_before = 0;  // [ns]
-    double before = 0.0;
+    Given before;
     double largest = 0.0;
-    while (std::getline(file, line)) {
-      const std::int64_t time = std::atoll(line.c_str());
-      const double now = std::atof(line.substr(line.find(',') + 1).c_str());
-      const double most = kJitter * kSlew * periods_of(time - time_before);
-      if (now == 0.0 && before > most && unplugged > 0) {
+    for (const Given& now : read_trace(trace(node))) {
+      const double most = kJitter * kSlew * periods_of(now.time_nsec - before.time_nsec);
+      if (now.force_n == 0.0 && before.force_n > most && unplugged > 0) {
         --unplugged;
       } else {
-        EXPECT_LE(std::abs(now - before), most) << node;
+        EXPECT_LE(std::abs(now.force_n - before.force_n), most) << node;
       }
-      time_before = time;
-      largest = std::max(largest, now);
+      largest = std::max(largest, now.force_n);
       before = now;
     }
     EXPECT_GT(largest, 0.1 * force) << node;
-    EXPECT_EQ(before, 0.0) << node;
+    EXPECT_EQ(before.force_n, 0.0) << node;
     EXPECT_EQ(unplugged, 0) << node;
   }
 
@@ -196,13 +206,9 @@ TEST(LockstepWithMotors, ForcesFadeWhenTheDeviceIsAskedToStop) {
   device.signal(SIGTERM);
   ASSERT_EQ(device.wait(kPatience), 0);
 
-  double last = 0.0;  // force that its driver was given
-  std::ifstream file(trace);
-  std::string row;
-  std::getline(file, row);
-  while (std::getline(file, row)) {
-    const double given = std::atof(row.substr(row.find(',') + 1).c_str());
-    if (given != 0.0) last = given;
+  double last = 0.0;  // force before none
+  for (const Given& now : read_trace(trace)) {
+    if (now.force_n != 0.0) last = now.force_n;
   }
   EXPECT_GT(last, 0.0);
   EXPECT_LE(last, kSlew * (1.0 + 1e-9));

@@ -7,11 +7,9 @@
 #include <map>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <pthread.h>
 #include <sched.h>
 
 #include "idl/gesture.h"
@@ -21,19 +19,25 @@
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
+#include "tests/support/realtime_permission.h"
 
 namespace cordis::test {
 namespace {
 
 class ForceLoop : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(ForceLoop, AKeyOfRoleMassFeelsTheSpringItPresses) {
-  LiveSession session(GetParam(), kSimAndKey);
+/// A key that is held 10 mm down against a wall.
+void start_held_key(LiveSession& session) {
   session.add_file("scene.yaml", wall_scene(200.0));
   session.add_file("key.yaml", steady_key(-0.01, 0.0));
-  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
   session.start("sim_node", "sim");
   session.start("device_node", "keyboard");
+}
+
+TEST_P(ForceLoop, AKeyOfRoleMassFeelsTheSpringItPresses) {
+  LiveSession session(GetParam(), kSimAndKey);
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  start_held_key(session);
 
   msg::GestureForces force;
   ASSERT_TRUE(eventually([&] {
@@ -47,11 +51,8 @@ TEST_P(ForceLoop, AKeyOfRoleMassFeelsTheSpringItPresses) {
 
 TEST_P(ForceLoop, NodesClaimTheRateThatTheyKeepAndNoneInLockstep) {
   LiveSession session(GetParam(), kSimAndKey);
-  session.add_file("scene.yaml", wall_scene(200.0));
-  session.add_file("key.yaml", steady_key(-0.01, 0.0));
   StatusWatch status(session.participant());
-  session.start("sim_node", "sim");
-  session.start("device_node", "keyboard");
+  start_held_key(session);
 
   const double kept = GetParam() == std::string("realtime") ? 1000.0 : 0.0;
   for (const char* node : {"sim", "keyboard"}) {
@@ -75,16 +76,6 @@ std::map<int, int> realtime_threads_of(pid_t process) {
   return counts;
 }
 
-bool may_have_realtime_priority() {
-  bool may = false;
-  std::thread([&may] {
-    sched_param parameters{};
-    parameters.sched_priority = 1;
-    may = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
-  }).join();
-  return may;
-}
-
 TEST_P(ForceLoop, ThreadsOfLoopAndDdsHaveRealtimePriorityAndNoneInLockstep) {
   constexpr int kLoop = 80;
   constexpr int kDds = 40;
@@ -92,11 +83,8 @@ TEST_P(ForceLoop, ThreadsOfLoopAndDdsHaveRealtimePriorityAndNoneInLockstep) {
   if (realtime && !may_have_realtime_priority())
     GTEST_SKIP() << "realtime priority is not permitted here";
   LiveSession session(GetParam(), kSimAndKey);
-  session.add_file("scene.yaml", wall_scene(200.0));
-  session.add_file("key.yaml", steady_key(-0.01, 0.0));
   StatusWatch status(session.participant());
-  session.start("sim_node", "sim");
-  session.start("device_node", "keyboard");
+  start_held_key(session);
 
   for (const char* node : {"sim", "keyboard"}) {
     ASSERT_TRUE(status.wait_for_phase(node, "running")) << node;

@@ -7,6 +7,8 @@
 #include <pthread.h>
 #include <sched.h>
 
+#include "tests/support/realtime_permission.h"
+
 namespace cordis::node {
 namespace {
 
@@ -19,19 +21,9 @@ int policy_of_a_new_thread() {
   return policy;
 }
 
-/// Whether this process may have realtime priority at all.
-bool is_permitted() {
-  bool permitted = false;
-  std::thread([&permitted] {
-    sched_param parameters{};
-    parameters.sched_priority = 1;
-    permitted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
-  }).join();
-  return permitted;
-}
-
 TEST(InheritedPriority, IsThatOfThreadsThatAreMadeMeanwhile) {
-  if (!is_permitted()) GTEST_SKIP() << "realtime priority is not permitted here";
+  if (!test::may_have_realtime_priority())
+    GTEST_SKIP() << "realtime priority is not permitted here";
   const int before = policy_of_a_new_thread();
   {
     const InheritedPriority priority(1);
