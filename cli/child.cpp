@@ -37,9 +37,9 @@ struct Pipe {
 
 /// What the child does between fork and exec, where nothing but plain system calls is safe. Never
 /// returns.
-[[noreturn]] void become(char* const* arguments, pid_t launcher, int input, int out, int error,
-                         int report) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+[[noreturn]] void become(char* const* arguments, pid_t launcher, int orphan_signal, int input,
+                         int out, int error, int report) {
+  prctl(PR_SET_PDEATHSIG, orphan_signal);
   if (getppid() != launcher) _exit(127);  // it died before it could be watched
   setpgid(0, 0);
   for (int number = 1; number < NSIG; ++number) std::signal(number, SIG_DFL);
@@ -59,11 +59,12 @@ struct Pipe {
 }  // namespace
 
 std::string Ending::text() const {
+  if (!reason.empty()) return reason;
   if (signal == 0) return "exit code " + std::to_string(code);
   return "killed by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
 }
 
-Child::Child(const std::vector<std::string>& words) {
+Child::Child(const std::vector<std::string>& words, int orphan_signal) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -75,7 +76,8 @@ Child::Child(const std::vector<std::string>& words) {
   const pid_t launcher = getpid();
   id_ = fork();
   if (id_ == 0) {
-    become(arguments.data(), launcher, input, out.write_end, error.write_end, report.write_end);
+    become(arguments.data(), launcher, orphan_signal, input, out.write_end, error.write_end,
+           report.write_end);
   }
   int reason = id_ < 0 ? errno : 0;
   close(input);
@@ -123,11 +125,11 @@ std::optional<Ending> Child::ending() noexcept {
   kill();  // before it is reaped: as long as it is not, nobody else can have its number
   waitpid(id_, nullptr, 0);
   if (info.si_code == CLD_EXITED) {
-    ending_ = Ending{info.si_status, 0};
+    ending_ = Ending{.code = info.si_status};
   } else if (asked_ && info.si_status == SIGTERM) {
     ending_ = Ending{};
   } else {
-    ending_ = Ending{0, info.si_status};
+    ending_ = Ending{.signal = info.si_status};
   }
   return ending_;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,11 +13,12 @@ namespace cordis::cli {
 
 /// How a process ended.
 struct Ending {
-  int code = 0;    ///< exit code, when `signal` is 0
-  int signal = 0;  ///< the signal that killed it
+  int code = 0;          ///< exit code, when `signal` is 0
+  int signal = 0;        ///< the signal that killed it
+  std::string reason{};  ///< why it could not be started; empty when it was
 
   int exit_code() const noexcept { return signal != 0 ? 128 + signal : code; }
-  /// "exit code 1", "killed by signal 9 (Killed)"
+  /// "exit code 1", "killed by signal 9 (Killed)", "cannot start sim_node: Permission denied"
   std::string text() const;
 };
 
@@ -25,13 +27,15 @@ enum class Stream { kOut, kError };
 
 /// A process in a process group of its own, so that a Ctrl-C at the terminal reaches the launcher
 /// alone, and the processes it starts itself can be ended with it. Every signal has its default
-/// meaning in it, its standard input is empty, and it is killed when the launcher dies in whatever
-/// way.
+/// meaning in it, its standard input is empty, and it gets a signal when the launcher dies in
+/// whatever way.
 class Child {
  public:
   /// Starts `words[0]` with the rest as arguments.
+  /// @param orphan_signal  is sent to it when the launcher dies: SIGKILL, or SIGTERM for a process
+  ///                       that must let go of motors first and then ends by itself
   /// @throws std::runtime_error when the program cannot be started.
-  explicit Child(const std::vector<std::string>& words);
+  explicit Child(const std::vector<std::string>& words, int orphan_signal = SIGKILL);
 
   /// Kills the whole group if it still runs.
   ~Child();

@@ -2,6 +2,7 @@
 #include "cli/control_line.h"
 
 #include <algorithm>
+#include <map>
 
 #include <unistd.h>
 
@@ -14,8 +15,12 @@ using namespace std::chrono_literals;
 
 constexpr auto kRepeatAfter = 250ms;
 constexpr auto kLook = 5ms;
-// Whoever is there says so within this time, twice over.
+// Whoever is there says so within this time, twice over. A longer timeout is for a machine on which
+// all takes longer.
 constexpr auto kLongestDiscovery = 2s;
+constexpr double kShareOfTimeout = 0.4;
+// A node that has been silent for longer does not live: nodes speak twice a second.
+constexpr auto kLately = 5s;
 constexpr auto kUsualDiscovery = 600ms;  // after which nobody is missed when all are addressed
 
 }  // namespace
@@ -24,7 +29,7 @@ ControlLine::ControlLine(int domain, const std::string& session)
     : participant_({domain, session, "cordis ctl", false}),
       commands_(participant_, dds::Topic::kCommand),
       replies_(participant_, dds::Topic::kReply),
-      statuses_(participant_, dds::Topic::kStatus) {}
+      roster_(participant_, kLately) {}
 
 std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const std::string& verb,
                                                 const std::string& argument,
@@ -36,14 +41,18 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const
   command.verb(verb);
   command.argument(argument);
 
+  const auto longest_discovery =
+      std::max<std::chrono::duration<double>>(kLongestDiscovery, kShareOfTimeout * at_most);
   std::map<std::string, msg::ControlReply> replies;
   const auto began = Clock::now();
   auto send_at = began;
   for (auto now = began; now < began + at_most; now = Clock::now()) {
-    listen();
+    roster_.look();
     const std::size_t addressed = addressed_count(target);
-    if (addressed == 0 && now > began + kLongestDiscovery) break;
-    if (addressed > replies.size() && now >= send_at && commands_.matched_count() > 0) {
+    if (addressed == 0 && now > began + longest_discovery) break;
+    // Before DDS has found a reader, a command would reach nobody.
+    const bool reaches = commands_.matched_count() > 0;
+    if (addressed > replies.size() && now >= send_at && reaches) {
       commands_.write(command);
       sent_ = true;
       send_at = now + kRepeatAfter;
@@ -64,21 +73,14 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const
 
 std::vector<std::string> ControlLine::present() const {
   std::vector<std::string> names;
-  for (const auto& [name, status] : nodes_) {
-    if (status.phase() != "stopped" && status.phase() != "failed") names.push_back(name);
-  }
+  for (const msg::NodeStatus& status : roster_.alive()) names.push_back(status.node());
   return names;
 }
 
-void ControlLine::listen() {
-  msg::NodeStatus status;
-  while (statuses_.take(status)) nodes_[status.node()] = status;
-}
-
 std::size_t ControlLine::addressed_count(const std::string& target) const {
-  const std::vector<std::string> names = present();
-  return static_cast<std::size_t>(std::ranges::count_if(names, [&](const std::string& name) {
-    return target == "*" || target == name || target == nodes_.at(name).kind();
+  const std::vector<msg::NodeStatus> alive = roster_.alive();
+  return static_cast<std::size_t>(std::ranges::count_if(alive, [&](const msg::NodeStatus& status) {
+    return target == "*" || target == status.node() || target == status.kind();
   }));
 }
 

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
+#include "node/roster.h"
 
 namespace cordis::cli {
 
@@ -25,7 +25,7 @@ class ControlLine {
   std::vector<msg::ControlReply> ask(const std::string& target, const std::string& verb,
                                      const std::string& argument, std::chrono::nanoseconds at_most);
 
-  /// The nodes heard so far that have not said that they stop.
+  /// The nodes that are alive: they have said something lately, and not that they stop.
   std::vector<std::string> present() const;
   /// Whether a command has been sent.
   bool has_sent() const noexcept { return sent_; }
@@ -35,14 +35,11 @@ class ControlLine {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void listen();
-
   dds::Participant participant_;
   dds::Writer<msg::ControlCommand> commands_;
   dds::Reader<msg::ControlReply> replies_;
-  dds::Reader<msg::NodeStatus> statuses_;
+  node::Roster roster_;
   bool sent_ = false;
-  std::map<std::string, msg::NodeStatus> nodes_;  // the newest status, by name
 };
 
 }  // namespace cordis::cli

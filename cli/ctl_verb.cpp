@@ -9,6 +9,8 @@
 #include "cli/exit_code.h"
 #include "cli/verbs.h"
 #include "node/config/launch.h"
+#include "node/runtime_folder.h"
+#include "node/session_registry.h"
 
 namespace cordis::cli {
 namespace {
@@ -32,20 +34,36 @@ bool is_file(const std::string& word) {
   return word.ends_with(".yaml") || word.ends_with(".yml") || word.find('/') != std::string::npos;
 }
 
-/// Where the session is: from its launch file, or its name and domain alone. The options of the
-/// command line win, as they do for `cordis run`.
-Address address_of(const CtlWords& words) {
+/// The session and, where the words name it, its domain. The options of the command line win, as
+/// they do for `cordis run`.
+config::Launch launch_of(const CtlWords& words) {
   std::string text = "cordis: 1\nsession: " + words.session + "\nnodes: {sim: {node: sim_node}}\n";
   std::vector<std::string> overrides;
   if (!words.domain.empty()) overrides.push_back("domain=" + words.domain);
   if (!words.session_name.empty()) overrides.push_back("session=" + words.session_name);
   config::Problems problems;
-  const config::Launch launch =
+  config::Launch launch =
       is_file(words.session)
           ? config::load_launch(words.session, overrides, problems)
           : config::load_launch_text(text, "session '" + words.session + "'", overrides, problems);
   problems.throw_if_any();
-  return {launch.session, launch.domain};
+  return launch;
+}
+
+/// Where the session is: in the domain of the command line, else where it runs on this host, else
+/// in that of its launch file.
+Address address_of(const CtlWords& words) {
+  const config::Launch launch = launch_of(words);
+  if (!words.domain.empty()) return {launch.session, *launch.domain};
+  std::vector<node::SessionRecord> running = node::running_sessions(node::runtime_folder());
+  std::erase_if(running, [&](const auto& record) { return record.session != launch.session; });
+  if (running.size() == 1) return {launch.session, running[0].domain};
+  if (running.size() > 1)
+    throw std::runtime_error("session '" + launch.session + "' runs in " +
+                             node::domains_text(running) + ": name one with --domain");
+  if (launch.domain) return {launch.session, *launch.domain};
+  throw std::runtime_error("no session '" + launch.session +
+                           "' runs on this host: start it with `cordis run`, or name its --domain");
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -103,7 +121,8 @@ void add_ctl_verb(CommandLine& line) {
   verb.more_words("words", words->words, "What the command needs");
   verb.option("--node", "NAME", words->node,
               "Who is meant: a node, a kind of node, or '*' for all (sim_node)");
-  verb.option("--domain", "N", words->domain, "DDS domain, when it is not that of the file");
+  verb.option("--domain", "N", words->domain,
+              "DDS domain, for a session that another user or host began");
   verb.option("--session", "NAME", words->session_name,
               "Name of the session, when it is not that of the file");
   verb.option("--timeout", "TIME", words->timeout, "How long to wait for the reply (5s)");

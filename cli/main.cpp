@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   cordis::cli::add_run_verb(line);
   cordis::cli::add_ctl_verb(line);
   cordis::cli::add_check_verb(line);
+  cordis::cli::add_doctor_verb(line);
   cordis::cli::add_lab_verb(line);
   cordis::cli::add_simplify_verb(line);
   cordis::cli::add_test_verb(line);
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
       "  cordis run launch_configs/plucked_string.yaml\n"
       "  cordis ctl launch_configs/plucked_string.yaml pause\n"
       "  cordis check launch_configs/scenes/plucked_string.yaml\n"
+      "  cordis doctor\n"
       "  cordis simplify launch_configs/scenes/plucked_string.yaml\n"
       "  cordis lab launch_configs/scenes/plucked_string.yaml --quick\n"
       "  cordis test\n");

@@ -9,6 +9,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "node/config/regular_file.h"
+
 namespace cordis::cli {
 namespace {
 
@@ -38,6 +40,8 @@ NodeOutput::NodeOutput(const std::vector<std::string>& names, const std::string&
   std::filesystem::create_directories(log_directory, error);
   for (const std::string& name : names) {
     const auto path = std::filesystem::path(log_directory) / (name + ".log");
+    const std::string reason = config::reason_not_to_write(path.string());
+    if (!reason.empty()) throw std::runtime_error("cannot write " + path.string() + ": " + reason);
     logs_.emplace_back(path);
     if (!logs_.back()) throw std::runtime_error("cannot write " + path.string());
   }

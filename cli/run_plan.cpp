@@ -59,7 +59,7 @@ RunPlan plan_run(const config::Launch& launch, const RunOptions& options,
   std::vector<std::string> words = options.overrides;
   for (const config::LaunchNode& node : launch.nodes) {
     if (!is_wanted(node.name, options.only)) continue;
-    plan.nodes.push_back({node.name, node.program, node.required, {}});
+    plan.nodes.push_back({node.name, node.program, node.required, node.respawn});
     if (options.duration && node.program == "sim_node" &&
         launch.clock != config::Clock::kRealtime) {
       words.push_back(node.name + ".duration_s=" + in_seconds(*options.duration));
@@ -73,10 +73,22 @@ RunPlan plan_run(const config::Launch& launch, const RunOptions& options,
                    });
   for (PlannedNode& node : plan.nodes) {
     node.command.stop_stage = role_of(node.program).stop_stage;
+    node.command.drives_motors = node.program == "device_node";
     node.command.words = {programs / node.program, launch.file, "--name", node.name};
     node.command.words.insert(node.command.words.end(), words.begin(), words.end());
   }
   return plan;
+}
+
+std::vector<std::string> names_of(const RunPlan& plan) {
+  std::vector<std::string> names;
+  for (const PlannedNode& node : plan.nodes) names.push_back(node.name);
+  return names;
+}
+
+void name_domain(RunPlan& plan, int domain) {
+  for (PlannedNode& node : plan.nodes)
+    node.command.words.push_back("domain=" + std::to_string(domain));
 }
 
 std::string shell_line(const std::vector<std::string>& words) {

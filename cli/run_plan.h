@@ -27,7 +27,8 @@ struct PlannedNode {
   std::string name;
   std::string program;
   bool required = true;
-  Command command;
+  bool respawn = true;
+  Command command{};
 };
 
 struct RunPlan {
@@ -43,6 +44,12 @@ struct RunPlan {
 /// @throws UsageError when `only` names a node that the launch does not have.
 RunPlan plan_run(const config::Launch& launch, const RunOptions& options,
                  const std::filesystem::path& programs);
+
+/// Names of the nodes of the plan, in its order.
+std::vector<std::string> names_of(const RunPlan& plan);
+
+/// Gives every node of the plan the word `domain=N`.
+void name_domain(RunPlan& plan, int domain);
 
 /// The words as they can be typed into a shell.
 std::string shell_line(const std::vector<std::string>& words);

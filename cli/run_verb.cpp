@@ -10,6 +10,8 @@
 #include "cli/programs.h"
 #include "cli/session.h"
 #include "cli/verbs.h"
+#include "node/runtime_folder.h"
+#include "node/session_registry.h"
 
 namespace cordis::cli {
 namespace {
@@ -29,13 +31,17 @@ int run(const RunOptions& options) {
   setenv("CORDIS_LAUNCHED", "1", /*replace=*/1);
   StopSignals signals;
   const config::Launch launch = read_launch(options);
-  const RunPlan plan = plan_run(launch, options, program_directory());
+  RunPlan plan = plan_run(launch, options, program_directory());
   if (options.dry_run) {
     for (const PlannedNode& node : plan.nodes) std::puts(shell_line(node.command.words).c_str());
     return kSuccess;
   }
+  node::SessionRegistration registration(
+      node::runtime_folder(), {launch.session, launch.domain,
+                               std::filesystem::absolute(launch.file).string(), names_of(plan)});
+  if (!launch.domain) name_domain(plan, registration.domain());
   if (const std::optional<int> refused = check_nodes(plan, signals)) return *refused;
-  return run_session(launch, plan, options, signals);
+  return run_session(launch, plan, options, registration, signals);
 }
 
 struct RunWords {
@@ -61,9 +67,15 @@ void add_run_verb(CommandLine& line) {
   verb.examples(
       "--duration is simulated time in a lockstep or asap session; in a realtime session\n"
       "it counts from the moment all nodes run.\n"
+      "Each session has a DDS domain of its own on its host, which the first line names;\n"
+      "domain=N chooses one, which a session on several hosts needs.\n"
       "Ctrl-C stops the devices first, the scene last; a second one kills.\n"
-      "Exit code: 0 all well, 1 failed at run time, 2 bad file or command line,\n"
-      "128 + signal when a required node was killed.\n\n"
+      "A node that dies starts again after 0.2, 1, 5 s, at most 5 times in a minute, unless the\n"
+      "launch file says 'respawn: false'. In a lockstep or asap session only a viz_node does.\n"
+      "The session ends when a required node (any but a viz_node, unless the file says\n"
+      "otherwise) ends or is given up.\n"
+      "Exit code: 0 all well, else that of the first required node that was given up:\n"
+      "1 failed at run time, 2 bad file or command line, 128 + signal when it was killed.\n\n"
       "Examples:\n"
       "  cordis run launch_configs/plucked_string.yaml\n"
       "  cordis run launch_configs/plucked_string.yaml keyboard.driver=script view.port=8081\n"

@@ -79,9 +79,15 @@ std::string aligned(const std::vector<Row>& rows) {
 }  // namespace
 
 bool StatusBoard::put(const msg::NodeStatus& status) {
-  if (status.run() < first_run_) return false;
+  const auto life = first_run_of_.find(status.node());
+  if (status.run() < (life == first_run_of_.end() ? first_run_ : life->second)) return false;
   newest_[status.node()] = status;
   return true;
+}
+
+void StatusBoard::begin_life(const std::string& node, std::uint64_t first_run) {
+  first_run_of_[node] = first_run;
+  newest_.erase(node);
 }
 
 const msg::NodeStatus* StatusBoard::find(const std::string& node) const {

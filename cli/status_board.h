@@ -21,10 +21,16 @@ class StatusBoard {
   /// @return whether it was taken.
   bool put(const msg::NodeStatus& status);
 
-  const msg::NodeStatus* find(const std::string& node) const;  ///< nullptr when it never spoke
+  /// A node has been started again: what an older life of it said no longer counts.
+  /// @param first_run  as above
+  void begin_life(const std::string& node, std::uint64_t first_run);
+
+  const msg::NodeStatus* find(
+      const std::string& node) const;  ///< nullptr when this life of it never spoke
 
  private:
   std::uint64_t first_run_;
+  std::map<std::string, std::uint64_t> first_run_of_;  // of those that were started again
   std::map<std::string, msg::NodeStatus> newest_;
 };
 

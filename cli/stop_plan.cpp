@@ -3,11 +3,22 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace cordis::cli {
 
+StopPlan::StopPlan(std::vector<int> stages, std::vector<bool> drives_motors)
+    : stages_(std::move(stages)), drives_motors_(std::move(drives_motors)) {
+  drives_motors_.resize(stages_.size(), false);
+}
+
 void StopPlan::begin(Time now) noexcept {
   if (!begun_) begun_ = now;
+}
+
+void StopPlan::hurry(Time now) noexcept {
+  begin(now);
+  if (!hurried_) hurried_ = now;
 }
 
 std::optional<int> StopPlan::first_running_stage(const std::vector<bool>& running) const {
@@ -26,6 +37,7 @@ StopPlan::Time StopPlan::deadline_of(int stage, Time now) const {
 }
 
 std::vector<StopPlan::Action> StopPlan::due(Time now, const std::vector<bool>& running) {
+  if (hurried_) return due_in_a_hurry(now, running);
   std::vector<Action> actions;
   const std::optional<int> stage = first_running_stage(running);
   if (!begun_ || !stage) return actions;
@@ -42,6 +54,18 @@ std::vector<StopPlan::Action> StopPlan::due(Time now, const std::vector<bool>& r
   } else if (deadline_ && now >= *deadline_) {
     deadline_.reset();
     act_on_stage(/*kill=*/true);
+  }
+  return actions;
+}
+
+std::vector<StopPlan::Action> StopPlan::due_in_a_hurry(Time now, const std::vector<bool>& running) {
+  std::vector<Action> actions;
+  const bool first = !std::exchange(hurry_done_, true);
+  if (first) deadline_ = *hurried_ + kLastFade;
+  const bool last = deadline_ && now >= *deadline_;
+  if (last) deadline_.reset();
+  for (std::size_t i = 0; i < running.size(); ++i) {
+    if (running[i] && (first || last)) actions.push_back({i, last || !drives_motors_[i]});
   }
   return actions;
 }

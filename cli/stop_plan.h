@@ -10,6 +10,8 @@ namespace cordis::cli {
 /// Stops processes stage after stage: all of a stage are asked to stop, and killed when they have
 /// not after 2 s; then comes the next stage. Four stages of processes that do not listen still end
 /// within kLongestStop, because every stage leaves kShareOfLater to each of those that follow.
+/// In a hurry all are killed at once, except processes that drive motors: those are asked, and
+/// killed after kLastFade.
 /// Knows time only by what it is told.
 class StopPlan {
  public:
@@ -17,17 +19,23 @@ class StopPlan {
   static constexpr std::chrono::milliseconds kPatience{2000};
   static constexpr std::chrono::milliseconds kLongestStop{4500};
   static constexpr std::chrono::milliseconds kShareOfLater{500};
+  static constexpr std::chrono::milliseconds kLastFade{500};
 
   struct Action {
     std::size_t process;
     bool kill;  ///< else: ask
   };
 
-  /// @param stages  of each process; the smallest stops first
-  explicit StopPlan(std::vector<int> stages) : stages_(std::move(stages)) {}
+  /// @param stages         of each process; the smallest stops first
+  /// @param drives_motors  of each process; empty: none does
+  explicit StopPlan(std::vector<int> stages, std::vector<bool> drives_motors = {});
 
   void begin(Time now) noexcept;
   bool begun() const noexcept { return begun_.has_value(); }
+
+  /// Ends all now; begins the plan if that has not been done.
+  void hurry(Time now) noexcept;
+  bool hurried() const noexcept { return hurried_.has_value(); }
 
   /// What is to be done now, given which processes still run. Each action is told once.
   std::vector<Action> due(Time now, const std::vector<bool>& running);
@@ -38,9 +46,13 @@ class StopPlan {
  private:
   std::optional<int> first_running_stage(const std::vector<bool>& running) const;
   Time deadline_of(int stage, Time now) const;
+  std::vector<Action> due_in_a_hurry(Time now, const std::vector<bool>& running);
 
   std::vector<int> stages_;
+  std::vector<bool> drives_motors_;
   std::optional<Time> begun_;
+  std::optional<Time> hurried_;
+  bool hurry_done_ = false;       // the first actions of a hurry have been given
   std::optional<int> stage_;      // the one that was asked
   std::optional<Time> deadline_;  // when it is killed; none once it was
 };

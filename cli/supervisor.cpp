@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <memory>
 #include <optional>
 
 #include <poll.h>
-#include <unistd.h>
 
-#include "cli/line_splitter.h"
+#include "cli/node_life.h"
 #include "cli/stop_plan.h"
 
 namespace cordis::cli {
@@ -22,34 +21,32 @@ constexpr std::chrono::milliseconds kTick{100};
 constexpr std::chrono::milliseconds kSameWish{300};  // timeout(1) sends its signal twice
 constexpr std::array kStreams{Stream::kOut, Stream::kError};
 
-struct Process {
-  explicit Process(const Command& command) : child(command.words) {}
-  Child child;
-  std::array<LineSplitter, 2> lines;
-  bool running = true;
-  Ending ending;
-};
-
 class Supervision {
  public:
   Supervision(const std::vector<Command>& commands, Watcher& watcher, StopSignals& signals)
-      : watcher_(watcher), signals_(signals), plan_(stages_of(commands)) {
+      : watcher_(watcher), signals_(signals), plan_(stages_of(commands), motors_of(commands)) {
     for (const Command& command : commands) {
-      processes_.push_back(std::make_unique<Process>(command));
+      const auto sink = [this, index = lives_.size()](Stream stream, std::string_view text) {
+        watcher_.line(index, stream, text);
+      };
+      const int orphan_signal = command.drives_motors ? SIGTERM : SIGKILL;
+      lives_.push_back(
+          std::make_unique<NodeLife>(command.words, command.respawn, orphan_signal, sink));
     }
   }
 
   std::vector<Ending> run() {
-    while (any_running()) {
+    while (!all_over()) {
       wait();
       take_signals();
-      for (std::size_t i = 0; i < processes_.size(); ++i) listen_to(i);
-      for (std::size_t i = 0; i < processes_.size(); ++i) notice_end_of(i);
+      for (const auto& life : lives_) life->read_output();
+      for (std::size_t i = 0; i < lives_.size(); ++i) take_end_of(i);
       if (watcher_.tick()) plan_.begin(Clock::now());
+      restart_who_is_due();
       follow_plan();
     }
     std::vector<Ending> endings;
-    for (const auto& process : processes_) endings.push_back(process->ending);
+    for (const auto& life : lives_) endings.push_back(life->ending());
     return endings;
   }
 
@@ -60,18 +57,23 @@ class Supervision {
     return stages;
   }
 
-  bool any_running() const {
-    return std::any_of(processes_.begin(), processes_.end(),
-                       [](const auto& p) { return p->running; });
+  static std::vector<bool> motors_of(const std::vector<Command>& commands) {
+    std::vector<bool> motors;
+    for (const Command& command : commands) motors.push_back(command.drives_motors);
+    return motors;
+  }
+
+  bool all_over() const {
+    return std::all_of(lives_.begin(), lives_.end(), [](const auto& life) { return life->over(); });
   }
 
   void wait() {
     std::vector<pollfd> files{{signals_.file(), POLLIN, 0}};
-    for (const auto& process : processes_) {
-      for (const Stream stream : kStreams)
-        files.push_back({process->child.output(stream), POLLIN, 0});
-    }
     auto until = Clock::now() + kTick;
+    for (const auto& life : lives_) {
+      for (const Stream stream : kStreams) files.push_back({life->output(stream), POLLIN, 0});
+      if (life->restart_at()) until = std::min(until, *life->restart_at());
+    }
     if (plan_.deadline()) until = std::min(until, *plan_.deadline());
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
     poll(files.data(), files.size(), static_cast<int>(std::max<std::int64_t>(left, 0)));
@@ -81,67 +83,48 @@ class Supervision {
     const auto now = Clock::now();
     if (!signals_.take() || (interrupted_ && now < *interrupted_ + kSameWish)) return;
     watcher_.interrupted(/*again=*/interrupted_.has_value());
-    if (interrupted_) {
-      for (const auto& process : processes_) process->child.kill();
-    }
+    if (interrupted_) plan_.hurry(now);
     interrupted_ = now;
     plan_.begin(now);
   }
 
-  /// Reads what is there, but no endless flood: signals and the other processes have their turn.
-  void listen_to(std::size_t index) {
-    for (const Stream stream : kStreams) read_block(index, stream);
+  void take_end_of(std::size_t index) {
+    const auto now = Clock::now();
+    if (lives_[index]->take_end(now, plan_.begun())) report_end_of(index, now);
   }
 
-  /// @return whether there may be more.
-  bool read_block(std::size_t index, Stream stream) {
-    Process& process = *processes_[index];
-    std::array<char, 65536> block;
-    const int file = process.child.output(stream);
-    if (file < 0) return false;
-    const ssize_t count = read(file, block.data(), block.size());
-    const auto to_watcher = [&](std::string_view text) { watcher_.line(index, stream, text); };
-    LineSplitter& lines = process.lines[static_cast<std::size_t>(stream)];
-    if (count > 0) {
-      lines.feed({block.data(), static_cast<std::size_t>(count)}, to_watcher);
-    } else if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
-      lines.finish(to_watcher);
-      process.child.close_output(stream);
+  void report_end_of(std::size_t index, Clock::time_point now) {
+    const NodeLife& life = *lives_[index];
+    if (life.restart_at()) {
+      const auto delay = *life.restart_at() - now;
+      watcher_.restarts(index, life.ending(), std::chrono::round<std::chrono::milliseconds>(delay));
+    } else if (watcher_.ended(index, life.ending(), plan_.begun())) {
+      plan_.begin(now);
     }
-    return count > 0;
   }
 
-  void notice_end_of(std::size_t index) {
-    Process& process = *processes_[index];
-    if (!process.running) return;
-    const std::optional<Ending> ending = process.child.ending();
-    if (!ending) return;
-    process.running = false;
-    process.ending = *ending;
-    for (const Stream stream : kStreams) finish_output(index, stream);
-    if (watcher_.ended(index, *ending, plan_.begun())) plan_.begin(Clock::now());
-  }
-
-  /// Reads what a process that has ended left in its pipe. A pipe holds a bounded amount, so this
-  /// ends even when a process that escaped from the group goes on writing.
-  void finish_output(std::size_t index, Stream stream) {
-    constexpr int kBlocksOfAPipe =
-        17;  // 1 MiB, the largest pipe an ordinary user may have, and one more
-    for (int block = 0; block < kBlocksOfAPipe && read_block(index, stream); ++block) {
+  /// Nobody starts again once all are to stop.
+  void restart_who_is_due() {
+    const auto now = Clock::now();
+    for (std::size_t i = 0; i < lives_.size(); ++i) {
+      NodeLife& life = *lives_[i];
+      if (plan_.begun()) life.cancel_restart();
+      if (!life.restart_at() || now < *life.restart_at()) continue;
+      if (life.restart(now)) {
+        watcher_.restarted(i);
+      } else {
+        report_end_of(i, now);
+      }
     }
-    Process& process = *processes_[index];
-    process.lines[static_cast<std::size_t>(stream)].finish(
-        [&](std::string_view text) { watcher_.line(index, stream, text); });
-    process.child.close_output(stream);
   }
 
   void follow_plan() {
     std::vector<bool> running;
-    for (const auto& process : processes_) running.push_back(process->running);
+    for (const auto& life : lives_) running.push_back(life->running());
     for (const auto& [index, kill] : plan_.due(Clock::now(), running)) {
-      Child& child = processes_[index]->child;
+      Child& child = *lives_[index]->child();
       if (kill) {
-        watcher_.killed(index);
+        if (!plan_.hurried()) watcher_.killed(index);
         child.kill();
       } else {
         child.ask_to_stop();
@@ -153,7 +136,7 @@ class Supervision {
   StopSignals& signals_;
   StopPlan plan_;
   std::optional<Clock::time_point> interrupted_;
-  std::vector<std::unique_ptr<Process>> processes_;
+  std::vector<std::unique_ptr<NodeLife>> lives_;
 };
 
 }  // namespace

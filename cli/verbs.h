@@ -7,6 +7,7 @@ namespace cordis::cli {
 
 void add_ctl_verb(CommandLine& line);
 void add_check_verb(CommandLine& line);
+void add_doctor_verb(CommandLine& line);
 void add_lab_verb(CommandLine& line);
 void add_run_verb(CommandLine& line);
 void add_simplify_verb(CommandLine& line);

@@ -40,8 +40,6 @@ class DdsChannel final : public GestureChannel {
     }
   }
 
-  int reader_count() const noexcept override { return writer_.matched_count(); }
-
  private:
   dds::Writer<Sent> writer_;
   dds::Reader<Received> reader_;

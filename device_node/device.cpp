@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "device_node/dds_channel.h"
+#include "device_node/drivers/guardian.h"
 #include "node/paced_loop.h"
 #include "node/stop.h"
 #include "node/time.h"
@@ -21,11 +22,10 @@ using std::chrono::milliseconds;
 
 constexpr int kLoopPriority = 80;                      // SCHED_FIFO
 constexpr auto kLookAround = milliseconds(100);        // for a scene, while there is none
+constexpr double kLooksPerSecond = 50.0;               // after the guardian
 constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
 constexpr auto kLongSilence = std::chrono::seconds(2);  // after which its cause is looked for
-constexpr double kLooksPerSecond = 50.0;  // for a change of scene, while one is played
-constexpr int kBadInput = 2;
 
 /// CLOCK_BOOTTIME [ns]: CLOCK_MONOTONIC stands still while the machine sleeps.
 std::int64_t since_boot_nsec() noexcept {
@@ -34,43 +34,47 @@ std::int64_t since_boot_nsec() noexcept {
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
+void watch_guardian() noexcept {
+  Guardian* const guardian = Guardian::of_process();
+  if (guardian != nullptr) guardian->watch();
+}
+
 }  // namespace
 
-Device::Device(LoadedDevice device, dds::Participant& participant, config::Clock clock,
-               std::uint64_t run)
+Device::Device(LoadedDevice device, dds::Participant& participant, dds::Participant& for_loop,
+               config::Clock clock, std::uint64_t run)
     : config_(std::move(device.config)),
       driver_(traced(std::move(device.driver), config_.trace, config_.layout)),
-      participant_(participant),
+      for_loop_(for_loop),
       clock_(clock),
-      scenes_(participant, dds::Topic::kDescription),
       description_(participant, dds::Topic::kDevice),
+      roster_(participant),
       series_{run, 0},
+      scenes_(participant, config_, *driver_),
       status_(participant, "device_node", run, [this](msg::NodeStatus& status) {
         meter_.fill(status);
+        const std::string refusal = scenes_.refusal();
+        if (!refusal.empty()) status.text("refused " + refusal);
         if (status.text().empty()) status.text(what_it_is(config_));
         // in lockstep the scene's answers set the pace
         status.target_rate_hz(clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz);
       }) {}
 
-int Device::live() {
+void Device::live() {
   spdlog::info("{}, waiting for a scene that plays '{}'", what_it_is(config_), config_.name);
   describe();
   while (!node::stop_requested()) {
-    if (!part_.wanted) {
+    part_ = scenes_.part();
+    if (part_.wanted) {
+      play(part_.role);
+    } else {
       note_unused();
-      scenes_.wait(kLookAround);
-      hear_scene();
-      continue;
+      scenes_.wait_for_another(part_, kLookAround);
+      watch_guardian();
     }
-    if (!part_.impossible.empty()) {
-      spdlog::error("{}", part_.impossible);
-      end(Phase::kFailed);
-      return kBadInput;
-    }
-    play();
   }
-  end(Phase::kStopped);
-  return 0;
+  meter_.publish_latency();
+  meter_.set_phase(Phase::kStopped);
 }
 
 /// Tells everyone what the device is and what it can bear.
@@ -99,44 +103,19 @@ void Device::describe() {
   description_.write(told);
 }
 
-void Device::end(Phase phase) {
-  meter_.publish_latency();
-  meter_.set_phase(phase);
-}
-
 /// Tells once that the scene, if there is one, does not play the device.
 void Device::note_unused() {
-  const bool heard = scene_.run() != 0;
-  if (!heard || meter_.phase() == Phase::kUnused) return;
+  if (!part_.heard || meter_.phase() == Phase::kUnused) return;
   meter_.set_phase(Phase::kUnused);
-  spdlog::info("scene '{}' does not play '{}'; waiting for one that does", scene_.name(),
-               config_.name);
   status_.publish_now();
 }
 
-/// Takes what is said about scenes; true when the part of this device is no longer the same.
-bool Device::hear_scene() {
-  if (!scenes_.take_newest(scene_)) return false;
-  const ScenePart part = part_of(scene_, config_, *driver_);
-  const bool changed =
-      part.wanted != part_.wanted || part.role != part_.role || part.impossible != part_.impossible;
-  if (changed && part.wanted && part.impossible.empty()) {
-    spdlog::info("role {} in scene '{}'", name_of(part.role), scene_.name());
-  }
-  if (part.questionable != part_.questionable && !part.questionable.empty()) {
-    spdlog::warn("{}", part.questionable);
-  }
-  part_ = part;
-  return changed;
-}
-
 /// Plays one role until it changes or a stop is requested.
-void Device::play() {
-  const auto channel =
-      make_dds_channel(participant_, part_.role, config_.device_id, config_.strength);
+void Device::play(Role role) {
+  const auto channel = make_dds_channel(for_loop_, role, config_.device_id, config_.strength);
   if (clock_ == config::Clock::kRealtime) ask_for_realtime();
   const bool lockstep = clock_ == config::Clock::kLockstep;
-  Exchange exchange(config_, part_.role, series_, lockstep, *driver_, *channel, meter_,
+  Exchange exchange(config_, role, series_, lockstep, *driver_, *channel, meter_,
                     &node::monotonic_nsec, &since_boot_nsec);
   noted_phase_ = Phase::kWaiting;
   if (lockstep) {
@@ -160,27 +139,26 @@ void Device::ask_for_realtime() {
 void Device::play_paced(Exchange& exchange) {
   node::PacedLoop pace(config_.layout.rate_hz);
   std::uint64_t overruns = 0;
-  bool changed = false;
-  while (!changed && !node::stop_requested()) {
+  while (has_part() && !node::stop_requested()) {
     exchange.send_sample();
     pace.wait();
     exchange.receive();
     exchange.live();
     meter_.add_overruns(pace.overruns() - std::exchange(overruns, pace.overruns()));
     note_phase(exchange);
-    changed = look_around();
+    keep_guardian();
   }
 }
 
 void Device::play_in_lockstep(Exchange& exchange) {
   const auto watchdog = std::min<std::chrono::nanoseconds>(
       std::chrono::nanoseconds(std::llround(config_.force_guard.watchdog_s * 1e9)), kRepeatAfter);
-  while (!node::stop_requested()) {
+  while (has_part() && !node::stop_requested()) {
     exchange.send_sample();
     if (!exchange.await_answer(watchdog) && !keep_asking(exchange)) return;
     exchange.live();
     note_phase(exchange);
-    if (look_around()) return;
+    keep_guardian();
   }
 }
 
@@ -190,17 +168,19 @@ bool Device::keep_asking(Exchange& exchange) {
   exchange.let_go();
   auto silent = milliseconds(0);
   while (!exchange.await_answer(kRepeatAfter)) {
-    if (node::stop_requested() || hear_scene()) return false;
+    if (node::stop_requested() || !has_part()) return false;
     silent += kRepeatAfter;
+    roster_.look();
     if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
       meter_.set_phase(Phase::kLost);
       note_phase(exchange);
     }
     const bool never_answered = meter_.phase() == Phase::kWaiting;
     if (silent >= kLongSilence && never_answered && !std::exchange(silence_told_, true)) {
-      spdlog::warn(
-          "no answer to the first sample for {} s: {} in the session reads what '{}' sends",
-          kLongSilence.count(), exchange.reader_count() == 0 ? "nobody" : "somebody", config_.name);
+      const std::string alive = roster_.name_of("sim_node");
+      spdlog::warn("no answer to the first sample for {} s: {}", kLongSilence.count(),
+                   alive.empty() ? "no sim_node of the session is alive"
+                                 : "sim_node " + alive + " is alive, and does not answer");
     }
     exchange.repeat_sample();
   }
@@ -218,11 +198,11 @@ void Device::leave(Exchange& exchange) {
   }
 }
 
-/// hear_scene() now and then, for it would be a good part of a tick.
-bool Device::look_around() {
+/// Looks after the guardian now and then, for it costs a system call.
+void Device::keep_guardian() const noexcept {
   const auto ticks_per_look =
       static_cast<std::uint64_t>(std::max(1.0, config_.layout.rate_hz / kLooksPerSecond));
-  return meter_.ticks() % ticks_per_look == 0 && hear_scene();
+  if (meter_.ticks() % ticks_per_look == 0) watch_guardian();
 }
 
 /// Tells of a change of phase, once.
@@ -232,6 +212,11 @@ void Device::note_phase(const Exchange& exchange) {
   const bool plays_on = phase == Phase::kRunning;
   if (phase == Phase::kStandby) {
     spdlog::info("another node plays '{}' with more strength; ready to take over", config_.name);
+  } else if (phase == Phase::kDisconnected) {
+    lost_since_nsec_ = node::monotonic_nsec();
+    spdlog::warn(
+        "driver {}: the motors have been let go of outside the loop; forces return by the ramp",
+        config_.driver);
   } else if (phase == Phase::kLost) {
     lost_since_nsec_ = node::monotonic_nsec();
     if (!exchange.has_device()) {
@@ -244,7 +229,7 @@ void Device::note_phase(const Exchange& exchange) {
     }
   } else if (plays_on && noted_phase_ == Phase::kStandby) {
     spdlog::info("takes over '{}'", config_.name);
-  } else if (plays_on && noted_phase_ == Phase::kLost) {
+  } else if (plays_on && (noted_phase_ == Phase::kLost || noted_phase_ == Phase::kDisconnected)) {
     spdlog::info("plays again after {:.3f} s",
                  static_cast<double>(node::monotonic_nsec() - lost_since_nsec_) * 1e-9);
   }

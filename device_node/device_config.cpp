@@ -15,6 +15,7 @@
 #include "node/config/count_text.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
+#include "node/config/regular_file.h"
 
 namespace cordis::device {
 namespace {
@@ -114,6 +115,9 @@ void read_trace(config::MappingReader& reader, TraceSettings& trace, config::Pro
   if (!folder.empty() && !std::filesystem::is_directory(folder, unknown)) {
     section.error_at("file", "there is no folder '" + folder.string() + "' for the trace");
   }
+  const std::string reason = config::reason_not_to_write(trace.file);
+  if (!reason.empty())
+    section.error_at("file", "the trace cannot be written to '" + trace.file + "': " + reason);
   trace.last_s = section.optional_number("last_s", 10.0, Range::between(0.001, 3600.0));
   section.finish();
 }

@@ -28,6 +28,7 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
       position_guard_(config.position_guard),
       late_(static_cast<std::size_t>(config.limits.delay_periods) + 1),
       first_sample_(series.last_sample + 1),
+      begun_nsec_(clock()),
       lived_nsec_(since_boot_()) {
   sample_.run = series.run;
   sample_.sample = series.last_sample;
@@ -93,6 +94,7 @@ bool Exchange::consider(const GestureMessage& answer) noexcept {
     return false;
   }
   const bool well_formed = answer.axis_count >= 1 && answer.axis_count <= kMaxAxes &&
+                           answer.answered_time_nsec >= begun_nsec_ &&
                            answer.answered_time_nsec <= clock_();
   const bool answers_us =
       answer.answered_sample >= first_sample_ && answer.answered_sample <= sample_.sample;
@@ -183,7 +185,7 @@ void Exchange::note_phase(bool in_time) noexcept {
   } else if (present_ && other) {
     meter_.set_phase(Phase::kStandby);
   } else if (!present_ || any_answer_) {
-    meter_.set_phase(Phase::kLost);
+    meter_.set_phase(driver_.is_let_go() ? Phase::kDisconnected : Phase::kLost);
   }
 }
 

@@ -52,7 +52,9 @@ class Exchange {
   void send_sample() noexcept;
   void repeat_sample() noexcept;  ///< the same message once more
 
-  /// Takes all answers that are there. Bad, foreign and outdated ones are counted as dropped.
+  /// Takes all answers that are there. Bad, foreign and outdated ones are counted as dropped, and
+  /// those that echo what this exchange has not sent: whoever takes part in the session may write
+  /// an answer, and no number of it is trusted.
   void receive() noexcept;
 
   /// Waits until the sample sent last is answered, or `silence` has passed since the newest
@@ -64,12 +66,12 @@ class Exchange {
 
   /// Motors, one period, sensors. Sets the phase of the meter: waiting until the first answer,
   /// running while answers come, standby while they go to another node, lost when they are older
-  /// than the watchdog or the driver has no device.
+  /// than the watchdog or the driver has no device, disconnected when its motors have been let go
+  /// of outside this loop.
   void live() noexcept;
 
   bool has_device() const noexcept { return present_; }  ///< whether the driver has one
   bool has_motors() const noexcept { return driver_.has_motors(); }
-  int reader_count() const noexcept { return channel_.reader_count(); }
 
   /// The part is over: motors are not switched off in the middle of a force. From now on nothing is
   /// taken any more, and with every live() the last answer fades as an old one does, over
@@ -110,6 +112,7 @@ class Exchange {
   AxisValues carried_{};                  // role liaison: where the hand is, or would be [m]
   bool is_carried_ = false;               // it is anywhere yet
   std::uint64_t first_sample_;            // of this exchange
+  std::int64_t begun_nsec_;               // when it began
   std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came
   bool other_answered_ = false;           // ever
   std::int64_t lived_nsec_;               // when live() was called last

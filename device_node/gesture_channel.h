@@ -35,8 +35,6 @@ class GestureChannel {
   /// The next answer for this device, waiting at most so long for one (0: not at all); false when
   /// none came. Entries past axis_count are 0; nothing else about it has been checked.
   virtual bool receive(GestureMessage& answer, std::chrono::nanoseconds at_most) noexcept = 0;
-
-  virtual int reader_count() const noexcept { return 1; }  ///< that samples reach now
 };
 
 }  // namespace cordis::device

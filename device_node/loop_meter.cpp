@@ -23,10 +23,10 @@ PhaseWords words_of(Phase phase) noexcept {
       return {"standby", "another node plays this device; ready to take over"};
     case Phase::kLost:
       return {"lost", "no answer from the scene in time, or no device; motors at zero"};
+    case Phase::kDisconnected:
+      return {"disconnected", "the board has let go of its motors; forces return by the ramp"};
     case Phase::kStopped:
       return {"stopped", ""};
-    case Phase::kFailed:
-      return {"failed", "cannot play what the scene wants of it"};
   }
   return {"", ""};
 }

@@ -11,13 +11,13 @@ namespace cordis::device {
 
 /// How a device stands with the scene.
 enum class Phase : std::uint8_t {
-  kWaiting,  ///< no scene is there yet, or no answer has come yet; motors off
-  kUnused,   ///< the scene does not name the device; motors off
-  kRunning,  ///< answers come in time
-  kStandby,  ///< the scene answers another node that plays the same device; motors off
-  kLost,     ///< answers no longer come, or the driver has no device; motors at zero
-  kStopped,  ///< the node is ending as it was asked to
-  kFailed    ///< the node is ending because it cannot play what the scene wants
+  kWaiting,       ///< no scene is there yet, or no answer has come yet; motors off
+  kUnused,        ///< the scene does not name the device; motors off
+  kRunning,       ///< answers come in time
+  kStandby,       ///< the scene answers another node that plays the same device; motors off
+  kLost,          ///< answers no longer come, or the driver has no device; motors at zero
+  kDisconnected,  ///< the board or the guardian has let go of the motors
+  kStopped        ///< the node is ending as it was asked to
 };
 
 /// Counters of one device. The loop thread writes; fill() may be called from another thread.

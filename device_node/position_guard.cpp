@@ -2,6 +2,7 @@
 #include "device_node/position_guard.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace cordis::device {
@@ -22,7 +23,9 @@ void PositionGuard::start() noexcept {
 
 bool PositionGuard::accept(const AxisValues& wanted_m) noexcept {
   any_accepted_ = true;
-  if (all_finite(wanted_m, kMaxAxes)) {
+  // Also false of what is no number.
+  const auto is_near = [](double wanted) { return std::abs(wanted) <= kFarthest; };
+  if (std::all_of(wanted_m.begin(), wanted_m.end(), is_near)) {
     wanted_ = wanted_m;
     return true;
   }

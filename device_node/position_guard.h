@@ -26,12 +26,15 @@ struct PositionGuardSettings {
 /// Time is counted in ticks and in the ages it is told; it knows no clock.
 class PositionGuard {
  public:
+  static constexpr double kFarthest = 100.0;  ///< that a scene leads a port to [m]
+
   /// @throws std::invalid_argument when a setting is out of range.
   explicit PositionGuard(const PositionGuardSettings& settings);
 
   void start() noexcept;  ///< forgets everything: at rest at position 0, or the end nearest to it
 
-  /// Takes over what is wanted from now on [m]; false when it is not finite: then it stays.
+  /// Takes over what is wanted from now on [m]; false when it is not finite or beyond kFarthest:
+  /// then it stays.
   bool accept(const AxisValues& wanted_m) noexcept;
 
   /// The positions for the end of the next period [m]. Real time: O(axes), no allocation.

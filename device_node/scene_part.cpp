@@ -1,6 +1,7 @@
 // device_node/scene_part.cpp
 #include "device_node/scene_part.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -11,16 +12,26 @@ namespace {
 constexpr std::uint32_t kMassOnWire = 0;
 constexpr std::uint32_t kLiaisonOnWire = 1;
 
+constexpr std::size_t kLongestName = 64;
+
+/// A name that another process wrote, as it may be shown.
+std::string shown(const std::string& name) {
+  std::string text = name.substr(0, kLongestName);
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return text;
+}
+
 std::string trouble_with(const msg::PortDescription& port, const DeviceConfig& device) {
   if (port.role() != kMassOnWire && port.role() != kLiaisonOnWire) {
-    return fmt::format("port '{}' gives device '{}' the unknown role {}", port.name(), device.name,
-                       port.role());
+    return fmt::format("port '{}' gives device '{}' the unknown role {}", shown(port.name()),
+                       device.name, port.role());
   }
   for (const std::uint32_t axis : port.axes()) {
     const int count = device.end_piece.coordinate_count();
     if (axis >= static_cast<std::uint32_t>(count)) {
       return fmt::format("port '{}' wants axis {} of device '{}', which has {} (axes 0 to {})",
-                         port.name(), axis, device.name, count, count - 1);
+                         shown(port.name()), axis, device.name, count, count - 1);
     }
   }
   return {};
@@ -36,8 +47,9 @@ ScenePart part_of(const msg::SceneDescription& scene, const DeviceConfig& device
     part.impossible = trouble_with(port, device);
     const Role role = port.role() == kLiaisonOnWire ? Role::kLiaison : Role::kMass;
     if (part.impossible.empty() && part.wanted && role != part.role) {
-      part.impossible = fmt::format("port '{}' gives device '{}' role {}, another port role {}",
-                                    port.name(), device.name, name_of(role), name_of(part.role));
+      part.impossible =
+          fmt::format("port '{}' gives device '{}' role {}, another port role {}",
+                      shown(port.name()), device.name, name_of(role), name_of(part.role));
     }
     part.wanted = true;
     part.role = role;
@@ -51,13 +63,13 @@ ScenePart part_of(const msg::SceneDescription& scene, const DeviceConfig& device
                     device.name, name_of(part.role), device.driver);
   }
   if (!part.impossible.empty()) {
-    part.impossible = fmt::format("scene '{}': {}", scene.name(), part.impossible);
+    part.impossible = fmt::format("scene '{}': {}", shown(scene.name()), part.impossible);
   }
   const double rate_hz = device.layout.rate_hz;
   if (std::abs(scene.gesture_rate_hz() - rate_hz) > 1e-9 * rate_hz) {
     part.questionable =
         fmt::format("scene '{}' counts on {} gestures per second, device '{}' gives {}",
-                    scene.name(), scene.gesture_rate_hz(), device.name, rate_hz);
+                    shown(scene.name()), scene.gesture_rate_hz(), device.name, rate_hz);
   }
   return part;
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "node/config/regular_file.h"
 #include "node/time.h"
 
 namespace cordis::device {
@@ -21,6 +22,11 @@ TracedDriver::TracedDriver(std::unique_ptr<Driver> driver, TraceSettings setting
       rows_(static_cast<std::size_t>(std::ceil(settings_.last_s * layout.rate_hz)) + 1) {}
 
 TracedDriver::~TracedDriver() {
+  const std::string reason = config::reason_not_to_write(settings_.file);
+  if (!reason.empty()) {
+    spdlog::error("cannot write the trace '{}': {}", settings_.file, reason);
+    return;
+  }
   std::ofstream file(settings_.file);
   file << "time_nsec";
   for (const char* what : {"commanded", "sensed"}) {

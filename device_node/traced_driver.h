@@ -30,6 +30,8 @@ class TracedDriver final : public Driver {
   void note_age(double age_s) noexcept override { driver_->note_age(age_s); }
   bool write(const AxisValues& commanded) noexcept override;
   bool has_motors() const noexcept override { return driver_->has_motors(); }
+  BoardWatchdog board_watchdog() const noexcept override { return driver_->board_watchdog(); }
+  bool is_let_go() const noexcept override { return driver_->is_let_go(); }
   void let_go() noexcept override { driver_->let_go(); }
   void stop() noexcept override;
 

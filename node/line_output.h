@@ -22,6 +22,8 @@ class LineOutput {
 
   /// Adds a line (without newline) and writes as much as goes without waiting.
   void line(std::string_view text);
+  /// Lines that never came to line(): they count as dropped.
+  void count_lost(std::uint64_t count) noexcept { dropped_ += count; }
   /// Writes as much as goes without waiting.
   void flush();
 

@@ -8,8 +8,10 @@
 namespace cordis::node {
 
 /// Sets up spdlog's default logger: stderr, `HH:MM:SS.mmm name level text`, colours on a terminal
-/// unless NO_COLOR is set, level from CORDIS_LOG_LEVEL (trace, debug, info, warning, error) else
-/// info. Who logs never waits for who reads: after 64 KiB lines are left out, which the next says.
+/// unless NO_COLOR is set, level from CORDIS_LOG_LEVEL (trace, debug, info, warning, error,
+/// critical, off) else info; a word that names none is told. A thread of its own writes: who logs
+/// takes no lock and waits for nobody, so that a loop may log. After 64 KiB that nobody reads lines
+/// are left out, which the next says. spdlog::default_logger()->flush() waits for the thread.
 /// Under the launcher (CORDIS_LAUNCHED set) time and name are left to the launcher. Then log with
 /// spdlog::info(...) and the like.
 void install_log(const std::string& name);

@@ -2,12 +2,16 @@
 #include "node/node_main.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "node/inherited_priority.h"
 #include "node/log.h"
+#include "node/runtime_folder.h"
+#include "node/session_registry.h"
 #include "node/stop.h"
 #include "node/time.h"
 
@@ -58,7 +62,10 @@ std::string usage(const std::string& kind) {
          "Runs one node of a launch file by itself. `cordis run LAUNCH.yaml` starts them all.\n" +
          "  --name NAME      which node of the file; not needed when it has a single " + kind +
          "\n" + "  --check          read and check everything the node would use, then end\n" +
-         "  NAME.key=value   replaces a value of the file\n\n" + "example: " + kind +
+         "  NAME.key=value   replaces a value of the file\n" +
+         "  domain=N         its DDS domain; else that of the running session of its name, else "
+         "a\n" +
+         "                   free one\n\n" + "example: " + kind +
          " launch_configs/plucked_string.yaml\n";
 }
 
@@ -84,6 +91,22 @@ const config::LaunchNode* choose(const config::Launch& launch, const std::string
   return chosen;
 }
 
+/// Records a node that runs by itself. The launcher has recorded those that it starts, and names
+/// their domain.
+void join_session(NodeStart& start, std::optional<SessionRegistration>& registration) {
+  const config::Launch& launch = start.launch;
+  if (!launch.domain || std::getenv("CORDIS_LAUNCHED") == nullptr) {
+    registration.emplace(runtime_folder(),
+                         SessionRequest{launch.session,
+                                        launch.domain,
+                                        std::filesystem::absolute(launch.file).string(),
+                                        {start.node->name}});
+    if (!launch.domain)
+      spdlog::info("session '{}' in DDS domain {}", launch.session, registration->domain());
+  }
+  start.domain = registration ? registration->domain() : *launch.domain;
+}
+
 void print_problems(const std::vector<config::Problem>& problems) {
   for (const auto& problem : problems) std::fprintf(stderr, "%s\n", problem.text().c_str());
 }
@@ -91,14 +114,16 @@ void print_problems(const std::vector<config::Problem>& problems) {
 }  // namespace
 
 dds::Membership NodeStart::membership() const {
-  return {launch.domain, launch.session, node->name, launch.clock == config::Clock::kLockstep,
+  return {domain, launch.session, node->name, launch.clock == config::Clock::kLockstep,
           launch.has_stand_ins()};
 }
 
 dds::Participant NodeStart::join_for_force_loop() const {
-  if (launch.clock != config::Clock::kRealtime) return dds::Participant(membership());
+  dds::Membership of_the_loop = membership();
+  of_the_loop.node += "/loop";
+  if (launch.clock != config::Clock::kRealtime) return dds::Participant(of_the_loop);
   const InheritedPriority priority(kDdsPriority);
-  return dds::Participant(membership());
+  return dds::Participant(of_the_loop);
 }
 
 int node_main(int argc, char** argv, const std::string& kind,
@@ -118,6 +143,8 @@ int node_main(int argc, char** argv, const std::string& kind,
     start.run = static_cast<std::uint64_t>(monotonic_nsec());
     install_log(start.node->name);
     install_stop_signals();
+    std::optional<SessionRegistration> registration;
+    if (!start.check_only) join_session(start, registration);
     return run(start, problems);
   } catch (const config::ConfigError& error) {
     print_problems(error.problems());

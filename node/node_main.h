@@ -14,18 +14,22 @@ struct NodeStart {
   config::Launch launch;
   const config::LaunchNode* node = nullptr;  ///< its own entry in launch.nodes
   bool check_only = false;                   ///< --check: read and check everything, then end
+  int domain = 0;                            ///< DDS domain of the session
   std::uint64_t run = 0;  ///< identifies this life of the process: its start time [ns]
 
   dds::Membership membership() const;
 
-  /// Joins the session for the force loop. In the realtime clock the threads of DDS have realtime
-  /// priority, below that of the loops: without it forces come late on a busy machine.
+  /// Joins the session once more, for the force loop alone. A participant has locks that all its
+  /// writers and readers share: here only the loop and the threads of DDS take them, so that the
+  /// loop never waits for a thread of normal priority. In the realtime clock those threads have
+  /// realtime priority, below that of the loops: without it forces come late on a busy machine.
   /// @throws std::runtime_error as Participant
   dds::Participant join_for_force_loop() const;
 };
 
 /// Reads `LAUNCH.yaml --name NAME [--check] [name.key=value ...]`, installs log and stop signals,
-/// calls `run` and turns whatever it throws into one clear message: exit code 2 for a bad file or
+/// joins the running session of that name or claims a domain for it (SessionRegistration), calls
+/// `run` and turns whatever it throws into one clear message: exit code 2 for a bad file or
 /// usage, 1 for a failure at run time.
 /// @param kind  name of the program
 /// @param run   does the node's work and returns its exit code; ConfigError and std::exception may

@@ -2,6 +2,7 @@
 #include "node/status.h"
 
 #include <cstdio>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -47,33 +48,24 @@ StatusPublisher::StatusPublisher(dds::Participant& participant, const std::strin
 }
 
 StatusPublisher::~StatusPublisher() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-  }
-  wake_.notify_one();
+  ending_ = true;
+  wake_.release();
   thread_.join();
   std::this_thread::sleep_until(begun_ + kFound);  // when the whole run was shorter
   publish();
   writer_.wait_until_acknowledged(kLastStatus);
 }
 
-void StatusPublisher::publish_now() {
-  {
-    const std::lock_guard lock(mutex_);
-    wanted_ = true;
-  }
-  wake_.notify_one();
+void StatusPublisher::publish_now() noexcept {
+  wake_.release();
 }
 
 void StatusPublisher::loop() {
-  std::unique_lock lock(mutex_);
   while (!ending_) {
-    wanted_ = false;
-    lock.unlock();
     publish();
-    lock.lock();
-    wake_.wait_for(lock, kPeriod, [this] { return ending_ || wanted_; });
+    if (!wake_.try_acquire_for(kPeriod)) continue;
+    while (wake_.try_acquire()) {
+    }
   }
 }
 
@@ -87,11 +79,19 @@ void StatusPublisher::tell_mismatch() {
   status_.text(status_.text().empty() ? mismatch : status_.text() + "; " + mismatch);
 }
 
+/// Says that the node has lost samples, and why.
+void StatusPublisher::tell_rejoin() {
+  const std::uint64_t count = participant_.rejoin_count();
+  if (count == std::exchange(rejoin_count_, count)) return;
+  spdlog::warn("a process that DDS had dropped is there again; this node has joined anew");
+}
+
 void StatusPublisher::publish() {
   const std::int64_t now = monotonic_nsec();
   status_.text("");
   fill_(status_);
   tell_mismatch();
+  tell_rejoin();
   rate_.look(now, status_.ticks());
   status_.reached_rate_hz(rate_.reached_hz());
   status_.mean_rate_hz(rate_.mean_hz());

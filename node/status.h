@@ -1,10 +1,11 @@
 // node/status.h -- what a node says about itself, twice a second.
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <condition_variable>
+#include <cstdint>
 #include <functional>
-#include <mutex>
+#include <semaphore>
 #include <string>
 #include <thread>
 
@@ -33,25 +34,26 @@ class StatusPublisher {
   StatusPublisher(const StatusPublisher&) = delete;
   StatusPublisher& operator=(const StatusPublisher&) = delete;
 
-  /// Publishes at once, beside the regular rhythm: for a change of phase.
-  void publish_now();
+  /// Publishes at once, beside the regular rhythm: for a change of phase. Real time: wakes the
+  /// publisher's thread, takes no lock.
+  void publish_now() noexcept;
 
  private:
   void loop();
   void publish();
   void tell_mismatch();
+  void tell_rejoin();
 
   const dds::Participant& participant_;
   std::string mismatch_;
+  std::uint64_t rejoin_count_ = 0;  // told
   dds::Writer<msg::NodeStatus> writer_;
   Fill fill_;
   msg::NodeStatus status_;
   std::chrono::steady_clock::time_point begun_;
   TickRate rate_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  bool wanted_ = false;
-  bool ending_ = false;
+  std::counting_semaphore<> wake_{0};
+  std::atomic<bool> ending_{false};
   std::thread thread_;
 };
 

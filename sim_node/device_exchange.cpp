@@ -17,6 +17,8 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
       lost_after_ticks_(std::max(3, static_cast<int>(std::lround(kLostAfter * rate_hz)))),
       lost_after_nsec_(std::llround(lost_after_ticks_ * 1e9 / rate_hz)),
       rejoin_ticks_(std::max(1, static_cast<int>(std::lround(kRejoin * rate_hz)))),
+      most_jump_(static_cast<std::uint64_t>(std::max(1L, std::lround(kMostJump * rate_hz)))),
+      rate_hz_(rate_hz),
       silent_ticks_(lost_after_ticks_ + 1) {
   for (const scene::Port& port : ports_) {
     for (const std::uint32_t axis : port.axes) axis_count_ = std::max(axis_count_, axis + 1);
@@ -53,50 +55,72 @@ double DeviceExchange::force_share() const noexcept {
   return 1.0 - static_cast<double>(rejoin_left_) / static_cast<double>(rejoin_ticks_);
 }
 
+/// Whether a sample of the run that is heard follows the newest one; notes what was missed between
+/// them, and whether the numbers begin anew.
+template <class Sample>
+bool DeviceExchange::goes_on(const Sample& sample) noexcept {
+  const bool later = sample.sample() > heard_sample_;
+  const std::uint64_t jump =
+      later ? sample.sample() - heard_sample_ : heard_sample_ - sample.sample();
+  if (!later && jump <= most_jump_ && ++older_in_a_row_ < lost_after_ticks_) return false;
+  new_run_ = new_run_ || !later || jump > most_jump_;
+  if (!later || jump == 1) return true;
+  missed_count_ += std::min(jump - 1, most_jump_);
+  std::int64_t gap_nsec = 0;  // times are as hostile as numbers
+  const bool far = __builtin_sub_overflow(sample.time_nsec(), heard_time_nsec_, &gap_nsec);
+  after_gap_ = after_gap_ || far || gap_nsec > lost_after_nsec_;
+  return true;
+}
+
 template <class Sample, class Values>
-DeviceExchange::Reception DeviceExchange::receive(const Sample& sample, const Values& values,
-                                                  bool borne) noexcept {
+DeviceExchange::Reception DeviceExchange::receive(
+    const Sample& sample, const Values& values, bool borne,
+    const std::array<double, kMaxAxes>& most) noexcept {
   const auto count = static_cast<std::size_t>(sample.axis_count());
   bool usable = sample.run() != 0 && count >= axis_count_ && count <= kMaxAxes;
   for (std::size_t axis = 0; usable && axis < count; ++axis) usable = std::isfinite(values[axis]);
-  if (!usable) {
+  const bool same_run = sample.run() == heard_run_;
+  if (usable && same_run && sample.sample() == heard_sample_) return Reception::kRepeated;
+  if (!usable || (same_run && !goes_on(sample))) {
     ++refused_count_;
     return Reception::kRefused;
   }
-  if (sample.run() == heard_run_ && sample.sample() <= heard_sample_) {
-    if (sample.sample() == heard_sample_) return Reception::kRepeated;
-    ++refused_count_;
-    return Reception::kRefused;
-  }
-  if (sample.run() == heard_run_) {
-    const std::uint64_t missed = sample.sample() - heard_sample_ - 1;
-    missed_count_ += missed;
-    const std::int64_t gap_nsec = sample.time_nsec() - heard_time_nsec_;
-    after_gap_ = after_gap_ || (missed > 0 && gap_nsec > lost_after_nsec_);
-  }
-  new_run_ = new_run_ || sample.run() != heard_run_;
+  older_in_a_row_ = 0;
+  new_run_ = new_run_ || !same_run;
   borne_ = borne;
   heard_run_ = sample.run();
   heard_sample_ = sample.sample();
   heard_time_nsec_ = sample.time_nsec();
-  std::copy_n(values.begin(), count, newest_.begin());
+  for (std::size_t axis = 0; axis < count; ++axis)
+    newest_[axis] = std::clamp(values[axis], -most[axis], most[axis]);
   has_new_ = true;
   return Reception::kNew;
 }
 
-DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample,
-                                                  bool borne) noexcept {
-  return receive(sample, sample.position_m(), borne);
+DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample, bool borne,
+                                                  const DeviceReach& reach) noexcept {
+  return receive(sample, sample.position_m(), borne, reach.travel_m);
 }
 
-DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample,
-                                                  bool borne) noexcept {
-  const Reception reception = receive(sample, sample.force_n(), borne);
-  if (reception == Reception::kNew) {
-    felt_answer_ = sample.answered_run() == run_ ? sample.answered_sample() : 0;
-    hand_work_ = sample.work_j();
-  }
+DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample, bool borne,
+                                                  const DeviceReach& reach) noexcept {
+  const std::uint64_t before = missed_count_;
+  const Reception reception = receive(sample, sample.force_n(), borne, reach.force_n);
+  if (reception == Reception::kNew) take_work(sample, reach, missed_count_ - before + 1);
   return reception;
+}
+
+/// No hand gives more than its largest force along the way of the fastest one; when a sample tells
+/// so, the account of the brake begins anew. @param periods  since the sample before
+void DeviceExchange::take_work(const msg::GestureForces& sample, const DeviceReach& reach,
+                               std::uint64_t periods) noexcept {
+  double most_n = 0.0;
+  for (std::size_t axis = 0; axis < axis_count_; ++axis) most_n += reach.force_n[axis];
+  const double most_j = most_n * kFastest * static_cast<double>(periods) / rate_hz_;
+  const double given_j = sample.work_j() - hand_work_;
+  new_work_ = new_work_ || !(std::abs(given_j) <= most_j);  // also what is no number
+  felt_answer_ = sample.answered_run() == run_ ? sample.answered_sample() : 0;
+  hand_work_ = sample.work_j();
 }
 
 void DeviceExchange::begin_tick() noexcept {
@@ -151,7 +175,9 @@ void DeviceExchange::play(engine::World& world, int number, int count) noexcept 
     if (brake_) value += brake_->brake(p, world, value);
     world.set_external_force(port.mat, value);
   }
-  if (brake_ && number == 1) brake_->hear(hand_work_, felt_answer_, world.dissipated());
+  if (!brake_ || number != 1) return;
+  if (std::exchange(new_work_, false)) brake_->start();
+  brake_->hear(hand_work_, felt_answer_, world.dissipated());
 }
 
 template <class Answer>

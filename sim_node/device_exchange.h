@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "idl/gesture.h"
+#include "sim_node/device_reach.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/port_brake.h"
 #include "sim_node/scene/scene.h"
@@ -30,10 +31,17 @@ constexpr std::size_t kMaxAxes = 16;
 /// given: neither side jumps. Both are counted in ticks. Likewise after a gap as long in its
 /// samples, when the scene itself stood still; one that is always late plays what comes. Real time:
 /// every function but the constructor is O(axes), allocates nothing and does not throw.
+///
+/// Whoever takes part in the session may write a sample, so no number of it is trusted. Positions
+/// and forces stay within the reach of the device. Numbers of samples that jump by more than
+/// kMostJump, or go on for kLostAfter below the highest known one, begin anew:
+/// whatever came before, the samples of the device are taken again, and it takes over gradually.
 class DeviceExchange {
  public:
   static constexpr double kLostAfter = 0.02;  ///< [s]
   static constexpr double kRejoin = 0.1;      ///< [s]
+  static constexpr double kMostJump = 1.0;    ///< of the numbers of samples [s]
+  static constexpr double kFastest = 10.0;    ///< of a hand that gives work [m/s]
 
   /// @param rate_hz  ticks per second
   /// @param run      of this sim_node; its messages carry it
@@ -58,10 +66,12 @@ class DeviceExchange {
     kRefused    ///< malformed, not finite, or older than what is known
   };
   /// Precondition: role mass. @param borne  false: the device cannot bear the scene; it counts as
-  /// lost, though its samples are answered
-  Reception receive(const msg::GesturePositions& sample, bool borne = true) noexcept;
+  /// lost, though its samples are answered. @param reach  of the device
+  Reception receive(const msg::GesturePositions& sample, bool borne = true,
+                    const DeviceReach& reach = {}) noexcept;
   /// Precondition: role liaison.
-  Reception receive(const msg::GestureForces& sample, bool borne = true) noexcept;
+  Reception receive(const msg::GestureForces& sample, bool borne = true,
+                    const DeviceReach& reach = {}) noexcept;
 
   /// Begins a tick: takes over the newest sample.
   void begin_tick() noexcept;
@@ -86,16 +96,20 @@ class DeviceExchange {
   /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
   std::int64_t heard_time_nsec() const noexcept { return heard_time_nsec_; }
   std::uint64_t refused_count() const noexcept { return refused_count_; }
-  std::uint64_t missed_count() const noexcept {
-    return missed_count_;
-  }  ///< samples of the device never seen
+  /// Samples of the device never seen; of a jump of their numbers those of kMostJump.
+  std::uint64_t missed_count() const noexcept { return missed_count_; }
   /// Ticks in which a port of role liaison was braked.
   std::uint64_t braked_ticks() const noexcept { return brake_ ? brake_->braked_ticks() : 0; }
 
  private:
   double force_share() const noexcept;
   template <class Sample, class Values>
-  Reception receive(const Sample& sample, const Values& values, bool borne) noexcept;
+  Reception receive(const Sample& sample, const Values& values, bool borne,
+                    const std::array<double, kMaxAxes>& most) noexcept;
+  template <class Sample>
+  bool goes_on(const Sample& sample) noexcept;
+  void take_work(const msg::GestureForces& sample, const DeviceReach& reach,
+                 std::uint64_t periods) noexcept;
   template <class Answer>
   void fill_header(Answer& answer, std::int64_t now_nsec) noexcept;
 
@@ -114,7 +128,8 @@ class DeviceExchange {
   std::uint64_t felt_answer_ = 0;  // role liaison: that the newest sample speaks of
   double hand_work_ = 0.0;         // what the hand had given there [J]
   bool has_new_ = false;
-  bool new_run_ = false;    // it is the first of another process
+  bool new_run_ = false;    // it is the first of another process, or its numbers begin anew
+  bool new_work_ = false;   // what it tells of its work does not follow from what it told before
   bool after_gap_ = false;  // it is the first after a gap of kLostAfter
   bool borne_ = true;
 
@@ -123,6 +138,9 @@ class DeviceExchange {
   int lost_after_ticks_;
   std::int64_t lost_after_nsec_;
   int rejoin_ticks_;
+  std::uint64_t most_jump_;  // of the numbers of samples
+  double rate_hz_;
+  int older_in_a_row_ = 0;  // samples that came since one was taken
   int silent_ticks_;
   int rejoin_left_ = 0;
   int even_ticks_ = 0;  // since the last gap, at most rejoin_ticks_

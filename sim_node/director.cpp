@@ -24,10 +24,21 @@ std::shared_ptr<const scene::Scene> whole_of(const std::shared_ptr<const scene::
   return scene->whole ? scene->whole : scene;
 }
 
+/// All that is wrong in files, for who need not be allowed to read them: without their lines.
+std::string text_without_lines(const config::Problems& problems) {
+  std::string text;
+  for (config::Problem problem : problems.in_order()) {
+    problem.source_line.clear();
+    if (!text.empty()) text += '\n';
+    text += problem.text();
+  }
+  return text;
+}
+
 /// All that is wrong in the files of a scene, behind one sentence.
 std::string refusal_of(const std::string& path, const config::Problems& problems) {
   return "'" + path + "' cannot be played (" + config::count_text(problems.error_count(), "error") +
-         "), the present scene goes on\n" + problems.text();
+         "), the present scene goes on\n" + text_without_lines(problems);
 }
 
 }  // namespace
@@ -109,7 +120,7 @@ node::Answer Director::load(const std::string& path) {
   config::Problems problems;
   auto scene = std::make_shared<scene::Scene>(load_(path, problems));
   if (problems.has_errors()) return {false, refusal_of(path, problems)};
-  const std::string warnings = problems.text();
+  const std::string warnings = text_without_lines(problems);
   node::Answer answer = restart(scene, "'" + scene->name + "' begins");
   if (answer.accepted) parameters_ = scene::Parameters(whole_of(scene));
   if (answer.accepted && !warnings.empty()) answer.text += "\n" + warnings;
@@ -135,7 +146,8 @@ node::Answer Director::set(const std::vector<NewValue>& values) {
     scene::set_step(*scene, scene_->step_rate_hz, scene_->network.integrator);
   }
   check_(*scene, problems);
-  if (problems.has_errors()) return {false, "the values stay as they are\n" + problems.text()};
+  if (problems.has_errors())
+    return {false, "the values stay as they are\n" + text_without_lines(problems)};
   Order order;
   order.kind = Order::Kind::kExchange;
   try {
@@ -149,7 +161,7 @@ node::Answer Director::set(const std::vector<NewValue>& values) {
   if (!answer.accepted) return answer;
   scene_ = std::move(scene);
   parameters_ = std::move(parameters);
-  if (!problems.all().empty()) answer.text += "\n" + problems.text();
+  if (!problems.all().empty()) answer.text += "\n" + text_without_lines(problems);
   return answer;
 }
 

@@ -99,9 +99,9 @@ void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissip
   const double moved = std::exchange(moved_, 0.0);
   const double doubt_j = doubt();
   // A device that has not heard for so long is led on gradually when it hears again.
-  if (answered_sample + kRoom <= last_entered_) start();
-  const bool known = answered_sample != 0 && answered_sample <= last_entered_ &&
-                     answered_sample + kRoom > last_entered_;
+  const bool later = answered_sample > last_entered_;  // than any answer: no device heard that
+  if (!later && last_entered_ - answered_sample >= kRoom) start();
+  const bool known = answered_sample != 0 && !later && last_entered_ - answered_sample < kRoom;
   if (!known || !std::isfinite(work_j)) return;
   told_ = told_ || work_j != 0.0;
   const auto ticks_late = static_cast<double>(last_entered_ - answered_sample);

@@ -10,6 +10,8 @@
 namespace cordis::sim {
 namespace {
 
+constexpr std::size_t kLongestDriver = 64;
+
 bool makes_sense(const msg::DeviceDescription& told) {
   const auto at_least_zero = [](double value) { return std::isfinite(value) && value >= 0.0; };
   return std::isfinite(told.rate_hz()) && told.rate_hz() > 0.0 &&
@@ -44,23 +46,28 @@ void RefusedDevices::play(const scene::Scene& scene) {
   judge();
 }
 
-void RefusedDevices::hear(const msg::DeviceDescription& told) {
-  if (!makes_sense(told)) return;
+bool RefusedDevices::hear(const msg::DeviceDescription& told) {
+  if (!makes_sense(told)) return false;
   const std::lock_guard lock(mutex_);
-  if (known_.size() >= kMostKnown)
-    known_.clear();  // those that are there are judged when they join
-  known_[{told.device_id(), told.run()}] = {told.run(), told.driver(), limits_of(told)};
+  const auto is_same = [&told](const Known& device) {
+    return device.device_id == told.device_id() && device.run == told.run();
+  };
+  if (std::ranges::any_of(known_, is_same)) return false;
+  if (known_.size() >= kMostKnown) known_.pop_front();
+  known_.push_back(
+      {told.device_id(), told.run(), told.driver().substr(0, kLongestDriver), limits_of(told)});
   judge();
+  return true;
 }
 
 /// All known devices anew.
 void RefusedDevices::judge() {
   std::string text;
   std::size_t count = 0;
-  for (const auto& [key, device] : known_) {
+  for (const Known& device : known_) {
     std::string why;
     for (const PortDemand& demand : demands_) {
-      if (demand.device_id != key.first) continue;
+      if (demand.device_id != device.device_id) continue;
       const PortVerdict verdict = verdict_on(demand, device.limits, delay_periods_);
       std::vector<std::string> reasons = verdict.lacks;
       if (!verdict.refusal.empty()) reasons.push_back(verdict.refusal);

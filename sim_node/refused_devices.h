@@ -4,7 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <map>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -25,8 +25,9 @@ class RefusedDevices {
   /// The scene that is played from now on.
   void play(const scene::Scene& scene);
 
-  /// A device tells what it is; not believed when a number in it makes no sense.
-  void hear(const msg::DeviceDescription& told);
+  /// A device tells what it is; not believed when a number in it makes no sense, or when the same
+  /// process has told something before. @return whether it is believed
+  bool hear(const msg::DeviceDescription& told);
 
   /// Whether the process of this run is refused. Real time.
   bool refuses(std::uint64_t run) const noexcept;
@@ -36,6 +37,7 @@ class RefusedDevices {
 
  private:
   struct Known {
+    std::uint32_t device_id = 0;
     std::uint64_t run = 0;
     std::string driver;
     config::DeviceLimits limits;
@@ -48,7 +50,7 @@ class RefusedDevices {
   int delay_periods_;
   mutable std::mutex mutex_;
   std::vector<PortDemand> demands_;
-  std::map<std::pair<std::uint32_t, std::uint64_t>, Known> known_;  // by device and run
+  std::deque<Known> known_;  // the newest ones, oldest first
   std::string text_;
   std::array<std::atomic<std::uint64_t>, kMost> refused_{};  // runs; 0: none
 };

@@ -37,18 +37,20 @@ constexpr std::int64_t kLongWait = 2'000'000'000;  // of a scene in lockstep for
 Session::Session(const node::NodeStart& start, SimConfig config)
     : start_(start),
       duration_s_(config.duration_s),
-      participant_(start.join_for_force_loop()),
+      participant_(start.membership()),
+      loop_participant_(start.join_for_force_loop()),
       player_(std::make_unique<Stage>(std::make_shared<const scene::Scene>(std::move(config.scene)),
                                       start.run, 1),
               start.launch.clock == config::Clock::kLockstep),
-      position_reader_(participant_, dds::Topic::kPositions),
-      force_reader_(participant_, dds::Topic::kForces),
-      position_writer_(participant_, dds::Topic::kPositions),
-      force_writer_(participant_, dds::Topic::kForces),
+      position_reader_(loop_participant_, dds::Topic::kPositions),
+      force_reader_(loop_participant_, dds::Topic::kForces),
+      position_writer_(loop_participant_, dds::Topic::kPositions),
+      force_writer_(loop_participant_, dds::Topic::kForces),
       description_writer_(participant_, dds::Topic::kDescription),
       frames_(participant_, start.run),
       refused_(delay_periods_of(start.launch.clock)),
       device_reader_(participant_, dds::Topic::kDevice),
+      roster_(participant_),
       status_(participant_, "sim_node", start.run,
               [this](msg::NodeStatus& status) { fill(status); }),
       director_(
@@ -77,7 +79,9 @@ Session::~Session() {
 void Session::listen_to_devices() {
   msg::DeviceDescription told;
   while (!ending_) {
-    while (device_reader_.take(told)) refused_.hear(told);
+    while (device_reader_.take(told)) {
+      if (refused_.hear(told)) reaches_.put(told.device_id(), told.run(), reach_of(told));
+    }
     if (!ending_) device_reader_.wait(kLongestWait);
   }
 }
@@ -193,7 +197,9 @@ void Session::receive() {
       // for.
       if (device == nullptr || device->role() != role || sample.run() == start_.run) continue;
       const bool borne = !refused_.refuses(sample.run());
-      const bool repeated = device->receive(sample, borne) == DeviceExchange::Reception::kRepeated;
+      const DeviceReach reach = reaches_.find(sample.device_id(), sample.run());
+      const bool repeated =
+          device->receive(sample, borne, reach) == DeviceExchange::Reception::kRepeated;
       // What is still to be played has no answer yet.
       const bool played = !device->has_new_sample() && player_.simulation().is_between_ticks();
       if (repeated && played) answer(*device);
@@ -219,20 +225,20 @@ bool Session::receive_lockstep() {
   return true;
 }
 
-/// Says once for whom a scene in lockstep has long been waiting.
+/// Says once for whom a scene in lockstep has long been waiting, and whether that node is alive.
 void Session::tell_wait(const DeviceExchange& device) {
   const std::int64_t now = node::monotonic_nsec();
+  roster_.look();
   if (waits_since_nsec_ == 0) {
     waits_since_nsec_ = now;
     wait_told_ = false;
   }
   if (now - waits_since_nsec_ < kLongWait || std::exchange(wait_told_, true)) return;
-  const bool is_mass = device.role() == Role::kMass;
-  const int writers = is_mass ? position_reader_.matched_count() : force_reader_.matched_count();
-  const bool others = writers > 1;  // one is of this node itself
-  spdlog::warn("has been waiting for the device '{}' for {} s: {} in the session writes {}",
-               device.device(), kLongWait / 1'000'000'000, others ? "somebody else" : "nobody else",
-               is_mass ? "gesture/positions" : "gesture/forces");
+  const std::string alive = roster_.name_of("device_node");
+  const std::string who = alive.empty() ? "no device_node of the session is alive"
+                                        : "device_node " + alive + " is alive, and sends no sample";
+  spdlog::warn("has been waiting for the device '{}' for {} s: {}", device.device(),
+               kLongWait / 1'000'000'000, who);
 }
 
 bool Session::advance() {
@@ -255,8 +261,10 @@ bool Session::advance() {
 void Session::offer_frame() {
   if (start_.launch.clock != config::Clock::kRealtime) frames_.wait_until_free();
   const Simulation& simulation = player_.simulation();
-  frames_.offer(player_.stage().frames, simulation.world(), simulation.simulated_s(),
-                node::monotonic_nsec(), simulation.action_time_nsec());
+  const std::int64_t now = node::monotonic_nsec();
+  const std::int64_t action = simulation.action_time_nsec();  // as a device wrote it
+  frames_.offer(player_.stage().frames, simulation.world(), simulation.simulated_s(), now,
+                action <= now ? action : 0);
   note_state();
 }
 

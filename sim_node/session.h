@@ -15,7 +15,9 @@
 #include "node/dds/writer.h"
 #include "node/node_main.h"
 #include "node/paced_loop.h"
+#include "node/roster.h"
 #include "node/status.h"
+#include "sim_node/device_reach.h"
 #include "sim_node/director.h"
 #include "sim_node/frame_publisher.h"
 #include "sim_node/order.h"
@@ -66,7 +68,8 @@ class Session {
 
   const node::NodeStart& start_;
   double duration_s_;
-  dds::Participant participant_;
+  dds::Participant participant_;       // for all but the force loop
+  dds::Participant loop_participant_;  // for the force loop, which waits for no other thread
   Player player_;
   OrderBox orders_;
   dds::Reader<msg::GesturePositions> position_reader_;
@@ -106,7 +109,9 @@ class Session {
   std::atomic<std::uint64_t> braked_ticks_{0};
   std::atomic<double> target_rate_hz_{0.0};
   RefusedDevices refused_;
+  ReachTable reaches_;
   dds::Reader<msg::DeviceDescription> device_reader_;
+  node::Roster roster_;  // looked at while the loop waits for a sample
   node::StatusPublisher status_;
   Director director_;
   node::CommandListener commands_;  // its thread uses what stands above

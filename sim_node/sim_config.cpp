@@ -5,9 +5,11 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "node/config/device_limits.h"
 #include "node/config/mapping_reader.h"
+#include "node/config/regular_file.h"
 #include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/port_check.h"
 #include "sim_node/rate_choice.h"
@@ -19,6 +21,7 @@ namespace {
 constexpr const char* kHowToSoften =
     "softer links at the port, or a 'coupling' between the device and a simulated tool";
 constexpr const char* kHowToHaveIt = "a device that has it, or less in 'needs' of the port";
+constexpr std::size_t kMostSceneBytes = std::size_t{16} << 20;
 constexpr const char* kHowToCalm = "viscosity at the port, or a softer hand";
 
 /// A device_node of the launch, and what its device file promises.
@@ -117,6 +120,34 @@ void check_devices(const config::Launch& launch, const scene::Scene& scene,
   }
 }
 
+/// Where the launch file lies, links and `..` resolved; empty when it is no longer there.
+std::filesystem::path folder_of(const config::Launch& launch) {
+  std::error_code failure;
+  return std::filesystem::canonical(std::filesystem::absolute(launch.file).parent_path(), failure);
+}
+
+/// The file of a path as it lies below a folder; empty when it does not. The folder is resolved.
+std::filesystem::path below(const std::filesystem::path& folder, const std::string& path) {
+  std::error_code failure;
+  const std::filesystem::path file = std::filesystem::weakly_canonical(folder / path, failure);
+  if (failure || folder.empty()) return {};
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+  return end == folder.end() && rest != file.end() ? file : std::filesystem::path();
+}
+
+/// Whether a file says that it is written for Cordis, or cannot be read, which the reader tells.
+/// What is wrong in another file would tell what stands in it.
+bool is_of_cordis(const std::filesystem::path& file) {
+  const config::FileBytes read = config::read_regular_file(file.string(), kMostSceneBytes);
+  if (!read.reason.empty()) return true;
+  constexpr std::string_view kMark = "cordis:";
+  for (std::size_t at = read.bytes.find(kMark); at != std::string::npos;
+       at = read.bytes.find(kMark, at + 1)) {
+    if (at == 0 || read.bytes[at - 1] == '\n') return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 int delay_periods_of(config::Clock clock) noexcept {
@@ -151,14 +182,26 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
 
 scene::Scene load_next_scene(const config::Launch& launch, const std::string& path, bool force,
                              config::Problems& problems) {
-  const std::filesystem::path beside = std::filesystem::absolute(launch.file).parent_path();
+  const std::filesystem::path folder = folder_of(launch);
+  const std::filesystem::path file = below(folder, path);
+  if (file.empty()) {
+    problems.error({},
+                   "'" + path + "' is not below '" + folder.string() +
+                       "', the folder of the launch file, from where alone scenes are loaded",
+                   "start the session with it: sim.scene=" + path);
+    return {};
+  }
   std::error_code unknown;
-  if (std::filesystem::path(path).is_absolute() ||
-      std::filesystem::exists((beside / path).parent_path(), unknown))
-    return load_checked_scene(launch, path, {}, force, problems);
-  problems.error({}, "there is no such file, neither where `cordis ctl` was called nor in '" +
-                         beside.string() + "', the folder of the launch file");
-  return {};
+  if (!std::filesystem::exists(file.parent_path(), unknown)) {
+    problems.error({}, "there is no such file, neither where `cordis ctl` was called nor in '" +
+                           folder.string() + "', the folder of the launch file");
+    return {};
+  }
+  if (!is_of_cordis(file)) {
+    problems.error({path, 0, 0}, "this is no scene: it has no line that begins with 'cordis: 1'");
+    return {};
+  }
+  return load_checked_scene(launch, file.string(), {}, force, problems);
 }
 
 }  // namespace cordis::sim

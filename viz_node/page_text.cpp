@@ -14,6 +14,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kLongestText = 300;  // of a text that another process wrote
 constexpr std::size_t kMostStates = 64;    // of a liaison, and liaisons whose changes are counted
+constexpr std::size_t kMostAxes = 16;      // of a port
 constexpr std::size_t kMostNames = 2000;   // names of matter, links and ports that a page is told
 
 std::string clipped(const std::string& text) {
@@ -36,6 +37,15 @@ Json ranges(const std::vector<msg::NamedRange>& named) {
   return list;
 }
 
+Json axes_of(const msg::PortDescription& port) {
+  Json list = Json::array();
+  for (const std::uint32_t axis : port.axes()) {
+    if (list.size() == kMostAxes) break;
+    list.push_back(axis);
+  }
+  return list;
+}
+
 Json ports(const std::vector<msg::PortDescription>& described) {
   Json list = Json::array();
   for (std::size_t i = 0; i < std::min(described.size(), kMostNames); ++i) {
@@ -44,7 +54,7 @@ Json ports(const std::vector<msg::PortDescription>& described) {
                     {"device", clipped(port.device())},
                     {"role", port.role() == 0 ? "mass" : "liaison"},
                     {"mat", port.mat()},
-                    {"axes", port.axes()}});
+                    {"axes", axes_of(port)}});
   }
   return list;
 }

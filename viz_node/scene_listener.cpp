@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <string>
 #include <thread>
 #include <utility>
@@ -40,7 +41,7 @@ class Follower {
       while (!ending_) {
         if (!reader_.wait(kLongestWait)) continue;
         while (!ending_ && reader_.take(message)) {
-          std::string fault = use(std::move(message));
+          std::string fault = fault_of(message, use);
           message = Message();
           if (fault.empty() || fault == last_fault) continue;
           spdlog::warn("refused {}", fault);
@@ -51,6 +52,16 @@ class Follower {
   }
 
  private:
+  /// What `use` says is wrong with the message; also when there is no memory for it.
+  template <class Use>
+  static std::string fault_of(Message& message, const Use& use) {
+    try {
+      return use(std::move(message));
+    } catch (const std::exception& error) {
+      return std::string("a message of another node: ") + error.what();
+    }
+  }
+
   dds::Reader<Message> reader_;
   std::atomic<bool> ending_{false};
   std::thread thread_;

@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kBatchesKept = 64;
 constexpr std::size_t kBatchBytesKept = 16u << 20;
 constexpr std::size_t kMostNodes = 64;
+constexpr std::uint64_t kMostOlder = 64;      // versions of a scene that may come late
+constexpr std::uint64_t kMostLost = 100'000;  // frames between two that came: an hour of 25 Hz
 
 /// Whether a message belongs to the scene that sim_node played before, or to one whose description
 /// has not come yet: for a moment around a change of scene or a restart, both come.
@@ -41,7 +43,9 @@ std::string SceneMirror::take(msg::SceneDescription&& description) {
   {
     const std::lock_guard lock(mutex_);
     const bool same_run = description_ != nullptr && description_->run() == description.run();
-    if (same_run && description.version() < description_->version()) return {};
+    // Late, and not one of a number that nobody could have reached.
+    const std::uint64_t older = same_run ? description_->version() - description.version() : 0;
+    if (older > 0 && older <= kMostOlder) return {};
     last_frame_number_ = 0;  // frames before a description are passed over, not lost
     figures_.frame_rate_hz = description.frame_rate_hz();
     description_ = std::make_shared<const msg::SceneDescription>(std::move(description));
@@ -56,9 +60,11 @@ std::string SceneMirror::take(msg::SceneDescription&& description) {
 }
 
 void SceneMirror::count_gap(const msg::SceneFrame& frame) {
-  if (last_frame_number_ != 0 && frame.frame() > last_frame_number_ + 1)
-    figures_.lost += frame.frame() - last_frame_number_ - 1;
-  last_frame_number_ = frame.frame();
+  const std::uint64_t last = std::exchange(last_frame_number_, frame.frame());
+  if (last == 0 || frame.frame() <= last) return;
+  // A jump beyond what may be lost is no count: numbers are as others wrote them.
+  const std::uint64_t step = frame.frame() - last;
+  if (step <= kMostLost) figures_.lost += step - 1;
 }
 
 std::string SceneMirror::take(msg::SceneFrame&& frame, std::int64_t now_nsec) {
@@ -70,6 +76,9 @@ std::string SceneMirror::take(msg::SceneFrame&& frame, std::int64_t now_nsec) {
   if (description == nullptr || is_of_another_scene(frame, *description)) return {};
   std::string fault = fault_of(frame, *description);
   if (!fault.empty()) return refuse(std::move(fault));
+  // Times are subtracted from the clock, whatever another process wrote.
+  frame.time_nsec(std::max<std::int64_t>(frame.time_nsec(), 0));
+  frame.action_time_nsec(std::max<std::int64_t>(frame.action_time_nsec(), 0));
   auto shown = std::make_shared<ShownFrame>();
   {
     const std::lock_guard lock(mutex_);

@@ -1,9 +1,18 @@
 // device_node/drivers/driver.h -- what the loop asks of a device, real or simulated.
 #pragma once
 
+#include <cstdint>
+
 #include "device_node/axis.h"
 
 namespace cordis::device {
+
+/// What a board does with the last force when no host speaks to it any more.
+enum class BoardWatchdog : std::uint8_t {
+  kLetsGo,  ///< takes it away by itself; a simulated device has nothing to take away
+  kNone,    ///< keeps it for good
+  kUnknown  ///< not known: expect that the board keeps its last force
+};
 
 /// One device as its loop sees it: sensors to read, motors to write.
 ///
@@ -39,6 +48,12 @@ class Driver {
   /// Whether it drives motors of this world. For a simulated device no time passes while a scene in
   /// lockstep is silent or over; a hand at a real one lives on.
   virtual bool has_motors() const noexcept { return false; }
+
+  virtual BoardWatchdog board_watchdog() const noexcept { return BoardWatchdog::kLetsGo; }
+
+  /// Whether write() returns false because the motors have been let go of outside this loop: by the
+  /// board, in an emergency stop for instance, or by the guardian.
+  virtual bool is_let_go() const noexcept { return false; }
 
   /// A scene in lockstep is silent: motors off until the next write(), for then forces grow anew.
   virtual void let_go() noexcept {}

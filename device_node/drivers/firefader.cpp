@@ -28,6 +28,13 @@ void FireFader::begin() noexcept {
   jumps_.forget();
 }
 
+/// The mark begins a request anew wherever the board is.
+std::size_t FireFader::release(Message& message) const noexcept {
+  message[0] = kRequestMark;
+  std::fill_n(message.begin() + 1, kFaders, std::uint8_t{0});
+  return 1 + kFaders;
+}
+
 std::size_t FireFader::request(const AxisValues& force_n, Message& message) noexcept {
   message[0] = kRequestMark;
   for (std::size_t a = 0; a < kFaders; ++a) {

@@ -20,9 +20,13 @@ class FireFader final : public Hardware {
  protected:
   void begin() noexcept override;
   std::size_t greet(Message&) noexcept override { return 0; }
+  std::size_t release(Message& message) const noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
   Heard hear(std::uint8_t byte) noexcept override;
   void position(AxisValues& position_m) const noexcept override { position_m = newest_; }
+
+ public:
+  BoardWatchdog board_watchdog() const noexcept override { return BoardWatchdog::kUnknown; }
 
  private:
   static constexpr std::size_t kAnswer = 6;  // bytes after the 255

@@ -50,6 +50,20 @@ std::size_t Haply::greet(Message&) noexcept {
   return 0;
 }
 
+/// Nothing marks the beginning of a request. So first go as many bytes as the longest one may lack,
+/// of a value that is no type, and that makes a torque that lacks its last byte as good as 0. (A 0
+/// would be the type that makes the board forget its motors, with the torque that they have.)
+std::size_t Haply::release(Message& message) const noexcept {
+  constexpr std::size_t kLongestRest = 25;  // of a configuration
+  constexpr std::uint8_t kNoType = 3;       // and as the last byte of a float: below 1e-36
+  constexpr std::size_t kTorqueBytes = 8;
+  auto end = std::fill_n(message.begin(), kLongestRest, kNoType);
+  *end++ = kTorques;
+  *end++ = haply_.device_id;
+  end = std::fill_n(end, kTorqueBytes, std::uint8_t{0});
+  return static_cast<std::size_t>(end - message.begin());
+}
+
 std::size_t Haply::request(const AxisValues& force_n, Message& message) noexcept {
   std::size_t count = 0;
   const auto add = [&](std::uint8_t byte) { message[count++] = byte; };

@@ -37,10 +37,14 @@ class Haply final : public Hardware {
  protected:
   void begin() noexcept override;
   std::size_t greet(Message& message) noexcept override;
+  std::size_t release(Message& message) const noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
   Heard hear(std::uint8_t byte) noexcept override;
   void fall_silent() noexcept override { length_ = 0; }  // of an answer that lost a byte
   void position(AxisValues& position_m) const noexcept override;
+
+ public:
+  BoardWatchdog board_watchdog() const noexcept override { return BoardWatchdog::kNone; }
 
  private:
   static constexpr std::size_t kAnswer = 9;  // id and two floats

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "device_node/drivers/guardian.h"
 #include "node/time.h"
 
 namespace cordis::device {
@@ -13,13 +14,21 @@ std::int64_t nsec_of(double seconds) noexcept {
   return static_cast<std::int64_t>(seconds * 1e9);
 }
 
+constexpr std::int64_t kGreetingPatience = 3'000'000'000;  // [ns]
+constexpr std::int64_t kGreetAgainAfter = 250'000'000;     // [ns]
+constexpr std::int64_t kLetGoFor = 100'000'000;            // after the board said so last [ns]
+constexpr double kLongestLoss = 0.2;                       // [s]
+constexpr double kLongestLossPeriods = 6.0;                // where these last longer
+
 }  // namespace
 
 Hardware::Hardware(std::unique_ptr<Wire> wire, const HardwareSettings& settings,
                    const AxisLayout& layout)
     : wire_(std::move(wire)), settings_(settings), layout_(layout), guard_(settings.guard) {}
 
-Hardware::~Hardware() = default;
+Hardware::~Hardware() {
+  lose();
+}
 
 void Hardware::start(Role role) noexcept {
   role_ = role;
@@ -41,18 +50,43 @@ bool Hardware::read(AxisValues& sensed) noexcept {
 
 bool Hardware::write(const AxisValues& commanded) noexcept {
   const std::int64_t now = node::monotonic_nsec();
+  is_let_go_ = false;
   if (contact_ == Contact::kLost) try_to_open(now);
   if (contact_ != Contact::kLost) listen(now);  // what came late answers an earlier request
+  if (contact_ == Contact::kGreeting && now >= next_greeting_nsec_) greet_now(now);
   if (contact_ == Contact::kGreeting && !greets_) ask({});
+  is_let_go_ = is_let_go_ || now < let_go_until_nsec_;
+  if (was_released()) hold_motors(now + kLetGoFor);
   if (contact_ == Contact::kPresent) {
-    ask(role_ == Role::kMass ? commanded : pull_to(commanded));
+    const bool to_drive = !is_let_go_;
+    ask(!to_drive ? AxisValues{} : role_ == Role::kMass ? commanded : pull_to(commanded));
     late_ += !listen(now + nsec_of(settings_.answer_within_s));
   }
-  if (contact_ != Contact::kLost &&
-      node::monotonic_nsec() - last_sample_nsec_ > nsec_of(settings_.lost_after_s)) {
-    lose();
-  }
-  return contact_ == Contact::kPresent;
+  if (contact_ != Contact::kLost && is_silent(node::monotonic_nsec())) lose();
+  return contact_ == Contact::kPresent && !is_let_go_;
+}
+
+/// No force in this period, and until that moment.
+void Hardware::hold_motors(std::int64_t until_nsec) noexcept {
+  let_go_until_nsec_ = std::max(let_go_until_nsec_, until_nsec);
+  is_let_go_ = true;
+  pull_.fill(0.0);
+  guard_.start();
+  moving_ = false;
+}
+
+/// True once after the guardian has taken the forces away.
+bool Hardware::was_released() noexcept {
+  const Guardian* const guardian = Guardian::of_process();
+  if (guardian == nullptr) return false;
+  const std::uint32_t releases = guardian->release_count();
+  return std::exchange(releases_seen_, releases) != releases;
+}
+
+bool Hardware::is_silent(std::int64_t now) const noexcept {
+  const std::int64_t patience =
+      contact_ == Contact::kPresent ? nsec_of(settings_.lost_after_s) : kGreetingPatience;
+  return now - last_sample_nsec_ > patience;
 }
 
 void Hardware::let_go() noexcept {
@@ -68,14 +102,30 @@ void Hardware::stop() noexcept {
 void Hardware::try_to_open(std::int64_t now) noexcept {
   if (now < next_try_nsec_) return;
   next_try_nsec_ = now + nsec_of(settings_.retry_s);
+  ReleaseFrame frame;
+  frame.length = release(frame.bytes);
+  wire_->set_release(frame);
   if (!wire_->open()) return;
+  last_sample_nsec_ = now;
+  contact_ = Contact::kGreeting;
+  greet_now(now);
+}
+
+void Hardware::greet_now(std::int64_t now) noexcept {
+  next_greeting_nsec_ = now + kGreetAgainAfter;
   begin();
-  last_sample_nsec_ = now;  // from here on it has lost_after_s to speak
   Message message;
   const std::size_t count = greet(message);
-  contact_ = Contact::kGreeting;
   greets_ = count > 0;
   if (greets_) wire_->send({message.data(), count});
+}
+
+/// The board has started anew behind an open wire.
+void Hardware::restart() noexcept {
+  hold_motors(0);
+  contact_ = Contact::kGreeting;
+  last_sample_nsec_ = node::monotonic_nsec();
+  greet_now(last_sample_nsec_);
 }
 
 /// The device is the right one, and present with its first sample.
@@ -90,6 +140,8 @@ void Hardware::ask(const AxisValues& force_n) noexcept {
   Message message;
   const std::size_t count = request(force_n, message);
   wire_->send({message.data(), count});
+  Guardian* const guardian = Guardian::of_process();
+  if (guardian != nullptr) guardian->note_frame(force_n != AxisValues{});
   if (!wire_->is_open()) lose();
 }
 
@@ -128,6 +180,9 @@ bool Hardware::take(std::span<const std::uint8_t> bytes) noexcept {
       lose();
       return false;
     }
+    if (heard == Heard::kLetGo) hold_motors(node::monotonic_nsec() + kLetGoFor);
+    if (heard == Heard::kLetGoOnce) hold_motors(0);
+    if (heard == Heard::kRestarted) restart();
     const bool sampled = heard == Heard::kSample || heard == Heard::kOldSample;
     if (heard == Heard::kGreeted && greets_) welcome();
     if (sampled) position(position_);
@@ -140,6 +195,7 @@ bool Hardware::take(std::span<const std::uint8_t> bytes) noexcept {
 }
 
 void Hardware::lose() noexcept {
+  if (contact_ == Contact::kPresent) wire_->release();
   wire_->close();
   contact_ = Contact::kLost;
   pull_.fill(0.0);
@@ -169,7 +225,10 @@ HardwareSettings read_hardware(config::MappingReader& reader, const AxisLayout& 
   HardwareSettings settings;
   settings.answer_within_s = reader.optional_number("answer_within_s", 0.4 / layout.rate_hz,
                                                     Range::between(0.0, 0.9 / layout.rate_hz));
-  settings.lost_after_s = reader.optional_number("lost_after_s", 0.02, Range::between(0.002, 10.0));
+  const double period_s = 1.0 / layout.rate_hz;
+  settings.lost_after_s = reader.optional_number(
+      "lost_after_s", std::max(0.02, kLongestLossPeriods * period_s),
+      Range::between(0.002, std::max(kLongestLoss, kLongestLossPeriods * period_s)));
   settings.retry_s = reader.optional_number("retry_s", 0.5, Range::between(0.01, 60.0));
   config::MappingReader coupling(reader.optional_mapping("coupling"), "coupling", problems);
   settings.coupling_n_per_m =

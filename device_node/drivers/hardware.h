@@ -16,14 +16,15 @@ namespace cordis::device {
 /// How the driver stands with its device.
 enum class Contact : std::uint8_t {
   kLost,      ///< the wire is closed; it is tried again every retry_s
-  kGreeting,  ///< the wire is open, and the first sample of the right device has not come yet
+  kGreeting,  ///< the wire is open, and the first sample of the right device has not come yet: it
+              ///< has 3 s, for a board may reset when its line is opened
   kPresent    ///< samples come
 };
 
 /// Settings of every such driver.
 struct HardwareSettings {
   double answer_within_s = 0.0004;  ///< how long write() waits for the sample it asks for
-  double lost_after_s = 0.02;       ///< without a sample
+  double lost_after_s = 0.02;       ///< without a sample, once it is present
   double retry_s = 0.5;
   double coupling_n_per_m = 300.0;  ///< role liaison: between hand and commanded place
   double coupling_n_s_per_m = 1.0;  ///< likewise
@@ -34,7 +35,10 @@ struct HardwareSettings {
 /// request. The loop never waits for it longer than answer_within_s, and reads no more than a few
 /// kB a period, however much comes. A device that falls silent is lost: the wire is closed, opened
 /// again every retry_s, and the driver goes on by itself. What comes late, but before the next
-/// request, is taken as it comes.
+/// request, is taken as it comes. Before a wire is closed, the motors are given no force.
+///
+/// A board that says that it has let go of its motors is given no force until it has not said so
+/// for 0.1 s; so is one whose forces the guardian has taken away. Meanwhile write() returns false.
 ///
 /// Role mass: as it is. Role liaison, for devices without a sensor of force: the motors pull the
 /// handle to the commanded place by a coupling, F = K (x - x_h) + Z (v - v_h), through a guard of
@@ -50,6 +54,7 @@ class Hardware : public Driver {
   void note_age(double age_s) noexcept override { age_s_ = age_s; }
   bool write(const AxisValues& commanded) noexcept override;
   bool has_motors() const noexcept override { return true; }
+  bool is_let_go() const noexcept override { return is_let_go_; }
   void let_go() noexcept override;
   void stop() noexcept override;
 
@@ -68,15 +73,22 @@ class Hardware : public Driver {
     kWrong,      ///< it is not: the wire is closed
     kSample,     ///< a sample that answers the newest request, as far as can be told
     kOldSample,  ///< one that answers an earlier request
+    kLetGo,      ///< the board has let go of its motors, and may go on to
+    kLetGoOnce,  ///< it has, and takes forces again
+    kRestarted,  ///< the board has started anew, and knows nothing of what it was told
     kBad         ///< damaged
   };
 
-  /// Forgets half a message.
+  /// Forgets half a message, and what the device was told: at an open wire, and again every 0.25 s
+  /// until the device is present.
   virtual void begin() noexcept = 0;
   /// Writes what the device is asked first; 0: it need not say what it is.
   virtual std::size_t greet(Message& message) noexcept = 0;
   /// Writes what a device that has greeted is told once; 0: nothing.
   virtual std::size_t configure(Message&) noexcept { return 0; }
+  /// Writes what takes the force from the motors wherever in a message the device is. Always the
+  /// same bytes.
+  virtual std::size_t release(Message& message) const noexcept = 0;
   /// Writes the request that carries forces [N].
   virtual std::size_t request(const AxisValues& force_n, Message& message) noexcept = 0;
   virtual Heard hear(std::uint8_t byte) noexcept = 0;
@@ -88,6 +100,11 @@ class Hardware : public Driver {
 
  private:
   void try_to_open(std::int64_t now) noexcept;
+  void greet_now(std::int64_t now) noexcept;
+  void hold_motors(std::int64_t until_nsec) noexcept;
+  bool was_released() noexcept;
+  bool is_silent(std::int64_t now) const noexcept;
+  void restart() noexcept;
   void welcome() noexcept;
   void ask(const AxisValues& force_n) noexcept;
   bool listen(std::int64_t until) noexcept;
@@ -102,7 +119,11 @@ class Hardware : public Driver {
   ForceGuard guard_;
   Contact contact_ = Contact::kLost;
   bool greets_ = true;  // it has yet to say what it is
+  bool is_let_go_ = false;
+  std::int64_t let_go_until_nsec_ = 0;
+  std::uint32_t releases_seen_ = 0;  // of the guardian
   std::int64_t next_try_nsec_ = 0;
+  std::int64_t next_greeting_nsec_ = 0;
   std::int64_t last_sample_nsec_ = 0;
   AxisValues position_{};  // [m]
   AxisValues pull_{};      // role liaison: on the handle [N]
@@ -115,7 +136,7 @@ class Hardware : public Driver {
 };
 
 /// Reads what is common from the mapping of a driver: answer_within_s, lost_after_s, retry_s and
-/// `coupling`.
+/// `coupling`. A device counts as lost after 0.2 s or 6 periods at the latest, as for a watchdog.
 HardwareSettings read_hardware(config::MappingReader& reader, const AxisLayout& layout,
                                config::Problems& problems);
 

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "node/config/count_text.h"
+#include "node/time.h"
 
 namespace cordis::device {
 namespace {
@@ -93,7 +94,7 @@ std::size_t unseal(Message& frame, std::size_t count) noexcept {
 
 void Kfb1::begin() noexcept {
   length_ = 0;
-  told_ = 0;
+  board_asked_nsec_ = 0;
 }
 
 std::size_t Kfb1::greet(Message& message) noexcept {
@@ -114,9 +115,23 @@ std::size_t Kfb1::configure(Message& message) noexcept {
   return seal(payload, 7, message);
 }
 
+/// The 0 before it ends whatever frame has begun.
+std::size_t Kfb1::release(Message& message) const noexcept {
+  Message payload{};
+  const auto count = static_cast<std::size_t>(layout().count);
+  payload[0] = kForce;
+  payload[2] = static_cast<std::uint8_t>(count);
+  Message frame;
+  const std::size_t length = seal(payload, 4 + 2 * count, frame);
+  message[0] = 0;
+  std::copy_n(frame.begin(), length, message.begin() + 1);
+  return length + 1;
+}
+
 std::size_t Kfb1::request(const AxisValues& force_n, Message& message) noexcept {
   Message payload{};
   const auto count = static_cast<std::size_t>(layout().count);
+  asked_nsec_ = node::monotonic_nsec();
   payload[0] = kForce;
   payload[1] = ++sequence_;
   payload[2] = static_cast<std::uint8_t>(count);
@@ -146,17 +161,26 @@ Hardware::Heard Kfb1::take_frame() noexcept {
   const Bytes payload(frame_.data(), count);
   if (payload[0] == kInfo) return take_info(payload);
   if (payload[0] == kState) return take_state(payload);
-  if (payload[0] == kEvent && payload.size() > 1) take_event(payload[1]);
+  if (payload[0] == kEvent && payload.size() > 1) return take_event(payload[1]);
   return Heard::kNothing;  // or of a later version
 }
 
-/// Tells of it, but not again and again.
-void Kfb1::take_event(std::uint8_t code) noexcept {
+/// Logs each event once while the board repeats it.
+Hardware::Heard Kfb1::take_event(std::uint8_t code) noexcept {
+  constexpr std::uint8_t kSaturated = 3;
+  constexpr std::uint8_t kWatchdogFired = 4;
+  constexpr std::int64_t kOver = 500'000'000;  // not repeated for so long [ns]
   constexpr std::array<const char*, 5> kWords = {"", "it is too hot", "emergency stop",
-                                                 "a motor is saturated", "its watchdog has bitten"};
-  if (code == 0 || code >= kWords.size() || code == told_) return;
+                                                 "a motor is saturated",
+                                                 "its watchdog has fired: no FORCE for 20 ms"};
+  if (code == 0 || code >= kWords.size()) return Heard::kNothing;
+  const std::int64_t now = node::monotonic_nsec();
+  const bool goes_on = code == told_ && now - event_nsec_ < kOver;
   told_ = code;
-  spdlog::warn("kfb1: the device says: {}", kWords[code]);
+  event_nsec_ = now;
+  if (!goes_on) spdlog::warn("kfb1: the board reports: {}", kWords[code]);
+  if (code == kSaturated) return Heard::kNothing;
+  return code == kWatchdogFired ? Heard::kLetGoOnce : Heard::kLetGo;
 }
 
 Hardware::Heard Kfb1::take_info(Bytes payload) noexcept {
@@ -199,7 +223,27 @@ Hardware::Heard Kfb1::take_state(Bytes payload) noexcept {
     const double share = static_cast<std::int16_t>(get16(payload, 8 + 2 * a)) / kFullScale;
     newest_[a] = layout().lowest_m + 0.5 * (share + 1.0) * travel_m_;
   }
-  return payload[1] == sequence_ ? Heard::kSample : Heard::kOldSample;
+  const bool newest = payload[1] == sequence_;
+  if (has_restarted(get32(payload, 4))) return Heard::kRestarted;
+  if (newest) {
+    board_usec_ = get32(payload, 4);
+    board_asked_nsec_ = asked_nsec_;
+  }
+  return newest ? Heard::kSample : Heard::kOldSample;
+}
+
+/// The time of a board goes on by no more than has passed since its last STATE was asked for. That
+/// of a board that has started anew is earlier, which looks like up to 71 minutes later.
+bool Kfb1::has_restarted(std::uint32_t board_usec) noexcept {
+  constexpr std::int64_t kClockError = 1'000'000;  // [us]
+  constexpr std::int64_t kReordered = 10'000;      // an older datagram [us]
+  if (board_asked_nsec_ == 0) return false;
+  const std::int64_t passed_usec = (node::monotonic_nsec() - board_asked_nsec_) / 1000;
+  const std::int64_t board_passed_usec = static_cast<std::uint32_t>(board_usec - board_usec_);
+  const bool is_older = board_passed_usec > 0xffffffff - kReordered;
+  if (is_older || board_passed_usec <= passed_usec + kClockError) return false;
+  spdlog::warn("kfb1: the board has restarted; it is greeted and configured again");
+  return true;
 }
 
 std::unique_ptr<Driver> make_kfb1(const config::Value& section, const AxisLayout& layout,

@@ -8,7 +8,8 @@ namespace cordis::device {
 /// KFB1: COBS frames with a checksum; each FORCE is answered by one STATE with its number. The
 /// driver asks what the device is, refuses one with another number of keys, says in the log where
 /// its travel or its force is not that of the device file, and tells it the rate and the largest
-/// force of the device file. EVENTs are logged.
+/// force of the device file; again after a restart of the board, which its time shows. EVENTs are
+/// logged; at an emergency stop, an overheated motor or its watchdog the board has let go.
 class Kfb1 final : public Hardware {
  public:
   using Hardware::Hardware;
@@ -17,24 +18,33 @@ class Kfb1 final : public Hardware {
   void begin() noexcept override;
   std::size_t greet(Message& message) noexcept override;
   std::size_t configure(Message& message) noexcept override;
+  std::size_t release(Message& message) const noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
   Heard hear(std::uint8_t byte) noexcept override;
   void position(AxisValues& position_m) const noexcept override { position_m = newest_; }
+
+ public:
+  BoardWatchdog board_watchdog() const noexcept override { return BoardWatchdog::kLetsGo; }
 
  private:
   Heard take_frame() noexcept;
   Heard take_info(std::span<const std::uint8_t> payload) noexcept;
   Heard take_state(std::span<const std::uint8_t> payload) noexcept;
-  void take_event(std::uint8_t code) noexcept;
+  Heard take_event(std::uint8_t code) noexcept;
+  bool has_restarted(std::uint32_t board_usec) noexcept;
   void compare_with_file() const noexcept;
 
   Message frame_{};  // bytes since the last 0
   std::size_t length_ = 0;
-  std::uint8_t sequence_ = 0;  // of the newest FORCE
-  double travel_m_ = 0.04;     // as the device says
-  double force_n_ = 20.0;      // likewise: of the largest value
-  std::uint8_t told_ = 0;      // code of the EVENT that was logged last
-  AxisValues newest_{};        // [m]
+  std::uint8_t sequence_ = 0;          // of the newest FORCE
+  double travel_m_ = 0.04;             // as the device says
+  double force_n_ = 20.0;              // likewise: of the largest value
+  std::uint8_t told_ = 0;              // code of the EVENT that was logged last, while it goes on
+  std::int64_t event_nsec_ = 0;        // when it came last
+  std::int64_t asked_nsec_ = 0;        // when the newest FORCE was sent
+  std::uint32_t board_usec_ = 0;       // time of the board in a STATE
+  std::int64_t board_asked_nsec_ = 0;  // when that STATE was asked for at the latest; 0: none
+  AxisValues newest_{};                // [m]
 };
 
 /// Reads the mapping `kfb1:` of a device file. Empty when it has errors.

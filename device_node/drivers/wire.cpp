@@ -21,6 +21,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "device_node/drivers/guardian.h"
 #include "node/claim.h"
 
 namespace cordis::device {
@@ -39,22 +40,17 @@ class SerialLine final : public Wire {
  public:
   SerialLine(std::string path, speed_t baud) : path_(std::move(path)), baud_(baud) {}
 
-  bool open() noexcept override {
-    close();
+ protected:
+  bool connect() noexcept override {
     file_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     termios line{};
     const bool opened = file_ >= 0 && tcgetattr(file_, &line) == 0;  // writes to nothing but a line
     tell(opened ? 0 : errno);
-    if (!opened) {
-      close();
-      return false;
-    }
-    if (!note_mine(flock(file_, LOCK_EX | LOCK_NB) == 0, path_.c_str())) {
-      close();
-      return false;
-    }
+    if (!opened) return false;
+    if (!note_mine(flock(file_, LOCK_EX | LOCK_NB) == 0, path_.c_str())) return false;
     cfmakeraw(&line);
     line.c_cflag |= CLOCAL | CREAD;
+    line.c_cflag &= ~static_cast<tcflag_t>(HUPCL | CRTSCTS);  // no reset at close, no blocking
     cfsetspeed(&line, baud_);
     tcsetattr(file_, TCSANOW, &line);
     tcflush(file_, TCIOFLUSH);
@@ -77,21 +73,19 @@ class SerialLine final : public Wire {
 class Datagrams final : public Wire {
  public:
   Datagrams(const sockaddr_in& address, std::string name)
-      : address_(address), name_(std::move(name)) {}
+      : address_(address), name_(std::move(name)) {
+    is_stream_ = false;
+  }
   ~Datagrams() override {
     if (claim_ >= 0) ::close(claim_);
   }
 
-  bool open() noexcept override {
-    close();
+ protected:
+  bool connect() noexcept override {
     if (!note_mine(claim(), name_.c_str())) return false;
     file_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (file_ < 0) return false;
-    if (connect(file_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_) == 0) {
-      return true;
-    }
-    close();
-    return false;
+    return file_ >= 0 &&
+           ::connect(file_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_) == 0;
   }
 
  private:
@@ -116,8 +110,24 @@ Wire::~Wire() {
   close();
 }
 
+bool Wire::open() noexcept {
+  close();
+  if (!connect()) {
+    close();
+    return false;
+  }
+  Guardian* const guardian = Guardian::of_process();
+  if (guardian != nullptr) guardian->hold(file_, release_);
+  return true;
+}
+
 void Wire::close() noexcept {
-  if (file_ >= 0) ::close(file_);
+  rest_count_ = 0;
+  if (file_ < 0) return;
+  Guardian* const guardian = Guardian::of_process();
+  if (guardian != nullptr) guardian->drop();
+  flock(file_, LOCK_UN);  // the guardian has the same open file for a moment longer
+  ::close(file_);
   file_ = -1;
 }
 
@@ -130,11 +140,33 @@ bool Wire::note_mine(bool mine, const char* what) noexcept {
 
 bool Wire::send(std::span<const std::uint8_t> bytes) noexcept {
   if (file_ < 0) return false;
+  if (rest_count_ > 0 && !send_rest()) return false;
   const ssize_t written = ::write(file_, bytes.data(), bytes.size());
   if (written == static_cast<ssize_t>(bytes.size())) return true;
-  // A full buffer is a device that no longer reads; half a frame is found out by its checksum.
+  // A full buffer is a device that no longer reads.
   if (written < 0 && errno != EAGAIN && errno != ECONNREFUSED) close();
+  if (written > 0) {
+    const auto rest = bytes.subspan(static_cast<std::size_t>(written));
+    rest_count_ = std::min(rest.size(), rest_.size());
+    std::copy_n(rest.begin(), rest_count_, rest_.begin());
+  }
   return false;
+}
+
+bool Wire::send_rest() noexcept {
+  const ssize_t written = ::write(file_, rest_.data(), rest_count_);
+  if (written < 0 && errno != EAGAIN) close();
+  if (written <= 0) return false;
+  const auto count = static_cast<std::size_t>(written);
+  std::copy(rest_.begin() + written, rest_.begin() + static_cast<std::ptrdiff_t>(rest_count_),
+            rest_.begin());
+  rest_count_ -= count;
+  return rest_count_ == 0;
+}
+
+void Wire::release() noexcept {
+  if (file_ >= 0) write_release(file_, release_);
+  rest_count_ = 0;
 }
 
 std::size_t Wire::receive(std::span<std::uint8_t> room, std::chrono::nanoseconds at_most) noexcept {
@@ -144,7 +176,8 @@ std::size_t Wire::receive(std::span<std::uint8_t> room, std::chrono::nanoseconds
   if (ppoll(&poll_on, 1, &limit, nullptr) <= 0) return 0;
   const ssize_t count = ::read(file_, room.data(), room.size());
   if (count > 0) return static_cast<std::size_t>(count);
-  if (count == 0 || (errno != EAGAIN && errno != ECONNREFUSED)) close();
+  const bool ended = count == 0 ? is_stream_ : errno != EAGAIN && errno != ECONNREFUSED;
+  if (ended) close();
   return 0;
 }
 

@@ -1,19 +1,21 @@
 // device_node/drivers/wire.h -- bytes to and from a device that is plugged in: serial line or UDP.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 
+#include "device_node/drivers/motor_release.h"
 #include "node/config/mapping_reader.h"
 
 namespace cordis::device {
 
 /// A way to a device, which is this process' own while it is open: two that took turns would pull a
 /// motor to and fro. Nothing here waits longer than it is told, allocates or throws; opening may
-/// take the kernel some 100 us.
+/// take the kernel some 100 us. While it is open, the guardian of this process has it as well.
 class Wire {
  public:
   Wire() = default;
@@ -21,24 +23,42 @@ class Wire {
   Wire& operator=(const Wire&) = delete;
   virtual ~Wire();
 
-  virtual bool open() noexcept = 0;  ///< false when the device is not there, or not to be had
+  /// What takes the force from the motors, whoever writes it; to be set before open().
+  void set_release(const ReleaseFrame& release) noexcept { release_ = release; }
+
+  bool open() noexcept;  ///< false when the device is not there, or not to be had
   void close() noexcept;
   bool is_open() const noexcept { return file_ >= 0; }
 
-  /// Hands over all of it, or closes the wire and returns false.
+  /// Hands over all of it; false when the device takes no more, or has gone: then the wire is
+  /// closed. Of a message that was taken in part the rest goes first at the next call, so that the
+  /// device never takes the middle of a message for its beginning.
+  /// @param bytes  at most 96
   bool send(std::span<const std::uint8_t> bytes) noexcept;
 
+  /// Takes the force from the motors, even where a line takes no more.
+  void release() noexcept;
+
   /// What has arrived, waiting at most so long for the first byte; closes the wire when the device
-  /// has gone.
+  /// has gone. An empty datagram is nothing.
   std::size_t receive(std::span<std::uint8_t> room, std::chrono::nanoseconds at_most) noexcept;
 
  protected:
   /// Says once that another process has it. @return mine
   bool note_mine(bool mine, const char* what) noexcept;
 
+  /// Opens file_; false, with or without it, when that fails.
+  virtual bool connect() noexcept = 0;
+
   int file_ = -1;
+  bool is_stream_ = true;  ///< its end is read as no bytes
 
  private:
+  bool send_rest() noexcept;
+
+  ReleaseFrame release_;
+  std::array<std::uint8_t, 96> rest_{};  // of a message that was taken in part
+  std::size_t rest_count_ = 0;
   bool mine_ = true;
 };
 

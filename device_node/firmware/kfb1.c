@@ -104,13 +104,14 @@ static void release(struct kfb1 *device) {
 static void take_forces(struct kfb1 *device, const uint8_t *payload, uint8_t count) {
   const uint8_t keys = device->board.keys;
   if (count < 4 || payload[2] != keys || count != (uint8_t)(4u + 2u * keys)) return;
+  device->driven = 0;
   for (uint8_t key = 0; key < keys; ++key) {
     int16_t force = (int16_t)get16(payload + 4 + 2 * key);
+    if (force != 0) device->driven = 1;
     if (force > device->limit) force = device->limit;
     if (force < -device->limit) force = (int16_t)-device->limit;
     device->board.force(key, force);
   }
-  device->driven = 1;
   device->last_force_us = device->board.time_us();
   send_state(device, payload[1]);
 }
@@ -164,7 +165,16 @@ void kfb1_byte(struct kfb1 *device, uint8_t byte) {
   }
 }
 
+void kfb1_event(struct kfb1 *device, uint8_t code) {
+  uint8_t payload[KFB1_LARGEST_PAYLOAD];
+  payload[0] = KFB1_EVENT;
+  payload[1] = code;
+  send_payload(device, payload, 2);
+}
+
 void kfb1_tick(struct kfb1 *device) {
   const uint32_t silent_us = device->board.time_us() - device->last_force_us;
-  if (device->driven && silent_us > KFB1_WATCHDOG_MS * 1000ul) release(device);
+  if (!device->driven || silent_us <= KFB1_WATCHDOG_MS * 1000ul) return;
+  release(device);
+  kfb1_event(device, KFB1_WATCHDOG);
 }

@@ -28,6 +28,14 @@ enum kfb1_type {
   KFB1_EVENT = 0x06
 };
 
+/* Codes of EVENT. At all but KFB1_SATURATED the host takes its forces back, and ramps them up anew. */
+enum kfb1_event_code {
+  KFB1_TOO_HOT = 1,
+  KFB1_EMERGENCY_STOP = 2,
+  KFB1_SATURATED = 3,
+  KFB1_WATCHDOG = 4 /* sent by kfb1_tick */
+};
+
 /* What a board is, and how it is asked and told. */
 struct kfb1_board {
   uint8_t keys;        /* 1..16 */
@@ -47,7 +55,7 @@ struct kfb1 {
   uint8_t frame[KFB1_LARGEST_FRAME]; /* bytes since the last 0 */
   uint8_t length;
   uint8_t too_long;
-  uint8_t driven;       /* a FORCE has come within the watchdog time */
+  uint8_t driven;       /* a FORCE other than 0 has come within the watchdog time */
   uint32_t last_force_us;
   int16_t limit;        /* of forces, as CONFIG set it */
 };
@@ -59,6 +67,9 @@ void kfb1_byte(struct kfb1 *device, uint8_t byte);
 
 /* At least once a millisecond: the watchdog. */
 void kfb1_tick(struct kfb1 *device);
+
+/* Sends an EVENT. While the cause lasts, call it every 50 ms or sooner, and give no force. */
+void kfb1_event(struct kfb1 *device, uint8_t code);
 
 /* What both sides need; the host has its own. */
 uint16_t kfb1_crc(const uint8_t *bytes, uint8_t count);               /* CRC-16/CCITT-FALSE */

@@ -12,8 +12,6 @@ namespace cordis::config {
 
 namespace {
 
-constexpr long kHighestDomain =
-    101;  // the highest whose ports stay below 32768 by the rules of RTPS
 constexpr std::size_t kLongestName = 64;
 
 const std::vector<std::string>& programs() {
@@ -102,7 +100,11 @@ Clock read_clock(MappingReader& reader) {
   return clock == "asap" ? Clock::kAsap : Clock::kRealtime;
 }
 
-LaunchNode read_node(const Value::Entry& entry, Problems& problems) {
+bool is_key_of_launcher(const std::string& key) {
+  return key == "node" || key == "required" || key == "respawn";
+}
+
+LaunchNode read_node(const Value::Entry& entry, Clock clock, Problems& problems) {
   LaunchNode node;
   node.name = entry.key;
   node.place = entry.key_place;
@@ -114,11 +116,13 @@ LaunchNode read_node(const Value::Entry& entry, Problems& problems) {
   const bool sound = reader.ok();
   node.program = reader.required_choice("node", programs());
   if (!reader.ok()) node.program.clear();
-  node.required = reader.optional_truth("required", true);
+  const bool only_shows = node.program == "viz_node";
+  node.required = reader.optional_truth("required", !only_shows);
+  node.respawn = reader.optional_truth("respawn", only_shows || clock == Clock::kRealtime);
 
   std::vector<Value::Entry> rest;
   for (const Value::Entry& key : entry.value.entries()) {
-    if (key.key != "node" && key.key != "required") rest.push_back(key);
+    if (!is_key_of_launcher(key.key)) rest.push_back(key);
   }
   if (sound) node.section = Value::mapping(std::move(rest), entry.value.place());
   return node;
@@ -155,11 +159,12 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
   MappingReader reader(root, "launch file", problems);
   reader.required_integer("cordis", 1, 1);
   launch.session = read_session(reader, path);
-  launch.domain = static_cast<int>(reader.optional_integer("domain", 0, 0, kHighestDomain));
+  if (reader.has("domain"))
+    launch.domain = static_cast<int>(reader.optional_integer("domain", 0, 0, kHighestDomain));
   launch.clock = read_clock(reader);
   const Value nodes = reader.required_mapping("nodes");
   for (const Value::Entry& entry : nodes.entries())
-    launch.nodes.push_back(read_node(entry, problems));
+    launch.nodes.push_back(read_node(entry, launch.clock, problems));
   if (nodes.exists() && nodes.entries().empty())
     reader.error_at("nodes", "a launch file needs at least one node");
   check_nodes(launch.nodes, problems);

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "node/config/value.h"
 
 namespace cordis::config {
+
+/// The highest DDS domain whose ports stay below 32768 by the rules of RTPS.
+inline constexpr int kHighestDomain = 101;
 
 /// Who gives the time of a session.
 enum class Clock {
@@ -20,9 +24,11 @@ enum class Clock {
 struct LaunchNode {
   std::string name;  ///< unique within the session; also the name of the device for a device_node
   std::string program;   ///< sim_node, device_node or viz_node
-  bool required = true;  ///< whether the session ends when this node ends
-  Value section;  ///< its mapping without the keys `node` and `required`; the node reads it itself
-  Place place;    ///< of the name
+  bool required = true;  ///< whether the session ends when this node ends for good
+  bool respawn = true;   ///< whether the launcher starts it again when it dies
+  Value
+      section;  ///< its mapping without `node`, `required` and `respawn`; the node reads it itself
+  Place place;  ///< of the name
 };
 
 /// What a launch file says, with the overrides of the command line laid on it.
@@ -30,7 +36,7 @@ struct Launch {
   std::string file;
   std::filesystem::path directory;  ///< relative paths in the file start here
   std::string session;              ///< name of the session; DDS partition
-  int domain = 0;                   ///< DDS domain, 0..101
+  std::optional<int> domain;        ///< DDS domain, 0..101, where the file or a word names one
   Clock clock = Clock::kRealtime;
   std::vector<LaunchNode> nodes;  ///< in the order of the file
 
@@ -46,7 +52,9 @@ struct Launch {
 /// Reads a launch file. Every fault is a problem: unknown keys and programs, a domain beyond
 /// 0..101, a session name that is not of 1 to 64 letters, digits, '_' and '-', no node, two
 /// sim_nodes, names with the same name_hash. Without `session:` the session bears the name of the
-/// file. The sections of the nodes are not looked into.
+/// file. The sections of the nodes are not looked into. Without `required:` every node but a
+/// viz_node is required. Without `respawn:` every node starts again when it dies; in a lockstep or
+/// asap session, whose result must not depend on a restart, a viz_node alone.
 /// @param overrides  words `name.key=value` (key of a node, may be nested: hand.mass_kg) and
 ///                   `clock=`, `domain=`, `session=` for the session itself, each value in YAML;
 ///                   a word that fits nothing is a problem.

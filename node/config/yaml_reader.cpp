@@ -2,10 +2,7 @@
 // and builds Values.
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -13,6 +10,7 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include "node/config/regular_file.h"
 #include "node/config/source_text.h"
 #include "node/config/tree_builder.h"
 #include "node/config/value.h"
@@ -110,21 +108,6 @@ Value read(const std::string& given, const std::string& name, bool one_word, Pro
   return builder.root().exists() ? builder.root() : Value::nothing(source.place(0, 0));
 }
 
-/// The bytes of a file, or why there are none.
-std::pair<std::string, std::string> bytes_or_reason(const std::string& path) {
-  std::error_code failure;
-  if (std::filesystem::is_directory(path, failure)) return {{}, "it is a directory"};
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return {{}, errno != 0 ? std::strerror(errno) : "it cannot be opened"};
-  std::string bytes(kMostBytes + 1, '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (stream.bad()) return {{}, "reading failed"};
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  if (bytes.size() > kMostBytes) return {{}, "it is larger than 16 MiB"};
-  return {bytes, {}};
-}
-
 /// The file of the same folder whose name is nearest, for a hint.
 std::string hint_for_missing_file(const std::filesystem::path& path) {
   std::error_code failure;
@@ -144,7 +127,7 @@ std::string hint_for_missing_file(const std::filesystem::path& path) {
 }  // namespace
 
 Value load_file(const std::string& path, Problems& problems, const Place& referrer) {
-  const auto [bytes, reason] = bytes_or_reason(path);
+  const auto [bytes, reason] = read_regular_file(path, kMostBytes);
   if (!reason.empty()) {
     std::error_code failure;
     const bool missing = !std::filesystem::exists(path, failure);

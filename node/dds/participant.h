@@ -1,8 +1,11 @@
 // node/dds/participant.h -- one process' membership of a session.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace cordis::dds {
 
@@ -15,17 +18,49 @@ struct Membership {
   bool stand_ins = false;  ///< likewise; the same for all processes of a session
 };
 
-/// A DDS participant on UDP over 127.0.0.1, with simple discovery. One per process.
+/// What all that a participant owns begins with, in DDS.
+using ParticipantPrefix = std::array<std::uint8_t, 12>;
+
+/// Another participant of the domain.
+struct Peer {
+  std::string name;  ///< of a Cordis process: SESSION/NODE
+  ParticipantPrefix prefix{};
+  std::string process;               ///< as process_identity(); of other programs what they say
+  std::uint16_t discovery_port = 0;  ///< of 127.0.0.1; 0: it is elsewhere
+};
+
+/// A DDS participant on UDP over 127.0.0.1, found and finding others by unicast alone. At most 64
+/// share a domain of a host; a process may have several.
+///
+/// No silence makes a participant drop another: who is there is said by node/status and by the age
+/// of samples. It drops those that leave, and within about a second those whose process has ended
+/// without leaving.
+/// When one that was dropped is there again, as the same, the two would stay deaf to each other:
+/// the participant then joins anew as another one. Readers and writers stay as they are; samples
+/// under way are lost.
+///
 /// Its threads inherit the priority of the thread that makes it.
 class Participant {
  public:
-  /// @throws std::runtime_error when DDS refuses (domain out of range, no loopback interface, ...).
+  /// @throws std::runtime_error when DDS refuses (domain out of range or full, no loopback
+  /// interface, ...).
   explicit Participant(const Membership& membership);
+  /// Its readers and writers are gone before.
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
   const Membership& membership() const noexcept;
+
+  /// The participants that it knows of: of all sessions of the domain, and of those that have ended
+  /// some until they are dropped.
+  std::vector<Peer> peers() const;
+
+  /// Drops a participant at once, for a caller that knows that its process has ended.
+  void drop(const Peer& peer) noexcept;
+
+  /// How often it has joined anew.
+  std::uint64_t rejoin_count() const noexcept;
 
   /// Says in a sentence which process of the session cannot be heard, or cannot hear, because it
   /// was started with another launch file; empty while there is none.

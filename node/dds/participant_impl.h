@@ -1,47 +1,73 @@
-// node/dds/participant_impl.h -- what Participant, Reader and Writer share of Fast DDS. Included by
-// node/dds alone.
+// node/dds/participant_impl.h -- what Participant, Reader and Writer share. Included by node/dds
+// alone.
 #pragma once
 
-#include <map>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
 #include <mutex>
 #include <string>
-
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/topic/Topic.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
+#include <thread>
+#include <vector>
 
 #include "node/dds/participant.h"
-#include "node/dds/topics.h"
+#include "node/dds/presence.h"
 
 namespace cordis::dds {
 
-namespace fast = eprosima::fastdds::dds;
+/// A reader or a writer, which follows its participant from one presence to the next.
+class Endpoint {
+ public:
+  /// Makes its entity of DDS anew. @throws std::runtime_error when DDS refuses; all is as before
+  virtual void prepare(Presence& presence) = 0;
+  /// From now on the entity prepared is the one in use. That before is not used any more, and
+  /// deleted with its presence.
+  virtual void change_over() noexcept = 0;
 
-struct Participant::Impl : fast::DomainParticipantListener {
-  using Guid = eprosima::fastrtps::rtps::GUID_t;
+ protected:
+  ~Endpoint() = default;
+};
 
-  Membership membership;
-  fast::DomainParticipant* participant = nullptr;
-  fast::Publisher* publisher = nullptr;
-  fast::Subscriber* subscriber = nullptr;
+struct Participant::Impl {
+ public:
+  /// @throws std::runtime_error when DDS refuses.
+  explicit Impl(const Membership& membership);
+  ~Impl();
 
-  /// The topic of the table, made at its first use. `type` is registered when its name is new.
-  fast::Topic* topic(const TopicQos& row, fast::TypeSupport type);
+  const Membership& membership() const noexcept { return membership_; }
+  std::vector<Peer> peers() const;
+  std::string mismatch() const;
+  std::uint64_t rejoin_count() const noexcept { return rejoin_count_; }
+  void drop(const Peer& peer) const noexcept;
 
-  void on_publisher_discovery(fast::DomainParticipant*,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& found) override;
-  void on_subscriber_discovery(fast::DomainParticipant*,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& found) override;
-
-  mutable std::mutex mutex;
-  std::map<Guid, std::string> mismatches;  // what is wrong with an endpoint
+  /// @throws std::runtime_error when DDS refuses.
+  void add(Endpoint& endpoint);
+  /// @param delete_entity  called while no other presence can take its place
+  template <class DeleteEntity>
+  void remove(Endpoint& endpoint, DeleteEntity&& delete_entity) {
+    const std::lock_guard lock(mutex_);
+    std::erase(endpoints_, &endpoint);
+    delete_entity();
+  }
 
  private:
-  template <class Endpoint>
-  void compare(const Endpoint& endpoint, bool writes, bool gone);
+  std::unique_ptr<Presence> make_presence();
+  void watch() noexcept;
+  bool rejoin() noexcept;
+
+  const Membership membership_;
+
+  std::mutex watch_mutex_;  // of the next two
+  bool somebody_returned_ = false;
+  bool ending_ = false;
+  std::condition_variable woken_;
+
+  mutable std::mutex mutex_;  // of the next two
+  std::vector<Endpoint*> endpoints_;
+  std::unique_ptr<Presence> presence_;
+  std::atomic<std::uint64_t> rejoin_count_{0};
+  std::thread watch_;
 };
 
 /// Reliability, durability, history, ownership and memory of a row, on a DataWriterQos or

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <stdexcept>
+#include <string>
 
 #include <fastdds/dds/core/status/SubscriptionMatchedStatus.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -16,13 +17,44 @@
 namespace cordis::dds {
 
 template <class Message>
-struct Reader<Message>::Impl : fast::DataReaderListener {
-  fast::Subscriber* subscriber = nullptr;
+struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
+  Impl(Participant::Impl& joined, Topic topic)
+      : participant(joined),
+        row(qos_of(topic, joined.membership().lockstep, joined.membership().stand_ins)) {}
+
+  Participant::Impl& participant;
+  const TopicQos row;
+
+  std::mutex in_use;  // held by whoever uses the reader; free but while it changes over
   fast::DataReader* reader = nullptr;
+  fast::Subscriber* subscriber = nullptr;
+
+  fast::DataReader* prepared = nullptr;
+  fast::Subscriber* next_subscriber = nullptr;
+
   std::mutex mutex;
   std::condition_variable arrived;
   bool pending = false;
   bool interrupted = false;
+
+  void prepare(Presence& presence) override {
+    fast::Topic* topic =
+        presence.topic(row, fast::TypeSupport(new typename TypeOf<Message>::Type()));
+    fast::DataReaderQos qos;
+    apply(row, qos);
+    next_subscriber = &presence.subscriber();
+    prepared =
+        next_subscriber->create_datareader(topic, qos, this, fast::StatusMask::data_available());
+    if (prepared == nullptr) {
+      throw std::runtime_error(std::string("DDS refused to read ") + row.name);
+    }
+  }
+
+  void change_over() noexcept override {
+    const std::lock_guard lock(in_use);
+    reader = prepared;
+    subscriber = next_subscriber;
+  }
 
   void on_data_available(fast::DataReader*) override {
     {
@@ -34,31 +66,22 @@ struct Reader<Message>::Impl : fast::DataReaderListener {
 };
 
 template <class Message>
-Reader<Message>::Reader(Participant& participant, Topic topic) : impl_(std::make_unique<Impl>()) {
-  Participant::Impl& shared = participant.impl();
-  const TopicQos row = qos_of(topic, shared.membership.lockstep, shared.membership.stand_ins);
-  fast::Topic* dds_topic =
-      shared.topic(row, fast::TypeSupport(new typename TypeOf<Message>::Type()));
-
-  fast::DataReaderQos qos;
-  apply(row, qos);
-  impl_->subscriber = shared.subscriber;
-  impl_->reader = shared.subscriber->create_datareader(dds_topic, qos, impl_.get(),
-                                                       fast::StatusMask::data_available());
-  if (impl_->reader == nullptr) {
-    throw std::runtime_error(std::string("DDS refused to read ") + row.name);
-  }
+Reader<Message>::Reader(Participant& participant, Topic topic)
+    : impl_(std::make_unique<Impl>(participant.impl(), topic)) {
+  participant.impl().add(*impl_);
 }
 
 template <class Message>
 Reader<Message>::~Reader() {
-  if (impl_->reader == nullptr) return;
-  impl_->reader->set_listener(nullptr);
-  impl_->subscriber->delete_datareader(impl_->reader);
+  impl_->participant.remove(*impl_, [this] {
+    impl_->reader->set_listener(nullptr);
+    impl_->subscriber->delete_datareader(impl_->reader);
+  });
 }
 
 template <class Message>
 bool Reader<Message>::take(Message& message) noexcept {
+  const std::lock_guard lock(impl_->in_use);
   try {
     fast::SampleInfo info;
     while (impl_->reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
@@ -99,6 +122,7 @@ void Reader<Message>::interrupt() noexcept {
 
 template <class Message>
 int Reader<Message>::matched_count() const noexcept {
+  const std::lock_guard lock(impl_->in_use);
   fast::SubscriptionMatchedStatus status;
   impl_->reader->get_subscription_matched_status(status);
   return status.current_count;

@@ -1,7 +1,9 @@
 // tests/cli/fake_node.cpp -- stands in the place of a node, and does what the environment says.
 //
 // FAKE_NAME (with --check: FAKE_CHECK_NAME) holds commands with `;` between them, done one after
-// the other:
+// the other. Where `|` stands between lists of them, the first start of the node does the first
+// list, the second start the second, and every further start the last; NAME.starts beside the
+// launch file counts them. The commands are:
 //   say TEXT      a line on stdout            error TEXT   a line on stderr
 //   begin TEXT    TEXT without a newline      words        its own command line as a line
 //   pid           a line `pid N`              child        starts a process that only SIGKILL ends;
@@ -10,8 +12,10 @@
 //   signal N run TEXT      publishes node/status: phase running, text TEXT, some figures
 //   phase PHASE   the same in another phase
 // At the end it waits for SIGINT or SIGTERM, says `stopped`, and ends with exit code 0.
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -33,6 +37,7 @@ struct Self {
   std::string name;
   std::string kind;
   std::string words;
+  std::vector<std::string> overrides;
   bool check = false;
 };
 
@@ -46,6 +51,7 @@ Self read_words(int argc, char** argv) {
     if (i == 1) self.launch_file = word;
     if (word == "--name" && i + 1 < argc) self.name = argv[i + 1];
     if (word == "--check") self.check = true;
+    if (word.find('=') != std::string::npos) self.overrides.push_back(word);
   }
   return self;
 }
@@ -70,8 +76,8 @@ class FakeStatus {
  private:
   static dds::Membership membership(const Self& self) {
     config::Problems problems;
-    const config::Launch launch = config::load_launch(self.launch_file, {}, problems);
-    return {launch.domain, launch.session, self.name, false};
+    const config::Launch launch = config::load_launch(self.launch_file, self.overrides, problems);
+    return {launch.domain.value(), launch.session, self.name, false};
   }
 
   dds::Participant participant_;
@@ -100,6 +106,20 @@ bool asked_to_stop() {
   sigset_t waiting;
   sigpending(&waiting);
   return sigismember(&waiting, SIGTERM) == 1;
+}
+
+/// The list of commands for this start of the node.
+std::string list_of_this_start(const std::string& all, const Self& self) {
+  std::vector<std::string> lists;
+  std::istringstream text(all);
+  for (std::string list; std::getline(text, list, '|');) lists.push_back(list);
+  if (lists.size() < 2) return all;
+  const std::string counter =
+      self.launch_file.substr(0, self.launch_file.rfind('/') + 1) + self.name + ".starts";
+  std::size_t starts = 0;
+  std::ifstream(counter) >> starts;
+  std::ofstream(counter) << starts + 1;
+  return lists[std::min(starts, lists.size() - 1)];
 }
 
 void obey(const std::string& command, const Self& self, std::unique_ptr<FakeStatus>& status) {
@@ -135,7 +155,7 @@ int main(int argc, char** argv) {
   const std::string variable = (self.check ? "FAKE_CHECK_" : "FAKE_") + self.name;
   const char* commands = std::getenv(variable.c_str());
   std::unique_ptr<FakeStatus> status;
-  std::istringstream script(commands != nullptr ? commands : "");
+  std::istringstream script(commands != nullptr ? list_of_this_start(commands, self) : "");
   for (std::string command; std::getline(script, command, ';');) obey(command, self, status);
   if (self.check) return 0;
 

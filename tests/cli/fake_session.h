@@ -15,14 +15,13 @@
 #include <unistd.h>
 
 #include "tests/support/child_process.h"
+#include "tests/support/eventually.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::test {
 
-/// Longer than anything here can take; only a test that fails waits for so long.
-inline constexpr std::chrono::seconds kPatience{30};
-
-/// A launch file with the nodes sim, key and view (not required), and how each behaves.
+/// A launch file with the nodes sim, key and view (not required), and how each behaves. None starts
+/// again when it dies, unless a test wants it.
 class FakeSession {
  public:
   FakeSession() {
@@ -46,6 +45,13 @@ class FakeSession {
     for (const char* name : {"sim", "key", "view"}) node(name, "pid");
   }
   void clock(const std::string& clock) { clock_ = clock; }
+  /// The launch file names no domain. The user has sessions in no folder but this test's.
+  void own_registry() {
+    domain_.clear();
+    environment_["CORDIS_RUNTIME_DIR"] = directory_ / "runtime";
+  }
+  /// Keys `respawn` as the launch file has them by default.
+  void respawn() { respawn_ = ""; }
 
   std::filesystem::path directory() const { return directory_; }
   std::string launch_file() const { return directory_ / "launch.yaml"; }
@@ -58,16 +64,21 @@ class FakeSession {
   }
 
   std::unique_ptr<ChildProcess> start_words(const std::vector<std::string>& words) {
-    std::ofstream(launch_file()) << "cordis: 1\nsession: fake\ndomain: " << own_domain()
-                                 << "\nclock: " << clock_
-                                 << "\nnodes:\n  view: {node: viz_node, required: false}\n"
-                                    "  key: {node: device_node}\n  sim: {node: sim_node}\n";
+    for (const char* name : {"sim", "key", "view"})
+      std::filesystem::remove(directory_ / (std::string(name) + ".starts"));
+    std::ofstream(launch_file()) << "cordis: 1\nsession: fake\n"
+                                 << domain_ << "clock: " << clock_ << "\nnodes:\n"
+                                 << "  view: {node: viz_node" << respawn_ << "}\n"
+                                 << "  key: {node: device_node" << respawn_ << "}\n"
+                                 << "  sim: {node: sim_node" << respawn_ << "}\n";
     return std::make_unique<ChildProcess>(words, environment_);
   }
 
  private:
   std::filesystem::path directory_;
+  std::string domain_ = "domain: " + std::to_string(own_domain()) + "\n";
   std::string clock_ = "realtime";
+  std::string respawn_ = ", respawn: false";
   std::map<std::string, std::string> environment_;
 };
 
@@ -83,7 +94,7 @@ inline std::vector<pid_t> pids_in(const std::string& output) {
 /// Waits for the end of the run and of its output. @return its exit code
 inline int end_of(ChildProcess& run) {
   const int code = run.wait(kPatience);
-  run.wait_for_output("(a line that nobody writes)", kPatience);  // returns when all is read
+  run.wait_for_end_of_output(kPatience);
   return code;
 }
 
@@ -112,12 +123,7 @@ inline bool is_running(pid_t pid) {
 
 /// Waits until the process does not run any more.
 inline bool is_gone(pid_t pid) {
-  const auto limit = std::chrono::steady_clock::now() + kPatience;
-  while (is_running(pid)) {
-    if (std::chrono::steady_clock::now() > limit) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return true;
+  return eventually([pid] { return !is_running(pid); });
 }
 
 }  // namespace cordis::test

@@ -26,12 +26,6 @@ config::Launch launch_of(config::Clock clock) {
   return launch;
 }
 
-Words names_of(const RunPlan& plan) {
-  Words names;
-  for (const PlannedNode& node : plan.nodes) names.push_back(node.name);
-  return names;
-}
-
 TEST(RunPlan, StartsSimDevicesDisplaysInThisOrder) {
   const RunPlan plan = plan_run(launch_of(config::Clock::kRealtime), {}, "/bin dir");
 

@@ -144,6 +144,14 @@ TEST(Run, GoesOnWithoutANodeThatIsNotRequired) {
   EXPECT_EQ(end_of(*run), 0);
 }
 
+TEST(Run, EndsWithTheCodeOfANodeThatFailedWhenNoneIsLeft) {
+  FakeSession session;
+  session.node("view", "exit 7");
+  const auto run = session.start({"--only", "view"});
+
+  EXPECT_EQ(end_of(*run), 7);
+}
+
 TEST(Run, StartsOnlyTheNodesAskedFor) {
   FakeSession session;
   session.node("key", "say started");
@@ -171,25 +179,36 @@ TEST(Run, ShowsThePageAndEndsWithATable) {
   EXPECT_TRUE(contains(run->output(), "\nkey   no status was received\n"));
 }
 
+/// Runs a session for 100 ms. The launcher waits 5 s for all nodes to run, and says when that was
+/// not enough: a busy machine gets five tries.
+std::string output_of_a_short_run(FakeSession& session) {
+  std::string output;
+  for (int i = 0; i < 5; ++i) {
+    const auto run = session.start({"--duration", "100ms"});
+    EXPECT_EQ(end_of(*run), 0);
+    output = run->output();
+    if (!contains(output, "not all nodes run yet")) break;
+  }
+  return output;
+}
+
 TEST(Run, CountsTheDurationAtOnceWhereTheSceneWaitsForNobody) {
   FakeSession session;
   session.node("sim", "phase waiting");
   session.node("key", "phase unused");
   session.node("view", "run");
-  const auto run = session.start({"--duration", "100ms"});
 
-  EXPECT_EQ(end_of(*run), 0);
-  EXPECT_FALSE(contains(run->output(), "not all nodes run yet"));
+  EXPECT_FALSE(contains(output_of_a_short_run(session), "not all nodes run yet"));
 }
 
 TEST(Run, EndsByItselfOnceAllNodesHaveRunForTheDuration) {
   FakeSession session;
   for (const char* name : {"sim", "key", "view"}) session.node(name, "run");
-  const auto run = session.start({"--duration", "100ms"});
 
-  EXPECT_EQ(end_of(*run), 0);
-  EXPECT_TRUE(contains(run->output(), "state hash"));
-  EXPECT_FALSE(contains(run->output(), "not all nodes run"));
+  const std::string output = output_of_a_short_run(session);
+
+  EXPECT_TRUE(contains(output, "state hash"));
+  EXPECT_FALSE(contains(output, "not all nodes run yet"));
 }
 
 TEST(Run, LeavesSimulatedTimeToTheSimulation) {

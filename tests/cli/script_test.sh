@@ -24,6 +24,7 @@ fake_ninja() {  # -C TREE, then -n or -j N, then targets
     return
   fi
   note "ninja ${tree##*/}: $targets"
+  printf '[1/2, 0s] Building a part\n'
   [[ ! -e $PLACE/broken ]] || { printf 'error: broken code\n'; exit 1; }
   mkdir -p "$tree/bin"
   ln -sf "$PLACE/fake" "$tree/bin/cordis"
@@ -64,14 +65,15 @@ PLACE=$(mktemp -d "${TMPDIR:-/tmp}/cordis script test XXXXXX")
 export PLACE
 trap 'rm -rf "$PLACE"' EXIT
 tree="$PLACE/a tree"
-mkdir -p "$tree/viz_node/web" "$PLACE/tools"
+mkdir -p "$tree"/{cmake,idl,node,sim_node,device_node,viz_node/web,cli} "$PLACE/tools"
 cp "$1/cordis" "$1/packages.txt" "$tree"
+touch "$tree"/CMakeLists.txt "$tree/node/a.cpp"
 touch -d '1 hour ago' "$tree/CMakePresets.json" "$tree/viz_node/web/package-lock.json"
 touch "$PLACE/installed" "$PLACE/calls"
 cp "$0" "$PLACE/fake"
 chmod +x "$PLACE/fake"
 for name in apt-get cmake dpkg-query ninja sudo; do ln -s "$PLACE/fake" "$PLACE/tools/$name"; done
-for name in awk bash cksum dirname env find flock ln mkdir nproc readlink rm tail; do
+for name in awk bash cksum dirname env find flock ln mkdir mv nproc readlink rm sleep tail; do
   ln -s "$(type -P "$name")" "$PLACE/tools/$name"
 done
 
@@ -81,6 +83,14 @@ call() {
   code=0
   output=$(cd / && PATH=$PLACE/tools "$tree/cordis" "$@" 2>&1 </dev/null) || code=$?
   calls=$(<"$PLACE/calls")
+}
+
+# start_and_wait_for_words: ./cordis run in the background as $waiting, until the first words are in $PLACE/output.
+start_and_wait_for_words() {
+  : >"$PLACE/output"
+  PATH=$PLACE/tools "$tree/cordis" run >"$PLACE/output" 2>&1 </dev/null {held}>&- &
+  waiting=$!
+  until [[ -s $PLACE/output ]]; do sleep 0.05; done
 }
 
 failures=0
@@ -155,13 +165,68 @@ Test Failed.
 \"bad\" end time: 1
 cordis: building and testing took 0 min * s"
 expect 'tests are built only for test' "$calls" "*
-ninja release: all tests/all
+ninja release: tests/all
 *
 ninja asan: tests/all
 *
 ninja tsan: tests/all"
 expect 'one CTest covers all' "$(<"$tree/build/CTestTestfile.cmake")" 'subdirs(release asan tsan)'
 expect 'the exit code is that of the tests' "$code" 7
+
+exec {held}>"$tree/build/.lock"
+flock "$held"  # as another ./cordis does that builds
+call run 'a b'
+expect 'a program that is current starts at once while another ./cordis builds' "$output" 'program: \[run\] \[a b\]'
+expect 'and asks no tool' "$calls" ''
+
+mv "$tree/build/release/bin/cordis" "$PLACE/being linked"
+(sleep 0.3; mv "$PLACE/being linked" "$tree/build/release/bin/cordis") {held}>&- &
+call ctl pause
+expect 'ctl waits a moment for a program that is just being linked' "$output" 'program: \[ctl\] \[pause\]'
+wait
+
+touch "$tree/node/a.cpp"
+call ctl pause
+expect 'ctl never waits: what it talks to runs already' "$output" 'program: \[ctl\] \[pause\]'
+expect 'nor does it build' "$calls" ''
+
+start_and_wait_for_words
+expect 'a program that is older than a source waits for who builds' "$(<"$PLACE/output")" \
+  'cordis: waiting for another ./cordis that builds'
+rm "$tree"/build/release/built*
+flock --unlock "$held"
+wait "$waiting" || true
+expect 'and is built then' "$(<"$PLACE/output")" "cordis: waiting for another ./cordis that builds
+cordis: building (release)*
+program: \[run\]"
+call ctl pause
+expect 'a source that changes while nobody builds does not keep ctl either' "$output" 'program: \[ctl\] \[pause\]'
+call run
+flock "$held"
+call run
+expect 'what was built is current from then on' "$output" 'program: \[run\]'
+touch "$tree/node/b.cpp"
+start_and_wait_for_words
+expect 'a new source is noticed' "$(<"$PLACE/output")" 'cordis: waiting for another ./cordis that builds'
+exec {held}>&-
+wait "$waiting" || true
+
+if type -P script >/dev/null; then
+  rm "$tree"/build/release/built*
+  printf -v line '%q ' env "PATH=$PLACE/tools" "$tree/cordis" run
+  output=$(script -qec "$line" /dev/null </dev/null | tr -d '\r') || true
+  expect 'on a terminal a build shows the newest line of ninja' "$output" "cordis: building (release)
+\[1/2, 0s\] Building a part*program: \[run\]"
+  expect 'and keeps all of them' "$(<"$tree/build/build-release.log")" '\[1/2, 0s\] Building a part'
+  rm "$tree"/build/release/built*
+  touch "$PLACE/broken"
+  output=$(script -qec "$line" /dev/null </dev/null | tr -d '\r') || true
+  expect 'and its errors' "$output" "*
+error: broken code
+cordis: failed; the whole output is in build/build-release.log"
+  rm "$PLACE/broken"
+  call run
+fi
 
 mv "$tree" "$PLACE/moved tree"
 tree="$PLACE/moved tree"

@@ -27,6 +27,21 @@ TEST(StatusBoard, KeepsTheNewestOfEachNode) {
   EXPECT_EQ(board.find("view"), nullptr);
 }
 
+TEST(StatusBoard, ForgetsTheLifeBeforeTheRestartOfANode) {
+  StatusBoard board(/*first_run=*/100);
+  board.put(status_of("sim", "sim_node", 101));
+  board.put(status_of("key", "device_node", 102));
+
+  board.begin_life("sim", 200);
+
+  EXPECT_EQ(board.find("sim"), nullptr);
+  EXPECT_FALSE(board.put(status_of("sim", "sim_node", 101))) << "it comes late";
+  EXPECT_EQ(board.find("sim"), nullptr);
+  EXPECT_TRUE(board.put(status_of("sim", "sim_node", 201)));
+  EXPECT_NE(board.find("sim"), nullptr);
+  EXPECT_NE(board.find("key"), nullptr) << "the others stay";
+}
+
 TEST(StatusBoard, RefusesProcessesOlderThanTheRun) {
   StatusBoard board(/*first_run=*/100);
   EXPECT_FALSE(board.put(status_of("sim", "sim_node", 99)));

@@ -16,10 +16,12 @@ class Rehearsal {
  public:
   enum Manner { kStops, kIgnores };
 
-  Rehearsal(const std::vector<int>& stages, std::vector<Manner> manners)
-      : plan_(stages), manners_(std::move(manners)), running_(stages.size(), true) {}
+  Rehearsal(const std::vector<int>& stages, std::vector<Manner> manners,
+            const std::vector<bool>& drives_motors = {})
+      : plan_(stages, drives_motors), manners_(std::move(manners)), running_(stages.size(), true) {}
 
   void begin() { plan_.begin(now_); }
+  void hurry() { plan_.hurry(now_); }
   void end(std::size_t process) { running_[process] = false; }
 
   /// What the plan does at this moment, as "ask 1, kill 2"; processes end as they do.
@@ -88,6 +90,23 @@ TEST(StopPlan, EndsWithinFiveSecondsEvenWhenNobodyListens) {
     ASSERT_EQ(rehearsal.act(), "kill " + std::to_string(process));
   }
   EXPECT_LT(passed, milliseconds(5000));
+}
+
+TEST(StopPlan, InAHurryLeavesMotorsHalfASecondToLetGo) {
+  Rehearsal rehearsal({2, 0, 0, 1}, {kIgnores, kIgnores, kStops, kIgnores},
+                      {false, true, true, false});
+  rehearsal.begin();
+  EXPECT_EQ(rehearsal.act(), "ask 1, ask 2");
+  rehearsal.pass(milliseconds(300));
+  rehearsal.hurry();
+  EXPECT_EQ(rehearsal.act(), "kill 0, ask 1, kill 3");
+  EXPECT_EQ(rehearsal.time_left(), milliseconds(500));
+  rehearsal.hurry();
+  rehearsal.pass(milliseconds(499));
+  EXPECT_EQ(rehearsal.act(), "");
+  rehearsal.pass(milliseconds(1));
+  EXPECT_EQ(rehearsal.act(), "kill 1");
+  EXPECT_EQ(rehearsal.act(), "");
 }
 
 TEST(StopPlan, SkipsStagesThatHaveEnded) {

@@ -63,9 +63,37 @@ TEST(Launch, HasDefaults) {
 
   EXPECT_EQ(problems.text(), "");
   EXPECT_EQ(launch.session, "first_try");
-  EXPECT_EQ(launch.domain, 0);
+  EXPECT_FALSE(launch.domain) << "a free one is claimed";
   EXPECT_EQ(launch.clock, Clock::kRealtime);
   EXPECT_EQ(launch.resolve("x.yaml").string(), "x.yaml");
+}
+
+/// Which nodes of a session are required, and which start again when they die.
+std::string keys_of_launcher(const std::string& clock, const std::string& more_keys = "") {
+  Problems problems;
+  const Launch launch =
+      load_launch_text("cordis: 1\nclock: " + clock + "\nnodes:\n  sim: {node: sim_node" +
+                           more_keys + "}\n  key: {node: device_node" + more_keys +
+                           "}\n  view: {node: viz_node" + more_keys + "}\n",
+                       "l.yaml", {}, problems);
+  EXPECT_EQ(problems.text(), "");
+  std::string text;
+  for (const LaunchNode& node : launch.nodes) {
+    EXPECT_FALSE(node.section.find("respawn").exists());
+    text +=
+        node.name + (node.required ? " required" : "") + (node.respawn ? " respawn" : "") + ", ";
+  }
+  return text;
+}
+
+TEST(Launch, RequiresAllButTheViewAndStartsAgainWhatDoesNotChangeTheResult) {
+  EXPECT_EQ(keys_of_launcher("realtime"),
+            "sim required respawn, key required respawn, view respawn, ");
+  for (const std::string clock : {"lockstep", "asap"})
+    EXPECT_EQ(keys_of_launcher(clock), "sim required, key required, view respawn, ");
+  EXPECT_EQ(keys_of_launcher("lockstep", ", required: true, respawn: true"),
+            "sim required respawn, key required respawn, view required respawn, ");
+  EXPECT_EQ(keys_of_launcher("realtime", ", required: false, respawn: false"), "sim, key, view, ");
 }
 
 TEST(Launch, TakesOverridesOfTheCommandLine) {
@@ -193,8 +221,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: sim_node}\n  a: {node: viz_node}\n",
                   "l.yaml:4:3: error: duplicate key 'a'", "first defined at line 3"},
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, required: no}\n",
-                  "l.yaml:3:33: error: 'required' in node 'a' must be true or false, got 'no'",
-                  ""}));
+                  "l.yaml:3:33: error: 'required' in node 'a' must be true or false, got 'no'", ""},
+        BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, respawn: 3}\n",
+                  "l.yaml:3:32: error: 'respawn' in node 'a' must be true or false, got '3'", ""}));
 
 TEST(Launch, RefusesNodesWhoseNamesHaveTheSameHash) {
   // two names of letters with the same FNV-1a value

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "node/config/value.h"
@@ -287,8 +288,14 @@ TEST_F(LoadFile, RefusesAFolderAndWhatNeverEnds) {
   Problems problems;
   EXPECT_FALSE(load_file(folder.string(), problems).exists());
   EXPECT_FALSE(load_file("/dev/zero", problems).exists());
-  EXPECT_EQ(problems.text(), folder.string() + ": error: cannot be read: it is a directory\n" +
-                                 "/dev/zero: error: cannot be read: it is larger than 16 MiB");
+  const std::filesystem::path fifo = folder / "fifo.yaml";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_FALSE(load_file(fifo.string(), problems).exists()) << "nobody writes to it";
+  EXPECT_EQ(problems.text(),
+            folder.string() + ": error: cannot be read: it is a directory\n" +
+                "/dev/zero: error: cannot be read: it is a device, and a regular file is wanted\n" +
+                fifo.string() +
+                ": error: cannot be read: it is a FIFO, and a regular file is wanted");
 }
 
 }  // namespace

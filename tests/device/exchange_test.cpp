@@ -425,6 +425,7 @@ TEST(Exchange, FeelsEveryAnswerSoManyPeriodsLaterInLockstep) {
       GestureMessage answer;
       answer.run = kSceneRun;
       answer.sample = answer.answered_sample = channel.sent.back().sample;
+      answer.answered_time_nsec = channel.sent.back().time_nsec;
       answer.answered_run = kRun;
       answer.axis_count = 2;
       answer.value[0] = 0.5 * n;
@@ -448,6 +449,7 @@ TEST(Exchange, PutsTheEndPieceBetweenWireAndMotors) {
   GestureMessage answer;
   answer.run = kSceneRun;
   answer.sample = answer.answered_sample = 1;
+  answer.answered_time_nsec = channel.sent.back().time_nsec;
   answer.answered_run = kRun;
   answer.axis_count = 1;
   answer.value[0] = 3.0;

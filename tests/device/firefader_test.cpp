@@ -1,45 +1,19 @@
 // tests/device/firefader_test.cpp -- the driver against an emulated FireFader on a pseudo-terminal.
-#include <array>
-#include <atomic>
-#include <chrono>
+#include "device_node/drivers/firefader.h"
+
 #include <cmath>
-#include <thread>
 
 #include <gtest/gtest.h>
 
+#include "tests/device/faders.h"
 #include "tests/device/plug.h"
 #include "tests/device/wired.h"
 
 namespace cordis::device {
 namespace {
 
+using test::Faders;
 using test::Plug;
-
-/// Answers each request as the faders' firmware does.
-class Faders {
- public:
-  Faders() : plug([this](std::uint8_t byte) { hear(byte); }, [] {}) {}
-
-  std::array<std::atomic<int>, 2> forces{};              // -126..126
-  std::array<std::atomic<std::uint8_t>, 2> positions{};  // 0..254
-
- private:
-  void hear(std::uint8_t byte) {
-    if (byte == 127) {
-      count_ = 0;
-      return;
-    }
-    if (count_ >= 2) return;
-    forces[count_++] = static_cast<std::int8_t>(byte);
-    if (count_ < 2) return;
-    const std::uint8_t answer[] = {255, positions[0], positions[1], 0, 0, 1, 1};
-    plug.say(answer);
-  }
-  std::size_t count_ = 2;
-
- public:
-  Plug plug;  // last: its thread uses the rest
-};
 
 AxisLayout two_faders() {
   AxisLayout layout;
@@ -71,7 +45,7 @@ TEST_F(FireFaderTest, CarriesPositionsAndForcesBothWays) {
 TEST_F(FireFaderTest, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
   AxisLayout layout = two_faders();
   layout.rate_hz = 1000.0;
-  const auto driven = driver("firefader", port() + ", full_scale_n: 2", layout);
+  const auto driven = std::make_unique<FireFader>(wire_at(port()), patient(), layout, 2.0);
   driven->start(Role::kMass);
   EXPECT_FALSE(driven->write({}));  // nothing is there yet
   for (const int up : {64, 200, 127}) {
@@ -82,12 +56,12 @@ TEST_F(FireFaderTest, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
     // Without a checksum a damaged place is believed when a hand could be there: 10 m/s.
     constexpr double kBelieved = 0.01;
 
-    live_through_harm(*driven, faders.plug, link(), {1.0, 1.0}, [place](const AxisValues& sensed) {
+    const auto check = [place](const AxisValues& sensed) {
       EXPECT_NEAR(sensed[0], place, kBelieved + 1e-12);
       EXPECT_NEAR(sensed[1], -place, kBelieved + 1e-12);
-    });
-
-    EXPECT_EQ(faders.forces[0], 63);
+    };
+    live_through_harm(*driven, faders.plug, link(), {1.0, 1.0}, check,
+                      [&] { return faders.forces[0] == 63; });
   }
 }
 
@@ -101,11 +75,22 @@ TEST_F(FireFaderTest, LetsGoOfItsMotorsWhenASceneInLockstepIsSilent) {
   ASSERT_TRUE(driven->has_motors());
   driven->let_go();
 
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (faders.forces[0] != 0 && std::chrono::steady_clock::now() < limit) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  EXPECT_EQ(faders.forces[0], 0);
+  EXPECT_TRUE(test::eventually([&] { return faders.forces[0] == 0; }));
+}
+
+TEST_F(FireFaderTest, TakesTheForceAwayBeforeItGivesUpADevice) {
+  Faders faders;
+  faders.plug.harm = [](int n) { return n < 200 ? Plug::Harm::kNone : Plug::Harm::kDropped; };
+  faders.plug.into_serial_line(link());
+  const auto driven =
+      driver("firefader", port() + ", full_scale_n: 2", two_faders(), "retry_s: 60");
+  driven->start(Role::kMass);
+  ASSERT_TRUE(until(*driven, {1.0, 1.0}, [&](bool) { return faders.forces[0] == 63; }));
+
+  ASSERT_TRUE(until(*driven, {1.0, 1.0}, [](bool there) { return !there; }));
+
+  EXPECT_TRUE(test::eventually([&] { return faders.forces[0] == 0 && faders.forces[1] == 0; }))
+      << "the board still receives, though it says nothing";
 }
 
 TEST_F(FireFaderTest, WaitsNoLongerForAnAnswerThatWasLost) {

@@ -146,10 +146,18 @@ TEST(Firmware, LetsGoTwentyMillisecondsAfterTheLastForce) {
   chip.run(4.0);
   EXPECT_GT(chip.duty(1), 0);
 
+  chip.said.clear();
   chip.run(3.0);
 
   EXPECT_EQ(chip.duty(0), 0);
   EXPECT_EQ(chip.duty(1), 0);
+  std::array<std::uint8_t, KFB1_LARGEST_FRAME> event{};
+  ASSERT_FALSE(chip.said.empty());
+  ASSERT_EQ(
+      kfb1_decode(chip.said.data(), static_cast<std::uint8_t>(chip.said.size() - 1), event.data()),
+      4);
+  EXPECT_EQ(event[0], KFB1_EVENT);
+  EXPECT_EQ(event[1], KFB1_WATCHDOG);
 }
 
 TEST(Firmware, BelievesNoDamagedFrame) {
@@ -187,6 +195,7 @@ TEST_F(FirmwareTest, PlaysWithTheDriver) {
                     for (std::size_t key = 0; key < 2; ++key) duty[key] = chip.duty(key);
                   });
   said_through = &plug;
+  plug.is_prompt = false;
   plug.into_serial_line(link());
   AxisLayout layout;
   layout.count = 2;

@@ -1,11 +1,13 @@
 // tests/device/haply_test.cpp -- the kinematics of a pantograph, and the driver against an emulated
 // board on a pseudo-terminal.
+#include "device_node/drivers/haply.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <mutex>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -13,13 +15,13 @@
 #include <gtest/gtest.h>
 
 #include "device_node/drivers/pantograph.h"
-#include "tests/device/plug.h"
+#include "tests/device/pantograph_board.h"
 #include "tests/device/wired.h"
 
 namespace cordis::device {
 namespace {
 
-using test::Plug;
+using test::PantographBoard;
 
 TEST(Pantograph, InverseAndForwardAreEachOthersReverse) {
   for (const double base : {0.0, 0.03}) {
@@ -98,61 +100,6 @@ TEST(Pantograph, TorquesDoTheWorkOfTheForce) {
   }
 }
 
-/// The board: takes its configuration, and answers torques with angles.
-class BoardOfAPantograph {
- public:
-  BoardOfAPantograph() : plug([this](std::uint8_t byte) { hear(byte); }, [] {}) {}
-
-  /// In the order of the ports: the right motor first.
-  std::array<std::atomic<float>, 2> degrees{};
-  std::array<std::atomic<float>, 2> torques{};
-  std::atomic<int> configurations{0};
-  std::atomic<bool> says_nonsense_before{false};
-
- private:
-  static constexpr std::size_t kConfiguration = 2 + 3 + 3 + 2 + 16;
-  static constexpr std::size_t kTorques = 2 + 8;
-
-  void hear(std::uint8_t byte) {
-    bytes_.push_back(byte);
-    if (bytes_[0] == 1 && bytes_.size() == kConfiguration) {
-      EXPECT_EQ(bytes_[1], 5);
-      EXPECT_EQ(bytes_[2], 3) << "ports 1 and 2";
-      EXPECT_EQ(float_at(10), -61.0f) << "offset of port 1, the right arm";
-      ++configurations;
-      bytes_.clear();
-    } else if (bytes_[0] == 2 && bytes_.size() == kTorques) {
-      torques[0] = float_at(2);
-      torques[1] = float_at(6);
-      bytes_.clear();
-      std::vector<std::uint8_t> answer{5};
-      for (const auto& angle : degrees) {
-        const auto bits = std::bit_cast<std::uint32_t>(angle.load());
-        for (int i = 0; i < 4; ++i) answer.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
-      }
-      if (says_nonsense_before) {  // as a damaged answer that comes together with the next
-        std::vector<std::uint8_t> nonsense(answer.size(), 0xff);
-        nonsense[0] = answer[0];
-        nonsense.insert(nonsense.end(), answer.begin(), answer.end());
-        answer = std::move(nonsense);
-      }
-      plug.say(answer);
-    } else if (bytes_[0] != 1 && bytes_[0] != 2) {
-      bytes_.clear();
-    }
-  }
-  float float_at(std::size_t at) const {
-    std::uint32_t bits = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      bits |= static_cast<std::uint32_t>(bytes_[at + i]) << (8 * i);
-    return std::bit_cast<float>(bits);
-  }
-  std::vector<std::uint8_t> bytes_;
-
- public:
-  Plug plug;  // last: its thread uses the rest
-};
-
 class HaplyTest : public Wired {
  protected:
   HaplyTest() {
@@ -161,17 +108,9 @@ class HaplyTest : public Wired {
     layout_.highest_m = 0.05;
   }
 
-  /// Angles of a place of the pen, as the board says them.
-  static void put_pen(BoardOfAPantograph& board, const Pantograph::Pair& pen) {
-    Pantograph::Pair angle{};
-    ASSERT_TRUE(Pantograph().inverse(pen, angle));
-    board.degrees[0] = static_cast<float>(angle[1] * 180.0 / std::numbers::pi);
-    board.degrees[1] = static_cast<float>(angle[0] * 180.0 / std::numbers::pi);
-  }
-
   /// The driver of a board that is plugged in.
-  std::unique_ptr<Driver> pen_of(BoardOfAPantograph& board, const Pantograph::Pair& place) {
-    put_pen(board, place);
+  std::unique_ptr<Driver> pen_of(PantographBoard& board, const Pantograph::Pair& place) {
+    board.put_pen(place);
     board.plug.into_serial_line(link());
     return driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
   }
@@ -180,7 +119,7 @@ class HaplyTest : public Wired {
 };
 
 TEST_F(HaplyTest, TurnsAnglesIntoThePenAndForcesIntoTorques) {
-  BoardOfAPantograph board;
+  PantographBoard board;
   const auto pen = pen_of(board, {0.02, 0.09});
   pen->start(Role::kMass);
 
@@ -195,31 +134,32 @@ TEST_F(HaplyTest, TurnsAnglesIntoThePenAndForcesIntoTorques) {
   ASSERT_TRUE(pen->read(sensed));
   EXPECT_NEAR(sensed[0], 0.02, 1e-6);
   EXPECT_NEAR(sensed[1], -0.01, 1e-6);
-  EXPECT_EQ(board.configurations, 1);
+  EXPECT_GE(board.configurations, 1);
 }
 
 TEST_F(HaplyTest, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
-  const auto pen = driver("haply", port() + ", rest_m: [0, 0.1]", layout_);
+  const auto pen = std::make_unique<Haply>(wire_at(port()), patient(), layout_, HaplySettings{});
   pen->start(Role::kMass);
   EXPECT_FALSE(pen->write({}));  // nothing is there yet
   for (const double x : {0.0, 0.03, -0.02}) {
-    BoardOfAPantograph board;
-    put_pen(board, {x, 0.1});
+    PantographBoard board;
+    board.put_pen({x, 0.1});
     // Without a checksum a damaged place is believed when a hand could be there: 10 m/s.
     constexpr double kBelieved = 0.01;
 
-    live_through_harm(*pen, board.plug, link(), {0.5, 0.0}, [x](const AxisValues& sensed) {
+    const auto check = [x](const AxisValues& sensed) {
       EXPECT_NEAR(sensed[0], x, kBelieved + 1e-6);
       EXPECT_NEAR(sensed[1], 0.0, kBelieved + 1e-6);
-    });
+    };
+    live_through_harm(*pen, board.plug, link(), {0.5, 0.0}, check,
+                      [&] { return board.torques[0] != 0.0f; });
 
-    EXPECT_EQ(board.configurations, 1);
-    EXPECT_NE(board.torques[0], 0.0f);
+    EXPECT_GE(board.configurations, 1);
   }
 }
 
 TEST_F(HaplyTest, RefusesAnglesThatNoPenHas) {
-  BoardOfAPantograph board;
+  PantographBoard board;
   const auto pen = pen_of(board, {0.0, 0.1});
   auto& hardware = dynamic_cast<Hardware&>(*pen);
   pen->start(Role::kMass);
@@ -233,7 +173,7 @@ TEST_F(HaplyTest, RefusesAnglesThatNoPenHas) {
 }
 
 TEST_F(HaplyTest, AnAnswerThatIsNotBelievedDoesNotStandForTheNext) {
-  BoardOfAPantograph board;
+  PantographBoard board;
   const auto pen = pen_of(board, {0.0, 0.1});
   auto& hardware = dynamic_cast<Hardware&>(*pen);
   pen->start(Role::kMass);

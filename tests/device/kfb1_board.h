@@ -1,13 +1,16 @@
 // tests/device/kfb1_board.h -- a keyboard on the table: the reference firmware behind a wire.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 
 #include "device_node/firmware/kfb1.h"
 #include "node/time.h"
+#include "tests/device/force_log.h"
 #include "tests/device/plug.h"
 
 namespace cordis::test {
@@ -17,10 +20,9 @@ namespace cordis::test {
 class Kfb1Board {
  public:
   explicit Kfb1Board(int keys = 2)
-      : plug([this](std::uint8_t byte) { kfb1_byte(&firmware_, byte); },
-             [this] { kfb1_tick(&firmware_); }) {
+      : plug([this](std::uint8_t byte) { hear(byte); }, [this] { idle(); }) {
     board_ = this;
-    kfb1_board what{};
+    kfb1_board& what = what_;
     what.keys = static_cast<std::uint8_t>(keys);
     what.travel_um = 40000;
     what.force_mn = 10000;
@@ -28,10 +30,15 @@ class Kfb1Board {
     what.position = [](std::uint8_t key) { return board_->positions[key].load(); };
     what.force = [](std::uint8_t key, std::int16_t force) {
       board_->forces[key] = force;
+      double largest = 0.0;
+      for (const auto& f : board_->forces) largest = std::max(largest, std::abs(1.0 * f));
+      board_->log.note(largest);
       if (board_->on_force) board_->on_force(key, force);
     };
     what.touched = [] { return std::uint16_t{1}; };
-    what.time_us = [] { return static_cast<std::uint32_t>(node::monotonic_nsec() / 1000); };
+    what.time_us = [] {
+      return static_cast<std::uint32_t>((node::monotonic_nsec() - board_->started_nsec_) / 1000);
+    };
     what.send = [](const std::uint8_t* bytes, std::uint8_t count) {
       board_->plug.say({bytes, count});
     };
@@ -40,12 +47,37 @@ class Kfb1Board {
 
   std::array<std::atomic<std::int16_t>, KFB1_MAX_KEYS> positions{};
   std::array<std::atomic<std::int16_t>, KFB1_MAX_KEYS> forces{};
+  std::atomic<bool> has_watchdog{true};
+  std::atomic<int> event{0};            ///< code that it goes on to send; 0: none
+  std::atomic<bool> restarts{false};    ///< at once; it takes that back itself
+  std::atomic<double> deaf_for_s{0.0};  ///< after the first byte that comes, as while it resets
+  ForceLog log;
   /// Called on the thread of the plug; to be set before it is plugged in.
   std::function<void(int key, int force)> on_force;
 
  private:
+  void hear(std::uint8_t byte) {
+    const std::int64_t now = node::monotonic_nsec();
+    if (first_byte_nsec_ == 0) first_byte_nsec_ = now;
+    if (static_cast<double>(now - first_byte_nsec_) * 1e-9 >= deaf_for_s) {
+      kfb1_byte(&firmware_, byte);
+    }
+  }
+
+  void idle() {
+    if (restarts.exchange(false)) {
+      started_nsec_ = node::monotonic_nsec();
+      kfb1_start(&firmware_, &what_);
+    }
+    if (event != 0) kfb1_event(&firmware_, static_cast<std::uint8_t>(event.load()));
+    if (has_watchdog) kfb1_tick(&firmware_);
+  }
+
   static inline Kfb1Board* board_ = nullptr;  // the firmware's functions know no other
+  kfb1_board what_{};
   kfb1 firmware_{};
+  std::int64_t first_byte_nsec_ = 0;
+  std::int64_t started_nsec_ = 0;
 
  public:
   Plug plug;  // last: its thread uses the rest

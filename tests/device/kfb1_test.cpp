@@ -3,15 +3,15 @@
 #include "device_node/firmware/kfb1.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include "device_node/drivers/kfb1.h"
 #include "tests/device/kfb1_board.h"
@@ -169,7 +169,7 @@ TEST_F(Kfb1Test, NoTwoDriversTakeTurnsAtOneBoard) {
 }
 
 TEST_F(Kfb1Test, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
-  const auto key = keys_at(port());
+  const auto key = std::make_unique<Kfb1>(wire_at(port()), patient(), layout_of(2));
   key->start(Role::kMass);
   EXPECT_FALSE(key->write({}));  // nothing is there yet
   for (const int up : {16384, -16384, 8192}) {
@@ -178,19 +178,19 @@ TEST_F(Kfb1Test, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
     board.positions[1] = static_cast<std::int16_t>(-up);
     const double place = 0.02 * up / 32767.0;
 
-    live_through_harm(*key, board.plug, link(), {2.0, 1.0}, [place](const AxisValues& sensed) {
+    const auto check = [place](const AxisValues& sensed) {
       EXPECT_NEAR(sensed[0], -0.02 + place, 1e-9) << "no damaged position is ever believed";
       EXPECT_NEAR(sensed[1], -0.02 - place, 1e-9);
-    });
-
-    EXPECT_EQ(board.forces[0], 6553);
+    };
+    live_through_harm(*key, board.plug, link(), {2.0, 1.0}, check,
+                      [&] { return board.forces[0] == 6553; });
   }
 }
 
 /// A line that never falls silent, and never says anything.
 class Babble final : public Wire {
- public:
-  bool open() noexcept override {
+ protected:
+  bool connect() noexcept override {
     file_ = ::open("/dev/zero", O_RDWR | O_NONBLOCK | O_CLOEXEC);
     return file_ >= 0;
   }
@@ -230,12 +230,134 @@ TEST_F(Kfb1Test, TheFirmwareLetsGoWhenNobodySpeaks) {
   ASSERT_TRUE(until(*key, {3.0, 3.0}, [&](bool) { return board.forces[0] > 0; }));
 
   // The driver falls silent, as after kill -9 of its process: the watchdog of the board bites.
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (board.forces[0] != 0 && std::chrono::steady_clock::now() < limit) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(test::eventually([&] { return board.forces[0] == 0 && board.forces[1] == 0; }));
+}
+
+TEST_F(Kfb1Test, LetsGoWhileTheBoardReportsAnEmergencyStopAndLogsEachOne) {
+  for (const int code : {KFB1_TOO_HOT, KFB1_EMERGENCY_STOP}) {
+    const CapturedLog log;
+    Kfb1Board board;
+    board.plug.into_serial_line(link());
+    const auto key = keys_at(port());
+    key->start(Role::kMass);
+    ASSERT_TRUE(until(*key, {5.0, 0.0}, [&](bool) { return board.forces[0] == 16384; }));
+
+    for (int stop = 0; stop < 2; ++stop) {
+      board.event = code;
+      EXPECT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) {
+        return !there && key->is_let_go() && board.forces[0] == 0;
+      }));
+      int periods = 0;  // it goes on as long as the board says so
+      EXPECT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) {
+        EXPECT_TRUE(!there || board.plug.has_stalled());
+        EXPECT_TRUE(board.forces[0] == 0 || board.plug.has_stalled());
+        return ++periods == 200;
+      }));
+      board.event = 0;
+      int there_for = 0;  // longer than an event counts as going on
+      EXPECT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) { return (there_for += there) > 700; }));
+      EXPECT_EQ(board.forces[0], 16384);
+    }
+
+    const std::string word = code == KFB1_TOO_HOT ? "it is too hot" : "emergency stop";
+    const std::string line = "kfb1: the board reports: " + word + "\n";
+    EXPECT_EQ(log.lines("kfb1: the board reports: " + word), line + line);
   }
-  EXPECT_EQ(board.forces[0], 0);
-  EXPECT_EQ(board.forces[1], 0);
+}
+
+TEST_F(Kfb1Test, LetsGoForAPeriodWhenTheWatchdogOfTheBoardHasFired) {
+  const CapturedLog log;
+  Kfb1Board board;
+  board.plug.into_serial_line(link());
+  const auto key = keys_at(port());
+  key->start(Role::kMass);
+  ASSERT_TRUE(until(*key, {5.0, 0.0}, [&](bool) { return board.forces[0] == 16384; }));
+
+  ASSERT_TRUE(test::eventually([&] { return board.forces[0] == 0; }));
+
+  EXPECT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) { return !there && key->is_let_go(); }));
+  EXPECT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) { return there; }));
+  EXPECT_NE(log.lines("kfb1: the board reports: its watchdog has fired"), "");
+}
+
+TEST_F(Kfb1Test, GreetsUntilABoardThatResetsAtTheOpeningOfItsLineAnswers) {
+  Kfb1Board board;
+  board.deaf_for_s = 0.6;
+  board.plug.into_serial_line(link());
+  const auto key = driver("kfb1", port(), layout_of(2), "retry_s: 60");
+  key->start(Role::kMass);
+
+  EXPECT_TRUE(until(*key, {}, [](bool there) { return there; }));
+}
+
+TEST_F(Kfb1Test, TellsABoardThatHasRestartedItsLargestForceAgain) {
+  const CapturedLog log;
+  Kfb1Board board;
+  board.plug.into_serial_line(link());
+  AxisLayout layout = layout_of(2);
+  layout.force_limit_n = 4.0;
+  const auto key = driver("kfb1", port(), layout);
+  key->start(Role::kMass);
+  const auto is_limited = [&](bool there) {
+    return there && std::abs(board.forces[0] - 0.4 * 32767) < 2;
+  };
+  ASSERT_TRUE(until(*key, {9.0, 0.0}, is_limited));
+
+  board.restarts = true;
+
+  ASSERT_TRUE(until(*key, {9.0, 0.0}, [](bool there) { return !there; }));
+  EXPECT_TRUE(until(*key, {9.0, 0.0}, is_limited));
+  EXPECT_EQ(log.lines("kfb1: the board has"),
+            "kfb1: the board has restarted; it is greeted and configured again\n");
+}
+
+TEST_F(Kfb1Test, AnEmptyDatagramDoesNotCloseTheWire) {
+  Kfb1Board board(1);
+  Kfb1Board* const empties = &board;
+  board.on_force = [empties](int, int force) {
+    if (force == 16384) empties->plug.say_nothing();
+  };
+  const auto key = keys_at("udp: '127.0.0.1:" + std::to_string(board.plug.into_udp()) + "'", 1);
+  key->start(Role::kMass);
+  ASSERT_TRUE(until(*key, {}, [](bool there) { return there; }));
+
+  int periods = 0;
+  EXPECT_TRUE(until(*key, {5.0}, [&](bool there) {
+    EXPECT_TRUE(there || key->is_let_go() || board.plug.has_stalled());
+    return ++periods == 50;
+  }));
+}
+
+TEST_F(Kfb1Test, ClosingTheLineDoesNotResetABoard) {
+  Kfb1Board board;
+  board.plug.into_serial_line(link());
+  const auto key = keys_at(port());
+  key->start(Role::kMass);
+
+  const int line = ::open(link().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  termios settings{};
+  ASSERT_EQ(tcgetattr(line, &settings), 0);
+  close(line);
+  EXPECT_EQ(settings.c_cflag & HUPCL, 0u);
+}
+
+TEST_F(Kfb1Test, CountsADeviceAsLostNoLaterThanAWatchdogWould) {
+  const auto problems_with = [&](double lost_after_s, double rate_hz) {
+    config::Problems problems;
+    AxisLayout layout = layout_of(2);
+    layout.rate_hz = rate_hz;
+    const auto section =
+        config::load_text("{" + port() + ", lost_after_s: " + std::to_string(lost_after_s) + "}",
+                          "key.yaml", problems);
+    make_kfb1(section, layout, problems);
+    return problems.text();
+  };
+
+  EXPECT_EQ(problems_with(0.2, 1000.0), "");
+  EXPECT_NE(problems_with(0.21, 1000.0).find("must be between 0.002 and 0.2,"), std::string::npos)
+      << problems_with(0.21, 1000.0);
+  EXPECT_EQ(problems_with(0.6, 10.0), "") << "6 periods";
+  EXPECT_NE(problems_with(0.7, 10.0), "");
 }
 
 TEST_F(Kfb1Test, RefusesADeviceWithAnotherNumberOfKeys) {
@@ -244,10 +366,13 @@ TEST_F(Kfb1Test, RefusesADeviceWithAnotherNumberOfKeys) {
   const auto key = keys_at(port(), 2);
   key->start(Role::kMass);
 
-  for (int n = 0; n < 200; ++n) {
-    EXPECT_FALSE(key->write({5.0, 5.0}));
-    std::this_thread::sleep_for(std::chrono::microseconds(300));
-  }
+  const auto& hardware = dynamic_cast<Hardware&>(*key);
+  bool greeted = false;
+  EXPECT_TRUE(until(*key, {5.0, 5.0}, [&](bool there) {
+    EXPECT_FALSE(there);
+    greeted = greeted || hardware.contact() == Contact::kGreeting;
+    return greeted && hardware.contact() == Contact::kLost;
+  })) << "the board has answered, and the driver has not closed the line";
   EXPECT_EQ(board.forces[0], 0);
 }
 

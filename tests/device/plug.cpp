@@ -1,12 +1,15 @@
 // tests/device/plug.cpp
 #include "tests/device/plug.h"
 
+#include <chrono>
 #include <cstdlib>
 
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -53,7 +56,14 @@ void Plug::pull() {
 void Plug::live() {
   lives_ = true;
   thread_ = std::thread([this] {
+    const sched_param priority{sched_get_priority_min(SCHED_FIFO)};
+    if (is_prompt) pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+    constexpr auto kStall = std::chrono::milliseconds(50);
+    auto before = std::chrono::steady_clock::now();
     while (lives_) {
+      const auto now = std::chrono::steady_clock::now();
+      stalled_ = stalled_ || now - before > kStall;
+      before = now;
       pollfd poll_on{wire_, POLLIN, 0};
       poll(&poll_on, 1, 1);
       std::uint8_t bytes[256];
@@ -75,6 +85,10 @@ Plug::Harm Plug::every_kind(int n) {
   if (n % 10 == 6) return Harm::kDropped;
   if (n % 10 == 8) return Harm::kLate;
   return Harm::kNone;
+}
+
+void Plug::say_nothing() {
+  sendto(wire_, nullptr, 0, 0, reinterpret_cast<sockaddr*>(&peer_), sizeof peer_);
 }
 
 void Plug::say(std::span<const std::uint8_t> bytes) {

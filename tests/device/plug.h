@@ -27,6 +27,10 @@ class Plug {
   int into_udp();                                            ///< the port of it
   void pull();
 
+  /// A board does not share this machine's processors: its thread has realtime priority where that
+  /// is permitted. False for a board that computes much.
+  bool is_prompt = true;
+
   /// What happens to the n-th answer.
   enum class Harm { kNone, kFlipped, kCut, kDropped, kLate };
   std::function<Harm(int)> harm = [](int) { return Harm::kNone; };
@@ -35,6 +39,10 @@ class Plug {
   /// that comes with the next; all bits and bytes get their turn.
   static Harm every_kind(int n);
 
+  /// Whether its thread has ever been held up for 50 ms.
+  bool has_stalled() const noexcept { return stalled_; }
+
+  void say_nothing();  ///< an empty datagram
   void say(std::span<const std::uint8_t> bytes);
 
  private:
@@ -44,6 +52,7 @@ class Plug {
   std::function<void()> idle_;
   std::thread thread_;
   std::atomic<bool> lives_{false};
+  std::atomic<bool> stalled_{false};
   int wire_ = -1;
   int keeper_ = -1;
   bool udp_ = false;

@@ -2,7 +2,7 @@
 //
 // usage: node idl_test.mjs IDL_FOLDER GENERATED_FOLDER FOLDER_WITH_NODE_MODULES
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { basename, join } from 'node:path';
 import test from 'node:test';
@@ -55,6 +55,10 @@ for (const unit of units) {
     assert.deepEqual(generatedClasses(unit), wanted);
   });
 }
+
+test('the generator keeps its temporary files in the build tree', () => {
+  for (const unit of units) assert.ok(existsSync(join(generatedFolder, '../../idl/fastddsgen', `${unit}.cc`)), unit);
+});
 
 test('every message is final, in the namespace, and of complete types', () => {
   const known = new Set(structs.map((definition) => definition.name));

@@ -11,8 +11,6 @@
 namespace cordis::test {
 namespace {
 
-using namespace std::chrono_literals;
-
 std::string state_hash_of_a_run(const std::string& driver) {
   const std::string configs = CORDIS_SOURCE_DIR "/launch_configs/";
   LiveSession session("lockstep", "  sim: {node: sim_node, scene: '" + configs +
@@ -20,7 +18,7 @@ std::string state_hash_of_a_run(const std::string& driver) {
                                       "  keyboard: {node: device_node, device: '" + configs +
                                       "devices/keyboard.yaml', driver: " + driver + "}\n");
   ChildProcess& launcher = session.start_launcher({"--duration", "2s"});
-  EXPECT_EQ(launcher.wait(60s), 0);
+  EXPECT_EQ(launcher.wait(kPatience), 0);
   const std::string output = launcher.output();
   std::smatch match;
   EXPECT_TRUE(std::regex_search(output, match,

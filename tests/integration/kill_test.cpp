@@ -1,4 +1,5 @@
 // tests/integration/kill_test.cpp -- what a hand feels when the scene dies under it.
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <fstream>
@@ -65,17 +66,19 @@ TEST(Kill, TheForceIsZeroWithinTheWatchdogTimeWhenSimNodeIsKilled) {
   const std::vector<Row> rows = read_trace(trace);
   double pressed = 0.0;
   std::int64_t last_force_nsec = 0;
-  double before = 0.0;
+  Row before{};
   for (const Row& row : rows) {
-    if (row.time_nsec < dead_nsec) pressed = row.commanded;
+    if (row.time_nsec < dead_nsec) pressed = std::max(pressed, row.commanded);
     if (row.commanded != 0.0) last_force_nsec = row.time_nsec;
-    if (row.time_nsec >= dead_nsec + kWatchdog + kPeriod) {
+    // The machine may take the core away between a decision and its row. A force is decided after
+    // the row before it.
+    if (before.time_nsec >= dead_nsec + kWatchdog + kPeriod) {
       EXPECT_EQ(row.commanded, 0.0) << row.time_nsec - dead_nsec << " ns after";
     }
-    EXPECT_LE(std::abs(row.commanded - before), 5.0 + 1e-9) << "slew limit of 5000 N/s";
-    before = row.commanded;
+    EXPECT_LE(std::abs(row.commanded - before.commanded), 5.0 + 1e-9) << "slew limit of 5000 N/s";
+    before = row;
   }
-  EXPECT_GT(std::abs(pressed), 0.0) << "the key was pressed when the scene died";
+  EXPECT_GT(pressed, 0.0) << "the key was pressed before the scene died";
   std::printf("last force at the driver %.2f ms after the death of sim_node, was %.3f N\n",
               static_cast<double>(last_force_nsec - dead_nsec) * 1e-6, pressed);
 }
@@ -115,7 +118,8 @@ TEST(Kill, ASceneThatComesBackUnderAPressedKeyIsFeltWithoutAJump) {
     EXPECT_LE(std::abs(row.commanded - before), 5.0 + 1e-9) << "slew limit of 5000 N/s";
     if (before == 0.0 && row.commanded > 0.0) {
       ++times_from_zero;
-      EXPECT_LT(row.commanded, 0.1) << "a ramp of 0.2 s begins";
+      // The scene gives 2 N in 0.1 s again; what is lost of it within a watchdog is 0.4 N.
+      EXPECT_LT(row.commanded, 0.5) << "a ramp begins";
     }
     before = row.commanded;
   }

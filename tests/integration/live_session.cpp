@@ -2,27 +2,14 @@
 #include "tests/integration/live_session.h"
 
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <thread>
-
-#include <gtest/gtest.h>
 
 #include "tests/support/test_domain.h"
 
 namespace cordis::test {
 
 using namespace std::chrono_literals;
-
-bool eventually(const std::function<bool()>& condition) {
-  const auto limit = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > limit) return false;
-    std::this_thread::sleep_for(2ms);
-  }
-  return true;
-}
 
 std::string program_path(const std::string& program) {
   return std::string(CORDIS_PROGRAM_DIR) + "/" + program;
@@ -42,14 +29,7 @@ LiveSession::LiveSession(const std::string& clock, const std::string& nodes,
 
 LiveSession::~LiveSession() {
   for (auto& [name, process] : processes_) process->signal(SIGTERM);
-  for (auto& [name, process] : processes_) process->wait(5s);
-  if (::testing::Test::HasFailure()) {
-    for (auto& [name, process] : processes_) {
-      std::fprintf(stderr, "---- output of %s\n%s\n", name.c_str(), process->output().c_str());
-    }
-    for (auto& process : ended_)
-      std::fprintf(stderr, "---- of an ended one\n%s\n", process->output().c_str());
-  }
+  for (auto& [name, process] : processes_) process->wait(kPatience);
   processes_.clear();
   std::filesystem::remove_all(folder_);
 }

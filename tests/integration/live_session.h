@@ -1,9 +1,7 @@
 // tests/integration/live_session.h -- real nodes in a DDS domain of this test's own.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,18 +9,13 @@
 
 #include "node/dds/participant.h"
 #include "tests/support/child_process.h"
+#include "tests/support/eventually.h"
 
 namespace cordis::test {
 
-constexpr auto kPatience =
-    std::chrono::seconds(30);  // for things that take a fraction of a second on a free machine
-
-/// Waits until `condition` holds; false when patience ends. Tests never sleep for a fixed time.
-bool eventually(const std::function<bool()>& condition);
-
 /// A folder with a launch file and what belongs to it, the nodes of it that the test has started,
 /// and a DDS participant of the test itself in the same session. Everything ends with the object.
-/// When a test has failed, the destructor prints the output of every process.
+/// When a test has failed, the output of every process is printed.
 class LiveSession {
  public:
   /// @param clock  realtime, lockstep or asap

@@ -1,7 +1,7 @@
 // tests/integration/status_watch.cpp
 #include "tests/integration/status_watch.h"
 
-#include "tests/integration/live_session.h"
+#include "tests/support/eventually.h"
 
 namespace cordis::test {
 

@@ -1,7 +1,6 @@
 // tests/node/dds_test.cpp
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -14,7 +13,9 @@
 #include "idl/scene.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
+#include "node/roster.h"
 #include "node/status.h"
+#include "tests/support/eventually.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::dds {
@@ -22,20 +23,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 20s;
+using test::eventually;
+using test::kPatience;
 
 Membership member(const std::string& session, const std::string& node, bool lockstep = false) {
   return {test::own_domain(), session, node, lockstep};
-}
-
-/// Waits for a condition; tests never sleep for a fixed time.
-bool eventually(const std::function<bool()>& condition) {
-  const auto limit = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > limit) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
 }
 
 template <class Message>
@@ -168,6 +160,37 @@ TEST(Dds, WaitingEndsWhenInterrupted) {
 TEST(Dds, RefusesADomainOutOfRange) {
   EXPECT_THROW(Participant({102, "s", "n", false}), std::runtime_error);
   EXPECT_THROW(Participant({-1, "s", "n", false}), std::runtime_error);
+}
+
+TEST(Roster, KnowsWhoIsAliveByWhatItSays) {
+  Participant here(member("roster", "here"));
+  Participant there(member("roster", "there"));
+  Writer<msg::NodeStatus> statuses(there, Topic::kStatus);
+  node::Roster roster(here, kPatience);
+  node::Roster forgetful(here, 0ms);
+  msg::NodeStatus status;
+  status.node("sim");
+  status.kind("sim_node");
+  status.phase("running");
+  statuses.write(status);
+
+  EXPECT_TRUE(eventually([&] {
+    roster.look();
+    return roster.name_of("sim_node") == "'sim'";
+  }));
+  EXPECT_EQ(roster.name_of("device_node"), "");
+  msg::NodeStatus taken;
+  Reader<msg::NodeStatus> reader(here, Topic::kStatus);
+  ASSERT_TRUE(receive(reader, taken));
+  forgetful.look();
+  EXPECT_TRUE(forgetful.alive().empty()) << "matched, and silent since";
+
+  status.phase("stopped");
+  statuses.write(status);
+  EXPECT_TRUE(eventually([&] {
+    roster.look();
+    return roster.alive().empty();
+  }));
 }
 
 TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {

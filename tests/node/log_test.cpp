@@ -3,13 +3,22 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <future>
+#include <memory>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "node/log_queue.h"
+#include "tests/support/eventually.h"
 
 namespace cordis::node {
 namespace {
@@ -17,13 +26,16 @@ namespace {
 /// A pipe in the place of stderr, and the logger of the other tests put aside.
 class PipeAsError {
  public:
-  PipeAsError() {
+  /// @param level  CORDIS_LOG_LEVEL
+  explicit PipeAsError(const char* level = "") {
+    setenv("CORDIS_LOG_LEVEL", level, 1);
     EXPECT_EQ(pipe(ends_.data()), 0);
     fcntl(ends_[0], F_SETFL, O_NONBLOCK);
     dup2(ends_[1], STDERR_FILENO);
     install_log("test");
   }
   ~PipeAsError() {
+    unsetenv("CORDIS_LOG_LEVEL");
     spdlog::set_default_logger(former_);
     dup2(error_, STDERR_FILENO);
     for (const int file : {error_, ends_[0], ends_[1]}) close(file);
@@ -54,17 +66,102 @@ TEST(Log, NeverWaitsForItsReaderAndSaysHowManyLinesAreMissing) {
   const auto is_done = [&](auto patience) {
     return logged.wait_for(patience) == std::future_status::ready;
   };
-  EXPECT_TRUE(is_done(std::chrono::seconds(10))) << "it waits for its reader";
+  EXPECT_TRUE(is_done(test::kPatience)) << "it waits for its reader";
   std::string seen;
   while (!is_done(std::chrono::seconds(0))) seen += error.look();
   seen += error.look();
+  spdlog::default_logger()->flush();
   spdlog::warn("end");
+  spdlog::default_logger()->flush();
   for (std::string more = error.look(); !more.empty(); more = error.look()) {
     seen += more;
     spdlog::default_logger()->flush();
   }
   EXPECT_NE(seen.find(" lines are missing here: nobody read them in time\n"), std::string::npos);
   EXPECT_TRUE(seen.ends_with(" end\n"));
+}
+
+TEST(Log, SaysThatALevelIsUnknownAndStaysAtInfo) {
+  const PipeAsError error("debgu");
+  spdlog::debug("a detail");
+  spdlog::info("a fact");
+  spdlog::default_logger()->flush();
+
+  const std::string seen = error.look();
+  EXPECT_NE(seen.find("CORDIS_LOG_LEVEL=debgu is no level: trace, debug, info, warning, error, "
+                      "critical or off (did you mean 'debug'?); it stays at info\n"),
+            std::string::npos)
+      << seen;
+  EXPECT_NE(seen.find("a fact"), std::string::npos) << seen;
+  EXPECT_EQ(seen.find("a detail"), std::string::npos) << seen;
+}
+
+TEST(Log, TakesEveryLevelThatHelpNames) {
+  for (const char* level : {"trace", "debug", "info", "warning", "error", "critical", "off"}) {
+    const PipeAsError error(level);
+    spdlog::default_logger()->flush();
+    EXPECT_EQ(error.look(), "") << level;
+  }
+  const PipeAsError error("debug");
+  spdlog::debug("a detail");
+  spdlog::default_logger()->flush();
+  EXPECT_NE(error.look().find("a detail"), std::string::npos);
+}
+
+TEST(Log, KeepsALineALineWhateverNamesItHolds) {
+  const PipeAsError error;
+  spdlog::info("scene '{}'", "a\n12:00:00 sim error \033[2J");
+  spdlog::info("{}", std::string(5000, 'x'));
+  spdlog::default_logger()->flush();
+
+  const std::string seen = error.look();
+  EXPECT_NE(seen.find("scene 'a?12:00:00 sim error ?[2J'\n"), std::string::npos) << seen;
+  EXPECT_NE(seen.find("xxx...\n"), std::string::npos);
+}
+
+TEST(LogQueue, KeepsTheOrderOfEveryThreadAndCountsWhatFindsNoRoom) {
+  constexpr int kThreads = 4;
+  constexpr int kEach = 20'000;
+  const auto queue = std::make_unique<LogQueue>();
+  std::atomic<int> lost{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < kEach; ++i) {
+        const std::string text = std::to_string(t) + " " + std::to_string(i);
+        const bool is_long = i % 7 == 0;
+        if (!queue->push({}, spdlog::level::info, is_long ? text + std::string(300, ' ') : text))
+          ++lost;
+      }
+    });
+  }
+  std::array<int, kThreads> last;
+  last.fill(-1);
+  int seen = 0;
+  LogLine line;
+  while (seen + lost < kThreads * kEach) {
+    if (!queue->pop(line)) continue;
+    int thread = 0;
+    int number = 0;
+    ASSERT_EQ(std::sscanf(std::string(line.text()).c_str(), "%d %d", &thread, &number), 2);
+    ASSERT_GT(number, last.at(static_cast<std::size_t>(thread)));
+    last.at(static_cast<std::size_t>(thread)) = number;
+    ++seen;
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GT(seen, 0);
+  EXPECT_FALSE(queue->pop(line));
+}
+
+TEST(LogQueue, RefusesWhatFindsNoRoom) {
+  const auto queue = std::make_unique<LogQueue>();
+  for (std::size_t i = 0; i < LogQueue::kRoom; ++i)
+    ASSERT_TRUE(queue->push({}, spdlog::level::info, "in time"));
+  EXPECT_FALSE(queue->push({}, spdlog::level::info, "too late"));
+  LogLine line;
+  ASSERT_TRUE(queue->pop(line));
+  EXPECT_EQ(line.text(), "in time");
+  EXPECT_TRUE(queue->push({}, spdlog::level::info, "there is room again"));
 }
 
 }  // namespace

@@ -1,16 +1,22 @@
 // tests/node/node_main_test.cpp
 #include "node/node_main.h"
 
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "node/claim.h"
+#include "node/runtime_folder.h"
+#include "node/session_registry.h"
 
 namespace cordis::node {
 namespace {
@@ -21,6 +27,7 @@ class LaunchFile {
   explicit LaunchFile(const std::string& text) {
     char folder[] = "/tmp/cordis-test-XXXXXX";
     path_ = std::string(mkdtemp(folder)) + "/launch.yaml";
+    setenv("CORDIS_RUNTIME_DIR", folder, /*overwrite=*/1);
     std::ofstream(path_) << text;
   }
   ~LaunchFile() { std::filesystem::remove_all(std::filesystem::path(path_).parent_path()); }
@@ -91,6 +98,29 @@ TEST(NodeMain, EndsWith1WhenTheNodeFails) {
       run_main({file.path()}, "sim_node",
                [](const NodeStart&, config::Problems&) -> int { throw std::runtime_error("no"); }),
       1);
+}
+
+TEST(NodeMain, JoinsTheRunningSessionOfItsNameOrClaimsADomain) {
+  const LaunchFile file(
+      "cordis: 1\nsession: test\nnodes:\n  sim: {node: sim_node}\n"
+      "  view: {node: viz_node}\n");
+  const pid_t other = fork();
+  if (other == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const SessionRegistration running(runtime_folder(), {"test", 9, file.path(), {"sim"}});
+    for (;;) pause();
+  }
+  while (running_sessions(runtime_folder()).empty()) std::this_thread::yield();
+
+  EXPECT_EQ(run_main({file.path()}, "viz_node"), 0);
+  EXPECT_EQ(last_start.domain, 9);
+  EXPECT_EQ(run_main({file.path()}, "sim_node"), 1) << "there is one already";
+  EXPECT_EQ(run_main({file.path(), "--check"}, "sim_node"), 0) << "which does not run it";
+  EXPECT_EQ(run_main({file.path(), "session=other"}, "sim_node"), 0);
+  EXPECT_NE(last_start.domain, 9);
+  EXPECT_EQ(running_sessions(runtime_folder()).size(), 1u) << "what has ended is not recorded";
+  kill(other, SIGKILL);
+  waitpid(other, nullptr, 0);
 }
 
 TEST(Claim, IsHeldByOneProcessAtATimeAndLeavesNothing) {

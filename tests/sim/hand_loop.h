@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -94,11 +95,16 @@ class Loop {
       msg::GestureForces sample = hands_[i].sample(stiffness_, target, hears, samples_);
       sample.device_id(device.device_id());
       if (!tells_work_) sample.work_j(0.0);
+      if (lie_) sample.work_j(*lie_);
       device.receive(sample);
     }
+    lie_.reset();
     live();
   }
   void tick(double target, bool hears = true) { tick(Vec3(target, 0.0, 0.0), hears); }
+
+  /// The next samples tell this work [J].
+  void lie_about_work(double work_j) { lie_ = work_j; }
 
   /// A tick, with or without new samples.
   void live() {
@@ -153,6 +159,7 @@ class Loop {
   std::vector<DeviceExchange>& devices() { return simulation_->devices(); }
 
   bool tells_work_;
+  std::optional<double> lie_;
   Vec3 stiffness_;
   std::unique_ptr<Simulation> simulation_;
   std::vector<Hand> hands_;

@@ -4,18 +4,37 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/hang_watch.h"
+
 namespace cordis::test {
+namespace {
+
+double seconds(std::chrono::milliseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+}  // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string>& words,
-                           const std::map<std::string, std::string>& environment) {
+                           const std::map<std::string, std::string>& environment)
+    : command_(joined(words)) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe2 failed");
   std::vector<char*> arguments;
@@ -35,21 +54,28 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words,
   close(ends[1]);
   pipe_ = ends[0];
   reader_ = std::thread([this] { read_output(); });
+  watch(this);
 }
 
 ChildProcess::~ChildProcess() {
   if (!ended_) {
     kill(id_, SIGKILL);
-    wait(std::chrono::seconds(10));
+    wait(std::chrono::seconds(60));
   }
+  abandoned_ = true;
   reader_.join();
   close(pipe_);
+  forget(this);
+  if (::testing::Test::HasFailure()) print();
 }
 
 void ChildProcess::read_output() {
   std::array<char, 4096> block{};
   for (;;) {
-    const ssize_t count = read(pipe_, block.data(), block.size());
+    pollfd pipe{pipe_, POLLIN, 0};
+    const bool has_more = poll(&pipe, 1, abandoned_ ? 0 : 20) > 0;
+    if (!has_more && !abandoned_) continue;
+    const ssize_t count = has_more ? read(pipe_, block.data(), block.size()) : 0;
     if (count < 0 && errno == EINTR) continue;
     const std::lock_guard lock(mutex_);
     if (count <= 0) {
@@ -78,6 +104,9 @@ int ChildProcess::wait(std::chrono::milliseconds at_most) {
       std::unique_lock lock(mutex_);
       more_.wait_for(lock, std::chrono::seconds(2), [this] { return closed_; });
     } else if (std::chrono::steady_clock::now() >= limit) {
+      if (at_most.count() > 0)
+        std::fprintf(stderr, "still running after %.3g s: %s\n", seconds(at_most),
+                     command_.c_str());
       return -1;
     } else {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -88,13 +117,26 @@ int ChildProcess::wait(std::chrono::milliseconds at_most) {
 
 bool ChildProcess::wait_for_output(const std::string& text, std::chrono::milliseconds at_most) {
   std::unique_lock lock(mutex_);
-  more_.wait_for(lock, at_most, [&] { return closed_ || output_.find(text) != std::string::npos; });
-  return output_.find(text) != std::string::npos;
+  const auto is_there = [&] { return output_.find(text) != std::string::npos; };
+  more_.wait_for(lock, at_most, [&] { return closed_ || is_there(); });
+  if (is_there()) return true;
+  std::fprintf(stderr, "no '%s' within %.3g s from %s\n", text.c_str(), seconds(at_most),
+               command_.c_str());
+  return false;
+}
+
+bool ChildProcess::wait_for_end_of_output(std::chrono::milliseconds at_most) {
+  std::unique_lock lock(mutex_);
+  return more_.wait_for(lock, at_most, [this] { return closed_; });
 }
 
 std::string ChildProcess::output() const {
   const std::lock_guard lock(mutex_);
   return output_;
+}
+
+void ChildProcess::print() const {
+  std::fprintf(stderr, "---- output of %s\n%s\n", command_.c_str(), output().c_str());
 }
 
 }  // namespace cordis::test

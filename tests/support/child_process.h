@@ -1,6 +1,7 @@
 // tests/support/child_process.h -- a program started by a test, its output kept, ended for certain.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -14,7 +15,7 @@
 namespace cordis::test {
 
 /// A child process with stdout and stderr collected as one text. The destructor kills it when it
-/// still runs.
+/// still runs, and prints the text when the test has failed.
 class ChildProcess {
  public:
   /// Starts `words[0]` with the rest as arguments. @param environment  added to that of the test.
@@ -28,17 +29,25 @@ class ChildProcess {
   void signal(int number) const noexcept;
 
   /// Waits for the end, at most so long. The exit code, 128 + signal when it was killed, or -1 when
-  /// it still runs.
+  /// it still runs; then stderr says so.
   int wait(std::chrono::milliseconds at_most);
 
-  /// Waits until its output contains `text`; false when it ended without, or the time is over.
+  /// Waits until its output contains `text`; false when it ended without, or the time is over; then
+  /// stderr says so.
   bool wait_for_output(const std::string& text, std::chrono::milliseconds at_most);
 
+  /// Waits until nobody can write into its output any more: neither it nor a process that it
+  /// started.
+  bool wait_for_end_of_output(std::chrono::milliseconds at_most);
+
   std::string output() const;
+  /// Prints its command and its output on stderr.
+  void print() const;
 
  private:
   void read_output();
 
+  std::string command_;
   pid_t id_ = -1;
   int exit_code_ = -1;
   bool ended_ = false;
@@ -47,6 +56,7 @@ class ChildProcess {
   std::condition_variable more_;
   std::string output_;
   bool closed_ = false;
+  std::atomic<bool> abandoned_{false};
   std::thread reader_;
 };
 

@@ -4,7 +4,8 @@
 namespace cordis::test {
 
 /// A DDS domain of this process' own, 10..101, the same at every call. Held against all other tests
-/// of this machine until the process ends.
+/// of this machine, and sessions of its users, until the process ends. The programs that the test
+/// starts afterwards record their sessions in a folder of the tests alone.
 int own_domain();
 
 }  // namespace cordis::test

@@ -2,7 +2,7 @@
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { need, pageIsBuilt, skip, until } from './session.mjs';
+import { LONGEST_MS, need, pageIsBuilt, skip, until } from './session.mjs';
 
 const CHROMIUM = '/usr/bin/chromium';
 const FLAGS = [
@@ -28,6 +28,10 @@ export async function drawn(page, count) {
   await until(`${count} more frames were drawn`, async () => (await viz(page, 'framesDrawn')) >= begin + count);
 }
 
+/** The newest reply to a command of the page, when it reads so. */
+export const replied = (page, pattern) =>
+  until(`the reply reads ${pattern}`, async () => pattern.exec((await viz(page, 'replies')).at(-1)?.text ?? ''));
+
 /** Place of a MAT on the page and the colours there and elsewhere, all of one frame. */
 export const look = (page, mat, elsewhere = []) =>
   page.evaluate(
@@ -52,7 +56,10 @@ export async function openPage(session, url) {
     executablePath: CHROMIUM,
     args: FLAGS,
     viewport: { width: 1280, height: 720 },
+    timeout: LONGEST_MS,
   });
+  session.browser.setDefaultTimeout(LONGEST_MS);
+  session.profile = profile;
   const closePrograms = session.close.bind(session);
   session.close = async () => {
     await session.browser.close();
@@ -63,5 +70,5 @@ export async function openPage(session, url) {
   session.page = session.browser.pages()[0] ?? (await session.browser.newPage());
   session.page.on('pageerror', (error) => session.pageErrors.push(String(error)));
   await session.page.goto(url);
-  await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0), 40_000);
+  await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0));
 }

@@ -7,6 +7,27 @@ import { out, runCases, Session, until } from './session.mjs';
 
 const [MIDDLE, PORT, TOOL, IDLE] = [29, 12, 15, 32]; // MATs of the string of scene_source.cpp
 
+/** What is beyond a window of this width, or upon something else. Runs in the page, all at one moment. */
+function faultsOfLayout(width) {
+  const boxesOf = (selector) => [...document.querySelectorAll(selector)].map((one) => one.getBoundingClientRect());
+  const faults = window.innerWidth === width ? [] : [`the window has still ${window.innerWidth} pixels`];
+  for (const selector of ['.figure', '#control button', '#tools button', '#legend li', '.plot', '#nodes tr']) {
+    const beyond = boxesOf(selector).filter((box) => box.width === 0 || box.left < 0 || box.right > width);
+    if (beyond.length > 0) faults.push(`${selector}: ${JSON.stringify(beyond)}`);
+  }
+  const [plots] = boxesOf('#plots');
+  const plotted = boxesOf('.plot').reduce((sum, { height }) => sum + height, 0);
+  if (!(plotted > 300 && plots.height > plotted - 1)) faults.push(`plots: ${plotted} of ${plots.height}`);
+  const marks = ['#legend', '#control', '#ruler', '#tools'].flatMap(boxesOf);
+  for (const [i, a] of marks.entries()) {
+    for (const b of marks.slice(i + 1)) {
+      const apart = a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+      if (!apart) faults.push(JSON.stringify([a, b]));
+    }
+  }
+  return faults;
+}
+
 const cases = {
   'the string is drawn where it is, and moves': async ({ page }) => {
     await drawn(page, 10);
@@ -78,15 +99,22 @@ const cases = {
       'by-viscosity': /^1\.20\smJ$/,
       limit: /^1\.75 of 4$/,
       time: /^\d+\.\d\d$/,
-      lag: /^\d+$/,
-      dropped: /^\d+$/,
+      lag: /^[\d,\s]+$/,
+      dropped: /^[\d,\s]+$/,
     };
-    for (const [id, pattern] of Object.entries(figures)) assert.match(await textOf(page, `#${id}`), pattern, id);
-    const rows = await page.locator('#nodes tr').allTextContents();
-    assert.deepEqual(rows.map((row) => row.match(/^(sim|keyboard|view)/)[0]), ['sim', 'keyboard', 'view']);
+    for (const [id, pattern] of Object.entries(figures)) {
+      await until(`#${id} reads ${pattern}`, async () => pattern.test(await textOf(page, `#${id}`)));
+    }
+    const names = async () => (await page.locator('#nodes tr').allTextContents()).map((row) => /^(sim|keyboard|view)/.exec(row)?.[0]);
+    await until('every node has its row', async () => String(await names()) === 'sim,keyboard,view');
     const lost = page.locator('#nodes td.lost').first();
     assert.equal(await lost.textContent(), '7 lost');
     assert.match(await lost.getAttribute('title'), /^messages lost, late or refused/);
+    await page.evaluate(() => document.querySelectorAll('#nodes td').forEach((cell) => (cell.isTheFirst = true)));
+    const since = await textOf(page, '#time');
+    await until('the figures go on', async () => Number(await textOf(page, '#time')) > Number(since) + 1);
+    const stay = await page.locator('#nodes td').evaluateAll((cells) => cells.every((cell) => cell.isTheFirst));
+    assert.ok(stay, 'a row stays the same element while its text changes');
     const view = (await viz(page, 'nodes')).find((node) => node.kind === 'viz_node');
     assert.equal(view.text, url);
     await page.screenshot({ path: join(out, 'page_string.png') });
@@ -94,25 +122,38 @@ const cases = {
 
   'the picture keeps up, and signals come at full rate': async ({ page }) => {
     await drawn(page, 25);
-    const lag = await viz(page, 'lag_s');
-    assert.ok(lag >= 0 && lag < 2, `lag ${lag} s`);
+    await until('the picture is not old', async () => {
+      const lag = await viz(page, 'lag_s');
+      return lag >= 0 && lag < 2;
+    });
     const signals = await viz(page, 'signals');
     assert.equal(signals.count, 3);
-    const last = await viz(page, 'lastFrame');
-    assert.ok(Math.abs(signals.newestS - last.simulatedS) < 2);
-    await until('500 more rows came', async () => (await viz(page, 'signals')).rows >= signals.rows + 500);
-    assert.equal((await viz(page, 'signals')).gaps, 0);
+    await until('signals and picture show the same time', async () => {
+      const [newestS, simulatedS] = await page.evaluate(() => [window.viz.signals.newestS, window.viz.lastFrame.simulatedS]);
+      return Math.abs(newestS - simulatedS) < 2;
+    });
+    // A page that is left without a processor for longer than viz_node keeps signals misses some.
+    await until('500 rows came without a gap', async () => {
+      const before = await viz(page, 'signals');
+      const now = await until('500 more rows came', async () => {
+        const later = await viz(page, 'signals');
+        return later.newestS >= before.newestS + 0.5 && later;
+      });
+      return now.gaps === before.gaps;
+    });
     assert.ok((await page.locator('#plots canvas').count()) === 3, 'one plot per unit');
     assert.match(await textOf(page, '.plot:first-child .series b'), /^-?\d.*m$/);
   },
 
   'keys turn the camera, colour by speed, hold the picture': async ({ page }) => {
+    const camera = (what, fits) => until(what, async () => fits(await viz(page, 'camera')));
     await page.keyboard.press('3');
-    assert.equal((await viz(page, 'camera')).preset, 'top');
+    await camera('it looks from the top', ({ preset }) => preset === 'top');
     await page.keyboard.press('o');
-    assert.equal((await viz(page, 'camera')).orthographic, false);
+    await camera('it has a perspective', ({ orthographic }) => !orthographic);
     await page.keyboard.press('o');
     await page.keyboard.press('1');
+    await camera('it looks from the front again', ({ preset, orthographic }) => preset === 'front' && orthographic);
     await page.mouse.move(400, 300);
     const before = (await viz(page, 'camera')).metresPerPixel;
     await page.mouse.wheel(0, -400);
@@ -123,7 +164,7 @@ const cases = {
     await page.keyboard.press('c');
     await drawn(page, 5);
     await until('a slow place is not the blue of a mass', async () => (await look(page, MIDDLE)).colour[2] < 240);
-    assert.match(await textOf(page, '#speed-most'), /m\/s$/);
+    await until('the fastest speed is told', async () => /m\/s$/.test(await textOf(page, '#speed-most')));
     await page.keyboard.press('c');
 
     await page.keyboard.press(' ');
@@ -137,24 +178,13 @@ const cases = {
   },
 
   'a narrow window shows all of it, and nothing upon something else': async ({ page }) => {
-    const boxesOf = (selector) => page.locator(selector).evaluateAll((all) => all.map((one) => one.getBoundingClientRect().toJSON()));
     for (const width of [1024, 480, 360]) {
       await page.setViewportSize({ width, height: 720 });
-      for (const selector of ['.figure', '#control button', '#tools button', '#legend li', '.plot', '#nodes tr']) {
-        const boxes = await boxesOf(selector);
-        const beyond = boxes.filter(({ left, right, width: own }) => own === 0 || left < 0 || right > width);
-        assert.deepEqual(beyond, [], `${selector} at ${width}`);
-      }
-      const [plots] = await boxesOf('#plots');
-      const plotted = (await boxesOf('.plot')).reduce((sum, { height }) => sum + height, 0);
-      assert.ok(plotted > 300 && plots.height > plotted - 1, `plots at ${width}: ${plotted} of ${plots.height}`);
-      const marks = (await Promise.all(['#legend', '#control', '#ruler', '#tools'].map(boxesOf))).flat();
-      for (const [i, a] of marks.entries()) {
-        for (const b of marks.slice(i + 1)) {
-          const apart = a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
-          assert.ok(apart, `at ${width}: ${JSON.stringify([a, b])}`);
-        }
-      }
+      let faults = [];
+      const fits = async () => (faults = await page.evaluate(faultsOfLayout, width)).length === 0;
+      await until(`it fits into ${width} pixels`, fits, 60_000).catch((error) => {
+        throw new Error(`${error.message}\n${faults.join('\n')}`);
+      });
     }
     await page.setViewportSize({ width: 1280, height: 720 });
   },
@@ -188,11 +218,10 @@ const cases = {
     assert.equal(await textOf(page, '#loop'), '–');
     await page.screenshot({ path: join(out, 'page_waiting.png') });
     session.source = session.scene('--scene', 'grid', '--mats', '900');
-    await until('the new scene is drawn', async () => (await viz(page, 'lastFrame')).matCount === 900);
+    await until('the new scene is drawn', async () => (await viz(page, 'lastFrame'))?.matCount === 900);
     await drawn(page, 10);
     await banner(page, '');
-    const camera = await viz(page, 'camera');
-    assert.equal(camera.orthographic, false);
+    await until('it has depth', async () => !(await viz(page, 'camera')).orthographic);
     await page.screenshot({ path: join(out, 'page_grid.png') });
   },
 
@@ -202,15 +231,17 @@ const cases = {
     session.source = session.scene('--amplitude', '0.5'); // at first all of it is above 0, half a second later below
     await until('the new scene is drawn', async () => (await viz(page, 'lastFrame')).matCount === 60);
     const stage = await page.locator('#stage').boundingBox();
-    const isSeen = async () => {
-      const { y } = (await look(page, MIDDLE)).at;
-      return y > stage.y && y < stage.y + stage.height;
+    // Height of the middle [m] and its place on the page, of one frame.
+    const middle = () =>
+      page.evaluate((mat) => ({ height: window.viz.position(mat)[1], at: window.viz.project(mat) }), MIDDLE);
+    const isLow = async () => {
+      const now = await middle();
+      return now.height < -0.4 && now;
     };
-    const lowest = async () => (await page.evaluate((mat) => window.viz.position(mat)[1], MIDDLE)) < -0.4;
-    await until('it has been low', lowest);
+    await until('it has been low', isLow);
     await drawn(page, 10);
-    await until('it is low again', lowest);
-    assert.ok(await isSeen());
+    const { y } = (await until('it is low again', isLow)).at;
+    assert.ok(y > stage.y && y < stage.y + stage.height, `the middle is at ${y}, the picture at ${JSON.stringify(stage)}`);
     assert.ok((await viz(page, 'camera')).orthographic);
 
     const far = (await viz(page, 'camera')).metresPerPixel;
@@ -220,8 +251,8 @@ const cases = {
       const { metresPerPixel } = await viz(page, 'camera');
       return metresPerPixel < 0.6 * far && metresPerPixel;
     });
-    await until('it is high', async () => !(await lowest()));
-    await until('it is low once more', lowest);
+    await until('it is high', async () => !(await isLow()));
+    await until('it is low once more', isLow);
     await drawn(page, 6);
     assert.equal((await viz(page, 'camera')).metresPerPixel, near);
   },
@@ -242,4 +273,4 @@ async function open() {
   return session;
 }
 
-await runCases(cases, open, 170_000);
+await runCases(cases, open);

@@ -120,6 +120,22 @@ TEST_F(SceneMirrorTest, IgnoresAnOlderVersionOfTheSameScene) {
   EXPECT_EQ(Json::parse(mirror.scene()->text)["name"], "newer");
 }
 
+TEST_F(SceneMirrorTest, IsNotSilencedByANumberThatNobodyReaches) {
+  msg::SceneDescription far = row_of_three();
+  far.version(~std::uint64_t{0});
+  far.name("far");
+  mirror.take(std::move(far));
+  mirror.take(row_of_three());
+  EXPECT_NE(Json::parse(mirror.scene()->text)["name"], "far");
+
+  EXPECT_EQ(take_frame(1), "");
+  EXPECT_EQ(mirror.take(frame_of_three(~std::uint64_t{0}), arrival(2)), "");
+  EXPECT_EQ(mirror.take(frame_of_three(2), arrival(3)), "");
+  EXPECT_EQ(mirror.take(frame_of_three(3), arrival(4)), "");
+  EXPECT_EQ(mirror.frame()->frame.frame(), 3u);
+  EXPECT_EQ(mirror.figures().lost, 0u) << "a jump beyond all reason is no count of losses";
+}
+
 TEST_F(SceneMirrorTest, PassesOverWhatBelongsToTheSceneBeforeOrAfter) {
   msg::SceneDescription next = row_of_three();
   next.version(2);

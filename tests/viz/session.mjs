@@ -2,12 +2,13 @@
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { tmpdir } from 'node:os';
+import { tmpdir, userInfo } from 'node:os';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 
 const SKIPPED = 77;
+process.env.CORDIS_RUNTIME_DIR ??= `/tmp/cordis-tests-${userInfo().uid}`; // sessions of tests are recorded there
 
 const { values: options } = parseArgs({
   options: {
@@ -41,8 +42,13 @@ export function skip(reason) {
 
 export const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
+/** What any one thing may take, on however busy a machine. */
+export const LONGEST_MS = 120_000;
+/** What all cases of a test may take. */
+export const TEST_MS = 570_000;
+
 /** Waits until `condition` gives something true, and gives that back; an Error with `what` when it takes too long. */
-export async function until(what, condition, atMostMs = 20_000) {
+export async function until(what, condition, atMostMs = LONGEST_MS) {
   const end = Date.now() + atMostMs;
   for (;;) {
     const value = await condition();
@@ -73,7 +79,7 @@ class Program {
   /** Exit code, or the name of the signal that ended it. */
   async end(signal = 'SIGTERM') {
     if (this.running) this.child.kill(signal);
-    const late = setTimeout(() => this.child.kill('SIGKILL'), 5000);
+    const late = setTimeout(() => this.child.kill('SIGKILL'), 60_000);
     const result = await this.ended;
     clearTimeout(late);
     return result;
@@ -94,8 +100,10 @@ export class Session {
   programs = [];
   folder = mkdtempSync(join(tmpdir(), 'cordis-viz-'));
 
+  static opened = null; // the one of this process
+
   static async open() {
-    const session = new Session();
+    const session = (Session.opened = new Session());
     const holder = session.start('domain', options['scene-source'], ['--hold-domain']);
     session.domain = await holder.says(/^(\d+)\n/);
     return session;
@@ -132,21 +140,21 @@ export class Session {
   }
 
   logs() {
-    return this.programs.map((p) => `--- ${p.name} (${p.running ? 'running' : 'ended'})\n${p.log}`).join('\n');
+    const errors = (this.pageErrors ?? []).map((error) => `--- error in the page: ${error}\n`).join('');
+    return errors + this.programs.map((p) => `--- ${p.name} (${p.running ? 'running' : 'ended'})\n${p.log}`).join('\n');
   }
 }
 
 /** Runs the cases one after the other; ends the process with 0 or 1. A case that fails prints the log of every program. */
-export async function runCases(cases, openSession, atMostMs) {
-  let session = null;
+export async function runCases(cases, openSession, atMostMs = TEST_MS) {
   let failed = 0;
   const watchdog = setTimeout(() => {
-    console.error(`the test took longer than ${atMostMs / 1000} s\n${session?.logs() ?? ''}`);
-    for (const program of session?.programs ?? []) program.child.kill('SIGKILL');
+    console.error(`the test took longer than ${atMostMs / 1000} s\n${Session.opened?.logs() ?? ''}`);
+    for (const program of Session.opened?.programs ?? []) program.child.kill('SIGKILL');
     process.exit(1);
   }, atMostMs);
   try {
-    session = await openSession();
+    const session = await openSession();
     for (const [name, run] of Object.entries(cases)) {
       const begin = Date.now();
       try {
@@ -159,9 +167,9 @@ export async function runCases(cases, openSession, atMostMs) {
     }
   } catch (error) {
     ++failed;
-    console.error(`${error.stack}\n${session?.logs() ?? ''}`);
+    console.error(`${error.stack}\n${Session.opened?.logs() ?? ''}`);
   } finally {
-    await session?.close();
+    await Session.opened?.close();
     clearTimeout(watchdog);
   }
   console.log(`${Object.keys(cases).length} cases, ${failed} failed`);

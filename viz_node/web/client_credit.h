@@ -9,25 +9,38 @@
 
 namespace cordis::viz {
 
-/// The credit of one client: at most two frames are on their way to it, then it must acknowledge
-/// one.
+/// The flow-control credit of one client: at most two frames are on their way to it, then it must
+/// acknowledge one.
 ///
 /// Whether its socket can be written says nothing: kernel and browser would hold seconds of frames.
-/// Newest wins: while a client has no credit the frames pass it by, and count as dropped. Pure
-/// logic, no clock, O(1) memory.
+/// Newest wins: while a client has no credit the frames pass it by, and count as dropped.
+///
+/// No client can lose its credit for good. What is on its way is computed from the newest
+/// acknowledgement; reset() forgets it; a frame that is not acknowledged in time is given up. So
+/// may_send() of a new frame is true at the latest kAckTimeoutNsec after the last sent(), whatever
+/// the client acknowledges or leaves out. Pure logic, the caller's clock, O(1) memory.
 class ClientCredit {
  public:
-  static constexpr std::size_t kMostUnacknowledged = 2;
+  static constexpr std::size_t kMaxUnacknowledged = 2;
 
-  /// Whether the frame `newest` may be sent: there is credit, and it was not sent before.
-  bool may_send(std::uint32_t newest) const noexcept;
+  /// Longer than two frames of a megabyte take on a line of 10 Mbit/s: a slow client is not taken
+  /// for one that never acknowledges.
+  static constexpr std::int64_t kAckTimeoutNsec = 3'000'000'000;
 
-  /// Notes that frame `sequence` is on its way; only after may_send(sequence).
-  void sent(std::uint32_t sequence, std::int64_t taken_nsec) noexcept;
+  /// True if the frame `newest` was not sent before, and there is credit for it.
+  /// @param now_nsec  steady clock, never backwards [ns]
+  bool may_send(std::uint32_t newest, std::int64_t now_nsec) const noexcept;
+
+  /// Counts frame `sequence` as on its way; only after may_send(sequence). Without free credit the
+  /// oldest frame on its way is given up.
+  void sent(std::uint32_t sequence, std::int64_t taken_nsec, std::int64_t now_nsec) noexcept;
 
   /// The client is done with every frame up to `sequence`. Gives back when that frame was taken, or
-  /// nothing when it was not on its way (acknowledged before, or never sent).
+  /// nothing when it was not on its way (acknowledged before, given up, or never sent).
   std::optional<std::int64_t> acknowledge(std::uint32_t sequence) noexcept;
+
+  /// Gives all credit back: another scene begins, and nobody waits for frames of the last one.
+  void reset() noexcept { count_ = 0; }
 
   std::size_t unacknowledged() const noexcept { return count_; }
   std::uint32_t dropped() const noexcept {
@@ -40,9 +53,12 @@ class ClientCredit {
     std::int64_t taken_nsec = 0;
   };
 
-  std::array<Flight, kMostUnacknowledged> flights_{};  // oldest first
+  void forget_oldest(std::size_t flights) noexcept;
+
+  std::array<Flight, kMaxUnacknowledged> flights_{};  // oldest first
   std::size_t count_ = 0;
   std::uint32_t last_sent_ = 0;  // 0: none yet
+  std::int64_t last_sent_nsec_ = 0;
   std::uint32_t dropped_ = 0;
 };
 

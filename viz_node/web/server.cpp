@@ -2,6 +2,7 @@
 // knows Boost.Beast.
 #include "viz_node/web/server.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -16,7 +17,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
-#include "node/stop.h"
 #include "node/time.h"
 #include "viz_node/page_text.h"
 #include "viz_node/web/server_visitor.h"
@@ -27,26 +27,51 @@ namespace {
 constexpr auto kStatusPeriod = std::chrono::milliseconds(250);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 constexpr std::size_t kMostConnections = 64;
+constexpr int kNextPorts = 20;  // tried after an occupied one
 
-/// Listens, or says what to do when that cannot be.
-void listen(tcp::acceptor& acceptor, const ServerConfig& config) {
-  const tcp::endpoint endpoint(asio::ip::make_address(config.address),
-                               static_cast<std::uint16_t>(config.port));
+/// True if another port of the same address may do.
+bool is_about_the_port(const ErrorCode& error) {
+  return error == asio::error::address_in_use || error == asio::error::access_denied;
+}
+
+/// Listens at `endpoint`, or gives back why not and leaves `acceptor` closed.
+ErrorCode try_to_listen(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
   try {
     acceptor.open(endpoint.protocol());
     acceptor.set_option(tcp::acceptor::reuse_address(true));
     acceptor.bind(endpoint);
     acceptor.listen();
+    return {};
   } catch (const boost::system::system_error& error) {
-    const std::string port = std::to_string(config.port);
-    if (error.code() == asio::error::address_in_use) {
-      throw std::runtime_error("port " + port + " on " + config.address +
-                               " is occupied by another program; choose another one: " +
-                               config.node + ".port=" + std::to_string(config.port % 65535 + 1));
-    }
-    throw std::runtime_error("cannot listen on " + config.address + " port " + port + ": " +
-                             error.code().message());
+    ErrorCode none;
+    acceptor.close(none);
+    return error.code();
   }
+}
+
+/// Listens at the port of `config`; at one of the next when it is occupied; at any free one when
+/// those are occupied too. A page must not end a session.
+/// @throws std::runtime_error when the address is not to be had
+void listen(tcp::acceptor& acceptor, const ServerConfig& config) {
+  const auto address = asio::ip::make_address(config.address);
+  const auto wanted = static_cast<std::uint16_t>(config.port);
+  const int last = wanted == 0 ? 0 : std::min(config.port + kNextPorts, 65535);
+  ErrorCode error;
+  for (int port = wanted; port <= last; ++port) {
+    error = try_to_listen(acceptor, {address, static_cast<std::uint16_t>(port)});
+    if (!is_about_the_port(error)) break;
+  }
+  if (is_about_the_port(error)) error = try_to_listen(acceptor, {address, 0});
+  if (error) {
+    throw std::runtime_error("cannot listen on " + config.address + " port " +
+                             std::to_string(wanted) + ": " + error.message());
+  }
+  const std::uint16_t taken = acceptor.local_endpoint().port();
+  if (wanted == 0 || taken == wanted) return;
+  spdlog::warn(
+      "port {} on {} is occupied by another program: the page is at port {}; {}.port=N "
+      "chooses another one",
+      wanted, config.address, taken, config.node);
 }
 
 std::string url_of(const tcp::endpoint& endpoint) {
@@ -75,11 +100,11 @@ struct WebServer::Impl {
         pause.expires_after(kAcceptPause);
         return pause.async_wait([this](ErrorCode) { accept(); });
       }
+      accept();        // first: whatever becomes of this one, others may come
       ErrorCode none;  // a socket that takes no option still works
       socket.set_option(tcp::no_delay(true), none);
       if (hub.connections < kMostConnections)
         std::make_shared<Visitor>(std::move(socket), hub, pages)->read();
-      accept();
     });
   }
 
@@ -88,14 +113,15 @@ struct WebServer::Impl {
     for (Client* client : now) client->pump();
   }
 
+  /// Also pumps clients whose frames were not acknowledged in time.
   void tell_status() {
-    hub.status = std::make_shared<const std::string>(hub.mirror.status(node::monotonic_nsec()));
-    ++hub.status_number;
-    pump_all();
     tick.expires_after(kStatusPeriod);
     tick.async_wait([this](ErrorCode error) {
       if (!error) tell_status();
     });
+    hub.status = std::make_shared<const std::string>(hub.mirror.status(node::monotonic_nsec()));
+    ++hub.status_number;
+    pump_all();
   }
 
   /// Any thread: something new is in the mirror. At most one call waits at a time.
@@ -107,12 +133,14 @@ struct WebServer::Impl {
     });
   }
 
-  void run() {
-    try {
-      context.run();
-    } catch (const std::exception& error) {
-      spdlog::error("the web server failed: {}", error.what());
-      node::request_stop();
+  /// An error ends the connection that it concerns, not the server.
+  void run() noexcept {
+    while (!context.stopped()) {
+      try {
+        context.run();
+      } catch (const std::exception& error) {
+        spdlog::error("the web server closed a connection: {}", error.what());
+      }
     }
   }
 

@@ -15,7 +15,7 @@ struct ServerConfig {
   std::string node = "viz";  ///< name of the node, for messages
   std::string session;
   std::string address = "127.0.0.1";
-  int port = 0;                  ///< 0 takes any free port
+  int port = 0;                  ///< the first that is tried; 0 takes any free port
   std::filesystem::path folder;  ///< the built page
 };
 
@@ -34,12 +34,12 @@ struct ServerFigures {
 /// let go when it answers no ping for half a minute.
 class WebServer {
  public:
-  /// Begins to listen.
+  /// Begins to listen. An occupied port is no error: the server takes the next free one, and logs
+  /// a warning.
   /// @param mirror  outlives the server; its on_change() is taken over
   /// @param obey    called from the server's thread with what a page wants of the simulation; must
   ///                not wait
-  /// @throws std::runtime_error with what to type when the port is occupied or the address is not
-  /// to be had
+  /// @throws std::runtime_error when the address is not one of this machine
   WebServer(const ServerConfig& config, SceneMirror& mirror,
             std::function<void(const PageCommand&)> obey);
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <string>
 #include <utility>
@@ -47,9 +48,15 @@ class Client : public std::enable_shared_from_this<Client> {
   }
 
   /// Sends the next thing that is due, unless a message is still on its way into the socket.
-  void pump() {
-    if (writing_) return;
-    if (const auto message = feed_.next()) send(*message);
+  /// A page that cannot be sent what is due (no memory) is let go of, and comes back by itself.
+  void pump() noexcept {
+    try {
+      if (writing_) return;
+      if (const auto message = feed_.next()) send(*message);
+    } catch (const std::exception& error) {
+      spdlog::warn("closed the connection to a page: {}", error.what());
+      leave();
+    }
   }
 
  private:

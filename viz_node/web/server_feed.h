@@ -32,8 +32,9 @@ class Feed {
     if (!std::exchange(hello_sent_, true)) return text(hub_.hello);
     if (auto scene = next_of_scene()) return scene;
     if (auto status = next_status()) return status;
-    if (auto signals = next_signals()) return signals;
-    return next_frame();
+    frame_first_ = !frame_first_;  // in turn: on a slow line neither starves the other
+    if (auto first = frame_first_ ? next_frame() : next_signals()) return first;
+    return frame_first_ ? next_signals() : next_frame();
   }
 
   ClientCredit& credit() noexcept { return credit_; }
@@ -49,6 +50,7 @@ class Feed {
     auto scene = hub_.mirror.scene();
     if (scene == nullptr || scene->scene == scene_) return {};
     scene_ = scene->scene;
+    credit_.reset();
     kept_scene_ = topology_due_ = std::move(scene);
     return text(kept_scene_->text);
   }
@@ -70,16 +72,18 @@ class Feed {
   std::optional<Message> next_frame() {
     kept_frame_ = hub_.mirror.frame();
     if (kept_frame_ == nullptr || kept_frame_->scene != scene_) return {};
-    if (!credit_.may_send(kept_frame_->sequence)) return {};
+    const std::int64_t now_nsec = node::monotonic_nsec();
+    if (!credit_.may_send(kept_frame_->sequence, now_nsec)) return {};
     const msg::SceneFrame& frame = kept_frame_->frame;
     const bool played = frame.action_time_nsec() != 0;
-    credit_.sent(kept_frame_->sequence, played ? frame.action_time_nsec() : frame.time_nsec());
+    credit_.sent(kept_frame_->sequence, played ? frame.action_time_nsec() : frame.time_nsec(),
+                 now_nsec);
     header_ = encode({.sequence = kept_frame_->sequence,
                       .scene = kept_frame_->scene,
                       .frame = frame.frame(),
                       .step = frame.step(),
                       .taken_nsec = frame.time_nsec(),
-                      .sent_nsec = node::monotonic_nsec(),
+                      .sent_nsec = now_nsec,
                       .simulated_s = frame.simulated_s(),
                       .mat_count = static_cast<std::uint32_t>(frame.position_m().size() / 3),
                       .link_state_count = static_cast<std::uint32_t>(frame.link_state().size()),
@@ -92,6 +96,7 @@ class Feed {
   Hub& hub_;
   ClientCredit credit_;
   bool hello_sent_ = false;
+  bool frame_first_ = false;
   std::uint32_t scene_ = 0;
   std::uint64_t status_number_ = 0;
   std::uint64_t signals_number_ = 0;

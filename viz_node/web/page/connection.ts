@@ -17,6 +17,8 @@ export class Connection {
   private socket: WebSocket | null = null;
   private pauseMs = FIRST_PAUSE_MS;
   private watchdog = 0;
+  private received = 0; // sequence of the newest frame of this connection
+  private acknowledged = 0;
 
   constructor(
     private readonly url: string,
@@ -29,9 +31,15 @@ export class Connection {
     return this.socket?.readyState === WebSocket.OPEN;
   }
 
-  /** Says that every frame up to `sequence` is done with, and whether that one was drawn while it was new. */
-  acknowledge(sequence: number, drawn: boolean): void {
-    if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'ack', sequence, drawn }));
+  /**
+   * Says that every frame received so far is done with, drawn or not. What is acknowledged never depends on what became of a frame;
+   * `drawn` is the sequence of the one that was drawn while it was new, if any.
+   */
+  acknowledge(drawn = 0): void {
+    if (!this.isOpen || this.received === this.acknowledged) return;
+    this.acknowledged = this.received;
+    const sequence = this.received;
+    this.socket!.send(JSON.stringify({ type: 'ack', sequence, drawn: drawn === sequence }));
   }
 
   /** Asks for something of the simulation. */
@@ -43,6 +51,7 @@ export class Connection {
     const socket = new WebSocket(this.url);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
+    this.received = this.acknowledged = 0;
     socket.onopen = () => {
       this.pauseMs = FIRST_PAUSE_MS;
       this.listener.opened();
@@ -56,7 +65,9 @@ export class Connection {
     if (socket !== this.socket) return;
     this.watch(socket);
     try {
-      this.listener.message(typeof data === 'string' ? (JSON.parse(data) as Message) : decodeBinary(data));
+      const message = typeof data === 'string' ? (JSON.parse(data) as Message) : decodeBinary(data);
+      if (message.type === 'frame') this.received = message.sequence;
+      this.listener.message(message);
     } catch (error) {
       this.listener.failed(error);
     }

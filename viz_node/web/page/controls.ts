@@ -10,7 +10,8 @@ export class Controls {
   private readonly reply = document.querySelector<HTMLElement>('#reply')!;
   private paused = false;
   private shownNumber = 0; // of the reply shown last
-  private askedMs = 0; // when a command was sent that has no reply yet
+  private asked = false; // a command was sent that has no reply yet
+  private impatientMs = Number.POSITIVE_INFINITY; // when its silence is told
   private timer = 0;
 
   constructor(private readonly connection: Connection) {
@@ -33,21 +34,24 @@ export class Controls {
       }
     }
     const newest = replies[replies.length - 1];
+    if (newest === undefined) this.shownNumber = 0; // a viz_node that was started anew counts from 1
     if (newest !== undefined && newest.number !== this.shownNumber) {
-      // What was answered before this page came is of no interest.
-      if (this.askedMs > 0) this.say(newest.text.split('\n')[0]!, !newest.accepted);
+      // What was answered before this page came is of no interest; a late answer is.
+      if (this.asked) this.say(newest.text.split('\n')[0]!, !newest.accepted);
       this.shownNumber = newest.number;
-      this.askedMs = 0;
+      this.asked = false;
+      this.impatientMs = Number.POSITIVE_INFINITY;
     }
-    if (this.askedMs > 0 && performance.now() - this.askedMs > PATIENCE_MS) {
+    if (performance.now() > this.impatientMs) {
       this.say('sim_node does not answer', true);
-      this.askedMs = 0;
+      this.impatientMs = Number.POSITIVE_INFINITY;
     }
   }
 
   private send(button: string): void {
     const verb = button === 'pause' && this.paused ? 'resume' : button;
-    this.askedMs = performance.now();
+    this.asked = true;
+    this.impatientMs = performance.now() + PATIENCE_MS;
     this.connection.command(verb);
   }
 

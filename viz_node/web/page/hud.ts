@@ -1,7 +1,8 @@
 // The figures that are always on screen, the state of every node, and the banner when something is amiss.
 import { count, duration, joined, NONE, plain, rate, threeDigits, withUnit } from './format.ts';
 import { countsLine, eventLine } from './events.ts';
-import type { Description, NodeState, Status } from './protocol.ts';
+import { VERSION, type Description, type Hello, type NodeState, type Reply, type Status } from './protocol.ts';
+import { fillRows, setText } from './rows.ts';
 
 // After this time without a frame the picture is called old, whatever the nodes say.
 const OLD_AFTER_S = 1.5;
@@ -26,15 +27,17 @@ function element(id: string): HTMLElement {
 
 function set(id: string, text: string, level: 'good' | 'warn' | 'bad' | '' = ''): void {
   const target = element(id);
-  if (target.textContent !== text) target.textContent = text;
+  setText(target, text);
   target.dataset.level = level;
 }
 
 export class Hud {
   private status: Status | null = null;
   private description: Description | null = null;
+  private otherVersion = false; // of viz_node than of this page
 
-  setSession(session: string): void {
+  setHello({ session, protocol }: Hello): void {
+    this.otherVersion = protocol !== VERSION;
     set('session', session);
     document.title = `${session} · Cordis`;
   }
@@ -54,6 +57,10 @@ export class Hud {
 
   get nodes(): NodeState[] {
     return this.status?.nodes ?? [];
+  }
+
+  get replies(): Reply[] {
+    return this.status?.replies ?? [];
   }
 
   /** Writes all figures anew; a few times a second. */
@@ -124,7 +131,7 @@ export class Hud {
   private writeNodes(nodes: NodeState[]): void {
     const order = ['sim_node', 'device_node', 'viz_node'];
     const sorted = [...nodes].sort((a, b) => order.indexOf(a.kind) - order.indexOf(b.kind) || a.name.localeCompare(b.name));
-    element('nodes').replaceChildren(...sorted.map(rowOf));
+    fillRows(element('nodes'), sorted, makeRow, writeRow);
   }
 
   private writeEvents(status: Status): void {
@@ -135,12 +142,11 @@ export class Hud {
     element('events').hidden = total === 0 && all === 0;
     set('events-total', count(Math.max(total, all)) + unseen);
     set('events-counts', countsLine(sim?.changes ?? []));
-    const lines = [...newest].reverse().map((event) => {
-      const line = document.createElement('li');
-      line.textContent = line.title = eventLine(event, this.description);
-      return line;
+    const makeLine = () => document.createElement('li');
+    fillRows(element('events-list'), [...newest].reverse(), makeLine, (line, event) => {
+      line.title = eventLine(event, this.description);
+      setText(line, line.title);
     });
-    element('events-list').replaceChildren(...lines);
   }
 
   private writeBanner(measured: Measured): void {
@@ -155,6 +161,7 @@ export class Hud {
   /** The one thing that a person should know first: [title, what it means, level]. */
   private alarm(measured: Measured): [string, string, 'bad' | 'warn' | ''] {
     if (!measured.connected) return ['viz_node does not answer', 'The session may be running all the same. Trying again …', 'bad'];
+    if (this.otherVersion) return ['reload this page', 'It is older or newer than the viz_node that it shows.', 'bad'];
     const sims = this.nodes.filter((node) => node.kind === 'sim_node');
     if (!sims.some((node) => !GONE.includes(node.state))) {
       const last = sims.sort((a, b) => a.heard_s - b.heard_s)[0];
@@ -188,24 +195,25 @@ function fate(node: NodeState): string {
   return `${node.name} ${node.state} ${since}${reason}.`;
 }
 
-function rowOf(node: NodeState): HTMLElement {
+const CELLS = ['name', 'state', 'rate', 'lost', 'memory'];
+
+function makeRow(): HTMLElement {
   const row = document.createElement('tr');
-  const cell = (text: string, kind = '', title = '') => {
-    const data = document.createElement('td');
-    if (title !== '') data.title = title;
-    data.textContent = text;
-    data.className = kind;
-    row.append(data);
-  };
-  row.dataset.state = node.state;
-  row.title = node.text;
-  if (node.kind === 'device_node') {
-    row.title += `${node.text && '; '}${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.braked_ticks)} ticks braked`;
-  }
-  cell(node.name, 'name');
-  cell(node.state, 'state');
-  cell(GONE.includes(node.state) ? NONE : rate(node.reached_rate_hz) + ' Hz');
-  cell(node.dropped > 0 ? `${count(node.dropped)} lost` : '', 'lost', 'messages lost, late or refused since it began');
-  cell(joined(withUnit(node.memory_bytes, 'B')));
+  for (const kind of CELLS) row.append(Object.assign(document.createElement('td'), { className: kind }));
+  row.querySelector<HTMLElement>('.lost')!.title = 'messages lost, late or refused since it began';
   return row;
+}
+
+function writeRow(row: HTMLElement, node: NodeState): void {
+  const device = `${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.braked_ticks)} ticks braked`;
+  row.dataset.state = node.state;
+  row.title = node.kind === 'device_node' ? node.text + (node.text && '; ') + device : node.text;
+  const texts = [
+    node.name,
+    node.state,
+    GONE.includes(node.state) ? NONE : rate(node.reached_rate_hz) + ' Hz',
+    node.dropped > 0 ? `${count(node.dropped)} lost` : '',
+    joined(withUnit(node.memory_bytes, 'B')),
+  ];
+  texts.forEach((text, i) => setText(row.children[i]!, text));
 }

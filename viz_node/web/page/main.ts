@@ -16,6 +16,7 @@ import { exposeViz } from './viz.ts';
 const FIGURES_PERIOD_MS = 200;
 const PLOTS_PERIOD_MS = 60;
 const MOST_ERRORS = 20;
+const CONTEXT_LOST = 'The browser stopped drawing: its graphics driver failed. Reload the page if the picture does not come back';
 
 function find<T extends HTMLElement>(selector: string): T {
   const found = document.querySelector<T>(selector);
@@ -85,7 +86,7 @@ class Page {
   private take(message: Message): void {
     switch (message.type) {
       case 'hello':
-        return this.hud.setSession(message.session);
+        return this.hud.setHello(message);
       case 'description':
         return this.describe(message);
       case 'topology':
@@ -110,7 +111,7 @@ class Page {
     ++this.framesReceived;
     this.frameMs = now;
     this.dropped = frame.dropped;
-    if (frame.scene !== this.description?.scene) return this.connection.acknowledge(frame.sequence, false);
+    if (frame.scene !== this.description?.scene) return this.connection.acknowledge();
     this.factor.note(frame.takenNsec, frame.simulatedS);
     this.pending = frame;
     this.pendingIsLate = document.hidden;
@@ -124,6 +125,7 @@ class Page {
     const looksAlike = last !== null && last.name === description.name && last.space === description.space;
     this.description = description;
     this.pending = null;
+    this.connection.acknowledge(); // frames of the last scene are not drawn any more
     this.factor.clear();
     this.hud.setDescription(description);
     if (isSame) return;
@@ -140,8 +142,15 @@ class Page {
     this.say(quality.note);
     const { space } = this.description;
     const tools = toolsOf(this.description);
-    this.view = new SceneView(this.stage, topology, tools, space, quality, this.pose, () => this.askToDraw());
-    this.view.colourBySpeed(this.speeds);
+    const changed = () => this.askToDraw();
+    const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : quality.note);
+    try {
+      this.view = new SceneView(this.stage, topology, tools, space, quality, this.pose, changed, lost);
+      this.view.colourBySpeed(this.speeds);
+    } catch (error) {
+      this.note(error);
+      this.say('The browser gives this page no WebGL: figures and signals only. Close other tabs and reload the page');
+    }
   }
 
   private forgetConnection(): void {
@@ -175,14 +184,15 @@ class Page {
     } catch (error) {
       this.note(error);
     }
-    if (frame !== null) this.finish(frame);
+    if (frame === null) this.connection.acknowledge();
+    else this.finish(frame);
     this.drawPlots();
     this.drawRuler();
   }
 
   private finish(frame: Frame): void {
     const drawn = this.view !== null && !this.held && !this.pendingIsLate;
-    this.connection.acknowledge(frame.sequence, drawn);
+    this.connection.acknowledge(drawn ? frame.sequence : 0);
     if (this.view === null || this.held) return;
     ++this.framesDrawn;
     this.lastFrame = frame;

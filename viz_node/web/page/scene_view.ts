@@ -7,6 +7,7 @@ import type { Quality } from './quality.ts';
 import { CameraRig, type Pose } from './camera_rig.ts';
 
 THREE.ColorManagement.enabled = false; // colours are chosen as they are shown
+const CONTEXT_EVENTS = ['webglcontextlost', 'webglcontextrestored'];
 const BACKGROUND = 0x0d1117;
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
 const SAMPLE = 4000;
@@ -39,12 +40,14 @@ export class SceneView {
     readonly quality: Quality,
     private readonly pose: Pose | null, // where the eye stood before, if it shall stay
     private readonly changed: () => void,
+    private readonly contextLost: (lost: boolean) => void, // the browser took the graphics away, or gave them back
   ) {
     this.renderer = new THREE.WebGLRenderer({ antialias: quality.antialias, powerPreference: 'high-performance' });
     this.renderer.setPixelRatio(quality.pixelRatio);
     this.renderer.setClearColor(BACKGROUND);
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     container.prepend(this.renderer.domElement);
+    for (const event of CONTEXT_EVENTS) this.renderer.domElement.addEventListener(event, this.noteContext);
     this.rig = new CameraRig(this.renderer.domElement, space, changed);
 
     const coordinates = 3 * topology.matCount;
@@ -55,6 +58,11 @@ export class SceneView {
     this.scene.add(this.ground.group);
     this.resize();
   }
+
+  private readonly noteContext = (event: Event): void => {
+    this.contextLost(event.type === 'webglcontextlost');
+    this.changed();
+  };
 
   private buildMatter(): void {
     this.geometry.setAttribute('radius', new THREE.BufferAttribute(this.topology.radii.slice(), 1));
@@ -194,6 +202,7 @@ export class SceneView {
     this.geometry.dispose();
     this.linkGeometry.dispose();
     this.ground.dispose();
+    for (const event of CONTEXT_EVENTS) this.renderer.domElement.removeEventListener(event, this.noteContext);
     this.renderer.dispose();
     this.renderer.forceContextLoss();
     this.renderer.domElement.remove();

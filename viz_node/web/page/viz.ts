@@ -1,17 +1,19 @@
 // window.viz: what the page knows, for tests and for the curious.
 import type { Page } from './main.ts';
-import type { NodeState } from './protocol.ts';
+import type { NodeState, Reply } from './protocol.ts';
 
 export interface Viz {
   readonly connected: boolean;
+  readonly held: boolean; // by a person
   readonly framesReceived: number;
   readonly framesDrawn: number;
   readonly lastFrame: { sequence: number; frame: number; step: number; simulatedS: number; matCount: number } | null;
   readonly lag_s: number;
   readonly dropped: number;
   readonly nodes: NodeState[];
+  readonly replies: Reply[]; // to the commands of pages, newest last
   readonly errors: string[];
-  readonly scene: { name: string; space: number; matCount: number; linkCount: number } | null;
+  readonly scene: { number: number; name: string; space: number; matCount: number; linkCount: number } | null;
   readonly camera: { preset: string; orthographic: boolean; target: number[]; metresPerPixel: number } | null;
   readonly signals: { count: number; rows: number; gaps: number; newestS: number } | null;
   readonly quality: { software: boolean; spheres: boolean; links: boolean } | null;
@@ -34,6 +36,9 @@ export function exposeViz(page: Page): void {
     get connected() {
       return page.connection.isOpen;
     },
+    get held() {
+      return page.held;
+    },
     get framesReceived() {
       return page.framesReceived;
     },
@@ -54,12 +59,17 @@ export function exposeViz(page: Page): void {
     get nodes() {
       return page.hud.nodes;
     },
+    get replies() {
+      return page.hud.replies;
+    },
     get errors() {
       return page.errors;
     },
     get scene() {
       const scene = page.description;
-      return scene && { name: scene.name, space: scene.space, matCount: scene.mat_count, linkCount: scene.link_count };
+      if (scene === null) return null;
+      const { scene: number, name, space, mat_count: matCount, link_count: linkCount } = scene;
+      return { number, name, space, matCount, linkCount };
     },
     get camera() {
       const rig = page.view?.rig;

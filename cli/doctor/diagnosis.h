@@ -1,0 +1,21 @@
+// cli/doctor/diagnosis.h -- all that can be known about a machine before a force loop runs on it.
+#pragma once
+
+#include <chrono>
+#include <vector>
+
+#include "cli/doctor/finding.h"
+#include "node/machine/system_files.h"
+
+namespace cordis::cli {
+
+struct DiagnosisOptions {
+  std::chrono::nanoseconds duration{std::chrono::seconds(3)};  ///< of the measurement
+  int domain = 0;
+  int page_port = 8080;
+};
+
+/// Measures and checks. Takes a little longer than the duration.
+std::vector<Finding> diagnose(const machine::SystemFiles& files, const DiagnosisOptions& options);
+
+}  // namespace cordis::cli

@@ -1,0 +1,163 @@
+#include <algorithm>
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "cli/doctor/checks.h"
+#include "node/dds/participant_ports.h"
+
+namespace cordis::cli {
+namespace {
+
+constexpr int kWantedBuffer = 4 << 20;  // [bytes], as node/dds asks for
+constexpr int kLargestDomain = 101;
+
+/// A socket of its own, closed at the end.
+class Socket {
+ public:
+  explicit Socket(int type) : file_(socket(AF_INET, type | SOCK_CLOEXEC, 0)) {}
+  ~Socket() {
+    if (file_ >= 0) close(file_);
+  }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  int file() const noexcept { return file_; }
+  bool bind_to(int port) noexcept {
+    const sockaddr_in address = loopback(port);
+    return bind(file_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }
+
+  static sockaddr_in loopback(int port) noexcept {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    return address;
+  }
+
+ private:
+  int file_;
+};
+
+bool datagram_arrives() {
+  Socket socket(SOCK_DGRAM);
+  if (!socket.bind_to(0)) return false;
+  sockaddr_in own{};
+  socklen_t size = sizeof own;
+  getsockname(socket.file(), reinterpret_cast<sockaddr*>(&own), &size);
+  const char byte = 'c';
+  if (sendto(socket.file(), &byte, 1, 0, reinterpret_cast<const sockaddr*>(&own), size) != 1)
+    return false;
+  constexpr int kPatienceMsec = 2000;
+  pollfd arrives{socket.file(), POLLIN, 0};
+  char received = 0;
+  return poll(&arrives, 1, kPatienceMsec) == 1 && recv(socket.file(), &received, 1, 0) == 1;
+}
+
+/// What the kernel gives when it is asked for kWantedBuffer.
+int granted_buffer(int option) {
+  const Socket socket(SOCK_DGRAM);
+  int bytes = kWantedBuffer;
+  socklen_t size = sizeof bytes;
+  setsockopt(socket.file(), SOL_SOCKET, option, &bytes, size);
+  if (getsockopt(socket.file(), SOL_SOCKET, option, &bytes, &size) != 0) return 0;
+  return bytes / 2;  // the kernel doubles it for its own book-keeping
+}
+
+/// Pairs of ports of a domain that are taken.
+int taken_pairs(int domain) {
+  int taken = 0;
+  for (int index = 0; index < dds::kMostParticipants; ++index) {
+    const std::uint16_t port = dds::discovery_port(domain, index);
+    if (!dds::is_free(port) || !dds::is_free(static_cast<std::uint16_t>(port + 1))) ++taken;
+  }
+  return taken;
+}
+
+std::optional<int> free_domain(int other_than) {
+  for (int domain = 0; domain <= kLargestDomain; ++domain) {
+    if (domain != other_than && taken_pairs(domain) == 0) return domain;
+  }
+  return std::nullopt;
+}
+
+bool page_port_is_free(int port) {
+  Socket socket(SOCK_STREAM);
+  const int yes = 1;
+  setsockopt(socket.file(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  return socket.bind_to(port) && listen(socket.file(), 1) == 0;
+}
+
+}  // namespace
+
+Finding check_loopback() {
+  Finding finding{.key = "network.loopback", .title = "loopback"};
+  const bool works = datagram_arrives();
+  finding.values = {{"works", works}};
+  finding.text = "a datagram sent to 127.0.0.1 arrives";
+  if (works) return finding;
+  finding.level = Level::kFailure;
+  finding.text = "a datagram sent to 127.0.0.1 does not arrive: no node finds another";
+  finding.advice = "bring the loopback interface up";
+  finding.commands = {"sudo ip link set lo up"};
+  return finding;
+}
+
+Finding check_socket_buffers() {
+  Finding finding{.key = "network.buffers", .title = "socket buffers"};
+  const int receive = granted_buffer(SO_RCVBUF);
+  const int send = granted_buffer(SO_SNDBUF);
+  finding.values = {
+      {"receive_bytes", receive}, {"send_bytes", send}, {"wanted_bytes", kWantedBuffer}};
+  finding.text = fmt::format("{} KiB to receive, {} KiB to send", receive / 1024, send / 1024);
+  if (std::min(receive, send) >= kWantedBuffer) return finding;
+  finding.level = Level::kWarning;
+  finding.text += fmt::format(
+      ", of {} KiB wanted: large scenes lose pictures (net.core.rmem_max, net.core.wmem_max)",
+      kWantedBuffer / 1024);
+  finding.advice = "allow larger ones; a line in /etc/sysctl.d keeps it";
+  finding.commands = {
+      fmt::format("sudo sysctl -w net.core.rmem_max={0} net.core.wmem_max={0}", kWantedBuffer)};
+  return finding;
+}
+
+Finding check_dds_ports(int domain) {
+  Finding finding{.key = "network.dds_ports", .title = "DDS ports"};
+  const int taken = taken_pairs(domain);
+  finding.values = {{"domain", domain}, {"taken", taken}, {"checked", dds::kMostParticipants}};
+  finding.text = fmt::format("those of domain {} are free", domain);
+  if (taken == 0) return finding;
+  finding.level = Level::kWarning;
+  finding.text = fmt::format(
+      "{} of {} pairs of domain {} are taken, by a session that runs or by another program", taken,
+      dds::kMostParticipants, domain);
+  const std::optional<int> other = free_domain(domain);
+  if (!other) return finding;
+  finding.values["free_domain"] = *other;
+  finding.advice =
+      fmt::format("if that is not a session of yours, use another: run with domain={}", *other);
+  return finding;
+}
+
+Finding check_page_port(int port) {
+  constexpr int kLargestPort = 65535;
+  Finding finding{.key = "page.port", .title = "port of the page"};
+  const bool is_free = page_port_is_free(port);
+  finding.values = {{"port", port}, {"free", is_free}};
+  finding.text = fmt::format("{} is free", port);
+  if (is_free) return finding;
+  finding.level = Level::kWarning;
+  finding.text = fmt::format("{} is in use, by a session that runs or by another program", port);
+  int other = port;
+  while (other < kLargestPort && !page_port_is_free(other)) ++other;
+  finding.values["free_port"] = other;
+  finding.advice = fmt::format("give the page another one: run with view.port={}", other);
+  return finding;
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,105 @@
+// device_node/scene_watch.cpp
+#include "device_node/scene_watch.h"
+
+#include <spdlog/spdlog.h>
+
+#include "device_node/scene_part.h"
+
+namespace cordis::device {
+namespace {
+
+constexpr auto kLongestWait = std::chrono::seconds(1);
+constexpr auto kLook = std::chrono::milliseconds(5);
+
+constexpr std::uint64_t kHeard = 1;
+constexpr std::uint64_t kWanted = 2;
+constexpr std::uint64_t kLiaison = 4;
+constexpr int kVersionShift = 32;
+
+std::uint64_t packed(const SceneWatch::Part& part) noexcept {
+  return (part.heard ? kHeard : 0) | (part.wanted ? kWanted : 0) |
+         (part.role == Role::kLiaison ? kLiaison : 0) |
+         (std::uint64_t{part.version} << kVersionShift);
+}
+
+SceneWatch::Part unpacked(std::uint64_t word) noexcept {
+  return {(word & kHeard) != 0, (word & kWanted) != 0,
+          (word & kLiaison) != 0 ? Role::kLiaison : Role::kMass,
+          static_cast<std::uint32_t>(word >> kVersionShift)};
+}
+
+}  // namespace
+
+SceneWatch::SceneWatch(dds::Participant& participant, const DeviceConfig& device,
+                       const Driver& driver)
+    : device_(device),
+      driver_(driver),
+      reader_(participant, dds::Topic::kDescription),
+      part_(packed({})) {
+  thread_ = std::thread([this] { loop(); });
+}
+
+SceneWatch::~SceneWatch() {
+  ending_ = true;
+  reader_.interrupt();
+  thread_.join();
+}
+
+SceneWatch::Part SceneWatch::part() const noexcept {
+  return unpacked(part_.load(std::memory_order_acquire));
+}
+
+void SceneWatch::wait_for_another(const Part& known, std::chrono::milliseconds at_most) const {
+  const auto limit = std::chrono::steady_clock::now() + at_most;
+  while (part() == known && std::chrono::steady_clock::now() < limit)
+    std::this_thread::sleep_for(kLook);
+}
+
+std::string SceneWatch::refusal() const {
+  const std::lock_guard lock(refusal_mutex_);
+  return refusal_;
+}
+
+void SceneWatch::loop() {
+  msg::SceneDescription scene;
+  while (!ending_) {
+    while (!ending_ && reader_.take(scene)) take(scene);
+    if (!ending_) reader_.wait(kLongestWait);
+  }
+}
+
+void SceneWatch::take(const msg::SceneDescription& scene) {
+  if (scene.run() == 0) return refuse("a scene description without a run");
+  const ScenePart wanted = part_of(scene, device_, driver_);
+  if (!wanted.impossible.empty()) return refuse(wanted.impossible);
+  refuse({});
+  if (wanted.questionable != questionable_ && !wanted.questionable.empty())
+    spdlog::warn("{}", wanted.questionable);
+  questionable_ = wanted.questionable;
+
+  const Part before = part();
+  Part now{true, wanted.wanted, wanted.role, before.version};
+  if (now == before) return;
+  ++now.version;
+  tell(now, scene);
+  part_.store(packed(now), std::memory_order_release);
+}
+
+/// Remembers why a description is refused, and tells it once. @param why  empty: it is not
+void SceneWatch::refuse(const std::string& why) {
+  const std::lock_guard lock(refusal_mutex_);
+  if (refusal_ == why) return;
+  refusal_ = why;
+  if (!why.empty()) spdlog::error("{}: refused", why);
+}
+
+void SceneWatch::tell(const Part& part, const msg::SceneDescription& scene) {
+  if (part.wanted) {
+    spdlog::info("role {} in scene '{}'", name_of(part.role), scene.name());
+  } else {
+    spdlog::info("scene '{}' does not play '{}'; waiting for one that does", scene.name(),
+                 device_.name);
+  }
+}
+
+}  // namespace cordis::device

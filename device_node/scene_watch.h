@@ -1,0 +1,65 @@
+// device_node/scene_watch.h -- follows what scenes want of a device, beside its loop.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "device_node/device_config.h"
+#include "idl/scene.h"
+#include "node/dds/participant.h"
+#include "node/dds/reader.h"
+
+namespace cordis::device {
+
+/// Takes scene/description in a thread of its own, decodes it there, and hands the part of the
+/// device to the loop without a lock. A description that wants what no device or this one does not
+/// have is refused and told: the part before it stays.
+class SceneWatch {
+ public:
+  /// What the newest scene wants of the device.
+  struct Part {
+    bool heard = false;         ///< there is a scene
+    bool wanted = false;        ///< and it has a port for the device
+    Role role = Role::kMass;    ///< in all its ports
+    std::uint32_t version = 0;  ///< +1 with every change of the above
+
+    bool operator==(const Part&) const = default;
+  };
+
+  /// What is referred to must outlive the watch.
+  SceneWatch(dds::Participant& participant, const DeviceConfig& device, const Driver& driver);
+  ~SceneWatch();
+  SceneWatch(const SceneWatch&) = delete;
+  SceneWatch& operator=(const SceneWatch&) = delete;
+
+  /// Real time: one atomic read.
+  Part part() const noexcept;
+
+  /// Waits until the part is no longer this one, at most so long. Not in real time.
+  void wait_for_another(const Part& known, std::chrono::milliseconds at_most) const;
+
+  /// Why the newest description was refused; empty when it was not. Not in real time.
+  std::string refusal() const;
+
+ private:
+  void loop();
+  void take(const msg::SceneDescription& scene);
+  void refuse(const std::string& why);
+  void tell(const Part& part, const msg::SceneDescription& scene);
+
+  const DeviceConfig& device_;
+  const Driver& driver_;
+  dds::Reader<msg::SceneDescription> reader_;
+  std::string questionable_;          // of the thread
+  std::atomic<std::uint64_t> part_;   // packed
+  mutable std::mutex refusal_mutex_;  // of the thread and who tells the status
+  std::string refusal_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace cordis::device

@@ -1,0 +1,75 @@
+#include "node/config/regular_file.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace cordis::config {
+namespace {
+
+/// What a file is that is no regular one.
+std::string kind_of(mode_t mode) {
+  if (S_ISDIR(mode)) return "it is a directory";
+  if (S_ISFIFO(mode)) return "it is a FIFO, and a regular file is wanted";
+  if (S_ISSOCK(mode)) return "it is a socket, and a regular file is wanted";
+  return "it is a device, and a regular file is wanted";
+}
+
+/// Closes a file at the end of a function.
+class OpenFile {
+ public:
+  explicit OpenFile(int file) noexcept : file_(file) {}
+  ~OpenFile() {
+    if (file_ >= 0) close(file_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int number() const noexcept { return file_; }
+
+ private:
+  int file_;
+};
+
+/// Appends what is left in a file; false when reading fails or more comes than is allowed.
+bool append_rest(int file, std::size_t most_bytes, std::string& bytes) {
+  constexpr std::size_t kBlock = 65536;
+  for (;;) {
+    const std::size_t before = bytes.size();
+    if (before > most_bytes) return true;
+    bytes.resize(before + kBlock);
+    const ssize_t count = read(file, bytes.data() + before, kBlock);
+    bytes.resize(before + static_cast<std::size_t>(count > 0 ? count : 0));
+    if (count == 0) return true;
+    if (count < 0 && errno != EINTR) return false;
+  }
+}
+
+}  // namespace
+
+FileBytes read_regular_file(const std::string& path, std::size_t most_bytes) {
+  // Looked at before it is opened: the opening of a serial line resets a board.
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) return {{}, std::strerror(errno)};
+  if (!S_ISREG(status.st_mode)) return {{}, kind_of(status.st_mode)};
+  // Another file may have taken its name since: without O_NONBLOCK the opening of a FIFO waits.
+  const OpenFile file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+  if (file.number() < 0) return {{}, std::strerror(errno)};
+  if (fstat(file.number(), &status) != 0) return {{}, std::strerror(errno)};
+  if (!S_ISREG(status.st_mode)) return {{}, kind_of(status.st_mode)};
+  FileBytes result;
+  if (!append_rest(file.number(), most_bytes, result.bytes)) return {{}, "reading failed"};
+  if (result.bytes.size() > most_bytes)
+    return {{}, "it is larger than " + std::to_string(most_bytes >> 20) + " MiB"};
+  return result;
+}
+
+std::string reason_not_to_write(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return {};
+  return kind_of(status.st_mode);
+}
+
+}  // namespace cordis::config

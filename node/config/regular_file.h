@@ -1,0 +1,23 @@
+// node/config/regular_file.h -- files that a person named, opened without ever waiting for one.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace cordis::config {
+
+/// The bytes of a file, or why there are none.
+struct FileBytes {
+  std::string bytes;
+  std::string reason;  ///< empty when the file was read
+};
+
+/// Reads a regular file. A FIFO, a socket or a device is refused without waiting for its other end.
+/// @param most_bytes  a larger file is refused
+FileBytes read_regular_file(const std::string& path, std::size_t most_bytes);
+
+/// Why a file cannot be written: it is there and no regular file, or a folder; empty when nothing
+/// speaks against it. Does not create it.
+std::string reason_not_to_write(const std::string& path);
+
+}  // namespace cordis::config

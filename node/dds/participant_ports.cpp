@@ -1,0 +1,76 @@
+// node/dds/participant_ports.cpp
+#include "node/dds/participant_ports.h"
+
+#include <cstddef>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+namespace cordis::dds {
+namespace {
+
+constexpr int kFirstPort = 7400;
+constexpr int kPortsPerDomain = 250;
+constexpr int kFirstDiscovery = 10;  // of a domain
+
+/// Two processes that start together find the same port free: one of them holds the name.
+/// @return a socket, or -1 when another process holds it
+int try_to_hold(std::uint16_t port) noexcept {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  // The leading zero makes the name abstract: it lives as long as the socket, and leaves no file.
+  const int length = std::snprintf(address.sun_path + 1, sizeof address.sun_path - 1,
+                                   "cordis/dds/port/%d", static_cast<int>(port));
+  const int file = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (file < 0) return -1;
+  const auto size =
+      static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1) + static_cast<socklen_t>(length);
+  if (bind(file, reinterpret_cast<const sockaddr*>(&address), size) == 0) return file;
+  close(file);
+  return -1;
+}
+
+}  // namespace
+
+std::uint16_t discovery_port(int domain, int index) noexcept {
+  return static_cast<std::uint16_t>(kFirstPort + kPortsPerDomain * domain + kFirstDiscovery +
+                                    2 * index);
+}
+
+bool is_free(std::uint16_t port) noexcept {
+  const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (file < 0) return false;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const bool free = bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  close(file);
+  return free;
+}
+
+ParticipantPorts::ParticipantPorts(int domain) {
+  for (int index = 0; index < kMostParticipants; ++index) {
+    discovery_ = discovery_port(domain, index);
+    claim_ = try_to_hold(discovery_);
+    if (claim_ < 0) continue;
+    if (is_free(discovery_) && is_free(samples())) return;
+    close(claim_);
+  }
+  throw std::runtime_error("DDS domain " + std::to_string(domain) + " of this host is full: all " +
+                           std::to_string(kMostParticipants) + " pairs of UDP ports, 127.0.0.1:" +
+                           std::to_string(discovery_port(domain, 0)) + " to " +
+                           std::to_string(discovery_port(domain, kMostParticipants - 1) + 1) +
+                           ", are taken; end processes of it, or take another one with domain=N");
+}
+
+ParticipantPorts::~ParticipantPorts() {
+  close(claim_);
+}
+
+}  // namespace cordis::dds

@@ -1,0 +1,38 @@
+// node/dds/participant_ports.h -- the UDP ports of one participant, and those where others are.
+// Included by node/dds and its tests alone.
+#pragma once
+
+#include <cstdint>
+
+namespace cordis::dds {
+
+/// Participants of one domain that a host has room for. Each announces itself to that many ports,
+/// for nothing is multicast.
+inline constexpr int kMostParticipants = 64;
+
+/// The port of a domain on which participant `index`, 0..kMostParticipants - 1, is discovered [DDSI
+/// 9.6.1.1]; the next one takes its samples.
+std::uint16_t discovery_port(int domain, int index) noexcept;
+
+/// Whether nobody listens on 127.0.0.1:port.
+bool is_free(std::uint16_t port) noexcept;
+
+/// A pair of ports of 127.0.0.1 that is free, held against all other participants of the host for
+/// the life of this object.
+class ParticipantPorts {
+ public:
+  /// @throws std::runtime_error when all pairs of the domain are taken.
+  explicit ParticipantPorts(int domain);
+  ~ParticipantPorts();
+  ParticipantPorts(const ParticipantPorts&) = delete;
+  ParticipantPorts& operator=(const ParticipantPorts&) = delete;
+
+  std::uint16_t discovery() const noexcept { return discovery_; }
+  std::uint16_t samples() const noexcept { return static_cast<std::uint16_t>(discovery_ + 1); }
+
+ private:
+  int claim_ = -1;  // a socket
+  std::uint16_t discovery_ = 0;
+};
+
+}  // namespace cordis::dds

@@ -1,0 +1,80 @@
+// node/dds/presence.h -- one participant of Fast DDS: how others see a process. Included by
+// node/dds alone.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include "node/dds/participant.h"
+#include "node/dds/participant_ports.h"
+#include "node/dds/topics.h"
+
+namespace cordis::dds {
+
+namespace fast = eprosima::fastdds::dds;
+
+/// A DDS participant with publisher and subscriber, and what it knows of the others of its domain.
+class Presence final : public fast::DomainParticipantListener {
+ public:
+  /// @param on_return  called from a thread of DDS when a participant that was dropped is there
+  /// again. The two do not hear each other then: see Participant.
+  /// @throws std::runtime_error when DDS refuses.
+  Presence(const Membership& membership, std::function<void()> on_return);
+  /// Deletes all readers and writers too.
+  ~Presence() override;
+  Presence(const Presence&) = delete;
+  Presence& operator=(const Presence&) = delete;
+
+  fast::Publisher& publisher() noexcept { return *publisher_; }
+  fast::Subscriber& subscriber() noexcept { return *subscriber_; }
+
+  /// The topic of the table, made at its first use. `type` is registered when its name is new.
+  fast::Topic* topic(const TopicQos& row, fast::TypeSupport type);
+
+  std::vector<Peer> peers() const;
+  std::string mismatch() const;
+
+  /// Drops each participant whose process has ended without leaving: it would cost its share of
+  /// every message, for DDS itself forgets nobody.
+  void drop_ended_processes() noexcept;
+  void drop(const Peer& peer) noexcept;
+
+  void on_participant_discovery(
+      fast::DomainParticipant*,
+      eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& found) override;
+  void on_publisher_discovery(fast::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& found) override;
+  void on_subscriber_discovery(fast::DomainParticipant*,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& found) override;
+
+ private:
+  using Guid = eprosima::fastrtps::rtps::GUID_t;
+
+  template <class Endpoint>
+  void compare(const Endpoint& endpoint, bool writes, bool gone);
+
+  Membership membership_;
+  std::function<void()> on_return_;
+  ParticipantPorts ports_;
+  fast::DomainParticipant* participant_ = nullptr;
+  fast::Publisher* publisher_ = nullptr;
+  fast::Subscriber* subscriber_ = nullptr;
+
+  mutable std::mutex mutex_;
+  std::map<ParticipantPrefix, Peer> peers_;
+  std::set<ParticipantPrefix> dropped_;     // at some time
+  std::map<Guid, std::string> mismatches_;  // what is wrong with an endpoint
+};
+
+}  // namespace cordis::dds

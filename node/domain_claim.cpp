@@ -1,0 +1,89 @@
+// node/domain_claim.cpp
+#include "node/domain_claim.h"
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <thread>
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "node/claim.h"
+
+namespace cordis::node {
+namespace {
+
+// RTPS: the ports of a domain, and the first that belongs to a single participant.
+constexpr int kFirstPort = 7400;
+constexpr int kPortsOfADomain = 250;
+constexpr int kFirstUnicast = 10;
+constexpr int kMaxHolders = 100;
+constexpr std::chrono::seconds kPatience{5};
+
+/// @return a socket that has the port; -1 when another one does.
+int take_port(int port, in_addr_t address_to_bind) noexcept {
+  const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (file < 0) return -1;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(address_to_bind);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  if (bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return file;
+  close(file);
+  return -1;
+}
+
+int first_port_of(int domain) noexcept {
+  return kFirstPort + kPortsOfADomain * domain;
+}
+
+bool all_ports_are_free(int domain) noexcept {
+  const int first = first_port_of(domain);
+  for (int port = first + kFirstUnicast; port < first + kPortsOfADomain; ++port) {
+    const int file = take_port(port, INADDR_ANY);
+    if (file < 0) return false;
+    close(file);
+  }
+  return true;
+}
+
+int hold(int domain) noexcept {
+  const int last = first_port_of(domain) + kPortsOfADomain - 1;
+  for (int port = last; port > last - kMaxHolders; --port) {
+    const int file = take_port(port, INADDR_LOOPBACK);
+    if (file >= 0) return file;
+  }
+  return -1;
+}
+
+int try_to_take_turn(int domain) noexcept {
+  char name[32];
+  std::snprintf(name, sizeof name, "cordis/domain/%d", domain);
+  return try_to_claim(name);
+}
+
+}  // namespace
+
+int claim_domain(int domain) noexcept {
+  const int turn = try_to_take_turn(domain);
+  if (turn < 0) return -1;
+  const int file = all_ports_are_free(domain) ? hold(domain) : -1;
+  close(turn);
+  return file;
+}
+
+int join_domain(int domain, const std::function<bool()>& wanted) {
+  int turn = try_to_take_turn(domain);
+  const auto limit = std::chrono::steady_clock::now() + kPatience;
+  while (turn < 0 && std::chrono::steady_clock::now() < limit) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    turn = try_to_take_turn(domain);
+  }
+  const int file = wanted() ? hold(domain) : -1;
+  if (turn >= 0) close(turn);
+  return file;
+}
+
+}  // namespace cordis::node

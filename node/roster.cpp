@@ -1,0 +1,28 @@
+// node/roster.cpp
+#include "node/roster.h"
+
+namespace cordis::node {
+
+void Roster::look() {
+  while (reader_.take(taken_)) nodes_[taken_.node()] = {taken_, Clock::now()};
+}
+
+std::vector<msg::NodeStatus> Roster::alive() const {
+  std::vector<msg::NodeStatus> alive;
+  const auto now = Clock::now();
+  for (const auto& [name, known] : nodes_) {
+    const std::string& phase = known.status.phase();
+    const bool ended = phase == "stopped" || phase == "failed";
+    if (!ended && now - known.taken <= lately_) alive.push_back(known.status);
+  }
+  return alive;
+}
+
+std::string Roster::name_of(const std::string& kind) const {
+  for (const msg::NodeStatus& status : alive()) {
+    if (status.kind() == kind) return "'" + status.node() + "'";
+  }
+  return "";
+}
+
+}  // namespace cordis::node

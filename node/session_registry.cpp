@@ -1,0 +1,225 @@
+// node/session_registry.cpp
+#include "node/session_registry.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include <unistd.h>
+
+#include "node/config/launch.h"
+#include "node/dds/process_identity.h"
+#include "node/domain_claim.h"
+#include "node/runtime_folder.h"
+
+namespace cordis::node {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file of a session is SESSION.DOMAIN.session, and says in lines of a word and its value what
+// else is known of it. A line with another word is passed over.
+constexpr const char* kSuffix = ".session";
+
+fs::path file_of(const fs::path& folder, const std::string& session, int domain) {
+  return folder / (session + "." + std::to_string(domain) + kSuffix);
+}
+
+bool is_alive(const SessionMember& member) {
+  return dds::state_of(member.identity) == dds::ProcessState::kAlive;
+}
+
+SessionMember read_member(std::istream& words) {
+  SessionMember member;
+  words >> member.process;
+  for (std::string node; words >> node;) member.nodes.push_back(std::move(node));
+  return member;
+}
+
+/// @return what a file says, with the members that live; none when it is not to be understood.
+SessionRecord read_record(const fs::path& path) {
+  SessionRecord record;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word >> std::ws;
+    if (word == "session") words >> record.session;
+    if (word == "domain") words >> record.domain;
+    if (word == "launch_file") std::getline(words, record.launch_file);
+    if (word == "member") record.members.push_back(read_member(words));
+    if (word == "identity" && !record.members.empty())
+      std::getline(words, record.members.back().identity);
+  }
+  std::erase_if(record.members, [](const SessionMember& member) { return !is_alive(member); });
+  return record;
+}
+
+/// Replaces the file at once: whoever reads it sees the old text or the new.
+void write_record(const fs::path& folder, const SessionRecord& record) {
+  std::string launch_file = record.launch_file;
+  std::replace(launch_file.begin(), launch_file.end(), '\n', '?');
+  const fs::path draft = folder / "draft";
+  std::ofstream file(draft, std::ios::trunc);
+  file << "session " << record.session << "\ndomain " << record.domain << "\nlaunch_file "
+       << launch_file << '\n';
+  for (const SessionMember& member : record.members) {
+    file << "member " << member.process;
+    for (const std::string& node : member.nodes) file << ' ' << node;
+    file << "\nidentity " << member.identity << '\n';
+  }
+  file.close();
+  if (!file) throw std::runtime_error("cannot write " + draft.string());
+  fs::rename(draft, file_of(folder, record.session, record.domain));
+}
+
+/// The lock of the folder must be held.
+std::vector<SessionRecord> read_records(const fs::path& folder) {
+  std::vector<SessionRecord> records;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != kSuffix) continue;
+    SessionRecord record = read_record(entry.path());
+    if (record.members.empty()) {
+      fs::remove(entry.path());
+    } else {
+      records.push_back(std::move(record));
+    }
+  }
+  std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.session, a.domain) < std::pair(b.session, b.domain);
+  });
+  return records;
+}
+
+struct Claim {
+  int domain;
+  int file;  // holds it
+};
+
+/// Domain 0 comes last: other DDS programs use it unless they are told otherwise.
+Claim claim_free_domain(const std::vector<SessionRecord>& records) {
+  std::set<int> taken;
+  for (const SessionRecord& record : records) taken.insert(record.domain);
+  for (int i = 1; i <= config::kHighestDomain + 1; ++i) {
+    const int domain = i % (config::kHighestDomain + 1);
+    if (taken.contains(domain)) continue;
+    const int file = claim_domain(domain);
+    if (file >= 0) return {domain, file};
+  }
+  throw std::runtime_error(
+      "no DDS domain of 0..101 is free on this host: end a session, or name one with domain=N");
+}
+
+std::vector<SessionRecord> of_name(const std::vector<SessionRecord>& records,
+                                   const std::string& session) {
+  std::vector<SessionRecord> same;
+  std::copy_if(records.begin(), records.end(), std::back_inserter(same),
+               [&](const SessionRecord& record) { return record.session == session; });
+  return same;
+}
+
+bool is_alive_still(const SessionRecord& record) {
+  return std::any_of(record.members.begin(), record.members.end(), is_alive);
+}
+
+Claim domain_for(const SessionRequest& request, const std::vector<SessionRecord>& records) {
+  if (request.domain) return {*request.domain, join_domain(*request.domain, [] { return true; })};
+  const std::vector<SessionRecord> same = of_name(records, request.session);
+  if (same.size() > 1)
+    throw std::runtime_error("session '" + request.session + "' runs in " + domains_text(same) +
+                             ": name one of them with domain=N, or give this one session=NAME");
+  if (!same.empty()) {
+    // When its last process dies now, another user may have its domain a moment later.
+    const int file = join_domain(same[0].domain, [&] { return is_alive_still(same[0]); });
+    if (file >= 0) return {same[0].domain, file};
+  }
+  return claim_free_domain(records);
+}
+
+void refuse_same_nodes(const SessionRecord& record, const std::vector<std::string>& nodes) {
+  for (const SessionMember& member : record.members) {
+    for (const std::string& node : nodes) {
+      if (std::find(member.nodes.begin(), member.nodes.end(), node) == member.nodes.end()) continue;
+      throw std::runtime_error("session '" + record.session + "' already runs in DDS domain " +
+                               std::to_string(record.domain) + " with a node named '" + node +
+                               "' (process " + std::to_string(member.process) +
+                               "); stop it, or give this one session=NAME");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<SessionRecord> running_sessions(const fs::path& folder) {
+  const FolderLock lock(folder);
+  return read_records(folder);
+}
+
+std::string domains_text(const std::vector<SessionRecord>& sessions) {
+  std::string text = sessions.size() == 1 ? "domain " : "domains ";
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    if (i > 0) text += i + 1 == sessions.size() ? " and " : ", ";
+    text += std::to_string(sessions[i].domain);
+  }
+  return text;
+}
+
+SessionRegistration::SessionRegistration(fs::path folder, const SessionRequest& request)
+    : folder_(std::move(folder)), session_(request.session) {
+  const FolderLock lock(folder_);
+  const std::vector<SessionRecord> records = read_records(folder_);
+  const auto [domain, claim] = domain_for(request, records);
+  domain_ = domain;
+  claim_ = claim;
+  SessionRecord record{session_, domain_, request.launch_file, {}};
+  for (const SessionRecord& other : records) {
+    if (other.session == session_ && other.domain == domain_) record = other;
+  }
+  try {
+    refuse_same_nodes(record, request.nodes);
+    record.members.push_back({getpid(), dds::process_identity(), request.nodes});
+    write_record(folder_, record);
+  } catch (...) {
+    if (claim_ >= 0) close(claim_);
+    throw;
+  }
+}
+
+SessionRegistration::~SessionRegistration() {
+  change_own_member([](SessionMember& member) { member.process = 0; });
+  if (claim_ >= 0) close(claim_);
+}
+
+void SessionRegistration::remove_node(const std::string& node) noexcept {
+  change_own_member([&](SessionMember& member) { std::erase(member.nodes, node); });
+}
+
+/// A member without a process is removed, and so is the file of a session without members. What
+/// cannot be written now is removed by whoever reads the registry when this process is dead.
+void SessionRegistration::change_own_member(
+    const std::function<void(SessionMember&)>& change) const noexcept {
+  try {
+    const FolderLock lock(folder_, std::chrono::milliseconds(500));
+    for (SessionRecord& record : read_records(folder_)) {
+      if (record.session != session_ || record.domain != domain_) continue;
+      for (SessionMember& member : record.members) {
+        if (member.process == getpid()) change(member);
+      }
+      std::erase_if(record.members,
+                    [](const SessionMember& member) { return member.process == 0; });
+      if (record.members.empty()) {
+        fs::remove(file_of(folder_, session_, domain_));
+      } else {
+        write_record(folder_, record);
+      }
+    }
+  } catch (const std::exception&) {
+    return;
+  }
+}
+
+}  // namespace cordis::node

@@ -1,0 +1,73 @@
+// node/session_registry.h -- the sessions of a user on this host: their names, DDS domains and
+// processes.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace cordis::node {
+
+/// A process of a session, and the nodes that it runs or starts.
+struct SessionMember {
+  pid_t process = 0;
+  std::string identity;  ///< dds::process_identity(): numbers of processes are used again
+  std::vector<std::string> nodes;
+};
+
+/// A session that runs, as its runtime file records it.
+struct SessionRecord {
+  std::string session;
+  int domain = 0;
+  std::string launch_file;             ///< absolute; of the process that began the session
+  std::vector<SessionMember> members;  ///< alive
+};
+
+/// The sessions that run, in the order of their names. Removes the files of sessions whose
+/// processes are all dead.
+/// @param folder  runtime_folder()
+/// @throws std::runtime_error when the folder cannot be read or locked.
+std::vector<SessionRecord> running_sessions(const std::filesystem::path& folder);
+
+/// "domain 3", "domains 3 and 7"
+std::string domains_text(const std::vector<SessionRecord>& sessions);
+
+/// What a process wants to be recorded as.
+struct SessionRequest {
+  std::string session;
+  std::optional<int> domain;  ///< absent: that of the running session of this name, else a free one
+  std::string launch_file;
+  std::vector<std::string> nodes;
+};
+
+/// This process' entry in the registry, until the object or the process ends. No two sessions of
+/// this host are given one domain, also of other users and beside other DDS programs.
+class SessionRegistration {
+ public:
+  /// @throws std::runtime_error when a node of the same name runs in the session already, when
+  /// sessions of this name run in several domains and the request names none, when no domain is
+  /// free, or when the folder cannot be used.
+  SessionRegistration(std::filesystem::path folder, const SessionRequest& request);
+  ~SessionRegistration();
+  SessionRegistration(const SessionRegistration&) = delete;
+  SessionRegistration& operator=(const SessionRegistration&) = delete;
+
+  int domain() const noexcept { return domain_; }
+
+  /// This process no longer runs a node: another one may.
+  void remove_node(const std::string& node) noexcept;
+
+ private:
+  void change_own_member(const std::function<void(SessionMember&)>& change) const noexcept;
+
+  std::filesystem::path folder_;
+  std::string session_;
+  int domain_ = 0;
+  int claim_ = -1;  // holds the domain
+};
+
+}  // namespace cordis::node

@@ -1,0 +1,108 @@
+// tests/device/wire_test.cpp -- what reaches a board over a line that takes no more.
+#include "device_node/drivers/wire.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace cordis::device {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// A serial line whose board reads only when the test does.
+class BlockedLine : public ::testing::Test {
+ protected:
+  BlockedLine() {
+    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    grantpt(master_);
+    unlockpt(master_);
+    config::Problems problems;
+    const config::Value section =
+        config::load_text("{port: " + std::string(ptsname(master_)) + "}", "line", problems);
+    config::MappingReader reader(section, "line", problems);
+    wire_ = read_wire(reader, 115200);
+  }
+  ~BlockedLine() override { close(master_); }
+
+  static Bytes message_of(std::uint8_t number) { return Bytes(10, number); }
+
+  /// Sends until the line takes no more. @return the number of the message that did not go whole
+  std::uint8_t fill() {
+    for (int n = 1; n < 1'000'000; ++n) {
+      const auto number = static_cast<std::uint8_t>(1 + n % 200);
+      if (!wire_->send(message_of(number))) return number;
+    }
+    return 0;
+  }
+
+  /// All that is on its way to the board.
+  Bytes read_all() const {
+    Bytes all;
+    std::array<std::uint8_t, 4096> block{};
+    for (;;) {
+      const ssize_t count = ::read(master_, block.data(), block.size());
+      if (count <= 0) return all;
+      all.insert(all.end(), block.begin(), block.begin() + count);
+    }
+  }
+
+  /// Reads until so many bytes have come.
+  Bytes read_until(std::size_t count) const {
+    Bytes all;
+    for (int n = 0; n < 30'000 && all.size() < count; ++n) {
+      const Bytes more = read_all();
+      all.insert(all.end(), more.begin(), more.end());
+      usleep(1000);
+    }
+    return all;
+  }
+
+  int master_ = -1;
+  std::unique_ptr<Wire> wire_;
+};
+
+TEST_F(BlockedLine, NoMessageBeginsInTheMiddleOfAnother) {
+  ASSERT_TRUE(wire_->open());
+  ASSERT_NE(fill(), 0);
+  EXPECT_TRUE(wire_->is_open());
+  Bytes all = read_until(1);
+  const std::size_t before = all.size();
+
+  ASSERT_TRUE(wire_->send(message_of(250)));
+  const Bytes more = read_until(10);
+  all.insert(all.end(), more.begin(), more.end());
+
+  EXPECT_GE(all.size(), before + 10);
+  ASSERT_EQ(all.size() % 10, 0u) << "whole messages alone";
+  for (std::size_t at = 0; at < all.size(); at += 10) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(at);
+    EXPECT_TRUE(std::all_of(first, first + 10, [&](auto byte) { return byte == *first; })) << at;
+  }
+  EXPECT_EQ(all.back(), 250);
+}
+
+TEST_F(BlockedLine, TheReleaseFrameGoesBeforeAllThatWaits) {
+  ReleaseFrame release;
+  release.bytes = {0xa5, 0x5a, 0xff};
+  release.length = 3;
+  wire_->set_release(release);
+  ASSERT_TRUE(wire_->open());
+  ASSERT_NE(fill(), 0);
+
+  wire_->release();
+
+  const Bytes all = read_until(3);
+  ASSERT_GE(all.size(), 3u);
+  EXPECT_EQ(Bytes(all.end() - 3, all.end()), (Bytes{0xa5, 0x5a, 0xff}));
+}
+
+}  // namespace
+}  // namespace cordis::device

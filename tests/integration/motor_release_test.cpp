@@ -1,0 +1,328 @@
+// tests/integration/motor_release_test.cpp -- no death of a process leaves a force on a motor: real
+// processes, and emulated boards that keep their last force for good.
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "node/time.h"
+#include "tests/device/faders.h"
+#include "tests/device/kfb1_board.h"
+#include "tests/device/pantograph_board.h"
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+/// A board whose handle stands at -10 mm of axis 0, and the lines of a device file for it. It has
+/// no watchdog of its own.
+class Board {
+ public:
+  Board() = default;
+  virtual ~Board() = default;
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
+  virtual std::string plug_in(const std::filesystem::path& folder) = 0;
+  virtual const ForceLog& log() const = 0;
+};
+
+const char* const kLimits =
+    "cordis: 1\nrate_hz: 1000\nforce_limit_n: 5\nslew_limit_n_per_s: 300\nwatchdog_s: 0.05\n"
+    "start_ramp_s: 0.05\n";
+const char* const kPatient = "lost_after_s: 0.2, retry_s: 0.05, ";  // with a busy emulator
+
+class FireFaderOnALine : public Board {
+ public:
+  std::string plug_in(const std::filesystem::path& folder) override {
+    faders_.positions[0] = 190;
+    faders_.plug.into_serial_line(folder / "tty");
+    return std::string(kLimits) +
+           "axes: 1\ntravel_m: 0.04\nrest: top\ndriver: firefader\nfirefader: {full_scale_n: 5, " +
+           kPatient + "port: " + (folder / "tty").string() + "}\n";
+  }
+  const ForceLog& log() const override { return faders_.log; }
+
+ private:
+  Faders faders_;
+};
+
+class HaplyOnALine : public Board {
+ public:
+  std::string plug_in(const std::filesystem::path& folder) override {
+    board_.put_pen({-0.01, 0.1});
+    board_.plug.into_serial_line(folder / "tty");
+    return std::string(kLimits) +
+           "axes: 2\ntravel_m: 0.1\nrest: middle\ndriver: haply\nhaply: {rest_m: [0, 0.1], " +
+           kPatient + "port: " + (folder / "tty").string() + "}\n";
+  }
+  const ForceLog& log() const override { return board_.log; }
+
+ private:
+  PantographBoard board_;
+};
+
+class Kfb1OnALine : public Board {
+ public:
+  explicit Kfb1OnALine(bool udp = false) : udp_(udp), board_(1) {}
+  std::string plug_in(const std::filesystem::path& folder) override {
+    board_.has_watchdog = false;
+    board_.positions[0] = 16384;
+    std::string where = "port: " + (folder / "tty").string();
+    if (udp_) where = "udp: '127.0.0.1:" + std::to_string(board_.plug.into_udp()) + "'";
+    if (!udp_) board_.plug.into_serial_line(folder / "tty");
+    return std::string(kLimits) + "axes: 1\ntravel_m: 0.04\nrest: top\ndriver: kfb1\nkfb1: {" +
+           kPatient + where + "}\n";
+  }
+  const ForceLog& log() const override { return board_.log; }
+
+ private:
+  bool udp_;
+  Kfb1Board board_;
+};
+
+const std::array<const char*, 4> kBoards{"firefader", "haply", "kfb1", "kfb1 over UDP"};
+
+std::unique_ptr<Board> board_of(const std::string& name) {
+  if (name == "firefader") return std::make_unique<FireFaderOnALine>();
+  if (name == "haply") return std::make_unique<HaplyOnALine>();
+  return std::make_unique<Kfb1OnALine>(name != "kfb1");
+}
+
+/// Processes that a process has started, with this name.
+std::vector<pid_t> children_of(pid_t parent, const std::string& name) {
+  std::vector<pid_t> found;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string digits = entry.path().filename();
+    if (digits.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream file(entry.path() / "stat");
+    std::string stat;
+    std::getline(file, stat);
+    const std::size_t open = stat.find('(');
+    const std::size_t close = stat.rfind(')');
+    if (close == std::string::npos || close + 4 > stat.size()) continue;
+    if (stat.substr(open + 1, close - open - 1) != name) continue;
+    if (std::atoi(stat.c_str() + close + 4) == parent) found.push_back(std::stoi(digits));
+  }
+  return found;
+}
+
+pid_t child_of(pid_t parent, const std::string& name) {
+  std::vector<pid_t> found;
+  EXPECT_TRUE(eventually([&] { return (found = children_of(parent, name)).size() == 1; }))
+      << found.size() << " processes " << name;
+  return found.empty() ? -1 : found.front();
+}
+
+bool exists(pid_t pid) {
+  return std::filesystem::exists("/proc/" + std::to_string(pid));
+}
+
+/// Waits until a process runs no more; one that nobody has collected yet does not.
+bool has_ended(pid_t pid) {
+  return eventually([pid] {
+    std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+    std::string stat;
+    std::getline(file, stat);
+    return stat.empty() || stat.find(") Z ") != std::string::npos ||
+           stat.find(") X ") != std::string::npos;
+  });
+}
+
+/// A session under whose hand a board is pressed with 2 N, and its processes.
+class PressedKey {
+ public:
+  explicit PressedKey(const std::string& board_name)
+      : name_(board_name), board_(board_of(board_name)), session_("realtime", kSimAndKey) {
+    session_.add_file("scene.yaml", wall_scene(200.0));
+    session_.add_file("key.yaml", board_->plug_in(session_.folder()) +
+                                      "trace: {file: " + trace().string() + "}\n");
+  }
+
+  /// Written by a node that ends in order, and by no other.
+  std::filesystem::path trace() const { return session_.folder() / "trace.csv"; }
+
+  void start_nodes() {
+    sim_ = session_.start("sim_node", "sim").id();
+    device_ = session_.start("device_node", "keyboard").id();
+    await_press();
+  }
+
+  void start_launcher() {
+    launcher_ = session_.start_launcher().id();
+    await_press();  // by then the launcher's other children, which check the files, have ended
+  }
+
+  void await_press() {
+    double largest = 0.0;
+    int steady = 0;
+    ASSERT_TRUE(eventually([&] {  // the ramp is over
+      const double before = std::exchange(largest, std::max(largest, board_->log().newest()));
+      steady = largest > 0.0 && before == largest ? steady + 1 : 0;
+      return steady > 100;
+    })) << name_;
+    if (launcher_ > 0) device_ = child_of(launcher_, "device_node");
+    if (launcher_ > 0) sim_ = child_of(launcher_, "sim_node");
+    guardian_ = child_of(device_, "cordis-guardian");
+  }
+
+  /// Kills processes at once, while there is a force; a negative id is a group.
+  void kill_all(const std::vector<pid_t>& pids, int signal = SIGKILL) {
+    EXPECT_TRUE(eventually([&] { return board_->log().newest() > 0.0; }));
+    killed_nsec_ = node::monotonic_nsec();
+    for (const pid_t pid : pids) EXPECT_EQ(kill(pid, signal), 0) << pid;
+  }
+
+  /// Judges that the board is given no force, and prints how soon.
+  void expect_zero(const std::string& what) {
+    EXPECT_TRUE(eventually([&] { return board_->log().newest() == 0.0; }))
+        << name_ << ", " << what << ": the motor keeps its force";
+    const std::int64_t zero_nsec = board_->log().zero_since(killed_nsec_);
+    if (zero_nsec == 0) return;  // the loop had stalled, and let go, in the moment of the kill
+    std::printf("%-14s %-26s no force at the board after %6.2f ms\n", name_.c_str(), what.c_str(),
+                static_cast<double>(zero_nsec - killed_nsec_) * 1e-6);
+  }
+
+  const Board& board() const { return *board_; }
+  LiveSession& session() { return session_; }
+  pid_t launcher() const { return launcher_; }
+  pid_t sim() const { return sim_; }
+  pid_t device() const { return device_; }
+  pid_t guardian() const { return guardian_; }
+
+ private:
+  std::string name_;
+  std::unique_ptr<Board> board_;
+  LiveSession session_;
+  pid_t launcher_ = -1;
+  pid_t sim_ = -1;
+  pid_t device_ = -1;
+  pid_t guardian_ = -1;
+  std::int64_t killed_nsec_ = 0;
+};
+
+TEST(MotorRelease, KillOfTheNodeOrTheSceneOrBothLeavesNoForce) {
+  for (const std::string board : kBoards) {
+    for (const std::string what : {"device_node", "sim_node", "sim_node + device_node"}) {
+      PressedKey key(board);
+      key.start_nodes();
+      if (HasFatalFailure()) return;
+      std::vector<pid_t> pids;
+      if (what.starts_with("sim_node")) pids.push_back(key.sim());
+      if (what.ends_with("device_node")) pids.push_back(key.device());
+
+      key.kill_all(pids);
+
+      key.expect_zero(what);
+      if (what.ends_with("device_node")) {
+        EXPECT_TRUE(has_ended(key.guardian())) << "the guardian ends by itself";
+      }
+      EXPECT_EQ(key.board().log().newest(), 0.0);
+    }
+  }
+}
+
+TEST(MotorRelease, KillOfTheLauncherLetsTheForcesFade) {
+  for (const std::string board : kBoards) {
+    PressedKey key(board);
+    key.start_launcher();
+    if (HasFatalFailure()) return;
+
+    key.kill_all({key.launcher()});
+
+    key.expect_zero("launcher");
+    EXPECT_TRUE(has_ended(key.device())) << "an orphan ends by itself";
+    EXPECT_TRUE(std::filesystem::exists(key.trace())) << "in order, after its forces have faded";
+    EXPECT_TRUE(has_ended(key.sim()));
+    EXPECT_TRUE(has_ended(key.guardian()));
+    EXPECT_EQ(key.board().log().newest(), 0.0);
+  }
+}
+
+TEST(MotorRelease, KillOfTheLauncherAndTheNodesGroupLeavesNoForce) {
+  for (const std::string board : kBoards) {
+    PressedKey key(board);
+    key.start_launcher();
+    if (HasFatalFailure()) return;
+
+    key.kill_all({key.launcher(), -key.device()});
+
+    key.expect_zero("launcher + device_node");
+    EXPECT_TRUE(has_ended(key.guardian()));
+    EXPECT_EQ(key.board().log().newest(), 0.0);
+  }
+}
+
+TEST(MotorRelease, ACrashLeavesNoForceEvenWithoutTheGuardian) {
+  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGQUIT, SIGFPE, SIGILL}) {
+    PressedKey key("firefader");
+    key.start_nodes();
+    if (HasFatalFailure()) return;
+    ASSERT_EQ(kill(key.guardian(), SIGSTOP), 0);
+
+    key.kill_all({key.device()}, signal);
+
+    key.expect_zero(sigabbrev_np(signal));
+    EXPECT_EQ(key.session().node("keyboard").wait(kPatience), 128 + signal) << "as it would have";
+    EXPECT_EQ(kill(key.guardian(), SIGCONT), 0);
+    EXPECT_TRUE(has_ended(key.guardian()));
+    EXPECT_EQ(key.board().log().newest(), 0.0);
+  }
+}
+
+TEST(MotorRelease, ANodeThatIsStoppedLosesItsForcesAndRampsThemUpAgain) {
+  PressedKey key("firefader");
+  key.start_nodes();
+  if (HasFatalFailure()) return;
+
+  key.kill_all({key.device()}, SIGSTOP);
+  key.expect_zero("SIGSTOP of device_node");
+  ASSERT_EQ(kill(key.device(), SIGCONT), 0);
+
+  EXPECT_TRUE(
+      key.session().node("keyboard").wait_for_output("let go of outside the loop", kPatience));
+  key.await_press();
+}
+
+TEST(MotorRelease, AGuardianThatIsKilledIsStartedAgain) {
+  PressedKey key("firefader");
+  key.start_nodes();
+  if (HasFatalFailure()) return;
+  const pid_t first = key.guardian();
+
+  ASSERT_EQ(kill(first, SIGKILL), 0);
+  ASSERT_TRUE(
+      key.session().node("keyboard").wait_for_output("it has been started again", kPatience));
+  EXPECT_FALSE(exists(first)) << "its parent has collected it";
+  key.await_press();
+  EXPECT_NE(key.guardian(), first);
+  key.kill_all({key.device()});
+
+  key.expect_zero("device_node, 2nd guardian");
+}
+
+TEST(MotorRelease, AnOrderlyEndLeavesNothingBehind) {
+  PressedKey key("firefader");
+  key.start_nodes();
+  if (HasFatalFailure()) return;
+  ASSERT_EQ(kill(key.guardian(), SIGTERM), 0);  // it listens to its node alone
+
+  key.kill_all({key.device()}, SIGTERM);
+
+  key.expect_zero("SIGTERM of device_node");
+  EXPECT_EQ(key.session().node("keyboard").wait(kPatience), 0);
+  EXPECT_FALSE(exists(key.guardian())) << "not even a zombie";
+}
+
+}  // namespace
+}  // namespace cordis::test

@@ -1,0 +1,161 @@
+// tests/integration/respawn_test.cpp -- any node of a shipped session may be killed while the
+// others go on: the launcher starts it again.
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "idl/gesture.h"
+#include "node/dds/reader.h"
+#include "tests/integration/live_session.h"
+#include "tests/integration/status_watch.h"
+#include "tests/support/test_domain.h"
+
+namespace cordis::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The process of a node that this launcher has started; 0 when there is none.
+pid_t process_of(const ChildProcess& launcher, const std::string& node) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string number = entry.path().filename();
+    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string stat = text_of(entry.path() / "stat");
+    const std::size_t name_end = stat.rfind(')');
+    int parent = 0;
+    if (name_end == std::string::npos ||
+        std::sscanf(stat.c_str() + name_end, ") %*c %d", &parent) != 1 || parent != launcher.id())
+      continue;
+    const std::string words = text_of(entry.path() / "cmdline");
+    if (words.find(std::string("--name\0", 7) + node + '\0') != std::string::npos)
+      return std::stoi(number);
+  }
+  return 0;
+}
+
+/// What a page's server at http://127.0.0.1:PORT answers to a GET, or nothing.
+std::string get(const std::string& url) {
+  const std::size_t colon = url.rfind(':');
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(url.substr(colon + 1))));
+  const std::string request = "GET / HTTP/1.1\r\nHost: " + url.substr(std::strlen("http://")) +
+                              "\r\nConnection: close\r\n\r\n";
+  std::string answer;
+  const int file = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+      write(file, request.data(), request.size()) > 0) {
+    char block[4096];
+    for (ssize_t count = 0; (count = read(file, block, sizeof block)) > 0;)
+      answer.append(block, static_cast<std::size_t>(count));
+  }
+  close(file);
+  return answer;
+}
+
+/// `cordis run launch_configs/plucked_string.yaml`, in a domain of the test's own and with any
+/// port.
+class Respawn : public testing::Test {
+ protected:
+  Respawn()
+      : participant_({own_domain(), "plucked_string", "observer", false}),
+        status_(participant_),
+        forces_(participant_, dds::Topic::kForces),
+        launcher_({program_path("cordis"), "run",
+                   CORDIS_SOURCE_DIR "/launch_configs/plucked_string.yaml",
+                   "domain=" + std::to_string(own_domain()), "view.port=0", "--no-color"}) {}
+
+  ~Respawn() override {
+    if (HasFailure()) std::fprintf(stderr, "---- output\n%s\n", launcher_.output().c_str());
+  }
+
+  bool launcher_runs() { return launcher_.wait(0ms) == -1; }
+
+  bool all_run() {
+    return status_.wait_for_phase("sim", "running") &&
+           status_.wait_for_phase("keyboard", "running") &&
+           status_.wait_for("view", [](const msg::NodeStatus& status) {
+             return status.phase() == "running" && status.text().starts_with("http://");
+           });
+  }
+
+  /// The key is felt: the living sim_node answers it with a force.
+  bool is_felt() {
+    msg::GestureForces force;
+    while (forces_.take(force)) {
+    }
+    const std::uint64_t run = status_.of("sim").run();
+    return eventually([&] {
+      return forces_.take(force) && force.run() == run && std::abs(force.force_n()[0]) > 1e-3;
+    });
+  }
+
+  bool page_answers() { return get(status_.of("view").text()).starts_with("HTTP/1.1 200"); }
+
+  void kill_and_wait_for_the_next_life(const std::string& node) {
+    const std::uint64_t old_run = status_.of(node).run();
+    const pid_t process = process_of(launcher_, node);
+    ASSERT_GT(process, 0) << node;
+    ASSERT_EQ(kill(process, SIGKILL), 0);
+    ASSERT_TRUE(launcher_.wait_for_output(node + ": killed by signal 9 (Killed); it starts again",
+                                          kPatience));
+    ASSERT_TRUE(status_.wait_for(node,
+                                 [&](const msg::NodeStatus& status) {
+                                   return status.run() != old_run && status.phase() == "running";
+                                 }))
+        << node << " does not run again";
+  }
+
+  dds::Participant participant_;
+  StatusWatch status_;
+  dds::Reader<msg::GestureForces> forces_;
+  ChildProcess launcher_;
+};
+
+TEST_F(Respawn, OfEachNodeInTurnLeavesTheSessionWhole) {
+  ASSERT_TRUE(all_run());
+  ASSERT_TRUE(is_felt());
+  for (const std::string node : {"sim", "keyboard", "view"}) {
+    std::map<std::string, std::uint64_t> runs;
+    for (const char* name : {"sim", "keyboard", "view"}) runs[name] = status_.of(name).run();
+
+    ASSERT_NO_FATAL_FAILURE(kill_and_wait_for_the_next_life(node));
+
+    ASSERT_TRUE(all_run()) << "after " << node;
+    EXPECT_TRUE(is_felt()) << "after " << node;
+    EXPECT_TRUE(page_answers()) << "after " << node;
+    for (const char* name : {"sim", "keyboard", "view"}) {
+      if (name == node) continue;
+      EXPECT_EQ(status_.of(name).run(), runs[name]) << name << " was disturbed by " << node;
+    }
+    EXPECT_TRUE(launcher_runs());
+  }
+  EXPECT_NE(launcher_.output().find("begins at the start of the scene"), std::string::npos);
+
+  launcher_.signal(SIGINT);
+
+  EXPECT_EQ(launcher_.wait(kPatience), 0);
+  for (const char* node : {"sim", "keyboard", "view"}) {
+    EXPECT_NE(launcher_.output().find(std::string(node) + " was started again 1 time\n"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace cordis::test

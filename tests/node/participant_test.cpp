@@ -1,0 +1,230 @@
+// tests/node/participant_test.cpp -- who is there, with processes that stop, die and come back.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "idl/control.h"
+#include "idl/gesture.h"
+#include "idl/scene.h"
+#include "node/dds/participant_ports.h"
+#include "node/dds/process_identity.h"
+#include "node/dds/reader.h"
+#include "node/dds/writer.h"
+#include "tests/support/child_process.h"
+#include "tests/support/eventually.h"
+#include "tests/support/test_domain.h"
+
+namespace cordis::dds {
+namespace {
+
+using namespace std::chrono_literals;
+
+using test::eventually;
+using test::kPatience;
+
+Membership member(const std::string& session, const std::string& node) {
+  return {test::own_domain(), session, node};
+}
+
+std::unique_ptr<test::ChildProcess> speaker(const std::string& session, const std::string& node) {
+  return std::make_unique<test::ChildProcess>(std::vector<std::string>{
+      CORDIS_STATUS_SPEAKER, std::to_string(test::own_domain()), session, node});
+}
+
+bool knows(const Participant& participant, const std::string& name) {
+  const std::vector<Peer> peers = participant.peers();
+  return std::ranges::any_of(peers, [&](const Peer& peer) { return peer.name == name; });
+}
+
+Peer peer_named(const Participant& participant, const std::string& name) {
+  for (const Peer& peer : participant.peers()) {
+    if (peer.name == name) return peer;
+  }
+  return {};
+}
+
+/// Whether a status with a number above `number` comes, which then is the newest.
+bool hears_more(Reader<msg::NodeStatus>& statuses, std::uint64_t& number) {
+  return eventually([&] {
+    msg::NodeStatus status;
+    while (statuses.take(status)) {
+      if (status.sequence_number() > number) {
+        number = status.sequence_number();
+        return true;
+      }
+    }
+    return false;
+  });
+}
+
+TEST(Participant, ForgetsAProcessThatIsKilledAndNoneThatIsStopped) {
+  Participant here(member("ends", "here"));
+  const Reader<msg::NodeStatus> statuses(here, Topic::kStatus);
+  const auto killed = speaker("ends", "killed");
+  const auto stopped = speaker("ends", "stopped");
+  ASSERT_TRUE(eventually([&] { return statuses.matched_count() == 2; }));
+
+  stopped->signal(SIGSTOP);
+  killed->signal(SIGKILL);
+
+  // That the stopped one is still there says something, for it stood still the whole time.
+  EXPECT_TRUE(eventually([&] { return statuses.matched_count() == 1; }));
+  EXPECT_FALSE(knows(here, "ends/killed"));
+  EXPECT_TRUE(knows(here, "ends/stopped"));
+  stopped->signal(SIGCONT);
+}
+
+TEST(Participant, ForgetsAProcessThatIsKilledBeforeItsParentHasWaitedForIt) {
+  Participant here(member("zombie", "here"));
+  const auto killed = speaker("zombie", "killed");
+  ASSERT_TRUE(eventually([&] { return knows(here, "zombie/killed"); }));
+
+  killed->signal(SIGKILL);  // and nobody waits for it: it stays a zombie
+
+  EXPECT_TRUE(eventually([&] { return !knows(here, "zombie/killed"); }));
+  EXPECT_EQ(killed->wait(kPatience), 128 + SIGKILL);
+}
+
+TEST(Participant, HearsAndIsHeardByAProcessThatItHasDropped) {
+  Participant here(member("returns", "here"));
+  Reader<msg::NodeStatus> statuses(here, Topic::kStatus);
+  Reader<msg::SceneDescription> scenes(here, Topic::kDescription);
+  Writer<msg::SceneDescription> scene(here, Topic::kDescription);
+  Writer<msg::GestureForces> forces(here, Topic::kForces);
+  Participant there(member("returns", "there"));
+  Reader<msg::SceneDescription> scenes_there(there, Topic::kDescription);
+  msg::SceneDescription description;
+  description.name("said once");
+  scene.write(description);
+  ASSERT_TRUE(eventually([&] { return scenes_there.take(description); }));
+  const auto other = speaker("returns", "other");
+  std::uint64_t number = 0;
+  ASSERT_TRUE(hears_more(statuses, number));
+
+  here.drop(peer_named(here, "returns/other"));
+
+  ASSERT_TRUE(eventually([&] { return here.rejoin_count() > 0; }));
+  EXPECT_TRUE(hears_more(statuses, number));
+  EXPECT_TRUE(hears_more(statuses, number));
+  // Its last message is there for those who have found it anew, as it was for those before.
+  description.name("");
+  EXPECT_TRUE(eventually([&] { return scenes_there.take(description); }));
+  EXPECT_EQ(description.name(), "said once");
+  EXPECT_EQ(there.rejoin_count(), 0u) << "it has dropped nobody that has come back";
+}
+
+TEST(Participant, WritesAndReadsWhileItJoinsAnew) {
+  Participant here(member("meanwhile", "here"));
+  Participant there(member("meanwhile", "there"));
+  Writer<msg::GesturePositions> writer(here, Topic::kPositions);
+  Reader<msg::GesturePositions> reader(there, Topic::kPositions);
+  Writer<msg::GestureForces> answers(there, Topic::kForces);
+  Reader<msg::GestureForces> heard(here, Topic::kForces);
+  ASSERT_TRUE(eventually([&] { return heard.matched_count() == 1; }));
+  std::atomic<bool> ending{false};
+  std::atomic<std::uint64_t> exchanges{0};
+  std::thread echo([&] {
+    msg::GesturePositions sample;
+    msg::GestureForces answer;
+    while (!ending) {
+      if (!reader.take(sample)) {
+        reader.wait(1ms);
+        continue;
+      }
+      answer.answered_sample(sample.sample());
+      answers.write(answer);
+    }
+  });
+  std::thread loop([&] {
+    msg::GesturePositions sample;
+    msg::GestureForces answer;
+    while (!ending) {
+      sample.sample(sample.sample() + 1);
+      writer.write(sample);
+      heard.wait(1ms);
+      while (heard.take(answer)) ++exchanges;
+    }
+  });
+
+  for (std::uint64_t time = 1; time <= 5; ++time) {
+    const std::uint64_t before = here.rejoin_count();
+    ASSERT_TRUE(eventually([&] { return knows(here, "meanwhile/there"); }));
+    here.drop(peer_named(here, "meanwhile/there"));
+    EXPECT_TRUE(eventually([&] { return here.rejoin_count() > before; }));
+    const std::uint64_t reached = exchanges;
+    EXPECT_TRUE(eventually([&] { return exchanges > reached + 100; })) << "time " << time;
+  }
+
+  ending = true;
+  echo.join();
+  loop.join();
+}
+
+/// Local addresses of the UDP sockets of this process' network, as /proc shows them, by a filter on
+/// the port.
+std::set<std::string> local_addresses(const std::function<bool(int)>& wanted) {
+  std::set<std::string> addresses;
+  std::ifstream file("/proc/self/net/udp");
+  std::string line;
+  std::getline(file, line);  // titles
+  while (std::getline(file, line)) {
+    const std::size_t colon = line.find(':', line.find(':') + 1);
+    if (wanted(std::stoi(line.substr(colon + 1, 4), nullptr, 16))) {
+      addresses.insert(line.substr(colon - 8, 8));
+    }
+  }
+  return addresses;
+}
+
+TEST(Participant, ListensOnLoopbackAloneAndToNoMulticast) {
+  const Participant here(member("unicast", "here"));
+
+  const int domain = test::own_domain();
+  const int first = discovery_port(domain, 0) - 10;  // the multicast ports come first
+  const auto of_domain = local_addresses(
+      [&](int port) { return first <= port && port < discovery_port(domain + 1, 0) - 10; });
+
+  EXPECT_EQ(of_domain, std::set<std::string>{"0100007F"}) << "127.0.0.1, and no group";
+}
+
+TEST(Participant, SaysThatADomainIsFull) {
+  std::vector<std::unique_ptr<ParticipantPorts>> others;
+  for (int i = 0; i < kMostParticipants; ++i) {
+    others.push_back(std::make_unique<ParticipantPorts>(test::own_domain()));
+  }
+
+  try {
+    const Participant one_too_many(member("full", "here"));
+    FAIL() << "it found a place";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("is full: all 64 pairs of UDP ports"),
+              std::string::npos)
+        << error.what();
+  }
+  others.pop_back();
+  EXPECT_NO_THROW(Participant(member("full", "here")));
+}
+
+TEST(ProcessIdentity, IsThatOfALivingProcessOfThisHost) {
+  const std::string self = process_identity();
+
+  EXPECT_EQ(state_of(self), ProcessState::kAlive);
+  EXPECT_EQ(state_of(self + "0"), ProcessState::kEnded) << "its number was another's before";
+  EXPECT_EQ(state_of(""), ProcessState::kUnknown) << "a program that is not of Cordis";
+  EXPECT_EQ(state_of("process elsewhere 1 1 1"), ProcessState::kUnknown) << "another host";
+  EXPECT_EQ(state_of(self.substr(0, self.rfind(' '))), ProcessState::kUnknown) << "cut off";
+}
+
+}  // namespace
+}  // namespace cordis::dds

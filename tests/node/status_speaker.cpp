@@ -1,0 +1,18 @@
+// tests/node/status_speaker.cpp -- a process of a session that publishes its status, as a child of
+// dds_test. usage: status_speaker DOMAIN SESSION NODE. Any signal that ends a process ends it.
+#include <cstdlib>
+
+#include <unistd.h>
+
+#include "node/status.h"
+#include "node/time.h"
+
+int main(int argc, char** argv) {
+  using namespace cordis;
+  if (argc != 4) return 2;
+  dds::Participant participant({std::atoi(argv[1]), argv[2], argv[3]});
+  const node::StatusPublisher status(participant, "fake_node",
+                                     static_cast<std::uint64_t>(node::monotonic_nsec()),
+                                     [](msg::NodeStatus& said) { said.phase("running"); });
+  for (;;) pause();
+}
