@@ -9,7 +9,7 @@
 #include "idl/scene.h"
 #include "node/dds/participant.h"
 #include "node/dds/writer.h"
-#include "sim_node/frame_store.h"
+#include "sim_node/run/frame_store.h"
 
 namespace cordis::sim {
 

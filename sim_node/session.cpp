@@ -11,9 +11,9 @@
 #include "node/config/count_text.h"
 #include "node/stop.h"
 #include "node/time.h"
-#include "sim_node/describe.h"
+#include "sim_node/run/describe.h"
 #include "sim_node/scene/naming.h"
-#include "sim_node/stability_check.h"
+#include "sim_node/checks/stability_check.h"
 
 namespace cordis::sim {
 namespace {

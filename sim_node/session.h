@@ -17,12 +17,12 @@
 #include "node/paced_loop.h"
 #include "node/roster.h"
 #include "node/status.h"
-#include "sim_node/device_reach.h"
-#include "sim_node/director.h"
+#include "sim_node/devices/device_reach.h"
+#include "sim_node/run/command_executor.h"
 #include "sim_node/frame_publisher.h"
-#include "sim_node/order.h"
-#include "sim_node/player.h"
-#include "sim_node/refused_devices.h"
+#include "sim_node/run/request.h"
+#include "sim_node/run/runner.h"
+#include "sim_node/devices/refused_devices.h"
 #include "sim_node/sim_config.h"
 
 namespace cordis::sim {

@@ -11,9 +11,9 @@
 #include "node/config/mapping_reader.h"
 #include "node/config/regular_file.h"
 #include "sim_node/plan/reduction/reduce.h"
-#include "sim_node/port_check.h"
-#include "sim_node/rate_choice.h"
-#include "sim_node/stability_check.h"
+#include "sim_node/checks/port_check.h"
+#include "sim_node/checks/rate_choice.h"
+#include "sim_node/checks/stability_check.h"
 
 namespace cordis::sim {
 namespace {

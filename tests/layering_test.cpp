@@ -105,7 +105,7 @@ TEST(Layering, HeadersOfAForeignLibraryStandInOnePlace) {
       {"fastrtps/", {"node/dds/"}},
       {"fastcdr/", {"node/dds/"}},
       {"yaml-cpp/", {"node/config/"}},
-      {"muParser", {"sim_node/scene/link_expression.cpp"}},
+      {"muParser", {"sim_node/scene/language/link_expression.cpp"}},
       {"boost/", {"viz_node/web/server"}},
       {"Eigen/", {"sim_node/engine/", "sim_node/plan/"}},
       {"CLI/", {"cli/"}},

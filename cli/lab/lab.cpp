@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "cli/lab/lab_store.h"
-#include "sim_node/plan/instruction_counter.h"
-#include "sim_node/plan/load.h"
+#include "sim_node/plan/reference/instruction_counter.h"
+#include "sim_node/plan/reference/load.h"
 
 namespace cordis::cli {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cli/lab/lab_scene.h"
-#include "sim_node/plan/ladder.h"
+#include "sim_node/plan/reference/rate_sweep.h"
 #include "sim_node/plan/plan.h"
-#include "sim_node/plan/trial.h"
+#include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::cli {
 

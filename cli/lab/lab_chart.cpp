@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/child.h"
+#include "cli/run/child.h"
 
 namespace cordis::cli {
 namespace {

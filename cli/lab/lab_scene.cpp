@@ -6,7 +6,7 @@
 #include "cli/lab/stage.h"
 #include "node/config/value.h"
 #include "sim_node/plan/reduction/reduce.h"
-#include "sim_node/rate_choice.h"
+#include "sim_node/checks/rate_choice.h"
 
 namespace cordis::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/plan/course.h"
+#include "sim_node/plan/reference/input_trajectory.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::cli {

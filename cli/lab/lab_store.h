@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim_node/plan/trial.h"
+#include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::cli {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "device_node/exchange.h"
-#include "sim_node/event_room.h"
+#include "sim_node/run/event_room.h"
 #include "sim_node/sim_config.h"
-#include "sim_node/simulation.h"
+#include "sim_node/run/simulation.h"
 
 namespace cordis::cli {
 

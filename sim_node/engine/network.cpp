@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "sim_node/engine/fingerprint.h"
-#include "sim_node/engine/require.h"
+#include "sim_node/engine/core/fingerprint.h"
+#include "sim_node/engine/core/require.h"
 
 namespace cordis::engine {
 namespace {

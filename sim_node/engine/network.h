@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_node/engine/behaviour.h"
-#include "sim_node/engine/integrator.h"
-#include "sim_node/engine/vec.h"
+#include "sim_node/engine/laws/behaviour.h"
+#include "sim_node/engine/integrators/integrator_kind.h"
+#include "sim_node/engine/core/vec.h"
 
 namespace cordis::engine {
 

@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 
-#include "sim_node/engine/state_hash.h"
-#include "sim_node/engine/world_state.h"
+#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/integrators/world_state.h"
 
 namespace cordis::engine {
 namespace {

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "sim_node/engine/energy.h"
-#include "sim_node/engine/link_event.h"
+#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/links/link_event.h"
 #include "sim_node/engine/network.h"
-#include "sim_node/engine/vector_width.h"
+#include "sim_node/engine/core/vector_width.h"
 
 namespace cordis::engine {
 

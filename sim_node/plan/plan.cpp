@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "sim_node/engine/modal_block.h"
-#include "sim_node/plan/limit_weights.h"
-#include "sim_node/plan/start_tangent.h"
+#include "sim_node/engine/integrators/modal_block.h"
+#include "sim_node/plan/stability/limit_weights.h"
+#include "sim_node/plan/stability/start_tangent.h"
 
 namespace cordis::plan {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "sim_node/engine/network.h"
-#include "sim_node/plan/oscillator_error.h"
-#include "sim_node/plan/port_limit.h"
-#include "sim_node/plan/step_bound.h"
+#include "sim_node/plan/stability/oscillator_error.h"
+#include "sim_node/plan/stability/port_limit.h"
+#include "sim_node/plan/stability/step_bound.h"
 
 namespace cordis::plan {
 

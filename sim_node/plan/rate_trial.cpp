@@ -7,8 +7,8 @@
 #include <map>
 #include <vector>
 
-#include "sim_node/plan/choice.h"
-#include "sim_node/plan/trial.h"
+#include "sim_node/plan/rate_selection.h"
+#include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::plan {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "sim_node/scene/liaison.h"
+#include "sim_node/scene/liaisons/liaison.h"
 
 namespace cordis::scene {
 

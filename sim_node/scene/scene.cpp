@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "node/config/file_kind.h"
-#include "sim_node/scene/assembly.h"
+#include "sim_node/scene/sections/assembly.h"
 #include "sim_node/scene/naming.h"
-#include "sim_node/scene/point.h"
-#include "sim_node/scene/reduction_wish.h"
+#include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/sections/reduction_options.h"
 
 namespace cordis::scene {
 

@@ -10,7 +10,7 @@
 
 #include "node/config/problem.h"
 #include "sim_node/engine/network.h"
-#include "sim_node/scene/link_law.h"
+#include "sim_node/scene/liaisons/link_law.h"
 #include "sim_node/scene/signal.h"
 
 namespace cordis::scene {

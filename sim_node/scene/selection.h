@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "node/config/value.h"
-#include "sim_node/scene/link_law.h"
+#include "sim_node/scene/liaisons/link_law.h"
 
 namespace cordis::scene {
 

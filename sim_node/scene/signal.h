@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/engine/connected_pieces.h"
+#include "sim_node/engine/pairs/connected_components.h"
 #include "sim_node/engine/world.h"
-#include "sim_node/scene/link_law.h"
+#include "sim_node/scene/liaisons/link_law.h"
 
 namespace cordis::scene {
 

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "cli/lab/lab_scene.h"
-#include "sim_node/plan/choice.h"
-#include "sim_node/plan/reference.h"
-#include "sim_node/plan/trial.h"
+#include "sim_node/plan/rate_selection.h"
+#include "sim_node/plan/reference/reference.h"
+#include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::cli {
 namespace {

@@ -1,5 +1,5 @@
 // tests/cli/console_test.cpp
-#include "cli/console.h"
+#include "cli/run/console.h"
 
 #include <algorithm>
 #include <csignal>

@@ -1,5 +1,5 @@
 // tests/cli/control_words_test.cpp
-#include "cli/control_words.h"
+#include "cli/ctl/control_words.h"
 
 #include <filesystem>
 

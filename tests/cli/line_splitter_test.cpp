@@ -1,5 +1,5 @@
 // tests/cli/line_splitter_test.cpp
-#include "cli/line_splitter.h"
+#include "cli/run/line_splitter.h"
 
 #include <string>
 #include <vector>

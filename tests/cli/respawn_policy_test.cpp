@@ -1,4 +1,4 @@
-#include "cli/respawn_policy.h"
+#include "cli/run/respawn_policy.h"
 
 #include <algorithm>
 #include <random>

@@ -1,5 +1,5 @@
 // tests/cli/run_plan_test.cpp
-#include "cli/run_plan.h"
+#include "cli/run/run_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // tests/cli/scene_check_test.cpp
-#include "cli/scene_check.h"
+#include "cli/check/scene_check.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "cli/simplify.h"
+#include "cli/simplify/simplify.h"
 
 #include <cmath>
 #include <cstdio>
@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "cli/exit_code.h"
-#include "cli/scene_check.h"
+#include "cli/check/scene_check.h"
 #include "cli/verbs.h"
 #include "tests/cli/captured_run.h"
 #include "tests/reduction/scenes.h"

@@ -1,5 +1,5 @@
 // tests/cli/status_board_test.cpp
-#include "cli/status_board.h"
+#include "cli/run/status_board.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // tests/cli/stop_plan_test.cpp
-#include "cli/stop_plan.h"
+#include "cli/run/stop_plan.h"
 
 #include <string>
 

@@ -1,5 +1,5 @@
 // tests/engine/connected_pieces_test.cpp
-#include "sim_node/engine/connected_pieces.h"
+#include "sim_node/engine/pairs/connected_components.h"
 
 #include <limits>
 #include <numeric>

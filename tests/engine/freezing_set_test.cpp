@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/vector_width.h"
+#include "sim_node/engine/core/vector_width.h"
 #include "tests/engine/balls.h"
 #include "tests/engine/programs.h"
 #include "tests/support/allocation_guard.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/maxwell_links.h"
+#include "sim_node/engine/links/maxwell_links.h"
 #include "tests/engine/scenes.h"
 #include "tests/support/reference_data.h"
 

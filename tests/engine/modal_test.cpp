@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/modal_block.h"
+#include "sim_node/engine/integrators/modal_block.h"
 #include "tests/engine/many_states.h"
 #include "tests/engine/scenes.h"
 #include "tests/support/allocation_guard.h"

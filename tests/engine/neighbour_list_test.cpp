@@ -1,5 +1,5 @@
 // tests/engine/neighbour_list_test.cpp
-#include "sim_node/engine/neighbour_list.h"
+#include "sim_node/engine/pairs/neighbour_list.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // tests/engine/program_test.cpp -- the value of an expression, on every vector width.
 //
 // A state with an exit that always holds puts the value of an expression into the rest length.
-#include "sim_node/engine/program.h"
+#include "sim_node/engine/expressions/program.h"
 
 #include <array>
 #include <bit>
@@ -13,8 +13,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/behaviour_kernel.h"
-#include "sim_node/engine/state_table.h"
+#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/links/state_table.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "sim_node/engine/behaviour.h"
+#include "sim_node/engine/laws/behaviour.h"
 
 namespace cordis::test {
 

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/mat_array.h"
-#include "sim_node/engine/set_pairs.h"
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/pairs/set_pairs.h"
 #include "tests/engine/balls.h"
 #include "tests/support/allocation_guard.h"
 

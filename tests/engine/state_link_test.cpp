@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/state_links.h"
+#include "sim_node/engine/links/state_links.h"
 #include "tests/engine/led_link.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"

@@ -1,5 +1,5 @@
 // tests/engine/steep_links_test.cpp -- friction that `leapfrog` solves for its speed.
-#include "sim_node/engine/steep_links.h"
+#include "sim_node/engine/integrators/stiff_friction.h"
 
 #include <algorithm>
 #include <cmath>

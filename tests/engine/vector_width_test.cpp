@@ -1,5 +1,5 @@
 // tests/engine/vector_width_test.cpp
-#include "sim_node/engine/vector_width.h"
+#include "sim_node/engine/core/vector_width.h"
 
 #include <algorithm>
 #include <stdexcept>

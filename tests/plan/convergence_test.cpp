@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/plan/oracle.h"
-#include "sim_node/plan/trial.h"
+#include "sim_node/plan/reference/reference_integrator.h"
+#include "sim_node/plan/reference/trial_run.h"
 #include "tests/plan/reference_problems.h"
 #include "tests/support/reference_data.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/plan/oscillator_error.h"
+#include "sim_node/plan/stability/oscillator_error.h"
 #include "sim_node/plan/plan.h"
 #include "tests/plan/networks.h"
 

@@ -1,4 +1,4 @@
-#include "sim_node/plan/oracle.h"
+#include "sim_node/plan/reference/reference_integrator.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "sim_node/plan/oscillator_error.h"
+#include "sim_node/plan/stability/oscillator_error.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "sim_node/plan/port_limit.h"
+#include "sim_node/plan/stability/port_limit.h"
 
 #include <cmath>
 #include <utility>

@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/plan/choice.h"
-#include "sim_node/plan/oscillator_error.h"
+#include "sim_node/plan/rate_selection.h"
+#include "sim_node/plan/stability/oscillator_error.h"
 #include "sim_node/plan/rate_trial.h"
-#include "sim_node/plan/reference.h"
-#include "sim_node/plan/trial.h"
+#include "sim_node/plan/reference/reference.h"
+#include "sim_node/plan/reference/trial_run.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {

@@ -1,4 +1,4 @@
-#include "sim_node/plan/slope.h"
+#include "sim_node/plan/stability/slope.h"
 
 #include <cmath>
 

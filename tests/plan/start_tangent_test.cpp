@@ -1,10 +1,10 @@
-#include "sim_node/plan/start_tangent.h"
+#include "sim_node/plan/stability/start_tangent.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "sim_node/plan/step_bound.h"
+#include "sim_node/plan/stability/step_bound.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {

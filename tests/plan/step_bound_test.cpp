@@ -1,4 +1,4 @@
-#include "sim_node/plan/step_bound.h"
+#include "sim_node/plan/stability/step_bound.h"
 
 #include <cmath>
 #include <random>
@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "sim_node/plan/start_tangent.h"
+#include "sim_node/plan/stability/start_tangent.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim_node/engine/modal_block.h"
+#include "sim_node/engine/integrators/modal_block.h"
 #include "tests/reduction/scenes.h"
 
 namespace cordis::plan {

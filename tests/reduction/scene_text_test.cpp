@@ -1,4 +1,4 @@
-#include "sim_node/scene/scene_text.h"
+#include "sim_node/scene/writer/scene_text.h"
 
 #include <filesystem>
 

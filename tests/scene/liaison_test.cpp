@@ -1,4 +1,4 @@
-#include "sim_node/scene/liaison.h"
+#include "sim_node/scene/liaisons/liaison.h"
 
 #include <filesystem>
 #include <fstream>

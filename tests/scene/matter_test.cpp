@@ -1,4 +1,4 @@
-#include "sim_node/scene/matter.h"
+#include "sim_node/scene/matter/matter.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "sim_node/scene/part.h"
+#include "sim_node/scene/sections/part.h"
 
 #include <cmath>
 #include <filesystem>

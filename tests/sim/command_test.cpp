@@ -1,5 +1,5 @@
 // tests/sim/command_test.cpp
-#include "sim_node/command.h"
+#include "sim_node/run/command.h"
 
 #include <stdexcept>
 

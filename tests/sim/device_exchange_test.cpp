@@ -1,5 +1,5 @@
 // tests/sim/device_exchange_test.cpp
-#include "sim_node/device_exchange.h"
+#include "sim_node/devices/device_exchange.h"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // tests/sim/director_test.cpp
-#include "sim_node/director.h"
+#include "sim_node/run/command_executor.h"
 
 #include <atomic>
 #include <functional>
@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/plan/reduction/reduce.h"
-#include "sim_node/player.h"
-#include "sim_node/stability_check.h"
+#include "sim_node/run/runner.h"
+#include "sim_node/checks/stability_check.h"
 #include "tests/sim/stages.h"
 
 namespace cordis::sim {

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/change_counter.h"
-#include "sim_node/describe.h"
-#include "sim_node/event_room.h"
-#include "sim_node/link_states.h"
-#include "sim_node/player.h"
+#include "sim_node/run/change_counter.h"
+#include "sim_node/run/describe.h"
+#include "sim_node/run/event_room.h"
+#include "sim_node/run/link_states.h"
+#include "sim_node/run/runner.h"
 #include "tests/sim/stages.h"
 #include "tests/support/allocation_guard.h"
 

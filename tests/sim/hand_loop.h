@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim_node/simulation.h"
+#include "sim_node/run/simulation.h"
 #include "tests/sim/stages.h"
 
 namespace cordis::sim {

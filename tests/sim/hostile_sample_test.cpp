@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/device_exchange.h"
-#include "sim_node/simulation.h"
+#include "sim_node/devices/device_exchange.h"
+#include "sim_node/run/simulation.h"
 #include "tests/sim/hand_loop.h"
 #include "tests/sim/stages.h"
 #include "tests/support/hostile.h"

@@ -1,5 +1,5 @@
 // tests/sim/limit_watch_test.cpp
-#include "sim_node/limit_watch.h"
+#include "sim_node/checks/limit_watch.h"
 
 #include <cmath>
 

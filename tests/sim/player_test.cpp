@@ -1,5 +1,5 @@
 // tests/sim/player_test.cpp
-#include "sim_node/player.h"
+#include "sim_node/run/runner.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // tests/sim/port_brake_test.cpp -- a hand that holds a simulated mass over a wire that is late.
-#include "sim_node/port_brake.h"
+#include "sim_node/devices/passivity_controller.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/recent_peak.h"
+#include "sim_node/devices/recent_peak.h"
 #include "tests/engine/programs.h"
 #include "tests/sim/hand_loop.h"
 #include "tests/support/rounds.h"

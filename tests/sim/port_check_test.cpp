@@ -1,6 +1,6 @@
 // tests/sim/port_check_test.cpp -- devices that cannot bear a scene, in the launch and joining
 // late.
-#include "sim_node/port_check.h"
+#include "sim_node/checks/port_check.h"
 
 #include <cmath>
 #include <string>
@@ -9,7 +9,7 @@
 
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
-#include "sim_node/refused_devices.h"
+#include "sim_node/devices/refused_devices.h"
 
 namespace cordis::sim {
 namespace {

@@ -1,5 +1,5 @@
 // tests/sim/rate_choice_test.cpp -- what a scene is told that has a rate and an accuracy.
-#include "sim_node/rate_choice.h"
+#include "sim_node/checks/rate_choice.h"
 
 #include "tests/sim/stages.h"
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "node/config/name_hash.h"
-#include "sim_node/stage.h"
+#include "sim_node/run/loaded_scene.h"
 
 namespace cordis::sim {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "sim_node/engine/modal_block.h"
+#include "sim_node/engine/integrators/modal_block.h"
 
 namespace cordis::plan {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "node/config/mapping_reader.h"
-#include "sim_node/scene/assembly.h"
-#include "sim_node/scene/liaison.h"
-#include "sim_node/scene/matter.h"
-#include "sim_node/scene/point.h"
+#include "sim_node/scene/sections/assembly.h"
+#include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/matter/matter.h"
+#include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {
 

@@ -1,0 +1,338 @@
+// The report of `cordis check`, for a person and for a program.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/check/scene_check.h"
+#include "node/config/count_text.h"
+
+namespace cordis::cli {
+namespace {
+
+using scene::place_text;
+
+std::string seconds(double value) {
+  if (!std::isfinite(value)) return "any length";
+  if (value < 1e-3) return fmt::format("{:.4g} us", 1e6 * value);
+  return fmt::format("{:.4g} ms", 1e3 * value);
+}
+
+/// The place of a part, in brackets; nothing where there is none.
+std::string at(const scene::Called& called) {
+  return called.place.line > 0 ? " (" + place_text(called.place) + ")" : std::string();
+}
+
+std::string percent(double share) {
+  return fmt::format("{:+.2g} %", 100.0 * share);
+}
+
+std::string limit_text(const SceneCheck& check) {
+  const plan::StepBound& bound = check.plan.stability.certified;
+  if (!std::isfinite(bound.step)) return "limit       none: no step is too long\n";
+  const scene::Called liaison = scene::call_liaison(check.scene, bound.liaison);
+  const scene::Called mat = scene::call_mat(check.scene, bound.mat);
+  return fmt::format("limit       set by {}{} at the mass {} of {:.4g} kg{}\n", liaison.name,
+                     at(liaison), mat.name, check.scene.network.mats[bound.mat].mass, at(mat));
+}
+
+std::string stability_text(const SceneCheck& check) {
+  const plan::Stability& stability = check.plan.stability;
+  std::string text;
+  if (stability.holds()) {
+    text = fmt::format("stability   stable in every pose and state: margin {:.4g} % of stiffness\n",
+                       100.0 * stability.margin());
+  } else if (stability.diverges()) {
+    text = fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
+                       check.rate_above(1.0 / stability.certified.step));
+  } else {
+    text = fmt::format(
+        "stability   not certain: stable in some poses or states alone; a rate_hz of {:.0f} is "
+        "stable in all\n",
+        check.rate_above(1.0 / stability.certified.step));
+  }
+  text += fmt::format("            step {}; certified up to {}", seconds(stability.step),
+                      seconds(stability.certified.step));
+  text += std::isfinite(stability.diverging_step)
+              ? fmt::format(", surely unstable beyond {}\n", seconds(stability.diverging_step))
+              : "\n";
+  if (!stability.bounded) {
+    text +=
+        "            a law has no largest slope: certified while no link is longer than twice its "
+        "length at\n            the start, and no pair meets faster than the fastest two at the "
+        "start\n";
+  }
+  return text + limit_text(check);
+}
+
+std::string accuracy_text(const SceneCheck& check) {
+  const plan::BandEdge& edge = check.plan.band_edge;
+  if (!edge.error.oscillates) {
+    return fmt::format("accuracy    at {:.4g} Hz nothing can swing at this rate and viscosity\n",
+                       edge.frequency_hz);
+  }
+  return fmt::format("accuracy    at {:.4g} Hz: pitch {} ({:+.2g} cent), decay {} at most\n",
+                     edge.frequency_hz, percent(edge.error.pitch), plan::cents(edge.error.pitch),
+                     percent(edge.error.decay));
+}
+
+/// What the scene asks for, and what the plan does about it.
+std::string choice_text(const SceneCheck& check) {
+  if (!check.choice) return {};
+  const scene::Accuracy& asked = *check.scene.accuracy;
+  const plan::Choice& choice = *check.choice;
+  std::string text = fmt::format(
+      "asked       {:.4g} of {}, up to {:.4g} Hz; contacts {:.3g} %{}\n", asked.tolerance,
+      asked.over_s > 0.0 ? fmt::format("the amplitude for {:.4g} s", asked.over_s)
+                         : std::string("pitch and decay"),
+      asked.band_hz, 100.0 * asked.contact_energy, at({"", asked.place}));
+  if (check.keeps_accuracy()) {
+    text += fmt::format("            {:.6g} Hz would do: because of {}", choice.needed_hz,
+                        choice.because);
+  } else {
+    text += fmt::format(
+        "            rate_hz is TOO LOW for that: {:.6g} Hz are needed, because of {}; it runs at "
+        "{:.6g} Hz all the same",
+        choice.needed_hz, choice.because, check.scene.step_rate_hz);
+  }
+  if (choice.error >= 0.0) text += fmt::format("; tried out: {:.2g}", choice.error);
+  if (!choice.doubt.empty()) text += "\n            " + choice.doubt;
+  return text + "\n";
+}
+
+std::string contact_text(const SceneCheck& check) {
+  const auto& contact = check.plan.worst_contact;
+  if (!contact) return {};
+  const scene::Called liaison = scene::call_liaison(check.scene, contact->liaison);
+  return fmt::format("contacts    one collision gains {:.2g} % of its energy at worst: {}{}\n",
+                     100.0 * contact->worst, liaison.name, at(liaison));
+}
+
+std::string needs_text(const scene::PortNeeds& needs) {
+  std::string text;
+  const auto add = [&text](double needed, const char* what) {
+    if (needed > 0.0) text += fmt::format("{}{:.4g} {}", text.empty() ? "" : " and ", needed, what);
+  };
+  add(needs.travel, "m of travel");
+  add(needs.up, "m above its rest");
+  add(needs.down, "m below its rest");
+  add(needs.force, "N");
+  if (text.empty()) return {};
+  return "            needs a device of " + text + " along each of its axes\n";
+}
+
+std::string port_text(const SceneCheck& check, const PortCheck& port) {
+  const double rate = check.scene.gesture_rate_hz;
+  const int delay_periods = check.options.delay_periods;
+  const std::string delay = config::count_text(static_cast<std::size_t>(delay_periods), "period");
+  const std::string who =
+      fmt::format("port        {} ({}): ", port.port->name, place_text(port.port->place));
+  if (port.port->role == scene::Role::kLiaison) {
+    return who +
+           fmt::format(
+               "a hand may be as stiff as {:.4g} N/m, and as its own viscosity over "
+               "{:.3g} ms, at {:.4g} Hz and {} of delay\n",
+               port.largest_hand_stiffness, 1e3 * delay_periods / rate, rate, delay) +
+           needs_text(port.port->needs);
+  }
+  std::string text =
+      who + fmt::format(
+                "{:.4g} N/m and {:.3g} N s/m; the device needs {:.3g} N s/m of its own, at "
+                "{:.4g} Hz and {} of delay\n",
+                port.load.stiffness, port.load.viscosity, port.least_device_viscosity, rate, delay);
+  if (check.options.device_viscosity > 0.0) {
+    text += fmt::format(
+        "            a device of {:.3g} N s/m bears {:.4g} N/m: {}\n",
+        check.options.device_viscosity, port.largest_stiffness,
+        port.load.stiffness <= port.largest_stiffness ? "safe with any hand" : "TOO STIFF");
+  }
+  return text + needs_text(port.port->needs);
+}
+
+/// The clock for a scene that has more time than the wall: simulated hands wait for it.
+const char* slow_clock_of(const SceneCheck& check) {
+  return check.scene.ports.empty() ? "asap" : "lockstep";
+}
+
+std::string load_text(const SceneCheck& check) {
+  std::string text =
+      fmt::format("load        {:.4g} us a step{}, {:.3g} % of real time on this machine\n",
+                  1e-3 * check.step_nsec,
+                  check.scene.network.freeze_tolerance > 0.0 ? " with all masses awake" : "",
+                  100.0 * check.load());
+  if (check.load() < 1.0) return text;
+  const double rate = check.real_time_rate();
+  const bool stable = check.is_certified_at(rate);
+  text += fmt::format(
+      "            TOO SLOW for real time: run it with clock {}, {:.3g} times slower, or ",
+      slow_clock_of(check), check.load());
+  if (rate == 0.0) return text + "make it smaller: a step takes longer than a gesture\n";
+  text += fmt::format("at {:.6g} steps per second{}\n", rate,
+                      stable ? "" : ", which is unstable: make it smaller or softer");
+  if (check.choice && stable) {
+    text += fmt::format("            at that rate the tolerance would be about {:.2g}\n",
+                        check.tolerance_at(rate));
+  }
+  return text;
+}
+
+/// Too slow for real time: what else there is.
+nlohmann::json alternatives_json(const SceneCheck& check) {
+  const double rate = check.real_time_rate();
+  nlohmann::json real_time{{"rate_hz", rate}, {"stable", check.is_certified_at(rate)}};
+  if (check.choice && rate > 0.0) real_time["tolerance"] = check.tolerance_at(rate);
+  return {{slow_clock_of(check), {{"times_slower", check.load()}}},
+          {"realtime", std::move(real_time)}};
+}
+
+nlohmann::json finite(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+nlohmann::json reductions_json(const std::vector<scene::Reduction>& reductions) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const scene::Reduction& reduction : reductions) {
+    list.push_back({{"name", reduction.name},
+                    {"count", reduction.count},
+                    {"what", reduction.what},
+                    {"error_budget", finite(reduction.budget)},
+                    {"bound", reduction.bound},
+                    {"doubts", reduction.doubts}});
+  }
+  return list;
+}
+
+nlohmann::json called(const scene::Called& called) {
+  nlohmann::json json{{"name", called.name}};
+  if (called.place.line > 0) {
+    json["file"] = called.place.file;
+    json["line"] = called.place.line;
+  }
+  return json;
+}
+
+nlohmann::json ports_json(const SceneCheck& check) {
+  nlohmann::json ports = nlohmann::json::array();
+  for (const PortCheck& port : check.ports) {
+    nlohmann::json json{{"name", port.port->name},
+                        {"device", port.port->device},
+                        {"stiffness_n_per_m", port.load.stiffness},
+                        {"viscosity_n_s_per_m", port.load.viscosity},
+                        {"delay_periods", check.options.delay_periods}};
+    if (port.port->role == scene::Role::kMass) {
+      json["role"] = "mass";
+      json["least_device_viscosity_n_s_per_m"] = port.least_device_viscosity;
+      if (check.options.device_viscosity > 0.0) {
+        json["device_viscosity_n_s_per_m"] = check.options.device_viscosity;
+        json["largest_stiffness_n_per_m"] = port.largest_stiffness;
+      }
+    } else {
+      json["role"] = "liaison";
+      json["largest_hand_stiffness_n_per_m"] = port.largest_hand_stiffness;
+    }
+    const scene::PortNeeds& needs = port.port->needs;
+    if (needs.travel > 0.0) json["needs"]["travel_m"] = needs.travel;
+    if (needs.up > 0.0) json["needs"]["up_m"] = needs.up;
+    if (needs.down > 0.0) json["needs"]["down_m"] = needs.down;
+    if (needs.force > 0.0) json["needs"]["force_n"] = needs.force;
+    ports.push_back(std::move(json));
+  }
+  return ports;
+}
+
+// What freezing does to positions, in tolerances: measured, docs/reductions.md.
+constexpr double kUsualError = 3.0;
+constexpr double kLargestError = 50.0;
+
+std::string freezing_text(double tolerance) {
+  if (tolerance == 0.0) return {};
+  return fmt::format(
+      "frozen      what rests within {:.2g} m: positions off by about {:.2g} m, at most {:.2g} m\n",
+      tolerance, kUsualError * tolerance, kLargestError * tolerance);
+}
+
+const char* verdict(const plan::Stability& stability) {
+  if (stability.holds()) return "stable";
+  return stability.diverges() ? "unstable" : "not_certain";
+}
+
+}  // namespace
+
+std::string reductions_text(const std::vector<scene::Reduction>& reductions) {
+  std::string text;
+  for (const scene::Reduction& reduction : reductions) {
+    text += fmt::format("reduced     {}: {}; {}\n", reduction.name, reduction.what,
+                        reduction.budget > 0.0 ? fmt::format("error at most {:.2g}: {}",
+                                                             reduction.budget, reduction.bound)
+                                               : std::string("exact to rounding"));
+    for (const std::string& doubt : reduction.doubts) text += "            " + doubt + "\n";
+  }
+  return text.empty() ? "reduced     nothing\n" : text;
+}
+
+std::string text_of(const SceneCheck& check) {
+  const scene::Scene& scene = check.scene;
+  std::string text =
+      fmt::format("scene       {} ({}), {}\n", scene.name, scene.file, scene::size_text(scene));
+  text += fmt::format("integrator  {} at {:.6g} Hz, 1 thread\n",
+                      engine::to_string(scene.network.integrator), scene.step_rate_hz);
+  text += reductions_text(check.scene.reductions);
+  text += freezing_text(scene.network.freeze_tolerance);
+  text += choice_text(check) + stability_text(check) + accuracy_text(check) + contact_text(check);
+  for (const PortCheck& port : check.ports) text += port_text(check, port);
+  return text + load_text(check);
+}
+
+std::string json_of(const SceneCheck& check) {
+  const plan::Stability& stability = check.plan.stability;
+  const plan::BandEdge& edge = check.plan.band_edge;
+  nlohmann::json json{
+      {"scene", check.scene.name},
+      {"file", check.scene.file},
+      {"integrator", engine::to_string(check.scene.network.integrator)},
+      {"rate_hz", check.scene.step_rate_hz},
+      {"threads", 1},
+      {"stability",
+       {{"verdict", verdict(stability)},
+        {"step_s", stability.step},
+        {"certified_step_s", finite(stability.certified.step)},
+        {"diverging_step_s", finite(stability.diverging_step)},
+        {"margin", stability.margin()},
+        {"bounded_laws", stability.bounded}}},
+      {"accuracy",
+       {{"band_hz", edge.frequency_hz},
+        {"oscillates", edge.error.oscillates},
+        {"pitch_error", edge.error.pitch},
+        {"decay_error", edge.error.decay}}},
+      {"ports", ports_json(check)},
+      {"reductions", reductions_json(check.scene.reductions)},
+      {"load", {{"step_nsec", check.step_nsec}, {"share_of_real_time", check.load()}}}};
+  const double tolerance = check.scene.network.freeze_tolerance;
+  if (tolerance > 0.0) {
+    json["freezing"] = {{"tolerance_m", tolerance},
+                        {"usual_error_m", kUsualError * tolerance},
+                        {"largest_error_m", kLargestError * tolerance}};
+  }
+  if (std::isfinite(stability.certified.step)) {
+    json["stability"]["limit"] = {
+        {"liaison", called(scene::call_liaison(check.scene, stability.certified.liaison))},
+        {"mat", called(scene::call_mat(check.scene, stability.certified.mat))}};
+  }
+  if (check.choice) {
+    const scene::Accuracy& asked = *check.scene.accuracy;
+    json["asked"] = {{"tolerance", asked.tolerance},           {"band_hz", asked.band_hz},
+                     {"contact_energy", asked.contact_energy}, {"over_s", asked.over_s},
+                     {"needed_hz", check.choice->needed_hz},   {"because", check.choice->because},
+                     {"kept", check.keeps_accuracy()},         {"doubt", check.choice->doubt}};
+    if (check.choice->error >= 0.0) json["asked"]["tried_out_error"] = check.choice->error;
+  }
+  if (check.load() >= 1.0) json["load"]["alternatives"] = alternatives_json(check);
+  if (check.plan.worst_contact) {
+    json["worst_contact"] = {
+        {"energy_gain", finite(check.plan.worst_contact->worst)},
+        {"liaison", called(scene::call_liaison(check.scene, check.plan.worst_contact->liaison))}};
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,75 @@
+// cli/check/scene_check.h -- what `cordis check` finds out about a scene.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim_node/plan/rate_selection.h"
+#include "sim_node/plan/plan.h"
+#include "sim_node/scene/naming.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::cli {
+
+/// What a person asked for.
+struct CheckOptions {
+  std::string scene_file;
+  std::string json_file;  ///< empty: none; "-": instead of the text
+  /// The upper end of the band that matters; 0: that of the scene's `accuracy`, or 100 Hz.
+  double band_hz = 0.0;
+  int delay_periods = 1;        ///< of the loop through a device
+  double device_viscosity = 0;  ///< of the device [N s/m]; 0: not known
+  bool force = false;
+};
+
+/// The loop through one port, in its role.
+struct PortCheck {
+  const scene::Port* port = nullptr;
+  plan::PortLoad load;
+  double least_device_viscosity = 0.0;  ///< role mass: what the device must have [N s/m]
+  double largest_stiffness = 0.0;       ///< role mass, of the device asked for [N/m]
+  double largest_hand_stiffness = 0.0;  ///< role liaison [N/m]
+};
+
+struct SceneCheck {
+  scene::Scene scene;
+  CheckOptions options;
+  plan::Plan plan;
+  std::optional<plan::Choice> choice;  ///< for the `accuracy` of the scene
+  std::vector<PortCheck> ports;
+  double step_nsec = 0.0;  ///< measured on this machine
+
+  /// Wall time per simulated time.
+  double load() const noexcept { return 1e-9 * step_nsec * scene.step_rate_hz; }
+  /// The fastest rate of a scene that this machine keeps up with, a multiple of the gesture rate;
+  /// 0 where one step takes longer than a gesture [1/s].
+  double real_time_rate() const noexcept;
+  bool is_certified_at(double rate_hz) const noexcept {
+    return rate_hz * plan.stability.certified.step > 1.0;
+  }
+  /// The tolerance that the scene can have at another rate, about: the errors of the scheme with
+  /// viscosity are of first order. Precondition: it has a choice.
+  double tolerance_at(double rate_hz) const noexcept {
+    return scene.accuracy->tolerance * choice->needed_hz / rate_hz;
+  }
+  /// Whether the scene keeps its `accuracy`, or has none.
+  bool keeps_accuracy() const noexcept {
+    return !choice || scene.step_rate_hz >= choice->needed_hz;
+  }
+  /// The lowest rate above `rate` that is a multiple of the gesture rate.
+  double rate_above(double rate_hz) const noexcept;
+};
+
+/// @throws config::ConfigError when the scene has faults.
+SceneCheck check_scene(const CheckOptions& options);
+
+/// What was taken out of a scene, in lines for a person.
+std::string reductions_text(const std::vector<scene::Reduction>& reductions);
+
+/// Lines for a person.
+std::string text_of(const SceneCheck& check);
+/// The same for a program; keys carry their unit.
+std::string json_of(const SceneCheck& check);
+
+}  // namespace cordis::cli

@@ -1,0 +1,87 @@
+// cli/ctl/control_line.cpp
+#include "cli/ctl/control_line.h"
+
+#include <algorithm>
+#include <map>
+
+#include <unistd.h>
+
+#include "node/time.h"
+
+namespace cordis::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kRepeatAfter = 250ms;
+constexpr auto kLook = 5ms;
+// Whoever is there says so within this time, twice over. A longer timeout is for a machine on which
+// all takes longer.
+constexpr auto kLongestDiscovery = 2s;
+constexpr double kShareOfTimeout = 0.4;
+// A node that has been silent for longer does not live: nodes speak twice a second.
+constexpr auto kLately = 5s;
+constexpr auto kUsualDiscovery = 600ms;  // after which nobody is missed when all are addressed
+
+}  // namespace
+
+ControlLine::ControlLine(int domain, const std::string& session)
+    : participant_({domain, session, "cordis ctl", false}),
+      commands_(participant_, dds::Topic::kCommand),
+      replies_(participant_, dds::Topic::kReply),
+      roster_(participant_, kLately) {}
+
+std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const std::string& verb,
+                                                const std::string& argument,
+                                                std::chrono::nanoseconds at_most) {
+  msg::ControlCommand command;
+  command.command_id(static_cast<std::uint64_t>(node::monotonic_nsec()));
+  command.sender("cordis ctl " + std::to_string(getpid()));
+  command.target(target);
+  command.verb(verb);
+  command.argument(argument);
+
+  const auto longest_discovery =
+      std::max<std::chrono::duration<double>>(kLongestDiscovery, kShareOfTimeout * at_most);
+  std::map<std::string, msg::ControlReply> replies;
+  const auto began = Clock::now();
+  auto send_at = began;
+  for (auto now = began; now < began + at_most; now = Clock::now()) {
+    roster_.look();
+    const std::size_t addressed = addressed_count(target);
+    if (addressed == 0 && now > began + longest_discovery) break;
+    // Before DDS has found a reader, a command would reach nobody.
+    const bool reaches = commands_.matched_count() > 0;
+    if (addressed > replies.size() && now >= send_at && reaches) {
+      commands_.write(command);
+      sent_ = true;
+      send_at = now + kRepeatAfter;
+    }
+    replies_.wait(kLook);
+    msg::ControlReply reply;
+    while (replies_.take(reply)) {
+      if (reply.command_id() == command.command_id() && reply.sender() == command.sender())
+        replies[reply.node()] = reply;
+    }
+    const bool all_known = target != "*" || now > began + kUsualDiscovery;
+    if (addressed > 0 && replies.size() >= addressed && all_known) break;
+  }
+  std::vector<msg::ControlReply> heard;
+  for (auto& [node, reply] : replies) heard.push_back(std::move(reply));
+  return heard;
+}
+
+std::vector<std::string> ControlLine::present() const {
+  std::vector<std::string> names;
+  for (const msg::NodeStatus& status : roster_.alive()) names.push_back(status.node());
+  return names;
+}
+
+std::size_t ControlLine::addressed_count(const std::string& target) const {
+  const std::vector<msg::NodeStatus> alive = roster_.alive();
+  return static_cast<std::size_t>(std::ranges::count_if(alive, [&](const msg::NodeStatus& status) {
+    return target == "*" || target == status.node() || target == status.kind();
+  }));
+}
+
+}  // namespace cordis::cli

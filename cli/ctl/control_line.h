@@ -1,0 +1,45 @@
+// cli/ctl/control_line.h -- speaks to the nodes of a running session and hears their replies.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "idl/control.h"
+#include "node/dds/participant.h"
+#include "node/dds/reader.h"
+#include "node/dds/writer.h"
+#include "node/roster.h"
+
+namespace cordis::cli {
+
+class ControlLine {
+ public:
+  /// @throws std::runtime_error when DDS refuses.
+  ControlLine(int domain, const std::string& session);
+
+  /// Sends a command until every addressed node that is there has answered, at most so long.
+  /// @param target  a node, a kind of node, or "*"
+  /// @return the replies, one per node
+  std::vector<msg::ControlReply> ask(const std::string& target, const std::string& verb,
+                                     const std::string& argument, std::chrono::nanoseconds at_most);
+
+  /// The nodes that are alive: they have said something lately, and not that they stop.
+  std::vector<std::string> present() const;
+  /// Whether a command has been sent.
+  bool has_sent() const noexcept { return sent_; }
+  /// How many of them a target addresses.
+  std::size_t addressed_count(const std::string& target) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  dds::Participant participant_;
+  dds::Writer<msg::ControlCommand> commands_;
+  dds::Reader<msg::ControlReply> replies_;
+  node::Roster roster_;
+  bool sent_ = false;
+};
+
+}  // namespace cordis::cli

@@ -1,0 +1,84 @@
+// cli/ctl/control_words.cpp
+#include "cli/ctl/control_words.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "cli/command_line.h"
+#include "node/config/problem.h"
+#include "node/control_verbs.h"
+
+namespace cordis::cli {
+namespace {
+
+/// A text as YAML that reads back as just this text.
+std::string quoted(const std::string& text) {
+  std::string yaml = "'";
+  for (const char c : text) yaml += c == '\'' ? std::string("''") : std::string(1, c);
+  return yaml + "'";
+}
+
+const node::ControlVerb& verb_named(const std::string& name) {
+  for (const node::ControlVerb& verb : node::control_verbs()) {
+    if (name == verb.name) return verb;
+  }
+  const std::string near = config::nearest_word(name, node::control_verb_names());
+  throw UsageError("there is no command '" + name + "'" +
+                   (near.empty() ? "" : ", did you mean '" + near + "'?"));
+}
+
+[[noreturn]] void refuse(const node::ControlVerb& verb) {
+  throw UsageError(std::string("write: ") + verb.name + (*verb.words == '\0' ? "" : " ") +
+                   verb.words);
+}
+
+std::string path_argument(const std::string& path) {
+  std::error_code unknown;  // whether it is a path at all
+  return quoted(std::filesystem::exists(path, unknown) ? std::filesystem::absolute(path).string()
+                                                       : path);
+}
+
+/// NAME.PARAMETER=VALUE words as a mapping.
+std::string values_argument(const std::vector<std::string>& words) {
+  std::string yaml;
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    const bool named = equals != std::string::npos && equals > 0 && equals + 1 < word.size();
+    if (!named || word.substr(0, equals).find('.') == std::string::npos)
+      throw UsageError("'" + word + "' is not of the form NAME.PARAMETER=VALUE");
+    yaml += (yaml.empty() ? "{" : ", ") + quoted(word.substr(0, equals)) + ": " +
+            word.substr(equals + 1);
+  }
+  return yaml + "}";
+}
+
+}  // namespace
+
+ControlWords read_control_words(const std::string& name, const std::vector<std::string>& words) {
+  const node::ControlVerb& verb = verb_named(name);
+  const bool optional = *verb.words == '[';
+  const bool needs_a_word = *verb.words != '\0' && !optional;
+  if ((needs_a_word && words.empty()) || (*verb.words == '\0' && !words.empty())) refuse(verb);
+  if (words.empty()) return {name, ""};
+  if (name == "set") return {name, values_argument(words)};
+  if (name == "state") {
+    if (words.size() != 2) refuse(verb);
+    return {name, fmt::format("[{}, {}]", quoted(words[0]), quoted(words[1]))};
+  }
+  if (words.size() > 1) refuse(verb);
+  if (name == "step") return {name, words.front()};
+  return {name, path_argument(words.front())};
+}
+
+std::string control_verb_list() {
+  std::string text;
+  for (const node::ControlVerb& verb : node::control_verbs()) {
+    text += fmt::format("  {:<28}{}\n", fmt::format("{} {}", verb.name, verb.words), verb.summary);
+  }
+  return text;
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,87 @@
+// cli/lab/lab_verb.cpp -- cordis lab: charts what accuracy costs.
+#include <cstdio>
+#include <memory>
+
+#include <unistd.h>
+
+#include "cli/duration.h"
+#include "cli/exit_code.h"
+#include "cli/lab/lab.h"
+#include "cli/lab/lab_chart.h"
+#include "cli/number.h"
+#include "cli/verbs.h"
+
+namespace cordis::cli {
+namespace {
+
+struct LabWords {
+  LabOptions options;
+  std::string duration;
+  std::string jobs = "1";
+};
+
+/// One line that is written over again and again; nothing where nobody looks.
+class ProgressLine {
+ public:
+  void show(const std::string& text) {
+    if (!is_terminal_) return;
+    std::fprintf(stderr, "\r%-70s", text.c_str());
+    std::fflush(stderr);
+    shown_ = true;
+  }
+  ~ProgressLine() {
+    if (shown_) std::fprintf(stderr, "\r%-70s\r", "");
+  }
+
+ private:
+  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
+  bool shown_ = false;
+};
+
+int run(LabOptions options) {
+  LabReport report;
+  {
+    ProgressLine line;
+    report = run_lab(options, [&line](const std::string& text) { line.show(text); });
+  }
+  std::fputs(text_of(report).c_str(), stdout);
+  std::puts(draw_chart(report, options.folder).c_str());
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_lab_verb(CommandLine& line) {
+  auto words = std::make_shared<LabWords>();
+  LabOptions& options = words->options;
+  Verb& verb =
+      line.verb("lab", "SCENE [options]",
+                "Run a scene with every integrator at many rates, and chart error against cost");
+  verb.required_word("SCENE", options.file, "A scene, or a launch file whose devices play");
+  verb.option("--out", "DIR", options.folder, "Where the results go [lab]");
+  verb.option("--duration", "TIME", words->duration,
+              "Of a run, in simulated time [over_s of the scene, or 2s]");
+  verb.option("--jobs", "COUNT", words->jobs, "Runs at the same time [1]");
+  verb.flag("--quick", options.quick, "Few rates, within half a minute");
+  verb.flag("--again", options.again, "Forget what an earlier lab has left in the folder");
+  verb.examples(
+      "The error of a run is the root of the mean square of its position errors against the "
+      "oracle,\n"
+      "over that of the motion itself (docs/lab.md). A lab that was interrupted goes on "
+      "where\n"
+      "it was when it is started again.\n\n"
+      "Examples:\n"
+      "  cordis lab launch_configs/scenes/membrane.yaml --quick\n"
+      "  cordis lab launch_configs/bowed_string.yaml --duration 3s --jobs 2 --out /tmp/bow\n");
+  verb.action([words] {
+    LabOptions& asked = words->options;
+    if (asked.folder.empty()) asked.folder = "lab";
+    if (!words->duration.empty()) {
+      asked.duration_s = std::chrono::duration<double>(parse_duration(words->duration)).count();
+    }
+    asked.jobs = parse_whole_number("--jobs", words->jobs, 1, 64);
+    return run(asked);
+  });
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,71 @@
+// cli/run/node_output.cpp
+#include "cli/run/node_output.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "node/config/regular_file.h"
+
+namespace cordis::cli {
+namespace {
+
+// Colours that can be read on a light and on a dark ground: cyan, green, magenta, blue, yellow.
+constexpr std::array kColours{36, 32, 35, 34, 33};
+
+std::string time_of_day() {
+  const auto now = std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
+  const auto whole = std::chrono::floor<std::chrono::seconds>(now);
+  return fmt::format("{:%H:%M:%S}.{:03}", fmt::localtime(std::chrono::system_clock::to_time_t(now)),
+                     (now - whole).count());
+}
+
+}  // namespace
+
+NodeOutput::NodeOutput(const std::vector<std::string>& names, const std::string& log_directory,
+                       bool no_color)
+    : names_(names),
+      colours_{wants_colours(Stream::kOut, no_color), wants_colours(Stream::kError, no_color)} {
+  names_.emplace_back("cordis");
+  std::size_t width = 0;
+  for (const std::string& name : names_) width = std::max(width, name.size());
+  for (std::string& name : names_) name.resize(width, ' ');
+  if (log_directory.empty()) return;
+
+  std::error_code error;
+  std::filesystem::create_directories(log_directory, error);
+  for (const std::string& name : names) {
+    const auto path = std::filesystem::path(log_directory) / (name + ".log");
+    const std::string reason = config::reason_not_to_write(path.string());
+    if (!reason.empty()) throw std::runtime_error("cannot write " + path.string() + ": " + reason);
+    logs_.emplace_back(path);
+    if (!logs_.back()) throw std::runtime_error("cannot write " + path.string());
+  }
+}
+
+std::string NodeOutput::prefix(std::size_t index, Stream stream) const {
+  if (!colours_[static_cast<std::size_t>(stream)]) return names_[index] + " | ";
+  const bool launcher = index + 1 == names_.size();
+  const int colour = launcher ? 1 : kColours[index % kColours.size()];  // 1 is bold
+  return fmt::format("\033[{}m{} |\033[0m ", colour, names_[index]);
+}
+
+void NodeOutput::line(std::size_t node, Stream stream, std::string_view text) {
+  console_.line(stream, prefix(node, stream) + std::string(text));
+  if (!logs_.empty()) logs_[node] << time_of_day() << ' ' << text << std::endl;
+}
+
+void NodeOutput::say(std::string_view text) {
+  console_.line(Stream::kError, prefix(names_.size() - 1, Stream::kError) + std::string(text));
+}
+
+void NodeOutput::print(std::string_view text) {
+  if (text.ends_with('\n')) text.remove_suffix(1);
+  console_.line(Stream::kOut, text);
+}
+
+}  // namespace cordis::cli

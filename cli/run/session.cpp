@@ -1,0 +1,195 @@
+// cli/run/session.cpp
+#include "cli/run/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "cli/duration.h"
+#include "cli/exit_code.h"
+#include "cli/run/node_output.h"
+#include "cli/run/respawn_policy.h"
+#include "cli/run/status_board.h"
+#include "node/config/count_text.h"
+#include "node/dds/reader.h"
+#include "node/time.h"
+
+namespace cordis::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kLongestStart{5};
+
+class Session : public Watcher {
+ public:
+  Session(const config::Launch& launch, const RunPlan& plan, const RunOptions& options,
+          node::SessionRegistration& registration)
+      : plan_(plan),
+        registration_(registration),
+        output_(names_of(plan), options.log_directory, options.no_color),
+        board_(static_cast<std::uint64_t>(node::monotonic_nsec())),
+        participant_({registration.domain(), launch.session, "cordis",
+                      launch.clock == config::Clock::kLockstep}),
+        statuses_(participant_, dds::Topic::kStatus),
+        present_(plan.nodes.size(), true),
+        killed_(plan.nodes.size(), false),
+        restarts_(plan.nodes.size(), 0),
+        started_(Clock::now()) {
+    output_.say("session '" + launch.session + "' in DDS domain " +
+                std::to_string(registration.domain()));
+  }
+
+  void line(std::size_t process, Stream stream, std::string_view text) override {
+    output_.line(process, stream, text);
+  }
+
+  void restarts(std::size_t process, const Ending& ending,
+                std::chrono::milliseconds delay) override {
+    const PlannedNode& node = plan_.nodes[process];
+    board_.begin_life(node.name, static_cast<std::uint64_t>(node::monotonic_nsec()));
+    output_.say(node.name + ": " + ending.text() + "; it starts again in " + in_seconds(delay) +
+                " s" + (node.program == "sim_node" ? " and begins at the start of the scene" : ""));
+  }
+
+  void restarted(std::size_t process) override { ++restarts_[process]; }
+
+  bool ended(std::size_t process, const Ending& ending, bool stopping) override {
+    const PlannedNode& node = plan_.nodes[process];
+    present_[process] = false;
+    registration_.remove_node(node.name);
+    const bool failed = ending.exit_code() != kSuccess;
+    if (node.required && result_ == kSuccess) result_ = ending.exit_code();
+    if (stopping) {
+      if (failed && !killed_[process]) output_.say(node.name + ": " + ending.text());
+      return node.required;
+    }
+    output_.say(node.name + ": " + (failed ? ending.text() : "has ended") +
+                why_not_again(node, ending) +
+                (node.required ? "; stopping the others" : "; the others go on"));
+    stopped_ = stopped_ || node.required;
+    if (failure_ == kSuccess) failure_ = ending.exit_code();
+    return node.required;
+  }
+
+  void killed(std::size_t process) override {
+    killed_[process] = true;
+    output_.say(plan_.nodes[process].name + ": did not stop in time and is killed");
+  }
+
+  void interrupted(bool again) override {
+    stopped_ = true;
+    output_.say(again ? "killing all nodes; devices have 0.5 s to let go"
+                      : "stopping; once more kills");
+  }
+
+  bool tick() override {
+    take_statuses();
+    output_.flush();
+    const bool over = plan_.wall_duration && is_over(*plan_.wall_duration);
+    stopped_ = stopped_ || over;
+    return over;
+  }
+
+  /// Prints what is known at the end. @return the exit code of the run.
+  int finish() {
+    take_statuses();
+    const std::vector<std::string> names = names_of(plan_);
+    const bool heard = std::any_of(names.begin(), names.end(), [this](const auto& name) {
+      return board_.find(name) != nullptr;
+    });
+    if (heard) {
+      output_.print("");
+      output_.print(status_table(names, board_));
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (restarts_[i] > 0)
+        output_.print(names[i] + " was started again " + config::count_text(restarts_[i], "time"));
+    }
+    return stopped_ ? result_ : failure_;
+  }
+
+ private:
+  /// The reason why a node that may respawn is not started again; empty if there is none to state.
+  static std::string why_not_again(const PlannedNode& node, const Ending& ending) {
+    if (!node.respawn || ending.exit_code() == kSuccess) return "";
+    if (ending.exit_code() == kBadInput) return " (bad input, which a restart does not mend)";
+    return ", after " + std::to_string(RespawnPolicy::kMaxPerMinute) + " restarts in a minute";
+  }
+
+  void take_statuses() {
+    msg::NodeStatus status;
+    while (statuses_.take(status)) {
+      if (board_.put(status) && status.kind() == "viz_node") show_page(status);
+    }
+  }
+
+  void show_page(const msg::NodeStatus& status) {
+    std::string& shown = pages_[status.node()];
+    if (!status.text().starts_with("http://") || status.text() == shown) return;
+    shown = status.text();
+    output_.say("page of " + status.node() + ": " + shown);
+  }
+
+  /// Whether nothing more is to be waited for: a device that the scene does not play stays unused,
+  /// and a scene without any other waits for nobody of this launch.
+  bool all_run() const {
+    bool sim_waits = false;
+    bool device_is_played = false;
+    for (std::size_t i = 0; i < present_.size(); ++i) {
+      if (!present_[i]) continue;
+      const msg::NodeStatus* status = board_.find(plan_.nodes[i].name);
+      if (status == nullptr) return false;
+      const std::string& phase = status->phase();
+      if (phase == "unused") continue;
+      if (phase == "waiting" && status->kind() == "sim_node") {
+        sim_waits = true;
+        continue;
+      }
+      if (phase != "running" && phase != "standby") return false;
+      device_is_played = device_is_played || status->kind() == "device_node";
+    }
+    return !(sim_waits && device_is_played);
+  }
+
+  bool is_over(std::chrono::nanoseconds duration) {
+    const auto now = Clock::now();
+    if (!counted_from_ && all_run()) counted_from_ = now;
+    if (!counted_from_ && now >= started_ + kLongestStart) {
+      output_.say("not all nodes run yet; the duration counts from now");
+      counted_from_ = now;
+    }
+    return counted_from_ && now >= *counted_from_ + duration;
+  }
+
+  const RunPlan& plan_;
+  node::SessionRegistration& registration_;
+  NodeOutput output_;
+  StatusBoard board_;
+  dds::Participant participant_;
+  dds::Reader<msg::NodeStatus> statuses_;
+  std::map<std::string, std::string> pages_;  // address shown, by node
+  std::vector<bool> present_;                 // runs, or starts again
+  std::vector<bool> killed_;
+  std::vector<std::uint64_t> restarts_;
+  Clock::time_point started_;
+  std::optional<Clock::time_point> counted_from_;
+  bool stopped_ = false;    // a required node, the duration or a signal has ended the session
+  int result_ = kSuccess;   // of the first required node that ended
+  int failure_ = kSuccess;  // of the first node that failed
+};
+
+}  // namespace
+
+int run_session(const config::Launch& launch, const RunPlan& plan, const RunOptions& options,
+                node::SessionRegistration& registration, StopSignals& signals) {
+  Session session(launch, plan, options, registration);
+  std::vector<Command> commands;
+  for (const PlannedNode& node : plan.nodes) {
+    commands.push_back(node.command);
+    commands.back().respawn = node.respawn;
+  }
+  supervise(commands, session, signals);
+  return session.finish();
+}
+
+}  // namespace cordis::cli

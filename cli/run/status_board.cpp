@@ -1,0 +1,109 @@
+// cli/run/status_board.cpp
+#include "cli/run/status_board.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "node/config/count_text.h"
+
+namespace cordis::cli {
+namespace {
+
+using Row = std::vector<std::string>;
+
+const Row kHeader{"node", "rate [Hz]", "wanted",      "overruns", "lost", "latency p50 [us]",
+                  "p99",  "max",       "energy drift"};
+
+std::string microseconds(double seconds) {
+  return fmt::format("{:.0f}", seconds * 1e6);
+}
+
+Row row_of(const std::string& node, const msg::NodeStatus* status) {
+  if (status == nullptr) return {node, "no status was received"};
+  Row row{node};
+  const bool paced = status->target_rate_hz() > 0.0;
+  const bool simulates = status->kind() == "sim_node";
+  row.push_back(paced || status->ticks() > 0 ? fmt::format("{:.1f}", status->mean_rate_hz()) : "-");
+  row.push_back(paced ? fmt::format("{:g}", status->target_rate_hz()) : "-");
+  row.push_back(paced ? std::to_string(status->overruns()) : "-");
+  row.push_back(std::to_string(status->dropped()));
+  const bool timed = status->latency_count() > 0;
+  row.push_back(timed ? microseconds(status->latency_p50_s()) : "-");
+  row.push_back(timed ? microseconds(status->latency_p99_s()) : "-");
+  row.push_back(timed ? microseconds(status->latency_max_s()) : "-");
+  row.push_back(simulates ? fmt::format("{:.2g}", status->energy_drift()) : "-");
+  return row;
+}
+
+/// What does not fit the table, in lines.
+std::string account_of(const std::string& node, const msg::NodeStatus& status) {
+  std::string text;
+  if (status.phase() == "failed" && !status.text().empty()) {
+    text += fmt::format("{} failed: {}\n", node, status.text());
+  }
+  if (status.kind() == "device_node" &&
+      (status.port_energy_j() != 0.0 || status.braked_ticks() > 0)) {
+    text += fmt::format("{} gave the hand {:.3g} J, braked in {}\n", node, status.port_energy_j(),
+                        config::count_text(status.braked_ticks(), "tick"));
+  }
+  if (status.kind() == "sim_node") {
+    text += fmt::format(
+        "energy {:.3g} J: {:.3g} J through the ports, {:.3g} J by changes of state, {:.3g} J taken "
+        "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
+        status.energy_j(), status.port_work_j(), status.switching_energy_j(), status.dissipated_j(),
+        status.largest_limit_number());
+    text += fmt::format("state hash {:016x} after {}\n", status.state_hash(),
+                        config::count_text(status.step(), "step"));
+  }
+  return text;
+}
+
+std::string aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(kHeader.size(), 0);
+  for (const Row& row : rows) {
+    if (row.size() < kHeader.size()) continue;  // a sentence, not cells
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    text += fmt::format("{:<{}}", row[0], widths[0]);
+    for (std::size_t c = 1; c < row.size(); ++c) {
+      text += fmt::format("  {:>{}}", row[c], row.size() < kHeader.size() ? 0 : widths[c]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+bool StatusBoard::put(const msg::NodeStatus& status) {
+  const auto life = first_run_of_.find(status.node());
+  if (status.run() < (life == first_run_of_.end() ? first_run_ : life->second)) return false;
+  newest_[status.node()] = status;
+  return true;
+}
+
+void StatusBoard::begin_life(const std::string& node, std::uint64_t first_run) {
+  first_run_of_[node] = first_run;
+  newest_.erase(node);
+}
+
+const msg::NodeStatus* StatusBoard::find(const std::string& node) const {
+  const auto found = newest_.find(node);
+  return found == newest_.end() ? nullptr : &found->second;
+}
+
+std::string status_table(const std::vector<std::string>& nodes, const StatusBoard& board) {
+  std::vector<Row> rows{kHeader};
+  std::string accounts;
+  for (const std::string& node : nodes) {
+    const msg::NodeStatus* status = board.find(node);
+    rows.push_back(row_of(node, status));
+    if (status != nullptr) accounts += account_of(node, *status);
+  }
+  return aligned(rows) + accounts;
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,42 @@
+// cli/run/status_board.h -- the newest status of every node, and the table at the end of a run.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "idl/control.h"
+
+namespace cordis::cli {
+
+/// Keeps the newest status of each node by name.
+class StatusBoard {
+ public:
+  /// @param first_run  statuses of an older life of a node, or of another process of the same name,
+  /// are not of this
+  ///                   session: a run is identified by its start on CLOCK_MONOTONIC [ns]
+  explicit StatusBoard(std::uint64_t first_run) : first_run_(first_run) {}
+
+  /// @return whether it was taken.
+  bool put(const msg::NodeStatus& status);
+
+  /// A node has been started again: what an older life of it said no longer counts.
+  /// @param first_run  as above
+  void begin_life(const std::string& node, std::uint64_t first_run);
+
+  const msg::NodeStatus* find(
+      const std::string& node) const;  ///< nullptr when this life of it never spoke
+
+ private:
+  std::uint64_t first_run_;
+  std::map<std::string, std::uint64_t> first_run_of_;  // of those that were started again
+  std::map<std::string, msg::NodeStatus> newest_;
+};
+
+/// A line per node in the order of `nodes`: rate reached, overruns, latency, energy drift; then, of
+/// a simulation, its running account and its state as `state hash 0123456789abcdef after N steps`;
+/// of a device what its hand was given; of a node that failed its reason. Ends with a newline.
+std::string status_table(const std::vector<std::string>& nodes, const StatusBoard& board);
+
+}  // namespace cordis::cli

@@ -1,0 +1,80 @@
+// sim_node/checks/limit_watch.cpp
+#include "sim_node/checks/limit_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/plan/stability/liaison_graph.h"
+#include "sim_node/plan/stability/limit_weights.h"
+
+namespace cordis::sim {
+namespace {
+
+/// A behaviour that is always in this state.
+engine::Behaviour only(const engine::Behaviour& behaviour, std::size_t state) {
+  engine::Behaviour one;
+  one.states = {behaviour.states[state]};
+  one.states[0].first_exit = one.states[0].last_exit = 0;
+  return one;
+}
+
+}  // namespace
+
+LimitWatch::LimitWatch(const engine::NetworkDescription& network)
+    : share_(network.mats.size(), 0.0),
+      steady_(network.mats.size(), 0.0),
+      sum_(network.mats.size(), 0.0) {
+  const double dt = network.step;
+  const auto number = [dt](double stiffness, double viscosity) {
+    return dt * dt * stiffness + 2.0 * dt * viscosity;
+  };
+  const plan::LimitWeights weights = plan::limit_weights(network, plan::Limit::kStable);
+  const plan::LiaisonGraph graph = plan::weighted(plan::liaison_graph(network), weights);
+  const std::vector<double> weight = plan::row_weights(graph, dt);
+  for (std::size_t i = 0; i < share_.size(); ++i) {
+    if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
+    steady_[i] = number(0.0, graph.medium_viscosity) * weight[i];
+  }
+  for (const plan::Joint& joint : graph.joints) {
+    if (joint.liaison.kind == plan::LiaisonKind::kStateLink) continue;
+    const double both = weight[joint.mat_a] + weight[joint.mat_b];
+    steady_[joint.mat_a] += number(joint.stiffness, joint.viscosity) * both;
+    steady_[joint.mat_b] += number(joint.stiffness, joint.viscosity) * both;
+  }
+  for (const plan::Crowd& crowd : graph.crowds) {
+    const double most = plan::largest_of_others(crowd, weight);
+    for (std::size_t m = 0; m < crowd.members.size(); ++m) {
+      const std::uint32_t mat = crowd.members[m];
+      steady_[mat] +=
+          crowd.neighbours[m] * number(crowd.stiffness, crowd.viscosity) * (weight[mat] + most);
+    }
+  }
+  const plan::Reach reach = plan::reach_of(network);
+  std::uint32_t index = 0;
+  for (const engine::StateLink& link : network.state_links) {
+    const double viscosity = weights.viscosity_of_state_link(index++);
+    links_.push_back({link.mat_a, link.mat_b, static_cast<std::uint32_t>(slopes_.size()),
+                      weight[link.mat_a] + weight[link.mat_b]});
+    const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
+    for (std::size_t state = 0; state < behaviour.states.size(); ++state) {
+      const plan::Slope slope =
+          plan::largest_slope(only(behaviour, state), link.rest_length, network.dimension, reach);
+      slopes_.push_back(number(weights.stiffness * slope.stiffness, viscosity * slope.viscosity));
+    }
+  }
+}
+
+void LimitWatch::look(const engine::World& world) noexcept {
+  std::copy(steady_.begin(), steady_.end(), sum_.begin());
+  for (std::uint32_t l = 0; l < links_.size(); ++l) {
+    const StateLink& link = links_[l];
+    const double slope = slopes_[link.first + world.state_of(l)] * link.both;
+    sum_[link.mat_a] += slope;
+    sum_[link.mat_b] += slope;
+  }
+  for (std::size_t i = 0; i < sum_.size(); ++i) {
+    largest_ = std::max(largest_, share_[i] * sum_[i]);
+  }
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,41 @@
+// sim_node/checks/limit_watch.h -- how near a scene comes to the limit of its step while it is played.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/world.h"
+
+namespace cordis::sim {
+
+/// Keeps the largest K' + 2 Z' that the scene has had, over the liaisons in the states they were
+/// in: that of one mass by itself, and for masses on each other the largest eigenvalue of M^-1
+/// (dt^2 K + 2 dt Z), bounded from above by the rows of plan::row_weights as in `cordis check`.
+/// Below 4 nothing diverges; what viscosities count for in the limit of the other integrators is in
+/// it (plan::LimitWeights). Liaisons count with the largest slopes of their states; sets, whose
+/// pairs come and go, with as many contacts as there is room for.
+class LimitWatch {
+ public:
+  explicit LimitWatch(const engine::NetworkDescription& network);
+
+  /// Looks at the present states. Real time: O(MATs + links), no allocation.
+  void look(const engine::World& world) noexcept;
+  double largest() const noexcept { return largest_; }
+
+ private:
+  struct StateLink {
+    std::uint32_t mat_a;
+    std::uint32_t mat_b;
+    std::uint32_t first;  // its states, in slopes_
+    double both;          // weights of its ends
+  };
+
+  std::vector<double> share_;   // per MAT: 1 / m over its weight, or 0
+  std::vector<double> steady_;  // per MAT: sum over liaisons without states
+  std::vector<double> sum_;     // per MAT, at the last look
+  std::vector<StateLink> links_;
+  std::vector<double> slopes_;  // K dt^2 + 2 Z dt of the states of a behaviour, for each link
+  double largest_ = 0.0;
+};
+
+}  // namespace cordis::sim

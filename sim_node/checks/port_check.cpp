@@ -1,0 +1,161 @@
+// sim_node/checks/port_check.cpp
+#include "sim_node/checks/port_check.h"
+
+#include <cmath>
+
+#include "node/config/count_text.h"
+#include "node/config/mapping_reader.h"
+
+namespace cordis::sim {
+namespace {
+
+using config::count_text;
+using config::number_text;
+
+constexpr double kFingertip = 2000.0;  // stiffness of one that presses [N/m]
+
+/// What a device bears at a port, and why.
+struct Bearable {
+  double most = 0.0;  // [N/m] or [N s/m]; 0: nothing is known
+  std::string reason;
+};
+
+/// Three digits, not above the number.
+double rounded_down(double number) {
+  const double scale = std::pow(10.0, 2.0 - std::floor(std::log10(number)));
+  return std::floor(number * scale) / scale;
+}
+
+/// The wall that a device bears because of its mass and viscosity. Nothing is known of a device
+/// without viscosity.
+class Borne {
+ public:
+  Borne(const config::DeviceLimits& limits, int delay_periods)
+      : limits_(limits),
+        loop_{1.0 / limits.rate_hz, delay_periods + limits.delay_periods},
+        device_{limits.coordinate_mass_kg(), limits.coordinate_viscosity_n_s_per_m()} {}
+
+  Bearable stiffness(double port_viscosity) const {
+    if (limits_.stiffness_limit_n_per_m > 0.0) return declared(limits_.stiffness_limit_n_per_m);
+    if (limits_.viscosity_n_s_per_m <= 0.0) return {};
+    const double most = plan::stable_port_stiffness(device_, port_viscosity, loop_);
+    return {std::max(most, 1e-9), reason()};
+  }
+  Bearable viscosity() const {
+    if (limits_.damping_limit_n_s_per_m > 0.0) return declared(limits_.damping_limit_n_s_per_m);
+    if (limits_.viscosity_n_s_per_m <= 0.0) return {};
+    const double most = plan::stable_port_viscosity(device_, loop_);
+    if (!std::isfinite(most)) return {};
+    return {rounded_down(most), reason()};
+  }
+
+ private:
+  static Bearable declared(double limit) { return {limit, "declares it"}; }
+  std::string reason() const {
+    return "with " + number_text(device_.mass) + " kg, " + number_text(device_.viscosity) +
+           " N s/m and a delay of " + count_text(static_cast<std::size_t>(loop_.delay), "period") +
+           " of " + number_text(loop_.period) + " s";
+  }
+
+  const config::DeviceLimits& limits_;
+  plan::PortLoop loop_;
+  plan::PortDevice device_;
+};
+
+/// Empty when the device bears the load.
+std::string trouble(const PortDemand& demand, const plan::PortLoad& load, const std::string& is,
+                    const config::DeviceLimits& limits, int delay_periods) {
+  const std::string port = "port '" + demand.port + "' " + is;
+  const std::string device = ", and the device '" + demand.device + "' can bear ";
+  const Borne borne(limits, delay_periods);
+  // First: where the viscosity alone is too much, no stiffness is little enough.
+  const Bearable viscosity = borne.viscosity();
+  if (viscosity.most > 0.0 && load.viscosity > viscosity.most) {
+    return port + " as viscous as " + number_text(load.viscosity) + " N s/m" + device +
+           number_text(viscosity.most) + " N s/m (" + viscosity.reason + ")";
+  }
+  const Bearable stiffness = borne.stiffness(load.viscosity);
+  if (stiffness.most > 0.0 && load.stiffness > stiffness.most) {
+    return port + " as stiff as " + number_text(std::ceil(load.stiffness)) + " N/m" + device +
+           number_text(std::floor(stiffness.most)) + " N/m (" + stiffness.reason + ")";
+  }
+  return {};
+}
+
+/// What the port needs and an axis of the device does not have, a sentence each.
+std::vector<std::string> lacks_of(const PortDemand& demand, const config::DeviceLimits& limits) {
+  constexpr double kRounding = 1e-9;
+  std::vector<std::string> lacks;
+  const auto compare = [&](double needed, const auto& known, const auto& of_axes, const char* what,
+                           const char* unit) {
+    for (const std::uint32_t axis : demand.axes) {
+      if (axis >= of_axes.size() || known[axis] <= 0.0) continue;
+      if (of_axes[axis] >= needed * (1.0 - kRounding)) continue;
+      lacks.push_back("port '" + demand.port + "' needs a " + what + " of " + number_text(needed) +
+                      unit + ", and axis " + std::to_string(axis) + " of the device '" +
+                      demand.device + "' has " + number_text(of_axes[axis]) + unit);
+      return;  // one sentence about all axes
+    }
+  };
+  const auto& highest = limits.coordinate_highest_m;
+  auto depth = limits.coordinate_lowest_m;
+  auto reach = highest;
+  for (std::size_t axis = 0; axis < depth.size(); ++axis) {
+    depth[axis] = -depth[axis];
+    reach[axis] = highest[axis] + depth[axis];
+  }
+  const auto& travel = limits.coordinate_travel_m;
+  compare(demand.needs.travel, travel, travel, "travel", " m");
+  compare(demand.needs.up, reach, highest, "travel", " m above its rest");
+  compare(demand.needs.down, reach, depth, "travel", " m below its rest");
+  const auto& force = limits.coordinate_force_n;
+  compare(demand.needs.force, force, force, "force", " N");
+  return lacks;
+}
+
+/// Empty when a fingertip on the device does not make the port swing.
+std::string trouble_with_a_hand(const PortDemand& demand, const config::DeviceLimits& limits,
+                                int delay_periods) {
+  const plan::PortLoop loop{1.0 / limits.rate_hz, delay_periods + limits.delay_periods,
+                            demand.sub_steps};
+  const double bearable = plan::largest_hand_stiffness(demand.least, demand.mass, loop);
+  if (bearable >= kFingertip) return {};
+  return "port '" + demand.port + "' swings when the hand at the device '" + demand.device +
+         "' is stiffer than " + number_text(std::floor(bearable)) +
+         " N/m, and a fingertip has 2000 N/m (with a mass of " + number_text(demand.mass) +
+         " kg, " + number_text(demand.least.viscosity) + " N s/m and a delay of " +
+         count_text(static_cast<std::size_t>(loop.delay), "period") + " of " +
+         number_text(loop.period) + " s)";
+}
+
+}  // namespace
+
+std::vector<PortDemand> demands_of(const scene::Scene& scene) {
+  std::vector<PortDemand> demands;
+  if (scene.ports.empty()) return demands;
+  const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
+  const auto sub_steps = static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
+  for (const scene::Port& port : scene.ports) {
+    demands.push_back({port.name, port.device, port.device_id, port.place, port.role,
+                       scene.network.mats[port.mat].mass, plan::least_port_load(graph, port.mat),
+                       plan::port_load(graph, port.mat), sub_steps, port.axes, port.needs});
+  }
+  return demands;
+}
+
+PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
+                       int delay_periods) {
+  PortVerdict verdict;
+  verdict.lacks = lacks_of(demand, limits);
+  if (demand.role == scene::Role::kLiaison) {
+    verdict.doubt = trouble_with_a_hand(demand, limits, delay_periods);
+    return verdict;
+  }
+  verdict.refusal = trouble(demand, demand.least, "is", limits, delay_periods);
+  if (verdict.refusal.empty()) {
+    verdict.doubt = trouble(demand, demand.most, "may become", limits, delay_periods);
+  }
+  return verdict;
+}
+
+}  // namespace cordis::sim

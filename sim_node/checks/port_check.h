@@ -1,0 +1,47 @@
+// sim_node/checks/port_check.h -- whether a device can bear a scene at its ports.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "node/config/device_limits.h"
+#include "sim_node/plan/stability/port_limit.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// What a port asks of its device.
+struct PortDemand {
+  std::string port;
+  std::string device;
+  std::uint32_t device_id = 0;
+  config::Place place;
+  scene::Role role = scene::Role::kMass;
+  double mass = 0.0;     ///< role liaison: of its MAT [kg]
+  plan::PortLoad least;  ///< as soon as its liaisons are in their stiffest states
+  plan::PortLoad most;   ///< with all the partners of its sets at once
+  int sub_steps = 1;     ///< of the scene in a gesture period
+  std::vector<std::uint32_t> axes;
+  scene::PortNeeds needs;  ///< along each of them
+};
+
+/// Of all ports. O(liaisons).
+std::vector<PortDemand> demands_of(const scene::Scene& scene);
+
+/// What is to be said about a device at a port; all empty when nothing is.
+struct PortVerdict {
+  std::vector<std::string> lacks;  ///< of what the port needs, with what the device has
+  std::string refusal;  ///< why it must not be given the port, with the number it may have
+  std::string doubt;    ///< when it may become too stiff for it
+};
+
+/// Either role: the device has to have what the port needs. Role mass: the device alone has to stay
+/// still before the port. Nothing is said of a device whose viscosity and limits are unknown. Role
+/// liaison: every device bears every scene, but where the age of its forces makes a fingertip too
+/// stiff for the port there is doubt. Cost: about 1 ms.
+/// @param delay_periods  of the wire: 1 in real time, 0 in lockstep
+PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
+                       int delay_periods);
+
+}  // namespace cordis::sim

@@ -1,0 +1,88 @@
+// sim_node/checks/stability_check.cpp
+#include "sim_node/checks/stability_check.h"
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim_node/plan/stability/limit_weights.h"
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/step_bound.h"
+#include "sim_node/scene/naming.h"
+
+namespace cordis::sim {
+
+void check_stability(const scene::Scene& scene, bool force, config::Problems& problems) {
+  const plan::Stability stability =
+      plan::stability_of(scene.network, plan::liaison_graph(scene.network));
+  if (stability.holds()) return;
+
+  const plan::StepBound& bound = stability.certified;
+  const scene::Called liaison = scene::call_liaison(scene, bound.liaison);
+  const long rate = std::lround(scene.step_rate_hz);
+  const double per_tick = scene.gesture_rate_hz;
+  const double stable_rate = (std::floor(1.0 / (bound.step * per_tick)) + 1.0) * per_tick;
+  const std::string limit =
+      liaison.name + " at the mass " + scene::call_mat(scene, bound.mat).name + " sets the limit";
+  const std::string hint =
+      "a rate_hz of " + std::to_string(std::lround(stable_rate)) + " is stable in all of them";
+  if (!stability.diverges()) {
+    problems.warning(liaison.place,
+                     "at " + std::to_string(rate) +
+                         " Hz the scene may be unstable in some poses or states: " + limit,
+                     hint);
+  } else if (force) {
+    problems.warning(liaison.place,
+                     "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit, hint);
+  } else {
+    problems.error(liaison.place,
+                   "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
+                   hint + "; or run it all the same with force=true of its sim_node");
+  }
+}
+
+std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
+  const plan::LiaisonGraph graph = plan::weighted(
+      plan::liaison_graph(scene.network), plan::limit_weights(scene.network, plan::Limit::kStable));
+  const double dt = scene.network.step;
+  const std::vector<double> weight = plan::row_weights(graph, dt);
+  double sum = 0.0;
+  double strongest = -1.0;  // a law may be of no stiffness where it was looked at
+  std::optional<plan::LiaisonId> liaison;
+  const auto add = [&](plan::LiaisonId id, double stiffness, double viscosity, double weights) {
+    const double number = graph.inverse_mass[mat] * weights / weight[mat] *
+                          (dt * dt * stiffness + 2.0 * dt * viscosity);
+    sum += number;
+    if (number <= strongest) return;
+    strongest = number;
+    liaison = id;
+  };
+  for (const plan::Joint& joint : graph.joints) {
+    if (joint.mat_a != mat && joint.mat_b != mat) continue;
+    add(joint.liaison, joint.stiffness, joint.viscosity, weight[joint.mat_a] + weight[joint.mat_b]);
+  }
+  for (const plan::Crowd& crowd : graph.crowds) {
+    const double most = plan::largest_of_others(crowd, weight);
+    for (std::size_t m = 0; m < crowd.members.size(); ++m) {
+      if (crowd.members[m] != mat) continue;
+      add({plan::LiaisonKind::kSet, crowd.set}, crowd.stiffness, crowd.viscosity,
+          crowd.neighbours[m] * (weight[mat] + most));
+    }
+  }
+  if (!liaison) return "nothing but what is given from outside moves it";
+  const scene::Called called = scene::call_liaison(scene, liaison);
+  const std::string name = called.name + " (" + scene::place_text(called.place) + ")";
+  char numbers[64];
+  std::snprintf(numbers, sizeof(numbers), "K' + 2 Z' = %.3g of 4", sum);
+  if (sum < 4.0) {
+    return "within its limit (" + std::string(numbers) + "): " + name +
+           " pulls the most at it, beyond what its law was taken for, or positions and forces from "
+           "outside were too large";
+  }
+  return "too stiff for " + std::to_string(std::lround(scene.step_rate_hz)) + " Hz (" + numbers +
+         "), of which the most is " + name;
+}
+
+}  // namespace cordis::sim

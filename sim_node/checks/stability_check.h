@@ -1,0 +1,21 @@
+// sim_node/checks/stability_check.h -- refuses before the run what would diverge in it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "node/config/problem.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// Holds the step of a scene against its limits: an error where it surely diverges, unless forced
+/// (then a warning); a warning where it is not certified in every pose and state. The place is that
+/// of the liaison that sets the limit. `cordis check` says more.
+void check_stability(const scene::Scene& scene, bool force, config::Problems& problems);
+
+/// Why a scene has diverged that did so at this MAT first: the strongest liaison at it, with its
+/// place, and how the sum of all there stands to the limit. Not in real time.
+std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat);
+
+}  // namespace cordis::sim

@@ -1,0 +1,20 @@
+// sim_node/devices/delay_account.cpp
+#include "sim_node/devices/delay_account.h"
+
+#include <algorithm>
+
+namespace cordis::sim {
+
+void DelayAccount::enter(double made_j, double doubt_j, double taken_j, double moved_j) noexcept {
+  // A law that is no potential may give back what it took, and take it again: that counts once.
+  const double newly_taken = std::max(taken_j - taken_, 0.0);
+  taken_ += newly_taken;
+  moved_.enter(moved_j);
+  const double allowed = kBudget + kOnItsWay * moved_.value();
+  // When less is allowed than before, what was allowed is no fault: only what is made from now on.
+  account_ = std::min(account_, allowed) + made_j + doubt_j - kShare * newly_taken;
+  account_ = std::max(account_, -kTank);
+  makes_energy_ = account_ > (makes_energy_ ? 0.0 : allowed);
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,224 @@
+// sim_node/devices/device_exchange.cpp
+#include "sim_node/devices/device_exchange.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cordis::sim {
+
+DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role role,
+                               std::vector<scene::Port> ports, double rate_hz, std::uint64_t run)
+    : device_(std::move(device)),
+      device_id_(device_id),
+      role_(role),
+      ports_(std::move(ports)),
+      run_(run),
+      lost_after_ticks_(std::max(3, static_cast<int>(std::lround(kLostAfter * rate_hz)))),
+      lost_after_nsec_(std::llround(lost_after_ticks_ * 1e9 / rate_hz)),
+      rejoin_ticks_(std::max(1, static_cast<int>(std::lround(kRejoin * rate_hz)))),
+      most_jump_(static_cast<std::uint64_t>(std::max(1L, std::lround(kMostJump * rate_hz)))),
+      rate_hz_(rate_hz),
+      silent_ticks_(lost_after_ticks_ + 1) {
+  for (const scene::Port& port : ports_) {
+    for (const std::uint32_t axis : port.axes) axis_count_ = std::max(axis_count_, axis + 1);
+  }
+}
+
+void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexcept {
+  heard_run_ = before.heard_run_;
+  heard_sample_ = before.heard_sample_;
+  heard_time_nsec_ = before.heard_time_nsec_;
+  answers_ = before.answers_;
+  refused_count_ = before.refused_count_;
+  missed_count_ = before.missed_count_;
+  if (role_ != before.role_) return;
+  newest_ = before.newest_;
+  has_new_ = before.has_new_;
+  new_run_ = before.new_run_;
+  borne_ = before.borne_;
+  if (!at_once) return;
+  from_ = before.from_;
+  to_ = before.to_;
+  silent_ticks_ = before.silent_ticks_;
+  rejoin_left_ = before.rejoin_left_;
+  even_ticks_ = before.even_ticks_;
+}
+
+void DeviceExchange::let_go() noexcept {
+  has_new_ = false;
+  silent_ticks_ = lost_after_ticks_ + 1;
+}
+
+double DeviceExchange::force_share() const noexcept {
+  if (is_lost()) return 0.0;
+  return 1.0 - static_cast<double>(rejoin_left_) / static_cast<double>(rejoin_ticks_);
+}
+
+/// Whether a sample of the run that is heard follows the newest one; notes what was missed between
+/// them, and whether the numbers begin anew.
+template <class Sample>
+bool DeviceExchange::goes_on(const Sample& sample) noexcept {
+  const bool later = sample.sample() > heard_sample_;
+  const std::uint64_t jump =
+      later ? sample.sample() - heard_sample_ : heard_sample_ - sample.sample();
+  if (!later && jump <= most_jump_ && ++older_in_a_row_ < lost_after_ticks_) return false;
+  new_run_ = new_run_ || !later || jump > most_jump_;
+  if (!later || jump == 1) return true;
+  missed_count_ += std::min(jump - 1, most_jump_);
+  std::int64_t gap_nsec = 0;  // times are as hostile as numbers
+  const bool far = __builtin_sub_overflow(sample.time_nsec(), heard_time_nsec_, &gap_nsec);
+  after_gap_ = after_gap_ || far || gap_nsec > lost_after_nsec_;
+  return true;
+}
+
+template <class Sample, class Values>
+DeviceExchange::Reception DeviceExchange::receive(
+    const Sample& sample, const Values& values, bool borne,
+    const std::array<double, kMaxAxes>& most) noexcept {
+  const auto count = static_cast<std::size_t>(sample.axis_count());
+  bool usable = sample.run() != 0 && count >= axis_count_ && count <= kMaxAxes;
+  for (std::size_t axis = 0; usable && axis < count; ++axis) usable = std::isfinite(values[axis]);
+  const bool same_run = sample.run() == heard_run_;
+  if (usable && same_run && sample.sample() == heard_sample_) return Reception::kRepeated;
+  if (!usable || (same_run && !goes_on(sample))) {
+    ++refused_count_;
+    return Reception::kRefused;
+  }
+  older_in_a_row_ = 0;
+  new_run_ = new_run_ || !same_run;
+  borne_ = borne;
+  heard_run_ = sample.run();
+  heard_sample_ = sample.sample();
+  heard_time_nsec_ = sample.time_nsec();
+  for (std::size_t axis = 0; axis < count; ++axis)
+    newest_[axis] = std::clamp(values[axis], -most[axis], most[axis]);
+  has_new_ = true;
+  return Reception::kNew;
+}
+
+DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample, bool borne,
+                                                  const DeviceReach& reach) noexcept {
+  return receive(sample, sample.position_m(), borne, reach.travel_m);
+}
+
+DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample, bool borne,
+                                                  const DeviceReach& reach) noexcept {
+  const std::uint64_t before = missed_count_;
+  const Reception reception = receive(sample, sample.force_n(), borne, reach.force_n);
+  if (reception == Reception::kNew) take_work(sample, reach, missed_count_ - before + 1);
+  return reception;
+}
+
+/// No hand gives more than its largest force along the way of the fastest one; when a sample tells
+/// so, the account of the brake begins anew. @param periods  since the sample before
+void DeviceExchange::take_work(const msg::GestureForces& sample, const DeviceReach& reach,
+                               std::uint64_t periods) noexcept {
+  double most_n = 0.0;
+  for (std::size_t axis = 0; axis < axis_count_; ++axis) most_n += reach.force_n[axis];
+  const double most_j = most_n * kFastest * static_cast<double>(periods) / rate_hz_;
+  const double given_j = sample.work_j() - hand_work_;
+  new_work_ = new_work_ || !(std::abs(given_j) <= most_j);  // also what is no number
+  felt_answer_ = sample.answered_run() == run_ ? sample.answered_sample() : 0;
+  hand_work_ = sample.work_j();
+}
+
+void DeviceExchange::begin_tick() noexcept {
+  from_ = to_;
+  const bool gap = std::exchange(after_gap_, false);
+  const bool stood_still = gap && even_ticks_ == rejoin_ticks_;
+  even_ticks_ = gap ? 0 : std::min(even_ticks_ + 1, rejoin_ticks_);
+  if (!borne_) {
+    silent_ticks_ = lost_after_ticks_ + 1;
+  } else if (has_new_) {
+    if (is_lost() || new_run_ || stood_still) {
+      rejoin_left_ = rejoin_ticks_;
+      if (brake_) brake_->start();
+    }
+    new_run_ = false;
+    silent_ticks_ = 0;
+  } else if (!is_lost()) {
+    ++silent_ticks_;
+  }
+  has_new_ = false;
+
+  if (is_lost()) {
+    // Positions are held where they are; the force of a hand that is gone is none.
+    if (role_ == Role::kLiaison) to_.fill(0.0);
+    if (brake_) brake_->start();
+    return;
+  }
+  const double share = 1.0 / static_cast<double>(std::max(rejoin_left_, 1));
+  for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
+    to_[axis] += share * (newest_[axis] - to_[axis]);
+  if (rejoin_left_ <= 1) to_ = newest_;  // exactly, without rounding
+  rejoin_left_ = std::max(rejoin_left_ - 1, 0);
+}
+
+void DeviceExchange::play(engine::World& world, int number, int count) noexcept {
+  const double share = static_cast<double>(number) / static_cast<double>(count);
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    const scene::Port& port = ports_[p];
+    engine::Vec3 value = role_ == Role::kMass ? port.rest : engine::Vec3(engine::Vec3::Zero());
+    for (std::size_t i = 0; i < port.axes.size(); ++i) {
+      const std::size_t axis = port.axes[i];
+      // A force is held over the period; a position is ramped.
+      const double now = role_ == Role::kMass && number < count
+                             ? from_[axis] + share * (to_[axis] - from_[axis])
+                             : to_[axis];
+      value += now * port.directions[i];
+    }
+    if (role_ == Role::kMass) {
+      world.impose_position(port.mat, value);
+      continue;
+    }
+    if (brake_) value += brake_->brake(p, world, value);
+    world.set_external_force(port.mat, value);
+  }
+  if (!brake_ || number != 1) return;
+  if (std::exchange(new_work_, false)) brake_->start();
+  brake_->hear(hand_work_, felt_answer_, world.dissipated());
+}
+
+template <class Answer>
+void DeviceExchange::fill_header(Answer& answer, std::int64_t now_nsec) noexcept {
+  answer.device_id(device_id_);
+  answer.run(run_);
+  answer.sample(++answers_);
+  answer.answered_run(heard_run_);
+  answer.answered_sample(heard_sample_);
+  answer.answered_time_nsec(heard_time_nsec_);
+  answer.time_nsec(now_nsec);
+  answer.axis_count(axis_count_);
+}
+
+msg::GestureForces& DeviceExchange::answer_forces(const engine::World& world, bool safe,
+                                                  std::int64_t now_nsec) noexcept {
+  fill_header(forces_, now_nsec);
+  forces_.force_n().fill(0.0);
+  const double share = force_share();
+  if (!safe || share == 0.0) return forces_;
+  for (const scene::Port& port : ports_) {
+    const engine::Vec3 force = world.link_force(port.mat);
+    for (std::size_t i = 0; i < port.axes.size(); ++i) {
+      forces_.force_n()[port.axes[i]] = share * force.dot(port.directions[i]);
+    }
+  }
+  return forces_;
+}
+
+msg::GesturePositions& DeviceExchange::answer_positions(const engine::World& world, bool safe,
+                                                        std::int64_t now_nsec) noexcept {
+  fill_header(positions_, now_nsec);
+  if (brake_) brake_->note_answer(answers_);
+  if (!safe) return positions_;
+  for (const scene::Port& port : ports_) {
+    const engine::Vec3 moved = world.position(port.mat) - port.rest;
+    for (std::size_t i = 0; i < port.axes.size(); ++i) {
+      positions_.position_m()[port.axes[i]] = moved.dot(port.directions[i]);
+    }
+  }
+  return positions_;
+}
+
+}  // namespace cordis::sim

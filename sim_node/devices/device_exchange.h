@@ -1,0 +1,156 @@
+// sim_node/devices/device_exchange.h -- what sim_node exchanges with one device in a gesture period.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "idl/gesture.h"
+#include "sim_node/devices/device_reach.h"
+#include "sim_node/engine/world.h"
+#include "sim_node/devices/passivity_controller.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+using scene::Role;
+
+constexpr std::size_t kMaxAxes = 16;
+
+/// The ports of one device: takes its samples, moves or pushes the MATs over the sub-steps, and
+/// makes the answers.
+///
+/// A new position is reached in a ramp over the sub-steps of one period, and the answer holds the
+/// forces of the last sub-step, computed at the position of the sample itself: no virtual damping
+/// is lost, and no delay added. A device that was not heard for kLostAfter is lost: its MATs hold
+/// still, its forces count as 0, and it is given none. When it is heard again, or another process
+/// is heard in its place, that takes over gradually, within kRejoin, and so do the forces it is
+/// given: neither side jumps. Both are counted in ticks. Likewise after a gap as long in its
+/// samples, when the scene itself stood still; one that is always late plays what comes. Real time:
+/// every function but the constructor is O(axes), allocates nothing and does not throw.
+///
+/// Whoever takes part in the session may write a sample, so no number of it is trusted. Positions
+/// and forces stay within the reach of the device. Numbers of samples that jump by more than
+/// kMostJump, or go on for kLostAfter below the highest known one, begin anew:
+/// whatever came before, the samples of the device are taken again, and it takes over gradually.
+class DeviceExchange {
+ public:
+  static constexpr double kLostAfter = 0.02;  ///< [s]
+  static constexpr double kRejoin = 0.1;      ///< [s]
+  static constexpr double kMostJump = 1.0;    ///< of the numbers of samples [s]
+  static constexpr double kFastest = 10.0;    ///< of a hand that gives work [m/s]
+
+  /// @param rate_hz  ticks per second
+  /// @param run      of this sim_node; its messages carry it
+  DeviceExchange(std::string device, std::uint32_t device_id, Role role,
+                 std::vector<scene::Port> ports, double rate_hz, std::uint64_t run);
+
+  /// Role liaison: from now on its ports are braked when they make energy.
+  void brake_with(PortBrake brake) { brake_ = std::move(brake); }
+
+  /// Goes on where the exchange of the same device was in the scene before, so that neither side
+  /// takes a message twice or for one of another. The device takes over gradually as after a
+  /// loss; with `at_once` it plays on as it did, when its role is the same.
+  void take_over(const DeviceExchange& before, bool at_once) noexcept;
+
+  /// Lets go of the device as if it were lost: until its next sample that begin_tick() finds.
+  void let_go() noexcept;
+
+  /// What became of a message of the device.
+  enum class Reception : std::uint8_t {
+    kNew,       ///< taken: it will be played in the next tick
+    kRepeated,  ///< the message answered last, sent again: the last answer is wanted again
+    kRefused    ///< malformed, not finite, or older than what is known
+  };
+  /// Precondition: role mass. @param borne  false: the device cannot bear the scene; it counts as
+  /// lost, though its samples are answered. @param reach  of the device
+  Reception receive(const msg::GesturePositions& sample, bool borne = true,
+                    const DeviceReach& reach = {}) noexcept;
+  /// Precondition: role liaison.
+  Reception receive(const msg::GestureForces& sample, bool borne = true,
+                    const DeviceReach& reach = {}) noexcept;
+
+  /// Begins a tick: takes over the newest sample.
+  void begin_tick() noexcept;
+
+  /// Imposes positions or forces for sub-step `number` of `count`, 1..count.
+  void play(engine::World& world, int number, int count) noexcept;
+
+  /// The answer after the last sub-step. Forces: what the links do to the port, as far as the
+  /// device has taken over. All forces are 0 when `safe` is false.
+  msg::GestureForces& answer_forces(const engine::World& world, bool safe,
+                                    std::int64_t now_nsec) noexcept;
+  /// Positions: where the MATs at the ports are. The last ones are repeated when `safe` is false.
+  msg::GesturePositions& answer_positions(const engine::World& world, bool safe,
+                                          std::int64_t now_nsec) noexcept;
+
+  const std::string& device() const noexcept { return device_; }
+  std::uint32_t device_id() const noexcept { return device_id_; }
+  Role role() const noexcept { return role_; }
+  bool has_new_sample() const noexcept { return has_new_; }
+  bool is_lost() const noexcept { return silent_ticks_ > lost_after_ticks_; }
+  bool was_heard() const noexcept { return heard_run_ != 0; }
+  /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
+  std::int64_t heard_time_nsec() const noexcept { return heard_time_nsec_; }
+  std::uint64_t refused_count() const noexcept { return refused_count_; }
+  /// Samples of the device never seen; of a jump of their numbers those of kMostJump.
+  std::uint64_t missed_count() const noexcept { return missed_count_; }
+  /// Ticks in which a port of role liaison was braked.
+  std::uint64_t braked_ticks() const noexcept { return brake_ ? brake_->braked_ticks() : 0; }
+
+ private:
+  double force_share() const noexcept;
+  template <class Sample, class Values>
+  Reception receive(const Sample& sample, const Values& values, bool borne,
+                    const std::array<double, kMaxAxes>& most) noexcept;
+  template <class Sample>
+  bool goes_on(const Sample& sample) noexcept;
+  void take_work(const msg::GestureForces& sample, const DeviceReach& reach,
+                 std::uint64_t periods) noexcept;
+  template <class Answer>
+  void fill_header(Answer& answer, std::int64_t now_nsec) noexcept;
+
+  std::string device_;
+  std::uint32_t device_id_;
+  Role role_;
+  std::vector<scene::Port> ports_;
+  std::uint64_t run_;
+  std::optional<PortBrake> brake_;
+
+  // The newest sample, and the numbers of the one that the last answer took into account.
+  std::array<double, kMaxAxes> newest_{};
+  std::uint64_t heard_run_ = 0;
+  std::uint64_t heard_sample_ = 0;
+  std::int64_t heard_time_nsec_ = 0;
+  std::uint64_t felt_answer_ = 0;  // role liaison: that the newest sample speaks of
+  double hand_work_ = 0.0;         // what the hand had given there [J]
+  bool has_new_ = false;
+  bool new_run_ = false;    // it is the first of another process, or its numbers begin anew
+  bool new_work_ = false;   // what it tells of its work does not follow from what it told before
+  bool after_gap_ = false;  // it is the first after a gap of kLostAfter
+  bool borne_ = true;
+
+  std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick
+  std::array<double, kMaxAxes> to_{};    // and at its end
+  int lost_after_ticks_;
+  std::int64_t lost_after_nsec_;
+  int rejoin_ticks_;
+  std::uint64_t most_jump_;  // of the numbers of samples
+  double rate_hz_;
+  int older_in_a_row_ = 0;  // samples that came since one was taken
+  int silent_ticks_;
+  int rejoin_left_ = 0;
+  int even_ticks_ = 0;  // since the last gap, at most rejoin_ticks_
+
+  std::uint32_t axis_count_ = 1;  // of the device, as its samples tell
+  std::uint64_t answers_ = 0;
+  std::uint64_t refused_count_ = 0;
+  std::uint64_t missed_count_ = 0;
+  msg::GestureForces forces_;
+  msg::GesturePositions positions_;
+};
+
+}  // namespace cordis::sim

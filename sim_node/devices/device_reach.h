@@ -1,0 +1,60 @@
+// sim_node/devices/device_reach.h -- how far the numbers of a device are believed.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "idl/gesture.h"
+
+namespace cordis::sim {
+
+/// The largest numbers that the samples of a device may hold, for each of its coordinates. Whoever
+/// takes part in a session may write a sample: a number beyond these is taken for the bound.
+struct DeviceReach {
+  static constexpr std::size_t kCoordinates = 16;
+  static constexpr double kFarthest = 2.0;      ///< no hand reaches farther [m]
+  static constexpr double kStrongest = 1000.0;  ///< and none is stronger [N]
+  /// Stops give, sensors err, and a coordinate of an end-piece bears more together with the others.
+  static constexpr double kTravelShare = 1.25;
+  static constexpr double kForceShare = 2.0;
+
+  /// Of a device that has not told what it is.
+  DeviceReach() noexcept {
+    travel_m.fill(kFarthest);
+    force_n.fill(kStrongest);
+  }
+
+  std::array<double, kCoordinates> travel_m{};  ///< from the rest, in either direction
+  std::array<double, kCoordinates> force_n{};   ///< of the hand, in either direction
+};
+
+/// What a device tells of its travel and its forces; a number of it that makes no sense, or says
+/// more than a hand is capable of, leaves the bound of an unknown device.
+DeviceReach reach_of(const msg::DeviceDescription& told) noexcept;
+
+/// The reaches of the devices of a session, by device and run of its process. One thread writes,
+/// any number reads, and neither waits for the other.
+class ReachTable {
+ public:
+  /// What is told first of a run is believed. The last kRows are kept.
+  void put(std::uint32_t device_id, std::uint64_t run, const DeviceReach& reach) noexcept;
+
+  /// That of an unknown device when nothing was told. Real time: no lock.
+  DeviceReach find(std::uint32_t device_id, std::uint64_t run) const noexcept;
+
+ private:
+  static constexpr std::size_t kRows = 64;
+
+  struct Row {
+    std::atomic<std::uint64_t> run{0};  ///< 0 while the row is empty or being written
+    std::atomic<std::uint32_t> device_id{0};
+    std::array<std::atomic<double>, DeviceReach::kCoordinates> travel_m{};
+    std::array<std::atomic<double>, DeviceReach::kCoordinates> force_n{};
+  };
+  std::array<Row, kRows> rows_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace cordis::sim

@@ -1,0 +1,100 @@
+// sim_node/devices/refused_devices.cpp
+#include "sim_node/devices/refused_devices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace cordis::sim {
+namespace {
+
+constexpr std::size_t kLongestDriver = 64;
+
+bool makes_sense(const msg::DeviceDescription& told) {
+  const auto at_least_zero = [](double value) { return std::isfinite(value) && value >= 0.0; };
+  return std::isfinite(told.rate_hz()) && told.rate_hz() > 0.0 &&
+         std::isfinite(told.moving_mass_kg()) && told.moving_mass_kg() > 0.0 &&
+         at_least_zero(told.viscosity_n_s_per_m()) &&
+         at_least_zero(told.stiffness_limit_n_per_m()) &&
+         at_least_zero(told.damping_limit_n_s_per_m()) &&
+         std::all_of(told.travel_m().begin(), told.travel_m().end(), at_least_zero) &&
+         std::all_of(told.force_n().begin(), told.force_n().end(), at_least_zero) &&
+         told.delay_periods() < 1000 && told.run() != 0;
+}
+
+config::DeviceLimits limits_of(const msg::DeviceDescription& told) {
+  config::DeviceLimits limits;
+  limits.rate_hz = told.rate_hz();
+  limits.moving_mass_kg = told.moving_mass_kg();
+  limits.viscosity_n_s_per_m = told.viscosity_n_s_per_m();
+  limits.stiffness_limit_n_per_m = told.stiffness_limit_n_per_m();
+  limits.damping_limit_n_s_per_m = told.damping_limit_n_s_per_m();
+  limits.coordinate_travel_m = told.travel_m();
+  limits.coordinate_force_n = told.force_n();
+  limits.delay_periods = static_cast<int>(told.delay_periods());
+  return limits;
+}
+
+}  // namespace
+
+void RefusedDevices::play(const scene::Scene& scene) {
+  std::vector<PortDemand> demands = demands_of(scene);
+  const std::lock_guard lock(mutex_);
+  demands_ = std::move(demands);
+  judge();
+}
+
+bool RefusedDevices::hear(const msg::DeviceDescription& told) {
+  if (!makes_sense(told)) return false;
+  const std::lock_guard lock(mutex_);
+  const auto is_same = [&told](const Known& device) {
+    return device.device_id == told.device_id() && device.run == told.run();
+  };
+  if (std::ranges::any_of(known_, is_same)) return false;
+  if (known_.size() >= kMostKnown) known_.pop_front();
+  known_.push_back(
+      {told.device_id(), told.run(), told.driver().substr(0, kLongestDriver), limits_of(told)});
+  judge();
+  return true;
+}
+
+/// All known devices anew.
+void RefusedDevices::judge() {
+  std::string text;
+  std::size_t count = 0;
+  for (const Known& device : known_) {
+    std::string why;
+    for (const PortDemand& demand : demands_) {
+      if (demand.device_id != device.device_id) continue;
+      const PortVerdict verdict = verdict_on(demand, device.limits, delay_periods_);
+      std::vector<std::string> reasons = verdict.lacks;
+      if (!verdict.refusal.empty()) reasons.push_back(verdict.refusal);
+      for (const std::string& reason : reasons) why += (why.empty() ? "" : "; ") + reason;
+    }
+    if (why.empty() || count == kMost) continue;
+    refused_[count++].store(device.run, std::memory_order_relaxed);
+    text += (text.empty() ? "" : "; ") + why + ": driver " + device.driver + " is given no force";
+  }
+  for (; count < kMost; ++count) refused_[count].store(0, std::memory_order_relaxed);
+  if (text != text_ && !text.empty()) spdlog::error("{}", text);
+  if (text != text_ && text.empty()) spdlog::info("every device can bear the scene again");
+  text_ = std::move(text);
+}
+
+bool RefusedDevices::refuses(std::uint64_t run) const noexcept {
+  for (const auto& refused : refused_) {
+    const std::uint64_t candidate = refused.load(std::memory_order_relaxed);
+    if (candidate == run) return true;
+    if (candidate == 0) return false;
+  }
+  return false;
+}
+
+std::string RefusedDevices::text() const {
+  const std::lock_guard lock(mutex_);
+  return text_;
+}
+
+}  // namespace cordis::sim

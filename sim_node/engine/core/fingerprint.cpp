@@ -1,0 +1,139 @@
+// sim_node/engine/core/fingerprint.cpp
+#include "sim_node/engine/core/fingerprint.h"
+
+#include "sim_node/engine/core/state_hash.h"
+
+namespace cordis::engine {
+namespace {
+
+// What a network does not have leaves no trace, so that networks of older kinds keep their number.
+class Fingerprint {
+ public:
+  void add(double value) { hash_.add(value); }
+  void add(std::uint64_t value) { hash_.add(value); }
+  void add(std::uint32_t value) { hash_.add(static_cast<std::uint64_t>(value)); }
+  void add(const Vec3& value) {
+    for (const double component : value) add(component);
+  }
+  void add(const Mat& mat) {
+    add(static_cast<std::uint64_t>(mat.kind));
+    add(mat.mass);
+    add(mat.position);
+    add(mat.velocity);
+    if (mat.weightless) add(std::uint64_t{1});
+  }
+  void add(const Link& link) {
+    add(link.mat_a);
+    add(link.mat_b);
+    add(link.stiffness);
+    add(link.viscosity);
+    add(link.rest_length);
+    if (link.isotropic) add(std::uint64_t{1});
+  }
+  void add(const Instruction& instruction) {
+    add(static_cast<std::uint64_t>(instruction.operation));
+    add(static_cast<std::uint64_t>(instruction.quantity));
+    add(instruction.constant);
+    add(instruction.slot);
+  }
+  void add(const Ring& ring) {
+    add(ring.stiffness);
+    add(ring.radius);
+  }
+  void add(const Law& law) {
+    add(static_cast<std::uint64_t>(law.kind));
+    for (const double value : {law.coefficient, law.exponent, law.depth, law.diameter, law.cut}) {
+      add(value);
+    }
+    add_all(law.table.at);
+    add_all(law.table.value);
+    add_all(law.rings);
+  }
+  void add(const LinkState& state) {
+    add(state.stiffness);
+    add(state.viscosity);
+    add(state.elasticity);
+    add(state.dissipation);
+    add(static_cast<std::uint64_t>(state.pulls));
+    add(static_cast<std::uint64_t>(state.pushes));
+    add(state.force_limit);
+    add(state.first_exit);
+    add(state.last_exit);
+  }
+  void add(const Exit& exit) {
+    add_all(exit.when.code);
+    add(exit.target);
+    add(static_cast<std::uint64_t>(exit.rest));
+    add_all(exit.rest_length.code);
+  }
+  void add(const Behaviour& behaviour) {
+    add_all(behaviour.states);
+    add_all(behaviour.exits);
+    add(behaviour.start);
+  }
+  void add(const StateLink& link) {
+    add(link.mat_a);
+    add(link.mat_b);
+    add(link.behaviour);
+    add(link.rest_length);
+  }
+  void add(const MaxwellLink& link) {
+    add(link.mat_a);
+    add(link.mat_b);
+    add(link.stiffness);
+    add(link.viscosity);
+  }
+  void add(const SetLiaison& set) {
+    add(set.behaviour);
+    add_all(set.set_p);
+    add_all(set.set_q);
+    add(set.range);
+    add(set.rest_length);
+  }
+  template <class Items>
+  void add_all(const Items& items) {
+    add(static_cast<std::uint64_t>(items.size()));
+    for (const auto& item : items) add(item);
+  }
+  template <class Items>
+  void add_if_any(std::uint64_t kind, const Items& items) {
+    if (items.empty()) return;
+    add(kind);
+    add_all(items);
+  }
+
+  std::uint64_t value() const { return hash_.value(); }
+
+ private:
+  StateHash hash_;
+};
+
+}  // namespace
+
+std::uint64_t fingerprint_of(const NetworkDescription& description) {
+  Fingerprint fingerprint;
+  fingerprint.add(static_cast<std::uint64_t>(description.dimension));
+  fingerprint.add(description.step);
+  fingerprint.add(description.gravity);
+  fingerprint.add(description.medium_viscosity);
+  fingerprint.add_all(description.mats);
+  for (const Link& link : description.links) fingerprint.add(link);
+  fingerprint.add_if_any(1, description.radius);
+  fingerprint.add_if_any(2, description.behaviours);
+  fingerprint.add_if_any(3, description.state_links);
+  fingerprint.add_if_any(4, description.maxwell_links);
+  fingerprint.add_if_any(5, description.sets);
+  if (description.freeze_tolerance > 0.0) {
+    fingerprint.add(std::uint64_t{7});
+    fingerprint.add(description.freeze_tolerance);
+    fingerprint.add_all(description.kept_awake);
+  }
+  if (description.integrator != Integrator::kCordis) {
+    fingerprint.add(std::uint64_t{6});
+    fingerprint.add(static_cast<std::uint64_t>(description.integrator));
+    fingerprint.add(description.most_mode_hz);
+  }
+  return fingerprint.value();
+}
+
+}  // namespace cordis::engine

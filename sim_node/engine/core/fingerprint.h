@@ -1,0 +1,13 @@
+// sim_node/engine/core/fingerprint.h -- one number that two equal networks share.
+#pragma once
+
+#include <cstdint>
+
+#include "sim_node/engine/network.h"
+
+namespace cordis::engine {
+
+/// See Network::fingerprint.
+std::uint64_t fingerprint_of(const NetworkDescription& description);
+
+}  // namespace cordis::engine

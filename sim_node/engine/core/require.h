@@ -1,0 +1,19 @@
+// sim_node/engine/core/require.h -- one sentence for what is refused.
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace cordis::engine {
+
+/// @throws std::invalid_argument "`what` must be `expected`" unless the condition holds.
+inline void require(bool condition, const std::string& what, const char* expected) {
+  if (!condition) throw std::invalid_argument(what + " must be " + expected);
+}
+
+inline bool is_finite_and_at_least_zero(double value) {
+  return std::isfinite(value) && value >= 0.0;
+}
+
+}  // namespace cordis::engine

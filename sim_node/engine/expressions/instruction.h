@@ -1,0 +1,75 @@
+// sim_node/engine/expressions/instruction.h -- the words an expression over a link is made of.
+//
+// Includes nothing but cstdint, so that the loops compiled for each vector width can include it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cordis::engine {
+
+/// What a condition or an expression may ask of a link, from its end a to its end b, in the present
+/// step. In 1 dimension the distance is signed, and "growth" means towards larger values.
+enum class Quantity : std::uint8_t {
+  kDistance = 0,    ///< d [m]
+  kElongation = 1,  ///< d - rest length [m]
+  kSpeed = 2,   ///< growth of the link along its line of centres, from x(n) - x(n-1) [m/s]; true
+                ///< also in the step in which a state is entered; 0 while d is 0
+  kSpeedX = 3,  ///< velocity of b relative to a along an axis [m/s]
+  kSpeedY = 4,
+  kSpeedZ = 5,
+  kSlip = 6,     ///< length of the relative velocity across the line of centres [m/s], >= 0
+  kForce = 7,    ///< pull of the link in the last step [N], positive pulls the ends together; 0 at
+                 ///< step 0
+  kImpulse = 8,  ///< sum of pull * dt since the state was entered [N s]
+  kAge = 9,      ///< time since the state was entered [s]; 0 in that step, and at step 0
+  kRestLength = 10,  ///< present rest length [m]
+  kMassA = 11,       ///< of end a [kg]; 0 for a fixed point or a port mass
+  kMassB = 12,
+  kNone = 13  ///< not a quantity: of a change of state that was forced from outside
+};
+inline constexpr std::size_t kQuantityCount = 13;
+
+/// What one instruction does with the values on top of the stack. Truth is 1 or 0; any value that
+/// is not 0 counts as true. Comparisons with NaN are false, kNotEqual is true.
+enum class Operation : std::uint8_t {
+  kConstant,  ///< pushes Instruction::constant
+  kQuantity,  ///< pushes Instruction::quantity
+  kNegate,    ///< of one value: also kAbs, kSqrt, kNot, kRising, kFalling
+  kAbs,
+  kMin,  ///< of two values, the lower on the stack on the left
+  kMax,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+  kSqrt,
+  kLess,
+  kLessOrEqual,
+  kGreater,
+  kGreaterOrEqual,
+  kEqual,
+  kNotEqual,
+  kAnd,
+  kOr,
+  kNot,
+  kRising,  ///< 1 when the value is greater than one step before, else 0; 0 in the first step in
+            ///< which a state's exits are tested; remembers the value in Instruction::slot
+  kFalling
+};
+inline constexpr std::size_t kOperationCount = 22;
+
+struct Instruction {
+  Operation operation = Operation::kConstant;
+  Quantity quantity = Quantity::kDistance;
+  double constant = 0.0;
+  std::uint32_t slot = 0;  ///< of kRising and kFalling: where the link keeps the last value; not
+                           ///< shared by two instructions of one state's exits
+};
+
+/// The most values a program may have on its stack.
+inline constexpr std::size_t kMaxStack = 16;
+/// The most slots a behaviour may use: slots are numbered below it.
+inline constexpr std::uint32_t kMaxSlots = 16;
+
+}  // namespace cordis::engine

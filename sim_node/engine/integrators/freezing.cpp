@@ -1,0 +1,321 @@
+// sim_node/engine/integrators/freezing.cpp
+#include "sim_node/engine/integrators/freezing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim_node/engine/integrators/world_state.h"
+
+namespace cordis::engine {
+namespace {
+
+// While some only fall asleep, the choice of liaisons is made anew every so many steps.
+constexpr std::uint64_t kStepsBetweenChoices = 16;
+constexpr double kLeastCarried = 0.9;  // of the weight
+constexpr double kShare = 0.25;        // of the tolerance, for one mass in one step
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double dot(const Vec3& u, const Vec3& v) noexcept {
+  return u.x() * v.x() + u.y() * v.y() + u.z() * v.z();
+}
+
+double square_of(const Vec3& vector) noexcept {
+  return dot(vector, vector);
+}
+
+/// The stiffness and the viscosity that a MAT has by itself.
+struct OfMat {
+  double of_links = 0.0;     // sum over its linear links [N/m]
+  double least = kInfinity;  // of its other liaisons [N/m]
+  double viscosity = 0.0;    // sum [N s/m]
+  double stiffness() const {
+    if (of_links > 0.0) return of_links;
+    return least < kInfinity ? least : 0.0;
+  }
+};
+
+/// What a law pulls at an elongation as small as the tolerance, over that; 0 when nothing is known.
+double least_slope(const Law& law, double tolerance) {
+  constexpr double kSlopeAtRest = 57.14628;  // of Lennard-Jones, 72 / 2^(1/3) depth / diameter^2
+  double least = kInfinity;
+  switch (law.kind) {
+    case Law::Kind::kTable:
+      for (std::size_t i = 1; i < law.table.at.size(); ++i) {
+        const double slope =
+            (law.table.value[i] - law.table.value[i - 1]) / (law.table.at[i] - law.table.at[i - 1]);
+        if (slope != 0.0) least = std::min(least, std::abs(slope));
+      }
+      return least < kInfinity ? least : 0.0;
+    case Law::Kind::kPower: {
+      double power = law.coefficient / tolerance;  // times tolerance^exponent
+      auto halves = static_cast<unsigned>(2.0 * law.exponent);
+      if ((halves & 1U) != 0) power *= std::sqrt(tolerance);
+      for (halves >>= 1; halves != 0; --halves) power *= tolerance;
+      return std::abs(power);
+    }
+    case Law::Kind::kLennardJones:
+      return kSlopeAtRest * law.depth / (law.diameter * law.diameter);
+    case Law::Kind::kRings:
+      for (const Ring& ring : law.rings) {
+        if (ring.stiffness != 0.0) least = std::min(least, std::abs(ring.stiffness));
+      }
+      return least < kInfinity ? least : 0.0;
+    case Law::Kind::kNone:
+    case Law::Kind::kFunction:
+      break;
+  }
+  return 0.0;
+}
+
+void add(const Behaviour& behaviour, double tolerance, OfMat& of_mat) {
+  double viscosity = 0.0;
+  for (const LinkState& state : behaviour.states) {
+    const double stiffness = state.stiffness + least_slope(state.elasticity, tolerance);
+    if (stiffness > 0.0) of_mat.least = std::min(of_mat.least, stiffness);
+    viscosity = std::max(viscosity, state.viscosity);
+  }
+  of_mat.viscosity += viscosity;
+}
+
+std::vector<OfMat> measure(const NetworkDescription& network,
+                           const std::vector<Behaviour>& behaviours) {
+  std::vector<OfMat> of_mats(network.mats.size());
+  for (const Link& link : network.links) {
+    for (const std::uint32_t mat : {link.mat_a, link.mat_b}) {
+      of_mats[mat].of_links += link.stiffness;
+      of_mats[mat].viscosity += link.viscosity;
+    }
+  }
+  const double tolerance = network.freeze_tolerance;
+  for (const StateLink& link : network.state_links) {
+    for (const std::uint32_t mat : {link.mat_a, link.mat_b}) {
+      add(behaviours[link.behaviour], tolerance, of_mats[mat]);
+    }
+  }
+  for (const SetLiaison& set : network.sets) {
+    for (const auto* half : {&set.set_p, &set.set_q}) {
+      for (const std::uint32_t mat : *half) {
+        add(behaviours[set.behaviour], tolerance, of_mats[mat]);
+      }
+    }
+  }
+  return of_mats;
+}
+
+/// Whether a condition of a behaviour may come true while nothing moves.
+bool asks_for_age(const Behaviour& behaviour) {
+  return std::any_of(behaviour.exits.begin(), behaviour.exits.end(),
+                     [](const Exit& exit) { return asks_for(exit.when, Quantity::kAge); });
+}
+
+bool asks_for_impulse(const Behaviour& behaviour) {
+  return std::any_of(behaviour.exits.begin(), behaviour.exits.end(), [](const Exit& exit) {
+    return asks_for(exit.when, Quantity::kImpulse) ||
+           asks_for(exit.rest_length, Quantity::kImpulse);
+  });
+}
+
+}  // namespace
+
+Freezing::Freezing(const NetworkDescription& network)
+    : most_push_(network.mats.size(), -1.0),
+      most_moved_(network.mats.size(), 0.0),
+      mass_over_dt2_(network.mats.size(), 0.0),
+      rest_(network.mats.size(), 0U),
+      held_(network.mats.size(), false),
+      kept_awake_(network.mats.size(), false),
+      roles_(network.mats.size()),
+      force_(3 * network.mats.size(), 0.0) {
+  for (std::size_t i = 0; i < network.mats.size(); ++i) {
+    const Mat& mat = network.mats[i];
+    if (mat.kind == MatKind::kMass) mass_over_dt2_[i] = mat.mass / (network.step * network.step);
+    kept_awake_[i] = mat.kind == MatKind::kPort;
+  }
+  for (const std::uint32_t mat : network.kept_awake) kept_awake_[mat] = true;
+  for (auto* list : {&whole_, &computed_, &some_, &stopped_}) list->reserve(network.mats.size());
+  movers_.reserve(network.mats.size() / 2 + 1);
+  adopt(network, network.behaviours);
+}
+
+void Freezing::adopt(const NetworkDescription& network, const std::vector<Behaviour>& behaviours) {
+  const std::vector<OfMat> of_mats = measure(network, behaviours);
+  const double tolerance = kShare * network.freeze_tolerance;
+  const double dt = network.step;
+  for (std::size_t i = 0; i < of_mats.size(); ++i) {
+    const double stiffness = of_mats[i].stiffness();
+    if (mass_over_dt2_[i] == 0.0 || stiffness == 0.0) continue;
+    double push = tolerance * stiffness / mass_over_dt2_[i];
+    const double weight_step = network.gravity_on(network.mats[i]).norm() * dt * dt;
+    if (weight_step > 0.0) push = std::min(push, (1.0 - kLeastCarried) * weight_step);
+    const double viscosity = of_mats[i].viscosity + network.medium_viscosity;
+    double moved = tolerance;
+    if (viscosity > 0.0) moved = std::min(moved, tolerance * stiffness * dt / viscosity);
+    most_push_[i] = push * push;
+    most_moved_[i] = moved * moved;
+  }
+  const bool any_impulse = std::any_of(behaviours.begin(), behaviours.end(), asks_for_impulse);
+  never_rests_.clear();
+  for (const Behaviour& behaviour : behaviours) {
+    never_rests_.push_back(any_impulse || asks_for_age(behaviour));
+  }
+  wake_all();
+}
+
+void Freezing::wake(std::uint32_t mat) noexcept {
+  if (is_asleep(mat)) {
+    --asleep_count_;
+    movers_changed_ = true;
+    // those beside it may need their whole forces in the next step
+    (roles_.has(mat, kMayStir) ? changed_ : roused_) = true;
+  }
+  rest_[mat] = 0;
+}
+
+void Freezing::wake_all() noexcept {
+  std::fill(rest_.begin(), rest_.end(), std::uint8_t{0});
+  asleep_count_ = 0;
+  roused_ = true;
+  movers_changed_ = true;
+}
+
+void Freezing::choose_liaisons(WorldState& world, bool sets_changed) noexcept {
+  const bool due = changed_ && world.step_count % kStepsBetweenChoices == 0;
+  if (roused_ || due || sets_changed) {
+    choose_roles(world);
+    list_mats(world.mats);
+    list_movers(world.mats);
+    roused_ = false;
+    changed_ = false;
+  }
+  world.mats.clear_forces(computed_);
+}
+
+void Freezing::choose_roles(WorldState& world) noexcept {
+  for (std::uint32_t i = 0; i < rest_.size(); ++i) {
+    const bool is_mass = mass_over_dt2_[i] > 0.0;
+    const bool stirs = kept_awake_[i] || (is_mass && rest_[i] < kAsleep);
+    roles_.set(i, (is_mass ? kIsMass : 0U) | (stirs ? kStirs | kMayStir | kWholeForce : 0U));
+  }
+  for (const Passing& pass : {kToThoseBeside, kToThoseBeyond}) {
+    world.links.mark_neighbours(pass, roles_);
+    world.ties.mark_neighbours(pass, roles_);
+    world.state_links.mark_neighbours(pass, never_rests_, roles_);
+    world.maxwell_links.mark_neighbours(pass, roles_);
+    world.sets.mark_neighbours(pass, never_rests_, roles_);
+  }
+  world.links.choose_active(roles_);
+  world.ties.choose_active(roles_);
+  world.state_links.choose_active(roles_);
+  world.sets.choose_active(never_rests_, roles_);
+}
+
+/// Forces on sleepers that are no longer summed, or not whole, are kept as they are.
+void Freezing::list_mats(const MatArray& mats) noexcept {
+  whole_.clear();
+  computed_.clear();
+  some_.clear();
+  for (std::uint32_t i = 0; i < rest_.size(); ++i) {
+    const unsigned roles = roles_.of(i);
+    if ((roles & (kWholeForce | kSomeForce)) == 0) continue;
+    computed_.push_back(i);
+    if ((roles & kIsMass) == 0) continue;
+    if ((roles & kWholeForce) != 0) {
+      whole_.push_back(i);
+      continue;
+    }
+    const Vec3 force = mats.force(i);
+    std::copy_n(force.data(), 3, force_.data() + 3 * some_.size());
+    some_.push_back(i);
+  }
+}
+
+void Freezing::list_movers(MatArray& mats) noexcept {
+  movers_.clear();
+  for (const std::uint32_t mat : whole_) {
+    if (is_asleep(mat)) continue;
+    if (movers_.empty() || movers_.back().last != mat) movers_.push_back({mat, mat});
+    movers_.back().last = mat + 1;
+  }
+  mats.move_only(movers_);
+  movers_changed_ = false;
+}
+
+void Freezing::restore_forces(MatArray& mats) const noexcept {
+  for (std::size_t i = 0; i < some_.size(); ++i) {
+    mats.set_force(some_[i], Vec3::Map(force_.data() + 3 * i));
+  }
+}
+
+bool Freezing::is_balanced(const MatArray& mats, std::uint32_t mat) const noexcept {
+  return square_of(mats.push_of_period(mat)) <= most_push_[mat];
+}
+
+double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
+  MatArray& mats = world.mats;
+  stopped_.clear();
+  wake_where_states_change(world);
+  double energy = 0.0;
+  for (const std::uint32_t mat : whole_) {
+    const bool balanced = is_balanced(mats, mat);
+    if (is_asleep(mat)) {
+      if (!balanced) {
+        wake(mat);
+      } else if (rest_[mat] < kAsleep && ++rest_[mat] == kAsleep) {
+        changed_ = true;
+      }
+      continue;
+    }
+    const Vec3 moved = mats.position(mat) - mats.delayed(mat);
+    const bool may_sleep = !held_[mat] && !kept_awake_[mat];
+    if (!balanced || !may_sleep || !(square_of(moved) <= most_moved_[mat])) {
+      rest_[mat] = 0;
+    } else if (++rest_[mat] == kStepsToSleep) {
+      energy += stop(mats, mat, at_moments);
+    }
+  }
+  if (movers_changed_) list_movers(mats);
+  return energy;
+}
+
+/// What stops it is one more force, m (0 - moved) / dt^2 - f: its work over the middles before and
+/// after, half of that force times moved. At the moments it is the energy of the velocity there.
+double Freezing::stop(MatArray& mats, std::uint32_t mat, bool at_moments) noexcept {
+  const Vec3 moved = mats.position(mat) - mats.delayed(mat);
+  const Vec3 push = mats.push_of_period(mat);
+  const Vec3 at_moment = moved + 0.5 * push;
+  ++asleep_count_;
+  movers_changed_ = true;
+  stopped_.push_back(mat);
+  mats.halt(mat);
+  const double square = at_moments ? square_of(at_moment) : dot(moved, moved + push);
+  return 0.5 * mass_over_dt2_[mat] * square;
+}
+
+void Freezing::wake_where_states_change(const WorldState& world) noexcept {
+  for (const LinkEvent& event : world.log.events()) {
+    wake(event.mat_a);
+    wake(event.mat_b);
+  }
+  if (world.log.lost() > 0) wake_all();
+}
+
+void Freezing::add_to(StateHash& hash) const noexcept {
+  for (const std::uint8_t steps : rest_) hash.add(static_cast<std::uint64_t>(steps));
+}
+
+void Freezing::append_state(std::vector<double>& state) const {
+  for (const std::uint8_t steps : rest_) state.push_back(steps);
+}
+
+void Freezing::take_state(const Outside& outside, const double* state) noexcept {
+  asleep_count_ = 0;
+  for (std::uint32_t i = 0; i < rest_.size(); ++i) {
+    rest_[i] = static_cast<std::uint8_t>(*state++);
+    if (is_asleep(i)) ++asleep_count_;
+    held_[i] = !outside.held_force(i).isZero(0.0);
+  }
+  roused_ = true;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,112 @@
+// sim_node/engine/integrators/freezing.h -- regions at rest are left out of a step.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/matter/mat_roles.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/matter/port_inputs.h"
+#include "sim_node/engine/core/state_hash.h"
+
+namespace cordis::engine {
+
+struct WorldState;
+
+/// Stops masses that rest, and leaves out what joins them, until something moves them: the paper's
+/// local area of deformation.
+///
+/// A mass falls asleep when in kStepsToSleep steps in a row
+///
+///     it moves less than e in a step, so slowly that its dampers pull less than F, and the sum of
+///     all forces on it is below  F = e K,
+///
+/// e being a quarter of the tolerance and K its own stiffness: the sum of that of its linear links
+/// or, if they have none, the least of the laws that may act on it. Forces that small add up over
+/// many masses: positions are off by about 3 tolerances, where all is soft by up to 50. A mass
+/// without stiffness never does; nor does one of whose weight more than a tenth is not carried, or
+/// on which a force from outside is held. It is stopped where it is; the energy it had counts as
+/// dissipated, exactly.
+///
+/// It wakes in the step in which the sum of all forces on it exceeds F, a link at it changes its
+/// state, or something from outside touches it. Forces are computed of each liaison at a mass that
+/// is awake, or beside one, with the same bits as without freezing: so nothing that is awake knows
+/// of it, and the condition to wake is tested on whole forces. Fixed points are beside nothing:
+/// what they bear from sleepers is not summed. A port and a MAT that is kept awake never sleep.
+///
+/// Between sleepers nothing is computed but Maxwell elements, whose forces fade, and links and sets
+/// with conditions on an age or an impulse. All other conditions are tested after the last of their
+/// ends has stopped, and cannot change after that.
+class Freezing {
+ public:
+  static constexpr std::uint8_t kStepsToSleep = 20;
+
+  explicit Freezing(const NetworkDescription& network);
+
+  /// Takes the stiffnesses of other behaviours, and wakes all.
+  void adopt(const NetworkDescription& network, const std::vector<Behaviour>& behaviours);
+
+  void wake(std::uint32_t mat) noexcept;
+  void wake_all() noexcept;
+  /// Whether a force from outside is held on a mass: it does not sleep then.
+  void hold(std::uint32_t mat, bool is_held) noexcept { held_[mat] = is_held; }
+
+  bool is_asleep(std::uint32_t mat) const noexcept { return rest_[mat] >= kStepsToSleep; }
+  std::uint32_t asleep_count() const noexcept { return asleep_count_; }
+
+  /// Before the forces of a step: chooses the liaisons that are computed, where those that are
+  /// awake have changed, and clears the forces they add to. Real time: O(MATs + liaisons), no
+  /// allocation. @param sets_changed  other pairs may be in range
+  void choose_liaisons(WorldState& world, bool sets_changed) noexcept;
+  /// After them: forces on sleepers of which not all were computed are what they were.
+  void restore_forces(MatArray& mats) const noexcept;
+
+  /// After all forces of a step, before it moves: who wakes, and who falls asleep.
+  /// @param at_moments  whether the account belongs to the moments x(n), or the middles between
+  /// @return the energy of those that are stopped [J]. Real time: O(MATs with whole forces), no
+  ///         allocation.
+  double choose_movers(WorldState& world, bool at_moments) noexcept;
+  /// The masses that choose_movers has stopped.
+  std::span<const std::uint32_t> stopped() const noexcept { return stopped_; }
+
+  void add_to(StateHash& hash) const noexcept;
+  std::size_t state_size() const noexcept { return rest_.size(); }
+  void append_state(std::vector<double>& state) const;
+  /// @param outside  of the same state
+  void take_state(const Outside& outside, const double* state) noexcept;
+
+ private:
+  /// Asleep, and its liaisons have been computed with it at rest: what their conditions remember of
+  /// the steps before, a pull and whether it rises, is that of rest then.
+  static constexpr std::uint8_t kAsleep = kStepsToSleep + 3;
+
+  bool is_balanced(const MatArray& mats, std::uint32_t mat) const noexcept;
+  double stop(MatArray& mats, std::uint32_t mat, bool at_moments) noexcept;
+  void wake_where_states_change(const WorldState& world) noexcept;
+  void choose_roles(WorldState& world) noexcept;
+  void list_mats(const MatArray& mats) noexcept;
+  void list_movers(MatArray& mats) noexcept;
+
+  std::vector<double> most_push_;   // square of the largest push_of_period at rest; < 0: none [m^2]
+  std::vector<double> most_moved_;  // square of the largest displacement at rest [m^2]
+  std::vector<double> mass_over_dt2_;  // [kg/s^2]; 0 unless a mass
+  std::vector<std::uint8_t> rest_;     // steps at rest in a row; see kAsleep
+  std::vector<bool> held_;
+  std::vector<bool> kept_awake_;
+  std::vector<bool> never_rests_;  // by behaviour
+  MatRoles roles_;
+  std::vector<std::uint32_t> whole_;     // masses with whole forces, ascending
+  std::vector<std::uint32_t> computed_;  // MATs that forces are added to
+  std::vector<std::uint32_t> some_;      // sleepers among them with some forces
+  std::vector<double> force_;            // of some_, whole: 3 values each
+  std::vector<MatArray::Range> movers_;
+  std::vector<std::uint32_t> stopped_;
+  std::uint32_t asleep_count_ = 0;
+  bool roused_ = true;   // other liaisons must be computed in the next step
+  bool changed_ = true;  // others may be left out
+  bool movers_changed_ = true;
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,40 @@
+// sim_node/engine/integrators/full_step_integrator.h -- what integrators share whose account belongs to a moment.
+#pragma once
+
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/integrators/integrator.h"
+
+namespace cordis::engine {
+
+/// A Mover whose account belongs to the moment of the last forces: half of the works of a step come
+/// before that moment, the others are entered with the next step. It remembers one vector for each
+/// MAT.
+class MomentMover : public Mover {
+ public:
+  std::size_t state_size() const noexcept final { return memory_.size() + 3; }
+  void append_state(std::vector<double>& state) const final;
+  const double* take_state(WorldState& world, const double* state) noexcept final;
+
+ protected:
+  explicit MomentMover(std::size_t mat_count) : memory_(4 * mat_count, 0.0) {}
+
+  /// Enters the works that were pending, and moves the ports.
+  void begin_step(WorldState& world, StepEnergy& energy) noexcept;
+  /// The forces of all liaisons, where dampers see (position - felt) / dt, and those from outside.
+  void find_forces(WorldState& world, const double* felt, StepEnergy& energy) noexcept;
+  /// Puts other forces in the place of some of them. @return half of what that changes in what
+  /// viscosity takes in a period [J]
+  virtual double correct_forces(WorldState&) noexcept { return 0.0; }
+  /// Enters one half of a loss that lies about the moment; the other is pending.
+  void take_half(double half, StepEnergy& energy) noexcept;
+  /// After the MATs have moved.
+  void end_step(WorldState& world) noexcept;
+
+  AlignedVector<double> memory_;  // 4 x N
+  StepEnergy pending_;            // works after the moment of the last forces
+  bool started_ = false;          // a step has been done
+};
+
+}  // namespace cordis::engine

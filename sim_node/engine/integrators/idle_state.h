@@ -1,0 +1,23 @@
+// sim_node/engine/integrators/idle_state.h -- states in which a liaison is as good as absent.
+#pragma once
+
+#include <cstdint>
+
+#include "sim_node/engine/world.h"
+
+namespace cordis::engine {
+
+/// Whether a liaison neither pulls nor pushes in a state, whatever its ends do: apart, broken.
+inline bool is_idle(const LinkState& state) noexcept {
+  return state.stiffness == 0.0 && state.viscosity == 0.0 &&
+         state.elasticity.kind == Law::Kind::kNone && state.dissipation.kind == Law::Kind::kNone;
+}
+
+/// Whether a link with states does so in its present state. Precondition: the link exists.
+inline bool is_idle(const World& world, std::uint32_t state_link) noexcept {
+  const NetworkDescription& network = world.network().description();
+  const Behaviour& behaviour = network.behaviours[network.state_links[state_link].behaviour];
+  return is_idle(behaviour.states[world.state_of(state_link)]);
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,52 @@
+// sim_node/engine/integrators/implicit_euler.cpp
+#include "sim_node/engine/integrators/implicit_euler.h"
+
+#include <algorithm>
+
+#include "sim_node/engine/integrators/world_state.h"
+
+namespace cordis::engine {
+
+ImplicitEuler::ImplicitEuler(const NetworkDescription& network)
+    : MomentMover(network.mats.size()), matrix_(network), change_(memory_.size(), 0.0) {}
+
+/// The delayed positions of the constructor, x0 - dt v0, are those of the velocity v0.
+void ImplicitEuler::start(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  world.add_frozen_forces(mats.force_columns());
+  world.outside.start(mats);
+  mats.clear_forces();
+  mats.set_forces_are_present(true);
+  mats.find_displacements(before_);
+  world.state_links.start();
+  world.sets.start();
+  world.account.open(energy(world).total());
+}
+
+Moved ImplicitEuler::step(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  Moved moved;
+  StepEnergy& energy = moved.energy;
+  begin_step(world, energy);
+  find_forces(world, mats.force_columns().delayed, energy);
+
+  mats.find_displacements(before_);
+  take_half(mats.find_push_in_medium(before_, change_), energy);
+  matrix_.assemble(mats);
+  matrix_.subtract_stiffness_times(mats, before_.data(), change_.data());
+  matrix_.solve(change_.data());
+  for (std::size_t i = 0; i < change_.size(); ++i) change_[i] += before_[i];
+  moved.non_finite_mats = mats.move_by(change_);
+  pending_.port_work += world.outside.release(mats);
+  end_step(world);
+  return moved;
+}
+
+Energy ImplicitEuler::energy(WorldState& world) const noexcept {
+  const double rate = 1.0 / world.network->step();
+  return world.energy_of_moment([&](std::uint32_t mat) {
+    return Vec3(rate * Vec3::Map(before_.data() + 4 * std::size_t{mat}));
+  });
+}
+
+}  // namespace cordis::engine

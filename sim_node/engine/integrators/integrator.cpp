@@ -1,0 +1,35 @@
+// sim_node/engine/integrators/integrator.cpp
+#include "sim_node/engine/integrators/integrator.h"
+
+#include <stdexcept>
+
+#include "sim_node/engine/integrators/central_difference.h"
+#include "sim_node/engine/integrators/implicit_euler.h"
+#include "sim_node/engine/integrators/leapfrog.h"
+#include "sim_node/engine/integrators/modal_integrator.h"
+#include "sim_node/engine/integrators/symplectic4.h"
+#include "sim_node/engine/integrators/world_state.h"
+
+namespace cordis::engine {
+
+Vec3 Mover::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
+  return (world.mats.position(mat) - world.mats.delayed(mat)) / world.network->step();
+}
+
+std::unique_ptr<Mover> make_mover(const NetworkDescription& network) {
+  switch (network.integrator) {
+    case Integrator::kCordis:
+      return std::make_unique<CordisMover>();
+    case Integrator::kLeapfrog:
+      return std::make_unique<Leapfrog>(network);
+    case Integrator::kSymplectic4:
+      return std::make_unique<Symplectic4>(network);
+    case Integrator::kImplicit:
+      return std::make_unique<ImplicitEuler>(network);
+    case Integrator::kModal:
+      return std::make_unique<ModalMover>(network);
+  }
+  throw std::invalid_argument("there is no such integrator");
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,60 @@
+// sim_node/engine/integrators/integrator.h -- how a world goes from one step to the next.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/core/state_hash.h"
+
+namespace cordis::engine {
+
+struct WorldState;
+
+/// What a step has to tell besides what stands in the state.
+struct Moved {
+  StepEnergy energy;
+  std::uint32_t non_finite_mats = 0;
+};
+
+/// One of these for each Integrator: orders the evaluations of the forces and moves the MATs. The
+/// links, states and sets of the world are the same for all. One call a step, so that being virtual
+/// costs nothing.
+class Mover {
+ public:
+  Mover() = default;
+  Mover(const Mover&) = delete;
+  Mover& operator=(const Mover&) = delete;
+  virtual ~Mover() = default;
+
+  /// Takes the MATs as their constructor leaves them to step 0, and opens the account.
+  virtual void start(WorldState& world) noexcept = 0;
+  /// One step. Real time: no allocation, never throws.
+  virtual Moved step(WorldState& world) noexcept = 0;
+  /// The parameters of liaisons have changed between two steps.
+  virtual void adopt(WorldState&) noexcept {}
+  /// Energies and account as World::energy promises them.
+  virtual Energy energy(WorldState& world) const noexcept = 0;
+  /// [m/s]
+  virtual Vec3 velocity(const WorldState& world, std::uint32_t mat) const noexcept;
+
+  /// Brings a MAT, or all of them, to where they are now, if steps do not.
+  virtual void show(WorldState&, std::uint32_t) const noexcept {}
+  virtual void show_all(WorldState&) const noexcept {}
+
+  /// What it remembers besides the state of the MATs.
+  virtual void add_to(StateHash&) const noexcept {}
+  virtual std::size_t state_size() const noexcept { return 0; }
+  virtual void append_state(std::vector<double>&) const {}
+  /// @return one past the last value taken.
+  virtual const double* take_state(WorldState&, const double* state) noexcept { return state; }
+};
+
+/// @throws std::invalid_argument when there is no such integrator.
+std::unique_ptr<Mover> make_mover(const NetworkDescription& network);
+
+}  // namespace cordis::engine

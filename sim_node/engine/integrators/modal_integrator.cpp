@@ -1,0 +1,171 @@
+// sim_node/engine/integrators/modal_integrator.cpp
+#include "sim_node/engine/integrators/modal_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/engine/simd/kernel_of_width.h"
+#include "sim_node/engine/integrators/world_state.h"
+
+namespace cordis::engine {
+
+const ModalKernel& modal_kernel(VectorWidth width) noexcept {
+  return kernel_of_width(width, kModalKernelSse2, kModalKernelAvx2, kModalKernelAvx512);
+}
+
+ModalMover::ModalMover(const NetworkDescription& network)
+    : block_(network),
+      is_end_(network.mats.size(), 0),
+      is_driven_(network.mats.size(), 0),
+      force_(network.mats.size(), 0.0),
+      leaves_modes_out_(network.most_mode_hz > 0.0) {
+  for (const Mat& mat : network.mats) {
+    start_.push_back(mat.position.x());
+    is_mass_.push_back(mat.kind == MatKind::kMass ? 1 : 0);
+  }
+  ends_.reserve(network.mats.size());
+  driven_.reserve(network.mats.size());
+  drives_.reserve(network.mats.size());
+  for (const Link& link : network.links) {
+    const bool to_port = network.mats[link.mat_a].kind == MatKind::kPort ||
+                         network.mats[link.mat_b].kind == MatKind::kPort;
+    if (!to_port) continue;
+    drive(link.mat_a);
+    drive(link.mat_b);
+  }
+  for (const StateLink& link : network.state_links) {
+    drive(link.mat_a);
+    drive(link.mat_b);
+  }
+  for (const MaxwellLink& link : network.maxwell_links) {
+    drive(link.mat_a);
+    drive(link.mat_b);
+  }
+  for (const SetLiaison& set : network.sets) {
+    for (const auto* half : {&set.set_p, &set.set_q}) {
+      for (const std::uint32_t mat : *half) drive(mat);
+    }
+  }
+}
+
+/// There is room for all MATs.
+void ModalMover::drive(std::uint32_t mat) {
+  if (is_end_[mat] == 0) ends_.push_back(mat);
+  is_end_[mat] = 1;
+  if (is_driven_[mat] != 0 || is_mass_[mat] == 0) return;
+  is_driven_[mat] = 1;
+  driven_.push_back(mat);
+  drives_.push_back({0.0, block_.shape(mat), 0.0});
+}
+
+void ModalMover::start(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  kernel_ = &modal_kernel(world.width);
+  world.add_frozen_forces(mats.force_columns());
+  block_.start(world.description(), mats.force_columns().force);
+  for (std::uint32_t i = 0; i < mats.count(); ++i) {
+    if (is_mass_[i] != 0) {
+      const double moved =
+          kernel_->read(block_.shape(i), block_.moved().data(), block_.moved().size());
+      mats.set_motion(i, start_[i], start_[i] - moved);
+    }
+  }
+  mats.clear_forces();
+  world.start_one_period_ago();
+  const double stored = world.stored_energy();
+  world.account.open(0.0, stored);
+  world.account.open(energy(world).total(), stored);
+}
+
+Moved ModalMover::step(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  Moved moved;
+  StepEnergy& energy = moved.energy;
+  for (std::size_t i = 0; i < world.outside.held_count(); ++i) {
+    const std::uint32_t mat = world.outside.held_mat(i);
+    if (is_driven_[mat] != 0) continue;
+    show(world, mat);
+    drive(mat);
+  }
+  energy.port_work = world.outside.move_ports(mats);
+  for (const std::uint32_t mat : ends_) mats.set_force(mat, Vec3::Zero());
+  world.add_forces_of_period(energy);
+  energy.port_work += world.outside.work_at_ports(mats);
+  energy.port_work += world.outside.push(mats);
+
+  for (std::size_t k = 0; k < driven_.size(); ++k) {
+    drives_[k].force = mats.force(driven_[k]).x();
+    force_[driven_[k]] = drives_[k].force;
+  }
+  ModeRows rows = block_.rows();
+  rows.drives = drives_.data();
+  rows.drive_count = drives_.size();
+  energy.dissipated += kernel_->step(rows);
+  for (std::size_t k = 0; k < driven_.size(); ++k) {
+    const std::uint32_t mat = driven_[k];
+    const double next = start_[mat] + drives_[k].place + residual_at(mat);
+    mats.move_port(mat, Vec3(next, 0.0, 0.0));
+    if (!std::isfinite(next)) ++moved.non_finite_mats;
+  }
+  energy.port_work += world.outside.release(mats);
+  return moved;
+}
+
+double ModalMover::residual_at(std::uint32_t mat) const noexcept {
+  if (!leaves_modes_out_) return 0.0;
+  double sum = 0.0;
+  for (const std::uint32_t other : driven_) sum += block_.residual(mat, other) * force_[other];
+  return sum;
+}
+
+void ModalMover::show(WorldState& world, std::uint32_t mat) const noexcept {
+  if (is_mass_[mat] == 0 || is_driven_[mat] != 0) return;
+  const double* shape = block_.shape(mat);
+  const std::size_t count = block_.place().size();
+  const double now =
+      start_[mat] + kernel_->read(shape, block_.place().data(), count) + residual_at(mat);
+  world.mats.set_motion(mat, now, now - kernel_->read(shape, block_.moved().data(), count));
+}
+
+void ModalMover::show_all(WorldState& world) const noexcept {
+  for (std::uint32_t i = 0; i < is_mass_.size(); ++i) show(world, i);
+}
+
+Energy ModalMover::energy(WorldState& world) const noexcept {
+  double left_out = 0.0;
+  for (const std::uint32_t mat : driven_) left_out += 0.5 * force_[mat] * residual_at(mat);
+  return world.account.at_middle(
+      {block_.kinetic_energy(), block_.elastic_energy() + left_out, block_.gravity_energy()},
+      world.work_since_last_call(), world.stored_energy());
+}
+
+void ModalMover::add_to(StateHash& hash) const noexcept {
+  for (const double value : block_.place()) hash.add(value);
+  for (const double value : block_.moved()) hash.add(value);
+}
+
+std::size_t ModalMover::state_size() const noexcept {
+  return 2 * block_.place().size() + force_.size() + is_driven_.size();
+}
+
+void ModalMover::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), block_.place().begin(), block_.place().end());
+  state.insert(state.end(), block_.moved().begin(), block_.moved().end());
+  state.insert(state.end(), force_.begin(), force_.end());
+  state.insert(state.end(), is_driven_.begin(), is_driven_.end());
+}
+
+const double* ModalMover::take_state(WorldState&, const double* state) noexcept {
+  for (AlignedVector<double>* values : {&block_.place(), &block_.moved()}) {
+    std::copy_n(state, values->size(), values->data());
+    state += values->size();
+  }
+  std::copy_n(state, force_.size(), force_.data());
+  state += force_.size();
+  for (std::uint32_t mat = 0; mat < is_driven_.size(); ++mat) {
+    if (*state++ != 0.0) drive(mat);
+  }
+  return state;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,51 @@
+// sim_node/engine/integrators/modal_integrator.h -- linear networks in 1 dimension by their modes.
+#pragma once
+
+#include <vector>
+
+#include "sim_node/engine/integrators/modal_block.h"
+#include "sim_node/engine/integrators/integrator.h"
+
+namespace cordis::engine {
+
+/// All masses by the modes of a ModalBlock, exactly and at any step; what is not linear, and what
+/// is tied to a port, pushes them: the forces of state links, sets, Maxwell elements, links to
+/// ports and from outside are computed as `cordis` does and held for the step. Only the MATs they
+/// act on are found in each step; all others when they are asked for. Such a force must not be
+/// stiffer than ModalBlock::most_stiffness.
+///
+/// World::link_force knows nothing of the links in the block. The account is that of `cordis`, and
+/// closes to rounding; with modes left out, to their share.
+class ModalMover final : public Mover {
+ public:
+  explicit ModalMover(const NetworkDescription& network);
+
+  void start(WorldState& world) noexcept override;
+  Moved step(WorldState& world) noexcept override;
+  Energy energy(WorldState& world) const noexcept override;
+  void show(WorldState& world, std::uint32_t mat) const noexcept override;
+  void show_all(WorldState& world) const noexcept override;
+
+  void add_to(StateHash& hash) const noexcept override;
+  std::size_t state_size() const noexcept override;
+  void append_state(std::vector<double>& state) const override;
+  const double* take_state(WorldState& world, const double* state) noexcept override;
+
+ private:
+  void drive(std::uint32_t mat);
+  double residual_at(std::uint32_t mat) const noexcept;
+
+  ModalBlock block_;
+  const ModalKernel* kernel_ = nullptr;
+  std::vector<double> start_;            // position of each MAT at step 0 [m]
+  std::vector<std::uint32_t> ends_;      // of what is not in the block
+  std::vector<std::uint32_t> driven_;    // MATs that forces act on
+  std::vector<std::uint8_t> is_end_;     // by MAT
+  std::vector<std::uint8_t> is_driven_;  // by MAT
+  std::vector<std::uint8_t> is_mass_;    // by MAT
+  std::vector<ModeDrive> drives_;        // of driven_
+  std::vector<double> force_;            // of the last step, by MAT [N]
+  bool leaves_modes_out_;
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,367 @@
+// sim_node/engine/integrators/stiff_friction.cpp
+#include "sim_node/engine/integrators/stiff_friction.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "sim_node/engine/integrators/damping_sweeps.h"
+#include "sim_node/engine/integrators/world_state.h"
+
+namespace cordis::engine {
+namespace {
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr double kMostSpeed = 1.0;  // at which a law without a steepest place is looked at [m/s]
+
+double inverse_mass(const Mat& mat) noexcept {
+  return mat.kind == MatKind::kMass ? 1.0 / mat.mass : 0.0;
+}
+
+double steepest_of_table(const Table& table) noexcept {
+  double most = 0.0;
+  for (std::size_t i = 1; i < table.at.size(); ++i) {
+    most = std::max(most, (table.value[i] - table.value[i - 1]) / (table.at[i] - table.at[i - 1]));
+  }
+  return most;
+}
+
+double steepest_of_function(const LinkFunction& law) noexcept {
+  constexpr int kParts = 64;
+  constexpr double kStep = 2.0 * kMostSpeed / kParts;
+  const auto pull = [&](int i) { return law(1.0, 0.0, kStep * i - kMostSpeed, 1.0, 1.0); };
+  double most = 0.0;
+  for (int i = 1; i <= kParts; ++i) most = std::max(most, (pull(i) - pull(i - 1)) / kStep);
+  return std::isfinite(most) ? most : kUnbounded;
+}
+
+/// Slope of a law over the speed where it is steepest [N s/m].
+double steepest(const Law& law) noexcept {
+  switch (law.kind) {
+    case Law::Kind::kTable:
+      return steepest_of_table(law.table);
+    case Law::Kind::kPower:
+      if (law.coefficient <= 0.0) return 0.0;
+      return law.exponent < 1.0 ? kUnbounded : law.coefficient * law.exponent;
+    case Law::Kind::kFunction:
+      return steepest_of_function(*law.function);
+    case Law::Kind::kNone:
+    case Law::Kind::kLennardJones:
+    case Law::Kind::kRings:
+      break;
+  }
+  return 0.0;
+}
+
+/// @param slope, viscosity, steps  room for one value of each behaviour, MAT and state link
+void find_steps(const NetworkDescription& network, const std::vector<Behaviour>& behaviours,
+                std::vector<double>& slope, std::vector<double>& viscosity,
+                std::vector<double>& steps) noexcept {
+  for (std::size_t i = 0; i < behaviours.size(); ++i) {
+    slope[i] = 0.0;
+    for (const LinkState& state : behaviours[i].states) {
+      slope[i] = std::max(slope[i], state.viscosity + steepest(state.dissipation));
+    }
+  }
+  std::fill(viscosity.begin(), viscosity.end(), 0.0);
+  for (const StateLink& link : network.state_links) {
+    if (std::isinf(slope[link.behaviour])) continue;  // never extrapolated
+    for (const std::uint32_t mat : {link.mat_a, link.mat_b}) {
+      viscosity[mat] += slope[link.behaviour] * inverse_mass(network.mats[mat]);
+    }
+  }
+  for (std::size_t l = 0; l < steps.size(); ++l) {
+    const StateLink& link = network.state_links[l];
+    const double of_ends = viscosity[link.mat_a] + viscosity[link.mat_b];
+    steps[l] = slope[link.behaviour] > 0.0 ? kMostExtrapolatedViscosity / of_ends : kUnbounded;
+    if (std::isinf(slope[link.behaviour])) steps[l] = 0.0;
+  }
+}
+
+/// The pull of one link at 8 speeds, everything else being as it is.
+class PullOverSpeed {
+ public:
+  static constexpr std::size_t kCount = 8;
+
+  PullOverSpeed(const WorldState& world, std::uint32_t link) noexcept
+      : find_pulls_(world.behaviours.pulls),
+        state_(world.table.terms()[world.state_links.state_index(link)]),
+        dt_(world.network->step()) {
+    const NetworkDescription& network = world.description();
+    const StateLink& ends = network.state_links[link];
+    const Vec3 along = world.mats.position(ends.mat_b) - world.mats.position(ends.mat_a);
+    fill(distance_, network.dimension == 1 ? along.x() : along.norm());
+    fill(one_, 1.0);
+    fill(rest_length_, world.state_links.rest_length(link));
+    fill(mass_a_,
+         network.mats[ends.mat_a].kind == MatKind::kMass ? network.mats[ends.mat_a].mass : 0.0);
+    fill(mass_b_,
+         network.mats[ends.mat_b].kind == MatKind::kMass ? network.mats[ends.mat_b].mass : 0.0);
+  }
+
+  void find(const std::array<double, kCount>& speeds) noexcept {
+    for (std::size_t i = 0; i < kCount; ++i) growth_[i] = speeds[i] * dt_;
+    find_pulls_(state_, {kCount, distance_, one_, growth_, rest_length_, mass_a_, mass_b_,
+                         1.0 / dt_, pull_, viscous_});
+  }
+  double pull(std::size_t i) const noexcept { return pull_[i]; }
+  double viscous(std::size_t i) const noexcept { return viscous_[i]; }
+
+ private:
+  static void fill(double* values, double value) noexcept { std::fill_n(values, kCount, value); }
+
+  FindPulls find_pulls_;
+  const StateTerm& state_;
+  double dt_;
+  alignas(64) double distance_[kCount];
+  alignas(64) double one_[kCount];
+  alignas(64) double growth_[kCount];
+  alignas(64) double rest_length_[kCount];
+  alignas(64) double mass_a_[kCount];
+  alignas(64) double mass_b_[kCount];
+  alignas(64) double pull_[kCount];
+  alignas(64) double viscous_[kCount];
+};
+
+/// An interval in which u - u_free + half_mobility * pull(u) goes through 0.
+struct Bracket {
+  double low;  // speeds; `low` need not be the smaller one
+  double high;
+  double at_low;  // values there, of different signs
+  double at_high;
+
+  /// Moves the end on whose side of 0 the value is, when the speed is between the ends.
+  void narrow(double speed, double value) noexcept {
+    if (!((speed - low) * (high - speed) > 0.0)) return;
+    if ((value < 0.0) == (at_low < 0.0)) {
+      low = speed;
+      at_low = value;
+    } else {
+      high = speed;
+      at_high = value;
+    }
+  }
+  double secant() const noexcept {
+    const double speed = low - at_low * ((high - low) / (at_high - at_low));
+    return (speed - low) * (high - speed) >= 0.0 ? speed : 0.5 * (low + high);
+  }
+};
+
+/// Looks from `begin`, where the value is `at_begin`, towards the root: as far as a law that never
+/// falls can have it, in ever longer strides, then farther.
+bool find_bracket(PullOverSpeed& of, double begin, double at_begin, double half_mobility,
+                  double free_speed, Bracket& bracket) noexcept {
+  constexpr int kLooks = 4;
+  constexpr double kStride = 4.0;
+  bracket = {begin, begin, at_begin, at_begin};
+  double far = -at_begin;
+  for (int look = 0; look < kLooks; ++look) {
+    std::array<double, PullOverSpeed::kCount> speeds{};
+    double reach = far;
+    for (std::size_t i = speeds.size(); i-- > 0; reach /= kStride) speeds[i] = begin + reach;
+    of.find(speeds);
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      const double value = speeds[i] - free_speed + half_mobility * of.pull(i);
+      if ((value < 0.0) != (at_begin < 0.0) || value == 0.0) {
+        bracket.high = speeds[i];
+        bracket.at_high = value;
+        return std::isfinite(value);
+      }
+      bracket.low = speeds[i];
+      bracket.at_low = value;
+    }
+    for (int i = 0; i < 8; ++i) far *= kStride;
+  }
+  return false;
+}
+
+/// Narrows it down to rounding; a jump of the law as well as a smooth place.
+double find_root(PullOverSpeed& of, double half_mobility, double free_speed,
+                 Bracket bracket) noexcept {
+  constexpr int kMostLooks = 40;  // each takes three quarters away, where it finds no better
+  constexpr double kNear = 1.0 / (1 << 13);
+  constexpr double kNearest = kNear * kNear;
+  const double rounding = 1e-15 * (std::abs(free_speed) + std::abs(bracket.high));
+  for (int look = 0; look < kMostLooks && bracket.at_high != 0.0; ++look) {
+    const double width = bracket.high - bracket.low;
+    if (!(std::abs(width) > rounding)) break;
+    const double guess = bracket.secant();
+    const std::array<double, PullOverSpeed::kCount> speeds{guess,
+                                                           guess - kNearest * width,
+                                                           guess + kNearest * width,
+                                                           guess - kNear * width,
+                                                           guess + kNear * width,
+                                                           bracket.low + 0.25 * width,
+                                                           bracket.low + 0.5 * width,
+                                                           bracket.low + 0.75 * width};
+    of.find(speeds);
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      const double value = speeds[i] - free_speed + half_mobility * of.pull(i);
+      if (value == 0.0) return speeds[i];
+      bracket.narrow(speeds[i], value);
+    }
+  }
+  return bracket.at_high == 0.0 ? bracket.high : bracket.secant();
+}
+
+}  // namespace
+
+std::vector<double> largest_extrapolated_steps(const NetworkDescription& network) {
+  std::vector<double> slope(network.behaviours.size());
+  std::vector<double> viscosity(network.mats.size());
+  std::vector<double> steps(network.state_links.size());
+  find_steps(network, network.behaviours, slope, viscosity, steps);
+  return steps;
+}
+
+bool solves_steep_links(const NetworkDescription& network) {
+  if (network.integrator != Integrator::kLeapfrog) return false;
+  const std::vector<double> steps = largest_extrapolated_steps(network);
+  return std::any_of(steps.begin(), steps.end(),
+                     [&network](double step) { return network.step > step; });
+}
+
+SteepLinks::SteepLinks(const NetworkDescription& network)
+    : dt_(network.step),
+      in_line_(network.dimension == 1),
+      steps_(network.state_links.size()),
+      viscosity_(network.mats.size()),
+      slope_(network.behaviours.size()),
+      met_(network.mats.size()) {
+  solved_.reserve(network.state_links.size());
+  choose(network, network.behaviours);
+}
+
+void SteepLinks::choose(const NetworkDescription& network,
+                        const std::vector<Behaviour>& behaviours) noexcept {
+  find_steps(network, behaviours, slope_, viscosity_, steps_);
+  solved_.clear();
+  std::fill(met_.begin(), met_.end(), std::uint8_t{0});
+  share_masses_ = false;
+  for (std::uint32_t l = 0; l < steps_.size(); ++l) {
+    const StateLink& link = network.state_links[l];
+    const double mobility =
+        inverse_mass(network.mats[link.mat_a]) + inverse_mass(network.mats[link.mat_b]);
+    if (dt_ <= steps_[l] || mobility == 0.0) continue;
+    Solved solved;  // there is room for all
+    solved.link = l;
+    solved.half_mobility = 0.5 * dt_ * mobility;
+    solved_.push_back(solved);
+    for (const std::uint32_t mat : {link.mat_a, link.mat_b}) {
+      if (network.mats[mat].kind != MatKind::kMass) continue;
+      share_masses_ = share_masses_ || met_[mat] != 0;
+      met_[mat] = 1;
+    }
+  }
+}
+
+void SteepLinks::add_pull(WorldState& world, const Solved& solved, double pull) noexcept {
+  const StateLink& ends = world.description().state_links[solved.link];
+  const Vec3 force = pull * solved.axis;
+  world.mats.set_force(ends.mat_a, world.mats.force(ends.mat_a) + force);
+  world.mats.set_force(ends.mat_b, world.mats.force(ends.mat_b) - force);
+}
+
+void SteepLinks::begin_step(const WorldState& world) noexcept {
+  for (Solved& solved : solved_) solved.pull = world.state_links.pull(solved.link);
+}
+
+/// Takes the pull of the last step in place of the one with the extrapolated speed, which may be
+/// far too large.
+void SteepLinks::prepare(WorldState& world, const Around& around, Solved& solved) noexcept {
+  const StateLink& ends = world.description().state_links[solved.link];
+  Vec3 along = world.mats.position(ends.mat_b) - world.mats.position(ends.mat_a);
+  const double length =
+      std::sqrt(along.x() * along.x() + along.y() * along.y() + along.z() * along.z());
+  solved.rests =
+      world.state_links.is_new(solved.link, world.step_count) || (!in_line_ && length == 0.0);
+  if (solved.rests) return;
+  solved.axis = in_line_ ? Vec3(Vec3::UnitX()) : Vec3(along / length);
+  const auto felt = [&](std::uint32_t mat) {
+    return Vec3(world.mats.position(mat) - Vec3::Map(around.felt.data() + 4 * std::size_t{mat}));
+  };
+  solved.speed = solved.axis.dot(felt(ends.mat_b) - felt(ends.mat_a)) / dt_;
+  PullOverSpeed of(world, solved.link);
+  of.find({solved.speed});
+  solved.elastic = of.pull(0) - of.viscous(0);
+  solved.viscous_power = of.viscous(0) * solved.speed;
+  const double explicit_pull = world.state_links.pull(solved.link);
+  if (!around.started) solved.pull = explicit_pull;
+  add_pull(world, solved, solved.pull - explicit_pull);
+}
+
+/// The centred speed that all forces but its own pull leave a link. In the first step, which begins
+/// with a velocity that its explicit forces have made, that of the middle of the step.
+double SteepLinks::free_speed(const WorldState& world, const Around& around,
+                              const Solved& solved) const noexcept {
+  const StateLink& ends = world.description().state_links[solved.link];
+  const double part = around.started ? 0.5 : 1.0;
+  const auto moved = [&](std::uint32_t mat) {
+    Vec3 moving = world.mats.position(mat) - world.mats.delayed(mat);
+    if (!world.mats.is_mass(mat)) return moving;
+    Vec3 force = world.mats.force(mat) + world.outside.held_force(mat);
+    if (around.sweeps != nullptr) {
+      force += Vec3::Map(around.sweeps->force().data() + 4 * std::size_t{mat});
+    } else {
+      force +=
+          world.mats.force_of_medium(mat, Vec3::Map(around.felt.data() + 4 * std::size_t{mat}));
+    }
+    moving += part * world.mats.pushed_by(mat, force);
+    return moving;
+  };
+  const double speed = solved.axis.dot(moved(ends.mat_b) - moved(ends.mat_a)) / dt_;
+  return speed + solved.half_mobility * solved.pull;
+}
+
+/// @param pull  of the link, then that of its root
+/// @return its speed; the pull stays when no root is found
+double SteepLinks::solve_one(const WorldState& world, const Solved& solved, double free_speed,
+                             double& pull) noexcept {
+  PullOverSpeed of(world, solved.link);
+  of.find({solved.speed});
+  const double value = solved.speed - free_speed + solved.half_mobility * of.pull(0);
+  double speed = solved.speed;
+  if (value != 0.0) {
+    Bracket bracket{};
+    if (!find_bracket(of, solved.speed, value, solved.half_mobility, free_speed, bracket)) {
+      return solved.speed;
+    }
+    speed = find_root(of, solved.half_mobility, free_speed, bracket);
+  }
+  pull = (free_speed - speed) / solved.half_mobility;
+  return speed;
+}
+
+double SteepLinks::solve(WorldState& world, const AlignedVector<double>& felt,
+                         const DampingSweeps* sweeps, bool started) noexcept {
+  const Around around{felt, sweeps, started};
+  for (Solved& solved : solved_) prepare(world, around, solved);
+  constexpr double kSettled = 1e-10;  // of the largest pull
+  for (int round = 0; round < (share_masses_ ? kMostRounds : 1); ++round) {
+    double largest = 0.0;
+    double changed = 0.0;
+    for (Solved& solved : solved_) {
+      if (solved.rests) continue;
+      double pull = solved.pull;
+      const double free = free_speed(world, around, solved);
+      const double speed = solve_one(world, solved, free, pull);
+      if (!std::isfinite(pull)) continue;
+      add_pull(world, solved, (started ? 1.0 : 0.5) * (pull - solved.pull));
+      largest = std::max(largest, std::abs(pull));
+      changed = std::max(changed, std::abs(pull - solved.pull));
+      solved.pull = pull;
+      solved.speed = speed;
+    }
+    if (!(changed > kSettled * largest)) break;
+  }
+  double power = 0.0;
+  for (const Solved& solved : solved_) {
+    if (solved.rests) continue;
+    power += (solved.pull - solved.elastic) * solved.speed - solved.viscous_power;
+    world.state_links.set_pull(solved.link, solved.pull);
+  }
+  return 0.5 * dt_ * power;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,94 @@
+// sim_node/engine/integrators/stiff_friction.h -- state links whose viscosity is too steep for a velocity that is
+// known beforehand.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/network.h"
+
+namespace cordis::engine {
+
+class DampingSweeps;
+struct WorldState;
+
+/// For each state link of a network the largest step [s] at which `leapfrog` feeds its viscosity an
+/// extrapolated velocity: dt (W_a + W_b) is kMostExtrapolatedViscosity there, W the sum over the
+/// state links of an end of their steepest viscosities, over its mass. 0 where a law is steeper
+/// than any number (dry friction, a root of the speed); infinite without viscosity. A power above 1
+/// is taken at 1 m/s, a free expression at its steepest between -1 and 1 m/s.
+std::vector<double> largest_extrapolated_steps(const NetworkDescription& network);
+
+/// Whether `leapfrog` solves state links of this network at its step.
+bool solves_steep_links(const NetworkDescription& network);
+
+/// What `leapfrog` does to the state links beyond those steps: each is solved by itself for the
+/// centred speed u that its own pull leaves,
+///
+///     u = u_free - dt / 2 (1/m_a + 1/m_b) pull(u),   u = (x(n+1) - x(n-1)) / 2 dt along the link
+///
+/// all other forces given, by narrowing down the interval that holds the root: however steep the
+/// law, a jump too, where the pull is then what holds the ends together (dry friction that sticks).
+/// Where a law falls with the speed there may be three roots: the one on the side and branch of the
+/// extrapolated speed is taken, so that what sticks goes on sticking until it cannot. Links that
+/// share a mass are solved in turn, each with the last pulls of the others, until these no longer
+/// change, at most kMostRounds times. In the step in which a state is entered its speed is 0, as
+/// everywhere.
+class SteepLinks {
+ public:
+  static constexpr int kMostRounds = 32;
+
+  explicit SteepLinks(const NetworkDescription& network);
+
+  /// Finds the links to be solved, with these behaviours in place of those of the network. Real
+  /// time: O(links), no allocation.
+  void choose(const NetworkDescription& network, const std::vector<Behaviour>& behaviours) noexcept;
+
+  /// Notes the pulls of the last step. Before the forces of a step are computed.
+  void begin_step(const WorldState& world) noexcept;
+  /// Replaces the pulls of these links, computed with the extrapolated speed, by the solved ones.
+  /// @param felt     x(n) - dt v(n), extrapolated, 4 x N [m]
+  /// @param sweeps   what damps the linear links; null when they are among the forces
+  /// @param started  a step has been done
+  /// @return half of what that changes in the energy that viscosity takes in a period [J]
+  /// Real time: O(links to be solved * kMostRounds), no allocation.
+  double solve(WorldState& world, const AlignedVector<double>& felt, const DampingSweeps* sweeps,
+               bool started) noexcept;
+
+ private:
+  struct Solved {
+    std::uint32_t link = 0;
+    double half_mobility = 0.0;  // dt / 2 (1/m_a + 1/m_b) [s/kg]
+    double pull = 0.0;           // [N]
+    double speed = 0.0;          // [m/s]
+    double viscous_power = 0.0;  // of the pull with the extrapolated speed [W]
+    double elastic = 0.0;        // the part of the pull that stores energy [N]
+    Vec3 axis = Vec3::Zero();
+    bool rests = false;  // nothing to solve in this step
+  };
+  struct Around {
+    const AlignedVector<double>& felt;
+    const DampingSweeps* sweeps;
+    bool started;
+  };
+
+  void prepare(WorldState& world, const Around& around, Solved& solved) noexcept;
+  static void add_pull(WorldState& world, const Solved& solved, double pull) noexcept;
+  double free_speed(const WorldState& world, const Around& around,
+                    const Solved& solved) const noexcept;
+  double solve_one(const WorldState& world, const Solved& solved, double free_speed,
+                   double& pull) noexcept;
+
+  double dt_;
+  bool in_line_;
+  std::vector<double> steps_;      // of all state links: largest_extrapolated_steps
+  std::vector<double> viscosity_;  // room: of each MAT over its mass [1/s]
+  std::vector<double> slope_;      // room: of each behaviour [N s/m]
+  std::vector<Solved> solved_;     // room for all state links
+  std::vector<std::uint8_t> met_;  // room: by MAT, an end of a link to be solved
+  bool share_masses_ = false;
+};
+
+}  // namespace cordis::engine

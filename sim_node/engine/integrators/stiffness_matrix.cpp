@@ -1,0 +1,259 @@
+// sim_node/engine/integrators/stiffness_matrix.cpp
+#include "sim_node/engine/integrators/stiffness_matrix.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+namespace cordis::engine {
+namespace {
+
+constexpr std::uint32_t kNoPlace = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+StiffnessMatrix::StiffnessMatrix(const NetworkDescription& network)
+    : dimension_(network.dimension) {
+  order_masses(network);
+  lay_out(network);
+  find_fill();
+}
+
+/// The order of least fill of the graph of masses.
+void StiffnessMatrix::order_masses(const NetworkDescription& network) {
+  std::vector<std::uint32_t> masses;
+  std::vector<int> number(network.mats.size(), -1);
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    if (network.mats[i].kind != MatKind::kMass) continue;
+    number[i] = static_cast<int>(masses.size());
+    masses.push_back(i);
+  }
+  const auto count = static_cast<int>(masses.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < count; ++i) entries.emplace_back(i, i, 1.0);
+  for (const Link& link : network.links) {
+    const int a = number[link.mat_a];
+    const int b = number[link.mat_b];
+    if (a < 0 || b < 0) continue;
+    entries.emplace_back(a, b, 1.0);
+    entries.emplace_back(b, a, 1.0);
+  }
+  Eigen::SparseMatrix<double> graph(count, count);
+  graph.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order(count);
+  if (count > 0) Eigen::AMDOrdering<int>()(graph, order);
+
+  place_.assign(network.mats.size(), kNoPlace);
+  for (int k = 0; k < count; ++k) {
+    const std::uint32_t mat = masses[static_cast<std::size_t>(order.indices()[k])];
+    place_[mat] = static_cast<std::uint32_t>(k);
+    mat_.push_back(mat);
+    inertia_.push_back(network.mats[mat].mass + network.step * network.medium_viscosity);
+  }
+}
+
+/// Column c of mass k: the blocks of earlier masses that it is tied to, then its own block down to
+/// row c.
+void StiffnessMatrix::lay_out(const NetworkDescription& network) {
+  std::vector<std::vector<std::uint32_t>> earlier(mat_.size());
+  const auto of_tie = [&](const Link& link) {
+    const std::uint32_t a = place_[link.mat_a];
+    const std::uint32_t b = place_[link.mat_b];
+    return std::pair(std::min(a, b), std::max(a, b));
+  };
+  for (const Link& link : network.links) {
+    const auto [low, high] = of_tie(link);
+    if (high != kNoPlace) earlier[high].push_back(low);
+  }
+  for (auto& masses : earlier) {
+    std::sort(masses.begin(), masses.end());
+    masses.erase(std::unique(masses.begin(), masses.end()), masses.end());
+  }
+  const double dt = network.step;
+  for (const Link& link : network.links) {
+    const auto [low, high] = of_tie(link);
+    if (low == kNoPlace) continue;
+    std::uint32_t slot = kNoPlace;
+    if (high != kNoPlace) {
+      const auto found = std::lower_bound(earlier[high].begin(), earlier[high].end(), low);
+      slot = static_cast<std::uint32_t>(found - earlier[high].begin());
+    }
+    ties_.push_back({link.mat_a, link.mat_b, dt * dt * link.stiffness, dt * link.viscosity,
+                     link.rest_length, link.isotropic, slot});
+  }
+  const auto d = static_cast<std::uint32_t>(dimension_);
+  column_begin_.push_back(0);
+  for (std::uint32_t k = 0; k < mat_.size(); ++k) {
+    for (std::uint32_t c = 0; c < d; ++c) {
+      for (const std::uint32_t mass : earlier[k]) {
+        for (std::uint32_t r = 0; r < d; ++r) row_.push_back(mass * d + r);
+      }
+      for (std::uint32_t r = 0; r <= c; ++r) row_.push_back(k * d + r);
+      column_begin_.push_back(row_.size());
+    }
+  }
+  value_.assign(row_.size(), 0.0);
+}
+
+/// Elimination tree and column counts of the factor (Davis, LDL).
+void StiffnessMatrix::find_fill() {
+  const std::size_t count = column_begin_.size() - 1;
+  parent_.assign(count, -1);
+  flag_.assign(count, -1);
+  filled_.assign(count, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    flag_[k] = static_cast<std::int64_t>(k);
+    for (std::size_t p = column_begin_[k]; p < column_begin_[k + 1]; ++p) {
+      for (std::size_t i = row_[p]; flag_[i] != static_cast<std::int64_t>(k);
+           i = static_cast<std::size_t>(parent_[i])) {
+        if (parent_[i] < 0) parent_[i] = static_cast<std::int64_t>(k);
+        ++filled_[i];
+        flag_[i] = static_cast<std::int64_t>(k);
+      }
+    }
+  }
+  factor_begin_.assign(1, 0);
+  for (const std::size_t entries : filled_) {
+    factor_begin_.push_back(factor_begin_.back() + entries);
+  }
+  factor_row_.assign(factor_begin_.back(), 0);
+  factor_.assign(factor_begin_.back(), 0.0);
+  pivot_.assign(count, 0.0);
+  work_.assign(count, 0.0);
+  pattern_.assign(count, 0);
+}
+
+StiffnessMatrix::Tangent StiffnessMatrix::tangent(const MatArray& mats,
+                                                  const Tie& tie) const noexcept {
+  if (dimension_ == 1) return {Vec3::UnitX(), tie.stiffness, 0.0};
+  if (tie.isotropic) return {Vec3::UnitX(), tie.stiffness, tie.stiffness};
+  const Vec3 along = mats.position(tie.mat_b) - mats.position(tie.mat_a);
+  const double length =
+      std::sqrt(along.x() * along.x() + along.y() * along.y() + along.z() * along.z());
+  if (length == 0.0) return {Vec3::Zero(), 0.0, 0.0};
+  const double across = tie.stiffness * (1.0 - tie.rest / length);
+  return {along / length, tie.stiffness, std::max(across, 0.0)};
+}
+
+void StiffnessMatrix::add_block(std::uint32_t row_mass, std::uint32_t column_mass,
+                                std::uint32_t slot, const Tangent& part, double sign) noexcept {
+  const auto d = static_cast<std::size_t>(dimension_);
+  const bool own = row_mass == column_mass;
+  for (std::size_t c = 0; c < d; ++c) {
+    const std::size_t column = column_mass * d + c;
+    double* values = own ? value_.data() + column_begin_[column + 1] - (c + 1)
+                         : value_.data() + column_begin_[column] + slot * d;
+    const double along = (part.along - part.across) * part.direction[static_cast<int>(c)];
+    for (std::size_t r = 0; r < (own ? c + 1 : d); ++r) {
+      values[r] +=
+          sign * (along * part.direction[static_cast<int>(r)] + (r == c ? part.across : 0.0));
+    }
+  }
+}
+
+void StiffnessMatrix::add_tie(const Tie& tie, const Tangent& part) noexcept {
+  const std::uint32_t a = place_[tie.mat_a];
+  const std::uint32_t b = place_[tie.mat_b];
+  if (a != kNoPlace) add_block(a, a, 0, part, 1.0);
+  if (b != kNoPlace) add_block(b, b, 0, part, 1.0);
+  if (tie.slot != kNoPlace) add_block(std::min(a, b), std::max(a, b), tie.slot, part, -1.0);
+}
+
+bool StiffnessMatrix::assemble(const MatArray& mats) noexcept {
+  if (assembled_ && dimension_ == 1) return true;
+  std::fill(value_.begin(), value_.end(), 0.0);
+  const auto d = static_cast<std::size_t>(dimension_);
+  for (std::size_t column = 0; column < mat_.size() * d; ++column) {
+    value_[column_begin_[column + 1] - 1] = inertia_[column / d];
+  }
+  for (const Tie& tie : ties_) {
+    Tangent part = tangent(mats, tie);
+    part.along += tie.viscosity;
+    if (tie.isotropic && dimension_ > 1) part.across += tie.viscosity;
+    add_tie(tie, part);
+  }
+  assembled_ = factor();
+  return assembled_;
+}
+
+void StiffnessMatrix::subtract_stiffness_times(const MatArray& mats, const double* displacement,
+                                               double* change) const noexcept {
+  for (const Tie& tie : ties_) {
+    const Tangent part = tangent(mats, tie);
+    const Vec3 apart = Vec3::Map(displacement + 4 * std::size_t{tie.mat_b}) -
+                       Vec3::Map(displacement + 4 * std::size_t{tie.mat_a});
+    const Vec3& n = part.direction;
+    const double along = n.x() * apart.x() + n.y() * apart.y() + n.z() * apart.z();
+    const Vec3 force = part.across * apart + ((part.along - part.across) * along) * n;
+    Eigen::Map<Vec3>(change + 4 * std::size_t{tie.mat_a}) += force;
+    Eigen::Map<Vec3>(change + 4 * std::size_t{tie.mat_b}) -= force;
+  }
+}
+
+/// The numeric phase of Davis's LDL, row by row of L.
+bool StiffnessMatrix::factor() noexcept {
+  const std::size_t count = pivot_.size();
+  std::fill(flag_.begin(), flag_.end(), -1);
+  std::fill(filled_.begin(), filled_.end(), 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto mark = static_cast<std::int64_t>(k);
+    std::size_t top = count;
+    flag_[k] = mark;
+    for (std::size_t p = column_begin_[k]; p < column_begin_[k + 1]; ++p) {
+      std::size_t i = row_[p];
+      work_[i] += value_[p];
+      std::size_t length = 0;
+      for (; flag_[i] != mark; i = static_cast<std::size_t>(parent_[i])) {
+        pattern_[length++] = static_cast<std::uint32_t>(i);
+        flag_[i] = mark;
+      }
+      while (length > 0) pattern_[--top] = pattern_[--length];
+    }
+    double pivot = work_[k];
+    work_[k] = 0.0;
+    for (; top < count; ++top) {
+      const std::size_t i = pattern_[top];
+      const double y = work_[i];
+      work_[i] = 0.0;
+      const std::size_t end = factor_begin_[i] + filled_[i];
+      for (std::size_t p = factor_begin_[i]; p < end; ++p) work_[factor_row_[p]] -= factor_[p] * y;
+      const double entry = y / pivot_[i];
+      pivot -= entry * y;
+      factor_row_[end] = static_cast<std::uint32_t>(k);
+      factor_[end] = entry;
+      ++filled_[i];
+    }
+    pivot_[k] = pivot;
+    if (!(pivot > 0.0)) {
+      std::fill(work_.begin(), work_.end(), 0.0);
+      return false;
+    }
+  }
+  return true;
+}
+
+void StiffnessMatrix::solve(double* columns) noexcept {
+  const auto d = static_cast<std::size_t>(dimension_);
+  const std::size_t count = pivot_.size();
+  for (std::size_t k = 0; k < count; ++k) work_[k] = columns[4 * std::size_t{mat_[k / d]} + k % d];
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t p = factor_begin_[k]; p < factor_begin_[k + 1]; ++p) {
+      work_[factor_row_[p]] -= factor_[p] * work_[k];
+    }
+  }
+  for (std::size_t k = count; k-- > 0;) {
+    double value = work_[k] / pivot_[k];
+    for (std::size_t p = factor_begin_[k]; p < factor_begin_[k + 1]; ++p) {
+      value -= factor_[p] * work_[factor_row_[p]];
+    }
+    work_[k] = value;
+  }
+  std::fill_n(columns, 4 * place_.size(), 0.0);
+  for (std::size_t k = 0; k < count; ++k) columns[4 * std::size_t{mat_[k / d]} + k % d] = work_[k];
+  std::fill(work_.begin(), work_.end(), 0.0);
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,122 @@
+// sim_node/engine/integrators/symplectic4.cpp
+#include "sim_node/engine/integrators/symplectic4.h"
+
+#include <algorithm>
+#include <array>
+
+#include "sim_node/engine/integrators/world_state.h"
+
+namespace cordis::engine {
+namespace {
+
+// Parts of a period: push, drift, push, ... ; the second half runs backward.
+constexpr double kPush1 = 0.0829844064174052;
+constexpr double kPush2 = 0.396309801498368;
+constexpr double kPush3 = -0.0390563049223486;
+constexpr double kPush4 = 1.0 - 2.0 * (kPush1 + kPush2 + kPush3);
+constexpr double kDrift1 = 0.245298957184271;
+constexpr double kDrift2 = 0.604872665711080;
+constexpr double kDrift3 = 0.5 - (kDrift1 + kDrift2);
+
+struct Stage {
+  double push;
+  double drift;  // at the velocity after the push
+};
+constexpr std::array<Stage, 6> kStages{{{kPush1, kDrift1},
+                                        {kPush2, kDrift2},
+                                        {kPush3, kDrift3},
+                                        {kPush4, kDrift3},
+                                        {kPush3, kDrift2},
+                                        {kPush2, kDrift1}}};
+
+}  // namespace
+
+double symplectic4_trace(double stiffness) noexcept {
+  double trace = 0.0;
+  for (const bool displaced : {true, false}) {  // 1 m away, or 1 m a period fast
+    double place = displaced ? 1.0 : 0.0;
+    double moved = displaced ? 0.0 : 1.0;
+    for (const Stage& stage : kStages) {
+      moved -= stage.push * stiffness * place;
+      place += stage.drift * moved;
+    }
+    moved -= kPush1 * stiffness * place;
+    trace += displaced ? place : moved;
+  }
+  return trace;
+}
+
+Symplectic4::Symplectic4(const NetworkDescription& network)
+    : velocity_(4 * network.mats.size(), 0.0) {
+  for (std::size_t i = 0; i < network.mats.size(); ++i) {
+    std::copy_n(network.mats[i].velocity.data(), 3, velocity_.data() + 4 * i);
+  }
+}
+
+void Symplectic4::start(WorldState& world) noexcept {
+  world.mats.set_forces_are_present(true);
+  find_forces(world);
+  world.account.open(energy(world).total());
+}
+
+void Symplectic4::adopt(WorldState& world) noexcept {
+  find_forces(world);
+}
+
+Moved Symplectic4::step(WorldState& world) noexcept {
+  MatArray& mats = world.mats;
+  Moved moved;
+  if (world.outside.held_count() > 0) mats.delay();  // for the work of the held forces
+  for (const Stage& stage : kStages) {
+    world.outside.push(mats);
+    mats.push_and_drift(world.kernel, stage.push, stage.drift, velocity_);
+    add_forces(world);
+  }
+  world.outside.push(mats);
+  mats.push(world.kernel, kPush1, velocity_);
+  moved.energy.port_work = 2.0 * world.outside.release(mats);  // over the way from x(n)
+  moved.non_finite_mats = mats.delay_by(world.kernel, velocity_);
+  return moved;
+}
+
+void Symplectic4::find_forces(WorldState& world) noexcept {
+  world.mats.clear_forces();
+  add_forces(world);
+}
+
+/// Without viscosity only where the MATs are matters.
+void Symplectic4::add_forces(WorldState& world) noexcept {
+  ForceColumns at_rest = world.mats.force_columns();
+  at_rest.delayed = at_rest.position;
+  world.links.add_forces_of_moment(world.kernel, at_rest);
+  world.ties.add_forces_of_moment(world.kernel, at_rest);
+  world.state_links.add_forces_before_start(world.behaviours, world.table, at_rest);
+  world.sets.add_forces(world.pair_step(true), at_rest);
+}
+
+Energy Symplectic4::energy(WorldState& world) const noexcept {
+  return world.energy_of_moment([this](std::uint32_t mat) {
+    return Vec3(Vec3::Map(velocity_.data() + 4 * std::size_t{mat}));
+  });
+}
+
+Vec3 Symplectic4::velocity(const WorldState&, std::uint32_t mat) const noexcept {
+  return Vec3::Map(velocity_.data() + 4 * std::size_t{mat});
+}
+
+void Symplectic4::add_to(StateHash& hash) const noexcept {
+  for (const double value : velocity_) hash.add(value);
+}
+
+void Symplectic4::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), velocity_.begin(), velocity_.end());
+}
+
+/// The forces of the last step are part of the state of the MATs.
+const double* Symplectic4::take_state(WorldState& world, const double* state) noexcept {
+  std::copy_n(state, velocity_.size(), velocity_.data());
+  world.mats.set_forces_are_present(true);
+  return state + velocity_.size();
+}
+
+}  // namespace cordis::engine

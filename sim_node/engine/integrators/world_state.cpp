@@ -1,0 +1,262 @@
+// sim_node/engine/integrators/world_state.cpp
+#include "sim_node/engine/integrators/world_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace cordis::engine {
+namespace {
+
+constexpr std::size_t kLeastEventRoom = 1024;
+
+std::shared_ptr<const Network> require(std::shared_ptr<const Network> network) {
+  if (!network) throw std::invalid_argument("a world needs a network");
+  return network;
+}
+
+VectorWidth require(VectorWidth width) {
+  const std::vector<VectorWidth> supported = supported_vector_widths();
+  if (std::find(supported.begin(), supported.end(), width) == supported.end()) {
+    throw std::invalid_argument(std::string("this processor does not run ") + to_string(width));
+  }
+  return width;
+}
+
+/// Without those that `modal` takes as modes.
+SpringDamperArray stepped_links(const NetworkDescription& network) {
+  constexpr auto kAlong = SpringDamperArray::Kind::kAlong;
+  if (network.integrator != Integrator::kModal) return {network, kAlong};
+  NetworkDescription stepped = network;
+  std::erase_if(stepped.links, [&network](const Link& link) {
+    return network.mats[link.mat_a].kind != MatKind::kPort &&
+           network.mats[link.mat_b].kind != MatKind::kPort;
+  });
+  return {stepped, kAlong};
+}
+
+}  // namespace
+
+WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWidth width_of_step)
+    : network(require(std::move(network_of_world))),
+      width(require(width_of_step)),
+      kernel(step_kernel(width)),
+      behaviours(behaviour_kernel(width)),
+      mats(description()),
+      positions(mats.position()),
+      links(stepped_links(description())),
+      ties(description(), SpringDamperArray::Kind::kTie),
+      table(make_table(description().behaviours)),
+      state_links(description(), table),
+      maxwell_links(description()),
+      sets(description(), table, pair_kernel(width)),
+      log(table, std::max(kLeastEventRoom, description().state_links.size())),
+      outside(description()),
+      freezing(description().freeze_tolerance > 0.0 ? std::make_unique<Freezing>(description())
+                                                    : nullptr),
+      mover(make_mover(description())) {}
+
+StateTable WorldState::make_table(std::vector<Behaviour> from) const {
+  const Integrator integrator = description().integrator;
+  const bool whole_steps = integrator != Integrator::kCordis && integrator != Integrator::kModal;
+  return StateTable(std::move(from), network->step(), whole_steps);
+}
+
+StepReport WorldState::step() noexcept {
+  StepReport report;
+  report.refused_inputs = outside.take_refused();
+  log.begin_step();
+  const Moved moved = mover->step(*this);
+  account.add(moved.energy);
+  ++step_count;
+  report.non_finite_mats = moved.non_finite_mats;
+  report.crowded_sets = sets.crowded_count();
+  report.lost_events = log.lost();
+  return report;
+}
+
+void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
+  links.add_forces(kernel, columns);
+  ties.add_forces(kernel, columns);
+  state_links.add_forces_before_start(behaviours, table, columns);
+  sets.add_forces(pair_step(true), columns);
+}
+
+void WorldState::start_one_period_ago() noexcept {
+  ForceColumns one_period_ago = mats.force_columns();
+  one_period_ago.position = one_period_ago.delayed;
+  add_frozen_forces(one_period_ago);
+  outside.start(mats);
+  mats.clear_forces();
+  links.start();
+  ties.start();
+  state_links.start();
+  sets.start();
+}
+
+double WorldState::stored_energy() noexcept {
+  return links.stored_energy(mats) + state_links.stored_energy(table, mats) +
+         maxwell_links.stored_energy() + sets.stored_energy(table);
+}
+
+double WorldState::potential_energy() noexcept {
+  return links.potential_energy(mats) + ties.potential_energy(mats) +
+         state_links.stored_energy(table, mats) + maxwell_links.stored_energy() +
+         sets.stored_energy(table);
+}
+
+StepEnergy WorldState::work_since_last_call() const noexcept {
+  StepEnergy work = links.work_since_last_call(mats);
+  work += ties.work_since_last_call(mats);
+  work += state_links.work_since_last_call(mats);
+  work += maxwell_links.work_since_last_call(mats);
+  work += sets.work_since_last_call(mats);
+  return work;
+}
+
+StepEnergy WorldState::begin_forces(const ForceColumns& columns) noexcept {
+  if (!freezing) {
+    mats.clear_forces();
+    return {};
+  }
+  const StepEnergy energy = sets.take_positions(columns);
+  freezing->choose_liaisons(*this, sets.refresh());
+  return energy;
+}
+
+StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
+  if (sets.empty()) return {};
+  return freezing ? sets.add_pair_forces(pair_step(false), columns)
+                  : sets.add_forces(pair_step(false), columns);
+}
+
+void WorldState::add_forces_of_period(StepEnergy& energy) noexcept {
+  const ForceColumns columns = mats.force_columns();
+  energy += links.add_forces(kernel, columns);
+  energy += ties.add_forces(kernel, columns);
+  if (!state_links.empty()) {
+    energy += state_links.add_forces(behaviours, table, columns, step_count, log);
+  }
+  energy += maxwell_links.add_forces(behaviours, columns);
+  energy += add_set_forces(columns);
+  if (freezing) freezing->restore_forces(mats);
+}
+
+double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy& energy) noexcept {
+  const ForceColumns as_it_moved = mats.force_columns();
+  ForceColumns felt = as_it_moved;
+  felt.delayed = felt_positions;
+  sets.start();
+  const StepEnergy of_last_sets = begin_forces(felt);
+
+  StepEnergy of_links = links.add_forces_of_moment(kernel, felt);
+  of_links += ties.add_forces_of_moment(kernel, felt);
+  of_links.dissipated *= 0.5;
+  // Without the viscous forces of the last step, half the work of those of this one is returned.
+  if (!state_links.empty()) {
+    state_links.forget_viscous_forces();
+    of_links += state_links.add_forces(behaviours, table, felt, step_count, log);
+  }
+  energy.dissipated += maxwell_links.add_forces(behaviours, as_it_moved).dissipated;
+  of_links += of_last_sets;
+  of_links += add_set_forces(felt);
+  if (freezing) freezing->restore_forces(mats);
+  energy.switching += of_links.switching;
+  return of_links.dissipated;
+}
+
+void WorldState::replace_behaviour(std::uint32_t index, const Behaviour& behaviour) {
+  if (index >= table.behaviours().size()) {
+    throw std::invalid_argument("behaviour " + std::to_string(index) + " does not exist");
+  }
+  check_behaviour(behaviour, "behaviour " + std::to_string(index));
+  if (behaviour.states.size() != table.behaviours()[index].states.size()) {
+    throw std::invalid_argument("a behaviour is replaced by one of as many states");
+  }
+  for (const LinkState& state : behaviour.states) {
+    if (!std::isfinite(state.viscosity / network->step())) {
+      throw std::invalid_argument("a viscosity is too large for the step");
+    }
+  }
+  const double before = stored_energy();
+  table.replace(index, behaviour);
+  state_links.adopt(table);
+  sets.adopt(table);
+  if (freezing) freezing->adopt(description(), table.behaviours());
+  StepEnergy change;
+  change.switching = stored_energy() - before;
+  account.add(change);
+  mover->adopt(*this);
+  replaced = true;
+}
+
+std::size_t WorldState::state_size_before_sets() const noexcept {
+  return mats.state_size() + links.state_size() + ties.state_size() + state_links.state_size() +
+         maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize +
+         mover->state_size() + (freezing ? freezing->state_size() : 0);
+}
+
+bool WorldState::can_take(const std::vector<double>& state) const noexcept {
+  const std::size_t first = state_size_before_sets();
+  std::size_t size = 0;
+  return state.size() >= first &&
+         sets.find_size_of_state(state.data() + first, state.size() - first, size) &&
+         outside.is_end_of_state(state, first + size);
+}
+
+void WorldState::restore(const Snapshot& snapshot) {
+  if (snapshot.network != network->fingerprint()) {
+    throw std::invalid_argument("the snapshot is of another network");
+  }
+  const std::vector<Behaviour>& own = description().behaviours;
+  StateTable table_of_snapshot =
+      make_table(snapshot.behaviours.empty() ? own : snapshot.behaviours);
+  StateLinkArray links_of_snapshot(description(), table_of_snapshot);
+  std::swap(table, table_of_snapshot);
+  std::swap(state_links, links_of_snapshot);
+  sets.adopt(table);
+  if (!can_take(snapshot.state)) {
+    std::swap(table, table_of_snapshot);
+    std::swap(state_links, links_of_snapshot);
+    sets.adopt(table);
+    throw std::invalid_argument("the snapshot is not complete");
+  }
+  step_count = snapshot.step;
+  replaced = !snapshot.behaviours.empty();
+  if (freezing) freezing->adopt(description(), table.behaviours());
+  take_state(snapshot.state);
+}
+
+void WorldState::append_state(std::vector<double>& state) const {
+  mats.append_state(state);
+  links.append_state(state);
+  ties.append_state(state);
+  state_links.append_state(state);
+  maxwell_links.append_state(state);
+  log.append_state(state);
+  account.append_state(state);
+  mover->append_state(state);
+  if (freezing) freezing->append_state(state);
+  sets.append_state(state);
+  outside.append_state(state);
+}
+
+void WorldState::take_state(const std::vector<double>& state) noexcept {
+  const double* next = mats.take_state(state.data());
+  next = links.take_state(next);
+  next = ties.take_state(next);
+  next = state_links.take_state(next);
+  next = maxwell_links.take_state(next);
+  next = log.take_state(next);
+  next = account.take_state(next);
+  next = mover->take_state(*this, next);
+  const double* rest = next;
+  if (freezing) next += freezing->state_size();
+  next = sets.take_state(next);
+  outside.take_state(next);
+  if (freezing) freezing->take_state(outside, rest);
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,102 @@
+// sim_node/engine/integrators/world_state.h -- what a world is made of, as those that move it see it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/links/event_log.h"
+#include "sim_node/engine/integrators/freezing.h"
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/links/maxwell_links.h"
+#include "sim_node/engine/integrators/integrator.h"
+#include "sim_node/engine/matter/port_inputs.h"
+#include "sim_node/engine/pairs/set_liaisons.h"
+#include "sim_node/engine/links/spring_damper.h"
+#include "sim_node/engine/links/state_links.h"
+#include "sim_node/engine/links/state_table.h"
+#include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/world.h"
+
+namespace cordis::engine {
+
+/// The parts of a World.
+struct WorldState {
+  /// @throws std::invalid_argument without a network, or when the processor lacks the vector
+  /// instructions.
+  WorldState(std::shared_ptr<const Network> network_of_world, VectorWidth width_of_step);
+
+  const NetworkDescription& description() const noexcept { return network->description(); }
+  StepReport step() noexcept;
+  void restore(const Snapshot& snapshot);
+  void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
+
+  std::size_t state_size_before_sets() const noexcept;
+  bool can_take(const std::vector<double>& state) const noexcept;
+  void append_state(std::vector<double>& state) const;
+  void take_state(const std::vector<double>& state) noexcept;
+  StateTable make_table(std::vector<Behaviour> behaviours) const;
+
+  PairStep pair_step(bool frozen) noexcept { return {table, behaviours, log, step_count, frozen}; }
+  /// Adds the forces of all liaisons, as they are, without testing an exit; Maxwell elements left
+  /// out.
+  void add_frozen_forces(const ForceColumns& columns) noexcept;
+  /// Begins the account of ports and liaisons of `cordis` with the links as they were one period
+  /// ago, when nothing is known to have moved.
+  void start_one_period_ago() noexcept;
+  /// Of all links where the last forces were computed, in closed form; without linear ones in 1
+  /// dimension [J].
+  double stored_energy() noexcept;
+  /// The same, with linear links in every dimension.
+  double potential_energy() noexcept;
+  StepEnergy work_since_last_call() const noexcept;
+
+  /// Clears the forces. Of a world that freezes, ends the account of the last ones of the sets and
+  /// chooses the liaisons that are computed. @return works [J]
+  StepEnergy begin_forces(const ForceColumns& columns) noexcept;
+  /// Adds the forces of the sets after that.
+  StepEnergy add_set_forces(const ForceColumns& columns) noexcept;
+  /// Adds the forces of all liaisons as `cordis` does; enters what they take.
+  void add_forces_of_period(StepEnergy& energy) noexcept;
+  /// Clears the forces and adds those of all liaisons for an account that is kept at moments:
+  /// dampers and conditions see the velocity (position - felt) / dt, Maxwell elements how the MATs
+  /// have moved. Enters changes of state and what Maxwell elements have taken.
+  /// @return half of what viscosity takes in a period at this moment [J]
+  double add_forces_of_moment(const double* felt, StepEnergy& energy) noexcept;
+  /// The account at the moment of the last forces. @param velocity_of  of a MAT at that moment
+  template <class VelocityOf>
+  Energy energy_of_moment(VelocityOf velocity_of) noexcept {
+    double kinetic = 0.0;
+    double gravity = 0.0;
+    for (std::uint32_t i = 0; i < mats.count(); ++i) {
+      if (!mats.is_mass(i)) continue;
+      const Mat& mat = description().mats[i];
+      kinetic += 0.5 * mat.mass * velocity_of(i).squaredNorm();
+      gravity -= mat.mass * description().gravity_on(mat).dot(mats.position_of_forces(i));
+    }
+    return account.at_moment(kinetic, potential_energy(), gravity);
+  }
+
+  std::shared_ptr<const Network> network;
+  VectorWidth width;
+  const StepKernel& kernel;
+  const BehaviourKernel& behaviours;
+  MatArray mats;
+  Columns positions;  // of mats
+  SpringDamperArray links;
+  SpringDamperArray ties;
+  StateTable table;
+  StateLinkArray state_links;
+  MaxwellArray maxwell_links;
+  SetLiaisons sets;
+  EventLog log;
+  Outside outside;
+  EnergyAccount account;
+  std::unique_ptr<Freezing> freezing;  // none: every MAT is always awake
+  std::unique_ptr<Mover> mover;
+  std::uint64_t step_count = 0;
+  bool replaced = false;  // a behaviour is no longer that of the network
+};
+
+}  // namespace cordis::engine

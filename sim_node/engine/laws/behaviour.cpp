@@ -1,0 +1,75 @@
+// sim_node/engine/laws/behaviour.cpp
+#include "sim_node/engine/laws/behaviour.h"
+
+#include <cmath>
+
+#include "sim_node/engine/core/require.h"
+
+namespace cordis::engine {
+namespace {
+
+std::string quoted(const std::string& kind, std::size_t index, const std::string& label) {
+  return kind + " " + std::to_string(index) + (label.empty() ? "" : " '" + label + "'");
+}
+
+/// The slots of a program, one for each use.
+std::vector<std::uint32_t> slot_uses(const Program& program) {
+  std::vector<std::uint32_t> slots;
+  for (const Instruction& instruction : program.code) {
+    if (instruction.operation == Operation::kRising ||
+        instruction.operation == Operation::kFalling) {
+      slots.push_back(instruction.slot);
+    }
+  }
+  return slots;
+}
+
+void check_exit(const Behaviour& behaviour, const Exit& exit, const std::string& name) {
+  check_program(exit.when, name + ": condition");
+  require(exit.target < behaviour.states.size(), name + ": target", "a state of the behaviour");
+  require(static_cast<std::size_t>(exit.fired) < kQuantityCount, name + ": fired",
+          "a known quantity");
+  if (exit.rest == RestRule::kExpression) {
+    check_program(exit.rest_length, name + ": rest length");
+    require(slot_uses(exit.rest_length).empty(), name + ": rest length",
+            "without `rising` and `falling`");
+  } else {
+    require(exit.rest_length.empty(), name + ": expression of the rest length",
+            "left out unless its rule asks for it");
+  }
+}
+
+void check_state(const Behaviour& behaviour, const LinkState& state, const std::string& name) {
+  require(is_finite_and_at_least_zero(state.stiffness), name + ": stiffness", "finite and >= 0");
+  require(is_finite_and_at_least_zero(state.viscosity), name + ": viscosity", "finite and >= 0");
+  require(state.force_limit > 0.0, name + ": force limit", "> 0");
+  check_elasticity(state.elasticity, name + ": elasticity");
+  check_dissipation(state.dissipation, name + ": dissipation");
+  require(state.first_exit <= state.last_exit && state.last_exit <= behaviour.exits.size(),
+          name + ": exits", "a range of the exits of the behaviour");
+  std::vector<bool> used(kMaxSlots, false);
+  for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
+    for (const std::uint32_t slot : slot_uses(behaviour.exits[e].when)) {
+      require(!used[slot], name + ": slot " + std::to_string(slot),
+              "used once among the exits of the state");
+      used[slot] = true;
+    }
+  }
+}
+
+}  // namespace
+
+void check_behaviour(const Behaviour& behaviour, const std::string& name) {
+  require(!behaviour.states.empty(), name + ": number of states", "at least 1");
+  require(behaviour.states.size() <= kMaxStates, name + ": number of states", "at most 64");
+  require(behaviour.start < behaviour.states.size(), name + ": start", "a state of the behaviour");
+  for (std::size_t e = 0; e < behaviour.exits.size(); ++e) {
+    check_exit(behaviour, behaviour.exits[e], name + ": exit " + std::to_string(e));
+  }
+  for (std::size_t s = 0; s < behaviour.states.size(); ++s) {
+    const LinkState& state = behaviour.states[s];
+    check_state(behaviour, state, name + ": " + quoted("state", s, state.name));
+  }
+}
+
+}  // namespace cordis::engine

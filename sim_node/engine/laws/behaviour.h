@@ -1,0 +1,72 @@
+// sim_node/engine/laws/behaviour.h -- what a liaison with states is.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "sim_node/engine/laws/law.h"
+#include "sim_node/engine/expressions/program.h"
+
+namespace cordis::engine {
+
+/// A state describer: the parameters of the liaison while it is in this state.
+///
+///     pull = K e + elasticity + Z v + dissipation
+///
+/// with e the elongation and v the growth of the link per second, positive pulling the ends
+/// together; then without its positive part unless `pulls`, without its negative part unless
+/// `pushes`, then within +- force_limit. In the step in which the state is entered the delayed
+/// distance is the present one: v is 0, and no viscosity answers to what happened before.
+struct LinkState {
+  std::string name;
+  double stiffness = 0.0;  ///< K [N/m], >= 0
+  double viscosity = 0.0;  ///< Z [N s/m], >= 0
+  Law elasticity;          ///< added to K
+  Law dissipation;         ///< added to Z
+  bool pulls = true;       ///< false: clamped, no pulling at the release of a contact
+  bool pushes = true;      ///< false: a thread
+  double force_limit = std::numeric_limits<double>::infinity();  ///< [N], > 0
+  std::uint32_t first_exit = 0;  ///< its exits are Behaviour::exits[first_exit, last_exit)
+  std::uint32_t last_exit = 0;
+};
+
+/// What a change of state does with the rest length.
+enum class RestRule : std::uint8_t {
+  kKeep = 0,
+  kHere = 1,       ///< becomes the present distance: the points of hook-up are renewed
+  kExpression = 2  ///< becomes the value of Exit::rest_length, before the change: plastic flow
+};
+
+/// A state change condition, and where it leads.
+struct Exit {
+  Program when;
+  std::uint32_t target = 0;  ///< a state of the behaviour; may be the state itself
+  RestRule rest = RestRule::kKeep;
+  Program rest_length;                     ///< of RestRule::kExpression, otherwise empty
+  Quantity fired = Quantity::kElongation;  ///< the one an event shows: the first of the condition
+};
+
+/// A liaison with states. In each step, for each link: the quantities; the exits of its present
+/// state in the order written, of which the first that holds changes the state; the pull of the
+/// state it is in then. So a link changes at most once a step.
+/// [Luc90 III.2.3 b formalism to modify the liaison]
+struct Behaviour {
+  std::string name;
+  std::vector<LinkState> states;
+  std::vector<Exit> exits;
+  std::uint32_t start = 0;  ///< state at step 0
+
+  bool is_stateless() const noexcept { return states.size() == 1 && exits.empty(); }
+};
+
+/// The most states a behaviour may have.
+inline constexpr std::size_t kMaxStates = 64;
+
+/// @throws std::invalid_argument beginning with `name`, with the first thing that is wrong: no
+/// state, a value out of range, an exit or a target that does not exist, a program that is not
+/// well-formed, a slot used twice by the exits of a state.
+void check_behaviour(const Behaviour& behaviour, const std::string& name);
+
+}  // namespace cordis::engine

@@ -1,0 +1,16 @@
+// sim_node/engine/laws/liaison_id.h -- which liaison of a network is meant.
+#pragma once
+
+#include <cstdint>
+
+namespace cordis::engine {
+
+/// Which list of a NetworkDescription a liaison stands in.
+enum class LiaisonKind : std::uint8_t { kLink = 0, kStateLink = 1, kMaxwellLink = 2, kSet = 3 };
+
+struct LiaisonId {
+  LiaisonKind kind = LiaisonKind::kLink;
+  std::uint32_t index = 0;  ///< in the list of its kind
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,259 @@
+// sim_node/engine/links/behaviour_kernel_body.h -- one step of the behaviours of 8 rows.
+//
+// The rows of a batch that are in the same state go through the exits and the law of that state
+// together, the others left as they are; a batch in one state, the common case, goes once.
+#pragma once
+
+#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/simd/lane_batch.h"
+#include "sim_node/engine/laws/law_kernel_body.h"
+#include "sim_node/engine/expressions/program_kernel_body.h"
+
+namespace cordis::engine {
+
+template <class Lanes>
+class BehaviourLoop {
+  using Row = typename Lanes::Row;
+  using Batch = LaneBatch<Lanes>;
+
+ public:
+  static void step(const StateTerm* states, BehaviourRows& rows) noexcept {
+    BehaviourLoop(states, rows).step();
+  }
+
+  static void find_pulls(const StateTerm& state, const PlainRows& rows) noexcept {
+    alignas(64) double elongation[Batch::kRows];
+    alignas(64) double elastic[Batch::kRows];
+    const auto quantity = [](Quantity which) { return static_cast<std::size_t>(which); };
+    BehaviourRows batch{};
+    batch.rate = rows.rate;
+    batch.elongation = elongation;
+    batch.elastic = elastic;
+    BehaviourLoop loop(&state, batch);
+    const auto per_distance = [](Row pull, Row inverse) {
+      const auto still = Lanes::equal(inverse, Lanes::zero());
+      return Lanes::select(still, Lanes::zero(), pull * inverse);
+    };
+    for (std::size_t i = 0; i < rows.count; i += Batch::kRows) {
+      Batch::each(
+          elongation, [](Row d, Row rest) { return d - rest; }, rows.distance + i,
+          rows.rest_length + i);
+      batch.quantity[quantity(Quantity::kDistance)] = rows.distance + i;
+      if (rows.mass_a != nullptr) {
+        batch.quantity[quantity(Quantity::kMassA)] = rows.mass_a + i;
+        batch.quantity[quantity(Quantity::kMassB)] = rows.mass_b + i;
+      }
+      loop.find_pull(state, Batch::kAll, rows.growth + i);
+      Batch::each(rows.factor + i, per_distance, loop.pull_, rows.inverse + i);
+      Batch::each(
+          rows.viscous_factor + i,
+          [&](Row pull, Row e, Row inverse) { return per_distance(pull - e, inverse); }, loop.pull_,
+          elastic, rows.inverse + i);
+    }
+  }
+
+ private:
+  BehaviourLoop(const StateTerm* states, BehaviourRows& rows) noexcept
+      : states_(states), rows_(rows) {}
+
+  void step() noexcept {
+    rows_.changed = 0;
+    for (std::uint32_t left = Batch::kAll; left != 0;) {
+      const StateIndex state = rows_.state[__builtin_ctz(left)];
+      const std::uint32_t group = rows_in(state);
+      if (!rows_.frozen) test_exits(states_[state], group);
+      find_pull(states_[state], group, rows_.growth);
+      left &= ~group;
+    }
+    if (rows_.changed != 0) enter();
+    finish();
+  }
+
+  /// Bit i: row i is in this state.
+  std::uint32_t rows_in(StateIndex state) const noexcept {
+    std::uint32_t differing = 0;
+    for (std::size_t i = 0; i < Batch::kRows; ++i) differing |= rows_.state[i] ^ state;
+    if (differing == 0) return Batch::kAll;
+    std::uint32_t rows = 0;
+    for (std::size_t i = 0; i < Batch::kRows; ++i) {
+      rows |= static_cast<std::uint32_t>(rows_.state[i] == state) << i;
+    }
+    return rows;
+  }
+
+  /// Notes which rows leave, and where to. The programs of all exits run, so that what they
+  /// remember does not depend on who leaves.
+  void test_exits(const StateTerm& state, std::uint32_t group) noexcept {
+    if (rows_.forced != nullptr) note_forced(group);
+    for (std::uint32_t e = 0; e < state.exit_count; ++e) {
+      const double* value = program_.evaluate(state.exits[e].when, rows_, group);
+      const std::uint32_t holding =
+          Batch::bits(value, [](Row v) { return Lanes::not_equal(v, Lanes::zero()); });
+      const std::uint32_t leaving = holding & group & ~rows_.changed;
+      if (leaving != 0) note(state, e, leaving);
+    }
+  }
+
+  void note_forced(std::uint32_t group) noexcept {
+    for (std::uint32_t i = 0; i < Batch::kRows; ++i) {
+      if ((group >> i & 1U) == 0 || rows_.forced[i] == kNotForced) continue;
+      rows_.exit[i] = kNotForced;
+      rows_.fired_value[i] = 0.0;
+      target_[i] = rows_.forced[i];
+      rows_.forced[i] = kNotForced;
+      rows_.changed |= 1U << i;
+    }
+  }
+
+  void note(const StateTerm& state, std::uint32_t exit, std::uint32_t leaving) noexcept {
+    const ExitTerm& term = state.exits[exit];
+    const double* fired = rows_.quantity[static_cast<std::size_t>(term.fired)];
+    for (std::uint32_t i = 0; i < Batch::kRows; ++i) {
+      if ((leaving >> i & 1U) == 0) continue;
+      rows_.exit[i] = exit;
+      rows_.fired_value[i] = fired[i];
+      target_[i] = term.target;
+    }
+    rows_.changed |= leaving;
+  }
+
+  /// The pull of the rows of a group, all in one state.
+  void find_pull(const StateTerm& state, std::uint32_t group, const double* growth) noexcept {
+    alignas(64) double pull[Batch::kRows];
+    alignas(64) double elastic[Batch::kRows];
+    alignas(64) double speed[Batch::kRows];
+    const bool with_function = state.elasticity.code == LawCode::kFunction;
+    const Row rate = Lanes::every(rows_.rate);
+    const auto stretch = [&](const double* elongation, double* out) {
+      const Row stiffness = Lanes::every(state.stiffness);
+      Batch::each(
+          out, [&](Row e) { return stiffness * e; }, elongation);
+    };
+
+    Batch::each(
+        speed, [&](Row g) { return g * rate; }, growth);
+    stretch(rows_.elongation, elastic);
+    LawArguments of = arguments(rows_.elongation, speed);
+    if (!with_function) LawLoop<Lanes>::add(state.elasticity, of, elastic);
+    const Row viscosity = Lanes::every(state.viscosity_over_dt);
+    Batch::each(
+        pull, [&](Row e, Row g) { return e + viscosity * g; }, elastic, growth);
+    if (with_function) LawLoop<Lanes>::add(state.elasticity, of, pull);
+    of.argument = speed;
+    LawLoop<Lanes>::add(state.dissipation, of, pull);
+
+    if (state.limited) {
+      const Row least = Lanes::every(state.least_pull);
+      const Row most = Lanes::every(state.most_pull);
+      Batch::each(
+          pull, [&](Row p) { return Lanes::minimum(most, Lanes::maximum(least, p)); }, pull);
+    }
+    if (state.one_sided) {
+      alignas(64) double elongation[Batch::kRows];
+      const Row least = Lanes::every(state.least_elongation);
+      const Row most = Lanes::every(state.most_elongation);
+      Batch::each(
+          elongation, [&](Row e) { return Lanes::minimum(most, Lanes::maximum(least, e)); },
+          rows_.elongation);
+      stretch(elongation, elastic);
+      if (!with_function) {
+        LawLoop<Lanes>::add(state.elasticity, arguments(elongation, speed), elastic);
+      }
+    }
+    keep(group, pull, elastic);
+  }
+
+  LawArguments arguments(const double* argument, const double* speed) const noexcept {
+    return {argument,
+            rows_.quantity[static_cast<std::size_t>(Quantity::kDistance)],
+            rows_.elongation,
+            speed,
+            rows_.quantity[static_cast<std::size_t>(Quantity::kMassA)],
+            rows_.quantity[static_cast<std::size_t>(Quantity::kMassB)]};
+  }
+
+  void keep(std::uint32_t group, const double* pull, const double* elastic) noexcept {
+    if (group == Batch::kAll) {
+      Batch::each(
+          pull_, [](Row p) { return p; }, pull);
+      Batch::each(
+          rows_.elastic, [](Row p) { return p; }, elastic);
+    } else {
+      Batch::put(pull_, pull, group);
+      Batch::put(rows_.elastic, elastic, group);
+    }
+  }
+
+  /// Takes the rows that change into their new states: a rare thing, one row after the other.
+  void enter() noexcept {
+    alignas(64) double rest[Batch::kRows];
+    for (std::uint32_t i = 0; i < Batch::kRows; ++i) {
+      if ((rows_.changed >> i & 1U) == 0) continue;
+      rows_.from[i] = rows_.state[i];
+      rows_.rest_before[i] = rows_.rest_length[i];
+      rows_.elastic_before[i] = rows_.elastic[i];
+      rest[i] = rest_length_after(i);
+    }
+    for (std::uint32_t i = 0; i < Batch::kRows; ++i) {
+      if ((rows_.changed >> i & 1U) == 0) continue;
+      rows_.state[i] = target_[i];
+      rows_.rest_length[i] = rest[i];
+      rows_.elongation[i] =
+          rows_.quantity[static_cast<std::size_t>(Quantity::kDistance)][i] - rest[i];
+      rows_.entered[i] = rows_.now;
+      if (rows_.impulse != nullptr) rows_.impulse[i] = 0.0;
+      for (std::size_t s = 0; s < rows_.memory_slots; ++s) {
+        rows_.memory[Batch::kRows * s + i] = __builtin_nan("");
+      }
+    }
+    alignas(64) double no_growth[Batch::kRows];
+    Batch::fill(no_growth, 0.0);
+    for (std::uint32_t left = rows_.changed; left != 0;) {
+      const StateIndex state = rows_.state[__builtin_ctz(left)];
+      const std::uint32_t group = rows_in(state) & rows_.changed;
+      find_pull(states_[state], group, no_growth);
+      left &= ~group;
+    }
+  }
+
+  /// An expression that has no finite value leaves the rest length as it is.
+  double rest_length_after(std::uint32_t row) noexcept {
+    const double before = rows_.rest_length[row];
+    if (rows_.exit[row] == kNotForced) return before;
+    const ExitTerm& exit = states_[rows_.state[row]].exits[rows_.exit[row]];
+    switch (exit.rest) {
+      case RestCode::kKeep:
+        return before;
+      case RestCode::kHere:
+        return rows_.quantity[static_cast<std::size_t>(Quantity::kDistance)][row];
+      case RestCode::kExpression:
+        break;
+    }
+    const double value = program_.evaluate(exit.rest_length, rows_, 0)[row];
+    const bool finite = __builtin_isfinite(value) != 0;
+    return finite ? value : before;
+  }
+
+  void finish() noexcept {
+    if (rows_.still != 0) {
+      alignas(64) double none[Batch::kRows];
+      Batch::fill(none, 0.0);
+      Batch::put(pull_, none, rows_.still);
+      Batch::put(rows_.elastic, none, rows_.still);
+    }
+    Batch::each(
+        rows_.pull, [](Row p) { return p; }, pull_);
+    if (rows_.impulse == nullptr) return;
+    const Row dt = Lanes::every(rows_.dt);
+    Batch::each(
+        rows_.impulse, [&](Row sum, Row p) { return sum + p * dt; }, rows_.impulse, pull_);
+  }
+
+  const StateTerm* states_;
+  BehaviourRows& rows_;
+  ProgramLoop<Lanes> program_;
+  alignas(64) double pull_[Batch::kRows];
+  StateIndex target_[Batch::kRows];
+};
+
+}  // namespace cordis::engine

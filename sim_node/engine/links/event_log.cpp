@@ -1,0 +1,51 @@
+// sim_node/engine/links/event_log.cpp
+#include "sim_node/engine/links/event_log.h"
+
+namespace cordis::engine {
+
+EventLog::EventLog(const StateTable& table, std::size_t capacity) : events_(capacity) {
+  std::size_t first = 0;
+  for (const Behaviour& behaviour : table.behaviours()) {
+    const std::size_t state_count = behaviour.states.size();
+    matrices_.push_back({first, state_count});
+    first += state_count * state_count;
+  }
+  change_count_.assign(first, 0);
+}
+
+void EventLog::begin_step() noexcept {
+  count_ = 0;
+  lost_ = 0;
+}
+
+void EventLog::add(const LinkEvent& event) noexcept {
+  ++change_count_[place(event.behaviour, event.from, event.to)];
+  if (count_ == events_.size()) {
+    ++lost_;
+    return;
+  }
+  events_[count_++] = event;
+}
+
+std::uint64_t EventLog::change_count(std::uint32_t behaviour, std::uint32_t from,
+                                     std::uint32_t to) const noexcept {
+  return change_count_[place(behaviour, from, to)];
+}
+
+void EventLog::append_state(std::vector<double>& state) const {
+  for (const std::uint64_t count : change_count_) state.push_back(static_cast<double>(count));
+}
+
+const double* EventLog::take_state(const double* state) noexcept {
+  for (std::uint64_t& count : change_count_) count = static_cast<std::uint64_t>(*state++);
+  begin_step();
+  return state;
+}
+
+std::size_t EventLog::place(std::uint32_t behaviour, std::uint32_t from,
+                            std::uint32_t to) const noexcept {
+  const Matrix& matrix = matrices_[behaviour];
+  return matrix.first + from * matrix.state_count + to;
+}
+
+}  // namespace cordis::engine

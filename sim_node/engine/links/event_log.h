@@ -1,0 +1,52 @@
+// sim_node/engine/links/event_log.h -- the changes of state of one step, and how often each kind
+// happened.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim_node/engine/links/link_event.h"
+#include "sim_node/engine/links/state_table.h"
+
+namespace cordis::engine {
+
+/// Takes what changes during a step; its room is fixed at construction.
+class EventLog {
+ public:
+  EventLog(const StateTable& table, std::size_t capacity);
+
+  /// Forgets the events of the last step. Real time: O(1), no allocation.
+  void begin_step() noexcept;
+
+  /// Enters a change, and counts it. Real time: O(1), no allocation.
+  void add(const LinkEvent& event) noexcept;
+
+  std::span<const LinkEvent> events() const noexcept { return {events_.data(), count_}; }
+  std::uint32_t lost() const noexcept { return lost_; }  ///< that found no room in this step
+  /// How often a behaviour went from a state to another since step 0.
+  std::uint64_t change_count(std::uint32_t behaviour, std::uint32_t from,
+                             std::uint32_t to) const noexcept;
+
+  std::size_t state_size() const noexcept { return change_count_.size(); }
+  /// The counts as a row of values; exact up to 2^53.
+  void append_state(std::vector<double>& state) const;
+  /// Takes them back, and forgets the events. @return one past the last value taken.
+  const double* take_state(const double* state) noexcept;
+
+ private:
+  struct Matrix {
+    std::size_t first;        // of its counts: from * state_count + to
+    std::size_t state_count;  // of the behaviour
+  };
+
+  std::size_t place(std::uint32_t behaviour, std::uint32_t from, std::uint32_t to) const noexcept;
+
+  std::vector<LinkEvent> events_;
+  std::size_t count_ = 0;
+  std::uint32_t lost_ = 0;
+  std::vector<Matrix> matrices_;  // one per behaviour
+  std::vector<std::uint64_t> change_count_;
+};
+
+}  // namespace cordis::engine

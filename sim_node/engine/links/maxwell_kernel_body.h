@@ -1,0 +1,98 @@
+// sim_node/engine/links/maxwell_kernel_body.h -- the loops of Maxwell elements, 8 at a time.
+#pragma once
+
+#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/matter/step_kernel.h"
+
+namespace cordis::engine {
+
+/// The growth of some elements in the last period, and how their forces are added.
+template <class Lanes>
+struct GrowthInLine {
+  using Row = typename Lanes::Row;
+
+  GrowthInLine(const ForceColumns& columns, const std::uint32_t* a, const std::uint32_t* b) noexcept
+      : growth(Lanes::difference_1d(columns.position, a, b) -
+               Lanes::difference_1d(columns.delayed, a, b)),
+        before_moved(growth) {}
+
+  Row factor(Row pull) const noexcept { return pull; }
+  void add(double* force, const std::uint32_t* a, const std::uint32_t* b,
+           Row factor) const noexcept {
+    Lanes::add_pairs_1d(force, a, b, factor);
+  }
+
+  Row growth;        // [m]
+  Row before_moved;  // [m]
+};
+
+template <class Lanes>
+struct GrowthInSpace {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+
+  GrowthInSpace(const ForceColumns& columns, const std::uint32_t* a,
+                const std::uint32_t* b) noexcept {
+    Row3 before;
+    Lanes::differences(columns.position, columns.delayed, a, b, along, before);
+    const Row square = along.x * along.x + along.y * along.y + along.z * along.z;
+    const Row3 moved{along.x - before.x, along.y - before.y, along.z - before.z};
+    inverse = Lanes::inverse_or_zero(square, Lanes::sqrt(square));
+    growth = (along.x * moved.x + along.y * moved.y + along.z * moved.z) * inverse;
+    before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
+  }
+
+  Row factor(Row pull) const noexcept { return pull * inverse; }
+  void add(double* force, const std::uint32_t* a, const std::uint32_t* b,
+           Row factor) const noexcept {
+    Lanes::add_pairs(force, a, b, Row3{along.x * factor, along.y * factor, along.z * factor});
+  }
+
+  Row3 along;        // [m]
+  Row inverse;       // 1 / distance, 0 where that is 0
+  Row growth;        // [m]
+  Row before_moved;  // former vector * its change [m^2]
+};
+
+/// F(n) = a F(n-1) + gain * growth. What the element stores is F^2 / 2K; it has taken the rest of
+/// the work of F.
+template <class Lanes, template <class> class Growth>
+void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
+                        LinkWork& work_of_all) noexcept {
+  using Row = typename Lanes::Row;
+  constexpr std::size_t kParts = kBehaviourBatch / Lanes::kWidth;
+  Row stored[kParts];
+  Row taken[kParts];
+  for (std::size_t part = 0; part < kParts; ++part) {
+    stored[part] = Lanes::load(work_of_all.elastic + part * Lanes::kWidth);
+    taken[part] = Lanes::load(work_of_all.dissipated + part * Lanes::kWidth);
+  }
+
+  for (std::size_t l = 0; l < links.count; l += kBehaviourBatch) {
+#pragma GCC unroll 4
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::size_t i = l + part * Lanes::kWidth;
+      const std::uint32_t* a = links.column_a + i;
+      const std::uint32_t* b = links.column_b + i;
+      const Growth<Lanes> link(columns, a, b);
+      const Row before = Lanes::load(links.pull + i);
+      const Row pull =
+          Lanes::load(links.persistence + i) * before + Lanes::load(links.gain + i) * link.growth;
+      const Row factor = link.factor(pull);
+      const Row work = pull * link.growth + Lanes::load(links.factor + i) * link.before_moved;
+      const Row more = (pull * pull - before * before) * Lanes::load(links.compliance + i);
+      stored[part] = stored[part] + more;
+      taken[part] = taken[part] + (work - more);
+      Lanes::store(links.pull + i, pull);
+      Lanes::store(links.factor + i, factor);
+      link.add(columns.force, a, b, factor);
+    }
+  }
+
+  for (std::size_t part = 0; part < kParts; ++part) {
+    Lanes::store(work_of_all.elastic + part * Lanes::kWidth, stored[part]);
+    Lanes::store(work_of_all.dissipated + part * Lanes::kWidth, taken[part]);
+  }
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,93 @@
+// sim_node/engine/links/maxwell_links.cpp
+#include "sim_node/engine/links/maxwell_links.h"
+
+#include <algorithm>
+
+#include "sim_node/engine/links/link_growth.h"
+
+namespace cordis::engine {
+double share_of_decay(double x) noexcept {
+  if (x > 64.0) return 1.0;
+  // the series for a small part of x, then 1 - (1 - s)^2 = s (2 - s) for its double
+  int doublings = 0;
+  for (; x > 0.125; x *= 0.5) ++doublings;
+  double share = 0.0;
+  for (int k = 12; k >= 1; --k) share = x / k * (1.0 - share);
+  for (; doublings > 0; --doublings) share = share * (2.0 - share);
+  return share;
+}
+
+MaxwellArray::MaxwellArray(const NetworkDescription& description)
+    : in_line_(description.dimension == 1),
+      link_count_(description.maxwell_links.size()),
+      column_a_(padded(link_count_, kBehaviourBatch), 0U),
+      column_b_(column_a_.size(), 0U),
+      persistence_(column_a_.size(), 0.0),
+      gain_(column_a_.size(), 0.0),
+      compliance_(column_a_.size(), 0.0),
+      pull_(column_a_.size(), 0.0),
+      factor_(column_a_.size(), 0.0) {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    const MaxwellLink& link = description.maxwell_links[l];
+    const double share = share_of_decay(link.stiffness * description.step / link.viscosity);
+    column_a_[l] = 4 * link.mat_a;
+    column_b_[l] = 4 * link.mat_b;
+    persistence_[l] = 1.0 - share;
+    gain_[l] = link.viscosity / description.step * share;
+    compliance_[l] = 1.0 / link.stiffness;
+  }
+  for (std::size_t l = link_count_; l < column_a_.size(); ++l) {
+    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
+  }
+}
+
+StepEnergy MaxwellArray::add_forces(const BehaviourKernel& kernel,
+                                    const ForceColumns& columns) noexcept {
+  if (link_count_ == 0) return {};
+  const MaxwellRows rows{column_a_.size(),    column_a_.data(), column_b_.data(),
+                         persistence_.data(), gain_.data(),     compliance_.data(),
+                         pull_.data(),        factor_.data()};
+  LinkWork work;
+  (in_line_ ? kernel.maxwell_1d : kernel.maxwell_3d)(rows, columns, work);
+  return half_of(work);
+}
+
+void MaxwellArray::mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    roles.join(column_a_[l] / 4, column_b_[l] / 4, pass);
+    for (const std::uint32_t mat : {column_a_[l] / 4, column_b_[l] / 4}) {
+      roles.add(mat, roles.has(mat, kIsMass) ? kWholeForce | kSomeForce : kSomeForce);
+    }
+  }
+}
+
+StepEnergy MaxwellArray::work_since_last_call(const MatArray& mats) const noexcept {
+  StepEnergy work;
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    work.elastic += factor_[l] * half_growth(mats, column_a_[l], column_b_[l], in_line_);
+  }
+  return work;
+}
+
+double MaxwellArray::stored_energy() const noexcept {
+  double sum = 0.0;
+  for (std::size_t l = 0; l < link_count_; ++l) sum += pull_[l] * pull_[l] * compliance_[l];
+  return 0.5 * sum;
+}
+
+void MaxwellArray::add_to(StateHash& hash) const noexcept {
+  for (std::size_t l = 0; l < link_count_; ++l) hash.add(pull_[l]);
+}
+
+void MaxwellArray::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), pull_.begin(), pull_.end());
+  state.insert(state.end(), factor_.begin(), factor_.end());
+}
+
+const double* MaxwellArray::take_state(const double* state) noexcept {
+  std::copy_n(state, pull_.size(), pull_.data());
+  std::copy_n(state + pull_.size(), factor_.size(), factor_.data());
+  return state + state_size();
+}
+
+}  // namespace cordis::engine

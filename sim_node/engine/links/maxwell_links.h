@@ -1,0 +1,60 @@
+// sim_node/engine/links/maxwell_links.h -- the Maxwell elements of a world.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/matter/mat_roles.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/matter/step_kernel.h"
+
+namespace cordis::engine {
+
+/// 1 - e^(-x) for x >= 0, by + - * / alone: the same bits everywhere. Error below 4 units in the
+/// last place.
+double share_of_decay(double x) noexcept;
+
+/// Maxwell elements: see MaxwellLink.
+class MaxwellArray {
+ public:
+  explicit MaxwellArray(const NetworkDescription& description);
+
+  /// Adds the force of every element to its two MATs, in order. Real time: O(elements), no
+  /// allocation. @return stored and dissipated energy, as EnergyAccount counts them.
+  StepEnergy add_forces(const BehaviourKernel& kernel, const ForceColumns& columns) noexcept;
+
+  /// As that of SpringDamperArray. All are computed in every step, since their forces fade while
+  /// nothing moves: of their ends the whole force is needed.
+  void mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept;
+
+  /// Work of the forces of the last call up to the present positions. Real time: O(elements), no
+  /// allocation.
+  StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  /// Energy in the springs of the elements at the last call [J].
+  double stored_energy() const noexcept;
+
+  void add_to(StateHash& hash) const noexcept;
+  std::size_t state_size() const noexcept { return pull_.size() + factor_.size(); }
+  /// The state as a row of values.
+  void append_state(std::vector<double>& state) const;
+  /// Takes it back. @return one past the last value taken.
+  const double* take_state(const double* state) noexcept;
+
+ private:
+  bool in_line_;  // 1 dimension
+  std::size_t link_count_;
+  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
+  AlignedVector<std::uint32_t> column_b_;  // all arrays: padded to a multiple of kBehaviourBatch
+  AlignedVector<double> persistence_;      // e^(-K dt / Z)
+  AlignedVector<double> gain_;             // Z (1 - e^(-K dt / Z)) / dt [N/m]
+  AlignedVector<double> compliance_;       // 1 / K [m/N]
+  AlignedVector<double> pull_;             // F(n) [N]
+  AlignedVector<double> factor_;           // force of the last call = factor * vector from a to b
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,146 @@
+// sim_node/engine/links/spring_damper.cpp
+#include "sim_node/engine/links/spring_damper.h"
+
+#include <algorithm>
+
+#include "sim_node/engine/links/link_growth.h"
+
+namespace cordis::engine {
+namespace {
+
+using Kind = SpringDamperArray::Kind;
+
+bool is_of(Kind kind, const NetworkDescription& description, const Link& link) {
+  return (description.dimension > 1 && link.isotropic) == (kind == Kind::kTie);
+}
+
+std::size_t axes_of(Kind kind, const NetworkDescription& description) {
+  return kind == Kind::kTie ? static_cast<std::size_t>(description.dimension) : 1;
+}
+
+std::size_t row_count(Kind kind, const NetworkDescription& description) {
+  const auto links =
+      std::count_if(description.links.begin(), description.links.end(),
+                    [&](const Link& link) { return is_of(kind, description, link); });
+  return static_cast<std::size_t>(links) * axes_of(kind, description);
+}
+
+}  // namespace
+
+// A row of padding joins a MAT to itself without stiffness or viscosity: its force is 0.
+SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind)
+    : in_line_(description.dimension == 1 || kind == Kind::kTie),
+      column_a_(padded(row_count(kind, description), kLinkBatch), 0U),
+      column_b_(column_a_.size(), 0U),
+      stiffness_(column_a_.size(), 0.0),
+      viscosity_over_dt_(column_a_.size(), 0.0),
+      rest_length_(column_a_.size(), 0.0),
+      viscous_factor_(column_a_.size(), 0.0),
+      elastic_factor_(in_line_ ? 0 : column_a_.size(), 0.0),
+      active_(column_a_.size(), kLinkBatch) {
+  std::size_t l = 0;
+  for (const Link& link : description.links) {
+    if (!is_of(kind, description, link)) continue;
+    for (std::uint32_t axis = 0; axis < axes_of(kind, description); ++axis, ++l) {
+      column_a_[l] = 4 * link.mat_a + axis;
+      column_b_[l] = 4 * link.mat_b + axis;
+      stiffness_[l] = link.stiffness;
+      viscosity_over_dt_[l] = link.viscosity / description.step;
+      rest_length_[l] = link.rest_length;
+    }
+    viscous_ = viscous_ || link.viscosity > 0.0;
+  }
+  for (; l < column_a_.size(); ++l) {
+    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
+  }
+}
+
+LinkRows SpringDamperArray::rows(const ActiveLinks::Run& run) noexcept {
+  const std::size_t first = run.first;
+  return {run.count,
+          column_a_.data() + first,
+          column_b_.data() + first,
+          stiffness_.data() + first,
+          viscosity_over_dt_.data() + first,
+          rest_length_.data() + first,
+          viscous_factor_.data() + first,
+          in_line_ ? nullptr : elastic_factor_.data() + first};
+}
+
+StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces,
+                                  const ForceColumns& columns) noexcept {
+  if (column_a_.empty()) return {};
+  LinkWork work;
+  for (const ActiveLinks::Run& run : active_.runs()) add_link_forces(rows(run), columns, work);
+  return half_of(work);
+}
+
+StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel,
+                                         const ForceColumns& columns) noexcept {
+  const AddLinkForces in_line = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
+  const AddLinkForces in_space = viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
+  return add(in_line_ ? in_line : in_space, columns);
+}
+
+StepEnergy SpringDamperArray::add_forces_of_moment(const StepKernel& kernel,
+                                                   const ForceColumns& columns) noexcept {
+  const AddLinkForces in_line = viscous_ ? kernel.moment_spring_dampers_1d : kernel.springs_1d;
+  const AddLinkForces in_space =
+      viscous_ ? kernel.moment_spring_dampers_3d : kernel.moment_springs_3d;
+  return {0.0, 2.0 * add(in_line_ ? in_line : in_space, columns).dissipated, 0.0, 0.0};
+}
+
+void SpringDamperArray::mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept {
+  for (std::size_t l = 0; l < column_a_.size(); ++l) {
+    roles.join(column_a_[l] / 4, column_b_[l] / 4, pass);
+  }
+}
+
+void SpringDamperArray::choose_active(MatRoles& roles) noexcept {
+  active_.choose(column_a_.data(), column_b_.data(), roles);
+}
+
+StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const noexcept {
+  StepEnergy work;
+  if (in_line_ && !viscous_) return work;
+  for (std::size_t l = 0; l < column_a_.size(); ++l) {
+    const double grown = half_growth(mats, column_a_[l], column_b_[l], in_line_);
+    work.dissipated += viscous_factor_[l] * grown;
+    if (!in_line_) work.elastic += elastic_factor_[l] * grown;
+  }
+  return work;
+}
+
+double SpringDamperArray::potential_energy(const MatArray& mats) const noexcept {
+  double sum = 0.0;
+  for (std::size_t l = 0; l < column_a_.size(); ++l) {
+    const Vec3 along =
+        mats.position_of_forces(column_b_[l] / 4) - mats.position_of_forces(column_a_[l] / 4);
+    const double distance = in_line_ ? along[column_a_[l] % 4] : along.norm();
+    const double elongation = distance - rest_length_[l];
+    sum += stiffness_[l] * elongation * elongation;
+  }
+  return 0.5 * sum;
+}
+
+void SpringDamperArray::start() noexcept {
+  std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
+}
+
+void SpringDamperArray::drop_viscosity() noexcept {
+  std::fill(viscosity_over_dt_.begin(), viscosity_over_dt_.end(), 0.0);
+  viscous_ = false;
+}
+
+void SpringDamperArray::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), viscous_factor_.begin(), viscous_factor_.end());
+  state.insert(state.end(), elastic_factor_.begin(), elastic_factor_.end());
+}
+
+const double* SpringDamperArray::take_state(const double* state) noexcept {
+  std::copy_n(state, viscous_factor_.size(), viscous_factor_.data());
+  std::copy_n(state + viscous_factor_.size(), elastic_factor_.size(), elastic_factor_.data());
+  return state + state_size();
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,251 @@
+// sim_node/engine/links/state_links.cpp
+#include "sim_node/engine/links/state_links.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "sim_node/engine/links/link_growth.h"
+
+namespace cordis::engine {
+namespace {
+
+double mass_of(const Mat& mat) {
+  return mat.kind == MatKind::kMass ? mat.mass : 0.0;
+}
+
+/// Takes as many values as there are. @return one past the last.
+template <class Values>
+const double* take(const double* from, Values& values) noexcept {
+  for (auto& value : values) value = static_cast<typename Values::value_type>(*from++);
+  return from;
+}
+
+}  // namespace
+
+StateLinkArray::StateLinkArray(const NetworkDescription& description, const StateTable& table)
+    : in_line_(description.dimension == 1),
+      dt_(description.step),
+      rate_(1.0 / description.step),
+      link_count_(description.state_links.size()),
+      column_a_(padded(link_count_, kBehaviourBatch), 0U),
+      column_b_(column_a_.size(), 0U),
+      mass_a_(column_a_.size(), 0.0),
+      mass_b_(column_a_.size(), 0.0),
+      behaviour_(column_a_.size(), 0U),
+      state_(column_a_.size(), table.padding_state()),
+      rest_length_(column_a_.size(), 0.0),
+      pull_(column_a_.size(), 0.0),
+      impulse_(column_a_.size(), 0.0),
+      entered_(column_a_.size(), 0.0),
+      forced_(column_a_.size(), kNotForced),
+      elastic_factor_(column_a_.size(), 0.0),
+      viscous_factor_(column_a_.size(), 0.0),
+      active_(column_a_.size(), kBehaviourBatch) {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    const StateLink& link = description.state_links[l];
+    column_a_[l] = 4 * link.mat_a;
+    column_b_[l] = 4 * link.mat_b;
+    mass_a_[l] = mass_of(description.mats[link.mat_a]);
+    mass_b_[l] = mass_of(description.mats[link.mat_b]);
+    behaviour_[l] = link.behaviour;
+    state_[l] = table.start_state(link.behaviour);
+    rest_length_[l] = link.rest_length;
+  }
+  for (std::size_t l = link_count_; l < column_a_.size(); ++l) {
+    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
+  }
+  adopt(table);
+}
+
+StateLinkRows StateLinkArray::rows(const StateTable& table, const ActiveLinks::Run& run) noexcept {
+  StateLinkRows rows;
+  const std::size_t first = run.first;
+  rows.count = run.count;
+  rows.column_a = column_a_.data() + first;
+  rows.column_b = column_b_.data() + first;
+  rows.mass_a = mass_a_.data() + first;
+  rows.mass_b = mass_b_.data() + first;
+  rows.states = table.terms();
+  rows.state = state_.data() + first;
+  rows.rest_length = rest_length_.data() + first;
+  rows.pull = pull_.data() + first;
+  rows.impulse = needs_impulse_ ? impulse_.data() + first : nullptr;
+  rows.entered = entered_.data() + first;
+  rows.memory = memory_.data() + first * slot_count_;
+  rows.memory_slots = slot_count_;
+  rows.forced = any_forced_ ? forced_.data() + first : nullptr;
+  rows.elastic_factor = elastic_factor_.data() + first;
+  rows.viscous_factor = viscous_factor_.data() + first;
+  rows.dt = dt_;
+  rows.rate = rate_;
+  rows.needs_age = needs_age_;
+  rows.needs_velocity = needs_velocity_;
+  return rows;
+}
+
+void StateLinkArray::add_forces_before_start(const BehaviourKernel& kernel, const StateTable& table,
+                                             const ForceColumns& columns) noexcept {
+  LinkWork none;
+  for (const ActiveLinks::Run& run : active_.runs()) {
+    StateLinkRows links = rows(table, run);
+    links.frozen = true;
+    links.impulse = nullptr;
+    (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, none);
+  }
+}
+
+void StateLinkArray::start() noexcept {
+  std::fill(pull_.begin(), pull_.end(), 0.0);
+  forget_viscous_forces();
+}
+
+void StateLinkArray::forget_viscous_forces() noexcept {
+  std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
+}
+
+StepEnergy StateLinkArray::add_forces(const BehaviourKernel& kernel, const StateTable& table,
+                                      const ForceColumns& columns, std::uint64_t step,
+                                      EventLog& log) noexcept {
+  struct Entry {
+    const StateLinkArray* links;
+    const StateTable* table;
+    EventLog* log;
+    std::uint64_t step;
+    std::size_t origin;  // link
+    double switching;    // [J]
+  };
+  Entry entry{this, &table, &log, step, 0, 0.0};
+  const auto on_change = [](void* owner, std::size_t first, const BehaviourRows& rows) noexcept {
+    auto& to = *static_cast<Entry*>(owner);
+    for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
+      if ((rows.changed >> i & 1U) == 0) continue;
+      const std::size_t l = to.origin + first + i;
+      const StateIndex first_state = to.table->first_state(to.links->behaviour_[l]);
+      const double energy = to.table->change_energy(rows, i);
+      to.switching += energy;
+      to.log->add({to.step, static_cast<std::uint32_t>(l), to.links->column_a_[l] / 4,
+                   to.links->column_b_[l] / 4, to.links->behaviour_[l], rows.from[i] - first_state,
+                   rows.state[i] - first_state, to.table->fired(rows.from[i], rows.exit[i]),
+                   rows.fired_value[i], energy});
+    }
+  };
+  LinkWork work;
+  for (const ActiveLinks::Run& run : active_.runs()) {
+    StateLinkRows links = rows(table, run);
+    entry.origin = run.first;
+    links.now = static_cast<double>(step);
+    links.owner = &entry;
+    links.on_change = on_change;
+    (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, work);
+  }
+  any_forced_ = false;
+  StepEnergy energy = half_of(work);
+  energy.switching = entry.switching;
+  return energy;
+}
+
+void StateLinkArray::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                                     MatRoles& roles) const noexcept {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    const std::uint32_t a = column_a_[l] / 4;
+    const std::uint32_t b = column_b_[l] / 4;
+    roles.join(a, b, pass);
+    if (!never_rests[behaviour_[l]]) continue;
+    const bool is_mass_a = roles.has(a, kIsMass);
+    const bool is_mass_b = roles.has(b, kIsMass);
+    if (is_mass_a || !is_mass_b) roles.add(a, kWholeForce);
+    if (is_mass_b) roles.add(b, kWholeForce);
+  }
+}
+
+void StateLinkArray::choose_active(MatRoles& roles) noexcept {
+  active_.choose(column_a_.data(), column_b_.data(), roles);
+}
+
+StepEnergy StateLinkArray::work_since_last_call(const MatArray& mats) const noexcept {
+  StepEnergy work;
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    const double grown = half_growth(mats, column_a_[l], column_b_[l], in_line_);
+    work.elastic += elastic_factor_[l] * grown;
+    work.dissipated += viscous_factor_[l] * grown;
+  }
+  return work;
+}
+
+double StateLinkArray::distance_at_last_call(const MatArray& mats,
+                                             std::size_t link) const noexcept {
+  const Vec3 along =
+      mats.position_of_forces(column_b_[link] / 4) - mats.position_of_forces(column_a_[link] / 4);
+  return in_line_ ? along.x() : along.norm();
+}
+
+double StateLinkArray::stored_energy(const StateTable& table, const MatArray& mats) const noexcept {
+  double sum = 0.0;
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    sum += table.stored_energy(state_[l], distance_at_last_call(mats, l), rest_length_[l]);
+  }
+  return sum;
+}
+
+void StateLinkArray::force_state(const StateTable& table, std::uint32_t link,
+                                 std::uint32_t state) noexcept {
+  assert(link < link_count_ && state < table.behaviours()[behaviour_[link]].states.size());
+  forced_[link] = table.first_state(behaviour_[link]) + state;
+  any_forced_ = true;
+}
+
+void StateLinkArray::adopt(const StateTable& table) {
+  if (memory_.empty() || slot_count_ < table.slot_count()) {
+    slot_count_ = table.slot_count();
+    memory_.assign(slot_count_ * column_a_.size(), kNoValue);
+  }
+  needs_impulse_ = table.needs(Quantity::kImpulse);
+  needs_age_ = table.needs(Quantity::kAge);
+  needs_velocity_ = false;
+  for (const Quantity quantity :
+       {Quantity::kSpeedX, Quantity::kSpeedY, Quantity::kSpeedZ, Quantity::kSlip}) {
+    needs_velocity_ = needs_velocity_ || table.needs(quantity);
+  }
+}
+
+std::uint32_t StateLinkArray::state_of(const StateTable& table, std::uint32_t link) const noexcept {
+  return state_[link] - table.first_state(behaviour_[link]);
+}
+
+void StateLinkArray::add_to(StateHash& hash) const noexcept {
+  for (std::size_t l = 0; l < link_count_; ++l) {
+    hash.add(static_cast<std::uint64_t>(state_[l]));
+    for (const double value : {rest_length_[l], pull_[l], impulse_[l], entered_[l]}) {
+      hash.add(value);
+    }
+  }
+}
+
+std::size_t StateLinkArray::state_size() const noexcept {
+  constexpr std::size_t kArrays = 8;
+  return kArrays * column_a_.size() + memory_.size();
+}
+
+void StateLinkArray::append_state(std::vector<double>& state) const {
+  for (const auto* values : {&state_, &forced_}) {
+    state.insert(state.end(), values->begin(), values->end());
+  }
+  for (const auto* values : {&rest_length_, &pull_, &impulse_, &entered_, &elastic_factor_,
+                             &viscous_factor_, &memory_}) {
+    state.insert(state.end(), values->begin(), values->end());
+  }
+}
+
+const double* StateLinkArray::take_state(const double* state) noexcept {
+  for (auto* values : {&state_, &forced_}) state = take(state, *values);
+  for (auto* values : {&rest_length_, &pull_, &impulse_, &entered_, &elastic_factor_,
+                       &viscous_factor_, &memory_}) {
+    state = take(state, *values);
+  }
+  any_forced_ = std::any_of(forced_.begin(), forced_.end(),
+                            [](std::uint32_t target) { return target != kNotForced; });
+  return state;
+}
+
+}  // namespace cordis::engine

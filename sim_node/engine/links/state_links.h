@@ -1,0 +1,110 @@
+// sim_node/engine/links/state_links.h -- the links with states of a world.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/links/event_log.h"
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/matter/mat_roles.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/links/state_table.h"
+#include "sim_node/engine/matter/step_kernel.h"
+
+namespace cordis::engine {
+
+/// State links: positions in; exits tested, states changed, opposite forces out.
+/// [Luc90 III.2.3 b formalism to modify the liaison]
+class StateLinkArray {
+ public:
+  StateLinkArray(const NetworkDescription& description, const StateTable& table);
+
+  bool empty() const noexcept { return link_count_ == 0; }
+
+  /// Adds the forces of all links in their present states, without testing an exit: before step 0.
+  void add_forces_before_start(const BehaviourKernel& kernel, const StateTable& table,
+                               const ForceColumns& columns) noexcept;
+  /// Forgets pulls and viscous forces: those before step 0 take no work.
+  void start() noexcept;
+  /// Forgets the viscous forces of the last call.
+  void forget_viscous_forces() noexcept;
+
+  /// One step: exits, changes of state, then the force of every link on its two MATs, in link
+  /// order. Enters the changes in the log. Real time: O(links), no allocation.
+  /// @return elastic, dissipated and switched energy, as EnergyAccount counts them.
+  StepEnergy add_forces(const BehaviourKernel& kernel, const StateTable& table,
+                        const ForceColumns& columns, std::uint64_t step, EventLog& log) noexcept;
+
+  /// As those of SpringDamperArray. Links of a behaviour whose conditions may come true while both
+  /// ends rest are always computed: their masses get kWholeForce.
+  /// @param never_rests  by behaviour
+  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                       MatRoles& roles) const noexcept;
+  void choose_active(MatRoles& roles) noexcept;
+
+  /// Works of the forces of the last call up to the present positions. Real time: O(links), no
+  /// allocation.
+  StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  /// Potential energy [J] of the links at the positions of the last call, in closed form.
+  double stored_energy(const StateTable& table, const MatArray& mats) const noexcept;
+
+  void force_state(const StateTable& table, std::uint32_t link, std::uint32_t state) noexcept;
+  /// Fits what the links remember to a table that has been changed. Allocates.
+  void adopt(const StateTable& table);
+
+  std::uint32_t state_of(const StateTable& table, std::uint32_t link) const noexcept;
+  double rest_length(std::uint32_t link) const noexcept { return rest_length_[link]; }
+  double pull(std::uint32_t link) const noexcept { return pull_[link]; }
+  StateIndex state_index(std::uint32_t link) const noexcept { return state_[link]; }
+  /// Whether a change of state has happened in this step, which is not the first.
+  bool is_new(std::uint32_t link, std::uint64_t step) const noexcept {
+    return step > 0 && entered_[link] == static_cast<double>(step);
+  }
+  /// The pull of this step is another one; its force has been put on the MATs.
+  void set_pull(std::uint32_t link, double pull) noexcept {
+    impulse_[link] += (pull - pull_[link]) * dt_;
+    pull_[link] = pull;
+  }
+
+  void add_to(StateHash& hash) const noexcept;
+  std::size_t state_size() const noexcept;
+  /// The state as a row of values.
+  void append_state(std::vector<double>& state) const;
+  /// Takes it back. @return one past the last value taken.
+  const double* take_state(const double* state) noexcept;
+
+ private:
+  StateLinkRows rows(const StateTable& table, const ActiveLinks::Run& run) noexcept;
+  double distance_at_last_call(const MatArray& mats, std::size_t link) const noexcept;
+
+  bool in_line_;  // 1 dimension
+  double dt_;     // [s]
+  double rate_;   // 1 / dt [1/s]
+  std::size_t link_count_;
+  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
+  AlignedVector<std::uint32_t> column_b_;  // all arrays: padded to a multiple of kBehaviourBatch
+  AlignedVector<double> mass_a_;           // [kg], 0 unless a mass
+  AlignedVector<double> mass_b_;
+  AlignedVector<std::uint32_t> behaviour_;
+  AlignedVector<StateIndex> state_;
+  AlignedVector<double> rest_length_;  // [m]
+  AlignedVector<double> pull_;         // [N]
+  AlignedVector<double> impulse_;      // [N s]
+  AlignedVector<double> entered_;      // step count
+  AlignedVector<std::uint32_t> forced_;
+  AlignedVector<double> elastic_factor_;  // [N/m]; in 1 dimension the elastic pull itself [N]
+  AlignedVector<double> viscous_factor_;  // the rest, likewise
+  AlignedVector<double> memory_;          // slot_count_ x 8 values for each batch
+  std::size_t slot_count_ = 0;
+  bool any_forced_ = false;
+  bool needs_impulse_ = false;  // some program of the table does
+  bool needs_age_ = false;
+  bool needs_velocity_ = false;
+  ActiveLinks active_;
+};
+
+}  // namespace cordis::engine

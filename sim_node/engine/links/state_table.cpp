@@ -1,0 +1,257 @@
+// sim_node/engine/links/state_table.cpp
+#include "sim_node/engine/links/state_table.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "sim_node/engine/links/stored_energy.h"
+
+namespace cordis::engine {
+namespace {
+
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+double call(const void* function, double distance, double elongation, double speed, double mass_a,
+            double mass_b) noexcept {
+  const auto& law = *static_cast<const LinkFunction*>(function);
+  return law(distance, elongation, speed, mass_a, mass_b);
+}
+
+}  // namespace
+
+/// A LawTerm and the arrays it points to.
+struct ReadyLaw {
+  LawTerm term;
+  std::vector<double> slope;
+  std::vector<RingTerm> rings;
+};
+
+namespace {
+
+ReadyLaw ready(const Law& law) {
+  ReadyLaw made;
+  switch (law.kind) {
+    case Law::Kind::kNone:
+      break;
+    case Law::Kind::kTable: {
+      const Table& table = law.table;
+      made.slope.assign(table.at.size(), 0.0);
+      for (std::size_t i = 1; i < table.at.size(); ++i) {
+        made.slope[i - 1] = (table.value[i] - table.value[i - 1]) / (table.at[i] - table.at[i - 1]);
+      }
+      made.term.code = LawCode::kTable;
+      made.term.count = table.at.size();
+      made.term.at = table.at.data();
+      made.term.value = table.value.data();
+      made.term.slope = made.slope.data();
+      break;
+    }
+    case Law::Kind::kPower:
+      made.term.code = LawCode::kPower;
+      made.term.coefficient = law.coefficient;
+      made.term.half_powers = static_cast<std::uint32_t>(2.0 * law.exponent);
+      break;
+    case Law::Kind::kLennardJones: {
+      const double cube = law.diameter * law.diameter * law.diameter;
+      made.term.code = LawCode::kLennardJones;
+      made.term.attraction = 24.0 * law.depth * (cube * cube);
+      made.term.repulsion = 48.0 * law.depth * (cube * cube * cube * cube);
+      made.term.cut = law.cut > 0.0 ? law.cut : kUnlimited;
+      break;
+    }
+    case Law::Kind::kRings:
+      for (const Ring& ring : law.rings) made.rings.push_back({ring.stiffness, ring.radius});
+      made.term.code = LawCode::kRings;
+      made.term.count = made.rings.size();
+      made.term.rings = made.rings.data();
+      break;
+    case Law::Kind::kFunction:
+      made.term.code = LawCode::kFunction;
+      made.term.call = call;
+      made.term.function = law.function.get();
+      break;
+  }
+  return made;
+}
+
+ProgramTerm ready(const Program& program) {
+  return {program.code.data(), program.code.size()};
+}
+
+}  // namespace
+
+struct StateTable::Content {
+  std::vector<Behaviour> behaviours;
+  double dt = 0.0;
+  double part_of_work = 0.5;  // that the account has not entered yet
+  std::vector<StateTerm> terms;
+  std::vector<std::vector<ExitTerm>> exits;  // by behaviour
+  std::vector<ReadyLaw> laws;                // of all terms, in order: elasticity, dissipation
+  std::vector<StateIndex> first_state;       // by behaviour
+  std::vector<std::uint32_t> behaviour_of;   // by state
+  std::array<bool, kQuantityCount> needs{};
+  std::uint32_t slot_count = 0;
+
+  void build();
+  void add_behaviour(const Behaviour& behaviour);
+  void add_state(const LinkState& state, const std::vector<ExitTerm>& exits_of_behaviour);
+  void note_needs(const Program& program);
+  void note_needs(const Law& law);
+};
+
+void StateTable::Content::build() {
+  terms.clear();
+  exits.clear();
+  laws.clear();
+  first_state.clear();
+  behaviour_of.clear();
+  needs.fill(false);
+  slot_count = 0;
+  for (const Behaviour& behaviour : behaviours) add_behaviour(behaviour);
+  terms.emplace_back();  // the padding
+}
+
+void StateTable::Content::add_behaviour(const Behaviour& behaviour) {
+  const auto first = static_cast<StateIndex>(terms.size());
+  std::vector<ExitTerm> exits_of_behaviour;
+  for (const Exit& exit : behaviour.exits) {
+    note_needs(exit.when);
+    note_needs(exit.rest_length);
+    if (exit.fired != Quantity::kNone) needs[static_cast<std::size_t>(exit.fired)] = true;
+    exits_of_behaviour.push_back({ready(exit.when), ready(exit.rest_length),
+                                  static_cast<RestCode>(exit.rest), first + exit.target,
+                                  exit.fired});
+  }
+  exits.push_back(std::move(exits_of_behaviour));
+  first_state.push_back(first);
+  for (const LinkState& state : behaviour.states) {
+    note_needs(state.elasticity);
+    note_needs(state.dissipation);
+    behaviour_of.push_back(static_cast<std::uint32_t>(first_state.size() - 1));
+    add_state(state, exits.back());
+  }
+}
+
+void StateTable::Content::add_state(const LinkState& state,
+                                    const std::vector<ExitTerm>& exits_of_behaviour) {
+  StateTerm term;
+  term.stiffness = state.stiffness;
+  term.viscosity_over_dt = state.viscosity / dt;
+  term.least_pull = state.pushes ? -state.force_limit : 0.0;
+  term.most_pull = state.pulls ? state.force_limit : 0.0;
+  term.least_elongation = state.pushes ? -kUnlimited : 0.0;
+  term.most_elongation = state.pulls ? kUnlimited : 0.0;
+  term.one_sided = !(state.pulls && state.pushes);
+  term.limited = term.one_sided || state.force_limit < kUnlimited;
+  for (LawTerm* target : {&term.elasticity, &term.dissipation}) {
+    laws.push_back(ready(target == &term.elasticity ? state.elasticity : state.dissipation));
+    *target = laws.back().term;
+  }
+  term.exits = exits_of_behaviour.data() + state.first_exit;
+  term.exit_count = state.last_exit - state.first_exit;
+  terms.push_back(term);
+}
+
+void StateTable::Content::note_needs(const Program& program) {
+  for (const Instruction& instruction : program.code) {
+    if (instruction.operation == Operation::kQuantity) {
+      needs[static_cast<std::size_t>(instruction.quantity)] = true;
+    }
+    if (instruction.operation == Operation::kRising ||
+        instruction.operation == Operation::kFalling) {
+      slot_count = std::max(slot_count, instruction.slot + 1);
+    }
+  }
+}
+
+void StateTable::Content::note_needs(const Law& law) {
+  if (law.kind != Law::Kind::kFunction) return;
+  needs[static_cast<std::size_t>(Quantity::kMassA)] = true;
+  needs[static_cast<std::size_t>(Quantity::kMassB)] = true;
+}
+
+StateTable::StateTable(std::vector<Behaviour> behaviours, double dt, bool whole_steps)
+    : content_(std::make_unique<Content>()) {
+  content_->behaviours = std::move(behaviours);
+  content_->dt = dt;
+  content_->part_of_work = whole_steps ? 0.0 : 0.5;
+  content_->build();
+}
+
+StateTable::~StateTable() = default;
+StateTable::StateTable(StateTable&&) noexcept = default;
+StateTable& StateTable::operator=(StateTable&&) noexcept = default;
+
+const StateTerm* StateTable::terms() const noexcept {
+  return content_->terms.data();
+}
+
+std::size_t StateTable::state_count() const noexcept {
+  return content_->behaviour_of.size();
+}
+
+StateIndex StateTable::padding_state() const noexcept {
+  return static_cast<StateIndex>(state_count());
+}
+
+StateIndex StateTable::first_state(std::uint32_t behaviour) const noexcept {
+  return content_->first_state[behaviour];
+}
+
+StateIndex StateTable::start_state(std::uint32_t behaviour) const noexcept {
+  return first_state(behaviour) + content_->behaviours[behaviour].start;
+}
+
+std::uint32_t StateTable::behaviour_of(StateIndex state) const noexcept {
+  return content_->behaviour_of[state];
+}
+
+const std::vector<Behaviour>& StateTable::behaviours() const noexcept {
+  return content_->behaviours;
+}
+
+const LinkState& StateTable::state(StateIndex state) const noexcept {
+  const std::uint32_t behaviour = behaviour_of(state);
+  return content_->behaviours[behaviour].states[state - first_state(behaviour)];
+}
+
+bool StateTable::needs(Quantity quantity) const noexcept {
+  return content_->needs[static_cast<std::size_t>(quantity)];
+}
+
+std::uint32_t StateTable::slot_count() const noexcept {
+  return content_->slot_count;
+}
+
+double StateTable::stored_energy(StateIndex index, double distance,
+                                 double rest_length) const noexcept {
+  const StateTerm& term = content_->terms[index];
+  const double elongation =
+      std::min(term.most_elongation, std::max(term.least_elongation, distance - rest_length));
+  const double linear = 0.5 * term.stiffness * elongation * elongation;
+  if (term.elasticity.code == LawCode::kNone) return linear;
+  return linear + engine::stored_energy(state(index).elasticity, distance, elongation);
+}
+
+double StateTable::change_energy(const BehaviourRows& rows, std::size_t row) const noexcept {
+  const double part = content_->part_of_work;
+  const double distance = rows.quantity[static_cast<std::size_t>(Quantity::kDistance)][row];
+  const double after = stored_energy(rows.state[row], distance, rows.rest_length[row]) -
+                       part * rows.elastic[row] * rows.growth[row];
+  const double before = stored_energy(rows.from[row], distance, rows.rest_before[row]) -
+                        part * rows.elastic_before[row] * rows.growth[row];
+  return after - before;
+}
+
+Quantity StateTable::fired(StateIndex from, std::uint32_t exit) const noexcept {
+  return exit == kNotForced ? Quantity::kNone : content_->terms[from].exits[exit].fired;
+}
+
+void StateTable::replace(std::uint32_t index, const Behaviour& behaviour) {
+  content_->behaviours[index] = behaviour;
+  content_->build();
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,58 @@
+// sim_node/engine/links/state_table.h -- the behaviours of a network, made ready for stepping.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim_node/engine/laws/behaviour.h"
+#include "sim_node/engine/links/behaviour_kernel.h"
+
+namespace cordis::engine {
+
+/// All states of all behaviours in one row, in order: StateIndex of state s of behaviour b is
+/// first_state(b) + s. After the last stands a state of no force and no exit, for padding.
+class StateTable {
+ public:
+  /// Precondition: check_behaviour has passed all of them.
+  /// @param whole_steps  the account of the world belongs to the moments x(n), not to the middles
+  ///                     between them
+  StateTable(std::vector<Behaviour> behaviours, double dt, bool whole_steps = false);
+  ~StateTable();
+  StateTable(StateTable&&) noexcept;
+  StateTable& operator=(StateTable&&) noexcept;
+
+  const StateTerm* terms() const noexcept;
+  std::size_t state_count() const noexcept;  ///< without the padding
+  StateIndex padding_state() const noexcept;
+  StateIndex first_state(std::uint32_t behaviour) const noexcept;
+  StateIndex start_state(std::uint32_t behaviour) const noexcept;
+  std::uint32_t behaviour_of(StateIndex state) const noexcept;
+  const std::vector<Behaviour>& behaviours() const noexcept;
+  const LinkState& state(StateIndex state) const noexcept;
+
+  /// Whether a program or function of any behaviour asks for the quantity.
+  bool needs(Quantity quantity) const noexcept;
+  std::uint32_t slot_count() const noexcept;  ///< one more than the largest slot used
+
+  /// Energy [J] that a row stores in a state: closed form of the linear part and of the law, 0 for
+  /// a function. In a state that does not pull (push) only what the spring and a power law store
+  /// while they push (pull). Lennard-Jones: 0 at its cut.
+  double stored_energy(StateIndex state, double distance, double rest_length) const noexcept;
+  /// What a change adds to the stored energy as the account keeps it: after minus before. In the
+  /// middle of the last period that is stored energy less half of the elastic work of the period.
+  double change_energy(const BehaviourRows& rows, std::size_t row) const noexcept;
+  /// The condition's quantity of an exit; kNone when it was forced.
+  Quantity fired(StateIndex from, std::uint32_t exit) const noexcept;
+
+  /// Gives a behaviour other parameters. Allocates.
+  /// Precondition: as many states as before, well-formed.
+  void replace(std::uint32_t index, const Behaviour& behaviour);
+
+ private:
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace cordis::engine

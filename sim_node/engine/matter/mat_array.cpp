@@ -1,0 +1,257 @@
+// sim_node/engine/matter/mat_array.cpp
+#include "sim_node/engine/matter/mat_array.h"
+
+#include <algorithm>
+
+namespace cordis::engine {
+namespace {
+
+void set_column(AlignedVector<double>& columns, std::size_t mat, const Vec3& value) noexcept {
+  std::copy_n(value.data(), 3, columns.data() + 4 * mat);
+}
+
+}  // namespace
+
+MatArray::MatArray(const NetworkDescription& description)
+    : position_(4 * description.mats.size(), 0.0),
+      delayed_(position_.size(), 0.0),
+      force_(position_.size(), 0.0),
+      dt2_over_mass_(description.mats.size(), 0.0),
+      persistence_(description.mats.size(), 1.0),
+      dt_(description.step),
+      weight_step_(description.gravity * description.step * description.step),
+      medium_viscosity_over_dt_(description.medium_viscosity / description.step) {
+  const double dt = description.step;
+
+  std::vector<Range> masses;
+  for (std::size_t i = 0; i < description.mats.size(); ++i) {
+    const Mat& mat = description.mats[i];
+    set_column(position_, i, mat.position);
+    set_column(delayed_, i, mat.position - dt * mat.velocity);
+    mass_.push_back(mat.kind == MatKind::kMass ? mat.mass : 0.0);
+    if (mat.kind != MatKind::kMass) continue;
+
+    dt2_over_mass_[i] = dt * dt / mat.mass;
+    persistence_[i] = 1.0 - dt * description.medium_viscosity / mat.mass;
+    if (masses.empty() || masses.back().last != i) masses.push_back({i, i});
+    masses.back().last = i + 1;
+    if (!mat.weightless || description.gravity.isZero(0.0)) continue;
+    weightless_.resize(count(), 0);
+    weightless_[i] = 1;
+  }
+  masses_.reserve(count());
+  list_by_weight(masses, masses_);
+  masses_.shrink_to_fit();
+  moving_.reserve(description.freeze_tolerance > 0.0 ? count() : masses_.size());
+  moving_ = masses_;
+}
+
+void MatArray::start() noexcept {
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const auto mat = static_cast<std::uint32_t>(i);
+      const Vec3 moved = position(mat) - delayed(mat);  // v0 dt
+      const Vec3 pushed =                               // a0 dt^2
+          push_of_period(mat) - (1.0 - persistence_[i]) * moved;
+      set_column(delayed_, i, position(mat) - (moved - 0.5 * pushed));
+    }
+  }
+  clear_forces();
+}
+
+void MatArray::clear_forces() noexcept {
+  std::fill(force_.begin(), force_.end(), 0.0);
+}
+
+void MatArray::clear_forces(std::span<const std::uint32_t> of_mats) noexcept {
+  for (const std::uint32_t mat : of_mats) set_column(force_, mat, Vec3::Zero());
+}
+
+void MatArray::move_only(std::span<const Range> rows) noexcept {
+  list_by_weight(rows, moving_);
+}
+
+/// The same rows, each of masses of one weight. The list has room.
+void MatArray::list_by_weight(std::span<const Range> rows,
+                              std::vector<Range>& listed) const noexcept {
+  listed.assign(rows.begin(), rows.end());
+  if (weightless_.empty()) return;
+  listed.clear();
+  for (const Range& row : rows) {
+    for (std::size_t i = row.first; i < row.last; ++i) {
+      if (i == row.first || weightless_[i] != weightless_[i - 1]) listed.push_back({i, i});
+      listed.back().last = i + 1;
+    }
+  }
+}
+
+void MatArray::halt(std::uint32_t mat) noexcept {
+  set_column(delayed_, mat, vector(position_, mat));
+}
+
+AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
+  const bool in_medium = medium_viscosity_over_dt_ > 0.0;
+  return advance_rows(in_medium ? kernel.advance_in_medium : kernel.advance, nullptr, 0.5);
+}
+
+AdvanceReport MatArray::extrapolate(const StepKernel& kernel,
+                                    AlignedVector<double>& felt) noexcept {
+  const bool in_medium = medium_viscosity_over_dt_ > 0.0;
+  return advance_rows(in_medium ? kernel.extrapolate_in_medium : kernel.extrapolate, felt.data(),
+                      1.0);
+}
+
+/// Of no masses yet.
+MassColumns MatArray::columns(double* felt) noexcept {
+  return {0,
+          0,
+          position_.data(),
+          delayed_.data(),
+          force_.data(),
+          dt2_over_mass_.data(),
+          persistence_.data(),
+          felt};
+}
+
+/// @param range  of one weight
+void MatArray::choose_rows(MassColumns& columns, const Range& range) const noexcept {
+  columns.first = range.first;
+  columns.last = range.last;
+  Vec3::Map(columns.weight_step) = weight_step(range.first);
+}
+
+/// @param share  of moved_product in the square of a displacement
+AdvanceReport MatArray::advance_rows(Advance advance_row, double* felt, double share) noexcept {
+  MassColumns row = columns(felt);
+  AdvanceReport report;
+  bool all_finite = true;
+
+  for (const Range& range : moving_) {
+    choose_rows(row, range);
+    const AdvanceResult result = advance_row(row);
+    report.medium_work += share * medium_viscosity_over_dt_ * result.moved_product;
+    all_finite = all_finite && result.all_finite;
+  }
+  if (!all_finite) report.non_finite_mats = count_non_finite();
+  return report;
+}
+
+void MatArray::push(const StepKernel& kernel, double part,
+                    AlignedVector<double>& velocity) noexcept {
+  MassColumns row = columns(nullptr);
+  const Pushing by{velocity.data(), part / dt_, 0.0, nullptr};
+  for (const Range& range : masses_) {
+    choose_rows(row, range);
+    kernel.push(row, by);
+  }
+}
+
+void MatArray::push_and_drift(const StepKernel& kernel, double push, double drift,
+                              AlignedVector<double>& velocity) noexcept {
+  MassColumns row = columns(nullptr);
+  const Pushing by{velocity.data(), push / dt_, drift * dt_, force_.data()};
+  std::size_t cleared = 0;
+  for (const Range& range : masses_) {
+    choose_rows(row, range);
+    kernel.push_and_drift(row, by);
+    std::fill(force_.data() + 4 * cleared, force_.data() + 4 * range.first, 0.0);
+    cleared = range.last;
+  }
+  std::fill(force_.data() + 4 * cleared, force_.data() + force_.size(), 0.0);
+}
+
+std::uint32_t MatArray::move_by(const AlignedVector<double>& displacement) noexcept {
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Vec3 now = vector(position_, static_cast<std::uint32_t>(i));
+      set_column(delayed_, i, now);
+      set_column(position_, i, now + Vec3::Map(displacement.data() + 4 * i));
+    }
+  }
+  return count_non_finite();
+}
+
+std::uint32_t MatArray::delay_by(const StepKernel& kernel,
+                                 const AlignedVector<double>& velocity) noexcept {
+  MassColumns row = columns(nullptr);
+  bool all_finite = true;
+  for (const Range& range : masses_) {
+    choose_rows(row, range);
+    all_finite = kernel.delay(row, velocity.data(), dt_).all_finite && all_finite;
+  }
+  return all_finite ? 0 : count_non_finite();
+}
+
+void MatArray::find_displacements(AlignedVector<double>& displacement) const noexcept {
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    displacement[i] = position_[i] - delayed_[i];
+  }
+}
+
+double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
+                                     AlignedVector<double>& push) const noexcept {
+  const double dt_viscosity = medium_viscosity_over_dt_ * dt_ * dt_;
+  double product = 0.0;
+  std::fill(push.begin(), push.end(), 0.0);
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Vec3 moved = Vec3::Map(displacement.data() + 4 * i);
+      set_column(push, i,
+                 dt_ * dt_ * force(static_cast<std::uint32_t>(i)) + mass_[i] * weight_step(i) -
+                     dt_viscosity * moved);
+      product += moved.x() * moved.x() + moved.y() * moved.y() + moved.z() * moved.z();
+    }
+  }
+  return 0.5 * medium_viscosity_over_dt_ * product;
+}
+
+void MatArray::add_forces(const AlignedVector<double>& more) noexcept {
+  for (std::size_t i = 0; i < force_.size(); ++i) force_[i] += more[i];
+}
+
+void MatArray::move_port(std::uint32_t mat, const Vec3& position) noexcept {
+  set_column(delayed_, mat, vector(position_, mat));
+  set_column(position_, mat, position);
+}
+
+void MatArray::set_force(std::uint32_t mat, const Vec3& force) noexcept {
+  set_column(force_, mat, force);
+}
+
+ForceColumns MatArray::force_columns() noexcept {
+  return {position_.data(), delayed_.data(), force_.data()};
+}
+
+void MatArray::append_state(std::vector<double>& state) const {
+  for (const auto* columns : {&position_, &delayed_, &force_}) {
+    state.insert(state.end(), columns->begin(), columns->end());
+  }
+}
+
+const double* MatArray::take_state(const double* state) noexcept {
+  for (auto* columns : {&position_, &delayed_, &force_}) {
+    std::copy_n(state, columns->size(), columns->data());
+    state += columns->size();
+  }
+  return state;
+}
+
+Columns MatArray::view(const AlignedVector<double>& columns) const noexcept {
+  return {columns.data(), 4, static_cast<Eigen::Index>(count())};
+}
+
+Vec3 MatArray::vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept {
+  return Vec3::Map(columns.data() + 4 * static_cast<std::size_t>(mat));
+}
+
+std::uint32_t MatArray::count_non_finite() const noexcept {
+  std::uint32_t found = 0;
+  for (const Range& range : masses_) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      if (!position(static_cast<std::uint32_t>(i)).allFinite()) ++found;
+    }
+  }
+  return found;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,161 @@
+// sim_node/engine/matter/mat_array.h -- the matter of a world.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/matter/step_kernel.h"
+
+namespace cordis::engine {
+
+/// Where the column begins of the MAT that a row of padding joins to itself: another for the next
+/// row, so that none waits until the one before it has added its 0.
+inline std::uint32_t column_of_padding(std::size_t row, std::size_t mat_count) noexcept {
+  return 4 * static_cast<std::uint32_t>(row % mat_count);
+}
+
+/// What moving the masses by one step has to tell.
+struct AdvanceReport {
+  std::uint32_t non_finite_mats = 0;  ///< masses whose new position is not finite
+  double medium_work = 0.0;           ///< taken by the viscosity of the medium in this step [J]
+};
+
+/// The MATs of a network: force in, position out.
+///
+///     x(n+1) = 2 x(n) - x(n-1) + (dt^2 / m) (f(n) + m g - Z (x(n) - x(n-1)) / dt),   Z of the
+///     medium
+///
+/// Masses move by this law, fixed points never, port masses by move_port alone. Every array is 4 x
+/// N, column i belonging to MAT i, 32-byte aligned, its fourth value 0. Source: [Luc90 III.2.1
+/// Matter modelisation].
+class MatArray {
+ public:
+  /// Positions of step 0; delayed positions one period at the velocity v0 before them.
+  explicit MatArray(const NetworkDescription& description);
+
+  /// Takes the forces of step 0, computed with the delayed positions of the constructor, for a
+  /// start of second order: the delayed positions become those of the half-step velocity v0 - a0 dt
+  /// / 2. Clears the forces.
+  void start() noexcept;
+
+  void clear_forces() noexcept;
+  void clear_forces(std::span<const std::uint32_t> of_mats) noexcept;
+
+  /// Rows [first, last) of masses.
+  struct Range {
+    std::size_t first;
+    std::size_t last;
+  };
+  /// From now on only these rows of masses are moved; at first all masses are.
+  void move_only(std::span<const Range> rows) noexcept;
+  /// What forces and gravity add to the displacement of a mass in this period [m].
+  Vec3 push_of_period(std::uint32_t mat) const noexcept { return pushed_by(mat, force(mat)); }
+  /// A mass stays where it is, at rest.
+  void halt(std::uint32_t mat) noexcept;
+
+  /// Moves every mass by one step. Real time: O(N), no allocation.
+  AdvanceReport advance(const StepKernel& kernel) noexcept;
+
+  /// The same as `leapfrog` does it; see StepKernel::extrapolate.
+  /// @param felt  4 x N, x(n) - dt v(n), then that of the next step
+  AdvanceReport extrapolate(const StepKernel& kernel, AlignedVector<double>& felt) noexcept;
+
+  /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
+  void push(const StepKernel& kernel, double part, AlignedVector<double>& velocity) noexcept;
+  /// The same; then moves them by a part of a period at these velocities, where the delayed
+  /// positions stay, and clears all forces.
+  void push_and_drift(const StepKernel& kernel, double push, double drift,
+                      AlignedVector<double>& velocity) noexcept;
+  /// Moves the masses by these displacements. @return how many are not finite then
+  std::uint32_t move_by(const AlignedVector<double>& displacement) noexcept;
+  /// Puts a mass of a network in 1 dimension somewhere.
+  void set_motion(std::uint32_t mat, double position, double delayed) noexcept {
+    position_[4 * std::size_t{mat}] = position;
+    delayed_[4 * std::size_t{mat}] = delayed;
+  }
+  /// The delayed positions become the present ones, and those of the masses a period at these
+  /// velocities before them. @return how many positions are not finite
+  void delay() noexcept { delayed_ = position_; }
+  std::uint32_t delay_by(const StepKernel& kernel, const AlignedVector<double>& velocity) noexcept;
+  /// x(n) - x(n-1) of the masses and ports, 4 x N [m].
+  void find_displacements(AlignedVector<double>& displacement) const noexcept;
+  /// dt^2 times the forces and weights of the masses, and what the medium takes of these
+  /// displacements, 4 x N [kg m]. @return half of what it takes in a period [J]
+  double find_push_in_medium(const AlignedVector<double>& displacement,
+                             AlignedVector<double>& push) const noexcept;
+  /// What a force and gravity add to the way of a mass in a period [m].
+  Vec3 pushed_by(std::uint32_t mat, const Vec3& force) const noexcept {
+    return dt2_over_mass_[mat] * force + weight_step(mat);
+  }
+  /// What the medium does to a mass at x(n) - dt v(n) [N].
+  Vec3 force_of_medium(std::uint32_t mat, const Vec3& felt) const noexcept {
+    return medium_viscosity_over_dt_ * (felt - position(mat));
+  }
+  /// Adds to the forces on all MATs, 4 x N.
+  void add_forces(const AlignedVector<double>& more) noexcept;
+
+  /// Moves a MAT from where it is, its delayed position then.
+  void move_port(std::uint32_t mat, const Vec3& position) noexcept;
+
+  std::size_t count() const noexcept { return dt2_over_mass_.size(); }
+  bool is_mass(std::uint32_t mat) const noexcept { return dt2_over_mass_[mat] > 0.0; }
+  Columns position() const noexcept { return view(position_); }  ///< x(n) [m]
+  Columns delayed() const noexcept { return view(delayed_); }    ///< x(n-1) [m]
+  Columns force() const noexcept { return view(force_); }        ///< f(n) [N]
+
+  Vec3 position(std::uint32_t mat) const noexcept { return vector(position_, mat); }
+  Vec3 delayed(std::uint32_t mat) const noexcept { return vector(delayed_, mat); }
+  Vec3 force(std::uint32_t mat) const noexcept { return vector(force_, mat); }
+  /// x(n-1) of a mass; of all else, which rests between two steps, x(n). [m]
+  Vec3 delayed_at_rest(std::uint32_t mat) const noexcept {
+    return vector(is_mass(mat) ? delayed_ : position_, mat);
+  }
+  /// Where a MAT was when the last forces were computed [m].
+  Vec3 position_of_forces(std::uint32_t mat) const noexcept {
+    return forces_are_present_ ? position(mat) : delayed_at_rest(mat);
+  }
+  /// Whether the last forces were computed at x(n), or at x(n-1) as by moving since.
+  void set_forces_are_present(bool present) noexcept { forces_are_present_ = present; }
+  bool forces_are_present() const noexcept { return forces_are_present_; }
+  void set_force(std::uint32_t mat, const Vec3& force) noexcept;
+
+  /// Where the links find the positions and leave their forces.
+  ForceColumns force_columns() noexcept;
+
+  std::size_t state_size() const noexcept { return 3 * position_.size(); }
+  /// The state as a row of values: x(n), x(n-1), f(n).
+  void append_state(std::vector<double>& state) const;
+  /// Takes it back. @return one past the last value taken.
+  const double* take_state(const double* state) noexcept;
+
+ private:
+  MassColumns columns(double* felt) noexcept;
+  void choose_rows(MassColumns& columns, const Range& range) const noexcept;
+  void list_by_weight(std::span<const Range> rows, std::vector<Range>& listed) const noexcept;
+  Vec3 weight_step(std::size_t mat) const noexcept {
+    return !weightless_.empty() && weightless_[mat] != 0 ? Vec3(Vec3::Zero()) : weight_step_;
+  }
+  AdvanceReport advance_rows(Advance advance_row, double* felt, double share) noexcept;
+  Columns view(const AlignedVector<double>& columns) const noexcept;
+  static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;
+  std::uint32_t count_non_finite() const noexcept;
+
+  AlignedVector<double> position_;
+  AlignedVector<double> delayed_;
+  AlignedVector<double> force_;
+  AlignedVector<double> dt2_over_mass_;   // [s^2/kg], 0 unless a mass
+  AlignedVector<double> persistence_;     // 1 - dt Z / m
+  std::vector<double> mass_;              // [kg], 0 unless a mass
+  std::vector<std::uint8_t> weightless_;  // by MAT; empty: none, or no gravity
+  std::vector<Range> masses_;             // rows of neighbouring masses, of one weight
+  std::vector<Range> moving_;             // those that are moved
+  double dt_;                             // [s]
+  Vec3 weight_step_;                      // gravity * dt^2 [m]
+  double medium_viscosity_over_dt_;       // Z / dt [N/m]
+  bool forces_are_present_ = false;
+};
+
+}  // namespace cordis::engine

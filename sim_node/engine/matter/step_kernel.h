@@ -1,0 +1,119 @@
+// sim_node/engine/matter/step_kernel.h -- the two phases of a step as plain loops, one set for each vector
+// width.
+//
+// The loops are compiled several times, each time for other vector instructions. So that the linker
+// can never merge a function compiled for a newer processor into code for an older one, nothing
+// here has a member function, and the bodies include neither Eigen nor the standard library.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "sim_node/engine/core/vector_width.h"
+
+namespace cordis::engine {
+
+/// Links are stepped 8 at a time, whatever the width: the order of every sum is the same then.
+inline constexpr std::size_t kLinkBatch = 8;
+
+/// Spring-dampers, one row per link; arrays 64-byte aligned, padded with links of no force to a
+/// multiple of 8.
+struct LinkRows {
+  std::size_t count = 0;                    // rows, padding included
+  const std::uint32_t* column_a = nullptr;  // 4 * MAT index: where the column of an end begins
+  const std::uint32_t* column_b = nullptr;
+  const double* stiffness = nullptr;          // K [N/m]
+  const double* viscosity_over_dt = nullptr;  // Z / dt [N/m]
+  const double* rest_length = nullptr;        // [m]
+  double* viscous_factor =
+      nullptr;  // viscous force of the last call = factor * vector from a to b [N/m]
+  double* elastic_factor = nullptr;  // the same of the elastic force; not in 1 dimension
+};
+
+/// The state the forces follow from, and where they are added; 4 x N, columns 32-byte aligned.
+struct ForceColumns {
+  const double* position = nullptr;  // x(n) [m]
+  const double* delayed = nullptr;   // x(n-1) [m]
+  double* force = nullptr;           // f(n) [N]
+};
+
+/// Twice the work [J] that forces of the links took: half of the last step's and half of this
+/// one's, so that the sum over all steps is that of f(n) . (x(n+1) - x(n-1)), twice the work of
+/// f(n) in this scheme. Summed by the place in the batch, so that the sum does not depend on how
+/// many batches are taken at once, nor on those without work.
+struct alignas(64) LinkWork {
+  // of the elastic forces; 0 in 1 dimension, where it follows from K e(n) e(n-1)
+  double elastic[kLinkBatch] = {};
+  double dissipated[kLinkBatch] = {};  // of the viscous forces
+};
+
+/// Adds the forces of all links in link order, and their works.
+using AddLinkForces = void (*)(const LinkRows& links, const ForceColumns& columns,
+                               LinkWork& work) noexcept;
+
+/// A row of neighbouring masses, and what moves them.
+struct MassColumns {
+  std::size_t first = 0;                  // index of the first mass
+  std::size_t last = 0;                   // one past the last
+  double* position = nullptr;             // x(n), then x(n+1) [m]
+  double* delayed = nullptr;              // x(n-1), then x(n) [m]
+  const double* force = nullptr;          // f(n) [N]
+  const double* dt2_over_mass = nullptr;  // dt^2 / m [s^2/kg], one per MAT
+  const double* persistence = nullptr;    // 1 - dt Z / m, with Z of the medium; one per MAT
+  double* felt = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
+  alignas(32) double weight_step[4] = {};  // gravity * dt^2 [m]
+};
+
+struct AdvanceResult {
+  // For the account of the medium: sum of moved(n) . (moved(n) + moved(n+1)), of `leapfrog` that of
+  // (dt v(n))^2. [m^2]
+  double moved_product = 0.0;
+  bool all_finite = true;
+};
+
+/// x(n+1) = x(n) + persistence (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2.
+using Advance = AdvanceResult (*)(const MassColumns& masses) noexcept;
+
+/// For schemes that keep velocities: v += push a, and, when it drifts, x += drift v and the forces
+/// are 0 then.
+struct Pushing {
+  double* velocity = nullptr;  // 4 x N [m/s]
+  double push_over_dt = 0.0;   // of what moves a mass by dt^2 / m f(n) + gravity dt^2 [1/s]
+  double drift = 0.0;          // [s]
+  double* force = nullptr;     // to be cleared; null: no drift
+};
+using Push = void (*)(const MassColumns& masses, const Pushing& by) noexcept;
+
+/// x(n-1) = x(n) - dt v. @param dt  [s]
+using Delay = AdvanceResult (*)(const MassColumns& masses, const double* velocity,
+                                double dt) noexcept;
+
+/// The loops of one width. Those of a moment remember nothing for an account: `elastic` is 0 and
+/// `dissipated` the viscous power of these forces times dt, once. The last two keep in `felt` the
+/// velocity that dampers and medium see, v(n) = 1.5 v(n-1/2) - 0.5 v(n-3/2): x(n+1) = x(n) + (x(n)
+/// - x(n-1)) + (dt^2 / m) f(n)
+/// + gravity dt^2 - (1 - persistence) dt v(n).
+struct StepKernel {
+  AddLinkForces springs_1d = nullptr;  // no link has viscosity; distances are signed
+  AddLinkForces spring_dampers_1d = nullptr;
+  AddLinkForces springs_3d = nullptr;  // for 2 dimensions too
+  AddLinkForces spring_dampers_3d = nullptr;
+  AddLinkForces moment_spring_dampers_1d = nullptr;  // of springs_1d there is only one
+  AddLinkForces moment_springs_3d = nullptr;
+  AddLinkForces moment_spring_dampers_3d = nullptr;
+  Advance advance = nullptr;  // without a medium: persistence is not read, moved_product stays 0
+  Advance advance_in_medium = nullptr;
+  Advance extrapolate = nullptr;  // of `leapfrog`
+  Advance extrapolate_in_medium = nullptr;
+  Push push = nullptr;
+  Push push_and_drift = nullptr;
+  Delay delay = nullptr;
+};
+
+extern const StepKernel kStepKernelSse2;
+extern const StepKernel kStepKernelAvx2;
+extern const StepKernel kStepKernelAvx512;
+
+const StepKernel& step_kernel(VectorWidth width) noexcept;
+
+}  // namespace cordis::engine

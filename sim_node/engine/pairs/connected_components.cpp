@@ -1,0 +1,179 @@
+// sim_node/engine/pairs/connected_components.cpp
+#include "sim_node/engine/pairs/connected_components.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "sim_node/engine/integrators/idle_state.h"
+#include "sim_node/engine/core/vector_width.h"
+
+namespace cordis::engine {
+namespace {
+
+constexpr std::size_t kKeptPerMember = 64;  // pairs that there is room for
+constexpr std::uint32_t kNoMember = std::numeric_limits<std::uint32_t>::max();
+
+const SetLiaison& set_of(const NetworkDescription& network, std::size_t set) {
+  if (set >= network.sets.size()) {
+    throw std::invalid_argument("set " + std::to_string(set) + " does not exist");
+  }
+  return network.sets[set];
+}
+
+}  // namespace
+
+ConnectedPieces::ConnectedPieces(const Network& network, std::size_t set)
+    : ConnectedPieces(network.description(), set) {}
+
+ConnectedPieces::ConnectedPieces(const NetworkDescription& network, std::size_t set)
+    : ConnectedPieces(network, set_of(network, set).set_p, set_of(network, set).set_q) {}
+
+ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
+                                 const std::vector<std::uint32_t>& mats)
+    : ConnectedPieces(network, mats, {}) {}
+
+ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
+                                 const std::vector<std::uint32_t>& set_p,
+                                 const std::vector<std::uint32_t>& set_q)
+    : count_p_(set_p.size()),
+      across_(!set_q.empty()),
+      dimension_(network.dimension),
+      kernel_(&pair_kernel(best_vector_width())),
+      grid_(count_p_, network.dimension),
+      member_(network.mats.size(), kNoMember) {
+  for (const auto* half : {&set_p, &set_q}) {
+    for (const std::uint32_t mat : *half) {
+      if (mat >= member_.size() || member_[mat] != kNoMember) {
+        throw std::invalid_argument("MAT " + std::to_string(mat) + " does not exist, or twice");
+      }
+      member_[mat] = static_cast<std::uint32_t>(mat_.size());
+      mat_.push_back(mat);
+    }
+  }
+  parent_.resize(mat_.size());
+  piece_.resize(mat_.size());
+  found_.resize(count_p_ + kPairBatch);
+  position_.resize(4 * (mat_.size() + kPairBatch), 0.0);
+}
+
+void ConnectedPieces::keep_near(double distance) {
+  const std::size_t members = mat_.size();
+  const std::size_t all = across_ ? count_p_ * (members - count_p_) : members * (members - 1) / 2;
+  kept_.emplace(count_p_, members - count_p_, dimension_, distance,
+                std::min(all, kKeptPerMember * members), *kernel_);
+  kept_distance_ = distance;
+}
+
+std::size_t ConnectedPieces::find_near(const Columns& positions, double distance) noexcept {
+  begin();
+  for (std::size_t m = 0; m < mat_.size(); ++m) {
+    std::copy_n(positions.col(mat_[m]).data(), 4, position_.data() + 4 * m);
+  }
+  if (kept_ && distance == kept_distance_) {
+    join_kept(distance);
+  } else {
+    join_found(distance);
+  }
+  return number_pieces();
+}
+
+void ConnectedPieces::join_kept(double distance) noexcept {
+  const double* position = position_.data();
+  kept_->refresh(position);
+  for (NeighbourRows rows = kept_->first_rows(position); rows.first < rows.last;
+       rows = kept_->rows_after(rows, position)) {
+    for (std::size_t a = rows.first; a < rows.last; ++a) {
+      const double* at = position + 4 * a;
+      for (std::size_t i = rows.start[a]; i < rows.start[a + 1]; ++i) {
+        const std::uint32_t column = rows.neighbour[i - rows.origin];
+        const double x = position[column] - at[0];
+        const double y = position[column + 1] - at[1];
+        const double z = position[column + 2] - at[2];
+        if (!(x * x + y * y + z * z < distance * distance)) continue;
+        join(static_cast<std::uint32_t>(a), column / 4);
+      }
+    }
+  }
+}
+
+void ConnectedPieces::join_found(double distance) noexcept {
+  grid_.fill(position_.data(), count_p_, distance);
+  const CellPlaces places = grid_.places();
+  for (std::size_t b = across_ ? count_p_ : 0; b < mat_.size(); ++b) {
+    const double* point = position_.data() + 4 * b;
+    if (!std::isfinite(point[0] + point[1] + point[2])) continue;
+    const std::size_t last = std::min(b, count_p_);
+    const NearQuery query{
+        point[0], point[1], point[2], distance * distance, 0.0, static_cast<double>(last)};
+    const CellGrid::Surroundings around = grid_.around(point, last);
+    for (std::size_t r = 0; r < around.count; ++r) {
+      const CellGrid::Run run = around.runs[r];
+      const std::size_t count =
+          kernel_->find_near(places, run.begin, run.end, query, found_.data());
+      for (std::size_t i = 0; i < count; ++i) join(found_[i], static_cast<std::uint32_t>(b));
+    }
+  }
+}
+
+std::size_t ConnectedPieces::find_bound(std::span<const BoundPair> pairs) noexcept {
+  begin();
+  for (const BoundPair& pair : pairs) join(pair);
+  return number_pieces();
+}
+
+std::size_t ConnectedPieces::find_bound(const World& world, std::size_t set) noexcept {
+  begin();
+  const VisitBoundPair add = [](void* owner, const BoundPair& pair) {
+    static_cast<ConnectedPieces*>(owner)->join(pair);
+  };
+  world.visit_bound_pairs(set, add, this);
+  return number_pieces();
+}
+
+std::size_t ConnectedPieces::find_linked(const World& world,
+                                         std::span<const std::uint32_t> state_links) noexcept {
+  begin();
+  const std::vector<StateLink>& links = world.network().description().state_links;
+  for (const std::uint32_t link : state_links) {
+    if (!is_idle(world, link)) join(BoundPair{links[link].mat_a, links[link].mat_b});
+  }
+  return number_pieces();
+}
+
+void ConnectedPieces::join(const BoundPair& pair) noexcept {
+  const std::uint32_t a = member_[pair.mat_a];
+  const std::uint32_t b = member_[pair.mat_b];
+  if (a != kNoMember && b != kNoMember) join(a, b);
+}
+
+void ConnectedPieces::begin() noexcept {
+  for (std::uint32_t m = 0; m < parent_.size(); ++m) parent_[m] = m;
+}
+
+std::uint32_t ConnectedPieces::root_of(std::uint32_t member) noexcept {
+  while (parent_[member] != member) {
+    parent_[member] = parent_[parent_[member]];
+    member = parent_[member];
+  }
+  return member;
+}
+
+void ConnectedPieces::join(std::uint32_t a, std::uint32_t b) noexcept {
+  const std::uint32_t root_a = root_of(a);
+  const std::uint32_t root_b = root_of(b);
+  parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+}
+
+/// The root of a piece is its first member, so that its number is known to all later ones.
+std::size_t ConnectedPieces::number_pieces() noexcept {
+  std::uint32_t count = 0;
+  for (std::uint32_t m = 0; m < parent_.size(); ++m) {
+    const std::uint32_t root = root_of(m);
+    piece_[m] = root == m ? count++ : piece_[root];
+  }
+  return count;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,84 @@
+// sim_node/engine/pairs/connected_components.h -- how many pieces the balls of a set form.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/pairs/cell_grid.h"
+#include "sim_node/engine/pairs/neighbour_list.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/pairs/pair_kernel.h"
+#include "sim_node/engine/world.h"
+
+namespace cordis::engine {
+
+/// Counts pieces of matter: two members of a set belong to one piece when their pair is near, or
+/// bound, or when a chain of such pairs leads from one to the other. A pair is one of the set
+/// liaison: across its two sets, or within its one; of members that no liaison joins it is any two.
+/// [Luc90 IX Experimentation] tells of matter that shatters and regroups: this is the number it is
+/// told by.
+class ConnectedPieces {
+ public:
+  /// @param set  index in NetworkDescription::sets
+  /// @throws std::invalid_argument when the network has no such set.
+  ConnectedPieces(const Network& network, std::size_t set);
+  ConnectedPieces(const NetworkDescription& network, std::size_t set);
+  /// Of MATs that no set liaison need join: all pairs within `mats` count.
+  /// @throws std::invalid_argument when the network has no such MAT, or one stands there twice.
+  ConnectedPieces(const NetworkDescription& network, const std::vector<std::uint32_t>& mats);
+
+  /// Keeps the pairs that are about so near [m], > 0, from one find_near() to the next while no
+  /// member goes far: for who asks for the same distance again and again. Allocates.
+  void keep_near(double distance);
+
+  /// Finds the pieces of members nearer than a distance [m], > 0. A member that is not finite is a
+  /// piece of its own. Real time: O(members + pairs), no allocation. @return how many
+  std::size_t find_near(const Columns& positions, double distance) noexcept;
+
+  /// Finds the pieces of members in bound pairs, such as World::bound_pairs. Real time: O(members +
+  /// pairs), no allocation. @return how many
+  std::size_t find_bound(std::span<const BoundPair> pairs) noexcept;
+  /// The same of the bound pairs of a set of a world. Precondition: the set exists.
+  std::size_t find_bound(const World& world, std::size_t set) noexcept;
+
+  /// Finds the pieces of members joined by those of these links with states that are not idle in
+  /// their present state. Real time: O(members + links), no allocation. Precondition: the links
+  /// exist. @return how many
+  std::size_t find_linked(const World& world, std::span<const std::uint32_t> state_links) noexcept;
+
+  /// Number of the piece of a member as last found, from 0 in the order of their first members.
+  std::uint32_t piece_of(std::size_t member) const noexcept { return piece_[member]; }
+  /// MATs of the set, P and then Q.
+  std::span<const std::uint32_t> members() const noexcept { return mat_; }
+
+ private:
+  ConnectedPieces(const NetworkDescription& network, const std::vector<std::uint32_t>& set_p,
+                  const std::vector<std::uint32_t>& set_q);
+  void begin() noexcept;
+  void join_kept(double distance) noexcept;
+  void join_found(double distance) noexcept;
+  void join(const BoundPair& pair) noexcept;
+  void join(std::uint32_t a, std::uint32_t b) noexcept;
+  std::uint32_t root_of(std::uint32_t member) noexcept;
+  std::size_t number_pieces() noexcept;
+
+  std::size_t count_p_;
+  bool across_;  // two sets
+  int dimension_;
+  const PairKernel* kernel_;
+  CellGrid grid_;
+  std::vector<std::uint32_t> mat_;     // of each member
+  std::vector<std::uint32_t> member_;  // of each MAT of the set
+  std::vector<std::uint32_t> parent_;  // an earlier member of the same piece, or itself
+  std::vector<std::uint32_t> piece_;
+  std::vector<std::uint32_t> found_;
+  AlignedVector<double> position_;  // 4 x members, padded to whole batches
+  std::optional<NeighbourList> kept_;
+  double kept_distance_ = 0.0;  // [m]
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,141 @@
+// sim_node/engine/pairs/pair_behaviours.h -- the behaviour of the pairs of a set.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/links/event_log.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/pairs/pair_block.h"
+#include "sim_node/engine/pairs/pair_kernel.h"
+#include "sim_node/engine/pairs/pair_states.h"
+#include "sim_node/engine/links/state_table.h"
+
+namespace cordis::engine {
+
+/// What is the same for all pairs of a step.
+struct PairStep {
+  const StateTable& table;
+  const BehaviourKernel& behaviours;
+  EventLog& log;
+  std::uint64_t step;  // step count
+  bool frozen;         // before step 0: no exit is tested, nothing is remembered
+};
+
+/// Rest length of a pair [m]: given, or the sum of two radii.
+struct PairRest {
+  double given = 0.0;
+  const double* radius = nullptr;  // of each member; null when the rest length is given
+
+  double of(std::size_t a, std::size_t b) const noexcept {
+    return radius == nullptr ? given : radius[a] + radius[b];
+  }
+};
+
+/// Steps the behaviour of pairs, whatever its law and states. A pair remembers its state while it
+/// is in range, and as long as it is in another state than that of the start.
+class PairBehaviours {
+ public:
+  /// @param capacity        pairs in range or bound there is room for
+  /// @param block_capacity  that of the blocks it is given
+  PairBehaviours(const NetworkDescription& description, const SetLiaison& set,
+                 const StateTable& table, std::size_t capacity, std::size_t block_capacity);
+
+  /// Fits what is remembered to a table that has been changed. Allocates.
+  void adopt(const StateTable& table);
+
+  void begin_step(const PairStep& step) noexcept;
+  /// Adds the pairs of row a that are bound to those in range. @return how many there are then
+  std::size_t add_bound(const PairKernel& kernel, const PairStep& step,
+                        const MemberColumns& members, std::size_t a, std::size_t count,
+                        const PairRow& row) noexcept;
+  /// Finds the pulls of a padded block whose pairs have been measured. It holds the rest lengths
+  /// that new pairs have.
+  void step(const PairStep& step, const MemberColumns& members, double range_square,
+            PairBlock& block) noexcept;
+
+  /// Rows that are left out of a step remember what they did.
+  void keep_rows(const PairStep& step, std::size_t first, std::size_t last) noexcept {
+    if (remembers(step)) forgotten_ += static_cast<std::uint32_t>(states_.keep_rows(first, last));
+  }
+
+  bool has_states() const noexcept { return !stateless_; }
+  const PairStates& states() const noexcept { return states_; }
+  PairStates& states() noexcept { return states_; }
+  StateIndex start_state() const noexcept { return start_; }
+  /// Shows the pairs that are in another state than that of the start, with their first member.
+  template <class Visit>
+  void visit_bound(Visit visit) const {
+    if (stateless_) return;
+    for (std::size_t a = 0; a < states_.row_count(); ++a) {
+      for (std::size_t i = states_.begin(a); i < states_.end(a); ++i) {
+        if (states_.state(i).state != start_) visit(a, states_.state(i));
+      }
+    }
+  }
+  double switching() const noexcept { return switching_; }  ///< by the changes of this step [J]
+  /// Pairs of this step that could not be remembered, for lack of room.
+  std::uint32_t forgotten() const noexcept { return forgotten_; }
+
+ private:
+  enum Array : std::size_t {
+    kPull,
+    kElastic,
+    kElongation,
+    kImpulse,
+    kEntered,
+    kSpeed,
+    kSpeedX,
+    kSpeedY,
+    kSpeedZ,
+    kSlip,
+    kAge,
+    kMassA,
+    kMassB,
+    kArrayCount
+  };
+
+  double* array(Array which) noexcept { return values_.data() + which * block_capacity_; }
+  bool remembers(const PairStep& step) const noexcept { return !stateless_ && !step.frozen; }
+  double* memory_of(std::size_t pair) noexcept {
+    return memory_.data() + pair / kPairBatch * states_.slot_count() * kPairBatch +
+           pair % kPairBatch;
+  }
+  void find_masses(const PairRows& rows) noexcept;
+  void find_velocities(const MemberColumns& members, const PairRows& rows) noexcept;
+  void find_plain_pulls(const PairStep& step, PairBlock& block) noexcept;
+  void recall(const PairStep& step, PairBlock& block) noexcept;
+  void begin_pair(std::size_t pair, StateIndex state, const PairStep& step) noexcept;
+  void find_quantities(const PairStep& step, PairBlock& block) noexcept;
+  void step_batches(const PairStep& step, PairBlock& block) noexcept;
+  void note_changes(const PairStep& step, std::size_t i, const PairRows& pairs,
+                    const BehaviourRows& rows) noexcept;
+  void remember(double range_square, PairBlock& block) noexcept;
+  void find_factors(double range_square, PairBlock& block) noexcept;
+
+  std::uint32_t behaviour_;
+  double dt_;
+  std::size_t row_count_;
+  std::vector<std::uint32_t> mat_;  // of each member
+  std::vector<double> mass_;        // of each member [kg]; 0 unless a mass
+  std::size_t block_capacity_;
+  bool stateless_ = true;
+  bool needs_velocity_ = false;
+  bool needs_mass_ = false;
+  bool needs_impulse_ = false;
+  StateIndex start_ = 0;
+  StateIndex padding_ = 0;
+  std::size_t capacity_;
+  PairStates states_;
+  double switching_ = 0.0;
+  std::uint32_t forgotten_ = 0;
+  AlignedVector<StateIndex> state_;      // of each pair of the block
+  AlignedVector<double> values_;         // kArrayCount arrays of the block
+  AlignedVector<double> memory_;         // of pair i, slot s: [(i / 8 * slots + s) * 8 + i % 8]
+  AlignedVector<std::uint32_t> merged_;  // columns
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,60 @@
+// sim_node/engine/pairs/pair_block.cpp
+#include "sim_node/engine/pairs/pair_block.h"
+
+#include <algorithm>
+
+namespace cordis::engine {
+
+PairBlock::PairBlock(std::size_t member_count)
+    : capacity_(padded(kEnough + member_count, kPairBatch) + kPairBatch),
+      start_(member_count + 1, 0),
+      column_a_(capacity_, 0U),
+      column_b_(capacity_, 0U),
+      values_(kArrayCount * capacity_, 0.0) {}
+
+void PairBlock::begin(std::size_t first_row) noexcept {
+  first_ = first_row;
+  last_ = first_row;
+  count_ = 0;
+  start_[0] = 0;
+}
+
+void PairBlock::end_row(std::size_t pairs) noexcept {
+  std::fill_n(column_a_.begin() + static_cast<std::ptrdiff_t>(count_), pairs,
+              static_cast<std::uint32_t>(4 * last_));
+  count_ += pairs;
+  ++last_;
+  start_[last_ - first_] = count_;
+}
+
+void PairBlock::pad(const MemberColumns& members) noexcept {
+  const PairRow row = row_at(0);
+  for (std::size_t i = count_; i < padded_count(); ++i) {
+    row.column[i] = members.padding + 4 * static_cast<std::uint32_t>(i % kPairBatch);
+    column_a_[i] = row.column[i];
+    for (double* values : {row.x, row.y, row.z, row.square}) values[i] = 0.0;
+    rest_length()[i] = 0.0;
+  }
+}
+
+std::size_t PairBlock::padded_count() const noexcept {
+  return padded(count_, kPairBatch);
+}
+
+PairRows PairBlock::rows() noexcept {
+  return {row_at(0), column_a_.data(), count_, first_, last_, start_.data()};
+}
+
+PairRow PairBlock::row_at(std::size_t pair) noexcept {
+  const auto at = [this, pair](Array which) { return array(which) + pair; };
+  return {column_b_.data() + pair,
+          at(kX),
+          at(kY),
+          at(kZ),
+          at(kSquare),
+          at(kLength),
+          at(kInverse),
+          at(kGrowth)};
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,144 @@
+// sim_node/engine/pairs/pair_kernel.h -- the loops over the pairs of a set, one set of them for each
+// vector width.
+//
+// As in step_kernel.h, nothing here has a member function, so that the linker never mixes up code
+// of two widths.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "sim_node/engine/core/vector_width.h"
+
+namespace cordis::engine {
+
+/// Pairs of a row are stepped 8 at a time, whatever the width. An array that is written without
+/// regard to its end has room for as many more.
+inline constexpr std::size_t kPairBatch = 8;
+
+/// Members of a set sorted by the cell they are in.
+struct CellPlaces {
+  const double* x = nullptr;  // [m]
+  const double* y = nullptr;
+  const double* z = nullptr;
+  const double* number = nullptr;         // of the member, for comparison
+  const std::uint32_t* member = nullptr;  // the same, to be found
+};
+
+/// What is looked for among them: members first <= number < last nearer to a point than the reach.
+struct NearQuery {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+  double reach_square = 0.0;  // [m^2]
+  double first = 0.0;
+  double last = 0.0;
+};
+
+/// Writes what it finds among places[begin, end) in their order. @return how many
+using FindNear = std::size_t (*)(const CellPlaces& places, std::size_t begin, std::size_t end,
+                                 const NearQuery& query, std::uint32_t* found) noexcept;
+
+/// @return the largest square of the displacement of a column since it was at `from` [m^2]; columns
+/// that are not finite do not count.
+using LargestMove = double (*)(const double* position, const double* from,
+                               std::size_t count) noexcept;
+
+/// The pairs of a row: one member a, and members b in range; arrays 64-byte aligned, padded to
+/// whole batches with pairs at distance 0 of columns that belong to nobody.
+struct PairRow {
+  std::uint32_t* column = nullptr;  // where the column of b begins
+  double* x = nullptr;              // from a to b [m]
+  double* y = nullptr;
+  double* z = nullptr;
+  double* square = nullptr;   // of the distance [m^2]
+  double* length = nullptr;   // distance [m]
+  double* inverse = nullptr;  // 1 / length, 0 while it is 0 [1/m]
+  double* growth = nullptr;   // of the pair along its line of centres in the last period [m]
+};
+
+/// Pairs of several rows, those of one row after those of the other: the arrays of a PairRow, and
+/// where the column of a begins, of each pair. Padded as a whole.
+struct PairRows {
+  PairRow pairs;
+  const std::uint32_t* column_a = nullptr;
+  std::size_t count = 0;               // of pairs, without padding
+  std::size_t first = 0;               // row
+  std::size_t last = 0;                // one past the last
+  const std::size_t* start = nullptr;  // of row a: start[a - first]; one past the last too
+};
+
+/// Members and their neighbours: row a has those from neighbour[start[a] - origin] on to
+/// neighbour[start[a + 1] - origin], as columns.
+struct NeighbourRows {
+  std::size_t first = 0;  // row
+  std::size_t last = 0;   // one past the last
+  const std::size_t* start = nullptr;
+  const std::uint32_t* neighbour = nullptr;
+  std::size_t origin = 0;
+};
+
+/// The members of a set, 4 x N, columns 32-byte aligned; 8 more columns for padding.
+struct MemberColumns {
+  const double* position = nullptr;  // x(n) [m]
+  const double* moved = nullptr;     // x(n) - x(n-1) [m]
+  std::uint32_t padding = 0;         // where the column of the first member of padding begins
+};
+
+/// Gathers the pairs of member a and its neighbours, given as columns, that are nearer than the
+/// range, in their order. @return how many; they are not padded.
+using GatherPairs = std::size_t (*)(const MemberColumns& members, std::size_t a,
+                                    const std::uint32_t* neighbour, std::size_t count,
+                                    double range_square, const PairRow& row) noexcept;
+
+/// Finds length, inverse and growth of all pairs.
+using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows) noexcept;
+
+/// Adds factor * (vector from a to b) to member a and takes it from member b, for each pair.
+using SpreadRows = void (*)(const PairRows& rows, const double* factor, double* force) noexcept;
+
+/// A contact: pull = K e + Z / dt * growth, within least_pull and most_pull.
+struct LinearPair {
+  double stiffness = 0.0;          // [N/m]
+  double viscosity_over_dt = 0.0;  // [N/m]
+  double least_pull = 0.0;         // [N]
+  double most_pull = 0.0;          // [N]
+  double least_elongation = 0.0;   // that stores energy [m]
+  double most_elongation = 0.0;    // [m]
+};
+
+/// Finds pull / distance of each pair, and the part of it that stores no energy.
+/// @param rest  rest lengths [m]
+using LinearPairs = void (*)(const LinearPair& pair, const PairRow& row, std::size_t count,
+                             const double* rest, double* factor, double* viscous_factor) noexcept;
+
+/// Lennard-Jones: pull = (attraction / d^6 - repulsion / d^12) / d.
+struct LennardJonesPair {
+  double attraction = 0.0;    // 24 depth s^6 [J m^6]
+  double repulsion = 0.0;     // 48 depth s^12 [J m^12]
+  double range_square = 0.0;  // [m^2]
+};
+
+/// Gathers the rows, finds the forces and spreads them.
+using LennardJonesRows = void (*)(const LennardJonesPair& pair, const MemberColumns& members,
+                                  const NeighbourRows& rows, const PairRow& row,
+                                  double* force) noexcept;
+
+/// The loops of one width.
+struct PairKernel {
+  FindNear find_near = nullptr;
+  LargestMove largest_move = nullptr;
+  GatherPairs gather_pairs = nullptr;
+  MeasurePairs measure_pairs = nullptr;
+  SpreadRows spread_rows = nullptr;
+  LinearPairs linear_pairs = nullptr;
+  LennardJonesRows lennard_jones_rows = nullptr;
+};
+
+extern const PairKernel kPairKernelSse2;
+extern const PairKernel kPairKernelAvx2;
+extern const PairKernel kPairKernelAvx512;
+
+const PairKernel& pair_kernel(VectorWidth width) noexcept;
+
+}  // namespace cordis::engine

@@ -1,0 +1,293 @@
+// sim_node/engine/pairs/pair_kernel_body.h -- the loops over pairs, written once over the vector
+// registers of each width.
+//
+// `Lanes` is a type of lanes as step_kernel_body.h says, and gives besides
+//   load_any                        of values that need not be aligned
+//   vectors(columns, at)            the columns that begin at `at`, as x, y, z
+//   neighbours(columns)             those that stand one after the other
+//   subtract(columns, at, v)        takes v from the columns at `at`, one after the other
+//   pack(out, v, chosen)            writes the chosen lanes one after the other, kWidth values in
+//   all
+// Each + - * is rounded by itself: no operation may be contracted or reordered.
+#pragma once
+
+#include "sim_node/engine/pairs/pair_kernel.h"
+
+namespace cordis::engine {
+
+template <class Lanes>
+unsigned first_lanes(std::size_t count) noexcept {
+  return count < Lanes::kWidth ? (1U << count) - 1U : (1U << Lanes::kWidth) - 1U;
+}
+
+template <class Lanes>
+std::size_t find_near(const CellPlaces& places, std::size_t begin, std::size_t end,
+                      const NearQuery& query, std::uint32_t* found) noexcept {
+  using Row = typename Lanes::Row;
+  const CellPlaces all = places;
+  const Row at_x = Lanes::every(query.x);
+  const Row at_y = Lanes::every(query.y);
+  const Row at_z = Lanes::every(query.z);
+  const Row reach_square = Lanes::every(query.reach_square);
+  const Row first = Lanes::every(query.first);
+  const Row last = Lanes::every(query.last);
+  std::size_t count = 0;
+
+  for (std::size_t i = begin; i < end; i += Lanes::kWidth) {
+    const Row x = Lanes::load_any(all.x + i) - at_x;
+    const Row y = Lanes::load_any(all.y + i) - at_y;
+    const Row z = Lanes::load_any(all.z + i) - at_z;
+    const Row number = Lanes::load_any(all.number + i);
+    const unsigned chosen = Lanes::bits(Lanes::less(x * x + y * y + z * z, reach_square)) &
+                            Lanes::bits(Lanes::less(number, last)) &
+                            ~Lanes::bits(Lanes::less(number, first)) & first_lanes<Lanes>(end - i);
+    if (chosen == 0U) continue;
+    Lanes::pack(found + count, all.member + i, chosen);
+    count += static_cast<std::size_t>(__builtin_popcount(chosen));
+  }
+  return count;
+}
+
+template <class Lanes>
+double largest_move(const double* position, const double* from, std::size_t count) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  Row largest = Lanes::zero();
+  for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
+    const Row3 now = Lanes::neighbours(position + 4 * i);
+    const Row3 then = Lanes::neighbours(from + 4 * i);
+    const Row x = now.x - then.x;
+    const Row y = now.y - then.y;
+    const Row z = now.z - then.z;
+    largest = Lanes::maximum(x * x + y * y + z * z, largest);
+  }
+  alignas(64) double lane[Lanes::kWidth];
+  Lanes::store(lane, largest);
+  double most = 0.0;
+  for (const double value : lane) most = value > most ? value : most;
+  return most;
+}
+
+/// Fills the last batch up.
+template <class Lanes>
+void pad_row(const MemberColumns& members, std::size_t count, const PairRow& row) noexcept {
+  for (std::size_t i = count; i % kPairBatch != 0; ++i) {
+    row.column[i] = members.padding + 4 * static_cast<std::uint32_t>(i % kPairBatch);
+    row.x[i] = 0.0;
+    row.y[i] = 0.0;
+    row.z[i] = 0.0;
+    row.square[i] = 0.0;
+  }
+}
+
+template <class Lanes>
+std::size_t gather_pairs(const MemberColumns& members, std::size_t a,
+                         const std::uint32_t* neighbour, std::size_t candidates,
+                         double range_square, const PairRow& row) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  const PairRow out = row;  // whose arrays nothing written below can seem to move
+  const double* const position = members.position;
+  const Row at_x = Lanes::every(position[4 * a]);
+  const Row at_y = Lanes::every(position[4 * a + 1]);
+  const Row at_z = Lanes::every(position[4 * a + 2]);
+  const Row range = Lanes::every(range_square);
+  std::size_t count = 0;
+
+  for (std::size_t i = 0; i < candidates; i += Lanes::kWidth) {
+    const Row3 there = Lanes::vectors(position, neighbour + i);
+    const Row x = there.x - at_x;
+    const Row y = there.y - at_y;
+    const Row z = there.z - at_z;
+    const Row square = x * x + y * y + z * z;
+    const unsigned chosen =
+        Lanes::bits(Lanes::less(square, range)) & first_lanes<Lanes>(candidates - i);
+    Lanes::pack(out.column + count, neighbour + i, chosen);
+    Lanes::pack(out.x + count, x, chosen);
+    Lanes::pack(out.y + count, y, chosen);
+    Lanes::pack(out.z + count, z, chosen);
+    Lanes::pack(out.square + count, square, chosen);
+    count += static_cast<std::size_t>(__builtin_popcount(chosen));
+  }
+  return count;
+}
+
+template <class Lanes>
+std::size_t gather_row(const MemberColumns& members, std::size_t a, const std::uint32_t* neighbour,
+                       std::size_t candidates, double range_square, const PairRow& row) noexcept {
+  const std::size_t count =
+      gather_pairs<Lanes>(members, a, neighbour, candidates, range_square, row);
+  pad_row<Lanes>(members, count, row);
+  return count;
+}
+
+template <class Lanes>
+void measure_pairs(const MemberColumns& members, const PairRows& rows) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  const PairRow row = rows.pairs;
+  const std::uint32_t* const column_a = rows.column_a;
+  const double* const moved = members.moved;
+  for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
+    const Row square = Lanes::load(row.square + i);
+    const Row length = Lanes::sqrt(square);
+    const Row inverse = Lanes::inverse_or_zero(square, length);
+    const Row3 a = Lanes::vectors(moved, column_a + i);
+    const Row3 b = Lanes::vectors(moved, row.column + i);
+    const Row along = Lanes::load(row.x + i) * (b.x - a.x) + Lanes::load(row.y + i) * (b.y - a.y) +
+                      Lanes::load(row.z + i) * (b.z - a.z);
+    Lanes::store(row.length + i, length);
+    Lanes::store(row.inverse + i, inverse);
+    Lanes::store(row.growth + i, along * inverse);
+  }
+}
+
+/// What the pairs of a row give to member a, by their place in the batch.
+template <class Lanes>
+struct RowSum {
+  static constexpr std::size_t kParts = kPairBatch / Lanes::kWidth;
+  typename Lanes::Row x[kParts];
+  typename Lanes::Row y[kParts];
+  typename Lanes::Row z[kParts];
+};
+
+template <class Lanes>
+RowSum<Lanes> no_force() noexcept {
+  RowSum<Lanes> sum;
+  for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
+    sum.x[part] = Lanes::zero();
+    sum.y[part] = Lanes::zero();
+    sum.z[part] = Lanes::zero();
+  }
+  return sum;
+}
+
+template <class Lanes>
+void spread(const PairRow& row, std::size_t i, typename Lanes::Row factor, double* force,
+            RowSum<Lanes>& sum, std::size_t part) noexcept {
+  using Row3 = typename Lanes::Row3;
+  const Row3 pull{Lanes::load(row.x + i) * factor, Lanes::load(row.y + i) * factor,
+                  Lanes::load(row.z + i) * factor};
+  sum.x[part] = sum.x[part] + pull.x;
+  sum.y[part] = sum.y[part] + pull.y;
+  sum.z[part] = sum.z[part] + pull.z;
+  Lanes::subtract(force, row.column + i, pull);
+}
+
+/// The 8 places of a batch in the same order at every width.
+template <class Lanes>
+double sum_of(const typename Lanes::Row* parts) noexcept {
+  alignas(64) double lane[kPairBatch];
+  for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
+    Lanes::store(lane + part * Lanes::kWidth, parts[part]);
+  }
+  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+template <class Lanes>
+void give(const RowSum<Lanes>& sum, double* column) noexcept {
+  column[0] += sum_of<Lanes>(sum.x);
+  column[1] += sum_of<Lanes>(sum.y);
+  column[2] += sum_of<Lanes>(sum.z);
+}
+
+alignas(64) constexpr double kLaneNumber[kPairBatch] = {0, 1, 2, 3, 4, 5, 6, 7};
+
+/// As `spread`, of pairs that begin anywhere, and of the first `count` lanes alone: what else
+/// stands in the lanes belongs to other rows, and gets nothing.
+template <class Lanes>
+void spread_some(const PairRow& row, std::size_t i, std::size_t count, const double* factors,
+                 double* force, RowSum<Lanes>& sum, std::size_t part) noexcept {
+  using Row = typename Lanes::Row;
+  const Row factor = Lanes::load_any(factors + i);
+  typename Lanes::Row3 pull{Lanes::load_any(row.x + i) * factor,
+                            Lanes::load_any(row.y + i) * factor,
+                            Lanes::load_any(row.z + i) * factor};
+  if (count < Lanes::kWidth) {
+    const auto own =
+        Lanes::less(Lanes::load(kLaneNumber), Lanes::every(static_cast<double>(count)));
+    pull.x = Lanes::select(own, pull.x, Lanes::zero());
+    pull.y = Lanes::select(own, pull.y, Lanes::zero());
+    pull.z = Lanes::select(own, pull.z, Lanes::zero());
+  }
+  sum.x[part] = sum.x[part] + pull.x;
+  sum.y[part] = sum.y[part] + pull.y;
+  sum.z[part] = sum.z[part] + pull.z;
+  Lanes::subtract(force, row.column + i, pull);
+}
+
+template <class Lanes>
+void spread_rows(const PairRows& rows, const double* factor, double* force) noexcept {
+  const PairRow row = rows.pairs;
+  for (std::size_t a = rows.first; a < rows.last; ++a) {
+    const std::size_t end = rows.start[a - rows.first + 1];
+    RowSum<Lanes> sum = no_force<Lanes>();
+    for (std::size_t i = rows.start[a - rows.first]; i < end; i += kPairBatch) {
+#pragma GCC unroll 4
+      for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
+        const std::size_t at = i + part * Lanes::kWidth;
+        if (at >= end) break;
+        spread_some<Lanes>(row, at, end - at, factor, force, sum, part);
+      }
+    }
+    give<Lanes>(sum, force + 4 * a);
+  }
+}
+
+template <class Lanes>
+void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count, const double* rest,
+                  double* factor, double* viscous_factor) noexcept {
+  using Row = typename Lanes::Row;
+  const Row stiffness = Lanes::every(pair.stiffness);
+  const Row viscosity = Lanes::every(pair.viscosity_over_dt);
+  const Row least_pull = Lanes::every(pair.least_pull);
+  const Row most_pull = Lanes::every(pair.most_pull);
+  const Row least_elongation = Lanes::every(pair.least_elongation);
+  const Row most_elongation = Lanes::every(pair.most_elongation);
+  for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
+    const Row inverse = Lanes::load(row.inverse + i);
+    const Row elongation = Lanes::load(row.length + i) - Lanes::load(rest + i);
+    const Row pull = stiffness * elongation + viscosity * Lanes::load(row.growth + i);
+    const Row limited = Lanes::minimum(most_pull, Lanes::maximum(least_pull, pull));
+    const Row stored =
+        stiffness * Lanes::minimum(most_elongation, Lanes::maximum(least_elongation, elongation));
+    Lanes::store(factor + i, limited * inverse);
+    Lanes::store(viscous_factor + i, (limited - stored) * inverse);
+  }
+}
+
+template <class Lanes>
+void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& members,
+                        const NeighbourRows& rows, const PairRow& all, double* force) noexcept {
+  using Row = typename Lanes::Row;
+  const PairRow row = all;
+  const Row attraction = Lanes::every(pair.attraction);
+  const Row repulsion = Lanes::every(pair.repulsion);
+  for (std::size_t a = rows.first; a < rows.last; ++a) {
+    const std::uint32_t* neighbour = rows.neighbour + (rows.start[a] - rows.origin);
+    const std::size_t count = gather_row<Lanes>(
+        members, a, neighbour, rows.start[a + 1] - rows.start[a], pair.range_square, row);
+    RowSum<Lanes> sum = no_force<Lanes>();
+    for (std::size_t i = 0; i < count; i += kPairBatch) {
+#pragma GCC unroll 4
+      for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
+        const std::size_t at = i + part * Lanes::kWidth;
+        const Row square = Lanes::load(row.square + at);
+        const Row inverse_square = Lanes::inverse_or_zero(square, square);
+        const Row sixth = inverse_square * inverse_square * inverse_square;
+        const Row factor = (attraction - repulsion * sixth) * sixth * inverse_square;
+        spread<Lanes>(row, at, factor, force, sum, part);
+      }
+    }
+    give<Lanes>(sum, force + 4 * a);
+  }
+}
+
+template <class Lanes>
+constexpr PairKernel make_pair_kernel() noexcept {
+  return PairKernel{find_near<Lanes>,         largest_move<Lanes>, gather_pairs<Lanes>,
+                    measure_pairs<Lanes>,     spread_rows<Lanes>,  linear_pairs<Lanes>,
+                    lennard_jones_rows<Lanes>};
+}
+
+}  // namespace cordis::engine

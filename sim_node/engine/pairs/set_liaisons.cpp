@@ -1,0 +1,104 @@
+// sim_node/engine/pairs/set_liaisons.cpp
+#include "sim_node/engine/pairs/set_liaisons.h"
+
+namespace cordis::engine {
+
+SetLiaisons::SetLiaisons(const NetworkDescription& description, const StateTable& table,
+                         const PairKernel& kernel) {
+  sets_.reserve(description.sets.size());
+  for (std::size_t s = 0; s < description.sets.size(); ++s) {
+    sets_.emplace_back(description, s, table, kernel);
+  }
+}
+
+StepEnergy SetLiaisons::add_forces(const PairStep& step, const ForceColumns& columns) noexcept {
+  StepEnergy energy;
+  for (SetPairs& set : sets_) energy += set.add_forces(step, columns);
+  return energy;
+}
+
+StepEnergy SetLiaisons::take_positions(const ForceColumns& columns) noexcept {
+  StepEnergy energy;
+  for (SetPairs& set : sets_) energy += set.take_positions(columns);
+  return energy;
+}
+
+bool SetLiaisons::refresh() noexcept {
+  bool changed = false;
+  for (SetPairs& set : sets_) changed = set.refresh() || changed;
+  return changed;
+}
+
+StepEnergy SetLiaisons::add_pair_forces(const PairStep& step,
+                                        const ForceColumns& columns) noexcept {
+  StepEnergy energy;
+  for (SetPairs& set : sets_) energy += set.add_pair_forces(step, columns);
+  return energy;
+}
+
+void SetLiaisons::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                                  MatRoles& roles) noexcept {
+  for (SetPairs& set : sets_) set.mark_neighbours(pass, never_rests, roles);
+}
+
+void SetLiaisons::choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept {
+  for (SetPairs& set : sets_) set.choose_active(never_rests, roles);
+}
+
+StepEnergy SetLiaisons::work_since_last_call(const MatArray& mats) const noexcept {
+  StepEnergy energy;
+  for (const SetPairs& set : sets_) energy += set.work_since_last_call(mats);
+  return energy;
+}
+
+double SetLiaisons::stored_energy(const StateTable& table) noexcept {
+  double sum = 0.0;
+  for (SetPairs& set : sets_) sum += set.stored_energy(table);
+  return sum;
+}
+
+void SetLiaisons::start() noexcept {
+  for (SetPairs& set : sets_) set.start();
+}
+
+void SetLiaisons::adopt(const StateTable& table) {
+  for (SetPairs& set : sets_) set.adopt(table);
+}
+
+std::uint32_t SetLiaisons::crowded_count() const noexcept {
+  std::uint32_t count = 0;
+  for (const SetPairs& set : sets_) count += set.is_crowded() ? 1U : 0U;
+  return count;
+}
+
+void SetLiaisons::add_to(StateHash& hash) const noexcept {
+  for (const SetPairs& set : sets_) set.add_to(hash);
+}
+
+void SetLiaisons::append_state(std::vector<double>& state) const {
+  for (const SetPairs& set : sets_) set.append_state(state);
+}
+
+std::size_t SetLiaisons::most_values() const noexcept {
+  std::size_t values = 0;
+  for (const SetPairs& set : sets_) values += set.most_values();
+  return values;
+}
+
+bool SetLiaisons::find_size_of_state(const double* state, std::size_t available,
+                                     std::size_t& size) const noexcept {
+  size = 0;
+  for (const SetPairs& set : sets_) {
+    const std::size_t more = set.size_of_state(state + size, available - size);
+    if (more == 0) return false;
+    size += more;
+  }
+  return true;
+}
+
+const double* SetLiaisons::take_state(const double* state) noexcept {
+  for (SetPairs& set : sets_) state = set.take_state(state);
+  return state;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,47 @@
+// sim_node/engine/pairs/set_liaisons.h -- all set liaisons of a world.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/pairs/set_pairs.h"
+
+namespace cordis::engine {
+
+/// The set liaisons of a network, one after the other in their order.
+class SetLiaisons {
+ public:
+  SetLiaisons(const NetworkDescription& description, const StateTable& table,
+              const PairKernel& kernel);
+
+  bool empty() const noexcept { return sets_.empty(); }
+  SetPairs& set(std::size_t index) noexcept { return sets_[index]; }
+
+  /// As those of SetPairs, for all sets:
+  StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  bool refresh() noexcept;
+  StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                       MatRoles& roles) noexcept;
+  void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;
+  StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  double stored_energy(const StateTable& table) noexcept;
+  void start() noexcept;
+  void adopt(const StateTable& table);
+  std::uint32_t crowded_count() const noexcept;
+  void add_to(StateHash& hash) const noexcept;
+
+  void append_state(std::vector<double>& state) const;
+  std::size_t most_values() const noexcept;
+  /// How long the row of values is that begins with these. @return false when they are none.
+  bool find_size_of_state(const double* state, std::size_t available,
+                          std::size_t& size) const noexcept;
+  const double* take_state(const double* state) noexcept;
+
+ private:
+  std::vector<SetPairs> sets_;
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,374 @@
+// sim_node/engine/pairs/set_pairs.cpp
+#include "sim_node/engine/pairs/set_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cordis::engine {
+namespace {
+
+// Entries of a neighbour list: room for all pairs where they are few, else for twice those of the
+// start with a large skin, within bounds.
+constexpr std::size_t kLeastCapacity = std::size_t{1} << 20;
+constexpr std::size_t kMostCapacity = std::size_t{1} << 25;
+constexpr std::size_t kStatesPerMember = 64;
+
+std::size_t all_pairs(const SetLiaison& set) {
+  const std::size_t p = set.set_p.size();
+  return set.set_q.empty() ? p * (p - 1) / 2 : p * set.set_q.size();
+}
+
+std::size_t list_capacity(const NetworkDescription& description, const SetLiaison& set,
+                          const PairKernel& kernel) {
+  const std::size_t all = all_pairs(set);
+  if (all <= kLeastCapacity) return all;
+  NeighbourList trial(set.set_p.size(), set.set_q.size(), description.dimension, set.range, 0,
+                      kernel);
+  trial.hold_skin(0.5 * set.range);
+  AlignedVector<double> position;
+  for (const auto* half : {&set.set_p, &set.set_q}) {
+    for (const std::uint32_t mat : *half) {
+      const Vec3& at = description.mats[mat].position;
+      position.insert(position.end(), {at.x(), at.y(), at.z(), 0.0});
+    }
+  }
+  position.resize(4 * padded(position.size() / 4, kPairBatch), 0.0);
+  trial.refresh(position.data());
+  return std::min(all, std::clamp(2 * trial.entry_count(), kLeastCapacity, kMostCapacity));
+}
+
+std::size_t state_capacity(const SetLiaison& set) {
+  const std::size_t members = set.set_p.size() + set.set_q.size();
+  return std::min(all_pairs(set), std::max(kLeastCapacity / 8, kStatesPerMember * members));
+}
+
+double dot(const double* u, const double* v) noexcept {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+}  // namespace
+
+SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
+                   const StateTable& table, const PairKernel& kernel)
+    : kernel_(kernel),
+      behaviour_(description.sets[index].behaviour),
+      rest_length_(description.sets[index].rest_length),
+      range_(description.sets[index].range),
+      neighbours_(description.sets[index].set_p.size(), description.sets[index].set_q.size(),
+                  description.dimension, range_,
+                  list_capacity(description, description.sets[index], kernel), kernel),
+      block_(description.sets[index].set_p.size() + description.sets[index].set_q.size()),
+      behaviours_(description, description.sets[index], table,
+                  state_capacity(description.sets[index]), block_.capacity()) {
+  const SetLiaison& set = description.sets[index];
+  for (const auto* half : {&set.set_p, &set.set_q}) {
+    for (const std::uint32_t mat : *half) {
+      column_.push_back(4 * mat);
+      if (rest_length_ < 0.0) radius_.push_back(description.radius[mat]);
+    }
+  }
+  const std::size_t padded_count = padded(column_.size(), kPairBatch) + kPairBatch;
+  if (!radius_.empty()) radius_.resize(padded_count, 0.0);
+  position_.resize(4 * padded_count, 0.0);
+  moved_.resize(position_.size(), 0.0);
+  force_.resize(position_.size(), 0.0);
+  viscous_.resize(position_.size(), 0.0);
+  if (description.freeze_tolerance > 0.0) {
+    active_ = ActivePairs(column_.size(), set.set_p.size(), neighbours_.capacity());
+  }
+  adopt(table);
+}
+
+void SetPairs::adopt(const StateTable& table) {
+  behaviours_.adopt(table);
+  const StateTerm& term = table.terms()[table.start_state(behaviour_)];
+  const bool plain = !behaviours_.has_states() && term.dissipation.code == LawCode::kNone;
+  const bool bare = term.stiffness == 0.0 && term.viscosity_over_dt == 0.0 && !term.limited;
+  path_ = Path::kAnyBehaviour;
+  if (plain && term.elasticity.code == LawCode::kNone) {
+    path_ = Path::kLinear;
+    linear_ = {term.stiffness, term.viscosity_over_dt, term.least_pull,
+               term.most_pull, term.least_elongation,  term.most_elongation};
+  } else if (plain && bare && term.elasticity.code == LawCode::kLennardJones) {
+    path_ = Path::kLennardJones;
+    const double range = std::min(range_, term.elasticity.cut);
+    lennard_jones_ = {term.elasticity.attraction, term.elasticity.repulsion, range * range};
+  }
+  const auto is_bare_limit = [](double pull) { return pull == 0.0 || std::isinf(pull); };
+  const bool conservative = path_ == Path::kLennardJones ||
+                            (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 &&
+                             is_bare_limit(term.least_pull) && is_bare_limit(term.most_pull));
+  has_viscous_ = has_viscous_ || !conservative;  // forces of the last step may have been
+}
+
+MemberColumns SetPairs::members() const noexcept {
+  return {position_.data(), moved_.data(),
+          static_cast<std::uint32_t>(4 * padded(column_.size(), kPairBatch))};
+}
+
+PairRest SetPairs::rest() const noexcept {
+  return {rest_length_, radius_.empty() ? nullptr : radius_.data()};
+}
+
+StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& columns) noexcept {
+  StepEnergy energy = take_positions(columns);
+  refresh();
+  energy += add_pair_forces(step, columns);
+  return energy;
+}
+
+bool SetPairs::refresh() noexcept {
+  const std::size_t builds = neighbours_.build_count();
+  neighbours_.refresh(position_.data());
+  return neighbours_.build_count() != builds;
+}
+
+StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept {
+  clear_forces();
+  behaviours_.begin_step(step);
+  if (active_.are_all()) {
+    for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
+         rows = neighbours_.rows_after(rows, position_.data())) {
+      step_rows(step, rows);
+    }
+  } else {
+    step_active_rows(step);
+  }
+  StepEnergy energy = give_forces(columns);
+  energy.switching += behaviours_.switching();
+  return energy;
+}
+
+void SetPairs::step_active_rows(const PairStep& step) noexcept {
+  std::size_t next = 0;
+  for (const NeighbourRows& rows : active_.rows()) {
+    behaviours_.keep_rows(step, next, rows.first);
+    step_rows(step, rows);
+    next = rows.last;
+  }
+  behaviours_.keep_rows(step, next, active_.row_count());
+}
+
+/// Of members.
+template <class Visit>
+void SetPairs::visit_active(Visit visit) const noexcept {
+  if (active_.are_all()) {
+    for (std::size_t m = 0; m < column_.size(); ++m) visit(m);
+  } else {
+    for (const std::uint32_t m : active_.members()) visit(std::size_t{m});
+  }
+}
+
+void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexcept {
+  if (path_ == Path::kLennardJones) {
+    block_.begin(rows.first);
+    kernel_.lennard_jones_rows(lennard_jones_, members(), rows, block_.next_row(), force_.data());
+    return;
+  }
+  for (std::size_t a = rows.first; a < rows.last;) {
+    block_.begin(a);
+    for (; a < rows.last && !block_.is_full(); ++a) {
+      const std::size_t near = gather(rows, a);
+      const PairRow row = block_.next_row();
+      block_.end_row(behaviours_.add_bound(kernel_, step, members(), a, near, row));
+    }
+    step_block(step);
+  }
+}
+
+/// To the next row of the block.
+std::size_t SetPairs::gather(const NeighbourRows& rows, std::size_t a) noexcept {
+  return kernel_.gather_pairs(members(), a, rows.neighbour + (rows.start[a] - rows.origin),
+                              rows.start[a + 1] - rows.start[a], range_ * range_,
+                              block_.next_row());
+}
+
+/// Those that new pairs have.
+void SetPairs::find_rest_lengths() noexcept {
+  const PairRows rows = block_.rows();
+  double* rest_length = block_.rest_length();
+  for (std::size_t i = 0; i < rows.count; ++i) {
+    rest_length[i] = rest().of(rows.column_a[i] / 4, rows.pairs.column[i] / 4);
+  }
+}
+
+void SetPairs::step_block(const PairStep& step) noexcept {
+  block_.pad(members());
+  find_rest_lengths();
+  const PairRows rows = block_.rows();
+  kernel_.measure_pairs(members(), rows);
+  if (path_ == Path::kLinear) {
+    kernel_.linear_pairs(linear_, rows.pairs, rows.count, block_.rest_length(), block_.factor(),
+                         block_.viscous_factor());
+  } else {
+    behaviours_.step(step, members(), range_ * range_, block_);
+  }
+  kernel_.spread_rows(rows, block_.factor(), force_.data());
+  if (has_viscous_) kernel_.spread_rows(rows, block_.viscous_factor(), viscous_.data());
+}
+
+/// Gathers the members, and ends the account of the last forces.
+StepEnergy SetPairs::take_positions(const ForceColumns& columns) noexcept {
+  StepEnergy work;
+  visit_active([&](std::size_t m) {
+    const double* position = columns.position + column_[m];
+    const double* delayed = columns.delayed + column_[m];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      position_[4 * m + axis] = position[axis];
+      moved_[4 * m + axis] = position[axis] - delayed[axis];
+    }
+    work += work_of(m, moved_.data() + 4 * m);
+  });
+  return work;
+}
+
+void SetPairs::clear_forces() noexcept {
+  if (active_.are_all()) {
+    std::fill(force_.begin(), force_.end(), 0.0);
+    if (has_viscous_) std::fill(viscous_.begin(), viscous_.end(), 0.0);
+    return;
+  }
+  for (const std::uint32_t m : active_.members()) {
+    std::fill_n(force_.begin() + 4 * std::ptrdiff_t{m}, 4, 0.0);
+    if (has_viscous_) std::fill_n(viscous_.begin() + 4 * std::ptrdiff_t{m}, 4, 0.0);
+  }
+}
+
+StepEnergy SetPairs::give_forces(const ForceColumns& columns) const noexcept {
+  StepEnergy work;
+  visit_active([&](std::size_t m) {
+    double* force = columns.force + column_[m];
+    for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += force_[4 * m + axis];
+    work += work_of(m, moved_.data() + 4 * m);
+  });
+  return work;
+}
+
+/// Half of what the force on a member takes over a way.
+StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noexcept {
+  const double all = -0.5 * dot(force_.data() + 4 * member, moved);
+  if (!has_viscous_) return {all, 0.0, 0.0, 0.0};
+  const double dissipated = -0.5 * dot(viscous_.data() + 4 * member, moved);
+  return {all - dissipated, dissipated, 0.0, 0.0};
+}
+
+PairsOfSet SetPairs::pairs() noexcept {
+  return {column_, behaviours_, neighbours_.first_rows(position_.data())};
+}
+
+void SetPairs::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                               MatRoles& roles) noexcept {
+  if (computes_all(never_rests)) {
+    active_.pass_to_all(column_, pass, roles);
+  } else {
+    active_.pass_on(pairs(), pass, roles);
+  }
+}
+
+void SetPairs::choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept {
+  if (computes_all(never_rests)) {
+    active_.choose_all(column_, roles);
+  } else {
+    active_.choose(pairs(), roles);
+  }
+}
+
+StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
+  StepEnergy work;
+  for (std::size_t m = 0; m < column_.size(); ++m) {
+    const Vec3 moved = mats.position(column_[m] / 4) - mats.delayed_at_rest(column_[m] / 4);
+    work += work_of(m, moved.data());
+  }
+  return work;
+}
+
+double SetPairs::stored_energy(const StateTable& table) noexcept {
+  double sum = 0.0;
+  const PairRest rest_of = rest();
+  const PairStates& states = behaviours_.states();
+  const StateIndex start = behaviours_.start_state();
+  const auto distance = [this](std::size_t a, std::size_t b) {
+    double square = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double along = position_[4 * b + axis] - position_[4 * a + axis];
+      square += along * along;
+    }
+    return std::sqrt(square);
+  };
+  if (behaviours_.has_states() && states.has_rows()) {
+    for (std::size_t a = 0; a < states.row_count(); ++a) {
+      for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
+        const PairState& pair = states.state(i);
+        sum += table.stored_energy(pair.state, distance(a, pair.column / 4), pair.rest_length);
+      }
+    }
+    return sum;
+  }
+  for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
+       rows = neighbours_.rows_after(rows, position_.data())) {
+    for (std::size_t a = rows.first; a < rows.last; ++a) {
+      block_.begin(a);
+      const std::size_t count = gather(rows, a);
+      const PairRow row = block_.next_row();
+      for (std::size_t i = 0; i < count; ++i) {
+        sum +=
+            table.stored_energy(start, std::sqrt(row.square[i]), rest_of.of(a, row.column[i] / 4));
+      }
+    }
+  }
+  return sum;
+}
+
+void SetPairs::visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const {
+  behaviours_.visit_bound([&](std::size_t a, const PairState& pair) {
+    visit(owner, {column_[a] / 4, column_[pair.column / 4] / 4,
+                  pair.state - table.first_state(behaviour_), pair.rest_length});
+  });
+}
+
+/// The elastic forces stay: their work up to step 0 belongs to the energy stored there.
+void SetPairs::start() noexcept {
+  for (std::size_t i = 0; i < viscous_.size(); ++i) force_[i] -= viscous_[i];
+  std::fill(viscous_.begin(), viscous_.end(), 0.0);
+}
+
+bool SetPairs::is_crowded() const noexcept {
+  return !neighbours_.is_whole() || behaviours_.forgotten() > 0;
+}
+
+void SetPairs::add_to(StateHash& hash) const noexcept {
+  if (behaviours_.has_states()) behaviours_.states().add_to(hash);
+}
+
+void SetPairs::append_state(std::vector<double>& state) const {
+  state.insert(state.end(), force_.begin(), force_.end());
+  state.insert(state.end(), viscous_.begin(), viscous_.end());
+  state.insert(state.end(), position_.begin(), position_.end());
+  if (behaviours_.has_states()) behaviours_.states().append_state(state);
+}
+
+std::size_t SetPairs::most_values() const noexcept {
+  const std::size_t states = behaviours_.has_states() ? behaviours_.states().most_values() : 0;
+  return force_.size() + viscous_.size() + position_.size() + states;
+}
+
+std::size_t SetPairs::size_of_state(const double* state, std::size_t available) const noexcept {
+  const std::size_t forces = force_.size() + viscous_.size() + position_.size();
+  if (available < forces) return 0;
+  if (!behaviours_.has_states()) return forces;
+  const std::size_t states = behaviours_.states().size_of_state(state + forces, available - forces);
+  return states > 0 ? forces + states : 0;
+}
+
+const double* SetPairs::take_state(const double* state) noexcept {
+  for (AlignedVector<double>* values : {&force_, &viscous_, &position_}) {
+    std::copy_n(state, values->size(), values->data());
+    state += values->size();
+  }
+  neighbours_.forget();
+  neighbours_.refresh(position_.data());
+  active_.choose_all();
+  return behaviours_.has_states() ? behaviours_.states().take_state(state) : state;
+}
+
+}  // namespace cordis::engine

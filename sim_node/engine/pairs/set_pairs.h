@@ -1,0 +1,129 @@
+// sim_node/engine/pairs/set_pairs.h -- the pairs of one set liaison, in motion.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/pairs/active_pairs.h"
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/matter/mat_roles.h"
+#include "sim_node/engine/pairs/neighbour_list.h"
+#include "sim_node/engine/network.h"
+#include "sim_node/engine/pairs/pair_behaviours.h"
+#include "sim_node/engine/pairs/pair_block.h"
+#include "sim_node/engine/pairs/pair_kernel.h"
+#include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/world.h"
+
+namespace cordis::engine {
+
+/// One set liaison. Pairs have a distance without sign in 1 dimension too: members of a set are
+/// alike, so a pair is the same whichever comes first. No force while the distance is 0.
+///
+/// The forces are summed in a fixed order: rows of P in the order given, and in each its partners
+/// in range in the order given, by their place in batches of 8. So the sum is the same bits for
+/// every skin of the neighbour list and every vector width.
+/// [Luc90 III.2.3 a formalism for inter-connection]
+class SetPairs {
+ public:
+  /// @param index  in NetworkDescription::sets
+  SetPairs(const NetworkDescription& description, std::size_t index, const StateTable& table,
+           const PairKernel& kernel);
+
+  /// Fits the set to a table that has been changed. Allocates.
+  void adopt(const StateTable& table);
+
+  /// Adds the force of every pair to its two MATs.
+  /// @return elastic, dissipated and switched energy, as EnergyAccount counts them: half of the
+  /// works of the last forces up to now, and half of those of these from then to now.
+  /// Real time: O(members + pairs), no allocation.
+  StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+
+  /// The same in two halves, with a choice of the pairs that are computed between them:
+  /// takes the positions of the members and the works of the last forces up to now ...
+  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  /// ... fits the neighbour list to them; @return whether other pairs may be in range now ...
+  bool refresh() noexcept;
+  /// ... and adds the forces.
+  StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+
+  /// Passes on between members that are near each other or bound. All are beside all others where
+  /// all pairs are computed in every step: because their conditions may come true while they rest,
+  /// or because the neighbour list has no room for all of them.
+  /// @param never_rests  by behaviour
+  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+                       MatRoles& roles) noexcept;
+  /// From now on only pairs with a MAT with kWholeForce, and some beside them, are computed; of the
+  /// others neither has moved. Real time: O(members + entries of the neighbour list), no
+  /// allocation.
+  void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;
+
+  /// What the forces of the last call have done since, up to the present positions.
+  StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  /// Potential energy [J] of the pairs at the positions of the last call, in closed form.
+  double stored_energy(const StateTable& table) noexcept;
+
+  void visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const;
+
+  /// Forgets the viscous forces of the last call: those before step 0 take no work.
+  void start() noexcept;
+
+  /// Whether the pairs found no room in the neighbour list in the last step, or to be remembered.
+  bool is_crowded() const noexcept;
+  NeighbourList& neighbours() noexcept { return neighbours_; }
+
+  void add_to(StateHash& hash) const noexcept;
+  /// The state as a row of values, of a length that depends on it.
+  void append_state(std::vector<double>& state) const;
+  /// Values of the longest such row.
+  std::size_t most_values() const noexcept;
+  /// How long such a row is that begins with these values; 0 when it is none.
+  std::size_t size_of_state(const double* state, std::size_t available) const noexcept;
+  /// Takes it back. @return one past the last value taken.
+  const double* take_state(const double* state) noexcept;
+
+ private:
+  enum class Path { kLinear, kLennardJones, kAnyBehaviour };
+
+  template <class Visit>
+  void visit_active(Visit visit) const noexcept;
+  bool computes_all(const std::vector<bool>& never_rests) const noexcept {
+    return never_rests[behaviour_] || !neighbours_.is_whole();
+  }
+  /// Precondition: the neighbour list is whole.
+  PairsOfSet pairs() noexcept;
+  void clear_forces() noexcept;
+  void step_active_rows(const PairStep& step) noexcept;
+  StepEnergy give_forces(const ForceColumns& columns) const noexcept;
+  void step_rows(const PairStep& step, const NeighbourRows& rows) noexcept;
+  std::size_t gather(const NeighbourRows& rows, std::size_t a) noexcept;
+  void find_rest_lengths() noexcept;
+  void step_block(const PairStep& step) noexcept;
+  MemberColumns members() const noexcept;
+  PairRest rest() const noexcept;
+  StepEnergy work_of(std::size_t member, const double* moved) const noexcept;
+
+  const PairKernel& kernel_;
+  std::uint32_t behaviour_;
+  std::vector<std::uint32_t> column_;  // of the MAT of each member
+  std::vector<double> radius_;         // of each member [m]; empty when the rest length is given
+  double rest_length_;                 // [m]
+  double range_;                       // [m]
+  Path path_ = Path::kAnyBehaviour;
+  LinearPair linear_;
+  LennardJonesPair lennard_jones_;
+  NeighbourList neighbours_;
+  PairBlock block_;
+  PairBehaviours behaviours_;
+  AlignedVector<double> position_;  // 4 x members, padded to whole batches and one batch more
+  AlignedVector<double> moved_;
+  AlignedVector<double> force_;
+  AlignedVector<double> viscous_;  // the part of the force that stores no energy
+  bool has_viscous_ = false;
+  ActivePairs active_;
+};
+
+}  // namespace cordis::engine

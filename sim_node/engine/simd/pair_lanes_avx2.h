@@ -1,0 +1,63 @@
+// sim_node/engine/simd/pair_lanes_avx2.h -- what pairs need beyond lanes_avx2.h; see pair_kernel_body.h.
+#pragma once
+
+#include "sim_node/engine/simd/lanes_avx2.h"
+
+namespace cordis::engine {
+namespace {
+
+/// Of each set of chosen lanes their 32-bit halves in order, the rest filled up with lane 0.
+// NOLINTNEXTLINE(misc-definitions-in-headers): of an unnamed namespace on purpose, see lanes_sse2.h
+alignas(32) constexpr std::int32_t kPackHalves[16][8] = {
+    {0, 1, 0, 1, 0, 1, 0, 1}, {0, 1, 0, 1, 0, 1, 0, 1}, {2, 3, 0, 1, 0, 1, 0, 1},
+    {0, 1, 2, 3, 0, 1, 0, 1}, {4, 5, 0, 1, 0, 1, 0, 1}, {0, 1, 4, 5, 0, 1, 0, 1},
+    {2, 3, 4, 5, 0, 1, 0, 1}, {0, 1, 2, 3, 4, 5, 0, 1}, {6, 7, 0, 1, 0, 1, 0, 1},
+    {0, 1, 6, 7, 0, 1, 0, 1}, {2, 3, 6, 7, 0, 1, 0, 1}, {0, 1, 2, 3, 6, 7, 0, 1},
+    {4, 5, 6, 7, 0, 1, 0, 1}, {0, 1, 4, 5, 6, 7, 0, 1}, {2, 3, 4, 5, 6, 7, 0, 1},
+    {0, 1, 2, 3, 4, 5, 6, 7}};
+
+struct Avx2PairLanes : Avx2Lanes {
+  static Row load_any(const double* values) noexcept { return _mm256_loadu_pd(values); }
+  static Row3 vectors(const double* columns, const std::uint32_t* at) noexcept {
+    return transposed(load(columns + at[0]), load(columns + at[1]), load(columns + at[2]),
+                      load(columns + at[3]));
+  }
+  static Row3 neighbours(const double* columns) noexcept {
+    return transposed(load(columns), load(columns + 4), load(columns + 8), load(columns + 12));
+  }
+  static void subtract(double* columns, const std::uint32_t* at, const Row3& v) noexcept {
+    const Row even_xy = _mm256_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2
+    const Row odd_xy = _mm256_unpackhi_pd(v.x, v.y);   // x1 y1 x3 y3
+    const Row even_z = _mm256_unpacklo_pd(v.z, zero());
+    const Row odd_z = _mm256_unpackhi_pd(v.z, zero());
+    subtract_column(columns + at[0], _mm256_permute2f128_pd(even_xy, even_z, 0x20));
+    subtract_column(columns + at[1], _mm256_permute2f128_pd(odd_xy, odd_z, 0x20));
+    subtract_column(columns + at[2], _mm256_permute2f128_pd(even_xy, even_z, 0x31));
+    subtract_column(columns + at[3], _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
+  }
+
+  static void pack(double* out, Row v, unsigned chosen) noexcept {
+    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(kPackHalves[chosen]));
+    _mm256_storeu_pd(
+        out, _mm256_castsi256_pd(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(v), order)));
+  }
+  static void pack(std::uint32_t* out, const std::uint32_t* in, unsigned chosen) noexcept {
+    const std::int32_t* order = kPackHalves[chosen];
+    for (std::size_t i = 0; i < kWidth; ++i) out[i] = in[order[2 * i] / 2];
+  }
+
+ private:
+  static Row3 transposed(Row c0, Row c1, Row c2, Row c3) noexcept {
+    const Row even01 = _mm256_unpacklo_pd(c0, c1);  // x0 x1 z0 z1
+    const Row even23 = _mm256_unpacklo_pd(c2, c3);
+    const Row odd01 = _mm256_unpackhi_pd(c0, c1);  // y0 y1 and pads
+    const Row odd23 = _mm256_unpackhi_pd(c2, c3);
+    return {_mm256_permute2f128_pd(even01, even23, 0x20),
+            _mm256_permute2f128_pd(odd01, odd23, 0x20),
+            _mm256_permute2f128_pd(even01, even23, 0x31)};
+  }
+  static void subtract_column(double* column, Row v) noexcept { store(column, load(column) - v); }
+};
+
+}  // namespace
+}  // namespace cordis::engine

@@ -1,0 +1,41 @@
+// sim_node/engine/simd/pair_lanes_sse2.h -- what pairs need beyond lanes_sse2.h; see pair_kernel_body.h.
+#pragma once
+
+#include "sim_node/engine/simd/lanes_sse2.h"
+
+namespace cordis::engine {
+namespace {
+
+struct Sse2PairLanes : Sse2Lanes {
+  static Row load_any(const double* values) noexcept { return _mm_loadu_pd(values); }
+  static Row3 vectors(const double* columns, const std::uint32_t* at) noexcept {
+    const Column u = load_column(columns + at[0]);
+    const Column v = load_column(columns + at[1]);
+    return transposed(u, v);
+  }
+  static Row3 neighbours(const double* columns) noexcept {
+    return transposed(load_column(columns), load_column(columns + 4));
+  }
+  static void subtract(double* columns, const std::uint32_t* at, const Row3& v) noexcept {
+    const Column first{_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, zero())};
+    const Column second{_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, zero())};
+    store_column(columns + at[0], load_column(columns + at[0]) - first);
+    store_column(columns + at[1], load_column(columns + at[1]) - second);
+  }
+
+  static void pack(double* out, Row v, unsigned chosen) noexcept {
+    _mm_storeu_pd(out, chosen == 2U ? _mm_unpackhi_pd(v, v) : v);
+  }
+  static void pack(std::uint32_t* out, const std::uint32_t* in, unsigned chosen) noexcept {
+    out[0] = chosen == 2U ? in[1] : in[0];
+    out[1] = in[1];
+  }
+
+ private:
+  static Row3 transposed(const Column& u, const Column& v) noexcept {
+    return {_mm_unpacklo_pd(u.xy, v.xy), _mm_unpackhi_pd(u.xy, v.xy), _mm_unpacklo_pd(u.z, v.z)};
+  }
+};
+
+}  // namespace
+}  // namespace cordis::engine

@@ -1,0 +1,62 @@
+// sim_node/plan/rate_selection.cpp
+#include "sim_node/plan/rate_selection.h"
+
+#include <optional>
+
+#include "sim_node/plan/rate_trial.h"
+#include "sim_node/plan/reference/trial_run.h"
+
+namespace cordis::plan {
+namespace {
+
+Choice choose_for(engine::NetworkDescription network, const AccuracyWish& wish,
+                  double gesture_rate_hz, const std::string& integrator, bool has_ports) {
+  network.integrator = engine::integrator_named(integrator);
+  const RateChoice formula = choose_rate(network, wish, gesture_rate_hz);
+  Choice choice{integrator, formula.rate_hz, formula.needed_hz, to_string(formula.reason), -1.0,
+                {}};
+  if (wish.over_s == 0.0) return choice;
+  if (has_ports) {
+    choice.doubt = "positions are promised for free vibrations alone: its ports are played";
+    return choice;
+  }
+  AccuracyWish only_limits = wish;
+  only_limits.tolerance = 1e9;
+  const RateChoice floor = choose_rate(network, only_limits, gesture_rate_hz);
+  const RateTrial trial =
+      find_rate(network, integrator, {wish.tolerance, wish.over_s, floor.rate_hz, gesture_rate_hz});
+  if (trial.rate_hz == 0.0) {
+    choice.doubt = "positions are not promised: " + trial.refusal;
+    return choice;
+  }
+  choice.rate_hz = choice.needed_hz = trial.rate_hz;
+  choice.error = trial.error;
+  choice.because =
+      trial.rate_hz > floor.rate_hz ? "the positions, as tried out" : to_string(floor.reason);
+  return choice;
+}
+
+}  // namespace
+
+double cost_of_a_step(const std::string& integrator) {
+  constexpr double kFactorisation = 50.0;
+  const bool factorises = integrator == to_string(engine::Integrator::kImplicit);
+  return factorises ? kFactorisation : evaluations_per_step(integrator);
+}
+
+Choice choose(const engine::NetworkDescription& network, const AccuracyWish& wish,
+              double gesture_rate_hz, const std::vector<std::string>& integrators, bool has_ports) {
+  std::optional<Choice> best;
+  const auto cost = [](const Choice& choice) {
+    return choice.rate_hz * cost_of_a_step(choice.integrator);
+  };
+  for (const std::string& integrator : integrators) {
+    const Choice next = choose_for(network, wish, gesture_rate_hz, integrator, has_ports);
+    const bool keeps_more = best && next.doubt.empty() && !best->doubt.empty();
+    const bool keeps_less = best && !next.doubt.empty() && best->doubt.empty();
+    if (!best || keeps_more || (!keeps_less && cost(next) < cost(*best))) best = next;
+  }
+  return *best;
+}
+
+}  // namespace cordis::plan

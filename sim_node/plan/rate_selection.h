@@ -1,0 +1,32 @@
+// sim_node/plan/rate_selection.h -- the integrator and the rate that a scene gets for what it asks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim_node/engine/network.h"
+#include "sim_node/plan/rate.h"
+
+namespace cordis::plan {
+
+struct Choice {
+  std::string integrator;
+  double rate_hz = 0.0;    ///< a multiple of the gesture rate
+  double needed_hz = 0.0;  ///< the least that serves
+  std::string because;     ///< for a person: what asks for so much
+  double error = -1.0;     ///< of positions after over_s, as tried out; < 0: not tried
+  std::string doubt;       ///< why the positions are not promised; empty when they are
+};
+
+/// Of a step of an integrator, in evaluations of all forces of `cordis`: about, for comparisons. A
+/// step of `implicit` factorises and solves (docs/integrators.md).
+double cost_of_a_step(const std::string& integrator);
+
+/// The cheapest of the integrators for what is asked. By the formulas of choose_rate; with over_s,
+/// a network that moves by itself is tried out (find_rate), within the limits of stability and of
+/// contacts. One whose ports are played is not: nobody knows the gesture beforehand.
+/// @param integrators  by name, at least one
+Choice choose(const engine::NetworkDescription& network, const AccuracyWish& wish,
+              double gesture_rate_hz, const std::vector<std::string>& integrators, bool has_ports);
+
+}  // namespace cordis::plan

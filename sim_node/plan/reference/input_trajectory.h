@@ -1,0 +1,34 @@
+// sim_node/plan/reference/input_trajectory.h -- what the ports of a scene are given while it is tried out.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/network.h"
+
+namespace cordis::plan {
+
+/// What one MAT is given from outside: positions of a port, or forces on a mass.
+struct Track {
+  std::uint32_t mat = 0;
+  bool is_force = false;
+  /// At 0, one period, two periods, ...: a position goes straight from one to the next [m], a force
+  /// is held [N]; after the last both stay.
+  std::vector<engine::Vec3> value;
+};
+
+/// The same gesture for every step: a function of time alone.
+struct Course {
+  double period = 1e-3;  ///< [s]
+  std::vector<Track> tracks;
+};
+
+/// Of a track at a time >= 0.
+engine::Vec3 value_at(const Course& course, const Track& track, double time);
+/// With which a position moves in one period [m/s]; 0 for a force.
+engine::Vec3 velocity_in(const Course& course, const Track& track, std::size_t period);
+/// Whether a track goes on from one period to the next as it did.
+bool goes_on(const Course& course, std::size_t period);
+
+}  // namespace cordis::plan

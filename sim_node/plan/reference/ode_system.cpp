@@ -1,0 +1,290 @@
+// sim_node/plan/reference/ode_system.cpp
+#include "sim_node/plan/reference/ode_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "sim_node/plan/stability/law_value.h"
+
+namespace cordis::plan {
+namespace {
+
+using engine::Vec3;
+
+constexpr double kMoment = 1e-3;  // of a step of the network: how much earlier a trend looks
+
+Vec3 column(const Motion::Values& values, std::size_t first, std::uint32_t mat) {
+  return Vec3::Map(values.data() + first + 3 * static_cast<std::size_t>(mat));
+}
+
+void refuse_impulse(const engine::Program& program) {
+  if (!asks_for(program, engine::Quantity::kImpulse)) return;
+  throw std::invalid_argument("conditions on the impulse of a link have no oracle");
+}
+
+}  // namespace
+
+/// A link at one moment.
+struct Motion::Geometry {
+  double distance = 0.0;
+  double speed = 0.0;
+  Vec3 direction = Vec3::Zero();  // of unit length, or 0
+  Vec3 velocity = Vec3::Zero();   // of b relative to a
+};
+
+Motion::Motion(engine::NetworkDescription network)
+    : network_(std::move(network)), held_(network_.mats.size(), Vec3::Zero()) {
+  for (const engine::Behaviour& behaviour : network_.behaviours) {
+    for (const engine::Exit& exit : behaviour.exits) {
+      refuse_impulse(exit.when);
+      refuse_impulse(exit.rest_length);
+    }
+  }
+  for (const engine::StateLink& link : network_.state_links) {
+    const engine::Behaviour& behaviour = network_.behaviours[link.behaviour];
+    states_.push_back({behaviour.start, link.rest_length, -1.0});
+    has_states_ = has_states_ || !behaviour.exits.empty();
+  }
+  for (std::uint32_t s = 0; s < network_.sets.size(); ++s) {
+    sets_.push_back({NearPairs(network_, s), {}});
+    has_states_ = has_states_ || !network_.behaviours[network_.sets[s].behaviour].exits.empty();
+  }
+}
+
+Motion::Values Motion::start() const {
+  Values values(2 * position_count() + network_.maxwell_links.size(), 0.0);
+  for (std::size_t i = 0; i < network_.mats.size(); ++i) {
+    std::copy_n(network_.mats[i].position.data(), 3, values.data() + 3 * i);
+    std::copy_n(network_.mats[i].velocity.data(), 3, values.data() + position_count() + 3 * i);
+  }
+  return values;
+}
+
+engine::Vec3 Motion::position(const Values& values, std::uint32_t mat) const {
+  return column(values, 0, mat);
+}
+
+engine::Vec3 Motion::velocity(const Values& values, std::uint32_t mat) const {
+  return column(values, position_count(), mat);
+}
+
+void Motion::hold_force(std::uint32_t mat, const Vec3& force) {
+  held_[mat] = force;
+}
+
+double Motion::mass(std::uint32_t mat) const {
+  return network_.mats[mat].kind == engine::MatKind::kMass ? network_.mats[mat].mass : 0.0;
+}
+
+Motion::Joined Motion::joined(std::uint32_t state_link) const {
+  const engine::StateLink& link = network_.state_links[state_link];
+  return {link.mat_a, link.mat_b, network_.behaviours[link.behaviour], states_[state_link], false};
+}
+
+Motion::Joined Motion::joined(std::uint32_t set, NearPairs::Pair pair,
+                              const Present& present) const {
+  return {pair.first, pair.second, network_.behaviours[network_.sets[set].behaviour], present,
+          true};
+}
+
+Motion::Present Motion::fresh(std::uint32_t set, NearPairs::Pair pair) const {
+  const engine::SetLiaison& of = network_.sets[set];
+  const double rest = of.rest_length < 0.0
+                          ? network_.radius[pair.first] + network_.radius[pair.second]
+                          : of.rest_length;
+  return {network_.behaviours[of.behaviour].start, rest, -1.0};
+}
+
+/// All pairs that are in range or bound, each with what it remembers.
+template <class Visit>
+void Motion::each_pair(std::uint32_t set, const Values& values, Visit visit) {
+  Set& of = sets_[set];
+  const double range = network_.sets[set].range;
+  for (const NearPairs::Pair& pair : of.near.near(values.data())) {
+    if (!of.bound.empty() && of.bound.contains(pair)) continue;
+    const Vec3 along = position(values, pair.second) - position(values, pair.first);
+    if (along.squaredNorm() < range * range && !visit(pair, fresh(set, pair))) return;
+  }
+  for (const auto& [pair, present] : of.bound) {
+    if (!visit(pair, present)) return;
+  }
+}
+
+Motion::Geometry Motion::geometry(const Values& values, const Joined& joined) const {
+  Geometry link;
+  const Vec3 along = position(values, joined.mat_b) - position(values, joined.mat_a);
+  link.velocity = velocity(values, joined.mat_b) - velocity(values, joined.mat_a);
+  if (network_.dimension == 1 && !joined.of_set) {
+    link.distance = along.x();
+    link.direction = Vec3::UnitX();
+  } else {
+    link.distance = along.norm();
+    if (link.distance > 0.0) link.direction = along / link.distance;
+  }
+  link.speed = link.direction.dot(link.velocity);
+  return link;
+}
+
+double Motion::pull(const Joined& joined, const Geometry& link) const {
+  const engine::LinkState& state = joined.behaviour.states[joined.present.state];
+  const double elongation = link.distance - joined.present.rest_length;
+  const double mass_a = mass(joined.mat_a);
+  const double mass_b = mass(joined.mat_b);
+  double pull =
+      state.stiffness * elongation + state.viscosity * link.speed +
+      elastic_pull(state.elasticity, link.distance, elongation, mass_a, mass_b) +
+      viscous_pull(state.dissipation, link.distance, elongation, link.speed, mass_a, mass_b);
+  if (!state.pulls) pull = std::min(pull, 0.0);
+  if (!state.pushes) pull = std::max(pull, 0.0);
+  return std::clamp(pull, -state.force_limit, state.force_limit);
+}
+
+void Motion::rate(const Values& values, Values& rate) {
+  const std::size_t n = position_count();
+  rate.assign(values.size(), 0.0);
+  const auto push = [&](std::uint32_t a, std::uint32_t b, const Vec3& force) {
+    Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(a)) += force;
+    Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(b)) -= force;
+  };
+  static const engine::Behaviour kNone;
+  static const Present kNothing;
+  for (const engine::Link& link : network_.links) {
+    const Geometry at = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
+    if (link.isotropic) {
+      const Vec3 along = position(values, link.mat_b) - position(values, link.mat_a);
+      push(link.mat_a, link.mat_b, link.stiffness * along + link.viscosity * at.velocity);
+      continue;
+    }
+    const double pull =
+        link.stiffness * (at.distance - link.rest_length) + link.viscosity * at.speed;
+    push(link.mat_a, link.mat_b, pull * at.direction);
+  }
+  for (std::uint32_t l = 0; l < states_.size(); ++l) {
+    const Joined link = joined(l);
+    const Geometry at = geometry(values, link);
+    push(link.mat_a, link.mat_b, pull(link, at) * at.direction);
+  }
+  for (std::uint32_t s = 0; s < sets_.size(); ++s) {
+    each_pair(s, values, [&](NearPairs::Pair pair, const Present& present) {
+      const Joined link = joined(s, pair, present);
+      const Geometry at = geometry(values, link);
+      push(pair.first, pair.second, pull(link, at) * at.direction);
+      return true;
+    });
+  }
+  for (std::size_t l = 0; l < network_.maxwell_links.size(); ++l) {
+    const engine::MaxwellLink& link = network_.maxwell_links[l];
+    const Geometry at = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
+    const double force = values[2 * n + l];
+    push(link.mat_a, link.mat_b, force * at.direction);
+    rate[2 * n + l] = link.stiffness * (at.speed - force / link.viscosity);
+  }
+  for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
+    auto acceleration = Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(i));
+    const Vec3 v = velocity(values, i);
+    Vec3::Map(rate.data() + 3 * static_cast<std::size_t>(i)) = v;
+    if (network_.mats[i].kind != engine::MatKind::kMass) {
+      acceleration.setZero();
+      continue;
+    }
+    acceleration =
+        (acceleration + held_[i] - network_.medium_viscosity * v) / network_.mats[i].mass +
+        network_.gravity_on(network_.mats[i]);
+  }
+}
+
+LinkQuantities Motion::quantities(const Joined& joined, double time, const Geometry& link) const {
+  return {link.distance,
+          link.distance - joined.present.rest_length,
+          link.speed,
+          link.velocity.x(),
+          link.velocity.y(),
+          link.velocity.z(),
+          (link.velocity - link.speed * link.direction).norm(),
+          pull(joined, link),
+          0.0,
+          time - std::max(joined.present.entered, 0.0),
+          joined.present.rest_length,
+          mass(joined.mat_a),
+          mass(joined.mat_b)};
+}
+
+const Motion::Values& Motion::earlier(double time, const Values& values) {
+  if (earlier_is_known_) return earlier_;
+  const double moment = kMoment * network_.step;
+  rate(values, rate_);
+  earlier_.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) earlier_[i] = values[i] - moment * rate_[i];
+  earlier_is_known_ = time >= 0.0;
+  return earlier_;
+}
+
+std::int64_t Motion::exit_of(const Joined& joined, double time, const Values& values) {
+  const engine::LinkState& state = joined.behaviour.states[joined.present.state];
+  if (state.first_exit == state.last_exit) return -1;
+  const LinkQuantities now = quantities(joined, time, geometry(values, joined));
+  for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
+    const engine::Program& when = joined.behaviour.exits[e].when;
+    // A trend is not known yet at the moment in which the state is entered, nor at the start.
+    if (asks_for_trend(when) && time > std::max(joined.present.entered, 0.0)) {
+      const LinkQuantities before =
+          quantities(joined, time, geometry(earlier(time, values), joined));
+      if (value_of(when, now, &before) != 0.0) return e;
+    } else if (value_of(when, now) != 0.0) {
+      return e;
+    }
+  }
+  return -1;
+}
+
+std::optional<Motion::Change> Motion::next_change(double time, const Values& values) {
+  earlier_is_known_ = false;
+  for (std::uint32_t l = 0; l < states_.size(); ++l) {
+    if (exit_of(joined(l), time, values) >= 0) return Change{l, 0, {}};
+  }
+  std::optional<Change> found;
+  for (std::uint32_t s = 0; s < sets_.size() && !found; ++s) {
+    if (network_.behaviours[network_.sets[s].behaviour].exits.empty()) continue;
+    each_pair(s, values, [&](NearPairs::Pair pair, const Present& present) {
+      if (exit_of(joined(s, pair, present), time, values) >= 0) found = Change{{}, s, pair};
+      return !found;
+    });
+  }
+  return found;
+}
+
+void Motion::change(const Change& change, double time, const Values& values) {
+  earlier_is_known_ = false;
+  Present present;
+  if (change.state_link) {
+    present = states_[*change.state_link];
+  } else {
+    const auto bound = sets_[change.set].bound.find(change.pair);
+    present =
+        bound != sets_[change.set].bound.end() ? bound->second : fresh(change.set, change.pair);
+  }
+  const Joined link =
+      change.state_link ? joined(*change.state_link) : joined(change.set, change.pair, present);
+  const std::int64_t exit_index = exit_of(link, time, values);
+  if (exit_index < 0) return;
+  const engine::Exit& exit = link.behaviour.exits[static_cast<std::size_t>(exit_index)];
+  const Geometry at = geometry(values, link);
+  if (exit.rest == engine::RestRule::kExpression) {
+    present.rest_length = value_of(exit.rest_length, quantities(link, time, at));
+  } else if (exit.rest == engine::RestRule::kHere) {
+    present.rest_length = at.distance;
+  }
+  present.state = exit.target;
+  present.entered = time;
+  if (change.state_link) {
+    states_[*change.state_link] = present;
+  } else if (present.state == link.behaviour.start) {
+    sets_[change.set].bound.erase(change.pair);
+  } else {
+    sets_[change.set].bound[change.pair] = present;
+  }
+}
+
+}  // namespace cordis::plan

@@ -1,0 +1,55 @@
+// sim_node/plan/reference/rate_sweep.cpp
+#include "sim_node/plan/reference/rate_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cordis::plan {
+namespace {
+
+/// The largest of 1, 2, 5, 10, 20, ... that is not above the value.
+double round_below(double value) {
+  const double decade = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double digit : {5.0, 2.0}) {
+    if (digit * decade <= value) return digit * decade;
+  }
+  return decade;
+}
+
+bool is_multiple(double value, double of) {
+  constexpr double kRounding = 1e-9;
+  const double times = value / of;
+  return times >= 0.5 && std::abs(times - std::round(times)) < kRounding * times;
+}
+
+}  // namespace
+
+Ladder make_ladder(double limit_hz, const LadderWish& wish) {
+  constexpr double kLowest = 0.35;  // of the limit, half of the lowest rate
+  constexpr double kNoLimit = 0.1;  // of the scene's own rate, likewise
+  double base = round_below(limit_hz > 0.0 ? kLowest * limit_hz : kNoLimit * wish.own_hz);
+  const double lowest = 2.0 * base;
+  for (int finer = 0; finer < 9 && !is_multiple(wish.own_hz, base); ++finer) {
+    base = round_below(0.999 * base);
+  }
+  const double highest = wish.highest_factor * std::max(limit_hz, lowest);
+  Ladder ladder;
+  for (double rate = 2.0 * base; rate <= highest; rate *= 2.0) {
+    if (rate >= 0.7 * lowest) ladder.rates_hz.push_back(rate);
+    const bool between = !wish.coarse && 1.5 * rate >= 0.7 * lowest && 1.5 * rate <= highest;
+    if (between) ladder.rates_hz.push_back(1.5 * rate);
+  }
+  const auto is_there = [&](double rate) {
+    return std::find(ladder.rates_hz.begin(), ladder.rates_hz.end(), rate) != ladder.rates_hz.end();
+  };
+  if (is_multiple(wish.own_hz, base) && !is_there(wish.own_hz)) {
+    ladder.rates_hz.push_back(wish.own_hz);
+    std::sort(ladder.rates_hz.begin(), ladder.rates_hz.end());
+  }
+  const double periods = std::max(1.0, std::ceil(wish.duration * base - 1e-9));
+  const double stride = std::ceil(periods / wish.most_samples);
+  ladder.sampling = {stride / base, static_cast<int>(std::ceil(periods / stride))};
+  return ladder;
+}
+
+}  // namespace cordis::plan

@@ -1,0 +1,224 @@
+// sim_node/plan/reference/reference.cpp
+#include "sim_node/plan/reference/reference.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/plan/reference/reference_integrator.h"
+#include "sim_node/plan/reference/trial_run.h"
+
+namespace cordis::plan {
+namespace {
+
+using engine::Vec3;
+
+constexpr double kLooser = 100.0;  // than the tolerance, the second oracle
+constexpr double kShorter = 0.75;  // its longest step: where that decides, it differs all the same
+constexpr double kParted = 1e-3;   // of the amplitude
+constexpr double kFiner = 8.0;     // than the finest trial, where there is no oracle
+
+std::vector<std::uint32_t> masses_of(const engine::NetworkDescription& network) {
+  std::vector<std::uint32_t> masses;
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    if (network.mats[i].kind == engine::MatKind::kMass) masses.push_back(i);
+  }
+  return masses;
+}
+
+/// A motion as it is sampled.
+struct Film {
+  std::vector<double> position;
+  std::vector<double> kinetic;
+  std::uint64_t evaluations = 0;
+};
+
+/// Takes the samples of one motion.
+class Camera {
+ public:
+  Camera(const engine::NetworkDescription& network, const ReferenceWish& wish, double share_before)
+      : network_(network),
+        wish_(wish),
+        share_before_(share_before),
+        masses_(masses_of(network)),
+        begin_(Clock::now()) {}
+
+  template <class Motion>
+  void take(const Motion& motion) {
+    double kinetic = 0.0;
+    for (const std::uint32_t mat : masses_) {
+      const Vec3 x = motion.position(mat);
+      film.position.insert(film.position.end(), {x.x(), x.y(), x.z()});
+      kinetic += 0.5 * network_.mats[mat].mass * motion.velocity(mat).squaredNorm();
+    }
+    film.kinetic.push_back(kinetic);
+    if (wish_.progress) {
+      const double done = static_cast<double>(film.kinetic.size()) / wish_.sampling.count;
+      wish_.progress(share_before_ + 0.5 * done);
+    }
+  }
+  bool is_late() const {
+    return std::chrono::duration<double>(Clock::now() - begin_).count() > wish_.longest_s;
+  }
+
+  Film film;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const engine::NetworkDescription& network_;
+  const ReferenceWish& wish_;
+  double share_before_;
+  std::vector<std::uint32_t> masses_;
+  Clock::time_point begin_;
+};
+
+/// Ends before the last sample where the oracle finds no way on, or not in time.
+Film film_of_oracle(const engine::NetworkDescription& network, const Course& course,
+                    const ReferenceWish& wish, double tolerance, double share_before) {
+  Oracle oracle(network, tolerance);
+  Camera camera(network, wish, share_before);
+  std::size_t period = 0;
+  const auto begin_period = [&] {
+    if (goes_on(course, period)) return;
+    for (const Track& track : course.tracks) {
+      const double begin = static_cast<double>(period) * course.period;
+      if (track.is_force) {
+        oracle.hold_force(track.mat, value_at(course, track, begin));
+      } else {
+        oracle.set_velocity(track.mat, velocity_in(course, track, period));
+      }
+    }
+  };
+  try {
+    if (!course.tracks.empty()) begin_period();
+    for (int sample = 0; sample < wish.sampling.count; ++sample) {
+      const double until = wish.sampling.time(sample);
+      while (!course.tracks.empty() &&
+             static_cast<double>(period + 1) * course.period <= until * (1.0 + 1e-12)) {
+        ++period;
+        if (goes_on(course, period)) continue;
+        oracle.advance_to(static_cast<double>(period) * course.period);
+        begin_period();
+        if (camera.is_late()) break;
+      }
+      if (camera.is_late()) break;
+      oracle.advance_to(until);
+      camera.take(oracle);
+    }
+  } catch (const std::runtime_error&) {
+    // what has been reached is what there is
+  }
+  camera.film.evaluations = oracle.force_evaluations();
+  return std::move(camera.film);
+}
+
+Film film_of_scheme(const engine::NetworkDescription& network, const Course& course,
+                    const ReferenceWish& wish, double rate_hz, double share_before) {
+  const auto steps =
+      static_cast<std::uint64_t>(std::max(1.0, std::round(rate_hz * wish.sampling.period)));
+  CourseRun run(network, "cordis", static_cast<double>(steps) / wish.sampling.period, course);
+  Camera camera(network, wish, share_before);
+  for (int sample = 0; sample < wish.sampling.count && !camera.is_late(); ++sample) {
+    if (!run.advance(steps)) break;
+    camera.take(run.world());
+  }
+  camera.film.evaluations = run.world().step_count();
+  return std::move(camera.film);
+}
+
+double amplitude_of(const Reference& reference) {
+  const std::size_t width = 3 * reference.masses.size();
+  const std::size_t rows = reference.position.size() / width;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < width; ++i) {
+    double mean = 0.0;
+    for (std::size_t r = 0; r < rows; ++r) mean += reference.position[r * width + i];
+    mean /= static_cast<double>(rows);
+    for (std::size_t r = 0; r < rows; ++r) {
+      const double from_mean = reference.position[r * width + i] - mean;
+      sum += from_mean * from_mean;
+    }
+  }
+  return std::sqrt(sum / static_cast<double>(rows * reference.masses.size()));
+}
+
+/// Compares with the second film, and ends the comparison where they part.
+void hold_against(const Film& second, Reference& reference) {
+  double sum = 0.0;
+  const auto samples = static_cast<int>(second.kinetic.size());
+  for (int sample = 0; sample < std::min(samples, reference.sampling.count); ++sample) {
+    const double apart =
+        reference.distance(sample, second.position.data() + static_cast<std::size_t>(sample) * 3 *
+                                                                reference.masses.size());
+    reference.parted = !(apart < kParted);
+    if (reference.parted) break;
+    sum += apart * apart;
+    reference.compared = sample + 1;
+  }
+  if (reference.compared > 0) reference.doubt = std::sqrt(sum / reference.compared);
+}
+
+}  // namespace
+
+double Reference::distance(int sample, const double* positions) const noexcept {
+  const double* own = row(sample);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 3 * masses.size(); ++i) {
+    sum += (positions[i] - own[i]) * (positions[i] - own[i]);
+  }
+  return std::sqrt(sum / static_cast<double>(masses.size())) / amplitude;
+}
+
+Reference make_reference(const engine::NetworkDescription& network, const Course& course,
+                         const ReferenceWish& wish) {
+  Reference reference;
+  reference.masses = masses_of(network);
+  Film first;
+  Film second;
+  try {
+    first = film_of_oracle(network, course, wish, wish.tolerance, 0.0);
+    engine::NetworkDescription other = network;
+    other.step *= kShorter;
+    second = film_of_oracle(other, course, wish, kLooser * wish.tolerance, 0.5);
+    reference.made_by = "oracle";
+  } catch (const std::invalid_argument& refusal) {
+    const double rate = kFiner * wish.finest_hz;
+    first = film_of_scheme(network, course, wish, rate, 0.0);
+    second = film_of_scheme(network, course, wish, 0.5 * rate, 0.5);
+    reference.by_oracle = false;
+    reference.made_by = std::string("the scheme itself at ") + std::to_string(std::lround(rate)) +
+                        " Hz, because " + refusal.what();
+  }
+  reference.sampling = wish.sampling;
+  reference.sampling.count = static_cast<int>(first.kinetic.size());
+  reference.position = std::move(first.position);
+  reference.kinetic = std::move(first.kinetic);
+  reference.evaluations = first.evaluations;
+  if (reference.sampling.count == 0) {
+    throw std::runtime_error("no reference: the motion is too rough for the time given");
+  }
+  reference.amplitude = amplitude_of(reference);
+  if (!(reference.amplitude > 0.0)) throw NothingMoves();
+  hold_against(second, reference);
+  if (reference.compared == 0) throw std::runtime_error("no reference: two oracles never agree");
+  return reference;
+}
+
+std::uint64_t key_of(const engine::NetworkDescription& network, const Course& course,
+                     const Sampling& sampling, double tolerance) {
+  engine::StateHash hash;
+  hash.add(engine::Network(network).fingerprint());
+  for (const double value : {course.period, sampling.period, tolerance}) hash.add(value);
+  hash.add(static_cast<std::uint64_t>(sampling.count));
+  for (const Track& track : course.tracks) {
+    hash.add(static_cast<std::uint64_t>(track.mat));
+    for (const Vec3& value : track.value) {
+      for (int axis = 0; axis < 3; ++axis) hash.add(value[axis]);
+    }
+  }
+  return hash.value();
+}
+
+}  // namespace cordis::plan

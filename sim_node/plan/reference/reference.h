@@ -1,0 +1,70 @@
+// sim_node/plan/reference/reference.h -- the motion that trials of a network are compared with.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim_node/plan/reference/input_trajectory.h"
+
+namespace cordis::plan {
+
+/// When motions are compared: at `period`, 2 `period`, ..., `count` times.
+struct Sampling {
+  double period = 0.0;  ///< [s]
+  int count = 0;
+
+  double time(int sample) const noexcept { return period * (sample + 1); }
+  double duration() const noexcept { return period * count; }
+};
+
+/// The motion of the masses of a network, and how far it can be trusted.
+///
+/// Made twice, by an Oracle of one tolerance and by one of a hundred times that. Where the two
+/// part, the motion is chaotic: no step will follow it any further.
+struct Reference {
+  Sampling sampling;
+  std::vector<std::uint32_t> masses;  ///< the MATs whose motion this is
+  std::vector<double> position;       ///< per sample 3 per mass [m]
+  std::vector<double> kinetic;        ///< energy per sample [J]
+  /// Root of the mean square of the distance of a mass from its mean position [m].
+  double amplitude = 0.0;
+  int compared = 0;     ///< samples at which positions mean something
+  bool parted = false;  ///< why they mean nothing any more: the two have parted
+  double doubt =
+      0.0;  ///< root of the mean square by which the two differ there, over the amplitude
+  bool by_oracle = true;          ///< false: by the scheme itself at a very high rate
+  std::string made_by;            ///< for a person
+  std::uint64_t evaluations = 0;  ///< of all forces
+
+  const double* row(int sample) const noexcept {
+    return position.data() + static_cast<std::size_t>(sample) * 3 * masses.size();
+  }
+  /// Root of the mean square distance of these masses from those of a sample, over the amplitude.
+  double distance(int sample, const double* positions) const noexcept;
+};
+
+/// There is no motion to be referred to.
+struct NothingMoves : std::runtime_error {
+  NothingMoves() : std::runtime_error("nothing moves") {}
+};
+
+struct ReferenceWish {
+  Sampling sampling;
+  double tolerance = 1e-10;  ///< of the better of the two oracles
+  double longest_s = 300.0;  ///< wall time for one of the two; then the comparison ends there
+  double finest_hz = 0.0;    ///< the highest rate that will be compared with it
+  std::function<void(double)> progress;  ///< told the part that is done, 0 to 1; may be empty
+};
+
+/// @throws NothingMoves; std::runtime_error when not even the first sample can be reached.
+Reference make_reference(const engine::NetworkDescription& network, const Course& course,
+                         const ReferenceWish& wish);
+
+/// 64-bit hash of all that a reference depends on.
+std::uint64_t key_of(const engine::NetworkDescription& network, const Course& course,
+                     const Sampling& sampling, double tolerance);
+
+}  // namespace cordis::plan

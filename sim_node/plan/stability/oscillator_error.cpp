@@ -1,0 +1,82 @@
+// sim_node/plan/stability/oscillator_error.cpp
+#include "sim_node/plan/stability/oscillator_error.h"
+
+#include <cmath>
+
+namespace cordis::plan {
+namespace {
+
+using engine::Integrator;
+
+/// A pair of roots of z^2 - trace z + product: what one period does to an oscillation.
+struct Roots {
+  double trace = 0.0;
+  double product = 0.0;
+};
+
+/// z^3 - (2 - K' - 1.5 Z') z^2 + (1 - 2 Z') z + 0.5 Z': the pair beside its real root.
+Roots of_extrapolated_damping(double stiffness, double viscosity) {
+  const double a = -(2.0 - stiffness - 1.5 * viscosity);
+  const double b = 1.0 - 2.0 * viscosity;
+  const double c = 0.5 * viscosity;
+  double real = -c;  // near 0, as -0.5 Z' / (1 - 2 Z')
+  for (int n = 0; n < 60; ++n) {
+    const double slope = (3.0 * real + 2.0 * a) * real + b;
+    real -= (((real + a) * real + b) * real + c) / slope;
+  }
+  return {-a - real, b + real * (a + real)};
+}
+
+Roots roots_of(Integrator integrator, double stiffness, double viscosity) {
+  switch (integrator) {
+    case Integrator::kCordis:
+      break;
+    case Integrator::kLeapfrog: {
+      if (viscosity <= engine::kMostExtrapolatedViscosity) {
+        return of_extrapolated_damping(stiffness, viscosity);
+      }
+      const double left = std::exp(-viscosity);
+      return {(1.0 + left) * (1.0 - 0.5 * stiffness), left};
+    }
+    case Integrator::kSymplectic4:
+      return {engine::symplectic4_trace(stiffness), 1.0};
+    case Integrator::kModal:
+      break;
+    case Integrator::kImplicit: {
+      const double whole = 1.0 + viscosity + stiffness;
+      return {(2.0 + viscosity) / whole, 1.0 / whole};
+    }
+  }
+  return {2.0 - stiffness - viscosity, 1.0 - viscosity};
+}
+
+}  // namespace
+
+OscillatorError oscillator_error(double angular_frequency, double viscosity, double step,
+                                 Integrator integrator) {
+  const double rate = 0.5 * viscosity;  // of decay
+  const double square = angular_frequency * angular_frequency - rate * rate;
+  const Roots roots =
+      roots_of(integrator, angular_frequency * angular_frequency * step * step, viscosity * step);
+  OscillatorError error;
+  if (integrator == Integrator::kModal) {  // exact
+    error.oscillates = square > 0.0;
+    return error;
+  }
+  error.oscillates =
+      square > 0.0 && roots.product > 0.0 && roots.trace * roots.trace < 4.0 * roots.product;
+  if (!error.oscillates) return error;
+  const double frequency = std::sqrt(square);
+  const double half = 0.5 * roots.trace;
+  const double reached = std::atan2(std::sqrt(roots.product - half * half), half) / step;
+  error.pitch = reached / frequency - 1.0;
+  const double decay = -0.5 * std::log1p(roots.product - 1.0) / step;
+  error.decay = rate > 0.0 ? decay / rate - 1.0 : decay / frequency;
+  return error;
+}
+
+double cents(double relative_pitch_error) {
+  return 1200.0 * std::log2(1.0 + relative_pitch_error);
+}
+
+}  // namespace cordis::plan

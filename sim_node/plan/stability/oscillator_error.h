@@ -1,0 +1,27 @@
+// sim_node/plan/stability/oscillator_error.h -- what the scheme makes of one damped oscillation.
+#pragma once
+
+#include "sim_node/engine/integrators/integrator_kind.h"
+
+namespace cordis::plan {
+
+/// Errors of one mass on a spring and a damper, from the exact roots of the recurrence of its
+/// integrator; K' = w^2 dt^2, Z' = Z dt / m. Of `cordis`: x(n+1) = (2 - K' - Z') x(n) - (1 - Z')
+/// x(n-1).
+struct OscillatorError {
+  bool oscillates = false;  ///< whether the true motion and that of the scheme do; else both are 0
+  double pitch = 0.0;       ///< relative error of the frequency: + is sharp
+  /// Relative error of the rate of decay; without viscosity the rate that the integrator makes up,
+  /// as a part of w.
+  double decay = 0.0;
+};
+
+/// @param angular_frequency  sqrt(K / m) [1/s], > 0
+/// @param viscosity          Z / m [1/s], >= 0
+OscillatorError oscillator_error(double angular_frequency, double viscosity, double step,
+                                 engine::Integrator integrator = engine::Integrator::kCordis);
+
+/// An interval of pitch in cents, hundredths of a semitone.
+double cents(double relative_pitch_error);
+
+}  // namespace cordis::plan

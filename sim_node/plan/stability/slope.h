@@ -1,0 +1,43 @@
+// sim_node/plan/stability/slope.h -- how stiff and how viscous a liaison can become.
+#pragma once
+
+#include "sim_node/engine/network.h"
+
+namespace cordis::plan {
+
+/// How far a scene is taken to go where a law has no largest slope of its own.
+struct Reach {
+  double elongation = 0.0;  ///< of a link, either way [m]
+  double speed = 0.0;       ///< of the growth of a link [m/s]
+  double energy = 0.0;      ///< with which two MATs approach each other [J]
+};
+
+/// The largest slopes of a liaison: no tangent of its force is above them, whatever the pose and
+/// the state it is in. Slopes below 0 (a compressed link gives way sideways) never count.
+struct Slope {
+  double stiffness = 0.0;  ///< [N/m]
+  double viscosity = 0.0;  ///< [N s/m]
+  bool bounded = true;     ///< false: they hold within the Reach alone
+};
+
+/// Over all states of a behaviour. [Luc90 III.2.3 b formalism to modify the liaison]
+/// @param rest_length  of the liaison [m]; of a set, that of its nearest pair
+/// @param dimension    of the network: in 1 dimension a link never turns
+Slope largest_slope(const engine::Behaviour& behaviour, double rest_length, int dimension,
+                    const Reach& reach);
+
+/// The tangent of a liaison at one distance of its ends and no speed, in the stiffest of its
+/// states.
+struct Tangent {
+  double stiffness = 0.0;  ///< along the link [N/m]
+  double viscosity = 0.0;  ///< [N s/m]
+  double pull = 0.0;       ///< of a behaviour of one state, else 0 [N]
+};
+
+Tangent stiffest_tangent(const engine::Behaviour& behaviour, double rest_length, double distance);
+
+/// What the start of a network says: links as much again as they are, or as their rest lengths; the
+/// fastest MAT, at least 1 m/s; two such MATs meeting.
+Reach reach_of(const engine::NetworkDescription& network);
+
+}  // namespace cordis::plan

@@ -1,0 +1,236 @@
+// sim_node/plan/stability/start_tangent.cpp
+#include "sim_node/plan/stability/start_tangent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <Eigen/Eigenvalues>
+
+#include "sim_node/plan/stability/limit_weights.h"
+#include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/step_bound.h"
+
+namespace cordis::plan {
+namespace {
+
+using Columns = Eigen::Matrix3Xd;
+
+constexpr int kRounds = 40;           // of the step, each from the direction found in the last one
+constexpr int kMostIterations = 400;  // in one round
+constexpr int kFewestIterations = 24;
+constexpr double kWork =
+    1e7;  // iterations times links  // iterations times links  // iterations times links
+constexpr double kTolerance = 1e-7;
+constexpr double kRounding = 1e-14;
+constexpr double kNoStep = 1e-300;  // [s]
+
+double dot(const Columns& a, const Columns& b) {
+  return a.cwiseProduct(b).sum();
+}
+
+/// A vector and what the matrix makes of it.
+struct Direction {
+  Columns value;
+  Columns image;
+};
+
+/// Takes from `direction` what lies along `unit`.
+void make_orthogonal(Direction& direction, const Direction& unit) {
+  const double share = dot(direction.value, unit.value);
+  direction.value -= share * unit.value;
+  direction.image -= share * unit.image;
+}
+
+/// @return false when nothing is left of it
+bool normalise(Direction& direction) {
+  const double length = direction.value.norm();
+  constexpr double kNothing = 1e-150;
+  if (!(length > kNothing)) return false;
+  direction.value /= length;
+  direction.image /= length;
+  return true;
+}
+
+/// Makes `present` the best in the space of itself and the two others (Rayleigh, Ritz).
+/// @return the part of it that was not in `present`
+Direction improve(Direction& present, Direction uphill, Direction last) {
+  std::vector<Direction> base{present};
+  for (Direction* next : {&uphill, &last}) {
+    if (next->value.size() == 0) continue;
+    for (int twice = 0; twice < 2; ++twice) {
+      for (const Direction& unit : base) make_orthogonal(*next, unit);
+    }
+    if (normalise(*next)) base.push_back(std::move(*next));
+  }
+  const auto count = static_cast<Eigen::Index>(base.size());
+  Eigen::MatrixXd small(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      small(i, j) =
+          dot(base[static_cast<std::size_t>(i)].value, base[static_cast<std::size_t>(j)].image);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (small + small.transpose()));
+  const Eigen::VectorXd best = solver.eigenvectors().col(count - 1);
+  Direction moved{Columns::Zero(3, present.value.cols()), Columns::Zero(3, present.value.cols())};
+  for (Eigen::Index i = 1; i < count; ++i) {
+    moved.value += best[i] * base[static_cast<std::size_t>(i)].value;
+    moved.image += best[i] * base[static_cast<std::size_t>(i)].image;
+  }
+  present.value = best[0] * present.value + moved.value;
+  present.image = best[0] * present.image + moved.image;
+  normalise(present);
+  return moved;
+}
+
+/// Of unit length, the same each time; 0 for what is no mass.
+Columns random_direction(const Eigen::RowVectorXd& root_of_inverse_mass, int dimension) {
+  Columns x = Columns::Zero(3, root_of_inverse_mass.cols());
+  std::mt19937 random(1);
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    if (root_of_inverse_mass[i] <= 0.0) continue;
+    for (int axis = 0; axis < dimension; ++axis) {
+      x(axis, i) = static_cast<double>(random()) / 2147483648.0 - 1.0;
+    }
+  }
+  if (x.norm() > 0.0) x.normalize();
+  return x;
+}
+
+}  // namespace
+
+StartTangent::StartTangent(const engine::NetworkDescription& network)
+    : root_of_inverse_mass_(static_cast<Eigen::Index>(network.mats.size())),
+      medium_viscosity_(network.medium_viscosity),
+      dimension_(network.dimension) {
+  for (std::size_t i = 0; i < network.mats.size(); ++i) {
+    const engine::Mat& mat = network.mats[i];
+    root_of_inverse_mass_[static_cast<Eigen::Index>(i)] =
+        mat.kind == engine::MatKind::kMass ? 1.0 / std::sqrt(mat.mass) : 0.0;
+  }
+  const LimitWeights weights = limit_weights(network, Limit::kDiverging);
+  medium_viscosity_ *= weights.link_viscosity;
+  const auto distance = [&](std::uint32_t a, std::uint32_t b) {
+    const Eigen::Vector3d along = network.mats[b].position - network.mats[a].position;
+    return network.dimension == 1 ? along.x() : along.norm();
+  };
+  for (const engine::Link& link : network.links) {
+    const double elongation = distance(link.mat_a, link.mat_b) - link.rest_length;
+    const double stiffness = weights.link_stiffness * link.stiffness;
+    if (link.isotropic) {
+      add_tie(link, stiffness, weights.link_viscosity * link.viscosity);
+      continue;
+    }
+    const bool implicit = stiffness < 0.0;  // then a compressed link has no stiffness across
+    const double pull = stiffness * (implicit ? std::max(elongation, 0.0) : elongation);
+    add(link.mat_a, link.mat_b, network, stiffness, pull, weights.link_viscosity * link.viscosity,
+        0.0);
+  }
+  std::uint32_t index = 0;
+  for (const engine::StateLink& link : network.state_links) {
+    const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
+    const double length = distance(link.mat_a, link.mat_b);
+    const Tangent tangent = stiffest_tangent(behaviour, link.rest_length, length);
+    add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
+        weights.stiffness * tangent.pull,
+        weights.viscosity_of_state_link(index++) * tangent.viscosity, 0.0);
+  }
+  for (const engine::MaxwellLink& link : network.maxwell_links) {
+    add(link.mat_a, link.mat_b, network, weights.stiffness * link.stiffness, 0.0, 0.0,
+        weights.stiffness * link.viscosity);
+  }
+}
+
+void StartTangent::add(std::uint32_t a, std::uint32_t b, const engine::NetworkDescription& network,
+                       double along, double pull, double viscosity, double maxwell_viscosity) {
+  const Eigen::Vector3d from_a_to_b = network.mats[b].position - network.mats[a].position;
+  const double length = from_a_to_b.norm();
+  if (dimension_ == 1) {
+    parts_.push_back({a, b, Eigen::Vector3d::UnitX(), along, 0.0, viscosity, maxwell_viscosity});
+  } else if (length > 0.0) {
+    parts_.push_back(
+        {a, b, from_a_to_b / length, along, pull / length, viscosity, maxwell_viscosity});
+  }
+}
+
+void StartTangent::add_tie(const engine::Link& tie, double stiffness, double viscosity) {
+  for (int axis = 0; axis < dimension_; ++axis) {
+    parts_.push_back(
+        {tie.mat_a, tie.mat_b, Eigen::Vector3d::Unit(axis), stiffness, 0.0, viscosity, 0.0});
+  }
+}
+
+StartTangent::Columns StartTangent::times(const Columns& x, double stiffness_factor,
+                                          double viscosity_factor, double step) const {
+  const Columns moved = x * root_of_inverse_mass_.asDiagonal();
+  Columns forces = viscosity_factor * medium_viscosity_ * moved;
+  for (const Part& part : parts_) {
+    const Eigen::Vector3d apart = moved.col(part.mat_b) - moved.col(part.mat_a);
+    double along = part.along;
+    if (part.maxwell_viscosity > 0.0) {
+      const double turn = 0.5 * part.along * step / part.maxwell_viscosity;
+      along *= std::tanh(turn) / turn;
+    }
+    const double across = stiffness_factor * part.across;
+    const double line =
+        stiffness_factor * (along - part.across) + viscosity_factor * part.viscosity;
+    const Eigen::Vector3d force =
+        across * apart + line * part.direction.dot(apart) * part.direction;
+    forces.col(part.mat_b) += force;
+    forces.col(part.mat_a) -= force;
+  }
+  return forces * root_of_inverse_mass_.asDiagonal();
+}
+
+int StartTangent::climb(Columns& x, double step, int most_iterations) const {
+  const auto image = [&](const Columns& value) {
+    return times(value, step * step, 2.0 * step, step);
+  };
+  Direction present{x, image(x)};
+  Direction last;
+  double value = dot(present.value, present.image);
+  double gain = 0.0;  // of the last iterations, fading
+  int n = 0;
+  while (n < most_iterations) {
+    ++n;
+    Direction uphill{present.image - value * present.value, {}};
+    if (!(uphill.value.norm() > kRounding * std::abs(value))) break;
+    uphill.value.normalize();
+    uphill.image = image(uphill.value);
+    last = improve(present, std::move(uphill), std::move(last));
+    const double reached = dot(present.value, present.image);
+    gain = std::max(0.5 * gain, reached - value);
+    value = reached;
+    if (gain < 0.1 * kTolerance * std::abs(value)) break;
+  }
+  x = present.value;
+  return n;
+}
+
+double StartTangent::diverging_step() const {
+  Columns x = random_direction(root_of_inverse_mass_, dimension_);
+  if (x.norm() == 0.0) return std::numeric_limits<double>::infinity();
+
+  // The step at which one direction diverges is not below the limit; going from direction to
+  // direction, each time at that step, it comes down to it.
+  double step = 0.0;
+  int left = std::max(
+      kFewestIterations,
+      static_cast<int>(kWork / static_cast<double>(parts_.size() + root_of_inverse_mass_.size())));
+  for (int round = 0; round < kRounds; ++round) {
+    const double at = std::max(step, kNoStep);  // a Maxwell element is softer at a larger step
+    const double stiffness = dot(x, times(x, 1.0, 0.0, at));
+    const double viscosity = dot(x, times(x, 0.0, 1.0, at));
+    const double before = step;
+    step = limit_step(std::max(stiffness, 0.0), viscosity);
+    const bool settled = !std::isfinite(step) || std::abs(step - before) < 0.1 * kTolerance * step;
+    if (settled || left <= 0) break;
+    // The first rounds only bring the step near, and take a part of the work.
+    left -= climb(x, step, std::min({left, kMostIterations, round < 2 ? kFewestIterations : left}));
+  }
+  return step;
+}
+
+}  // namespace cordis::plan

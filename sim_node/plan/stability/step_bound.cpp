@@ -1,0 +1,210 @@
+// sim_node/plan/stability/step_bound.cpp
+#include "sim_node/plan/stability/step_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sim_node/plan/stability/limit_weights.h"
+
+namespace cordis::plan {
+namespace {
+
+constexpr int kRowBounds = 24;
+constexpr int kMaxwellRounds = 200;
+
+/// Rows of the graph's matrix times a vector, stiffness and viscosity apart.
+struct Rows {
+  std::vector<double> stiffness;
+  std::vector<double> viscosity;
+};
+
+/// (D + A) x: all entries of the matrix taken as positive.
+Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
+  Rows rows{std::vector<double>(x.size(), 0.0), std::vector<double>(x.size(), 0.0)};
+  for (const Joint& joint : graph.joints) {
+    const double sum = x[joint.mat_a] + x[joint.mat_b];
+    for (const std::uint32_t mat : {joint.mat_a, joint.mat_b}) {
+      rows.stiffness[mat] += joint.stiffness * sum;
+      rows.viscosity[mat] += joint.viscosity * sum;
+    }
+  }
+  for (const Crowd& crowd : graph.crowds) {
+    const double most = largest_of_others(crowd, x);
+    for (std::size_t i = 0; i < crowd.members.size(); ++i) {
+      const std::uint32_t mat = crowd.members[i];
+      const double sum = crowd.neighbours[i] * (x[mat] + most);
+      rows.stiffness[mat] += crowd.stiffness * sum;
+      rows.viscosity[mat] += crowd.viscosity * sum;
+    }
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) rows.viscosity[i] += graph.medium_viscosity * x[i];
+  return rows;
+}
+
+/// The strongest liaison at a mass, at this step.
+std::optional<LiaisonId> strongest_at(const LiaisonGraph& graph, std::uint32_t mat, double step) {
+  double most = graph.medium_viscosity * 2.0 * step;
+  std::optional<LiaisonId> strongest;
+  const auto consider = [&](double stiffness, double viscosity, LiaisonId id) {
+    const double weight = step * step * stiffness + 2.0 * step * viscosity;
+    if (weight <= most) return;
+    most = weight;
+    strongest = id;
+  };
+  for (const Joint& joint : graph.joints) {
+    if (joint.mat_a != mat && joint.mat_b != mat) continue;
+    consider(joint.stiffness, joint.viscosity, joint.liaison);
+  }
+  for (const Crowd& crowd : graph.crowds) {
+    for (std::size_t i = 0; i < crowd.members.size(); ++i) {
+      if (crowd.members[i] != mat) continue;
+      consider(crowd.neighbours[i] * crowd.stiffness, crowd.neighbours[i] * crowd.viscosity,
+               {LiaisonKind::kSet, crowd.set});
+    }
+  }
+  return strongest;
+}
+
+void take_smaller(StepBound& bound, double step, std::uint32_t mat) {
+  if (step >= bound.step) return;
+  bound.step = step;
+  bound.mat = mat;
+}
+
+/// The row bound of a positive vector: the smallest of the steps of all rows.
+StepBound row_bound(const LiaisonGraph& graph, const std::vector<double>& x, const Rows& rows) {
+  StepBound bound;
+  for (std::uint32_t i = 0; i < x.size(); ++i) {
+    if (x[i] <= 0.0) continue;
+    const double per_mass = graph.inverse_mass[i] / x[i];
+    take_smaller(bound, limit_step(rows.stiffness[i] * per_mass, rows.viscosity[i] * per_mass), i);
+  }
+  return bound;
+}
+
+/// One power iteration at a step; masses that nothing drives stay as they are.
+void iterate(const LiaisonGraph& graph, const Rows& rows, double step, std::vector<double>& x) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (graph.inverse_mass[i] <= 0.0) continue;
+    const double next =
+        (step * step * rows.stiffness[i] + 2.0 * step * rows.viscosity[i]) * graph.inverse_mass[i];
+    if (next > 0.0) x[i] = next;
+    most = std::max(most, x[i]);
+  }
+  constexpr double kSmallest = 1e-60;
+  for (double& value : x) {
+    if (value > 0.0) value = std::max(value / most, kSmallest);
+  }
+}
+
+std::vector<double> first_weights(const LiaisonGraph& graph) {
+  std::vector<double> x;
+  for (const double inverse_mass : graph.inverse_mass) x.push_back(std::sqrt(inverse_mass));
+  return x;
+}
+
+/// Bound on the eigenvalues at a step.
+double row_number(const LiaisonGraph& graph, const std::vector<double>& x, const Rows& rows,
+                  double step) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] <= 0.0) continue;
+    const double row = step * step * rows.stiffness[i] + 2.0 * step * rows.viscosity[i];
+    most = std::max(most, row * graph.inverse_mass[i] / x[i]);
+  }
+  return most;
+}
+
+StepBound bound_at(const LiaisonGraph& graph) {
+  StepBound best = edge_bound(graph);
+  if (!std::isfinite(best.step)) return best;
+  std::vector<double> x = first_weights(graph);
+  for (int n = 0; n < kRowBounds; ++n) {
+    const Rows rows = times(graph, x);
+    const StepBound bound = row_bound(graph, x, rows);
+    if (bound.step > best.step) best = bound;
+    iterate(graph, rows, best.step, x);
+  }
+  best.liaison = strongest_at(graph, best.mat, best.step);
+  return best;
+}
+
+}  // namespace
+
+double limit_step(double stiffness, double viscosity) noexcept {
+  return 4.0 / (viscosity + std::sqrt(viscosity * viscosity + 4.0 * stiffness));
+}
+
+std::vector<double> row_weights(const LiaisonGraph& graph, double step) {
+  std::vector<double> x = first_weights(graph);
+  std::vector<double> best = x;
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < kRowBounds; ++n) {
+    const Rows rows = times(graph, x);
+    const double number = row_number(graph, x, rows, step);
+    if (number < least) {
+      least = number;
+      best = x;
+    }
+    iterate(graph, rows, step, x);
+  }
+  return best;
+}
+
+StepBound edge_bound(const LiaisonGraph& graph) {
+  // With x = 1/2 the rows of joints and crowds are the sums d of their slopes.
+  const std::size_t count = graph.inverse_mass.size();
+  Rows sums = times(graph, std::vector<double>(count, 0.5));
+  for (std::size_t i = 0; i < count; ++i) {
+    sums.viscosity[i] = (sums.viscosity[i] + 0.5 * graph.medium_viscosity) * graph.inverse_mass[i];
+    sums.stiffness[i] *= graph.inverse_mass[i];
+  }
+  StepBound bound;
+  const auto consider = [&](std::uint32_t a, double stiffness, double viscosity) {
+    take_smaller(bound, limit_step(sums.stiffness[a] + stiffness, sums.viscosity[a] + viscosity),
+                 a);
+  };
+  for (std::uint32_t i = 0; i < count; ++i) consider(i, 0.0, 0.0);
+  for (const Joint& joint : graph.joints) {
+    if (joint.stiffness == 0.0 && joint.viscosity == 0.0) continue;
+    const bool a_is_driven = sums.stiffness[joint.mat_a] >= sums.stiffness[joint.mat_b];
+    const std::uint32_t driven = a_is_driven ? joint.mat_a : joint.mat_b;
+    const std::uint32_t other = a_is_driven ? joint.mat_b : joint.mat_a;
+    consider(driven, sums.stiffness[other], sums.viscosity[other]);
+  }
+  for (const Crowd& crowd : graph.crowds) {
+    const double stiffness = largest_of_others(crowd, sums.stiffness);
+    const double viscosity = largest_of_others(crowd, sums.viscosity);
+    for (const std::uint32_t mat : crowd.members) consider(mat, stiffness, viscosity);
+  }
+  bound.liaison = strongest_at(graph, bound.mat, bound.step);
+  return bound;
+}
+
+namespace {
+
+StepBound certified_bound_at(const engine::NetworkDescription& network, LiaisonGraph graph) {
+  const LimitWeights weights = limit_weights(network, Limit::kStable);
+  StepBound bound = bound_at(weighted(graph, weights));
+  // A Maxwell element softens as the step grows: with its stiffness at a stable step every step up
+  // to the next bound is stable too.
+  for (int round = 0;
+       round < kMaxwellRounds && !network.maxwell_links.empty() && std::isfinite(bound.step);
+       ++round) {
+    graph.set_step(network, bound.step);
+    bound = bound_at(weighted(graph, weights));
+  }
+  return bound;
+}
+
+}  // namespace
+
+StepBound certified_bound(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  return limit_of_all_steps(network, [&graph](const engine::NetworkDescription& at) {
+    return certified_bound_at(at, graph);
+  });
+}
+
+}  // namespace cordis::plan

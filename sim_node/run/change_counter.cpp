@@ -1,0 +1,35 @@
+// sim_node/run/change_counter.cpp
+#include "sim_node/run/change_counter.h"
+
+#include <algorithm>
+
+namespace cordis::sim {
+
+ChangeCounter::ChangeCounter(const std::vector<engine::Behaviour>& behaviours) {
+  for (std::size_t b = 0; b < behaviours.size(); ++b) {
+    if (behaviours[b].exits.empty()) continue;
+    auto found = std::ranges::find(names_, behaviours[b].name);
+    if (found == names_.end() && names_.size() == kMostLiaisons) {
+      names_.back() = "others";
+      found = names_.end() - 1;
+    } else if (found == names_.end()) {
+      found = names_.insert(names_.end(), behaviours[b].name);
+    }
+    counted_.push_back({static_cast<std::uint32_t>(b),
+                        static_cast<std::uint32_t>(behaviours[b].states.size()),
+                        static_cast<std::size_t>(found - names_.begin())});
+  }
+}
+
+ChangeCounter::Counts ChangeCounter::count(const engine::World& world) const noexcept {
+  Counts counts{};
+  for (const Counted& counted : counted_) {
+    for (std::uint32_t from = 0; from < counted.state_count; ++from) {
+      for (std::uint32_t to = 0; to < counted.state_count; ++to)
+        counts[counted.place] += world.change_count(counted.behaviour, from, to);
+    }
+  }
+  return counts;
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,113 @@
+// sim_node/run/command.cpp
+#include "sim_node/run/command.h"
+
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "node/config/mapping_reader.h"
+#include "node/control_verbs.h"
+
+namespace cordis::sim {
+namespace {
+
+constexpr std::array<std::pair<const char*, Verb>, 7> kVerbs{{{"pause", Verb::kPause},
+                                                              {"resume", Verb::kResume},
+                                                              {"step", Verb::kStep},
+                                                              {"reset", Verb::kReset},
+                                                              {"load", Verb::kLoad},
+                                                              {"set", Verb::kSet},
+                                                              {"state", Verb::kState}}};
+
+/// @throws std::invalid_argument with the first problem, as one sentence
+void throw_first(const config::Problems& problems) {
+  if (!problems.has_errors()) return;
+  const config::Problem& first = problems.all().front();
+  throw std::invalid_argument(first.message + (first.hint.empty() ? "" : "; " + first.hint));
+}
+
+Verb verb_named(const std::string& name) {
+  for (const auto& [word, verb] : kVerbs) {
+    if (name == word) return verb;
+  }
+  const std::string near = config::did_you_mean(name, node::control_verb_names());
+  throw std::invalid_argument("a sim_node knows no command '" + name + "'" +
+                              (near.empty() ? "" : ", " + near));
+}
+
+std::uint64_t read_steps(const config::Value& argument, config::Problems& problems) {
+  if (argument.kind() == config::Value::Kind::kNothing) return 1;
+  const long steps =
+      config::read_integer(argument, "the number of steps", 1, 1, kMostSingleSteps, problems);
+  return static_cast<std::uint64_t>(steps);
+}
+
+std::string read_file(const config::Value& argument, config::Problems& problems) {
+  if (argument.kind() == config::Value::Kind::kScalar && !argument.text().empty())
+    return argument.text();
+  problems.error(argument.place(), "'load' needs the path of a scene");
+  return {};
+}
+
+std::vector<NewValue> read_values(const config::Value& argument, config::Problems& problems) {
+  if (argument.kind() != config::Value::Kind::kMapping || argument.entries().empty())
+    problems.error(argument.place(), "'set' needs NAME.PARAMETER and a value");
+  std::vector<NewValue> values;
+  for (const config::Value::Entry& entry : argument.entries()) {
+    // Names may have dots, parameters have none.
+    const std::size_t dot = entry.key.rfind('.');
+    if (dot == std::string::npos || dot == 0 || dot + 1 == entry.key.size()) {
+      problems.error(entry.key_place, "'" + entry.key + "' is not of the form NAME.PARAMETER");
+      continue;
+    }
+    values.push_back({entry.key.substr(0, dot), entry.key.substr(dot + 1),
+                      config::read_number(entry.value, "'" + entry.key + "'", 0.0, {}, problems)});
+  }
+  return values;
+}
+
+void read_state(const config::Value& argument, Command& command, config::Problems& problems) {
+  const std::vector<config::Value>& items = argument.items();
+  if (items.size() != 2 || items[0].text().empty() || items[1].text().empty()) {
+    problems.error(argument.place(), "'state' needs links and the state they are put into");
+    return;
+  }
+  command.links = items[0].text();
+  command.state = items[1].text();
+}
+
+}  // namespace
+
+Command read_command(const std::string& verb, const std::string& argument) {
+  Command command;
+  command.verb = verb_named(verb);
+  config::Problems problems;
+  const config::Value value = config::load_word(argument, "'" + verb + "'", problems);
+  throw_first(problems);
+  const bool empty = value.kind() == config::Value::Kind::kNothing;
+  switch (command.verb) {
+    case Verb::kStep:
+      command.steps = read_steps(value, problems);
+      break;
+    case Verb::kLoad:
+      command.scene_file = read_file(value, problems);
+      break;
+    case Verb::kSet:
+      command.values = read_values(value, problems);
+      break;
+    case Verb::kState:
+      read_state(value, command, problems);
+      break;
+    case Verb::kPause:
+    case Verb::kResume:
+    case Verb::kReset:
+      if (!empty)
+        problems.error(value.place(),
+                       "'" + verb + "' stands alone, got " + value.described() + " behind it");
+      break;
+  }
+  throw_first(problems);
+  return command;
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,179 @@
+// sim_node/run/command_executor.cpp
+#include "sim_node/run/command_executor.h"
+
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "node/config/count_text.h"
+#include "node/config/mapping_reader.h"
+#include "sim_node/run/link_states.h"
+#include "sim_node/plan/reduction/reduce.h"
+
+namespace cordis::sim {
+namespace {
+
+constexpr auto kLook = std::chrono::milliseconds(1);  // for the end of single steps
+
+std::string at_step(const Order& order) {
+  return " at step " + std::to_string(order.step);
+}
+
+/// A scene as its file says it: liaisons have their links there, merged or not.
+std::shared_ptr<const scene::Scene> whole_of(const std::shared_ptr<const scene::Scene>& scene) {
+  return scene->whole ? scene->whole : scene;
+}
+
+/// All that is wrong in files, for who need not be allowed to read them: without their lines.
+std::string text_without_lines(const config::Problems& problems) {
+  std::string text;
+  for (config::Problem problem : problems.in_order()) {
+    problem.source_line.clear();
+    if (!text.empty()) text += '\n';
+    text += problem.text();
+  }
+  return text;
+}
+
+/// All that is wrong in the files of a scene, behind one sentence.
+std::string refusal_of(const std::string& path, const config::Problems& problems) {
+  return "'" + path + "' cannot be played (" + config::count_text(problems.error_count(), "error") +
+         "), the present scene goes on\n" + text_without_lines(problems);
+}
+
+}  // namespace
+
+Director::Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, std::uint64_t run,
+                   Load load, Check check, Tell tell)
+    : orders_(orders),
+      scene_(std::move(scene)),
+      parameters_(whole_of(scene_)),
+      run_(run),
+      load_(std::move(load)),
+      check_(std::move(check)),
+      tell_(std::move(tell)) {}
+
+node::Answer Director::obey(const msg::ControlCommand& message) {
+  Command command;
+  try {
+    command = read_command(message.verb(), message.argument());
+  } catch (const std::invalid_argument& refusal) {
+    return {false, refusal.what()};
+  }
+  Order order;
+  switch (command.verb) {
+    case Verb::kPause:
+      order.kind = Order::Kind::kPause;
+      return give(order, "paused");
+    case Verb::kResume:
+      order.kind = Order::Kind::kResume;
+      return give(order, "goes on");
+    case Verb::kStep:
+      return step(command.steps);
+    case Verb::kReset:
+      return restart(scene_, "'" + scene_->name + "' begins anew");
+    case Verb::kLoad:
+      return load(command.scene_file);
+    case Verb::kSet:
+      return set(command.values);
+    case Verb::kState:
+      return force(command.links, command.state);
+  }
+  return {};
+}
+
+node::Answer Director::give(Order& order, const std::string& done) {
+  if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
+  if (order.kind == Order::Kind::kPause && order.was_paused)
+    return {true, "was paused already" + at_step(order)};
+  if (order.kind == Order::Kind::kResume && !order.was_paused)
+    return {true, "was running already" + at_step(order)};
+  return {true, done + at_step(order)};
+}
+
+node::Answer Director::step(std::uint64_t count) {
+  Order order;
+  order.kind = Order::Kind::kStep;
+  order.steps = count;
+  if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
+  const auto limit = std::chrono::steady_clock::now() + kPatience;
+  while (orders_.steps_left() > 0 && !orders_.is_closed()) {
+    if (std::chrono::steady_clock::now() > limit)
+      return {true, config::count_text(count, "step") + " begun" + at_step(order)};
+    std::this_thread::sleep_for(kLook);
+  }
+  return {true, "paused at step " + std::to_string(order.step + count - orders_.steps_left())};
+}
+
+node::Answer Director::restart(std::shared_ptr<const scene::Scene> scene, const std::string& done) {
+  Order order;
+  order.kind = Order::Kind::kRestart;
+  order.stage = std::make_unique<Stage>(scene, run_, version_ + 1);
+  if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
+  scene_ = std::move(scene);
+  tell_(*scene_, ++version_);
+  const std::string paused = order.was_paused ? ", paused" : "";
+  return {true, done + paused + "; the scene before ended" + at_step(order)};
+}
+
+node::Answer Director::load(const std::string& path) {
+  config::Problems problems;
+  auto scene = std::make_shared<scene::Scene>(load_(path, problems));
+  if (problems.has_errors()) return {false, refusal_of(path, problems)};
+  const std::string warnings = text_without_lines(problems);
+  node::Answer answer = restart(scene, "'" + scene->name + "' begins");
+  if (answer.accepted) parameters_ = scene::Parameters(whole_of(scene));
+  if (answer.accepted && !warnings.empty()) answer.text += "\n" + warnings;
+  return answer;
+}
+
+node::Answer Director::set(const std::vector<NewValue>& values) {
+  scene::Parameters parameters = parameters_;
+  auto scene = std::make_shared<scene::Scene>(*whole_of(scene_));
+  std::string done;
+  for (const NewValue& wanted : values) {
+    const auto outcome = parameters.set(wanted.name, wanted.parameter, wanted.value);
+    if (!outcome.problem.empty())
+      return {false, outcome.problem + (outcome.hint.empty() ? "" : "; " + outcome.hint)};
+    for (const scene::Change& change : outcome.changes) scene::apply(change, scene->network);
+    done += (done.empty() ? "" : ", ") + wanted.name + "." + wanted.parameter + " = " +
+            config::number_text(wanted.value);
+  }
+  config::Problems problems;
+  if (scene_->whole) {
+    *scene = plan::reduce(std::move(*scene), problems);
+    if (problems.has_errors()) return {false, problems.all().front().message};
+    scene::set_step(*scene, scene_->step_rate_hz, scene_->network.integrator);
+  }
+  check_(*scene, problems);
+  if (problems.has_errors())
+    return {false, "the values stay as they are\n" + text_without_lines(problems)};
+  Order order;
+  order.kind = Order::Kind::kExchange;
+  try {
+    order.stage = std::make_unique<Stage>(scene, run_, version_);
+  } catch (const std::invalid_argument& refusal) {
+    return {false, std::string("this cannot be simulated: ") + refusal.what()};
+  }
+  order.room.reserve(order.stage->simulation.world().most_values_of_state());
+  node::Answer answer = give(order, done);
+  if (!order.done) return {false, "this changes more than parameters; load the scene anew"};
+  if (!answer.accepted) return answer;
+  scene_ = std::move(scene);
+  parameters_ = std::move(parameters);
+  if (!problems.all().empty()) answer.text += "\n" + text_without_lines(problems);
+  return answer;
+}
+
+node::Answer Director::force(const std::string& links, const std::string& state) {
+  Order order;
+  order.kind = Order::Kind::kForceStates;
+  try {
+    order.forced = find_states(*scene_, links, state);
+  } catch (const std::invalid_argument& refusal) {
+    return {false, refusal.what()};
+  }
+  return give(order, config::count_text(order.forced.size(), "link") + " put into '" + state + "'");
+}
+
+}  // namespace cordis::sim

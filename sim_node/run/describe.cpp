@@ -1,0 +1,115 @@
+// sim_node/run/describe.cpp
+#include "sim_node/run/describe.h"
+
+#include <limits>
+#include <vector>
+
+namespace cordis::sim {
+namespace {
+
+constexpr std::uint32_t kNoBehaviour = std::numeric_limits<std::uint32_t>::max();
+
+std::vector<msg::NamedRange> ranges_of(const std::vector<scene::NamedRange>& ranges) {
+  std::vector<msg::NamedRange> told(ranges.size());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    told[i].name(ranges[i].name);
+    told[i].first(ranges[i].first);
+    told[i].count(ranges[i].count);
+  }
+  return told;
+}
+
+msg::PortDescription port_of(const scene::Port& port) {
+  msg::PortDescription told;
+  told.name(port.name);
+  told.device(port.device);
+  told.device_id(port.device_id);
+  told.role(static_cast<std::uint32_t>(port.role));
+  told.mat(port.mat);
+  told.axes(port.axes);
+  return told;
+}
+
+void tell_network(const scene::Scene& scene, msg::SceneDescription& description) {
+  for (std::size_t i = 0; i < scene.network.mats.size(); ++i) {
+    const engine::Mat& mat = scene.network.mats[i];
+    description.mat_kind().push_back(static_cast<std::uint8_t>(mat.kind));
+    const double mass = mat.kind == engine::MatKind::kMass ? mat.mass : 0.0;
+    description.mat_mass_kg().push_back(static_cast<float>(mass));
+    description.mat_radius_m().push_back(static_cast<float>(scene.radius_m[i]));
+  }
+  const auto tell_ends = [&description](const auto& links) {
+    for (const auto& link : links) {
+      description.link_ends().push_back(link.mat_a);
+      description.link_ends().push_back(link.mat_b);
+    }
+  };
+  tell_ends(scene.network.links);
+  tell_ends(scene.network.state_links);
+  tell_ends(scene.network.maxwell_links);
+}
+
+void tell_states(const engine::NetworkDescription& network, msg::SceneDescription& description) {
+  for (const engine::Behaviour& behaviour : network.behaviours) {
+    msg::BehaviourDescription told;
+    told.name(behaviour.name);
+    for (const engine::LinkState& state : behaviour.states) told.states().push_back(state.name);
+    description.behaviours().push_back(told);
+  }
+  if (network.state_links.empty()) return;
+  std::vector<std::uint32_t>& behaviour = description.link_behaviour();
+  behaviour.assign(network.links.size(), kNoBehaviour);
+  for (const engine::StateLink& link : network.state_links) behaviour.push_back(link.behaviour);
+  behaviour.resize(behaviour.size() + network.maxwell_links.size(), kNoBehaviour);
+}
+
+}  // namespace
+
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
+                               std::uint64_t version) {
+  msg::SceneDescription description;
+  description.run(run);
+  description.version(version);
+  description.name(scene.name);
+  const int space = scene.confinement ? scene.confinement->space : scene.space();
+  description.space(static_cast<std::uint32_t>(space));
+  description.step_rate_hz(scene.step_rate_hz);
+  description.gesture_rate_hz(scene.gesture_rate_hz);
+  description.frame_rate_hz(scene.frame_rate_hz);
+  description.scene_file(scene.file);
+  description.matter(ranges_of(scene.matter));
+  description.links(ranges_of(scene.links));
+  tell_network(scene, description);
+  tell_states(scene.network, description);
+  for (const scene::Port& port : scene.ports) description.ports().push_back(port_of(port));
+  for (const scene::Signal& signal : scene.signals.signals()) {
+    msg::SignalDescription told;
+    told.name(signal.name);
+    told.unit(signal.unit);
+    description.signals().push_back(told);
+  }
+  return description;
+}
+
+std::size_t link_count_of(const scene::Scene& scene) noexcept {
+  return scene.network.links.size() + scene.network.state_links.size() +
+         scene.network.maxwell_links.size();
+}
+
+FrameLayout layout_of(const scene::Scene& scene) {
+  FrameLayout layout;
+  layout.dimension = scene.space();
+  if (const auto& confinement = scene.confinement) {
+    layout.axes = confinement->axes;
+    for (int axis = 0; axis < 3; ++axis) {
+      layout.origin[static_cast<std::size_t>(axis)] = static_cast<float>(confinement->origin[axis]);
+    }
+  }
+  for (const scene::LayoutPoint& point : scene.layout) {
+    layout.x_z.push_back(static_cast<float>(point.x));
+    layout.x_z.push_back(static_cast<float>(point.z));
+  }
+  return layout;
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,20 @@
+// sim_node/run/describe.h -- a scene as other processes see it.
+#pragma once
+
+#include "idl/scene.h"
+#include "sim_node/run/frame_store.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// The scene/description of a scene. @param version  tells one scene of the run from the next
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run, std::uint64_t version);
+
+/// Links of all kinds, as a description numbers them: linear ones, those with states, Maxwell
+/// elements.
+std::size_t link_count_of(const scene::Scene& scene) noexcept;
+
+/// Where the MATs of a scene are shown.
+FrameLayout layout_of(const scene::Scene& scene);
+
+}  // namespace cordis::sim

@@ -1,0 +1,80 @@
+// sim_node/run/frame_store.cpp
+#include "sim_node/run/frame_store.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim_node/engine/integrators/idle_state.h"
+
+namespace cordis::sim {
+namespace {
+
+std::uint8_t shown_state(const engine::World& world, std::uint32_t link) noexcept {
+  const std::uint8_t idle = engine::is_idle(world, link) ? kLinkIsIdle : 0;
+  return static_cast<std::uint8_t>(world.state_of(link) + idle);
+}
+
+}  // namespace
+
+void FrameLayout::show(std::size_t mat, const double* position, float* shown) const noexcept {
+  if (!x_z.empty()) {
+    shown[0] = x_z[2 * mat];
+    shown[1] = static_cast<float>(position[0]);
+    shown[2] = x_z[2 * mat + 1];
+    return;
+  }
+  std::copy(origin.begin(), origin.end(), shown);
+  for (int k = 0; k < dimension; ++k) {
+    shown[axes[static_cast<std::size_t>(k)]] = static_cast<float>(position[k]);
+  }
+}
+
+FrameStore::FrameStore(FrameShape shape)
+    : shape_(std::move(shape)),
+      row_capacity_(shape_.rows_per_frame * kFramesOfRows),
+      discarded_row_(shape_.signal_count) {
+  for (FrameBuffer& buffer : buffers_) {
+    buffer.positions.resize(4 * shape_.mat_count);
+    buffer.link_state.resize(shape_.link_count);
+    buffer.events = EventRoom(shape_.state_link_count);
+    buffer.rows.resize(row_capacity_ * shape_.signal_count);
+  }
+}
+
+double* FrameStore::next_row(std::uint64_t step) noexcept {
+  FrameBuffer& buffer = buffers_[filling_];
+  if (buffer.row_count == row_capacity_) {
+    ++overflowed_rows_;
+    return discarded_row_.data();
+  }
+  if (buffer.row_count == 0) buffer.first_step = step;
+  return buffer.rows.data() + shape_.signal_count * buffer.row_count++;
+}
+
+bool FrameStore::has_news() const noexcept {
+  const FrameBuffer& buffer = buffers_[filling_];
+  return buffer.row_count > 0 || overflowed_rows_ > 0 || !buffer.events.is_empty();
+}
+
+void FrameStore::turn(const engine::World& world, double simulated_s, std::int64_t now_nsec,
+                      std::int64_t action_nsec) noexcept {
+  FrameBuffer& buffer = buffers_[filling_];
+  std::copy_n(world.positions().data(), buffer.positions.size(), buffer.positions.begin());
+  if (shape_.link_count > 0) {
+    for (std::size_t l = 0; l < shape_.state_link_count; ++l) {
+      buffer.link_state[shape_.first_state_link + l] =
+          shown_state(world, static_cast<std::uint32_t>(l));
+    }
+  }
+  buffer.step = world.step_count();
+  buffer.simulated_s = simulated_s;
+  buffer.time_nsec = now_nsec;
+  buffer.action_time_nsec = action_nsec;
+
+  filling_ = 1 - filling_;
+  buffers_[filling_].row_count = 0;
+  buffers_[filling_].events.clear();
+  buffers_[filling_].dropped_rows = std::exchange(overflowed_rows_, 0);
+}
+
+}  // namespace cordis::sim

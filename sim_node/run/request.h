@@ -1,0 +1,76 @@
+// sim_node/run/request.h -- what another thread wants of the loop, and how it gets there.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <semaphore>
+#include <vector>
+
+#include "sim_node/run/loaded_scene.h"
+
+namespace cordis::sim {
+
+/// Something to be done between two steps. All that costs time has been done when it is given, and
+/// what is to be freed goes back to the giver.
+struct Order {
+  enum class Kind : std::uint8_t {
+    kPause,
+    kResume,
+    kStep,        ///< pause, then do `steps` steps
+    kRestart,     ///< play `stage` from its beginning
+    kExchange,    ///< go on in `stage`, the same scene with other parameters
+    kForceStates  ///< put links into states
+  };
+  struct ForcedState {
+    std::uint32_t state_link;
+    std::uint32_t state;
+  };
+  Kind kind = Kind::kPause;
+  std::uint64_t steps = 0;
+  std::unique_ptr<Stage> stage;  ///< the new one; afterwards the one played before
+  std::vector<double> room;      ///< of kExchange: most_values_of_state() of its world
+  std::vector<ForcedState> forced;
+
+  bool changes_stage() const noexcept { return kind == Kind::kRestart || kind == Kind::kExchange; }
+
+  // What the loop has to say about it.
+  std::uint64_t step = 0;   ///< steps done when it was obeyed, in the scene played then
+  bool was_paused = false;  ///< before
+  bool done = true;         ///< false: kExchange found that the stage does not fit
+};
+
+/// Room for one order on its way from one thread to the loop.
+class OrderBox {
+ public:
+  /// Gives an order and waits until it was obeyed. One thread at a time.
+  /// @return false when the loop has ended, and the order was not obeyed
+  bool give(Order& order) noexcept;
+
+  /// Loop: the order that waits, or nullptr. Real time: takes no lock.
+  Order* waiting() const noexcept { return slot_.load(std::memory_order_acquire); }
+  /// Loop: the waiting order was obeyed. Real time: wakes the other thread, waits for nothing.
+  void obeyed() noexcept;
+  /// Loop without real time: waits until there is an order, at most so long.
+  void wait(std::chrono::milliseconds at_most) noexcept;
+  /// Single steps still to be done after the last kStep; any thread.
+  std::uint64_t steps_left() const noexcept { return steps_left_.load(std::memory_order_acquire); }
+  /// Loop: the same, told.
+  void tell_steps_left(std::uint64_t count) noexcept {
+    steps_left_.store(count, std::memory_order_release);
+  }
+  /// Whether close() was called; any thread.
+  bool is_closed() const noexcept { return closed_.load(std::memory_order_acquire); }
+  /// Loop: no order will be obeyed any more.
+  void close() noexcept { closed_.store(true, std::memory_order_release); }
+
+ private:
+  std::atomic<Order*> slot_{nullptr};
+  std::atomic<std::uint64_t> steps_left_{0};
+  std::atomic<bool> closed_{false};
+  std::counting_semaphore<> given_{0};
+  std::binary_semaphore done_{0};
+};
+
+}  // namespace cordis::sim

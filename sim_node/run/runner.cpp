@@ -1,0 +1,73 @@
+// sim_node/run/runner.cpp
+#include "sim_node/run/runner.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace cordis::sim {
+
+Player::Player(std::unique_ptr<Stage> stage, bool devices_wait) noexcept
+    : stage_(std::move(stage)), devices_wait_(devices_wait) {}
+
+void Player::obey(Order& order) noexcept {
+  order.step = simulation().world().step_count();
+  order.was_paused = paused_;
+  switch (order.kind) {
+    case Order::Kind::kPause:
+      paused_ = true;
+      steps_left_ = 0;
+      break;
+    case Order::Kind::kResume:
+      paused_ = false;
+      steps_left_ = 0;
+      break;
+    case Order::Kind::kStep:
+      paused_ = true;
+      steps_left_ = order.steps;
+      break;
+    case Order::Kind::kRestart:
+      steps_left_ = 0;
+      restart(order.stage);
+      break;
+    case Order::Kind::kExchange:
+      exchange(order);
+      break;
+    case Order::Kind::kForceStates:
+      for (const Order::ForcedState& forced : order.forced)
+        simulation().world().force_state(forced.state_link, forced.state);
+      break;
+  }
+}
+
+void Player::restart(std::unique_ptr<Stage>& stage) noexcept {
+  for (const DeviceExchange& before : simulation().devices()) {
+    DeviceExchange* now = stage->simulation.find(before.device_id());
+    if (now != nullptr) now->take_over(before, /*at_once=*/false);
+  }
+  played_before_s_ = played_s();
+  stage_.swap(stage);
+}
+
+void Player::exchange(Order& order) noexcept {
+  order.done = order.stage->simulation.go_on_from(simulation(), order.room);
+  if (order.done) stage_.swap(order.stage);
+}
+
+bool Player::advance() noexcept {
+  if (paused_ && !devices_wait_) {
+    for (DeviceExchange& device : simulation().devices()) device.let_go();
+  }
+  if (!moves()) return false;
+  auto steps = static_cast<std::uint64_t>(simulation().steps_left_in_tick());
+  if (paused_) {
+    steps = std::min(steps, steps_left_);
+    steps_left_ -= steps;
+  }
+  return simulation().advance(static_cast<int>(steps), stage_->frames.events());
+}
+
+double Player::played_s() const noexcept {
+  return played_before_s_ + simulation().simulated_s();
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,54 @@
+// sim_node/run/runner.h -- the loop's side of live change: plays a stage, and obeys orders between two
+// steps.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "sim_node/run/request.h"
+#include "sim_node/run/loaded_scene.h"
+
+namespace cordis::sim {
+
+/// Plays a stage turn by turn, pauses, does single steps and changes over to another stage.
+///
+/// Time stands still in a paused scene. Where the devices are the clock (lockstep) it stands still
+/// for them too, and the pause leaves no trace in the result. Elsewhere the devices live on: they
+/// are let go of, so that their MATs hold still and their forces are 0, and they take over
+/// gradually when the scene goes on. Real time: everything but the constructor allocates and frees
+/// nothing, and does not throw.
+class Player {
+ public:
+  /// @param devices_wait  whether devices wait for the scene, as in lockstep
+  Player(std::unique_ptr<Stage> stage, bool devices_wait) noexcept;
+
+  /// Does what the order wants; the step in progress, if any, is complete.
+  /// Precondition of kRestart and kExchange: nobody uses the frames of the present stage.
+  void obey(Order& order) noexcept;
+
+  /// Whether this turn of the loop has something to do.
+  bool moves() const noexcept { return !paused_ || steps_left_ > 0; }
+
+  /// One turn: the rest of the tick, or the single steps still wanted of it; nothing while the
+  /// scene stands still. @return whether a tick is complete, and its answers are due.
+  bool advance() noexcept;
+
+  Stage& stage() noexcept { return *stage_; }
+  const Simulation& simulation() const noexcept { return stage_->simulation; }
+  Simulation& simulation() noexcept { return stage_->simulation; }
+  bool is_paused() const noexcept { return paused_; }
+  std::uint64_t steps_left() const noexcept { return steps_left_; }  ///< single steps still wanted
+  double played_s() const noexcept;  ///< simulated time of all stages together [s]
+
+ private:
+  void restart(std::unique_ptr<Stage>& stage) noexcept;
+  void exchange(Order& order) noexcept;
+
+  std::unique_ptr<Stage> stage_;
+  bool devices_wait_;
+  bool paused_ = false;
+  std::uint64_t steps_left_ = 0;
+  double played_before_s_ = 0.0;  // by earlier stages
+};
+
+}  // namespace cordis::sim

@@ -1,0 +1,115 @@
+// sim_node/run/simulation.cpp
+#include "sim_node/run/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim_node/scene/naming.h"
+#include "sim_node/checks/stability_check.h"
+
+namespace cordis::sim {
+namespace {
+
+std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_t run) {
+  std::vector<std::string> order;  // devices in the order of their first port
+  for (const scene::Port& port : scene.ports) {
+    bool known = false;
+    for (const std::string& device : order) known = known || device == port.device;
+    if (!known) order.push_back(port.device);
+  }
+  std::vector<DeviceExchange> exchanges;
+  const auto account = std::make_shared<DelayAccount>(
+      static_cast<int>(PortBrake::settled_ticks(scene) * static_cast<double>(order.size())));
+  for (const std::string& device : order) {
+    std::vector<scene::Port> ports;
+    scene::Role role = scene::Role::kMass;
+    std::uint32_t id = 0;
+    for (const scene::Port& port : scene.ports) {
+      if (port.device != device) continue;
+      ports.push_back(port);
+      role = port.role;
+      id = port.device_id;
+    }
+    exchanges.emplace_back(device, id, role, ports, scene.gesture_rate_hz, run);
+    if (role == scene::Role::kLiaison)
+      exchanges.back().brake_with(PortBrake(scene, ports, account));
+  }
+  return exchanges;
+}
+
+}  // namespace
+
+Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t run)
+    : scene_(std::move(scene)),
+      world_(std::make_shared<const engine::Network>(scene_->network)),
+      devices_(exchanges_of(*scene_, run)),
+      steps_per_tick_(
+          static_cast<int>(std::lround(scene_->step_rate_hz / scene_->gesture_rate_hz))) {}
+
+bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room) noexcept {
+  if (!world_.take_over(before.world_, room)) return false;
+  for (const DeviceExchange& device : before.devices_) {
+    DeviceExchange* now = find(device.device_id());
+    if (now != nullptr) now->take_over(device, /*at_once=*/true);
+  }
+  steps_in_tick_ = before.steps_in_tick_;
+  tick_count_ = before.tick_count_;
+  return true;
+}
+
+bool Simulation::advance(int steps, EventRoom& events) noexcept {
+  if (failed_) return false;
+  if (is_between_ticks()) {
+    for (DeviceExchange& device : devices_) device.begin_tick();
+  }
+  const int last = std::min(steps_in_tick_ + steps, steps_per_tick_);
+  while (steps_in_tick_ < last) {
+    ++steps_in_tick_;
+    for (DeviceExchange& device : devices_) device.play(world_, steps_in_tick_, steps_per_tick_);
+    const engine::StepReport report = world_.step();
+    events.add(world_.events(), report.lost_events);
+    if (report.non_finite_mats > 0) {
+      failed_ = true;
+      return false;
+    }
+  }
+  if (steps_in_tick_ < steps_per_tick_) return false;
+  steps_in_tick_ = 0;
+  ++tick_count_;
+  return true;
+}
+
+DeviceExchange* Simulation::find(std::uint32_t device_id) noexcept {
+  for (DeviceExchange& device : devices_) {
+    if (device.device_id() == device_id) return &device;
+  }
+  return nullptr;
+}
+
+std::int64_t Simulation::action_time_nsec() const noexcept {
+  std::int64_t newest = 0;
+  for (const DeviceExchange& device : devices_) {
+    if (!device.is_lost()) newest = std::max(newest, device.heard_time_nsec());
+  }
+  return newest;
+}
+
+double Simulation::simulated_s() const noexcept {
+  return static_cast<double>(world_.step_count()) * world_.network().step();
+}
+
+std::string Simulation::failure() const {
+  if (!failed_) return {};
+  const std::string what = "the scene diverged at step " + std::to_string(world_.step_count());
+  for (std::uint32_t mat = 0; mat < world_.network().mat_count(); ++mat) {
+    if (world_.position(mat).allFinite()) continue;
+    return what + ": the position of '" + scene::call_mat(*scene_, mat).name +
+           "' is not a finite number; it is " + reason_of_divergence(*scene_, mat) +
+           ". A step rate above " + std::to_string(std::lround(scene_->step_rate_hz)) +
+           " Hz, or less stiffness or viscosity, may hold it";
+  }
+  return what;
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,70 @@
+// sim_node/run/simulation.h -- one scene in motion, tick by tick.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim_node/devices/device_exchange.h"
+#include "sim_node/engine/world.h"
+#include "sim_node/run/event_room.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// A scene, its world and the exchanges with its devices. A tick is one gesture period:
+/// steps_per_tick() steps of the world between a sample of the devices and the answer to it. [Luc90
+/// V.1 Force feedback gestual transducers] Nothing here knows of DDS, threads or clocks.
+class Simulation {
+ public:
+  /// @param run  of this sim_node
+  Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t run);
+
+  /// Goes on where a simulation of the same scene with other parameters is.
+  /// @param room  as World::take_over() wants it
+  /// @return false when the scenes do not fit; then nothing has changed. Real time as take_over().
+  bool go_on_from(const Simulation& before, std::vector<double>& room) noexcept;
+
+  /// Does the next steps of a tick, at most so many. Real time: allocates nothing, does not throw.
+  /// Does nothing once failed(). @param events  where the changes of state go
+  /// @return whether the tick is complete.
+  bool advance(int steps, EventRoom& events) noexcept;
+
+  /// @param row  room for one value per signal of the scene
+  void read_signals(double* row) const noexcept { scene_->signals.read(world_, row); }
+
+  /// The exchange of a device, nullptr when no port of the scene is its.
+  DeviceExchange* find(std::uint32_t device_id) noexcept;
+  std::vector<DeviceExchange>& devices() noexcept { return devices_; }
+  /// Of the newest sample of all devices that are there; 0 when none is [ns].
+  std::int64_t action_time_nsec() const noexcept;
+
+  const scene::Scene& scene() const noexcept { return *scene_; }
+  const std::shared_ptr<const scene::Scene>& shared_scene() const noexcept { return scene_; }
+  const engine::World& world() const noexcept { return world_; }
+  engine::World& world() noexcept { return world_; }
+  int steps_per_tick() const noexcept { return steps_per_tick_; }
+  /// Steps that the present tick still wants; steps_per_tick() between two ticks.
+  int steps_left_in_tick() const noexcept { return steps_per_tick_ - steps_in_tick_; }
+  bool is_between_ticks() const noexcept { return steps_in_tick_ == 0; }
+  std::uint64_t tick_count() const noexcept { return tick_count_; }
+  double simulated_s() const noexcept;
+
+  /// The scene diverged: a position is no longer finite. Its forces must not be used any more.
+  bool failed() const noexcept { return failed_; }
+  /// Which MAT left the finite numbers first, when, and which liaison is to blame; empty while
+  /// nothing failed. Not in real time.
+  std::string failure() const;
+
+ private:
+  std::shared_ptr<const scene::Scene> scene_;
+  engine::World world_;
+  std::vector<DeviceExchange> devices_;
+  int steps_per_tick_;
+  int steps_in_tick_ = 0;  // done in the present tick
+  std::uint64_t tick_count_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace cordis::sim

@@ -1,0 +1,285 @@
+#include "sim_node/scene/language/formula.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim_node/scene/language/quantity.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Problems;
+using config::Range;
+using config::Value;
+using engine::Instruction;
+using engine::Operation;
+
+constexpr std::size_t kMostParameters = 1'000;  // of a liaison
+constexpr std::size_t kMostOpen = 64;           // parameters that wait for each other
+
+/// Whether a value is to be read as a number rather than as a formula: because it is one, or
+/// because what is said about a wrong number fits it best (.nan, 3 N, a sequence).
+bool is_plain_number(const Value& value) {
+  if (value.kind() != Value::Kind::kScalar) return true;
+  if (value.quoted()) return false;
+  Problems of_number;
+  config::read_number(value, "", 0.0, {}, of_number);
+  if (!of_number.has_errors()) return true;
+  const config::Problem& problem = of_number.all().front();
+  if (problem.message.find("must be a number") == std::string::npos) return true;
+  Problems of_formula;
+  return !problem.hint.empty() && !parse_expression(value, "", of_formula);
+}
+
+/// Depth of the stack after and during a program that is well-formed.
+std::size_t deepest_stack(const engine::Program& program) {
+  std::size_t depth = 0;
+  std::size_t deepest = 0;
+  for (const Instruction& instruction : program.code) {
+    const bool pushes = instruction.operation == Operation::kConstant ||
+                        instruction.operation == Operation::kQuantity;
+    if (pushes) ++depth;
+    if (engine::operand_count(instruction.operation) == 2) --depth;
+    deepest = std::max(deepest, depth);
+  }
+  return deepest;
+}
+
+bool is_constant(const Instruction& instruction) {
+  return instruction.operation == Operation::kConstant;
+}
+
+/// Adds an operation to a program, or its result when its operands are constants.
+void add_operation(std::vector<Instruction>& code, Operation operation, std::uint32_t& next_slot) {
+  const std::size_t operands = engine::operand_count(operation);
+  const bool remembers = engine::is_trend(operation);
+  const bool foldable =
+      !remembers && code.size() >= operands &&
+      std::all_of(code.end() - static_cast<std::ptrdiff_t>(operands), code.end(), is_constant);
+  if (!foldable) {
+    code.push_back({operation, engine::Quantity::kDistance, 0.0, remembers ? next_slot++ : 0});
+    return;
+  }
+  const double last = code.back().constant;
+  if (operands == 2) {
+    code.pop_back();
+    code.back().constant = apply(operation, code.back().constant, last);
+  } else {
+    code.back().constant = apply(operation, last);
+  }
+}
+
+}  // namespace
+
+std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
+                                          const ParameterValues& parameters,
+                                          std::uint32_t& next_slot, Problems& problems) {
+  CompiledExpression compiled;
+  std::vector<Instruction>& code = compiled.program.code;
+  const std::size_t errors_before = problems.error_count();
+  for (const ExpressionWord& word : expression.words) {
+    if (word.kind == ExpressionWord::Kind::kOperation) {
+      add_operation(code, word.operation, next_slot);
+      if (is_constant(code.back()) && !std::isfinite(code.back().constant)) {
+        problems.error(expression.place_of(word), what + " has a part that is no finite number");
+        return std::nullopt;
+      }
+      continue;
+    }
+    double number = word.number;
+    if (word.kind == ExpressionWord::Kind::kName) {
+      if (const QuantityName* const known = find_quantity(word.name)) {
+        code.push_back({Operation::kQuantity, known->quantity, 0.0, 0});
+        if (compiled.first == engine::Quantity::kNone) compiled.first = known->quantity;
+        continue;
+      }
+      const std::optional<double> value = parameters.find(word.name);
+      if (!value) {
+        std::vector<std::string> words = parameters.names();
+        for (const QuantityName& known : kQuantityNames) words.emplace_back(known.word);
+        problems.error(expression.place_of(word),
+                       what + " names '" + word.name + "', which is no quantity and no parameter",
+                       config::did_you_mean(word.name, words));
+      }
+      number = value.value_or(1.0);
+    }
+    code.push_back({Operation::kConstant, engine::Quantity::kDistance, number, 0});
+  }
+  if (problems.error_count() == errors_before &&
+      deepest_stack(compiled.program) > engine::kMaxStack) {
+    problems.error(expression.text.place(), what + " is nested too deeply",
+                   "write what is nested first: (a + b) * c instead of c * (a + b)");
+  }
+  if (next_slot > engine::kMaxSlots) {
+    problems.error(expression.text.place(), what + " is one of too many with rising and falling",
+                   "the exits of a state have room for 16 of them");
+  }
+  if (problems.error_count() != errors_before) return std::nullopt;
+  return compiled;
+}
+
+namespace {
+
+/// The value of a formula of parameters alone.
+std::optional<double> evaluate(const Value& value, const std::string& what,
+                               const ParameterValues& parameters, Problems& problems) {
+  const std::optional<Expression> expression = parse_expression(value, what, problems);
+  if (!expression) return std::nullopt;
+  for (const ExpressionWord& word : expression->words) {
+    if (word.kind == ExpressionWord::Kind::kName && find_quantity(word.name) != nullptr) {
+      problems.error(expression->place_of(word),
+                     what + " is fixed before the run and cannot ask for '" + word.name + "'");
+      return std::nullopt;
+    }
+  }
+  std::uint32_t slots = 0;
+  const std::optional<CompiledExpression> compiled =
+      compile(*expression, what, parameters, slots, problems);
+  if (!compiled) return std::nullopt;
+  const bool one_number = !expression->is_truth && compiled->program.code.size() == 1 && slots == 0;
+  if (one_number) return compiled->program.code.front().constant;
+  problems.error(value.place(), what + " must be a number, got a comparison");
+  return std::nullopt;
+}
+
+}  // namespace
+
+/// Puts parameters to values, each after those it names.
+struct ParameterValues::Evaluation {
+  const Value& section;
+  const std::map<std::string, double>& given;
+  const std::string& what;
+  Problems& problems;
+  ParameterValues& result;
+  std::vector<std::string> open{};  // parameters whose formulas are being followed
+
+  void put(const Value::Entry& entry) {
+    if (result.values_.count(entry.key) != 0) return;
+    const std::string name = "parameter '" + entry.key + "' of " + what;
+    if (const auto known = given.find(entry.key); known != given.end()) {
+      result.values_[entry.key] = known->second;
+      return;
+    }
+    if (is_plain_number(entry.value)) {
+      result.values_[entry.key] = config::read_number(entry.value, name, 1.0, {}, problems);
+      return;
+    }
+    const std::optional<Expression> formula = parse_expression(entry.value, name, problems);
+    result.values_[entry.key] = 1.0;  // so that nothing follows from a problem
+    if (!formula) return;
+    result.values_.erase(entry.key);
+    if (!put_names(entry, *formula)) {
+      result.values_[entry.key] = 1.0;
+      return;
+    }
+    result.values_[entry.key] = evaluate(entry.value, name, result, problems).value_or(1.0);
+  }
+
+  /// The parameters that a formula names. @return false when it names itself in the end.
+  bool put_names(const Value::Entry& entry, const Expression& formula) {
+    if (open.size() >= kMostOpen) {
+      problems.error(entry.value.place(),
+                     "more than " + std::to_string(kMostOpen) + " parameters of " + what +
+                         " each depend on the next, down to '" + entry.key + "'");
+      return false;
+    }
+    open.push_back(entry.key);
+    bool sound = true;
+    for (const ExpressionWord& word : formula.words) {
+      if (word.kind != ExpressionWord::Kind::kName) continue;
+      const auto& entries = section.entries();
+      const auto named = std::find_if(entries.begin(), entries.end(),
+                                      [&](const auto& other) { return other.key == word.name; });
+      if (named == entries.end()) continue;
+      const auto cycle = std::find(open.begin(), open.end(), word.name);
+      if (cycle == open.end()) {
+        put(*named);
+        continue;
+      }
+      std::string circle;
+      for (auto name = cycle; name != open.end(); ++name) circle += *name + " -> ";
+      problems.error(formula.place_of(word),
+                     "parameter '" + entry.key + "' of " + what + " depends on itself",
+                     circle + word.name);
+      sound = false;
+    }
+    open.pop_back();
+    return sound;
+  }
+};
+
+ParameterValues::ParameterValues(const Value& section, const std::map<std::string, double>& given,
+                                 const ParameterValues* outer, const std::string& what,
+                                 Problems& problems)
+    : outer_(outer) {
+  if (section.exists() && section.kind() != Value::Kind::kMapping) {
+    problems.error(section.place(), "'parameters' in " + what + " must be a mapping of keys, got " +
+                                        section.described());
+  }
+  if (section.entries().size() > kMostParameters) {
+    problems.error(section.place(), "'parameters' in " + what + " has more than " +
+                                        std::to_string(kMostParameters) + " parameters");
+    return;
+  }
+  for (const Value::Entry& entry : section.entries()) {
+    if (!is_free_name(entry.key)) {
+      problems.error(entry.key_place, "'" + entry.key + "' cannot be the name of a parameter",
+                     find_quantity(entry.key) != nullptr ? "it is a quantity of the link" : "");
+    }
+  }
+  Evaluation evaluation{section, given, what, problems, *this};
+  for (const Value::Entry& entry : section.entries()) evaluation.put(entry);
+  for (const Value::Entry& entry : section.entries()) names_.push_back(entry.key);
+}
+
+std::optional<double> ParameterValues::find(const std::string& name) const {
+  const auto known = values_.find(name);
+  if (known == values_.end()) return outer_ != nullptr ? outer_->find(name) : std::nullopt;
+  used_.push_back(name);
+  return known->second;
+}
+
+std::vector<std::string> ParameterValues::names() const {
+  std::vector<std::string> names = names_;
+  if (outer_ != nullptr) {
+    const std::vector<std::string> others = outer_->names();
+    names.insert(names.end(), others.begin(), others.end());
+  }
+  return names;
+}
+
+std::vector<std::string> ParameterValues::unused() const {
+  std::vector<std::string> unused;
+  for (const std::string& name : names_) {
+    if (std::find(used_.begin(), used_.end(), name) == used_.end()) unused.push_back(name);
+  }
+  return unused;
+}
+
+double read_formula(const Value& value, const std::string& what, double fallback, Range range,
+                    const ParameterValues& parameters, Problems& problems) {
+  if (is_plain_number(value)) return config::read_number(value, what, fallback, range, problems);
+  const std::optional<double> number = evaluate(value, what, parameters, problems);
+  if (!number) return fallback;
+  const Value as_written = Value::scalar(config::number_text(*number), value.place());
+  return config::read_number(as_written, what, fallback, range, problems);
+}
+
+double optional_formula(config::MappingReader& reader, const std::string& key, double fallback,
+                        Range range, const ParameterValues& parameters, Problems& problems) {
+  const Value value = reader.optional_value(key);
+  if (!value.exists()) return fallback;
+  return read_formula(value, "'" + key + "' in " + reader.what(), fallback, range, parameters,
+                      problems);
+}
+
+double required_formula(config::MappingReader& reader, const std::string& key, Range range,
+                        const ParameterValues& parameters, Problems& problems) {
+  reader.required_value(key);
+  return optional_formula(reader, key, range.lowest_excluded ? 1.0 : 0.0, range, parameters,
+                          problems);
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,69 @@
+// sim_node/scene/language/formula.h -- parameters, and expressions with their names put to values.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "node/config/mapping_reader.h"
+#include "sim_node/engine/expressions/program.h"
+#include "sim_node/scene/language/expression.h"
+
+namespace cordis::scene {
+
+/// The named parameters of a liaison, put to values. A parameter is a number, or a formula of other
+/// parameters in any order.
+class ParameterValues {
+ public:
+  ParameterValues() = default;
+  /// @param section  the mapping `parameters` of the liaison; need not exist
+  /// @param given    values that stand for those of the section
+  /// @param outer    parameters that formulas may name besides; nullptr when there are none
+  /// @param what     names the liaison in messages
+  ParameterValues(const config::Value& section, const std::map<std::string, double>& given,
+                  const ParameterValues* outer, const std::string& what,
+                  config::Problems& problems);
+
+  /// Nothing when there is none of that name.
+  std::optional<double> find(const std::string& name) const;
+  std::vector<std::string> names() const;  ///< with those outside
+  /// Names of the section that find() was never asked for.
+  std::vector<std::string> unused() const;
+
+ private:
+  struct Evaluation;
+
+  std::map<std::string, double> values_;
+  std::vector<std::string> names_;  // of the section, in the order of the file
+  const ParameterValues* outer_ = nullptr;
+  mutable std::vector<std::string> used_;
+};
+
+/// A number of a liaison: written plainly, or a formula of parameters. It must be finite and within
+/// the range; a problem and the fallback otherwise.
+double read_formula(const config::Value& value, const std::string& what, double fallback,
+                    config::Range range, const ParameterValues& parameters,
+                    config::Problems& problems);
+
+/// The same for a key of a mapping, with the fallback when it is absent.
+double optional_formula(config::MappingReader& reader, const std::string& key, double fallback,
+                        config::Range range, const ParameterValues& parameters,
+                        config::Problems& problems);
+double required_formula(config::MappingReader& reader, const std::string& key, config::Range range,
+                        const ParameterValues& parameters, config::Problems& problems);
+
+/// A condition or a formula over the quantities of a link, for the engine.
+struct CompiledExpression {
+  engine::Program program;
+  engine::Quantity first = engine::Quantity::kNone;  ///< the first quantity it names
+};
+
+/// Puts the names of an expression to quantities and values, and folds what is constant. Whatever
+/// is wrong is a problem of its place.
+/// @param next_slot  of the next `rising` or `falling`; moved on
+std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
+                                          const ParameterValues& parameters,
+                                          std::uint32_t& next_slot, config::Problems& problems);
+
+}  // namespace cordis::scene

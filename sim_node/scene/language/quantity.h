@@ -1,0 +1,34 @@
+// sim_node/scene/language/quantity.h -- the quantities of a link by the names they have in expressions.
+#pragma once
+
+#include <string_view>
+
+#include "sim_node/engine/expressions/program.h"
+
+namespace cordis::scene {
+
+/// A quantity of a link. What it tells stands at engine::Quantity.
+struct QuantityName {
+  const char* word;
+  engine::Quantity quantity;
+};
+
+inline constexpr QuantityName kQuantityNames[] = {
+    {"distance_m", engine::Quantity::kDistance},    {"elongation_m", engine::Quantity::kElongation},
+    {"speed_m_per_s", engine::Quantity::kSpeed},    {"speed_x_m_per_s", engine::Quantity::kSpeedX},
+    {"speed_y_m_per_s", engine::Quantity::kSpeedY}, {"speed_z_m_per_s", engine::Quantity::kSpeedZ},
+    {"slip_m_per_s", engine::Quantity::kSlip},      {"force_n", engine::Quantity::kForce},
+    {"impulse_n_s", engine::Quantity::kImpulse},    {"age_s", engine::Quantity::kAge},
+    {"rest_m", engine::Quantity::kRestLength},      {"mass_a_kg", engine::Quantity::kMassA},
+    {"mass_b_kg", engine::Quantity::kMassB},
+};
+
+/// nullptr when there is none of that name.
+constexpr const QuantityName* find_quantity(std::string_view word) noexcept {
+  for (const QuantityName& known : kQuantityNames) {
+    if (word == known.word) return &known;
+  }
+  return nullptr;
+}
+
+}  // namespace cordis::scene

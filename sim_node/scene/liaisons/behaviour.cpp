@@ -1,0 +1,160 @@
+#include "sim_node/scene/liaisons/behaviour.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "sim_node/scene/liaisons/law.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Problems;
+using config::Range;
+using config::Value;
+using engine::Exit;
+using engine::LinkState;
+
+constexpr std::size_t kMostExits = 1'000;  // of a liaison
+
+/// What a state's exits are read from.
+struct ExitSource {
+  const ParameterValues& parameters;
+  const std::vector<std::string>& states;  // their names
+  Problems& problems;
+};
+
+LinkState read_physics(config::MappingReader& reader, const ParameterValues& parameters,
+                       Problems& problems) {
+  const Range not_negative = Range::not_negative();
+  LinkState state;
+  state.stiffness =
+      optional_formula(reader, "stiffness_n_per_m", 0.0, not_negative, parameters, problems);
+  state.viscosity =
+      optional_formula(reader, "viscosity_n_s_per_m", 0.0, not_negative, parameters, problems);
+  state.elasticity = read_elasticity(reader, parameters, problems);
+  state.dissipation = read_dissipation(reader, parameters, problems);
+  state.force_limit = optional_formula(reader, "force_limit_n", state.force_limit,
+                                       Range::positive(), parameters, problems);
+  state.pulls = reader.optional_truth("pulls", true);
+  state.pushes = reader.optional_truth("pushes", true);
+  return state;
+}
+
+void read_rest(config::MappingReader& reader, const ExitSource& source, Exit& exit) {
+  const Value rest = reader.optional_value("rest");
+  if (!rest.exists() || rest.text() == "keep") return;
+  if (rest.text() == "here") {
+    exit.rest = engine::RestRule::kHere;
+    return;
+  }
+  const std::string what = "'rest' in " + reader.what();
+  const std::optional<Expression> expression = parse_expression(rest, what, source.problems);
+  if (!expression) return;
+  std::uint32_t slots = 0;
+  std::optional<CompiledExpression> compiled =
+      compile(*expression, what, source.parameters, slots, source.problems);
+  if (expression->is_truth || slots > 0) {
+    source.problems.error(rest.place(), what + " must be a length, got a comparison",
+                          "rest: keep, here, or an expression such as rest_m + elongation_m");
+  } else if (compiled) {
+    exit.rest = engine::RestRule::kExpression;
+    exit.rest_length = std::move(compiled->program);
+  }
+}
+
+Exit read_exit(config::MappingReader& reader, const ExitSource& source, std::uint32_t& next_slot) {
+  Exit exit;
+  const std::string to = reader.required_choice("to", source.states);
+  const auto target = std::find(source.states.begin(), source.states.end(), to);
+  exit.target = static_cast<std::uint32_t>(target - source.states.begin());
+  const Value when = reader.required_value("when");
+  const std::string what = "'when' in " + reader.what();
+  if (when.exists()) {
+    const std::optional<Expression> condition = parse_expression(when, what, source.problems);
+    std::optional<CompiledExpression> compiled;
+    if (condition)
+      compiled = compile(*condition, what, source.parameters, next_slot, source.problems);
+    if (compiled && !condition->is_truth) {
+      source.problems.error(when.place(), what + " must be a condition, got a number",
+                            "compare it: " + when.text() + " > 0");
+    } else if (compiled) {
+      exit.when = std::move(compiled->program);
+      if (compiled->first != engine::Quantity::kNone) exit.fired = compiled->first;
+    }
+  }
+  read_rest(reader, source, exit);
+  reader.finish();
+  return exit;
+}
+
+void read_state(const Value::Entry& entry, const std::string& liaison, const ExitSource& source,
+                engine::Behaviour& behaviour, BehaviourPlaces& places) {
+  const std::string what = "state '" + entry.key + "' of " + liaison;
+  config::MappingReader reader(entry.value, what, source.problems);
+  if (!is_free_name(entry.key)) {
+    source.problems.error(entry.key_place, "'" + entry.key + "' cannot be the name of a state");
+  }
+  LinkState state = read_physics(reader, source.parameters, source.problems);
+  state.name = entry.key;
+  state.first_exit = static_cast<std::uint32_t>(behaviour.exits.size());
+  std::uint32_t next_slot = 0;
+  const Value exits = reader.optional_sequence("exits");
+  if (behaviour.exits.size() + exits.items().size() > kMostExits) {
+    reader.error_at("exits", liaison + " has more than " + std::to_string(kMostExits) + " exits");
+    return;
+  }
+  for (const Value& exit : exits.items()) {
+    config::MappingReader exit_reader(exit, "exit of " + what, source.problems);
+    behaviour.exits.push_back(read_exit(exit_reader, source, next_slot));
+    places.exits.push_back(exit_reader.place_of("when"));
+  }
+  state.last_exit = static_cast<std::uint32_t>(behaviour.exits.size());
+  places.states.push_back({entry.key_place, reader.optional_truth("final", false)});
+  reader.finish();
+  behaviour.states.push_back(std::move(state));
+}
+
+constexpr std::array<const char*, 6> kSignsOfBehaviour{
+    {"states", "elasticity", "dissipation", "force_limit_n", "pulls", "pushes"}};
+
+}  // namespace
+
+bool looks_like_behaviour(const Value& liaison) {
+  return std::any_of(kSignsOfBehaviour.begin(), kSignsOfBehaviour.end(),
+                     [&](const char* key) { return liaison.find(key).exists(); });
+}
+
+engine::Behaviour read_behaviour(config::MappingReader& reader, const ParameterValues& parameters,
+                                 BehaviourPlaces& places, Problems& problems) {
+  engine::Behaviour behaviour;
+  if (!reader.has("states")) {
+    behaviour.states.push_back(read_physics(reader, parameters, problems));
+    places.states.push_back({reader.place(), true});
+    reader.optional_value("states");
+    return behaviour;
+  }
+  const Value states = reader.optional_mapping("states");
+  std::vector<std::string> names;
+  for (const Value::Entry& entry : states.entries()) names.push_back(entry.key);
+  if (states.exists() && names.empty())
+    reader.error_at("states", "'states' in " + reader.what() + " must not be empty");
+  if (names.size() > engine::kMaxStates) {
+    reader.error_at("states", "'states' in " + reader.what() + " has more than " +
+                                  std::to_string(engine::kMaxStates) + " states");
+  }
+  if (names.empty() || names.size() > engine::kMaxStates) {
+    reader.optional_value("start");
+    return behaviour;
+  }
+  const std::string start = reader.optional_choice("start", names.front(), names);
+  behaviour.start =
+      static_cast<std::uint32_t>(std::find(names.begin(), names.end(), start) - names.begin());
+  const ExitSource source{parameters, names, problems};
+  for (const Value::Entry& entry : states.entries())
+    read_state(entry, reader.what(), source, behaviour, places);
+  return behaviour;
+}
+
+}  // namespace cordis::scene

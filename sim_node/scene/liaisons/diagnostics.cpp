@@ -1,0 +1,249 @@
+#include "sim_node/scene/liaisons/diagnostics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "sim_node/scene/language/formula.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using engine::Behaviour;
+using engine::Exit;
+using engine::LinkState;
+using engine::Operation;
+using engine::Program;
+using Quantities = std::array<double, engine::kQuantityCount>;
+
+constexpr std::size_t kTries = 32;            // entries tried for one exit
+constexpr std::size_t kWordsTried = 200'000;  // of conditions in all tries of one kind
+constexpr int kDrawsOfATry = 16;              // of a link before and after it
+constexpr int kHalvings = 40;                 // of the way between them
+
+double& at(Quantities& quantities, engine::Quantity quantity) {
+  return quantities[static_cast<std::size_t>(quantity)];
+}
+double at(const Quantities& quantities, engine::Quantity quantity) {
+  return quantities[static_cast<std::size_t>(quantity)];
+}
+
+/// @param edge  what `rising` and `falling` are
+double value_of(const Program& program, const Quantities& quantities, double edge) {
+  std::array<double, engine::kMaxStack> stack{};
+  std::size_t depth = 0;
+  for (const engine::Instruction& instruction : program.code) {
+    if (instruction.operation == Operation::kConstant) {
+      stack[depth++] = instruction.constant;
+    } else if (instruction.operation == Operation::kQuantity) {
+      stack[depth++] = at(quantities, instruction.quantity);
+    } else if (engine::operand_count(instruction.operation) == 2) {
+      --depth;
+      stack[depth - 1] = apply(instruction.operation, stack[depth - 1], stack[depth]);
+    } else if (engine::is_trend(instruction.operation)) {
+      stack[depth - 1] = edge;
+    } else {
+      stack[depth - 1] = apply(instruction.operation, stack[depth - 1]);
+    }
+  }
+  return stack[0];
+}
+
+bool is_linear(const LinkState& state) {
+  return state.elasticity.kind == engine::Law::Kind::kNone;
+}
+
+/// The elastic pull of a linear state.
+double pull_of(const LinkState& state, double elongation) {
+  double pull = state.stiffness * elongation;
+  if (!state.pulls) pull = std::min(pull, 0.0);
+  if (!state.pushes) pull = std::max(pull, 0.0);
+  return std::clamp(pull, -state.force_limit, state.force_limit);
+}
+
+/// Numbers that look random and are always the same.
+class Dice {
+ public:
+  double between(double lowest, double highest) {
+    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
+    return lowest + (highest - lowest) * static_cast<double>(state_ >> 11U) * 0x1p-53;
+  }
+  std::size_t below(std::size_t count) {
+    return std::min(count - 1, static_cast<std::size_t>(between(0.0, static_cast<double>(count))));
+  }
+
+ private:
+  std::uint64_t state_ = 1990;
+};
+
+/// Links about to change state: what their quantities may be.
+class Entries {
+ public:
+  explicit Entries(const Behaviour& behaviour) : behaviour_(behaviour) {
+    std::size_t word_count = 0;
+    for (const Exit& exit : behaviour.exits) {
+      for (const engine::Instruction& instruction : exit.when.code) {
+        const double size = std::abs(instruction.constant);
+        if (instruction.operation == Operation::kConstant && size > 0.0) sizes_.push_back(size);
+      }
+      word_count += exit.when.code.size();
+    }
+    tries_ = std::clamp<std::size_t>(kWordsTried / std::max<std::size_t>(word_count, 1), 2, kTries);
+    if (sizes_.empty()) sizes_.push_back(1.0);
+  }
+
+  /// Links that have just been led out of `from` by an exit while their ends moved slowly, as the
+  /// next state finds them.
+  std::vector<Quantities> through(const LinkState& from, const Exit& exit) {
+    std::vector<Quantities> entries;
+    for (std::size_t t = 0; t < tries_; ++t) {
+      if (std::optional<Quantities> entry = try_entry(from, exit)) {
+        entries.push_back(entered(*entry, exit));
+      }
+    }
+    return entries;
+  }
+
+ private:
+  std::optional<Quantities> try_entry(const LinkState& from, const Exit& exit) {
+    std::optional<Quantities> before;
+    std::optional<Quantities> after;
+    for (int d = 0; d < kDrawsOfATry && (!before || !after); ++d) {
+      const Quantities drawn = draw(from, exit.when);
+      (value_of(exit.when, drawn, 1.0) != 0.0 ? after : before) = drawn;
+    }
+    if (!before || !after) return std::nullopt;
+    for (int h = 0; h < kHalvings; ++h) {
+      Quantities middle{};
+      for (std::size_t q = 0; q < middle.size(); ++q)
+        middle[q] = 0.5 * ((*before)[q] + (*after)[q]);
+      (value_of(exit.when, middle, 1.0) != 0.0 ? after : before) = middle;
+    }
+    return after;
+  }
+
+  Quantities draw(const LinkState& from, const Program& when) {
+    Quantities drawn{};
+    const auto size = [&] { return sizes_[dice_.below(sizes_.size())]; };
+    for (const engine::Quantity quantity :
+         {engine::Quantity::kSpeed, engine::Quantity::kSpeedX, engine::Quantity::kSpeedY,
+          engine::Quantity::kSpeedZ, engine::Quantity::kSlip}) {
+      if (engine::asks_for(when, quantity)) at(drawn, quantity) = size() * dice_.between(-2.0, 2.0);
+    }
+    at(drawn, engine::Quantity::kSlip) = std::abs(at(drawn, engine::Quantity::kSlip));
+    double elongation = size() * dice_.between(-2.0, 2.0);
+    double force = size() * dice_.between(-2.0, 2.0);
+    if (is_linear(from) && !engine::asks_for(when, engine::Quantity::kForce))
+      force = pull_of(from, elongation);
+    const bool of_force = engine::asks_for(when, engine::Quantity::kForce) &&
+                          !engine::asks_for(when, engine::Quantity::kElongation);
+    if (is_linear(from) && of_force && from.stiffness > 0.0) elongation = force / from.stiffness;
+    at(drawn, engine::Quantity::kForce) = force;
+    at(drawn, engine::Quantity::kElongation) = elongation;
+    at(drawn, engine::Quantity::kRestLength) = size() * dice_.between(0.0, 2.0);
+    at(drawn, engine::Quantity::kDistance) = at(drawn, engine::Quantity::kRestLength) + elongation;
+    at(drawn, engine::Quantity::kImpulse) = size() * dice_.between(-2.0, 2.0);
+    at(drawn, engine::Quantity::kAge) = size() * dice_.between(0.0, 2.0);
+    at(drawn, engine::Quantity::kMassA) = size() * dice_.between(0.0, 2.0);
+    at(drawn, engine::Quantity::kMassB) = size() * dice_.between(0.0, 2.0);
+    return drawn;
+  }
+
+  Quantities entered(Quantities link, const Exit& exit) const {
+    const double distance = at(link, engine::Quantity::kDistance);
+    if (exit.rest == engine::RestRule::kHere) at(link, engine::Quantity::kRestLength) = distance;
+    if (exit.rest == engine::RestRule::kExpression)
+      at(link, engine::Quantity::kRestLength) = value_of(exit.rest_length, link, 0.0);
+    if (exit.rest != engine::RestRule::kKeep)
+      at(link, engine::Quantity::kElongation) = distance - at(link, engine::Quantity::kRestLength);
+    at(link, engine::Quantity::kAge) = 0.0;
+    at(link, engine::Quantity::kImpulse) = 0.0;
+    const LinkState& state = behaviour_.states[exit.target];
+    if (is_linear(state))
+      at(link, engine::Quantity::kForce) = pull_of(state, at(link, engine::Quantity::kElongation));
+    return link;
+  }
+
+  const Behaviour& behaviour_;
+  std::vector<double> sizes_;
+  std::size_t tries_ = kTries;
+  Dice dice_;
+};
+
+void lint_states(const Behaviour& behaviour, const BehaviourPlaces& places, const std::string& what,
+                 config::Problems& problems) {
+  std::vector<bool> reached(behaviour.states.size(), false);
+  std::vector<std::uint32_t> open{behaviour.start};
+  reached[behaviour.start] = true;
+  while (!open.empty()) {
+    const LinkState& state = behaviour.states[open.back()];
+    open.pop_back();
+    for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
+      const std::uint32_t target = behaviour.exits[e].target;
+      if (!reached[target]) open.push_back(target);
+      reached[target] = true;
+    }
+  }
+  for (std::size_t s = 0; s < behaviour.states.size(); ++s) {
+    const LinkState& state = behaviour.states[s];
+    const bool acts = state.stiffness > 0.0 || state.viscosity > 0.0 || !is_linear(state) ||
+                      state.dissipation.kind != engine::Law::Kind::kNone;
+    if (!reached[s]) {
+      problems.error(places.states[s].place, "state '" + state.name + "' of " + what +
+                                                 " cannot be reached from its start, '" +
+                                                 behaviour.states[behaviour.start].name + "'");
+    } else if (acts && !places.states[s].is_final && state.first_exit == state.last_exit) {
+      problems.warning(places.states[s].place,
+                       "no exit leads out of state '" + state.name + "' of " + what,
+                       "if that is meant, write final: true");
+    }
+  }
+}
+
+/// @return whether the condition may hold or not.
+bool lint_condition(const Program& when, const config::Place& place, const std::string& what,
+                    config::Problems& problems) {
+  if (when.code.size() != 1 || when.code.front().operation != Operation::kConstant) return true;
+  problems.warning(place, "this condition of " + what + " " +
+                              (when.code.front().constant != 0.0 ? "always" : "never") + " holds");
+  return false;
+}
+
+}  // namespace
+
+void lint(const Behaviour& behaviour, const BehaviourPlaces& places, const std::string& what,
+          config::Problems& problems) {
+  lint_states(behaviour, places, what, problems);
+  std::vector<bool> open(behaviour.exits.size());
+  for (std::size_t e = 0; e < behaviour.exits.size(); ++e)
+    open[e] = lint_condition(behaviour.exits[e].when, places.exits[e], what, problems);
+
+  Entries entries(behaviour);
+  for (const LinkState& from : behaviour.states) {
+    for (std::uint32_t e = from.first_exit; e < from.last_exit; ++e) {
+      const Exit& entry = behaviour.exits[e];
+      const std::vector<Quantities> links = entries.through(from, entry);
+      const LinkState& to = behaviour.states[entry.target];
+      for (std::uint32_t next = to.first_exit; next < to.last_exit && !links.empty(); ++next) {
+        const Exit& exit = behaviour.exits[next];
+        const bool holds = std::all_of(links.begin(), links.end(), [&](const Quantities& link) {
+          return value_of(exit.when, link, 0.0) != 0.0;
+        });
+        if (!holds || !open[next]) continue;
+        problems.warning(
+            places.exits[next],
+            "this exit of state '" + to.name + "' of " + what +
+                " holds already when the state is entered from '" + from.name +
+                "' by ends that move slowly: the link would change again in the next step, and "
+                "what comes of it would depend on the length of a step",
+            "let the state last: add 'and falling(...)' of the compared value, or 'and age_s > "
+            "...'");
+      }
+    }
+  }
+}
+
+}  // namespace cordis::scene

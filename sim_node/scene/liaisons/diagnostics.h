@@ -1,0 +1,19 @@
+// sim_node/scene/liaisons/diagnostics.h -- behaviours that can be simulated, but hardly as they were meant.
+#pragma once
+
+#include "sim_node/scene/liaisons/behaviour.h"
+
+namespace cordis::scene {
+
+/// Tells of a state that no exit leads to (an error), and warns of
+/// - a state that acts, is not `final`, and has no exit;
+/// - a condition that always or never holds;
+/// - an exit that holds at the moment its state is entered: the link would change again in the next
+///   step, whatever the length of a step is, and the outcome would depend on that length. Seen by
+///   trying entries of many links whose ends move slowly: the speed is 0 unless the condition of
+///   the entry asks for one.
+/// @param what  names the liaison in messages
+void lint(const engine::Behaviour& behaviour, const BehaviourPlaces& places,
+          const std::string& what, config::Problems& problems);
+
+}  // namespace cordis::scene

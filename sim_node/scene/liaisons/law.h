@@ -1,0 +1,21 @@
+// sim_node/scene/liaisons/law.h -- elasticity and dissipation that are not linear, as a scene writes them.
+#pragma once
+
+#include "sim_node/engine/laws/law.h"
+#include "sim_node/scene/language/formula.h"
+
+namespace cordis::scene {
+
+/// Reads the key `elasticity` of a state, a law over elongation or distance; no law when absent.
+/// The language is described in docs/language.md.
+engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues& parameters,
+                            config::Problems& problems);
+
+/// Reads the key `dissipation`, a law over the speed.
+engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,
+                             config::Problems& problems);
+
+/// The distance from which on a law is 0 by itself [m]; 0 when there is none.
+double reach_of(const engine::Law& law) noexcept;
+
+}  // namespace cordis::scene

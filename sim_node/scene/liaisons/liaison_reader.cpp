@@ -1,0 +1,282 @@
+// What a liaison is: its kind, its parameters, and what one link of it consists of.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "sim_node/scene/liaisons/behaviour.h"
+#include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/liaisons/diagnostics.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::MappingReader;
+using config::Problems;
+using config::Range;
+using config::Value;
+
+constexpr std::size_t kMostParts = 64;  // of a parallel liaison, those in its parts counted too
+
+constexpr const char* kRestLength = "rest_m";
+
+/// A kind of liaison, and its keys that a link may give a value to.
+struct LiaisonKind {
+  const char* name;
+  bool has_stiffness;
+  bool has_viscosity;
+};
+constexpr std::array<LiaisonKind, 6> kLiaisonKinds{{
+    {"spring", true, false},
+    {"damper", false, true},
+    {"spring_damper", true, true},
+    {"maxwell", true, true},
+    {"behaviour", true, true},
+    {"parallel", false, false},
+}};
+
+/// The kind that a liaison is of by its keys; empty when it must be written.
+std::string kind_by_keys(const Value& definition) {
+  if (definition.find("parallel").exists()) return "parallel";
+  return looks_like_behaviour(definition) ? "behaviour" : "";
+}
+
+/// The definition with given values in the place of those of its plain keys.
+Value with_given(const Value& definition, const GivenParameters& given) {
+  Value changed = definition;
+  for (const auto& [name, number] : given) {
+    if (definition.find("parameters").find(name).exists()) continue;
+    changed = config::with_value_at(
+        changed, {name}, Value::scalar(config::number_text(number), definition.find(name).place()));
+  }
+  return changed;
+}
+
+class LiaisonReader {
+ public:
+  /// @param open  the liaisons of which this one is a part, the outermost first, and itself
+  LiaisonReader(const Liaisons& liaisons, std::vector<std::string> open, int space, bool told,
+                Problems& problems)
+      : liaisons_(liaisons),
+        open_(std::move(open)),
+        space_(space),
+        told_(told),
+        problems_(problems) {}
+
+  LinkLaw read(const Value& written, const std::string& what, const GivenParameters& given,
+               const ParameterValues* outer) {
+    LinkLaw law;
+    const Value definition = with_given(written, given);
+    MappingReader reader(definition, what, problems_);
+    std::string kind = kind_by_keys(definition);
+    if (kind.empty() || reader.has("kind")) {
+      std::vector<std::string> words;
+      for (const LiaisonKind& known : kLiaisonKinds) words.emplace_back(known.name);
+      kind = reader.required_choice("kind", words);
+    }
+    reader.optional_value("kind");
+    if (!reader.ok()) return law;
+
+    const std::size_t errors_before = problems_.error_count();
+    const ParameterValues parameters(reader.optional_value("parameters"), given, outer, what,
+                                     problems_);
+    if (problems_.error_count() != errors_before) return law;
+    if (kind == "parallel") {
+      law = read_parallel(reader, parameters);
+    } else if (kind == "behaviour") {
+      law = read_states(reader, parameters);
+    } else {
+      law = read_linear(reader, kind, parameters);
+    }
+    reader.finish();
+    if (!told_ || problems_.error_count() != errors_before) return law;
+    for (const std::string& name : parameters.unused()) {
+      problems_.warning(definition.find("parameters").find(name).place(),
+                        "parameter '" + name + "' of " + what + " is used nowhere");
+    }
+    return law;
+  }
+
+ private:
+  LinkLaw read_linear(MappingReader& reader, const std::string& kind_name,
+                      const ParameterValues& parameters) {
+    const LiaisonKind& kind =
+        *std::find_if(kLiaisonKinds.begin(), kLiaisonKinds.end(),
+                      [&](const LiaisonKind& known) { return kind_name == known.name; });
+    LinkLaw law;
+    const bool maxwell = kind_name == "maxwell";
+    if (maxwell) law.kind = LinkKind::kMaxwell;
+    const auto refuse = [&](const char* key) {
+      reader.optional_value(key);
+      if (reader.has(key)) reader.error_at(key, "a " + kind_name + " has no '" + key + "'");
+    };
+    const Range range = maxwell ? Range::positive() : Range::not_negative();
+    if (kind.has_stiffness) {
+      law.stiffness = required_formula(reader, kStiffness, range, parameters, problems_);
+    } else {
+      refuse(kStiffness);
+    }
+    if (kind.has_viscosity) {
+      law.viscosity = required_formula(reader, kViscosity, range, parameters, problems_);
+    } else {
+      refuse(kViscosity);
+    }
+    if (kind.has_stiffness && !maxwell) {
+      read_rest(reader, law, parameters);
+    } else {
+      refuse(kRestLength);
+    }
+    return law;
+  }
+
+  /// `rest_m` or `rest: radii`.
+  void read_rest(MappingReader& reader, LinkLaw& law, const ParameterValues& parameters) {
+    const bool signed_length = space_ == 1 || law.kind == LinkKind::kState;
+    const Range range = signed_length ? Range{} : Range::not_negative();
+    const Value rest = reader.optional_value(kRestLength);
+    if (rest.exists())
+      law.rest_length =
+          read_formula(rest, "'rest_m' in " + reader.what(), 0.0, range, parameters, problems_);
+    law.rest_is_radii = reader.optional_choice("rest", "", {"radii"}) == "radii";
+    if (reader.has(kRestLength) && reader.has("rest"))
+      reader.error_at("rest", "either 'rest_m' or 'rest' can be given in " + reader.what());
+  }
+
+  LinkLaw read_states(MappingReader& reader, const ParameterValues& parameters) {
+    LinkLaw law;
+    law.kind = LinkKind::kState;
+    const std::size_t errors_before = problems_.error_count();
+    BehaviourPlaces places;
+    engine::Behaviour behaviour = read_behaviour(reader, parameters, places, problems_);
+    read_rest(reader, law, parameters);
+    law.reach = read_reach(reader, parameters);
+    if (problems_.error_count() != errors_before) return law;
+    behaviour.name = open_.back();
+    try {
+      engine::check_behaviour(behaviour, reader.what());
+    } catch (const std::invalid_argument& refusal) {
+      problems_.error(reader.place(), refusal.what());
+      return law;
+    }
+    if (told_) lint(behaviour, places, reader.what(), problems_);
+    law.behaviour = std::make_shared<const engine::Behaviour>(std::move(behaviour));
+    return law;
+  }
+
+  /// `range_m` or `range: rest`.
+  Reach read_reach(MappingReader& reader, const ParameterValues& parameters) {
+    const bool as_rest = reader.optional_choice("range", "", {"rest"}) == "rest";
+    const double length =
+        optional_formula(reader, "range_m", 0.0, Range::positive(), parameters, problems_);
+    if (reader.has("range_m") && reader.has("range"))
+      reader.error_at("range", "either 'range_m' or 'range' can be given in " + reader.what());
+    if (as_rest) return {Reach::Rule::kRest, 0.0};
+    return length > 0.0 ? Reach{Reach::Rule::kLength, length} : Reach{};
+  }
+
+  LinkLaw read_parallel(MappingReader& reader, const ParameterValues& parameters) {
+    const Value list = reader.required_sequence("parallel");
+    if (list.exists() && list.items().empty())
+      reader.error_at("parallel", "'parallel' in " + reader.what() + " must not be empty");
+    std::vector<LinkLaw> parts;
+    for (const Value& item : list.items()) {
+      const std::size_t errors_before = problems_.error_count();
+      const LinkLaw part = read_part(item, reader.what(), parameters);
+      if (problems_.error_count() != errors_before) return {};
+      std::vector<LinkLaw> all = part.beside;
+      all.insert(all.begin(), part);
+      for (LinkLaw& one : all) {
+        one.beside.clear();
+        if (parts.size() < kMostParts) parts.push_back(std::move(one));
+      }
+      if (parts.size() < kMostParts) continue;
+      reader.error_at("parallel", "'parallel' in " + reader.what() + " has too many parts");
+      break;
+    }
+    if (parts.empty()) return {};
+    name_parts(parts);
+    LinkLaw law = parts.front();
+    law.beside.assign(parts.begin() + 1, parts.end());
+    return law;
+  }
+
+  LinkLaw read_part(const Value& item, const std::string& what, const ParameterValues& parameters) {
+    const std::string name = item.kind() == Value::Kind::kScalar ? item.text() : std::string{};
+    LinkLaw law;
+    if (item.kind() == Value::Kind::kMapping) {
+      const Value definition = liaisons_.completed(item, problems_);
+      if (!definition.exists()) return law;
+      law = read(definition, "a part of " + what, {}, &parameters);
+      const Value like = item.find("like");
+      if (law.part.empty()) law.part = like.exists() ? like.text() : item.find("kind").text();
+      return law;
+    }
+    if (std::find(open_.begin(), open_.end(), name) != open_.end()) {
+      std::string circle;
+      for (const std::string& open : open_) circle += open + " -> ";
+      problems_.error(item.place(), "the liaison '" + name + "' stands in parallel with itself",
+                      circle + name);
+      return law;
+    }
+    if (open_.size() >= kMostParts) {
+      problems_.error(item.place(), "more than " + std::to_string(kMostParts) +
+                                        " liaisons stand in parallel within each other");
+      return law;
+    }
+    const Liaison* const liaison = liaisons_.find(item, problems_);
+    if (liaison == nullptr) return law;
+    std::vector<std::string> open = open_;
+    open.push_back(name);
+    Problems elsewhere;  // what is wrong in a liaison of its own is told there
+    LiaisonReader reader(liaisons_, std::move(open), space_, false, elsewhere);
+    law = reader.read(liaison->definition, "liaison '" + name + "'", {}, nullptr);
+    if (elsewhere.has_errors()) {
+      problems_.error(item.place(), "the liaison '" + name + "' cannot be used here",
+                      elsewhere.all().front().message);
+    }
+    if (law.part.empty()) law.part = name;
+    return law;
+  }
+
+  /// Gives equal names a number.
+  static void name_parts(std::vector<LinkLaw>& parts) {
+    std::map<std::string, int> uses;
+    for (LinkLaw& part : parts) {
+      const int use = ++uses[part.part];
+      if (use > 1) part.part += std::to_string(use);
+    }
+  }
+
+  const Liaisons& liaisons_;
+  std::vector<std::string> open_;
+  int space_;
+  bool told_;
+  Problems& problems_;
+};
+
+}  // namespace
+
+std::optional<LinkLaw> read_liaison(const Value& definition, const std::string& name,
+                                    const GivenParameters& given, const Liaisons& liaisons,
+                                    int space, bool told, Problems& problems) {
+  const std::size_t errors_before = problems.error_count();
+  LiaisonReader reader(liaisons, {name}, space, told, problems);
+  LinkLaw law = reader.read(definition, "liaison '" + name + "'", given, nullptr);
+  if (problems.error_count() != errors_before) return std::nullopt;
+  return law;
+}
+
+std::vector<std::string> parameters_of(const Value& definition) {
+  std::vector<std::string> names;
+  for (const Value::Entry& entry : definition.find("parameters").entries())
+    names.push_back(entry.key);
+  if (definition.find("parallel").exists() || definition.find("states").exists()) return names;
+  for (const char* key : {kStiffness, kViscosity, "force_limit_n"}) {
+    const bool known = std::find(names.begin(), names.end(), key) != names.end();
+    if (definition.find(key).exists() && !known) names.emplace_back(key);
+  }
+  return names;
+}
+
+}  // namespace cordis::scene

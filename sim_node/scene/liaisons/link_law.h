@@ -1,0 +1,133 @@
+// sim_node/scene/liaisons/link_law.h -- what a link between two MATs consists of.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "node/config/mapping_reader.h"
+#include "sim_node/engine/network.h"
+
+namespace cordis::scene {
+
+class Liaisons;
+class ParameterValues;
+
+/// The kinds of links in the order of their numbers in a scene: first all linear ones, and so on.
+enum class LinkKind : std::uint8_t { kLinear, kState, kMaxwell };
+inline constexpr std::size_t kLinkKindCount = 3;
+
+/// How far from each other two MATs of sets may be.
+struct Reach {
+  enum class Rule : std::uint8_t {
+    kNone,    ///< nothing is known
+    kLength,  ///< `length` [m]
+    kRest     ///< as far as the rest length
+  };
+  Rule rule = Rule::kNone;
+  double length = 0.0;
+};
+
+/// Values that a link gives to parameters of its liaison.
+using GivenParameters = std::map<std::string, double>;
+
+/// A liaison with its parameters put to values: what one link of it consists of.
+struct LinkLaw {
+  LinkKind kind = LinkKind::kLinear;
+  double stiffness = 0.0;             ///< K [N/m], unless kState
+  double viscosity = 0.0;             ///< Z [N s/m], unless kState
+  std::optional<double> rest_length;  ///< [m]; the distance at the start when there is none
+  bool rest_is_radii = false;         ///< the rest length is the sum of the radii of the two balls
+  std::optional<double> tension;      ///< [N] at the start, instead of a rest length
+  std::shared_ptr<const engine::Behaviour> behaviour;  ///< of kState
+  std::uint32_t behaviour_index = 0;  ///< of kState, in the network, once a link uses it
+  Reach reach;                        ///< of kState
+  std::string part;                   ///< its name in a parallel liaison, else empty
+  std::string liaison;                ///< the name of that it was made from, or empty
+  GivenParameters given;              ///< what the link gave to it
+  std::vector<LinkLaw> beside;        ///< the others of a parallel liaison
+};
+
+inline constexpr const char* kStiffness = "stiffness_n_per_m";
+inline constexpr const char* kViscosity = "viscosity_n_s_per_m";
+
+/// What the pairs of a set are joined by: a linear law is a behaviour of one state.
+/// Precondition: the law is not of kMaxwell.
+std::shared_ptr<const engine::Behaviour> behaviour_of(const LinkLaw& law);
+
+/// The behaviours of a network, one for each distinct set of parameter values.
+class BehaviourPool {
+ public:
+  /// Where a behaviour of the pool comes from.
+  struct Origin {
+    std::string liaison;
+    GivenParameters given;
+    std::string part;   ///< of a parallel liaison
+    std::string owner;  ///< the named links it belongs to alone, or empty
+    bool operator<(const Origin& other) const;
+  };
+
+  /// Index of the behaviour of this origin, which is added when it is new.
+  std::uint32_t index_of(const Origin& origin, const engine::Behaviour& behaviour);
+  const std::map<Origin, std::uint32_t>& origins() const noexcept { return indices_; }
+  const std::vector<engine::Behaviour>& behaviours() const noexcept { return behaviours_; }
+
+ private:
+  std::vector<engine::Behaviour> behaviours_;
+  std::map<Origin, std::uint32_t> indices_;
+};
+
+/// Reads what a liaison is.
+/// @param definition  its mapping, complete
+/// @param name        of the liaison
+/// @param given       values that stand for those of the definition: of `parameters`, and of the
+///                    plain keys that can_be_given() allows
+/// @param space       of the scene
+/// @param told        whether things that may be meant so are warned of
+std::optional<LinkLaw> read_liaison(const config::Value& definition, const std::string& name,
+                                    const GivenParameters& given, const Liaisons& liaisons,
+                                    int space, bool told, config::Problems& problems);
+
+/// The words that a link may give values to: the parameters of the liaison, and those of its plain
+/// keys that its kind has.
+std::vector<std::string> parameters_of(const config::Value& definition);
+
+/// Where a law is read: links need a liaison; matter may write its stiffness itself, and may have a
+/// tension.
+enum class LawPlace { kLink, kMatter };
+
+/// Reads `liaison` and the parameters that override it. Nothing after a problem.
+/// @param owner  the name of the links when they bear one of their own: then they share their
+///               behaviour with no others, so that it can be changed for them alone
+std::optional<LinkLaw> read_law(config::MappingReader& reader, LawPlace place,
+                                const Liaisons& liaisons, int space, const std::string& owner = {});
+
+/// Links between MATs, by kind.
+struct LinkLists {
+  std::vector<engine::Link> links;
+  std::vector<engine::StateLink> state_links;
+  std::vector<engine::MaxwellLink> maxwell_links;
+
+  /// Adds the links of a law between two MATs.
+  /// @param radii  of the two MATs together [m]
+  /// @return whether the rest length is possible: a tension may ask for a negative one, which only
+  ///         1-D has.
+  bool join(const LinkLaw& law, std::uint32_t a, std::uint32_t b, const engine::Vec3& position_a,
+            const engine::Vec3& position_b, int space, double radii = 0.0);
+  /// The same without what stands beside the law.
+  bool join_alone(const LinkLaw& law, std::uint32_t a, std::uint32_t b,
+                  const engine::Vec3& position_a, const engine::Vec3& position_b, int space,
+                  double radii = 0.0);
+
+  /// Adds links whose MATs are counted from another one.
+  void append(const LinkLists& more, std::uint32_t first_mat);
+
+  std::size_t count(LinkKind kind) const noexcept;
+  std::size_t count() const noexcept {
+    return links.size() + state_links.size() + maxwell_links.size();
+  }
+};
+
+}  // namespace cordis::scene

@@ -1,0 +1,90 @@
+#include "sim_node/scene/matter/matter.h"
+
+#include <algorithm>
+#include <array>
+
+#include "sim_node/scene/matter/generators.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Range;
+
+struct MatterKind {
+  const char* name;
+  Piece (*read)(Source&);
+  int lowest_space;
+  int highest_space;
+};
+constexpr std::array<MatterKind, 12> kMatterKinds{{
+    {"mass", read_mass, 1, 3},
+    {"fixed", read_fixed, 1, 3},
+    {"points", read_points, 1, 3},
+    {"string", read_string, 1, 3},
+    {"ring", read_ring, 1, 3},
+    {"grid", read_grid, 1, 3},
+    {"lattice", read_lattice, 2, 3},
+    {"disc", read_disc, 2, 3},
+    {"ball", read_ball, 3, 3},
+    {"pack", read_pack, 2, 3},
+    {"skin", read_skin, 2, 3},
+    {"beam", read_beam, 2, 3},
+}};
+
+const MatterKind* kind_named(const std::string& word) {
+  for (const MatterKind& kind : kMatterKinds) {
+    if (word == kind.name) return &kind;
+  }
+  return nullptr;
+}
+
+/// Whether the kind fits into the space; if not, a problem.
+bool check_space(config::MappingReader& reader, const MatterKind& kind, int space) {
+  if (kind.lowest_space <= space && space <= kind.highest_space) return true;
+  std::string spaces = std::to_string(kind.lowest_space);
+  if (kind.highest_space > kind.lowest_space) spaces += " or " + std::to_string(kind.highest_space);
+  reader.error_at("kind", std::string("a ") + kind.name + " needs a scene of space " + spaces +
+                              ", this one has " + std::to_string(space));
+  return false;
+}
+
+}  // namespace
+
+Layout read_layout(config::MappingReader& reader) {
+  Layout layout;
+  const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
+  layout.at = {at[0], at[1]};
+  layout.spacing =
+      reader.optional_number("layout_spacing_m", layout.spacing, {0.0, kFarthest, true});
+  return layout;
+}
+
+void read_drawing(config::MappingReader& reader, Piece& piece) {
+  const double drawn = reader.optional_number("drawn_radius_m", 0.0, Range::not_negative());
+  const auto ball = [](double radius) { return radius > 0.0; };
+  const bool has_balls = std::any_of(piece.radius_m.begin(), piece.radius_m.end(), ball);
+  if (has_balls && reader.has("drawn_radius_m")) {
+    reader.error_at("drawn_radius_m", "a ball is drawn with its own radius");
+  }
+  piece.drawn_radius_m = piece.radius_m;
+  if (!has_balls) piece.drawn_radius_m.assign(piece.mats.size(), drawn);
+}
+
+Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int space,
+                 bool may_be_massless, config::Problems& problems) {
+  std::vector<std::string> words;
+  for (const MatterKind& kind : kMatterKinds) words.emplace_back(kind.name);
+  const std::string word = reader.required_choice("kind", words);
+  if (!reader.ok()) return {};  // without its kind, nothing sure can be said about its keys
+  const MatterKind& kind = *kind_named(word);
+  if (!check_space(reader, kind, space)) return {};
+
+  Source source{reader, liaisons, space, may_be_massless, problems};
+  Piece piece = kind.read(source);
+  read_drawing(reader, piece);
+  reader.finish();
+  return piece;
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,137 @@
+#include "sim_node/scene/sections/part.h"
+
+#include <utility>
+
+#include "node/config/mapping_reader.h"
+#include "sim_node/scene/selection.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Value;
+
+/// Puts values in the place of `$name`.
+class Substitution {
+ public:
+  Substitution(const Part& part, config::Problems& problems) : part_(part), problems_(problems) {}
+
+  void set(const std::string& name, const Value& value) { values_[name] = value; }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values_) names.push_back(name);
+    return names;
+  }
+
+  /// The value with every `$name` in it replaced; an unknown one is a problem.
+  Value operator()(const Value& value) const {
+    if (value.kind() == Value::Kind::kSequence) {
+      std::vector<Value> items;
+      for (const Value& item : value.items()) items.push_back((*this)(item));
+      return Value::sequence(std::move(items), value.place());
+    }
+    if (value.kind() == Value::Kind::kMapping) {
+      std::vector<Value::Entry> entries;
+      for (const Value::Entry& entry : value.entries())
+        entries.push_back({entry.key, entry.key_place, (*this)(entry.value)});
+      return Value::mapping(std::move(entries), value.place());
+    }
+    if (value.quoted() || !value.text().starts_with("$")) return value;
+    const std::string name = value.text().substr(1);
+    const auto known = values_.find(name);
+    if (known != values_.end()) return known->second;
+    problems_.error(value.place(), "part '" + part_.name + "' has no parameter '" + name + "'",
+                    config::did_you_mean(name, names()));
+    return value;
+  }
+
+ private:
+  const Part& part_;
+  config::Problems& problems_;
+  std::map<std::string, Value> values_;
+};
+
+}  // namespace
+
+void Parts::read_section(const Value& section, const std::string& file) {
+  const Includes::Open open(includes_, file);
+  for (const Value::Entry& entry : section.entries()) {
+    if (entry.key != "include") {
+      add(entry);
+      continue;
+    }
+    for (const Includes::File& included : includes_.read(entry.value, file)) {
+      config::MappingReader reader(included.root, "file of parts", problems_);
+      reader.required_integer("cordis", 1, 1);
+      const Value liaisons = reader.optional_mapping("liaisons");
+      if (liaisons.exists()) liaisons_.push_back({liaisons, included.path});
+      read_section(reader.required_mapping("parts"), included.path);
+      reader.finish();
+    }
+  }
+}
+
+void Parts::add(const Value::Entry& entry) {
+  const bool named = check_name(entry.key, entry.key_place, problems_);
+  const auto [known, is_new] = parts_.try_emplace(entry.key);
+  if (!is_new) {
+    const config::Place& first = known->second.place;
+    problems_.error(entry.key_place, "the part '" + entry.key + "' is defined twice",
+                    "first defined at " + first.file + ":" + std::to_string(first.line));
+    return;
+  }
+  Part& part = known->second;
+  part.name = entry.key;
+  part.place = entry.key_place;
+  config::MappingReader reader(entry.value, "part '" + entry.key + "'", problems_);
+  part.parameters = reader.optional_mapping("parameters");
+  part.matter = reader.required_mapping("matter");
+  part.links = reader.optional_sequence("links");
+  if (part.matter.exists() && part.matter.entries().empty())
+    reader.error_at("matter", "part '" + entry.key + "' has no matter");
+  reader.finish();
+  part.sound = named && reader.ok();
+}
+
+const Part* Parts::find(const Value& name) const {
+  const auto found = parts_.find(name.text());
+  if (name.kind() == Value::Kind::kScalar && found != parts_.end())
+    return found->second.sound ? &found->second : nullptr;
+  std::vector<std::string> words;
+  for (const auto& [word, part] : parts_) words.push_back(word);
+  if (name.kind() != Value::Kind::kScalar) {
+    problems_.error(name.place(), "a part is called by its name, got " + name.described());
+  } else {
+    problems_.error(name.place(), "no part is named '" + name.text() + "'",
+                    config::did_you_mean(name.text(), words));
+  }
+  return nullptr;
+}
+
+std::optional<PartBody> Parts::body(const Part& part, const Value& given,
+                                    const config::Place& use_place) const {
+  const std::size_t errors_before = problems_.error_count();
+  Substitution substitution(part, problems_);
+  for (const Value::Entry& parameter : part.parameters.entries()) {
+    const Value use = given.find(parameter.key);
+    // a default may be made of the parameters before it
+    const Value value = use.exists() ? use : substitution(parameter.value);
+    if (value.kind() == Value::Kind::kNothing) {
+      problems_.error(use_place, "part '" + part.name + "' needs a value for the parameter '" +
+                                     parameter.key + "'");
+    }
+    substitution.set(parameter.key, value);
+  }
+  for (const Value::Entry& entry : given.entries()) {
+    if (part.parameters.find(entry.key).exists()) continue;
+    problems_.error(entry.key_place,
+                    "part '" + part.name + "' has no parameter '" + entry.key + "'",
+                    config::did_you_mean(entry.key, substitution.names()));
+  }
+  PartBody body{substitution(part.matter), substitution(part.links)};
+  if (problems_.error_count() != errors_before) return std::nullopt;
+  return body;
+}
+
+}  // namespace cordis::scene

@@ -1,0 +1,262 @@
+// The `ports:` section: MATs played by the axes of devices. [Luc90 V.1 Force feedback gestual
+// transducers]
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "node/config/name_hash.h"
+#include "sim_node/scene/sections/assembly.h"
+#include "sim_node/scene/matter/source.h"
+#include "sim_node/scene/matter/point.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Range;
+using config::Value;
+using engine::Vec3;
+
+constexpr long kMostAxes = 16;
+
+const char* word_of(Role role) {
+  return role == Role::kMass ? "mass" : "liaison";
+}
+
+/// Whether no direction lies in the span of those before it.
+bool are_independent(const std::vector<Vec3>& directions) {
+  constexpr double kSmallestSine = 1.0e-6;
+  std::vector<Vec3> base;
+  for (Vec3 rest : directions) {
+    for (const Vec3& unit : base) rest -= unit.dot(rest) * unit;
+    if (rest.norm() < kSmallestSine) return false;
+    base.push_back(rest.normalized());
+  }
+  return true;
+}
+
+/// The directions of a port's axes: `along`, or the coordinate axes in their order. Empty after a
+/// problem.
+std::vector<Vec3> read_axis_directions(config::MappingReader& reader, std::size_t axis_count,
+                                       int space, config::Problems& problems) {
+  const Value along = reader.optional_value("along");
+  const std::string what = "'along' in " + reader.what();
+  std::vector<Vec3> directions;
+  if (!along.exists()) {
+    for (std::size_t axis = 0; axis < axis_count; ++axis)
+      directions.emplace_back(Vec3::Unit(static_cast<Eigen::Index>(axis)));
+    return directions;
+  }
+  const std::size_t errors_before = problems.error_count();
+  directions = read_directions(along, what, space, problems);
+  if (problems.error_count() != errors_before) return {};
+  if (directions.size() != axis_count) {
+    reader.error_at("along",
+                    what + " must have one direction per axis: " + std::to_string(axis_count) +
+                        ", got " + std::to_string(directions.size()));
+    return {};
+  }
+  if (!are_independent(directions)) {
+    reader.error_at("along", what + ": the directions depend on each other",
+                    "no two may be parallel, no three in one plane");
+    return {};
+  }
+  return directions;
+}
+
+/// A spring-damper between the handle that the device moves and a simulated tool, which the scene
+/// touches: what the hand feels is never stiffer than the coupling, whatever the scene is. It is a
+/// tie: a damper along the line from handle to tool would let the tool circle its handle.
+struct Coupling {
+  double stiffness = 500.0;  // [N/m]
+  double viscosity = 1.5;    // [N s/m]
+  double mass = 0.05;        // of the tool [kg]
+};
+
+/// What `coupling` says; nothing for `direct`: the device holds the MAT of the port itself.
+/// `virtual` when the port does not say.
+std::optional<Coupling> read_coupling(config::MappingReader& reader, config::Problems& problems) {
+  Coupling coupling;
+  if (!reader.has("coupling")) return coupling;
+  const Value value = reader.optional_value("coupling");
+  if (value.kind() == Value::Kind::kScalar && value.text() == "direct") return {};
+  if (value.kind() == Value::Kind::kScalar && value.text() == "virtual") return coupling;
+  if (value.kind() != Value::Kind::kMapping) {
+    reader.error_at("coupling", "'coupling' in " + reader.what() +
+                                    " must be direct, virtual, or a mapping of stiffness_n_per_m, "
+                                    "viscosity_n_s_per_m and mass_kg");
+    return {};
+  }
+  config::MappingReader section(value, "coupling of " + reader.what(), problems);
+  coupling.stiffness =
+      section.optional_number("stiffness_n_per_m", coupling.stiffness, Range::positive());
+  coupling.viscosity =
+      section.optional_number("viscosity_n_s_per_m", coupling.viscosity, Range::not_negative());
+  coupling.mass = section.optional_number("mass_kg", coupling.mass, Range::positive());
+  section.finish();
+  return coupling;
+}
+
+PortNeeds read_needs(config::MappingReader& reader, config::Problems& problems) {
+  PortNeeds needs;
+  needs.place = reader.place_of("needs");
+  const Value section = reader.optional_mapping("needs");
+  if (!section.exists()) return needs;
+  config::MappingReader wanted(section, "'needs' of " + reader.what(), problems);
+  needs.travel = wanted.optional_number("travel_m", 0.0, Range::positive());
+  needs.up = wanted.optional_number("up_m", 0.0, Range::positive());
+  needs.down = wanted.optional_number("down_m", 0.0, Range::positive());
+  needs.force = wanted.optional_number("force_n", 0.0, Range::positive());
+  wanted.finish();
+  return needs;
+}
+
+/// The ball of a port, its mass 0 when it does not say.
+Grain read_port_ball(config::MappingReader& reader, config::Problems& problems) {
+  Grain grain;
+  const Value section = reader.optional_mapping("ball");
+  if (!section.exists()) return grain;
+  config::MappingReader ball(section, "'ball' of " + reader.what(), problems);
+  ball.optional_value("mass_kg");
+  if (ball.has("mass_kg")) grain.mass = ball.required_number("mass_kg", Range::positive());
+  grain.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
+  ball.finish();
+  return grain;
+}
+
+/// The mass that the port says itself, of the simulated MAT that the scene touches: of the port in
+/// role liaison, of the tool in role mass; 0 when it does not say. The same keys serve both roles,
+/// so that the role is switched by one word.
+double read_port_mass(config::MappingReader& reader, const Grain& ball) {
+  reader.optional_value("mass_kg");
+  if (!reader.has("mass_kg")) return ball.mass;
+  if (ball.mass > 0.0) {
+    reader.error_at("mass_kg",
+                    "the mass is given twice in " + reader.what() + ", by 'mass_kg' and by 'ball'");
+  }
+  return reader.required_number("mass_kg", Range::positive());
+}
+
+/// The MAT of a port, as the device holds it.
+Piece port_piece(config::MappingReader& reader, const Port& port, double radius, int space) {
+  Piece piece;
+  piece.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
+  piece.radius_m.push_back(radius);
+  read_drawing(reader, piece);
+  if (space == 1) {
+    const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
+    piece.layout.push_back({at[0], at[1]});
+  }
+  return piece;
+}
+
+/// It has no weight: the hand is to feel the scene, not what it holds.
+void make_tool(engine::Mat& mat, double mass) {
+  mat.kind = engine::MatKind::kMass;
+  mat.mass = mass;
+  mat.weightless = true;
+}
+
+/// Makes the MAT of the piece the tool, and adds the handle and the coupling.
+void couple(Piece& piece, const Coupling& coupling, double mass) {
+  const engine::Mat handle = piece.mats[0];
+  make_tool(piece.mats[0], mass);
+  piece.mats.push_back(handle);
+  piece.radius_m.push_back(0.0);
+  piece.drawn_radius_m.push_back(0.0);
+  if (!piece.layout.empty()) piece.layout.push_back(piece.layout[0]);
+  piece.links.links.push_back({1, 0, coupling.stiffness, coupling.viscosity, 0.0, true});
+}
+
+}  // namespace
+
+void Assembly::read_ports(const Value& section) {
+  for (const Value::Entry& entry : section.entries()) read_port(entry);
+  check_devices();
+}
+
+void Assembly::read_port(const Value::Entry& entry) {
+  const int space = scene_.space();
+  check_name(entry.key, entry.key_place, problems_);
+  const std::size_t errors_before = problems_.error_count();
+  config::MappingReader reader(entry.value, "port '" + entry.key + "'", problems_);
+  Port port;
+  port.name = entry.key;
+  port.place = entry.key_place;
+  port.device = reader.required_text("device");
+  port.device_id = config::name_hash(port.device);
+  for (const long axis : reader.required_integers("axes", 0, kMostAxes - 1))
+    port.axes.push_back(static_cast<std::uint32_t>(axis));
+  const bool is_mass = reader.required_choice("role", {"mass", "liaison"}) != "liaison";
+  port.role = is_mass ? Role::kMass : Role::kLiaison;
+  port.rest = space == 1 ? optional_point(reader, "at_m", Vec3::Zero(), 1)
+                         : required_point(reader, "at_m", space);
+  const Grain ball = read_port_ball(reader, problems_);
+  const double own_mass = read_port_mass(reader, ball);
+  Piece piece = port_piece(reader, port, ball.radius, space);
+  if (space == 1 && !reader.has("layout_at_m")) ports_without_layout_.push_back(mat_count());
+  if (port.axes.size() > static_cast<std::size_t>(space)) {
+    reader.error_at("axes", reader.what() + " has " + std::to_string(port.axes.size()) +
+                                " axes, but a MAT moves in " + std::to_string(space) +
+                                (space == 1 ? " direction" : " directions") +
+                                " in a scene of space " + std::to_string(space));
+    reader.optional_value("along");
+  } else {
+    port.directions = read_axis_directions(reader, port.axes.size(), space, problems_);
+  }
+  port.needs = read_needs(reader, problems_);
+  std::optional<Coupling> coupling = read_coupling(reader, problems_);
+  const double mass = own_mass > 0.0 ? own_mass : coupling.value_or(Coupling{}).mass;
+  if (!is_mass) {
+    coupling.reset();  // the mass of the port is the tool
+    make_tool(piece.mats[0], mass);
+  } else if (coupling) {
+    couple(piece, *coupling, mass);
+  }
+  if (coupling && space == 1 && !reader.has("layout_at_m")) {
+    ports_without_layout_.push_back(mat_count() + 1);
+  }
+  reader.finish();
+
+  port.tool = mat_count();
+  port.mat = coupling ? port.tool + 1 : port.tool;
+  const LinkCounts links_before = link_counts();
+  const bool sound =
+      problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
+  names_.add({entry.key, Named::kPort, port.tool, 1, sound, entry.key_place}, problems_);
+  scene_.matter.push_back({entry.key, port.tool, 1, entry.key_place});
+  // What the device holds has a name of its own, whether it is the same MAT or not.
+  names_.add({entry.key + ".handle", Named::kPort, port.mat, 1, sound, entry.key_place}, problems_);
+  if (coupling) {
+    scene_.matter.push_back({entry.key + ".handle", port.mat, 1, entry.key_place});
+    name_links(entry.key + ".coupling", links_before, sound, entry.key_place, nullptr);
+  }
+  if (sound) scene_.ports.push_back(std::move(port));
+}
+
+void Assembly::check_devices() {
+  std::map<std::uint32_t, const Port*> first_of_device;
+  std::map<std::pair<std::string, std::uint32_t>, const Port*> port_of_axis;
+  for (const Port& port : scene_.ports) {
+    if (port.device.empty()) continue;
+    const Port* first = first_of_device.emplace(port.device_id, &port).first->second;
+    if (first->device != port.device) {
+      problems_.error(
+          port.place,
+          "the devices '" + port.device + "' and '" + first->device + "' have the same hash",
+          "rename one of them");
+    } else if (first->role != port.role) {
+      problems_.error(port.place, "all ports of a device have one role, and '" + port.device +
+                                      "' has the role " + word_of(first->role) + " in port '" +
+                                      first->name + "'");
+    }
+    for (const std::uint32_t axis : port.axes) {
+      const auto [other, is_free] = port_of_axis.emplace(std::pair(port.device, axis), &port);
+      if (is_free) continue;
+      problems_.error(port.place, "axis " + std::to_string(axis) + " of device '" + port.device +
+                                      "' is taken by port '" + other->second->name + "'");
+    }
+  }
+}
+
+}  // namespace cordis::scene

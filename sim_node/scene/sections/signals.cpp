@@ -1,0 +1,239 @@
+// The `signals:` section: named scalars of MATs, ports, links and the scene.
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "sim_node/scene/sections/assembly.h"
+#include "sim_node/scene/matter/point.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Value;
+using engine::Vec3;
+
+enum class Owner { kMat, kLink, kStateLink, kMaxwellLink, kSet, kScene };
+
+/// What a scene can ask for, of whom.
+struct QuantityWord {
+  const char* word;
+  Owner owner;
+  Quantity quantity;
+  const char* unit;
+  bool has_direction;
+};
+constexpr std::array<QuantityWord, 30> kWords{{
+    {"position", Owner::kMat, Quantity::kPosition, "m", true},
+    {"velocity", Owner::kMat, Quantity::kVelocity, "m/s", true},
+    {"force", Owner::kMat, Quantity::kForce, "N", true},
+    {"speed", Owner::kMat, Quantity::kSpeed, "m/s", false},
+    {"distance", Owner::kLink, Quantity::kDistance, "m", false},
+    {"elongation", Owner::kLink, Quantity::kElongation, "m", false},
+    {"speed", Owner::kLink, Quantity::kGrowth, "m/s", false},
+    {"force", Owner::kLink, Quantity::kPull, "N", false},
+    {"distance", Owner::kStateLink, Quantity::kDistance, "m", false},
+    {"elongation", Owner::kStateLink, Quantity::kElongation, "m", false},
+    {"speed", Owner::kStateLink, Quantity::kGrowth, "m/s", false},
+    {"force", Owner::kStateLink, Quantity::kPull, "N", false},
+    {"state", Owner::kStateLink, Quantity::kState, "", false},
+    {"rest_length", Owner::kStateLink, Quantity::kRestLength, "m", false},
+    {"pieces", Owner::kStateLink, Quantity::kPieces, "", false},
+    {"bonds", Owner::kStateLink, Quantity::kBonds, "", false},
+    {"distance", Owner::kMaxwellLink, Quantity::kDistance, "m", false},
+    {"speed", Owner::kMaxwellLink, Quantity::kGrowth, "m/s", false},
+    {"pieces", Owner::kMat, Quantity::kPieces, "", false},
+    {"pieces", Owner::kSet, Quantity::kPieces, "", false},
+    {"bonds", Owner::kSet, Quantity::kBonds, "", false},
+    {"changes", Owner::kScene, Quantity::kChanges, "", false},
+    {"awake", Owner::kScene, Quantity::kAwake, "", false},
+    {"energy", Owner::kScene, Quantity::kEnergy, "J", false},
+    {"kinetic_energy", Owner::kScene, Quantity::kKineticEnergy, "J", false},
+    {"elastic_energy", Owner::kScene, Quantity::kElasticEnergy, "J", false},
+    {"gravity_energy", Owner::kScene, Quantity::kGravityEnergy, "J", false},
+    {"dissipated_energy", Owner::kScene, Quantity::kDissipatedEnergy, "J", false},
+    {"port_work", Owner::kScene, Quantity::kPortWork, "J", false},
+    {"switching_energy", Owner::kScene, Quantity::kSwitchingEnergy, "J", false},
+}};
+
+const char* name_of(Owner owner) {
+  switch (owner) {
+    case Owner::kScene:
+      return "the scene";
+    case Owner::kLink:
+      return "a link";
+    case Owner::kStateLink:
+      return "a link with states";
+    case Owner::kMaxwellLink:
+      return "a Maxwell element";
+    case Owner::kSet:
+      return "a liaison of sets";
+    case Owner::kMat:
+      break;
+  }
+  return "a MAT";
+}
+
+/// nullptr when the owner has no such quantity.
+const QuantityWord* find_quantity(Owner owner, const std::string& word) {
+  for (const QuantityWord& known : kWords) {
+    if (known.owner == owner && word == known.word) return &known;
+  }
+  return nullptr;
+}
+
+std::string list_of_quantities(Owner owner) {
+  std::string list;
+  for (const QuantityWord& known : kWords) {
+    if (known.owner == owner) list.append(list.empty() ? "" : ", ").append(known.word);
+  }
+  return list;
+}
+
+/// The owner of links of a kind.
+Owner owner_of(LinkKind kind) {
+  if (kind == LinkKind::kLinear) return Owner::kLink;
+  return kind == LinkKind::kState ? Owner::kStateLink : Owner::kMaxwellLink;
+}
+
+/// What `quantity` asks the owner for; nullptr after a problem.
+const QuantityWord* read_quantity(config::MappingReader& reader, Owner owner) {
+  const std::string word = reader.required_text("quantity");
+  const QuantityWord* quantity = find_quantity(owner, word);
+  if (quantity != nullptr || word.empty()) return quantity;
+  const bool of_something =
+      find_quantity(Owner::kMat, word) != nullptr || find_quantity(Owner::kLink, word) != nullptr;
+  const bool forgot_of = owner == Owner::kScene && of_something;
+  reader.error_at("quantity", std::string(name_of(owner)) + " has no quantity '" + word + "'",
+                  forgot_of ? "say whose it is: of: name[3]"
+                            : std::string("it has ") + list_of_quantities(owner));
+  return nullptr;
+}
+
+}  // namespace
+
+const char* word_of(Quantity quantity) noexcept {
+  for (const QuantityWord& known : kWords) {
+    if (known.quantity == quantity) return known.word;
+  }
+  return "";
+}
+
+void Assembly::read_signals(const Value& section) {
+  std::vector<Signal> signals;
+  for (const Value::Entry& entry : section.entries()) read_signal(entry, signals);
+  for (const Signal& signal : signals) {
+    if (signal.quantity == Quantity::kForce) scene_.network.kept_awake.push_back(signal.index);
+  }
+  if (problems_.has_errors()) return;  // and the network is not whole
+  scene_.signals = SignalReader(std::move(signals), scene_.network);
+}
+
+void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signals) {
+  check_name(entry.key, entry.key_place, problems_);
+  config::MappingReader reader(entry.value, "signal '" + entry.key + "'", problems_);
+  const Value of = reader.optional_value("of");
+  const auto set = named_sets_.find(of.text());
+  if (set != named_sets_.end()) return read_signal_of_set(reader, entry.key, set->second, signals);
+  std::optional<Selection> picked;
+  if (of.exists()) {
+    picked = select(of, "'of' in " + reader.what(), true, names_, problems_);
+    if (!picked) return;  // whose signal it is decides what else it may say
+  }
+  const bool is_link = picked && picked->kind == Named::kLinks;
+  const std::string word = reader.optional_text("quantity", "");
+  if (is_link && (word == "pieces" || word == "bonds")) {
+    return read_count_of_links(reader, entry.key, *picked, signals);
+  }
+  const bool is_count = picked && !is_link && word == "pieces";
+  if (picked && picked->count() != 1 && !is_count) {
+    reader.error_at("of",
+                    "a signal is of one MAT or one link, and " +
+                        (of.text().empty() ? "this list" : "'" + of.text() + "'") + " has " +
+                        std::to_string(picked->count()),
+                    "pick one: " + names_.word_of(picked->indices[0], is_link));
+  }
+  Owner owner = Owner::kScene;
+  if (picked) owner = is_link ? owner_of(kind_of_link(picked->indices[0])) : Owner::kMat;
+
+  Signal signal;
+  signal.name = entry.key;
+  signal.index = picked ? picked->indices[0] : 0;
+  if (is_link) {
+    signal.kind = kind_of_link(picked->indices[0]);
+    signal.index = index_of_link(picked->indices[0]);
+  }
+  const QuantityWord* quantity = read_quantity(reader, owner);
+  reader.optional_value("axis");
+  if (is_count) {
+    signal.mats = picked->indices;
+    signal.near = reader.required_number("near_m", config::Range::positive());
+  }
+  if (quantity != nullptr) {
+    signal.quantity = quantity->quantity;
+    signal.unit = quantity->unit;
+    if (quantity->has_direction) {
+      read_direction_of_signal(reader, *picked, signal);
+    } else if (reader.has("axis")) {
+      reader.error_at("axis", std::string("the quantity '") + quantity->word + "' has no axis");
+    }
+  }
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+void Assembly::read_count_of_links(config::MappingReader& reader, const std::string& name,
+                                   const Selection& picked, std::vector<Signal>& signals) {
+  Signal signal;
+  signal.name = name;
+  Owner owner = Owner::kStateLink;
+  for (const std::uint32_t link : picked.indices) {
+    if (kind_of_link(link) != LinkKind::kState) owner = owner_of(kind_of_link(link));
+    signal.state_links.push_back(index_of_link(link));
+  }
+  const QuantityWord* quantity = read_quantity(reader, owner);
+  if (quantity != nullptr) signal.quantity = quantity->quantity;
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+void Assembly::read_signal_of_set(config::MappingReader& reader, const std::string& name,
+                                  std::uint32_t set, std::vector<Signal>& signals) {
+  const QuantityWord* quantity = read_quantity(reader, Owner::kSet);
+  const bool is_pieces = quantity != nullptr && quantity->quantity == Quantity::kPieces;
+  Signal signal;
+  signal.name = name;
+  signal.index = set;
+  if (quantity != nullptr) signal.quantity = quantity->quantity;
+  if (is_pieces && reader.has("near_m")) {
+    signal.near = reader.required_number("near_m", config::Range::positive());
+  }
+  const std::uint32_t behaviour = scene_.network.sets[set].behaviour;
+  const bool binds = liaisons_->pool().behaviours()[behaviour].states.size() > 1;
+  if (quantity != nullptr && !binds && !reader.has("near_m")) {
+    reader.error_at("quantity", "pairs of a liaison of one state are never bound",
+                    "count pieces of balls nearer than near_m");
+  }
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+void Assembly::read_direction_of_signal(config::MappingReader& reader, const Selection& of,
+                                        Signal& signal) const {
+  const std::vector<std::string> words = axis_words(scene_.space());
+  if (reader.has("axis")) {
+    signal.direction = Vec3::Unit(reader.required_choice("axis", words).front() - 'x');
+    return;
+  }
+  for (const Port& port : scene_.ports) {
+    const bool is_here = port.mat == of.indices[0] || port.tool == of.indices[0];
+    if (!is_here || port.directions.size() != 1) continue;
+    signal.direction = port.directions.front();
+    if (signal.quantity == Quantity::kPosition) signal.offset = signal.direction.dot(port.rest);
+    return;
+  }
+  signal.direction = Vec3::UnitX();
+  if (scene_.space() > 1) reader.required_choice("axis", words);
+}
+
+}  // namespace cordis::scene
