@@ -68,7 +68,7 @@ void Device::live() {
     if (part_.wanted) {
       play(part_.role);
     } else {
-      note_unused();
+      record_unused();
       scenes_.wait_for_another(part_, kLookAround);
       watch_guardian();
     }
@@ -104,7 +104,7 @@ void Device::describe() {
 }
 
 /// Tells once that the scene, if there is one, does not play the device.
-void Device::note_unused() {
+void Device::record_unused() {
   if (!part_.heard || meter_.phase() == Phase::kUnused) return;
   meter_.set_phase(Phase::kUnused);
   status_.publish_now();
@@ -145,7 +145,7 @@ void Device::play_paced(Exchange& exchange) {
     exchange.receive();
     exchange.live();
     meter_.add_overruns(pace.overruns() - std::exchange(overruns, pace.overruns()));
-    note_phase(exchange);
+    record_phase(exchange);
     keep_guardian();
   }
 }
@@ -157,7 +157,7 @@ void Device::play_in_lockstep(Exchange& exchange) {
     exchange.send_sample();
     if (!exchange.await_answer(watchdog) && !keep_asking(exchange)) return;
     exchange.live();
-    note_phase(exchange);
+    record_phase(exchange);
     keep_guardian();
   }
 }
@@ -173,7 +173,7 @@ bool Device::keep_asking(Exchange& exchange) {
     roster_.look();
     if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
       meter_.set_phase(Phase::kLost);
-      note_phase(exchange);
+      record_phase(exchange);
     }
     const bool never_answered = meter_.phase() == Phase::kWaiting;
     if (silent >= kLongSilence && never_answered && !std::exchange(silence_told_, true)) {
@@ -206,7 +206,7 @@ void Device::keep_guardian() const noexcept {
 }
 
 /// Tells of a change of phase, once.
-void Device::note_phase(const Exchange& exchange) {
+void Device::record_phase(const Exchange& exchange) {
   const Phase phase = meter_.phase();
   if (phase == noted_phase_) return;
   const bool plays_on = phase == Phase::kRunning;

@@ -33,7 +33,7 @@ class Device {
 
  private:
   void describe();
-  void note_unused();
+  void record_unused();
   void play(Role role);
   void play_paced(Exchange& exchange);
   void play_in_lockstep(Exchange& exchange);
@@ -42,7 +42,7 @@ class Device {
   void leave(Exchange& exchange);
   void keep_guardian() const noexcept;
   void ask_for_realtime();
-  void note_phase(const Exchange& exchange);
+  void record_phase(const Exchange& exchange);
 
   DeviceConfig config_;
   std::unique_ptr<Driver> driver_;

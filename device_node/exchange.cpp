@@ -160,7 +160,7 @@ void Exchange::live() noexcept {
   const double age = std::max(age_s(), least);
   const AxisValues& commanded =
       role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
-  driver_.note_age(age);
+  driver_.record_age(age);
   const bool written = driver_.write(commanded);
   if (std::exchange(unfelt_, false)) meter_.record_latency(clock_() - used_.answered_time_nsec);
   const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);
@@ -168,16 +168,16 @@ void Exchange::live() noexcept {
   if (role_ == Role::kLiaison) add_work(last_sensed_, commanded);
   last_sensed_ = sensed_;
   meter_.count_tick();
-  const EnergyMonitor& monitor = force_guard_.energy();
-  meter_.note_energy(role_ == Role::kMass ? monitor.given_j() : -sample_.work_j,
-                     role_ == Role::kMass && monitor.braking());
+  const PassivityObserver& monitor = force_guard_.energy();
+  meter_.record_energy(role_ == Role::kMass ? monitor.given_j() : -sample_.work_j,
+                       role_ == Role::kMass && monitor.braking());
 
   present_ = written && sensed;
   if (!present_) force_guard_.let_go();  // a device that comes back is ramped up anew
-  if (!leaving) note_phase(any_answer_ && age < config_.force_guard.watchdog_s);
+  if (!leaving) record_phase(any_answer_ && age < config_.force_guard.watchdog_s);
 }
 
-void Exchange::note_phase(bool in_time) noexcept {
+void Exchange::record_phase(bool in_time) noexcept {
   const double since_other_s = static_cast<double>(clock_() - other_answered_nsec_) * 1e-9;
   const bool other = other_answered_ && since_other_s < config_.force_guard.watchdog_s;
   if (present_ && in_time) {

@@ -91,7 +91,7 @@ class Exchange {
   double age_s() const noexcept;
   bool stood_still() noexcept;
   void add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept;
-  void note_phase(bool in_time) noexcept;
+  void record_phase(bool in_time) noexcept;
 
   const DeviceConfig& config_;
   Role role_;

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "device_node/axis.h"
-#include "device_node/energy_monitor.h"
+#include "device_node/passivity_observer.h"
 
 namespace cordis::device {
 
@@ -49,7 +49,7 @@ class ForceGuard {
   /// @param position_m  of the axes now
   const AxisValues& tick(double age_s, const AxisValues& position_m) noexcept;
 
-  const EnergyMonitor& energy() const noexcept { return energy_; }
+  const PassivityObserver& energy() const noexcept { return energy_; }
 
  private:
   double within_power(double force_n, double speed_m_per_s) const noexcept;
@@ -61,7 +61,7 @@ class ForceGuard {
   bool any_accepted_ = false;
   bool let_go_ = false;
   std::uint64_t ticks_alive_ = 0;  // of the ramp
-  EnergyMonitor energy_;
+  PassivityObserver energy_;
 };
 
 }  // namespace cordis::device

@@ -38,9 +38,9 @@ void LoopMeter::count_tick() noexcept {
   if (ticks % kTicksPerPublication == 0) publish_latency();
 }
 
-void LoopMeter::note_energy(double given_j, bool braking) noexcept {
+void LoopMeter::record_energy(double given_j, bool braking) noexcept {
   given_j_.store(given_j, std::memory_order_relaxed);
-  if (braking) braked_ticks_.fetch_add(1, std::memory_order_relaxed);
+  if (braking) passivity_ticks_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void LoopMeter::publish_latency() noexcept {
@@ -59,7 +59,7 @@ void LoopMeter::fill(msg::NodeStatus& status) const {
   status.overruns(overruns_.load(std::memory_order_relaxed));
   status.dropped(dropped());
   status.port_energy_j(given_j_.load(std::memory_order_relaxed));
-  status.braked_ticks(braked_ticks_.load(std::memory_order_relaxed));
+  status.passivity_ticks(passivity_ticks_.load(std::memory_order_relaxed));
   status.latency_count(latency_count_.load(std::memory_order_relaxed));
   status.latency_p50_s(latency_p50_s_.load(std::memory_order_relaxed));
   status.latency_p99_s(latency_p99_s_.load(std::memory_order_relaxed));

@@ -33,7 +33,7 @@ class LoopMeter {
   }
 
   /// After a tick: the energy given to the hand, and whether the motors braked it.
-  void note_energy(double given_j, bool braking) noexcept;
+  void record_energy(double given_j, bool braking) noexcept;
 
   /// From the sending of a sample to the arrival of its answer.
   void record_latency(std::int64_t nsec) noexcept { latency_.record(nsec); }
@@ -53,7 +53,7 @@ class LoopMeter {
   std::atomic<std::uint64_t> overruns_{0};
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<double> given_j_{0.0};
-  std::atomic<std::uint64_t> braked_ticks_{0};
+  std::atomic<std::uint64_t> passivity_ticks_{0};
   node::LatencyHistogram latency_;  // of the loop thread alone
   std::atomic<std::uint64_t> latency_count_{0};
   std::atomic<double> latency_p50_s_{0.0};

@@ -12,9 +12,9 @@
 #include "device_node/device.h"
 #include "device_node/device_config.h"
 #include "device_node/drivers/guardian.h"
-#include "node/claim.h"
 #include "node/command_listener.h"
 #include "node/dds/participant.h"
+#include "node/instance_lock.h"
 #include "node/node_main.h"
 #include "node/stop.h"
 

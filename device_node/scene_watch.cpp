@@ -3,7 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "device_node/scene_part.h"
+#include "device_node/port_assignment.h"
 
 namespace cordis::device {
 namespace {
@@ -70,7 +70,7 @@ void SceneWatch::loop() {
 
 void SceneWatch::take(const msg::SceneDescription& scene) {
   if (scene.run() == 0) return refuse("a scene description without a run");
-  const ScenePart wanted = part_of(scene, device_, driver_);
+  const PortAssignment wanted = part_of(scene, device_, driver_);
   if (!wanted.impossible.empty()) return refuse(wanted.impossible);
   refuse({});
   if (wanted.questionable != questionable_ && !wanted.questionable.empty())

@@ -27,7 +27,7 @@ class TracedDriver final : public Driver {
   bool can_play(Role role) const noexcept override { return driver_->can_play(role); }
   void start(Role role) noexcept override { driver_->start(role); }
   bool read(AxisValues& sensed) noexcept override;
-  void note_age(double age_s) noexcept override { driver_->note_age(age_s); }
+  void record_age(double age_s) noexcept override { driver_->record_age(age_s); }
   bool write(const AxisValues& commanded) noexcept override;
   bool has_motors() const noexcept override { return driver_->has_motors(); }
   BoardWatchdog board_watchdog() const noexcept override { return driver_->board_watchdog(); }

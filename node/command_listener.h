@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-#include "node/command_desk.h"
+#include "node/command_server.h"
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
@@ -31,7 +31,7 @@ class CommandListener {
 
   dds::Reader<msg::ControlCommand> reader_;
   dds::Writer<msg::ControlReply> writer_;
-  CommandDesk desk_;
+  CommandServer desk_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

@@ -10,7 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "node/claim.h"
+#include "node/instance_lock.h"
 
 namespace cordis::node {
 namespace {

@@ -13,13 +13,12 @@ namespace {
 
 constexpr int kLastPatience = 1000;     // [ms]
 constexpr std::size_t kPortion = 4096;  // [bytes] that a pipe which is ready takes without blocking
-constexpr std::size_t kMostSetAside = 65536;  // [bytes]
+constexpr std::size_t kMaxSetAside = 65536;  // [bytes]
 
 }  // namespace
 
-LineOutput::LineOutput(int file, std::size_t most_waiting)
-    : file_(file), most_waiting_(most_waiting) {
-  waiting_.reserve(std::min(most_waiting, kMostSetAside));
+LineOutput::LineOutput(int file, std::size_t max_waiting) : file_(file), max_waiting_(max_waiting) {
+  waiting_.reserve(std::min(max_waiting, kMaxSetAside));
 }
 
 LineOutput::~LineOutput() {
@@ -29,7 +28,7 @@ LineOutput::~LineOutput() {
 
 void LineOutput::line(std::string_view text) {
   if (dropped_ > 0) flush();  // room for this one
-  if (waiting_.size() + text.size() > most_waiting_) {
+  if (waiting_.size() + text.size() > max_waiting_) {
     ++dropped_;
     return;
   }

@@ -14,7 +14,7 @@ namespace cordis::node {
 class LineOutput {
  public:
   /// @param most_waiting  [bytes]; up to 64 KiB of them are set aside at once
-  LineOutput(int file, std::size_t most_waiting);
+  LineOutput(int file, std::size_t max_waiting);
   /// Writes what waits, but gives up on a reader that takes nothing for a second.
   ~LineOutput();
   LineOutput(const LineOutput&) = delete;
@@ -32,7 +32,7 @@ class LineOutput {
   bool write_some(int patience_msec);
 
   int file_;
-  std::size_t most_waiting_;
+  std::size_t max_waiting_;
   std::string waiting_;
   std::uint64_t dropped_ = 0;
 };

@@ -23,15 +23,15 @@
 namespace cordis::node {
 namespace {
 
-constexpr std::size_t kMostWaiting = 65536;  // [bytes]
-constexpr std::size_t kLongestLine = 4096;   // [bytes]
+constexpr std::size_t kMaxWaiting = 65536;  // [bytes]
+constexpr std::size_t kLongestLine = 4096;  // [bytes]
 
 /// stderr, coloured on a terminal. A thread of its own formats and writes: who logs takes no lock
 /// and waits for nobody, neither for who reads nor for another thread that logs.
 class ErrorSink : public spdlog::sinks::sink {
  public:
   ErrorSink(std::string name, bool coloured)
-      : name_(std::move(name)), output_(STDERR_FILENO, kMostWaiting), coloured_(coloured) {
+      : name_(std::move(name)), output_(STDERR_FILENO, kMaxWaiting), coloured_(coloured) {
     thread_ = std::thread([this] { loop(); });
   }
   ~ErrorSink() override {

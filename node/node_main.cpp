@@ -113,13 +113,13 @@ void print_problems(const std::vector<config::Problem>& problems) {
 
 }  // namespace
 
-dds::Membership NodeStart::membership() const {
+dds::ParticipantConfig NodeStart::membership() const {
   return {domain, launch.session, node->name, launch.clock == config::Clock::kLockstep,
           launch.has_stand_ins()};
 }
 
 dds::Participant NodeStart::join_for_force_loop() const {
-  dds::Membership of_the_loop = membership();
+  dds::ParticipantConfig of_the_loop = membership();
   of_the_loop.node += "/loop";
   if (launch.clock != config::Clock::kRealtime) return dds::Participant(of_the_loop);
   const InheritedPriority priority(kDdsPriority);

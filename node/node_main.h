@@ -17,7 +17,7 @@ struct NodeStart {
   int domain = 0;                            ///< DDS domain of the session
   std::uint64_t run = 0;  ///< identifies this life of the process: its start time [ns]
 
-  dds::Membership membership() const;
+  dds::ParticipantConfig membership() const;
 
   /// Joins the session once more, for the force loop alone. A participant has locks that all its
   /// writers and readers share: here only the loop and the threads of DDS take them, so that the

@@ -71,7 +71,7 @@ void StatusPublisher::loop() {
 
 /// Of this node with another process of the session: in the status as long as it lasts, in the log
 /// once.
-void StatusPublisher::tell_mismatch() {
+void StatusPublisher::report_mismatch() {
   const std::string mismatch = participant_.mismatch();
   if (mismatch != mismatch_ && !mismatch.empty()) spdlog::warn("{}", mismatch);
   mismatch_ = mismatch;
@@ -80,7 +80,7 @@ void StatusPublisher::tell_mismatch() {
 }
 
 /// Says that the node has lost samples, and why.
-void StatusPublisher::tell_rejoin() {
+void StatusPublisher::report_rejoin() {
   const std::uint64_t count = participant_.rejoin_count();
   if (count == std::exchange(rejoin_count_, count)) return;
   spdlog::warn("a process that DDS had dropped is there again; this node has joined anew");
@@ -90,8 +90,8 @@ void StatusPublisher::publish() {
   const std::int64_t now = monotonic_nsec();
   status_.text("");
   fill_(status_);
-  tell_mismatch();
-  tell_rejoin();
+  report_mismatch();
+  report_rejoin();
   rate_.look(now, status_.ticks());
   status_.reached_rate_hz(rate_.reached_hz());
   status_.mean_rate_hz(rate_.mean_hz());

@@ -41,8 +41,8 @@ class StatusPublisher {
  private:
   void loop();
   void publish();
-  void tell_mismatch();
-  void tell_rejoin();
+  void report_mismatch();
+  void report_rejoin();
 
   const dds::Participant& participant_;
   std::string mismatch_;

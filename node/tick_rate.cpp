@@ -5,7 +5,7 @@ namespace cordis::node {
 namespace {
 
 // Between two close looks a rate would be noise.
-constexpr std::int64_t kLeastNsec = 100'000'000;
+constexpr std::int64_t kMinNsec = 100'000'000;
 
 }  // namespace
 
@@ -19,10 +19,10 @@ void TickRate::look(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
   if (first_.ticks == 0) {
     if (ticks > 0 && now.nsec > first_.nsec) mean_hz_ = rate(first_, now);
     first_ = now;
-  } else if (now.nsec - first_.nsec >= kLeastNsec) {
+  } else if (now.nsec - first_.nsec >= kMinNsec) {
     mean_hz_ = rate(first_, now);
   }
-  if (now.nsec - last_.nsec < kLeastNsec) return;
+  if (now.nsec - last_.nsec < kMinNsec) return;
   reached_hz_ = rate(last_, now);
   last_ = now;
 }

@@ -88,7 +88,7 @@ void FramePublisher::publish_events(const FrameShape& shape, const EventRoom& ro
     told[i].link(event.link + first);
     told[i].mat_a(event.mat_a);
     told[i].mat_b(event.mat_b);
-    told[i].behaviour(event.behaviour);
+    told[i].state_machine(event.state_machine);
     told[i].from_state(event.from);
     told[i].to_state(event.to);
     told[i].quantity(static_cast<std::uint32_t>(event.quantity));

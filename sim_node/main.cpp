@@ -1,5 +1,5 @@
 // sim_node/main.cpp -- the physics process.
-#include "node/claim.h"
+#include "node/instance_lock.h"
 #include "node/node_main.h"
 #include "sim_node/session.h"
 #include "sim_node/sim_config.h"

@@ -11,9 +11,9 @@
 #include "node/config/count_text.h"
 #include "node/stop.h"
 #include "node/time.h"
+#include "sim_node/checks/stability_check.h"
 #include "sim_node/run/describe.h"
 #include "sim_node/scene/naming.h"
-#include "sim_node/checks/stability_check.h"
 
 namespace cordis::sim {
 namespace {
@@ -39,8 +39,8 @@ Session::Session(const node::NodeStart& start, SimConfig config)
       duration_s_(config.duration_s),
       participant_(start.membership()),
       loop_participant_(start.join_for_force_loop()),
-      player_(std::make_unique<Stage>(std::make_shared<const scene::Scene>(std::move(config.scene)),
-                                      start.run, 1),
+      player_(std::make_unique<LoadedScene>(
+                  std::make_shared<const scene::Scene>(std::move(config.scene)), start.run, 1),
               start.launch.clock == config::Clock::kLockstep),
       position_reader_(loop_participant_, dds::Topic::kPositions),
       force_reader_(loop_participant_, dds::Topic::kForces),
@@ -88,7 +88,7 @@ void Session::listen_to_devices() {
 
 int Session::run() {
   tell(player_.simulation().scene(), 1);
-  note_state();
+  record_state();
   refused_.play(player_.simulation().scene());
   device_listener_ = std::thread([this] { listen_to_devices(); });
   commands_.start();
@@ -105,7 +105,7 @@ int Session::run() {
       break;
   }
   orders_.close();
-  note_state();
+  record_state();
   const Simulation& simulation = player_.simulation();
   if (simulation.failed()) {
     for (DeviceExchange& device : player_.simulation().devices()) answer(device);  // no force
@@ -165,7 +165,7 @@ void Session::run_asap() {
 }
 
 bool Session::obey() {
-  Order* order = orders_.waiting();
+  Request* order = orders_.waiting();
   if (order == nullptr) return true;
   const bool new_stage = order->changes_stage();
   if (new_stage && frames_.is_busy()) return false;
@@ -174,10 +174,10 @@ bool Session::obey() {
     return false;
   }
   player_.obey(*order);
-  orders_.tell_steps_left(player_.steps_left());
+  orders_.report_steps_left(player_.steps_left());
   orders_.obeyed();
   if (new_stage) offer_frame();
-  note_state();
+  record_state();
   return true;
 }
 
@@ -213,7 +213,7 @@ bool Session::receive_lockstep() {
   receive();
   for (const DeviceExchange& device : player_.simulation().devices()) {
     if (device.has_new_sample()) continue;
-    tell_wait(device);
+    report_wait(device);
     if (device.role() == Role::kMass) {
       position_reader_.wait(kLockstepPatience);
     } else {
@@ -226,14 +226,14 @@ bool Session::receive_lockstep() {
 }
 
 /// Says once for whom a scene in lockstep has long been waiting, and whether that node is alive.
-void Session::tell_wait(const DeviceExchange& device) {
+void Session::report_wait(const DeviceExchange& device) {
   const std::int64_t now = node::monotonic_nsec();
   roster_.look();
   if (waits_since_nsec_ == 0) {
     waits_since_nsec_ = now;
-    wait_told_ = false;
+    wait_reported_ = false;
   }
-  if (now - waits_since_nsec_ < kLongWait || std::exchange(wait_told_, true)) return;
+  if (now - waits_since_nsec_ < kLongWait || std::exchange(wait_reported_, true)) return;
   const std::string alive = roster_.name_of("device_node");
   const std::string who = alive.empty() ? "no device_node of the session is alive"
                                         : "device_node " + alive + " is alive, and sends no sample";
@@ -243,9 +243,9 @@ void Session::tell_wait(const DeviceExchange& device) {
 
 bool Session::advance() {
   const bool complete = player_.advance();
-  orders_.tell_steps_left(player_.steps_left());
+  orders_.report_steps_left(player_.steps_left());
   const Simulation& simulation = player_.simulation();
-  Stage& stage = player_.stage();
+  LoadedScene& stage = player_.stage();
   if (complete) {
     simulation.read_signals(stage.frames.next_row(simulation.world().step_count()));
     ticks_.store(++tick_count_, std::memory_order_relaxed);
@@ -265,7 +265,7 @@ void Session::offer_frame() {
   const std::int64_t action = simulation.action_time_nsec();  // as a device wrote it
   frames_.offer(player_.stage().frames, simulation.world(), simulation.simulated_s(), now,
                 action <= now ? action : 0);
-  note_state();
+  record_state();
 }
 
 void Session::answer_all() {
@@ -284,7 +284,7 @@ void Session::answer(DeviceExchange& device) {
   }
 }
 
-void Session::note_state() {
+void Session::record_state() {
   std::uint64_t dropped = frames_.frames_left_out();
   Simulation& simulation = player_.simulation();
   std::uint64_t braked = 0;
@@ -293,10 +293,10 @@ void Session::note_state() {
   for (const DeviceExchange& device : simulation.devices()) {
     dropped += device.refused_count() + device.missed_count();
     heard = heard || !device.is_lost();
-    braked += device.braked_ticks();
+    braked += device.passivity_ticks();
   }
   dropped_.store(dropped, std::memory_order_relaxed);
-  braked_ticks_.store(braked, std::memory_order_relaxed);
+  passivity_ticks_.store(braked, std::memory_order_relaxed);
   set_phase(player_.is_paused() ? "paused" : heard ? "running" : "waiting");
   const bool realtime = clock == config::Clock::kRealtime;
   target_rate_hz_.store(realtime ? simulation.scene().gesture_rate_hz : 0.0,
@@ -331,8 +331,8 @@ void Session::fill(msg::NodeStatus& status) {
   status.ticks(ticks_.load());
   status.overruns(overruns_.load());
   status.dropped(dropped_.load());
-  status.braked_ticks(braked_ticks_.load());
-  if (status.braked_ticks() > 0 && !std::exchange(braking_told_, true)) {
+  status.passivity_ticks(passivity_ticks_.load());
+  if (status.passivity_ticks() > 0 && !std::exchange(passivity_reported_, true)) {
     spdlog::warn(
         "the forces of a hand in role liaison bring in more energy than it gives, for it is too "
         "stiff "
@@ -365,7 +365,7 @@ void Session::fill(msg::NodeStatus& status) {
 void Session::tell(const scene::Scene& scene, std::uint64_t version) {
   {
     const std::lock_guard lock(shown_mutex_);
-    liaisons_ = ChangeCounter(scene.network.behaviours).names();
+    liaisons_ = ChangeCounter(scene.network.state_machines).names();
     struts_ = texts_of_struts(scene);
     liaisons_version_ = version;
   }

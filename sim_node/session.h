@@ -18,11 +18,11 @@
 #include "node/roster.h"
 #include "node/status.h"
 #include "sim_node/devices/device_reach.h"
-#include "sim_node/run/command_executor.h"
+#include "sim_node/devices/refused_devices.h"
 #include "sim_node/frame_publisher.h"
+#include "sim_node/run/command_executor.h"
 #include "sim_node/run/request.h"
 #include "sim_node/run/runner.h"
-#include "sim_node/devices/refused_devices.h"
 #include "sim_node/sim_config.h"
 
 namespace cordis::sim {
@@ -53,13 +53,13 @@ class Session {
   /// Takes what the devices have sent, and answers again what was asked again.
   void receive();
   bool receive_lockstep();  ///< false when a sample is still missing
-  void tell_wait(const DeviceExchange& device);
+  void report_wait(const DeviceExchange& device);
   /// One turn of the player, and what follows from it. @return whether a tick is complete
   bool advance();
   void answer(DeviceExchange& device);
   void answer_all();
   void offer_frame();
-  void note_state();
+  void record_state();
   bool finished() const noexcept;
   void fill(msg::NodeStatus& status);
   void tell(const scene::Scene& scene, std::uint64_t version);
@@ -70,8 +70,8 @@ class Session {
   double duration_s_;
   dds::Participant participant_;       // for all but the force loop
   dds::Participant loop_participant_;  // for the force loop, which waits for no other thread
-  Player player_;
-  OrderBox orders_;
+  Runner player_;
+  RequestMailbox orders_;
   dds::Reader<msg::GesturePositions> position_reader_;
   dds::Reader<msg::GestureForces> force_reader_;
   dds::Writer<msg::GesturePositions> position_writer_;
@@ -83,10 +83,10 @@ class Session {
   std::uint64_t turns_ = 0;  // of the loop, for the pace of frames while the scene stands still
   std::uint64_t tick_count_ = 0;       // over all stages
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
-  bool wait_told_ = false;
+  bool wait_reported_ = false;
 
   // What the loop tells the status thread.
-  struct Shown {
+  struct StatusSnapshot {
     engine::Energy energy;
     double limit_number = 0.0;
     int pushed_strut = -1;  // as StrutWatch::worst()
@@ -97,23 +97,23 @@ class Session {
     std::string failure;  // why the scene diverged
   };
   std::mutex shown_mutex_;
-  Shown shown_;
+  StatusSnapshot shown_;
   std::vector<std::string> liaisons_;  // names of those whose changes are shown
   std::vector<std::string> struts_;    // what is told of those when they are pushed
   std::uint64_t liaisons_version_ = 0;
-  bool braking_told_ = false;  // of the status thread
+  bool passivity_reported_ = false;  // of the status thread
   std::atomic<const char*> phase_{"starting"};
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<std::uint64_t> overruns_{0};
   std::atomic<std::uint64_t> dropped_{0};
-  std::atomic<std::uint64_t> braked_ticks_{0};
+  std::atomic<std::uint64_t> passivity_ticks_{0};
   std::atomic<double> target_rate_hz_{0.0};
   RefusedDevices refused_;
   ReachTable reaches_;
   dds::Reader<msg::DeviceDescription> device_reader_;
   node::Roster roster_;  // looked at while the loop waits for a sample
   node::StatusPublisher status_;
-  Director director_;
+  CommandExecutor director_;
   node::CommandListener commands_;  // its thread uses what stands above
   std::atomic<bool> ending_{false};
   std::thread device_listener_;  // likewise

@@ -10,10 +10,10 @@
 #include "node/config/device_limits.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/regular_file.h"
-#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/checks/port_check.h"
 #include "sim_node/checks/rate_choice.h"
 #include "sim_node/checks/stability_check.h"
+#include "sim_node/plan/reduction/reduce.h"
 
 namespace cordis::sim {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kHowToSoften =
     "softer links at the port, or a 'coupling' between the device and a simulated tool";
 constexpr const char* kHowToHaveIt = "a device that has it, or less in 'needs' of the port";
-constexpr std::size_t kMostSceneBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxSceneBytes = std::size_t{16} << 20;
 constexpr const char* kHowToCalm = "viscosity at the port, or a softer hand";
 
 /// A device_node of the launch, and what its device file promises.
@@ -138,7 +138,7 @@ std::filesystem::path below(const std::filesystem::path& folder, const std::stri
 /// Whether a file says that it is written for Cordis, or cannot be read, which the reader tells.
 /// What is wrong in another file would tell what stands in it.
 bool is_of_cordis(const std::filesystem::path& file) {
-  const config::FileBytes read = config::read_regular_file(file.string(), kMostSceneBytes);
+  const config::FileBytes read = config::read_regular_file(file.string(), kMaxSceneBytes);
   if (!read.reason.empty()) return true;
   constexpr std::string_view kMark = "cordis:";
   for (std::size_t at = read.bytes.find(kMark); at != std::string::npos;
@@ -174,7 +174,7 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
                                 config::Problems& problems) {
   scene::Scene scene = scene::load_scene(launch.resolve(path).string(), problems, referrer);
   if (!problems.has_errors()) scene = plan::reduce(std::move(scene), problems);
-  if (!problems.has_errors()) settle_rate(scene, problems);
+  if (!problems.has_errors()) select_rate(scene, problems);
   if (!problems.has_errors()) check_devices(launch, scene, problems);
   if (!problems.has_errors()) check_stability(scene, force, problems);
   return scene;

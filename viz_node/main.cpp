@@ -4,8 +4,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "node/claim.h"
 #include "node/command_listener.h"
+#include "node/instance_lock.h"
 #include "node/node_main.h"
 #include "node/status.h"
 #include "node/stop.h"
@@ -53,7 +53,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   node::report(problems);
   if (start.check_only) return 0;
 
-  const dds::Membership membership = start.membership();
+  const dds::ParticipantConfig membership = start.membership();
   node::claim("cordis/" + std::to_string(membership.domain) + "/" + membership.session + "/" +
                   membership.node,
               "session '" + membership.session + "' already has a node named '" + membership.node +

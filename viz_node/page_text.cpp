@@ -13,9 +13,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kLongestText = 300;  // of a text that another process wrote
-constexpr std::size_t kMostStates = 64;    // of a liaison, and liaisons whose changes are counted
-constexpr std::size_t kMostAxes = 16;      // of a port
-constexpr std::size_t kMostNames = 2000;   // names of matter, links and ports that a page is told
+constexpr std::size_t kMaxStates = 64;     // of a liaison, and liaisons whose changes are counted
+constexpr std::size_t kMaxAxes = 16;       // of a port
+constexpr std::size_t kMaxNames = 2000;    // names of matter, links and ports that a page is told
 
 std::string clipped(const std::string& text) {
   return text.substr(0, kLongestText);
@@ -29,7 +29,7 @@ std::string written(const Json& json) {
 
 Json ranges(const std::vector<msg::NamedRange>& named) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < std::min(named.size(), kMostNames); ++i) {
+  for (std::size_t i = 0; i < std::min(named.size(), kMaxNames); ++i) {
     list.push_back({{"name", clipped(named[i].name())},
                     {"first", named[i].first()},
                     {"count", named[i].count()}});
@@ -40,7 +40,7 @@ Json ranges(const std::vector<msg::NamedRange>& named) {
 Json axes_of(const msg::PortDescription& port) {
   Json list = Json::array();
   for (const std::uint32_t axis : port.axes()) {
-    if (list.size() == kMostAxes) break;
+    if (list.size() == kMaxAxes) break;
     list.push_back(axis);
   }
   return list;
@@ -48,7 +48,7 @@ Json axes_of(const msg::PortDescription& port) {
 
 Json ports(const std::vector<msg::PortDescription>& described) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < std::min(described.size(), kMostNames); ++i) {
+  for (std::size_t i = 0; i < std::min(described.size(), kMaxNames); ++i) {
     const auto& port = described[i];
     list.push_back({{"name", clipped(port.name())},
                     {"device", clipped(port.device())},
@@ -59,12 +59,12 @@ Json ports(const std::vector<msg::PortDescription>& described) {
   return list;
 }
 
-Json behaviours(const std::vector<msg::BehaviourDescription>& described) {
+Json state_machines(const std::vector<msg::StateMachineDescription>& described) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < std::min(described.size(), kMostNames); ++i) {
+  for (std::size_t i = 0; i < std::min(described.size(), kMaxNames); ++i) {
     Json states = Json::array();
     for (const std::string& state : described[i].states()) {
-      if (states.size() == kMostStates) break;
+      if (states.size() == kMaxStates) break;
       states.push_back(clipped(state));
     }
     list.push_back({{"name", clipped(described[i].name())}, {"states", std::move(states)}});
@@ -74,7 +74,7 @@ Json behaviours(const std::vector<msg::BehaviourDescription>& described) {
 
 Json changes(const std::vector<msg::LiaisonChanges>& counted) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < std::min(counted.size(), kMostStates); ++i) {
+  for (std::size_t i = 0; i < std::min(counted.size(), kMaxStates); ++i) {
     list.push_back({{"liaison", clipped(counted[i].liaison())}, {"changes", counted[i].changes()}});
   }
   return list;
@@ -111,7 +111,7 @@ Json node_json(const HeardNode& node, std::int64_t now_nsec) {
           {"dissipated_j", s.dissipated_j()},
           {"largest_limit_number", s.largest_limit_number()},
           {"port_energy_j", s.port_energy_j()},
-          {"braked_ticks", s.braked_ticks()},
+          {"passivity_ticks", s.passivity_ticks()},
           {"step", s.step()},
           {"changes", changes(s.changes())},
           {"lost_events", s.lost_events()},
@@ -125,7 +125,7 @@ Json events_json(const HeardEvents& events) {
                       {"link", event.link()},
                       {"mat_a", event.mat_a()},
                       {"mat_b", event.mat_b()},
-                      {"behaviour", event.behaviour()},
+                      {"state_machine", event.state_machine()},
                       {"from", event.from_state()},
                       {"to", event.to_state()},
                       {"quantity", event.quantity()},
@@ -174,7 +174,7 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"link_count", description.link_ends().size() / 2},
                   {"matter", ranges(description.matter())},
                   {"links", ranges(description.links())},
-                  {"behaviours", behaviours(description.behaviours())},
+                  {"state_machines", state_machines(description.state_machines())},
                   {"ports", ports(description.ports())},
                   {"signals", std::move(signals)}});
 }

@@ -28,10 +28,10 @@ bool is_rate(double rate_hz) {
 std::string fault_of(const msg::SceneDescription& description) {
   const std::size_t mats = description.mat_kind().size();
   const std::size_t ends = description.link_ends().size();
-  if (mats > kMostMats) return count_fault("too many MATs", mats, kMostMats);
-  if (ends > 2 * kMostLinks) return count_fault("too many links", ends / 2, kMostLinks);
-  if (description.signals().size() > kMostSignals)
-    return count_fault("too many signals", description.signals().size(), kMostSignals);
+  if (mats > kMaxMats) return count_fault("too many MATs", mats, kMaxMats);
+  if (ends > 2 * kMaxLinks) return count_fault("too many links", ends / 2, kMaxLinks);
+  if (description.signals().size() > kMaxSignals)
+    return count_fault("too many signals", description.signals().size(), kMaxSignals);
   if (description.mat_radius_m().size() != mats)
     return count_fault("radii in the description", description.mat_radius_m().size(), mats);
   if (description.space() < 1 || description.space() > 3)
@@ -43,9 +43,9 @@ std::string fault_of(const msg::SceneDescription& description) {
     return "a port of the description is at a MAT that does not exist";
   if (!ranges_fit(description.matter(), mats) || !ranges_fit(description.links(), ends / 2))
     return "a name of the description reaches past the last MAT or link";
-  if (!description.link_behaviour().empty() && description.link_behaviour().size() != ends / 2)
-    return count_fault("behaviours of links in the description",
-                       description.link_behaviour().size(), ends / 2);
+  if (!description.link_state_machine().empty() && description.link_state_machine().size() != ends / 2)
+    return count_fault("state machines of links in the description",
+                       description.link_state_machine().size(), ends / 2);
   if (!is_rate(description.step_rate_hz()) || !is_rate(description.frame_rate_hz()))
     return "a rate of the description is not a positive number";
   if (!std::ranges::all_of(description.mat_radius_m(), [](float r) { return r >= 0.0F; }))
@@ -82,7 +82,7 @@ std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescripti
   const std::size_t columns = description.signals().size();
   if (signals.signal_count() != columns || columns == 0)
     return count_fault("signals in a batch", signals.signal_count(), columns);
-  if (signals.value().size() % columns != 0 || signals.value().size() > kMostBatchValues)
+  if (signals.value().size() % columns != 0 || signals.value().size() > kMaxBatchValues)
     return std::to_string(signals.value().size()) + " values in a batch of " +
            std::to_string(columns) + " signals";
   if (signals.stride_steps() == 0) return "a batch of signals with no steps between its rows";

@@ -9,10 +9,10 @@
 
 namespace cordis::viz {
 
-inline constexpr std::size_t kMostMats = 2'000'000;
-inline constexpr std::size_t kMostLinks = 8'000'000;
-inline constexpr std::size_t kMostSignals = 256;
-inline constexpr std::size_t kMostBatchValues = 1'000'000;
+inline constexpr std::size_t kMaxMats = 2'000'000;
+inline constexpr std::size_t kMaxLinks = 8'000'000;
+inline constexpr std::size_t kMaxSignals = 256;
+inline constexpr std::size_t kMaxBatchValues = 1'000'000;
 
 /// Each returns what is wrong, one sentence for a person, or an empty string when nothing is. What
 /// is held against a description has its run and version.

@@ -14,9 +14,9 @@ namespace {
 // seconds.
 constexpr std::size_t kBatchesKept = 64;
 constexpr std::size_t kBatchBytesKept = 16u << 20;
-constexpr std::size_t kMostNodes = 64;
-constexpr std::uint64_t kMostOlder = 64;      // versions of a scene that may come late
-constexpr std::uint64_t kMostLost = 100'000;  // frames between two that came: an hour of 25 Hz
+constexpr std::size_t kMaxNodes = 64;
+constexpr std::uint64_t kMaxOlder = 64;      // versions of a scene that may come late
+constexpr std::uint64_t kMaxLost = 100'000;  // frames between two that came: an hour of 25 Hz
 
 /// Whether a message belongs to the scene that sim_node played before, or to one whose description
 /// has not come yet: for a moment around a change of scene or a restart, both come.
@@ -45,7 +45,7 @@ std::string SceneMirror::take(msg::SceneDescription&& description) {
     const bool same_run = description_ != nullptr && description_->run() == description.run();
     // Late, and not one of a number that nobody could have reached.
     const std::uint64_t older = same_run ? description_->version() - description.version() : 0;
-    if (older > 0 && older <= kMostOlder) return {};
+    if (older > 0 && older <= kMaxOlder) return {};
     last_frame_number_ = 0;  // frames before a description are passed over, not lost
     figures_.frame_rate_hz = description.frame_rate_hz();
     description_ = std::make_shared<const msg::SceneDescription>(std::move(description));
@@ -64,7 +64,7 @@ void SceneMirror::count_gap(const msg::SceneFrame& frame) {
   if (last == 0 || frame.frame() <= last) return;
   // A jump beyond what may be lost is no count: numbers are as others wrote them.
   const std::uint64_t step = frame.frame() - last;
-  if (step <= kMostLost) figures_.lost += step - 1;
+  if (step <= kMaxLost) figures_.lost += step - 1;
 }
 
 std::string SceneMirror::take(msg::SceneFrame&& frame, std::int64_t now_nsec) {
@@ -150,7 +150,7 @@ std::string SceneMirror::take(msg::SceneEvents&& events) {
 void SceneMirror::take(msg::NodeStatus&& status, std::int64_t now_nsec) {
   const std::lock_guard lock(mutex_);
   const std::uint32_t node_id = status.node_id();
-  if (nodes_.size() >= kMostNodes && !nodes_.contains(node_id)) {
+  if (nodes_.size() >= kMaxNodes && !nodes_.contains(node_id)) {
     nodes_.erase(std::ranges::min_element(
         nodes_, {}, [](const auto& entry) { return entry.second.heard_nsec; }));
   }

@@ -80,7 +80,7 @@ std::string accuracy_text(const SceneCheck& check) {
 std::string choice_text(const SceneCheck& check) {
   if (!check.choice) return {};
   const scene::Accuracy& asked = *check.scene.accuracy;
-  const plan::Choice& choice = *check.choice;
+  const plan::RateSelection& choice = *check.choice;
   std::string text = fmt::format(
       "asked       {:.4g} of {}, up to {:.4g} Hz; contacts {:.3g} %{}\n", asked.tolerance,
       asked.over_s > 0.0 ? fmt::format("the amplitude for {:.4g} s", asked.over_s)
@@ -139,7 +139,7 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
       who + fmt::format(
                 "{:.4g} N/m and {:.3g} N s/m; the device needs {:.3g} N s/m of its own, at "
                 "{:.4g} Hz and {} of delay\n",
-                port.load.stiffness, port.load.viscosity, port.least_device_viscosity, rate, delay);
+                port.load.stiffness, port.load.viscosity, port.min_device_viscosity, rate, delay);
   if (check.options.device_viscosity > 0.0) {
     text += fmt::format(
         "            a device of {:.3g} N s/m bears {:.4g} N/m: {}\n",
@@ -221,7 +221,7 @@ nlohmann::json ports_json(const SceneCheck& check) {
                         {"delay_periods", check.options.delay_periods}};
     if (port.port->role == scene::Role::kMass) {
       json["role"] = "mass";
-      json["least_device_viscosity_n_s_per_m"] = port.least_device_viscosity;
+      json["least_device_viscosity_n_s_per_m"] = port.min_device_viscosity;
       if (check.options.device_viscosity > 0.0) {
         json["device_viscosity_n_s_per_m"] = check.options.device_viscosity;
         json["largest_stiffness_n_per_m"] = port.largest_stiffness;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "sim_node/plan/reference/load.h"
 #include "sim_node/plan/reduction/modal_truncation.h"
 #include "sim_node/plan/reduction/reduce.h"
+#include "sim_node/plan/reference/load.h"
 #include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::cli {
@@ -21,7 +21,7 @@ PortCheck check_port(const scene::Scene& scene, const plan::LiaisonGraph& graph,
   check.port = &port;
   check.load = plan::port_load(graph, port.mat);
   if (port.role == scene::Role::kMass) {
-    check.least_device_viscosity = plan::least_device_viscosity(check.load, loop);
+    check.min_device_viscosity = plan::min_device_viscosity(check.load, loop);
     check.largest_stiffness =
         plan::largest_port_stiffness(options.device_viscosity, check.load.viscosity, loop);
   } else {

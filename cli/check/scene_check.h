@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/plan/rate_selection.h"
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/rate_selection.h"
 #include "sim_node/scene/naming.h"
 #include "sim_node/scene/scene.h"
 
@@ -27,7 +27,7 @@ struct CheckOptions {
 struct PortCheck {
   const scene::Port* port = nullptr;
   plan::PortLoad load;
-  double least_device_viscosity = 0.0;  ///< role mass: what the device must have [N s/m]
+  double min_device_viscosity = 0.0;    ///< role mass: what the device must have [N s/m]
   double largest_stiffness = 0.0;       ///< role mass, of the device asked for [N/m]
   double largest_hand_stiffness = 0.0;  ///< role liaison [N/m]
 };
@@ -36,7 +36,7 @@ struct SceneCheck {
   scene::Scene scene;
   CheckOptions options;
   plan::Plan plan;
-  std::optional<plan::Choice> choice;  ///< for the `accuracy` of the scene
+  std::optional<plan::RateSelection> choice;  ///< for the `accuracy` of the scene
   std::vector<PortCheck> ports;
   double step_nsec = 0.0;  ///< measured on this machine
 

@@ -72,7 +72,7 @@ int granted_buffer(int option) {
 /// Pairs of ports of a domain that are taken.
 int taken_pairs(int domain) {
   int taken = 0;
-  for (int index = 0; index < dds::kMostParticipants; ++index) {
+  for (int index = 0; index < dds::kMaxParticipants; ++index) {
     const std::uint16_t port = dds::discovery_port(domain, index);
     if (!dds::is_free(port) || !dds::is_free(static_cast<std::uint16_t>(port + 1))) ++taken;
   }
@@ -129,13 +129,13 @@ Finding check_socket_buffers() {
 Finding check_dds_ports(int domain) {
   Finding finding{.key = "network.dds_ports", .title = "DDS ports"};
   const int taken = taken_pairs(domain);
-  finding.values = {{"domain", domain}, {"taken", taken}, {"checked", dds::kMostParticipants}};
+  finding.values = {{"domain", domain}, {"taken", taken}, {"checked", dds::kMaxParticipants}};
   finding.text = fmt::format("those of domain {} are free", domain);
   if (taken == 0) return finding;
   finding.level = Level::kWarning;
   finding.text = fmt::format(
       "{} of {} pairs of domain {} are taken, by a session that runs or by another program", taken,
-      dds::kMostParticipants, domain);
+      dds::kMaxParticipants, domain);
   const std::optional<int> other = free_domain(domain);
   if (!other) return finding;
   finding.values["free_domain"] = *other;

@@ -15,7 +15,7 @@ constexpr long kCoarseNsec = 100'000;
 constexpr double kTooManyLost = 0.05;  // periods: the device would be stopped again and again
 constexpr double kManyLate = 0.01;     // wake-ups
 constexpr double kLongStallS = 0.01;   // half of the watchdog of a device
-constexpr std::size_t kMostShown = 8;  // cores in the table; all are in the JSON
+constexpr std::size_t kMaxShown = 8;   // cores in the table; all are in the JSON
 
 nlohmann::json values_of(int core, const char* priority, const DeadlineRecord& record) {
   return {{"core", core},
@@ -41,15 +41,15 @@ std::vector<std::string> table_of(std::vector<CoreWakeups> cores) {
   const auto worse = [](const CoreWakeups& a, const CoreWakeups& b) {
     return a.of_loops().worst_s() > b.of_loops().worst_s();
   };
-  if (cores.size() > kMostShown) std::sort(cores.begin(), cores.end(), worse);
+  if (cores.size() > kMaxShown) std::sort(cores.begin(), cores.end(), worse);
   std::vector<std::string> table{
       fmt::format(kRow, "core", "priority", "late > 0.2 ms", "p99", "worst", "lost ticks")};
-  for (std::size_t i = 0; i < std::min(cores.size(), kMostShown); ++i) {
+  for (std::size_t i = 0; i < std::min(cores.size(), kMaxShown); ++i) {
     if (cores[i].realtime) table.push_back(row_of(cores[i].core, "realtime", *cores[i].realtime));
     table.push_back(row_of(cores[i].core, "normal", cores[i].normal));
   }
-  if (cores.size() > kMostShown)
-    table.push_back("and " + config::count_text(cores.size() - kMostShown, "core") + " less late");
+  if (cores.size() > kMaxShown)
+    table.push_back("and " + config::count_text(cores.size() - kMaxShown, "core") + " less late");
   return table;
 }
 

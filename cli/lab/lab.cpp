@@ -22,8 +22,8 @@ using plan::TrialResult;
 
 /// How much of everything.
 struct Effort {
-  double tolerance;   // of the oracle
-  double longest_s;   // of one of the two oracles
+  double tolerance;   // of the reference integrator
+  double longest_s;   // of one of the two reference integrators
   double all_runs_s;  // wall time of all runs by one core; what is more is left out
   double highest_factor;
   bool coarse;
@@ -37,7 +37,8 @@ struct Attempt {
 };
 
 /// Leaves out the highest rates, as far as the time asks for it.
-std::string shorten(plan::Ladder& ladder, double step_nsec, double integrators, double longest_s) {
+std::string shorten(plan::RateSweep& ladder, double step_nsec, double integrators,
+                    double longest_s) {
   const double highest = ladder.rates_hz.back();
   double cost = 0.0;
   for (const double rate : ladder.rates_hz) {
@@ -98,7 +99,7 @@ void run_all(const LabScene& lab, const plan::Reference& reference,
 
 /// @throws std::runtime_error when there is none; of a scene in which nothing moves it says what
 /// its ports do.
-plan::Reference reference_of(const LabScene& lab, const plan::ReferenceWish& wish) {
+plan::Reference reference_of(const LabScene& lab, const plan::ReferenceOptions& wish) {
   try {
     return plan::make_reference(lab.scene.network, lab.course, wish);
   } catch (const plan::NothingMoves& still) {
@@ -176,7 +177,7 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
     report.stability[integrator] = stability;
     if (std::isfinite(stability.diverging_step)) limit = std::max(limit, stability.diverging_step);
   }
-  plan::Ladder ladder = plan::make_ladder(
+  plan::RateSweep ladder = plan::make_ladder(
       limit > 0.0 ? 1.0 / limit : 0.0,
       {report.lab.duration_s, report.lab.scene.step_rate_hz, effort.highest_factor, effort.coarse});
   const std::string left_out =
@@ -188,9 +189,11 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
                  plan::key_of(network, report.lab.course, ladder.sampling, effort.tolerance),
                  options.again);
   if (!store.reference()) {
-    plan::ReferenceWish wish{
+    plan::ReferenceOptions wish{
         ladder.sampling, effort.tolerance, effort.longest_s, ladder.rates_hz.back(),
-        [&progress](double done) { progress(fmt::format("the oracle: {:.0f} %", 100.0 * done)); }};
+        [&progress](double done) {
+          progress(fmt::format("the reference integrator: {:.0f} %", 100.0 * done));
+        }};
     store.keep(reference_of(report.lab, wish));
   }
   report.reference = *store.reference();

@@ -1,4 +1,4 @@
-// cli/lab/lab.h -- all integrators at many rates, against the oracle.
+// cli/lab/lab.h -- all integrators at many rates, against the reference integrator.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cli/lab/lab_scene.h"
-#include "sim_node/plan/reference/rate_sweep.h"
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/reference/rate_sweep.h"
 #include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::cli {

@@ -43,7 +43,7 @@ std::string csv_of(const LabReport& report) {
 }
 
 /// The bottom of the chart, a third of a decade below the best run.
-double least_error(const LabReport& report) {
+double min_error(const LabReport& report) {
   double least = 1.0;
   for (const LabRun& run : report.runs) {
     if (!run.result.blown_up && run.result.error > 0.0) least = std::min(least, run.result.error);
@@ -78,7 +78,7 @@ std::string panel(const LabReport& report, int column, const std::string& label,
       "table using (column(8) == 1 ? column({}) : NaN):6 with points pointtype 6 pointsize 1 "
       "linecolor rgb '#000000' title 'Pareto front'",
       column);
-  if (report.reference.doubt > least_error(report)) {
+  if (report.reference.doubt > min_error(report)) {
     text += fmt::format(
         ", \\\n     {:.3g} with lines dashtype 3 linecolor rgb '#888888' title 'doubt of the "
         "reference'",
@@ -105,7 +105,7 @@ std::string script_of(const LabReport& report) {
              "set grid\n"
              "set ylabel 'rms position error / amplitude'\n"
              "set multiplot layout 1,2 title '{}: {:.3g} s' noenhanced\n",
-             2.0 * worst, least_error(report), report.lab.scene.name,
+             2.0 * worst, min_error(report), report.lab.scene.name,
              report.reference.sampling.duration()) +
          panel(report, 3, "force evaluations per simulated second", true) + "unset key\n" +
          panel(report, 4, "processor time per simulated second [ns]", false) + "unset multiplot\n";

@@ -24,8 +24,8 @@ std::string reference_text(const plan::Reference& reference) {
   return text + fmt::format(
                     "            {} at {:.4g} s: positions are compared up to there, then kinetic "
                     "energy\n",
-                    reference.parted ? "CHAOTIC: two references part"
-                                     : "the second one took too long: it ends",
+                    reference.diverged ? "CHAOTIC: two references part"
+                                       : "the second one took too long: it ends",
                     until);
 }
 

@@ -3,10 +3,10 @@
 
 #include <utility>
 
-#include "cli/lab/stage.h"
+#include "cli/lab/offline_session.h"
 #include "node/config/value.h"
-#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/checks/rate_choice.h"
+#include "sim_node/plan/reduction/reduce.h"
 
 namespace cordis::cli {
 namespace {
@@ -18,7 +18,7 @@ double duration_of(const scene::Scene& scene, double asked_s) {
 }
 
 /// Plays the launch file once, and keeps what its devices did.
-void record(Stage& stage, LabScene& lab) {
+void record(OfflineSession& stage, LabScene& lab) {
   lab.scene = scene::Scene(stage.scene());
   lab.course.period = 1.0 / lab.scene.gesture_rate_hz;
   std::vector<const scene::Port*> played;
@@ -50,7 +50,7 @@ LabScene load_lab_scene(const std::string& file, double duration_s) {
   problems.throw_if_any();
   LabScene lab;
   if (root.find("nodes").exists()) {
-    Stage stage(file);
+    OfflineSession stage(file);
     lab.duration_s = duration_of(stage.scene(), duration_s);
     record(stage, lab);
     return lab;
@@ -59,7 +59,7 @@ LabScene load_lab_scene(const std::string& file, double duration_s) {
   problems.throw_if_any();
   lab.scene = plan::reduce(std::move(lab.scene), problems);
   problems.throw_if_any();
-  sim::settle_rate(lab.scene, problems);
+  sim::select_rate(lab.scene, problems);
   lab.duration_s = duration_of(lab.scene, duration_s);
   for (const scene::Port& port : lab.scene.ports) {
     lab.ports.push_back(port.name + " rests: give the launch file to have it played");

@@ -58,9 +58,9 @@ void each_field(File& file, Of& reference, Step step) {
   step(file, reference.kinetic);
   step(file, reference.amplitude);
   step(file, reference.compared);
-  step(file, reference.parted);
+  step(file, reference.diverged);
   step(file, reference.doubt);
-  step(file, reference.by_oracle);
+  step(file, reference.by_reference);
   step(file, reference.evaluations);
 }
 

@@ -66,7 +66,7 @@ void add_lab_verb(CommandLine& line) {
   verb.flag("--again", options.again, "Forget what an earlier lab has left in the folder");
   verb.examples(
       "The error of a run is the root of the mean square of its position errors against the "
-      "oracle,\n"
+      "reference integrator,\n"
       "over that of the motion itself (docs/lab.md). A lab that was interrupted goes on "
       "where\n"
       "it was when it is started again.\n\n"

@@ -7,8 +7,7 @@
 namespace cordis::cli {
 
 Console::Console(std::array<int, 2> files)
-    : outputs_{node::LineOutput(files[0], kMostWaiting), node::LineOutput(files[1], kMostWaiting)} {
-}
+    : outputs_{node::LineOutput(files[0], kMaxWaiting), node::LineOutput(files[1], kMaxWaiting)} {}
 
 void Console::line(Stream stream, std::string_view text) {
   outputs_[static_cast<std::size_t>(stream)].line(text);

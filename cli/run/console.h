@@ -14,7 +14,7 @@ namespace cordis::cli {
 /// processes whose output is shown.
 class Console {
  public:
-  static constexpr std::size_t kMostWaiting = 1 << 20;  ///< [bytes] per stream
+  static constexpr std::size_t kMaxWaiting = 1 << 20;  ///< [bytes] per stream
 
   /// @param files  where the two streams go
   explicit Console(std::array<int, 2> files = {1, 2});

@@ -43,9 +43,9 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
     text += fmt::format("{} failed: {}\n", node, status.text());
   }
   if (status.kind() == "device_node" &&
-      (status.port_energy_j() != 0.0 || status.braked_ticks() > 0)) {
+      (status.port_energy_j() != 0.0 || status.passivity_ticks() > 0)) {
     text += fmt::format("{} gave the hand {:.3g} J, braked in {}\n", node, status.port_energy_j(),
-                        config::count_text(status.braked_ticks(), "tick"));
+                        config::count_text(status.passivity_ticks(), "tick"));
   }
   if (status.kind() == "sim_node") {
     text += fmt::format(

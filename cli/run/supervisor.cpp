@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kTick{100};
-constexpr std::chrono::milliseconds kSameWish{300};  // timeout(1) sends its signal twice
+constexpr std::chrono::milliseconds kSameTarget{300};  // timeout(1) sends its signal twice
 constexpr std::array kStreams{Stream::kOut, Stream::kError};
 
 class Supervision {
@@ -81,7 +81,7 @@ class Supervision {
 
   void take_signals() {
     const auto now = Clock::now();
-    if (!signals_.take() || (interrupted_ && now < *interrupted_ + kSameWish)) return;
+    if (!signals_.take() || (interrupted_ && now < *interrupted_ + kSameTarget)) return;
     watcher_.interrupted(/*again=*/interrupted_.has_value());
     if (interrupted_) plan_.hurry(now);
     interrupted_ = now;

@@ -9,7 +9,7 @@
 namespace cordis::cli {
 
 Simplified simplify_scene(scene::Scene scene, config::Problems& problems) {
-  if (!scene.reduce.is_asked) scene.reduce = scene::ReductionWish::everything();
+  if (!scene.reduce.is_asked) scene.reduce = scene::ReductionOptions::everything();
   const std::string file = scene.file;
   scene = plan::reduce(std::move(scene), problems);
   if (problems.has_errors()) return {};

@@ -39,7 +39,7 @@ class Driver {
 
   /// How old the command of the next write() is [s]. Role liaison: positions do not fade like
   /// forces, and a driver whose motors pull to them lets go once they are as old as the watchdog.
-  virtual void note_age(double /*age_s*/) noexcept {}
+  virtual void record_age(double /*age_s*/) noexcept {}
 
   /// Hands the motors what they hold for one period. A simulated device lives through that period
   /// here, and no other clock moves it. False when the device does not answer.

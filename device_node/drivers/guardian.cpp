@@ -216,7 +216,7 @@ void Guardian::send(int file) noexcept {
   sendmsg(socket_, &envelope.header, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
-void Guardian::note_frame(bool any_force) noexcept {
+void Guardian::record_frame(bool any_force) noexcept {
   shared_->driven_nsec.store(any_force ? node::monotonic_nsec() : 0);
 }
 

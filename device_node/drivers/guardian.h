@@ -39,7 +39,7 @@ class Guardian {
   void drop() noexcept;
 
   /// Records that a frame has been written. @param any_force  some motor is given a force
-  void note_frame(bool any_force) noexcept;
+  void record_frame(bool any_force) noexcept;
 
   /// How often it has taken the force because the loop stalled.
   std::uint32_t release_count() const noexcept;

@@ -141,18 +141,18 @@ void Hardware::ask(const AxisValues& force_n) noexcept {
   const std::size_t count = request(force_n, message);
   wire_->send({message.data(), count});
   Guardian* const guardian = Guardian::of_process();
-  if (guardian != nullptr) guardian->note_frame(force_n != AxisValues{});
+  if (guardian != nullptr) guardian->record_frame(force_n != AxisValues{});
   if (!wire_->is_open()) lose();
 }
 
 /// Takes what is there, and waits until an instant for the answer to the newest request; true when
 /// it has come.
 bool Hardware::listen(std::int64_t until) noexcept {
-  constexpr int kMostReads = 16;  // beyond that instant: a device that babbles does not stop a hand
+  constexpr int kMaxReads = 16;  // beyond that instant: a device that babbles does not stop a hand
   std::array<std::uint8_t, 256> bytes;
   bool found = false;
   bool any = false;
-  for (int reads_beyond = 0; reads_beyond < kMostReads;) {
+  for (int reads_beyond = 0; reads_beyond < kMaxReads;) {
     const std::int64_t left = until - node::monotonic_nsec();
     const std::size_t count = wire_->receive(
         bytes, std::chrono::nanoseconds(found ? 0 : std::max<std::int64_t>(left, 0)));

@@ -51,7 +51,7 @@ class Hardware : public Driver {
   bool can_play(Role) const noexcept override { return true; }
   void start(Role role) noexcept override;
   bool read(AxisValues& sensed) noexcept override;
-  void note_age(double age_s) noexcept override { age_s_ = age_s; }
+  void record_age(double age_s) noexcept override { age_s_ = age_s; }
   bool write(const AxisValues& commanded) noexcept override;
   bool has_motors() const noexcept override { return true; }
   bool is_let_go() const noexcept override { return is_let_go_; }

@@ -22,7 +22,7 @@
 #include <unistd.h>
 
 #include "device_node/drivers/guardian.h"
-#include "node/claim.h"
+#include "node/instance_lock.h"
 
 namespace cordis::device {
 namespace {
@@ -47,7 +47,7 @@ class SerialLine final : public Wire {
     const bool opened = file_ >= 0 && tcgetattr(file_, &line) == 0;  // writes to nothing but a line
     tell(opened ? 0 : errno);
     if (!opened) return false;
-    if (!note_mine(flock(file_, LOCK_EX | LOCK_NB) == 0, path_.c_str())) return false;
+    if (!record_mine(flock(file_, LOCK_EX | LOCK_NB) == 0, path_.c_str())) return false;
     cfmakeraw(&line);
     line.c_cflag |= CLOCAL | CREAD;
     line.c_cflag &= ~static_cast<tcflag_t>(HUPCL | CRTSCTS);  // no reset at close, no blocking
@@ -82,7 +82,7 @@ class Datagrams final : public Wire {
 
  protected:
   bool connect() noexcept override {
-    if (!note_mine(claim(), name_.c_str())) return false;
+    if (!record_mine(claim(), name_.c_str())) return false;
     file_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     return file_ >= 0 &&
            ::connect(file_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_) == 0;
@@ -131,7 +131,7 @@ void Wire::close() noexcept {
   file_ = -1;
 }
 
-bool Wire::note_mine(bool mine, const char* what) noexcept {
+bool Wire::record_mine(bool mine, const char* what) noexcept {
   if (std::exchange(mine_, mine) && !mine) {
     spdlog::error("{} is driven by another process; this one waits until it is free", what);
   }

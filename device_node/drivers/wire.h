@@ -45,7 +45,7 @@ class Wire {
 
  protected:
   /// Says once that another process has it. @return mine
-  bool note_mine(bool mine, const char* what) noexcept;
+  bool record_mine(bool mine, const char* what) noexcept;
 
   /// Opens file_; false, with or without it, when that fails.
   virtual bool connect() noexcept = 0;

@@ -81,10 +81,10 @@ void set_reach(DeviceLimits& limits, const Map& map) {
 }  // namespace
 
 DeviceLimits read_device_limits(MappingReader& reader) {
-  constexpr int kMostAxes = 16;
-  constexpr int kMostDelay = 16;
+  constexpr int kMaxAxes = 16;
+  constexpr int kMaxDelay = 16;
   DeviceLimits limits;
-  limits.axis_count = static_cast<int>(reader.required_integer("axes", 1, kMostAxes));
+  limits.axis_count = static_cast<int>(reader.required_integer("axes", 1, kMaxAxes));
   limits.coordinate_count = limits.axis_count;
   const Map map = read_map(reader);
   if (!map.empty()) {
@@ -108,7 +108,7 @@ DeviceLimits read_device_limits(MappingReader& reader) {
   limits.damping_limit_n_s_per_m =
       reader.optional_number("damping_limit_n_s_per_m", 0.0, Range::not_negative());
   limits.delay_periods =
-      static_cast<int>(reader.optional_integer("delay_periods", 0, 0, kMostDelay));
+      static_cast<int>(reader.optional_integer("delay_periods", 0, 0, kMaxDelay));
   return limits;
 }
 

@@ -175,7 +175,7 @@ void MappingReader::error_at(const std::string& key, std::string message, std::s
 }
 
 void MappingReader::finish() {
-  constexpr std::size_t kMostListed = 12;
+  constexpr std::size_t kMaxListed = 12;
   for (const Value::Entry& entry : value_.entries()) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
     if (problems_.is_full()) return;
@@ -184,7 +184,7 @@ void MappingReader::finish() {
       hint = "write a space after the ':'";
     if (hint.empty() && entry.key.find('.') != std::string::npos)
       hint = "the dots are for the command line; write " + nested(entry.key);
-    if (hint.empty() && known_.size() <= kMostListed) hint = "known keys: " + listed(known_);
+    if (hint.empty() && known_.size() <= kMaxListed) hint = "known keys: " + listed(known_);
     report(entry.key_place, "unknown key '" + entry.key + "' in " + what_, hint);
   }
 }

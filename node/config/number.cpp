@@ -63,8 +63,8 @@ bool is_within(double number, const Range& range) {
 }  // namespace
 
 std::string number_text(double number) {
-  constexpr double kMostWithoutExponent = 1.0e9;
-  if (std::abs(number) < kMostWithoutExponent && number == std::round(number)) {
+  constexpr double kMaxWithoutExponent = 1.0e9;
+  if (std::abs(number) < kMaxWithoutExponent && number == std::round(number)) {
     return std::to_string(static_cast<long>(number));
   }
   std::array<char, 32> text{};

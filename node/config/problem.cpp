@@ -9,7 +9,7 @@ namespace cordis::config {
 
 namespace {
 
-constexpr std::size_t kMostColumnsShown = 120;
+constexpr std::size_t kMaxColumnsShown = 120;
 
 bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
@@ -43,9 +43,9 @@ std::string line_with_caret(const std::string& source_line, int column) {
   std::size_t last = characters.size();
   std::string line = "\n";
   std::string below = "\n";
-  if (last > kMostColumnsShown) {
-    first = caret > kMostColumnsShown / 2 ? caret - kMostColumnsShown / 2 : 0;
-    last = std::min(last, first + kMostColumnsShown);
+  if (last > kMaxColumnsShown) {
+    first = caret > kMaxColumnsShown / 2 ? caret - kMaxColumnsShown / 2 : 0;
+    last = std::min(last, first + kMaxColumnsShown);
   }
   if (first > 0) {
     line += "...";

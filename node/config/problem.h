@@ -43,10 +43,10 @@ class ConfigError : public std::runtime_error {
 };
 
 /// Collects problems while files are read, so that a person sees all of them at once.
-/// A problem that is there already is not added again; after kMostProblems the others are counted.
+/// A problem that is there already is not added again; after kMaxProblems the others are counted.
 class Problems {
  public:
-  static constexpr std::size_t kMostProblems = 100;
+  static constexpr std::size_t kMaxProblems = 100;
 
   void error(const Place& place, std::string message, std::string hint = {});
   void warning(const Place& place, std::string message, std::string hint = {});
@@ -56,7 +56,7 @@ class Problems {
 
   bool has_errors() const noexcept { return error_count_ > 0; }
   /// Whether no more of them will be shown: then a hint is not worth the time of finding it.
-  bool is_full() const noexcept { return problems_.size() >= kMostProblems; }
+  bool is_full() const noexcept { return problems_.size() >= kMaxProblems; }
   /// Calls of error() so far. A reader compares it before and after a part to know whether the part
   /// is sound.
   std::size_t error_count() const noexcept { return error_count_; }

@@ -34,11 +34,11 @@ class OpenFile {
 };
 
 /// Appends what is left in a file; false when reading fails or more comes than is allowed.
-bool append_rest(int file, std::size_t most_bytes, std::string& bytes) {
+bool append_rest(int file, std::size_t max_bytes, std::string& bytes) {
   constexpr std::size_t kBlock = 65536;
   for (;;) {
     const std::size_t before = bytes.size();
-    if (before > most_bytes) return true;
+    if (before > max_bytes) return true;
     bytes.resize(before + kBlock);
     const ssize_t count = read(file, bytes.data() + before, kBlock);
     bytes.resize(before + static_cast<std::size_t>(count > 0 ? count : 0));
@@ -49,7 +49,7 @@ bool append_rest(int file, std::size_t most_bytes, std::string& bytes) {
 
 }  // namespace
 
-FileBytes read_regular_file(const std::string& path, std::size_t most_bytes) {
+FileBytes read_regular_file(const std::string& path, std::size_t max_bytes) {
   // Looked at before it is opened: the opening of a serial line resets a board.
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) return {{}, std::strerror(errno)};
@@ -60,9 +60,9 @@ FileBytes read_regular_file(const std::string& path, std::size_t most_bytes) {
   if (fstat(file.number(), &status) != 0) return {{}, std::strerror(errno)};
   if (!S_ISREG(status.st_mode)) return {{}, kind_of(status.st_mode)};
   FileBytes result;
-  if (!append_rest(file.number(), most_bytes, result.bytes)) return {{}, "reading failed"};
-  if (result.bytes.size() > most_bytes)
-    return {{}, "it is larger than " + std::to_string(most_bytes >> 20) + " MiB"};
+  if (!append_rest(file.number(), max_bytes, result.bytes)) return {{}, "reading failed"};
+  if (result.bytes.size() > max_bytes)
+    return {{}, "it is larger than " + std::to_string(max_bytes >> 20) + " MiB"};
   return result;
 }
 

@@ -9,8 +9,8 @@ namespace cordis::config {
 
 namespace {
 
-constexpr std::size_t kMostValues = 1'000'000;
-constexpr std::size_t kMostLevels = 64;
+constexpr std::size_t kMaxValues = 1'000'000;
+constexpr std::size_t kMaxLevels = 64;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void TreeBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
     throw GivenUp{};
   }
   add(known->second, 0);
-  if (value_count_ > kMostValues) give_up_on_size(mark);
+  if (value_count_ > kMaxValues) give_up_on_size(mark);
 }
 
 void TreeBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -56,15 +56,15 @@ void TreeBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML:
   if (quoted) check_closing_quote(mark);
   add(Value::scalar(text, place_at(source_, mark), quoted, is_verbatim(mark, text, quoted)),
       anchor);
-  if (value_count_ > kMostValues) give_up_on_size(mark);
+  if (value_count_ > kMaxValues) give_up_on_size(mark);
 }
 
 void TreeBuilder::open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        bool is_mapping, YAML::EmitterStyle::value style) {
   check_tag(mark, tag);
-  if (open_.size() >= kMostLevels) {
+  if (open_.size() >= kMaxLevels) {
     problems_.error(place_at(source_, mark),
-                    "more than " + std::to_string(kMostLevels) + " levels of nesting");
+                    "more than " + std::to_string(kMaxLevels) + " levels of nesting");
     throw GivenUp{};
   }
   Open opened;
@@ -91,7 +91,7 @@ void TreeBuilder::close() {
 void TreeBuilder::add(Value value, YAML::anchor_t anchor) {
   if (anchor != 0) anchors_[anchor] = value;
   value_count_ =
-      std::min(value_count_ + std::min(value.value_count(), kMostValues + 1), kMostValues + 1);
+      std::min(value_count_ + std::min(value.value_count(), kMaxValues + 1), kMaxValues + 1);
   if (open_.empty()) {
     root_ = std::move(value);
   } else if (!open_.back().is_mapping) {
@@ -185,7 +185,7 @@ void TreeBuilder::check_closing_quote(const YAML::Mark& mark) {
 void TreeBuilder::give_up_on_size(const YAML::Mark& mark) {
   problems_.error(
       place_at(source_, mark),
-      "the file holds more than " + std::to_string(kMostValues) + " values, aliases included");
+      "the file holds more than " + std::to_string(kMaxValues) + " values, aliases included");
   throw GivenUp{};
 }
 

@@ -121,7 +121,7 @@ std::size_t Value::value_count() const noexcept {
 }
 
 std::string Value::described() const {
-  constexpr std::size_t kMostBytes = 40;
+  constexpr std::size_t kMaxBytes = 40;
   switch (kind()) {
     case Kind::kNothing:
       return "nothing";
@@ -132,7 +132,7 @@ std::string Value::described() const {
     case Kind::kScalar:
       break;
   }
-  std::size_t end = std::min(text().size(), kMostBytes);
+  std::size_t end = std::min(text().size(), kMaxBytes);
   while (end < text().size() && (static_cast<unsigned char>(text()[end]) & 0xc0) == 0x80) {
     ++end;  // to the end of a character
   }

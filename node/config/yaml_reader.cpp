@@ -19,7 +19,7 @@ namespace cordis::config {
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 
 /// The fault as a person would say it; unknown ones stay as yaml-cpp has them.
 std::string fault_in_words(const std::string& fault) {
@@ -127,7 +127,7 @@ std::string hint_for_missing_file(const std::filesystem::path& path) {
 }  // namespace
 
 Value load_file(const std::string& path, Problems& problems, const Place& referrer) {
-  const auto [bytes, reason] = read_regular_file(path, kMostBytes);
+  const auto [bytes, reason] = read_regular_file(path, kMaxBytes);
   if (!reason.empty()) {
     std::error_code failure;
     const bool missing = !std::filesystem::exists(path, failure);

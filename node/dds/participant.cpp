@@ -14,7 +14,7 @@ constexpr auto kLookForEndedProcesses = std::chrono::seconds(1);
 
 }  // namespace
 
-Participant::Participant(const Membership& membership) {
+Participant::Participant(const ParticipantConfig& membership) {
   if (membership.domain < 0 || membership.domain > 101) {
     throw std::runtime_error("DDS domain must be 0..101, got " + std::to_string(membership.domain));
   }
@@ -23,7 +23,7 @@ Participant::Participant(const Membership& membership) {
 
 Participant::~Participant() = default;
 
-const Membership& Participant::membership() const noexcept {
+const ParticipantConfig& Participant::membership() const noexcept {
   return impl_->membership();
 }
 
@@ -43,7 +43,7 @@ std::uint64_t Participant::rejoin_count() const noexcept {
   return impl_->rejoin_count();
 }
 
-Participant::Impl::Impl(const Membership& membership)
+Participant::Impl::Impl(const ParticipantConfig& membership)
     : membership_(membership), presence_(make_presence()), watch_([this] { watch(); }) {}
 
 Participant::Impl::~Impl() {

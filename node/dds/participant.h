@@ -10,7 +10,7 @@
 namespace cordis::dds {
 
 /// Where a process takes part, and as what.
-struct Membership {
+struct ParticipantConfig {
   int domain = 0;          ///< DDS domain, 0..101
   std::string session;     ///< partition: processes of other sessions hear nothing of this one
   std::string node;        ///< name of the node, shown by DDS tools
@@ -44,13 +44,13 @@ class Participant {
  public:
   /// @throws std::runtime_error when DDS refuses (domain out of range or full, no loopback
   /// interface, ...).
-  explicit Participant(const Membership& membership);
+  explicit Participant(const ParticipantConfig& membership);
   /// Its readers and writers are gone before.
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  const Membership& membership() const noexcept;
+  const ParticipantConfig& membership() const noexcept;
 
   /// The participants that it knows of: of all sessions of the domain, and of those that have ended
   /// some until they are dropped.

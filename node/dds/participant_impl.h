@@ -32,10 +32,10 @@ class Endpoint {
 struct Participant::Impl {
  public:
   /// @throws std::runtime_error when DDS refuses.
-  explicit Impl(const Membership& membership);
+  explicit Impl(const ParticipantConfig& membership);
   ~Impl();
 
-  const Membership& membership() const noexcept { return membership_; }
+  const ParticipantConfig& membership() const noexcept { return membership_; }
   std::vector<Peer> peers() const;
   std::string mismatch() const;
   std::uint64_t rejoin_count() const noexcept { return rejoin_count_; }
@@ -56,7 +56,7 @@ struct Participant::Impl {
   void watch() noexcept;
   bool rejoin() noexcept;
 
-  const Membership membership_;
+  const ParticipantConfig membership_;
 
   std::mutex watch_mutex_;  // of the next two
   bool somebody_returned_ = false;
@@ -76,8 +76,8 @@ template <class Qos>
 void apply(const TopicQos& row, Qos& qos) {
   qos.reliability().kind =
       row.reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
-  qos.durability().kind = row.kept_for_late_joiners ? fast::TRANSIENT_LOCAL_DURABILITY_QOS
-                                                    : fast::VOLATILE_DURABILITY_QOS;
+  qos.durability().kind =
+      row.transient_local ? fast::TRANSIENT_LOCAL_DURABILITY_QOS : fast::VOLATILE_DURABILITY_QOS;
   qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = row.history_depth;
   if (row.exclusive_for_msec > 0) {

@@ -55,7 +55,7 @@ bool is_free(std::uint16_t port) noexcept {
 }
 
 ParticipantPorts::ParticipantPorts(int domain) {
-  for (int index = 0; index < kMostParticipants; ++index) {
+  for (int index = 0; index < kMaxParticipants; ++index) {
     discovery_ = discovery_port(domain, index);
     claim_ = try_to_hold(discovery_);
     if (claim_ < 0) continue;
@@ -63,9 +63,9 @@ ParticipantPorts::ParticipantPorts(int domain) {
     close(claim_);
   }
   throw std::runtime_error("DDS domain " + std::to_string(domain) + " of this host is full: all " +
-                           std::to_string(kMostParticipants) + " pairs of UDP ports, 127.0.0.1:" +
+                           std::to_string(kMaxParticipants) + " pairs of UDP ports, 127.0.0.1:" +
                            std::to_string(discovery_port(domain, 0)) + " to " +
-                           std::to_string(discovery_port(domain, kMostParticipants - 1) + 1) +
+                           std::to_string(discovery_port(domain, kMaxParticipants - 1) + 1) +
                            ", are taken; end processes of it, or take another one with domain=N");
 }
 

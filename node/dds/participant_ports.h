@@ -8,9 +8,9 @@ namespace cordis::dds {
 
 /// Participants of one domain that a host has room for. Each announces itself to that many ports,
 /// for nothing is multicast.
-inline constexpr int kMostParticipants = 64;
+inline constexpr int kMaxParticipants = 64;
 
-/// The port of a domain on which participant `index`, 0..kMostParticipants - 1, is discovered [DDSI
+/// The port of a domain on which participant `index`, 0..kMaxParticipants - 1, is discovered [DDSI
 /// 9.6.1.1]; the next one takes its samples.
 std::uint16_t discovery_port(int domain, int index) noexcept;
 

@@ -30,7 +30,7 @@ rtps::Locator_t loopback(std::uint16_t port) {
   return locator;
 }
 
-fast::DomainParticipantQos participant_qos(const Membership& membership,
+fast::DomainParticipantQos participant_qos(const ParticipantConfig& membership,
                                            const ParticipantPorts& ports) {
   using eprosima::fastrtps::Duration_t;
   fast::DomainParticipantQos qos;
@@ -52,7 +52,7 @@ fast::DomainParticipantQos participant_qos(const Membership& membership,
   auto& builtin = qos.wire_protocol().builtin;
   builtin.metatrafficUnicastLocatorList.push_back(loopback(ports.discovery()));
   qos.wire_protocol().default_unicast_locator_list.push_back(loopback(ports.samples()));
-  for (int index = 0; index < kMostParticipants; ++index) {
+  for (int index = 0; index < kMaxParticipants; ++index) {
     builtin.initialPeersList.push_back(loopback(discovery_port(membership.domain, index)));
   }
 
@@ -90,7 +90,7 @@ bool has_ended(const Peer& peer) noexcept {
 
 }  // namespace
 
-Presence::Presence(const Membership& membership, std::function<void()> on_return)
+Presence::Presence(const ParticipantConfig& membership, std::function<void()> on_return)
     : membership_(membership), on_return_(std::move(on_return)), ports_(membership.domain) {
   fast::Log::SetVerbosity(fast::Log::Kind::Error);
   // A deadline that a device has missed when it went is no error.

@@ -24,10 +24,10 @@ enum class Topic : std::uint8_t {
 struct TopicQos {
   const char* name;
   bool reliable;
-  bool kept_for_late_joiners;  ///< transient local, else volatile
-  int history_depth;           ///< keep last
-  bool asynchronous;           ///< written by a thread of the middleware: for large frames
-  int heartbeat_msec;          ///< of a reliable writer
+  bool transient_local;  ///< transient local, else volatile
+  int history_depth;     ///< keep last
+  bool asynchronous;     ///< written by a thread of the middleware: for large frames
+  int heartbeat_msec;    ///< of a reliable writer
   /// Of several writers of a key the strongest is heard, until it has been silent for so long;
   /// 0: all are heard.
   int exclusive_for_msec = 0;

@@ -101,7 +101,7 @@ Writer<Message>::~Writer() {
 template <class Message>
 bool Writer<Message>::write(Message& message) noexcept {
   const std::lock_guard lock(impl_->in_use);
-  if (impl_->row.kept_for_late_joiners && !impl_->keep(message)) return false;
+  if (impl_->row.transient_local && !impl_->keep(message)) return false;
   return impl_->send(message);
 }
 

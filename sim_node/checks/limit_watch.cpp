@@ -10,10 +10,10 @@
 namespace cordis::sim {
 namespace {
 
-/// A behaviour that is always in this state.
-engine::Behaviour only(const engine::Behaviour& behaviour, std::size_t state) {
-  engine::Behaviour one;
-  one.states = {behaviour.states[state]};
+/// A state machine that is always in this state.
+engine::StateMachine only(const engine::StateMachine& state_machine, std::size_t state) {
+  engine::StateMachine one;
+  one.states = {state_machine.states[state]};
   one.states[0].first_exit = one.states[0].last_exit = 0;
   return one;
 }
@@ -35,13 +35,13 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
     steady_[i] = number(0.0, graph.medium_viscosity) * weight[i];
   }
-  for (const plan::Joint& joint : graph.joints) {
+  for (const plan::Edge& joint : graph.joints) {
     if (joint.liaison.kind == plan::LiaisonKind::kStateLink) continue;
     const double both = weight[joint.mat_a] + weight[joint.mat_b];
     steady_[joint.mat_a] += number(joint.stiffness, joint.viscosity) * both;
     steady_[joint.mat_b] += number(joint.stiffness, joint.viscosity) * both;
   }
-  for (const plan::Crowd& crowd : graph.crowds) {
+  for (const plan::ContactBound& crowd : graph.crowds) {
     const double most = plan::largest_of_others(crowd, weight);
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       const std::uint32_t mat = crowd.members[m];
@@ -55,10 +55,10 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     const double viscosity = weights.viscosity_of_state_link(index++);
     links_.push_back({link.mat_a, link.mat_b, static_cast<std::uint32_t>(slopes_.size()),
                       weight[link.mat_a] + weight[link.mat_b]});
-    const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
-    for (std::size_t state = 0; state < behaviour.states.size(); ++state) {
-      const plan::Slope slope =
-          plan::largest_slope(only(behaviour, state), link.rest_length, network.dimension, reach);
+    const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
+    for (std::size_t state = 0; state < state_machine.states.size(); ++state) {
+      const plan::Slope slope = plan::largest_slope(only(state_machine, state), link.rest_length,
+                                                    network.dimension, reach);
       slopes_.push_back(number(weights.stiffness * slope.stiffness, viscosity * slope.viscosity));
     }
   }

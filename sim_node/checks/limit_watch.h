@@ -34,7 +34,7 @@ class LimitWatch {
   std::vector<double> steady_;  // per MAT: sum over liaisons without states
   std::vector<double> sum_;     // per MAT, at the last look
   std::vector<StateLink> links_;
-  std::vector<double> slopes_;  // K dt^2 + 2 Z dt of the states of a behaviour, for each link
+  std::vector<double> slopes_;  // K dt^2 + 2 Z dt of the states of a state machine, for each link
   double largest_ = 0.0;
 };
 

@@ -137,7 +137,7 @@ std::vector<PortDemand> demands_of(const scene::Scene& scene) {
   const auto sub_steps = static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
   for (const scene::Port& port : scene.ports) {
     demands.push_back({port.name, port.device, port.device_id, port.place, port.role,
-                       scene.network.mats[port.mat].mass, plan::least_port_load(graph, port.mat),
+                       scene.network.mats[port.mat].mass, plan::min_port_load(graph, port.mat),
                        plan::port_load(graph, port.mat), sub_steps, port.axes, port.needs});
   }
   return demands;

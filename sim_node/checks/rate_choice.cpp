@@ -10,10 +10,10 @@
 
 namespace cordis::sim {
 
-void settle_rate(scene::Scene& scene, config::Problems& problems) {
+void select_rate(scene::Scene& scene, config::Problems& problems) {
   if (!scene.accuracy) return;
   const scene::Accuracy& asked = *scene.accuracy;
-  const plan::Choice choice = plan::choose(
+  const plan::RateSelection choice = plan::choose(
       scene.network, plan::wish_of(scene), scene.gesture_rate_hz,
       scene.integrator_is_open ? plan::integrators_for(scene.network)
                                : std::vector<std::string>{to_string(scene.network.integrator)},

@@ -8,6 +8,6 @@ namespace cordis::sim {
 
 /// Sets the rate of a scene that leaves it to the plan; holds one that has a rate and an `accuracy`
 /// against the plan. Warns where the accuracy is not kept, or cannot be promised.
-void settle_rate(scene::Scene& scene, config::Problems& problems);
+void select_rate(scene::Scene& scene, config::Problems& problems);
 
 }  // namespace cordis::sim

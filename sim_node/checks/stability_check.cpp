@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/step_bound.h"
 #include "sim_node/scene/naming.h"
 
@@ -59,11 +59,11 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
     strongest = number;
     liaison = id;
   };
-  for (const plan::Joint& joint : graph.joints) {
+  for (const plan::Edge& joint : graph.joints) {
     if (joint.mat_a != mat && joint.mat_b != mat) continue;
     add(joint.liaison, joint.stiffness, joint.viscosity, weight[joint.mat_a] + weight[joint.mat_b]);
   }
-  for (const plan::Crowd& crowd : graph.crowds) {
+  for (const plan::ContactBound& crowd : graph.crowds) {
     const double most = plan::largest_of_others(crowd, weight);
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       if (crowd.members[m] != mat) continue;

@@ -17,7 +17,7 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
       lost_after_ticks_(std::max(3, static_cast<int>(std::lround(kLostAfter * rate_hz)))),
       lost_after_nsec_(std::llround(lost_after_ticks_ * 1e9 / rate_hz)),
       rejoin_ticks_(std::max(1, static_cast<int>(std::lround(kRejoin * rate_hz)))),
-      most_jump_(static_cast<std::uint64_t>(std::max(1L, std::lround(kMostJump * rate_hz)))),
+      max_jump_(static_cast<std::uint64_t>(std::max(1L, std::lround(kMaxJump * rate_hz)))),
       rate_hz_(rate_hz),
       silent_ticks_(lost_after_ticks_ + 1) {
   for (const scene::Port& port : ports_) {
@@ -26,9 +26,9 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
 }
 
 void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexcept {
-  heard_run_ = before.heard_run_;
-  heard_sample_ = before.heard_sample_;
-  heard_time_nsec_ = before.heard_time_nsec_;
+  received_run_ = before.received_run_;
+  received_sample_ = before.received_sample_;
+  received_time_nsec_ = before.received_time_nsec_;
   answers_ = before.answers_;
   refused_count_ = before.refused_count_;
   missed_count_ = before.missed_count_;
@@ -59,15 +59,15 @@ double DeviceExchange::force_share() const noexcept {
 /// them, and whether the numbers begin anew.
 template <class Sample>
 bool DeviceExchange::goes_on(const Sample& sample) noexcept {
-  const bool later = sample.sample() > heard_sample_;
+  const bool later = sample.sample() > received_sample_;
   const std::uint64_t jump =
-      later ? sample.sample() - heard_sample_ : heard_sample_ - sample.sample();
-  if (!later && jump <= most_jump_ && ++older_in_a_row_ < lost_after_ticks_) return false;
-  new_run_ = new_run_ || !later || jump > most_jump_;
+      later ? sample.sample() - received_sample_ : received_sample_ - sample.sample();
+  if (!later && jump <= max_jump_ && ++older_in_a_row_ < lost_after_ticks_) return false;
+  new_run_ = new_run_ || !later || jump > max_jump_;
   if (!later || jump == 1) return true;
-  missed_count_ += std::min(jump - 1, most_jump_);
+  missed_count_ += std::min(jump - 1, max_jump_);
   std::int64_t gap_nsec = 0;  // times are as hostile as numbers
-  const bool far = __builtin_sub_overflow(sample.time_nsec(), heard_time_nsec_, &gap_nsec);
+  const bool far = __builtin_sub_overflow(sample.time_nsec(), received_time_nsec_, &gap_nsec);
   after_gap_ = after_gap_ || far || gap_nsec > lost_after_nsec_;
   return true;
 }
@@ -79,8 +79,8 @@ DeviceExchange::Reception DeviceExchange::receive(
   const auto count = static_cast<std::size_t>(sample.axis_count());
   bool usable = sample.run() != 0 && count >= axis_count_ && count <= kMaxAxes;
   for (std::size_t axis = 0; usable && axis < count; ++axis) usable = std::isfinite(values[axis]);
-  const bool same_run = sample.run() == heard_run_;
-  if (usable && same_run && sample.sample() == heard_sample_) return Reception::kRepeated;
+  const bool same_run = sample.run() == received_run_;
+  if (usable && same_run && sample.sample() == received_sample_) return Reception::kRepeated;
   if (!usable || (same_run && !goes_on(sample))) {
     ++refused_count_;
     return Reception::kRefused;
@@ -88,9 +88,9 @@ DeviceExchange::Reception DeviceExchange::receive(
   older_in_a_row_ = 0;
   new_run_ = new_run_ || !same_run;
   borne_ = borne;
-  heard_run_ = sample.run();
-  heard_sample_ = sample.sample();
-  heard_time_nsec_ = sample.time_nsec();
+  received_run_ = sample.run();
+  received_sample_ = sample.sample();
+  received_time_nsec_ = sample.time_nsec();
   for (std::size_t axis = 0; axis < count; ++axis)
     newest_[axis] = std::clamp(values[axis], -most[axis], most[axis]);
   has_new_ = true;
@@ -114,11 +114,11 @@ DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& samp
 /// so, the account of the brake begins anew. @param periods  since the sample before
 void DeviceExchange::take_work(const msg::GestureForces& sample, const DeviceReach& reach,
                                std::uint64_t periods) noexcept {
-  double most_n = 0.0;
-  for (std::size_t axis = 0; axis < axis_count_; ++axis) most_n += reach.force_n[axis];
-  const double most_j = most_n * kFastest * static_cast<double>(periods) / rate_hz_;
+  double max_n = 0.0;
+  for (std::size_t axis = 0; axis < axis_count_; ++axis) max_n += reach.force_n[axis];
+  const double max_j = max_n * kFastest * static_cast<double>(periods) / rate_hz_;
   const double given_j = sample.work_j() - hand_work_;
-  new_work_ = new_work_ || !(std::abs(given_j) <= most_j);  // also what is no number
+  new_work_ = new_work_ || !(std::abs(given_j) <= max_j);  // also what is no number
   felt_answer_ = sample.answered_run() == run_ ? sample.answered_sample() : 0;
   hand_work_ = sample.work_j();
 }
@@ -185,9 +185,9 @@ void DeviceExchange::fill_header(Answer& answer, std::int64_t now_nsec) noexcept
   answer.device_id(device_id_);
   answer.run(run_);
   answer.sample(++answers_);
-  answer.answered_run(heard_run_);
-  answer.answered_sample(heard_sample_);
-  answer.answered_time_nsec(heard_time_nsec_);
+  answer.answered_run(received_run_);
+  answer.answered_sample(received_sample_);
+  answer.answered_time_nsec(received_time_nsec_);
   answer.time_nsec(now_nsec);
   answer.axis_count(axis_count_);
 }
@@ -210,7 +210,7 @@ msg::GestureForces& DeviceExchange::answer_forces(const engine::World& world, bo
 msg::GesturePositions& DeviceExchange::answer_positions(const engine::World& world, bool safe,
                                                         std::int64_t now_nsec) noexcept {
   fill_header(positions_, now_nsec);
-  if (brake_) brake_->note_answer(answers_);
+  if (brake_) brake_->record_answer(answers_);
   if (!safe) return positions_;
   for (const scene::Port& port : ports_) {
     const engine::Vec3 moved = world.position(port.mat) - port.rest;

@@ -10,8 +10,8 @@
 
 #include "idl/gesture.h"
 #include "sim_node/devices/device_reach.h"
-#include "sim_node/engine/world.h"
 #include "sim_node/devices/passivity_controller.h"
+#include "sim_node/engine/world.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
@@ -34,13 +34,13 @@ constexpr std::size_t kMaxAxes = 16;
 ///
 /// Whoever takes part in the session may write a sample, so no number of it is trusted. Positions
 /// and forces stay within the reach of the device. Numbers of samples that jump by more than
-/// kMostJump, or go on for kLostAfter below the highest known one, begin anew:
+/// kMaxJump, or go on for kLostAfter below the highest known one, begin anew:
 /// whatever came before, the samples of the device are taken again, and it takes over gradually.
 class DeviceExchange {
  public:
   static constexpr double kLostAfter = 0.02;  ///< [s]
   static constexpr double kRejoin = 0.1;      ///< [s]
-  static constexpr double kMostJump = 1.0;    ///< of the numbers of samples [s]
+  static constexpr double kMaxJump = 1.0;     ///< of the numbers of samples [s]
   static constexpr double kFastest = 10.0;    ///< of a hand that gives work [m/s]
 
   /// @param rate_hz  ticks per second
@@ -49,7 +49,7 @@ class DeviceExchange {
                  std::vector<scene::Port> ports, double rate_hz, std::uint64_t run);
 
   /// Role liaison: from now on its ports are braked when they make energy.
-  void brake_with(PortBrake brake) { brake_ = std::move(brake); }
+  void brake_with(PassivityController brake) { brake_ = std::move(brake); }
 
   /// Goes on where the exchange of the same device was in the scene before, so that neither side
   /// takes a message twice or for one of another. The device takes over gradually as after a
@@ -92,14 +92,14 @@ class DeviceExchange {
   Role role() const noexcept { return role_; }
   bool has_new_sample() const noexcept { return has_new_; }
   bool is_lost() const noexcept { return silent_ticks_ > lost_after_ticks_; }
-  bool was_heard() const noexcept { return heard_run_ != 0; }
+  bool was_heard() const noexcept { return received_run_ != 0; }
   /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
-  std::int64_t heard_time_nsec() const noexcept { return heard_time_nsec_; }
+  std::int64_t heard_time_nsec() const noexcept { return received_time_nsec_; }
   std::uint64_t refused_count() const noexcept { return refused_count_; }
-  /// Samples of the device never seen; of a jump of their numbers those of kMostJump.
+  /// Samples of the device never seen; of a jump of their numbers those of kMaxJump.
   std::uint64_t missed_count() const noexcept { return missed_count_; }
   /// Ticks in which a port of role liaison was braked.
-  std::uint64_t braked_ticks() const noexcept { return brake_ ? brake_->braked_ticks() : 0; }
+  std::uint64_t passivity_ticks() const noexcept { return brake_ ? brake_->passivity_ticks() : 0; }
 
  private:
   double force_share() const noexcept;
@@ -118,13 +118,13 @@ class DeviceExchange {
   Role role_;
   std::vector<scene::Port> ports_;
   std::uint64_t run_;
-  std::optional<PortBrake> brake_;
+  std::optional<PassivityController> brake_;
 
   // The newest sample, and the numbers of the one that the last answer took into account.
   std::array<double, kMaxAxes> newest_{};
-  std::uint64_t heard_run_ = 0;
-  std::uint64_t heard_sample_ = 0;
-  std::int64_t heard_time_nsec_ = 0;
+  std::uint64_t received_run_ = 0;
+  std::uint64_t received_sample_ = 0;
+  std::int64_t received_time_nsec_ = 0;
   std::uint64_t felt_answer_ = 0;  // role liaison: that the newest sample speaks of
   double hand_work_ = 0.0;         // what the hand had given there [J]
   bool has_new_ = false;
@@ -138,7 +138,7 @@ class DeviceExchange {
   int lost_after_ticks_;
   std::int64_t lost_after_nsec_;
   int rejoin_ticks_;
-  std::uint64_t most_jump_;  // of the numbers of samples
+  std::uint64_t max_jump_;  // of the numbers of samples
   double rate_hz_;
   int older_in_a_row_ = 0;  // samples that came since one was taken
   int silent_ticks_;

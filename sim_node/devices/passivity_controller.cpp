@@ -24,15 +24,16 @@ Matrix3d projection_on(const std::vector<Vec3>& directions) {
 
 /// What a step bears beside the links of the port: with K' + 2 Z' of both ends of every link, and
 /// twice its own, it stays below 4, and no braking turns the motion round.
-double most_damping(const plan::PortLoad& load, double mass, double dt) {
+double max_damping(const plan::PortLoad& load, double mass, double dt) {
   const double share = 2.0 - load.stiffness * dt * dt / mass - 2.0 * load.viscosity * dt / mass;
   return std::clamp(share, 0.0, 1.0) * mass / dt;
 }
 
 }  // namespace
 
-PortBrake::PortBrake(const scene::Scene& scene, const std::vector<scene::Port>& ports,
-                     std::shared_ptr<DelayAccount> account)
+PassivityController::PassivityController(const scene::Scene& scene,
+                                         const std::vector<scene::Port>& ports,
+                                         std::shared_ptr<DelayEnergyObserver> account)
     : account_(std::move(account)),
       dt_(scene.network.step),
       steps_per_tick_(1.0 / (scene.gesture_rate_hz * scene.network.step)),
@@ -43,19 +44,19 @@ PortBrake::PortBrake(const scene::Scene& scene, const std::vector<scene::Port>& 
     braked.mat = port.mat;
     braked.axes = projection_on(port.directions);
     braked.most =
-        most_damping(plan::port_load(graph, port.mat), scene.network.mats[port.mat].mass, dt_);
+        max_damping(plan::port_load(graph, port.mat), scene.network.mats[port.mat].mass, dt_);
     ports_.push_back(braked);
   }
 }
 
-void PortBrake::start() noexcept {
+void PassivityController::start() noexcept {
   ticks_ = 0;
   told_ = false;
   strict_ = 0.0;
 }
 
-Vec3 PortBrake::brake(std::size_t port, const engine::World& world,
-                      const Vec3& hand_force) noexcept {
+Vec3 PassivityController::brake(std::size_t port, const engine::World& world,
+                                const Vec3& hand_force) noexcept {
   Braked& at = ports_[port];
   const Vec3 position = world.position(at.mat);
   if (!std::exchange(at.moves, true)) at.now = at.before = position;
@@ -79,7 +80,7 @@ Vec3 PortBrake::brake(std::size_t port, const engine::World& world,
 
 /// Once a tick: what the work of hands whose force bends between two samples may be less than
 /// their samples say [J].
-double PortBrake::doubt() noexcept {
+double PassivityController::doubt() noexcept {
   double sum = 0.0;
   for (Braked& at : ports_) {
     const double way = (at.now - std::exchange(at.place, at.now)).norm();
@@ -90,12 +91,13 @@ double PortBrake::doubt() noexcept {
   return sum;
 }
 
-void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissipated_j) noexcept {
+void PassivityController::hear(double work_j, std::uint64_t answered_sample,
+                               double dissipated_j) noexcept {
   // After a reset the scene has answers long before those that samples still speak of.
   if (newest_answer_ > kRoom) last_entered_ = std::max(last_entered_, newest_answer_ - kRoom);
   while (last_entered_ < newest_answer_) brought_at_answer_[++last_entered_ % kRoom] = brought_;
   ++ticks_;
-  if (std::exchange(braked_, false)) ++braked_ticks_;
+  if (std::exchange(braked_, false)) ++passivity_ticks_;
   const double moved = std::exchange(moved_, 0.0);
   const double doubt_j = doubt();
   // A device that has not heard for so long is led on gradually when it hears again.
@@ -112,14 +114,15 @@ void PortBrake::hear(double work_j, std::uint64_t answered_sample, double dissip
   made_before_ = made;
 }
 
-void PortBrake::judge(double made_j, double doubt_j, double taken_j, double moved_j) noexcept {
+void PassivityController::judge(double made_j, double doubt_j, double taken_j,
+                                double moved_j) noexcept {
   const bool made_energy = account_->makes_energy();
   account_->enter(made_j, doubt_j, taken_j, moved_j);
   if (!account_->makes_energy()) {
     strict_ = 0.0;
   } else {
     const double more = made_energy ? made_j : account_->excess_j();
-    strict_ = std::max(strict_ + more, -DelayAccount::kTank);
+    strict_ = std::max(strict_ + more, -DelayEnergyObserver::kTank);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim_node/devices/delay_account.h"
+#include "sim_node/devices/delay_energy_observer.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/scene.h"
 
@@ -14,22 +14,22 @@ namespace cordis::sim {
 
 /// Watches the energy M that the age of the forces makes at the ports of a device of role liaison,
 /// and brakes their masses when all devices together make more than the scene takes: see
-/// DelayAccount.
+/// DelayEnergyObserver.
 ///
 /// From then on M alone is held to: while it is above 0 a damper M dt / (sum of dx^2) at the port
 /// masses takes it away, but not beyond what their step bears. Without delay, above 4 m / T^2, no
 /// damper helps.
 ///
 /// It counts from kSettled after the device was heard, since while hands and forces are led to each
-/// other E and W belong to different positions. The dual of EnergyMonitor in device_node.
-class PortBrake {
+/// other E and W belong to different positions. The dual of PassivityObserver in device_node.
+class PassivityController {
  public:
   static constexpr double kSettled = 0.5;  ///< [s]
 
   /// @param ports  of the device, role liaison
   /// @param account  of all devices of the scene
-  PortBrake(const scene::Scene& scene, const std::vector<scene::Port>& ports,
-            std::shared_ptr<DelayAccount> account);
+  PassivityController(const scene::Scene& scene, const std::vector<scene::Port>& ports,
+                      std::shared_ptr<DelayEnergyObserver> account);
 
   static double settled_ticks(const scene::Scene& scene) noexcept {
     return kSettled * scene.gesture_rate_hz;
@@ -38,7 +38,7 @@ class PortBrake {
   void start() noexcept;  ///< the device is heard anew: nothing counts
 
   /// The answer of this number tells the present positions.
-  void note_answer(std::uint64_t sample) noexcept { newest_answer_ = sample; }
+  void record_answer(std::uint64_t sample) noexcept { newest_answer_ = sample; }
 
   /// What brakes a port in the next step [N]. Between two steps, once for every port.
   engine::Vec3 brake(std::size_t port, const engine::World& world,
@@ -48,7 +48,7 @@ class PortBrake {
   /// hand had given where it felt an answer; 0: none yet. @param dissipated_j  by the scene so far
   void hear(double work_j, std::uint64_t answered_sample, double dissipated_j) noexcept;
 
-  std::uint64_t braked_ticks() const noexcept { return braked_ticks_; }
+  std::uint64_t passivity_ticks() const noexcept { return passivity_ticks_; }
 
  private:
   struct Braked {
@@ -71,7 +71,7 @@ class PortBrake {
   void judge(double made_j, double doubt_j, double taken_j, double moved_j) noexcept;
 
   std::vector<Braked> ports_;
-  std::shared_ptr<DelayAccount> account_;
+  std::shared_ptr<DelayEnergyObserver> account_;
   double dt_;
   double steps_per_tick_;
   double settled_ticks_;
@@ -85,7 +85,7 @@ class PortBrake {
   std::uint64_t last_entered_ = 0;  // of the answers in at_answer_
   double made_before_ = 0.0;        // M of the last sample [J]
   double strict_ = 0.0;             // M since the loop makes energy, less what we took [J]
-  std::uint64_t braked_ticks_ = 0;
+  std::uint64_t passivity_ticks_ = 0;
 };
 
 }  // namespace cordis::sim

@@ -53,7 +53,7 @@ bool RefusedDevices::hear(const msg::DeviceDescription& told) {
     return device.device_id == told.device_id() && device.run == told.run();
   };
   if (std::ranges::any_of(known_, is_same)) return false;
-  if (known_.size() >= kMostKnown) known_.pop_front();
+  if (known_.size() >= kMaxKnown) known_.pop_front();
   known_.push_back(
       {told.device_id(), told.run(), told.driver().substr(0, kLongestDriver), limits_of(told)});
   judge();

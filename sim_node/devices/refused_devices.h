@@ -45,7 +45,7 @@ class RefusedDevices {
   void judge();
 
   static constexpr std::size_t kMost = 32;  // refused at once; sessions have a few devices
-  static constexpr std::size_t kMostKnown = 64;
+  static constexpr std::size_t kMaxKnown = 64;
 
   int delay_periods_;
   mutable std::mutex mutex_;

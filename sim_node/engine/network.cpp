@@ -42,8 +42,8 @@ void check_mat(const NetworkDescription& description, const Mat& mat, const std:
           "large enough for the viscosity of the medium");
 }
 
-template <class Joint>
-void check_ends(const NetworkDescription& description, const Joint& link, const std::string& name) {
+template <class Edge>
+void check_ends(const NetworkDescription& description, const Edge& link, const std::string& name) {
   const std::size_t mat_count = description.mats.size();
   require(link.mat_a < mat_count && link.mat_b < mat_count, name + ": both ends",
           "MATs of the network");
@@ -63,10 +63,11 @@ void check_link(const NetworkDescription& description, const Link& link, const s
           "0 when it is isotropic");
 }
 
-void check_states(const NetworkDescription& description, std::uint32_t behaviour,
+void check_states(const NetworkDescription& description, std::uint32_t state_machine,
                   const std::string& name) {
-  require(behaviour < description.behaviours.size(), name + ": behaviour", "one of the network");
-  for (const LinkState& state : description.behaviours[behaviour].states) {
+  require(state_machine < description.state_machines.size(), name + ": state machine",
+          "one of the network");
+  for (const LinkState& state : description.state_machines[state_machine].states) {
     require(std::isfinite(state.viscosity / description.step), name + ": viscosity",
             "small enough for the step");
   }
@@ -75,7 +76,7 @@ void check_states(const NetworkDescription& description, std::uint32_t behaviour
 void check_state_link(const NetworkDescription& description, const StateLink& link,
                       const std::string& name) {
   check_ends(description, link, name);
-  check_states(description, link.behaviour, name);
+  check_states(description, link.state_machine, name);
   require(std::isfinite(link.rest_length), name + ": rest length", "finite");
 }
 
@@ -92,7 +93,7 @@ void check_maxwell_link(const NetworkDescription& description, const MaxwellLink
 
 void check_set(const NetworkDescription& description, const SetLiaison& set,
                const std::string& name) {
-  check_states(description, set.behaviour, name);
+  check_states(description, set.state_machine, name);
   require(!set.set_p.empty(), name + ": set P", "one of at least 1 MAT");
   require(std::isfinite(set.range) && set.range > 0.0, name + ": range", "finite and > 0");
   require(std::isfinite(set.rest_length), name + ": rest length", "finite");
@@ -136,10 +137,11 @@ void check(const NetworkDescription& description) {
   check_each(description, description.mats, "MAT", check_mat);
   check_each(description, description.links, "link", check_link);
   check_balls(description);
-  for (std::size_t b = 0; b < description.behaviours.size(); ++b) {
-    const Behaviour& behaviour = description.behaviours[b];
-    check_behaviour(behaviour, "behaviour " + std::to_string(b) +
-                                   (behaviour.name.empty() ? "" : " '" + behaviour.name + "'"));
+  for (std::size_t b = 0; b < description.state_machines.size(); ++b) {
+    const StateMachine& state_machine = description.state_machines[b];
+    check_state_machine(state_machine,
+                        "state machine " + std::to_string(b) +
+                            (state_machine.name.empty() ? "" : " '" + state_machine.name + "'"));
   }
   check_each(description, description.state_links, "state link", check_state_link);
   check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
@@ -149,7 +151,7 @@ void check(const NetworkDescription& description) {
   for (const std::uint32_t mat : description.kept_awake) {
     require(mat < description.mats.size(), "each MAT that is kept awake", "one of the network");
   }
-  require(is_finite_and_at_least_zero(description.most_mode_hz), "highest frequency of modes",
+  require(is_finite_and_at_least_zero(description.max_mode_hz), "highest frequency of modes",
           "finite and >= 0");
   if (const auto refusal = refusal_of(description)) {
     throw std::invalid_argument(std::string("the integrator ") + to_string(description.integrator) +

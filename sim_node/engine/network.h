@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_node/engine/laws/behaviour.h"
-#include "sim_node/engine/integrators/integrator_kind.h"
 #include "sim_node/engine/core/vec.h"
+#include "sim_node/engine/integrators/integrator_kind.h"
+#include "sim_node/engine/links/state_machine.h"
 
 namespace cordis::engine {
 
@@ -24,7 +24,7 @@ struct Mat {
 };
 
 /// One linear LIA: spring (viscosity 0), damper (stiffness 0) or both in parallel.
-/// [Luc90 III.2.2 Modelisation of the material in its continuous behaviour]
+/// [Luc90 III.2.2 Modelisation of the material in its continuous state machine]
 ///
 /// In 2 and 3 dimensions, with d the distance of the ends: pull = K (d - rest) + Z (d(n) - d(n-1))
 /// / dt along the line of centres (the growth taken as the relative displacement projected on that
@@ -44,13 +44,13 @@ struct Link {
   bool isotropic = false;    ///< then the rest length is 0
 };
 
-/// One LIA with states: between the two MATs, as its behaviour says. Distance, direction and growth
+/// One LIA with states: between the two MATs, as its state machine says. Distance, direction and growth
 /// are those of Link. Any number of LIAs may stand in parallel between the same two MATs.
 struct StateLink {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
-  std::uint32_t behaviour = 0;  ///< index in NetworkDescription::behaviours
-  double rest_length = 0.0;     ///< at step 0 [m]; any finite value
+  std::uint32_t state_machine = 0;  ///< index in NetworkDescription::state machines
+  double rest_length = 0.0;         ///< at step 0 [m]; any finite value
 };
 
 /// One Maxwell element, a spring and a damper in series: one internal force F and no rest length.
@@ -67,13 +67,13 @@ struct MaxwellLink {
 };
 
 /// One liaison between the sets P and Q, or within the set P: between each two of their MATs nearer
-/// than `range`, as its behaviour says. Members of a set are alike: the distance of a pair has no
+/// than `range`, as its state machine says. Members of a set are alike: the distance of a pair has no
 /// sign in 1 dimension either, and there is no force while it is 0. With states, each pair has one
 /// of its own: it begins in that of the start, keeps its state while it is in range, and beyond it
 /// as long as it is bound, that is in another state than that of the start.
 /// [Luc90 III.2.3 a formalism for inter-connection]
 struct SetLiaison {
-  std::uint32_t behaviour = 0;       ///< index in NetworkDescription::behaviours
+  std::uint32_t state_machine = 0;   ///< index in NetworkDescription::state machines
   std::vector<std::uint32_t> set_p;  ///< MATs, each once
   std::vector<std::uint32_t> set_q;  ///< MATs, none of them in P; empty: within P
   double range = 0.0;                ///< distance from which on there is no force [m], > 0
@@ -81,12 +81,12 @@ struct SetLiaison {
 };
 
 /// All that a Network is assembled from. Forces are summed in a fixed order: links; state links, by
-/// behaviour and within one in the order given; Maxwell links; sets.
+/// state machine and within one in the order given; Maxwell links; sets.
 struct NetworkDescription {
   int dimension = 3;  ///< 1, 2 or 3
   double step = 0.0;  ///< dt [s], > 0
-  Integrator integrator = Integrator::kCordis;
-  double most_mode_hz = 0.0;      ///< of `modal`: modes above it count as static; 0: none [Hz]
+  IntegratorKind integrator = IntegratorKind::kCordis;
+  double max_mode_hz = 0.0;       ///< of `modal`: modes above it count as static; 0: none [Hz]
   Vec3 gravity = Vec3::Zero();    ///< [m/s^2]; components beyond the dimension must be 0
   double medium_viscosity = 0.0;  ///< Z of the medium on every mass [N s/m], >= 0
   double freeze_tolerance = 0.0;  ///< masses that rest within it are left out, see Freezing; 0:
@@ -95,7 +95,7 @@ struct NetworkDescription {
   std::vector<Mat> mats;
   std::vector<Link> links;
   std::vector<double> radius;  ///< [m], >= 0, one per MAT, or none at all
-  std::vector<Behaviour> behaviours;
+  std::vector<StateMachine> state_machines;
   std::vector<StateLink> state_links;
   std::vector<MaxwellLink> maxwell_links;
   std::vector<SetLiaison> sets;
@@ -110,7 +110,7 @@ struct NetworkDescription {
 /// [Luc90 IV Assembly]
 class Network {
  public:
-  /// @throws std::invalid_argument naming the first MAT, link, behaviour or set that is out of
+  /// @throws std::invalid_argument naming the first MAT, link, state machine or set that is out of
   /// range or not finite, or that joins a
   ///         MAT to itself or to one that does not exist; when no MAT is given; when a mass is so
   ///         small, or a viscosity so large, that dt^2 / m or Z / dt is not a finite number.

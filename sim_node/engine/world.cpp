@@ -12,7 +12,7 @@ namespace cordis::engine {
 namespace {
 
 /// (x(n) - x(n-1)) / dt [m/s]
-Vec3 velocity_of_period(const WorldState& state, std::uint32_t mat) noexcept {
+Vec3 velocity_at_half_step(const WorldState& state, std::uint32_t mat) noexcept {
   return (state.mats.position(mat) - state.mats.delayed(mat)) / state.network->step();
 }
 
@@ -20,7 +20,7 @@ Vec3 velocity_of_period(const WorldState& state, std::uint32_t mat) noexcept {
 
 World::World(std::shared_ptr<const Network> network, VectorWidth width)
     : state_(std::make_unique<WorldState>(std::move(network), width)) {
-  state_->mover->start(*state_);
+  state_->scheme->start(*state_);
 }
 
 World::~World() = default;
@@ -40,10 +40,10 @@ void World::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
 }
 
 void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
-  const Vec3 before = state_->outside.held_force(mat);
+  const Vec3 before = state_->outside.external_force(mat);
   state_->outside.hold_force(mat, force);
   if (!state_->freezing) return;
-  const Vec3 now = state_->outside.held_force(mat);
+  const Vec3 now = state_->outside.external_force(mat);
   state_->freezing->hold(mat, !now.isZero(0.0));
   if (now != before) state_->freezing->wake(mat);
 }
@@ -62,8 +62,8 @@ void World::force_state(std::uint32_t state_link, std::uint32_t state) noexcept 
   state_->freezing->wake(link.mat_b);
 }
 
-void World::replace_behaviour(std::uint32_t index, const Behaviour& behaviour) {
-  state_->replace_behaviour(index, behaviour);
+void World::replace_state_machine(std::uint32_t index, const StateMachine& state_machine) {
+  state_->replace_state_machine(index, state_machine);
 }
 
 bool World::is_asleep(std::uint32_t mat) const noexcept {
@@ -90,9 +90,9 @@ double World::pull_of(std::uint32_t state_link) const noexcept {
   return state_->state_links.pull(state_link);
 }
 
-std::uint64_t World::change_count(std::uint32_t behaviour, std::uint32_t from,
+std::uint64_t World::change_count(std::uint32_t state_machine, std::uint32_t from,
                                   std::uint32_t to) const noexcept {
-  return state_->log.change_count(behaviour, from, to);
+  return state_->log.change_count(state_machine, from, to);
 }
 
 std::vector<BoundPair> World::bound_pairs(std::size_t set) const {
@@ -113,13 +113,13 @@ std::uint64_t World::step_count() const noexcept {
 }
 
 Vec3 World::position(std::uint32_t mat) const noexcept {
-  state_->mover->show(*state_, mat);
+  state_->scheme->show(*state_, mat);
   return state_->mats.position(mat);
 }
 
 Vec3 World::velocity(std::uint32_t mat) const noexcept {
-  state_->mover->show(*state_, mat);
-  return state_->mover->velocity(*state_, mat);
+  state_->scheme->show(*state_, mat);
+  return state_->scheme->velocity(*state_, mat);
 }
 
 Vec3 World::link_force(std::uint32_t mat) const noexcept {
@@ -127,12 +127,12 @@ Vec3 World::link_force(std::uint32_t mat) const noexcept {
 }
 
 const Columns& World::positions() const noexcept {
-  state_->mover->show_all(*state_);
+  state_->scheme->show_all(*state_);
   return state_->positions;
 }
 
 Energy World::energy() const noexcept {
-  return state_->mover->energy(*state_);
+  return state_->scheme->energy(*state_);
 }
 
 double World::dissipated() const noexcept {
@@ -140,29 +140,29 @@ double World::dissipated() const noexcept {
 }
 
 Vec3 World::momentum() const noexcept {
-  state_->mover->show_all(*state_);
+  state_->scheme->show_all(*state_);
   const NetworkDescription& network = state_->network->description();
   Vec3 sum = Vec3::Zero();
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     if (network.mats[i].kind == MatKind::kMass)
-      sum += network.mats[i].mass * velocity_of_period(*state_, i);
+      sum += network.mats[i].mass * velocity_at_half_step(*state_, i);
   }
   return sum;
 }
 
 Vec3 World::angular_momentum() const noexcept {
-  state_->mover->show_all(*state_);
+  state_->scheme->show_all(*state_);
   const NetworkDescription& network = state_->network->description();
   Vec3 sum = Vec3::Zero();
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     if (network.mats[i].kind != MatKind::kMass) continue;
-    sum += network.mats[i].mass * state_->mats.delayed(i).cross(velocity_of_period(*state_, i));
+    sum += network.mats[i].mass * state_->mats.delayed(i).cross(velocity_at_half_step(*state_, i));
   }
   return sum;
 }
 
 std::uint64_t World::state_hash() const noexcept {
-  state_->mover->show_all(*state_);
+  state_->scheme->show_all(*state_);
   StateHash hash;
   hash.add(state_->step_count);
   for (const Columns& columns : {state_->mats.position(), state_->mats.delayed()}) {
@@ -173,14 +173,14 @@ std::uint64_t World::state_hash() const noexcept {
   state_->state_links.add_to(hash);
   state_->maxwell_links.add_to(hash);
   state_->sets.add_to(hash);
-  state_->mover->add_to(hash);
+  state_->scheme->add_to(hash);
   if (state_->freezing) state_->freezing->add_to(hash);
   return hash.value();
 }
 
 Snapshot World::snapshot() const {
   Snapshot snapshot{state_->network->fingerprint(), state_->step_count, {}, {}};
-  if (state_->replaced) snapshot.behaviours = state_->table.behaviours();
+  if (state_->replaced) snapshot.state_machines = state_->table.state_machines();
   state_->append_state(snapshot.state);
   return snapshot;
 }
@@ -189,9 +189,9 @@ void World::restore(const Snapshot& snapshot) {
   state_->restore(snapshot);
 }
 
-std::size_t World::most_values_of_state() const noexcept {
-  return state_->state_size_before_sets() + state_->sets.most_values() +
-         state_->outside.most_values();
+std::size_t World::max_values_of_state() const noexcept {
+  return state_->state_size_before_sets() + state_->sets.max_values() +
+         state_->outside.max_values();
 }
 
 bool World::take_over(const World& before, std::vector<double>& room) noexcept {
@@ -219,7 +219,7 @@ bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   rest.switching = energy().total() - energy_before.total() - change.switching;
   rest.elastic = -rest.switching;
   state_->account.add(rest);
-  state_->mover->adopt(*state_);
+  state_->scheme->adopt(*state_);
   if (state_->freezing) state_->freezing->wake_all();
   return true;
 }

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "sim_node/engine/matter/energy.h"
-#include "sim_node/engine/links/link_event.h"
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/core/vector_width.h"
+#include "sim_node/engine/links/link_event.h"
+#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 
@@ -20,7 +20,7 @@ struct StepReport {
   std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
   std::uint32_t refused_inputs =
       0;  ///< positions and forces from outside that were not finite, since the last step
-  std::uint32_t crowded_sets =
+  std::uint32_t overflowed_sets =
       0;  ///< sets with more pairs in range than there was room for: correct, but slow
   std::uint32_t lost_events = 0;  ///< changes of state that found no room in events()
 };
@@ -29,7 +29,7 @@ struct StepReport {
 struct BoundPair {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
-  std::uint32_t state = 0;   ///< of the behaviour of the set
+  std::uint32_t state = 0;   ///< of the state machine of the set
   double rest_length = 0.0;  ///< [m]
 };
 
@@ -39,8 +39,9 @@ using VisitBoundPair = void (*)(void* owner, const BoundPair& pair);
 struct Snapshot {
   std::uint64_t network = 0;  ///< Network::fingerprint()
   std::uint64_t step = 0;
-  std::vector<double> state;          ///< opaque
-  std::vector<Behaviour> behaviours;  ///< all of them, if one has been replaced; otherwise none
+  std::vector<double> state;  ///< opaque
+  std::vector<StateMachine>
+      state_machines;  ///< all of them, if one has been replaced; otherwise none
 };
 
 /// A network in motion.
@@ -75,12 +76,12 @@ class World {
   /// rest length kept. Precondition: the link and the state exist. Real time: O(1).
   void force_state(std::uint32_t state_link, std::uint32_t state) noexcept;
 
-  /// Gives the liaisons of a behaviour other parameters between two steps; each link stays in its
+  /// Gives the liaisons of a state machine other parameters between two steps; each link stays in its
   /// state. What their energy changes by counts as switching. If only the new one asks for the
   /// impulse, that counts from here on. Not in real time: allocates.
-  /// @throws std::invalid_argument when the network has no such behaviour, when the new one is not
+  /// @throws std::invalid_argument when the network has no such state machine, when the new one is not
   ///         well-formed, or has not the same number of states.
-  void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
+  void replace_state_machine(std::uint32_t index, const StateMachine& state_machine);
 
   /// One step. Real time: O(MATs + links), no allocation, never throws.
   StepReport step() noexcept;
@@ -107,8 +108,8 @@ class World {
   double rest_length_of(std::uint32_t state_link) const noexcept;  ///< [m]
   /// Pull of the link in the last step [N], positive pulls the ends together; 0 before the first.
   double pull_of(std::uint32_t state_link) const noexcept;
-  /// How often links of a behaviour went from one state to another since step 0, over all of them.
-  std::uint64_t change_count(std::uint32_t behaviour, std::uint32_t from,
+  /// How often links of a state machine went from one state to another since step 0, over all of them.
+  std::uint64_t change_count(std::uint32_t state_machine, std::uint32_t from,
                              std::uint32_t to) const noexcept;
 
   /// The bound pairs of a set after the last step, in the order of its sums. Not in real time:
@@ -124,7 +125,7 @@ class World {
   /// @return false when the networks do not fit; then this world is as it was.
   bool take_over(const World& before, std::vector<double>& room) noexcept;
   /// How many values the state of a world may have.
-  std::size_t most_values_of_state() const noexcept;
+  std::size_t max_values_of_state() const noexcept;
 
   Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
   /// Energy::dissipated but for what the forces of the last step have still to take [J]. Real time:

@@ -23,9 +23,9 @@ double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mat
 double limit_of_one_contact(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   const LimitWeights weights = limit_weights(network, Limit::kDiverging);
   double limit = std::numeric_limits<double>::infinity();
-  for (const Crowd& crowd : graph.crowds) {
+  for (const ContactBound& crowd : graph.crowds) {
     const double inverse_mass = lightest(graph, crowd.members) + lightest(graph, crowd.others);
-    for (const auto& state : network.behaviours[network.sets[crowd.set].behaviour].states) {
+    for (const auto& state : network.state_machines[network.sets[crowd.set].state_machine].states) {
       limit = std::min(limit, limit_step(weights.stiffness * state.stiffness * inverse_mass,
                                          weights.viscosity * state.viscosity * inverse_mass));
     }
@@ -53,7 +53,7 @@ ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGra
   const engine::ModalBlock block(network);
   ModalLoad load;
   if (!graph.crowds.empty()) load.together = std::numeric_limits<double>::infinity();
-  for (const Joint& joint : graph.joints) {
+  for (const Edge& joint : graph.joints) {
     const bool to_port = network.mats[joint.mat_a].kind == engine::MatKind::kPort ||
                          network.mats[joint.mat_b].kind == engine::MatKind::kPort;
     if (joint.liaison.kind == LiaisonKind::kLink && !to_port) continue;
@@ -84,18 +84,18 @@ Stability stability_of_modes(const engine::NetworkDescription& network, const Li
   return stability;
 }
 
-/// Whether a liaison of this behaviour is there at some times and not at others.
-bool switches(const engine::Behaviour& behaviour) {
-  for (const engine::LinkState& state : behaviour.states) {
+/// Whether a liaison of this state machine is there at some times and not at others.
+bool switches(const engine::StateMachine& state_machine) {
+  for (const engine::LinkState& state : state_machine.states) {
     if (!state.pulls || !state.pushes) return true;
   }
-  return behaviour.states.size() > 1;
+  return state_machine.states.size() > 1;
 }
 
 bool comes_and_goes(const engine::NetworkDescription& network, LiaisonId liaison) {
   switch (liaison.kind) {
     case LiaisonKind::kStateLink:
-      return switches(network.behaviours[network.state_links[liaison.index].behaviour]);
+      return switches(network.state_machines[network.state_links[liaison.index].state_machine]);
     case LiaisonKind::kSet:
       return true;
     case LiaisonKind::kLink:
@@ -113,7 +113,8 @@ double Stability::margin() const noexcept {
 }
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
-  if (network.integrator == engine::Integrator::kModal) return stability_of_modes(network, graph);
+  if (network.integrator == engine::IntegratorKind::kModal)
+    return stability_of_modes(network, graph);
   Stability stability;
   stability.certified = certified_bound(network, graph);
   stability.diverging_step = diverging_step_of(network, graph);
@@ -130,11 +131,11 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   const double w = 2.0 * std::numbers::pi * frequency_hz;
   double ratio = 0.0;
   LiaisonGraph dampers = graph;
-  for (Joint& joint : dampers.joints) {
+  for (Edge& joint : dampers.joints) {
     if (joint.viscosity > 0.0) ratio = std::max(ratio, joint.viscosity / joint.stiffness);
     joint.stiffness = 0.0;
   }
-  for (Crowd& crowd : dampers.crowds) {
+  for (ContactBound& crowd : dampers.crowds) {
     if (crowd.viscosity > 0.0) ratio = std::max(ratio, crowd.viscosity / crowd.stiffness);
     crowd.stiffness = 0.0;
   }
@@ -157,12 +158,12 @@ std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& ne
                                          : std::numeric_limits<double>::infinity();
     worst = {liaison, normalised, gain};
   };
-  for (const Joint& joint : graph.joints) {
+  for (const Edge& joint : graph.joints) {
     if (!comes_and_goes(network, joint.liaison)) continue;
     consider(joint.liaison, joint.stiffness,
              graph.inverse_mass[joint.mat_a] + graph.inverse_mass[joint.mat_b]);
   }
-  for (const Crowd& crowd : graph.crowds) {
+  for (const ContactBound& crowd : graph.crowds) {
     consider({LiaisonKind::kSet, crowd.set}, crowd.stiffness,
              lightest(graph, crowd.members) + lightest(graph, crowd.others));
   }

@@ -17,7 +17,7 @@ constexpr double kPartOfTheCertifiedStep = 0.9;
 /// The largest step at which a vibration is within the tolerance, by its exact roots; infinite for
 /// what creeps, which has no pitch.
 template <class Error>
-double largest_step(const BandEdge& edge, engine::Integrator integrator, double tolerance,
+double largest_step(const BandEdge& edge, engine::IntegratorKind integrator, double tolerance,
                     Error error) {
   const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
   if (0.5 * edge.viscosity >= w) return std::numeric_limits<double>::infinity();
@@ -34,14 +34,14 @@ double largest_step(const BandEdge& edge, engine::Integrator integrator, double 
 
 /// A pitch that is off by e puts a vibration off by the phase e w t, and its positions over the
 /// amplitude by as much; 1 / sqrt(3) of that in the mean square up to t.
-double pitch_tolerance(const BandEdge& edge, const AccuracyWish& wish) {
+double pitch_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
   if (wish.over_s == 0.0) return wish.tolerance;
   const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
   return std::sqrt(3.0) * wish.tolerance / (w * wish.over_s);
 }
 
 /// A rate of decay s that is off by e puts e^(-s t) off by e s t e^(-s t), at most e / 2.718.
-double decay_tolerance(const BandEdge& edge, const AccuracyWish& wish) {
+double decay_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
   if (wish.over_s == 0.0) return wish.tolerance;
   const double lost = std::min(1.0, 0.5 * edge.viscosity * wish.over_s);
   return lost > 0.0 ? wish.tolerance / (lost * std::exp(-lost))
@@ -50,7 +50,7 @@ double decay_tolerance(const BandEdge& edge, const AccuracyWish& wish) {
 
 }  // namespace
 
-RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyWish& wish,
+RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyTarget& wish,
                        double gesture_rate_hz) {
   engine::NetworkDescription per_gesture = network;
   per_gesture.step = 1.0 / gesture_rate_hz;
@@ -70,7 +70,7 @@ RateChoice choose_rate(const engine::NetworkDescription& network, const Accuracy
     consider(per_gesture.step * std::sqrt(most / contact->stiffness), RateReason::kContact);
   }
   const BandEdge edge = band_edge_of(per_gesture, graph, wish.band_hz);
-  const engine::Integrator integrator = network.integrator;
+  const engine::IntegratorKind integrator = network.integrator;
   consider(largest_step(edge, integrator, pitch_tolerance(edge, wish),
                         [](const OscillatorError& e) { return e.pitch; }),
            RateReason::kPitch);

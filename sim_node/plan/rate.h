@@ -8,7 +8,7 @@
 namespace cordis::plan {
 
 /// What a scene asks for instead of a rate.
-struct AccuracyWish {
+struct AccuracyTarget {
   double tolerance = 0.01;      ///< largest relative error of the pitch and of the rate of decay
   double band_hz = 100.0;       ///< of vibrations up to this frequency
   double contact_energy = 0.1;  ///< largest part of its energy that a collision may gain or lose
@@ -31,7 +31,7 @@ struct RateChoice {
 };
 
 /// For the integrator of the network; its step does not matter. O(liaisons).
-RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyWish& wish,
+RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyTarget& wish,
                        double gesture_rate_hz);
 
 /// For a person: "the pitch at the end of the band".

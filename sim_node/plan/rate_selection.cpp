@@ -9,18 +9,18 @@
 namespace cordis::plan {
 namespace {
 
-Choice choose_for(engine::NetworkDescription network, const AccuracyWish& wish,
-                  double gesture_rate_hz, const std::string& integrator, bool has_ports) {
+RateSelection choose_for(engine::NetworkDescription network, const AccuracyTarget& wish,
+                         double gesture_rate_hz, const std::string& integrator, bool has_ports) {
   network.integrator = engine::integrator_named(integrator);
   const RateChoice formula = choose_rate(network, wish, gesture_rate_hz);
-  Choice choice{integrator, formula.rate_hz, formula.needed_hz, to_string(formula.reason), -1.0,
-                {}};
+  RateSelection choice{
+      integrator, formula.rate_hz, formula.needed_hz, to_string(formula.reason), -1.0, {}};
   if (wish.over_s == 0.0) return choice;
   if (has_ports) {
     choice.doubt = "positions are promised for free vibrations alone: its ports are played";
     return choice;
   }
-  AccuracyWish only_limits = wish;
+  AccuracyTarget only_limits = wish;
   only_limits.tolerance = 1e9;
   const RateChoice floor = choose_rate(network, only_limits, gesture_rate_hz);
   const RateTrial trial =
@@ -40,18 +40,19 @@ Choice choose_for(engine::NetworkDescription network, const AccuracyWish& wish,
 
 double cost_of_a_step(const std::string& integrator) {
   constexpr double kFactorisation = 50.0;
-  const bool factorises = integrator == to_string(engine::Integrator::kImplicit);
+  const bool factorises = integrator == to_string(engine::IntegratorKind::kImplicit);
   return factorises ? kFactorisation : evaluations_per_step(integrator);
 }
 
-Choice choose(const engine::NetworkDescription& network, const AccuracyWish& wish,
-              double gesture_rate_hz, const std::vector<std::string>& integrators, bool has_ports) {
-  std::optional<Choice> best;
-  const auto cost = [](const Choice& choice) {
+RateSelection choose(const engine::NetworkDescription& network, const AccuracyTarget& wish,
+                     double gesture_rate_hz, const std::vector<std::string>& integrators,
+                     bool has_ports) {
+  std::optional<RateSelection> best;
+  const auto cost = [](const RateSelection& choice) {
     return choice.rate_hz * cost_of_a_step(choice.integrator);
   };
   for (const std::string& integrator : integrators) {
-    const Choice next = choose_for(network, wish, gesture_rate_hz, integrator, has_ports);
+    const RateSelection next = choose_for(network, wish, gesture_rate_hz, integrator, has_ports);
     const bool keeps_more = best && next.doubt.empty() && !best->doubt.empty();
     const bool keeps_less = best && !next.doubt.empty() && best->doubt.empty();
     if (!best || keeps_more || (!keeps_less && cost(next) < cost(*best))) best = next;

@@ -9,7 +9,7 @@
 
 namespace cordis::plan {
 
-struct Choice {
+struct RateSelection {
   std::string integrator;
   double rate_hz = 0.0;    ///< a multiple of the gesture rate
   double needed_hz = 0.0;  ///< the least that serves
@@ -26,7 +26,8 @@ double cost_of_a_step(const std::string& integrator);
 /// a network that moves by itself is tried out (find_rate), within the limits of stability and of
 /// contacts. One whose ports are played is not: nobody knows the gesture beforehand.
 /// @param integrators  by name, at least one
-Choice choose(const engine::NetworkDescription& network, const AccuracyWish& wish,
-              double gesture_rate_hz, const std::vector<std::string>& integrators, bool has_ports);
+RateSelection choose(const engine::NetworkDescription& network, const AccuracyTarget& wish,
+                     double gesture_rate_hz, const std::vector<std::string>& integrators,
+                     bool has_ports);
 
 }  // namespace cordis::plan

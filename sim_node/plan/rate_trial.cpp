@@ -14,8 +14,8 @@ namespace cordis::plan {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMostWork = 1e8;  // links, contacts and MATs, each once a step
-constexpr int kMostDoublings = 12;
+constexpr double kMaxWork = 1e8;  // links, contacts and MATs, each once a step
+constexpr int kMaxDoublings = 12;
 constexpr double kFalls = 0.9;    // from one rate to twice that, where errors fall at all
 constexpr double kMargin = 0.85;  // of the tolerance, where a rate is interpolated
 
@@ -39,11 +39,11 @@ double work_of_a_step(const engine::NetworkDescription& network, const std::stri
 class Films {
  public:
   Films(const engine::NetworkDescription& network, const std::string& integrator,
-        const RateTrialWish& wish)
+        const RateTrialOptions& wish)
       : network_(network), integrator_(integrator) {
-    constexpr double kMostSamples = 100.0;
+    constexpr double kMaxSamples = 100.0;
     const double periods = std::max(1.0, std::round(wish.over_s * wish.unit_hz));
-    const double stride = std::ceil(periods / kMostSamples);
+    const double stride = std::ceil(periods / kMaxSamples);
     period_ = stride / wish.unit_hz;
     samples_ = static_cast<int>(std::ceil(periods / stride));
     for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
@@ -53,7 +53,7 @@ class Films {
 
   bool can_afford(double rate) const {
     if (films_.contains(rate)) return true;
-    return spent_ + rate * period_ * samples_ * work_of_a_step(network_, integrator_) < kMostWork;
+    return spent_ + rate * period_ * samples_ * work_of_a_step(network_, integrator_) < kMaxWork;
   }
 
   /// Of the first from the second, over the amplitude of the second.
@@ -104,7 +104,7 @@ class Films {
 
   const engine::NetworkDescription& network_;
   const std::string& integrator_;
-  Course nothing_;
+  InputTrajectory nothing_;
   double period_ = 0.0;
   int samples_ = 0;
   std::vector<std::uint32_t> masses_;
@@ -115,13 +115,13 @@ class Films {
 }  // namespace
 
 RateTrial find_rate(const engine::NetworkDescription& network, const std::string& integrator,
-                    const RateTrialWish& wish) {
+                    const RateTrialOptions& wish) {
   constexpr double kOfFirstOrder = 4.0 / 3.0;  // e(h) - e(h/4) is 3/4 of e(h), or more
   RateTrial trial;
   Films films(network, integrator, wish);
   double rate = wish.lowest_hz;
   double before = kInfinity;
-  for (int doubling = 0; doubling < kMostDoublings; ++doubling, rate *= 2.0) {
+  for (int doubling = 0; doubling < kMaxDoublings; ++doubling, rate *= 2.0) {
     if (!films.can_afford(rate) || !films.can_afford(4.0 * rate)) {
       trial.refusal = "it takes too long to try it out";
       return trial;

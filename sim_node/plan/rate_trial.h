@@ -7,7 +7,7 @@
 
 namespace cordis::plan {
 
-struct RateTrialWish {
+struct RateTrialOptions {
   double tolerance = 0.01;  ///< root of the mean square of position errors, over that of the motion
   double over_s = 1.0;      ///< for so long from the start
   double lowest_hz = 0.0;   ///< not below; a multiple of the next
@@ -25,6 +25,6 @@ struct RateTrial {
 /// show. Gives up where the errors do not fall (the motion is chaotic) and after a fixed amount of
 /// work: a second at most, on a machine as they are. The same choice on every machine.
 RateTrial find_rate(const engine::NetworkDescription& network, const std::string& integrator,
-                    const RateTrialWish& wish);
+                    const RateTrialOptions& wish);
 
 }  // namespace cordis::plan

@@ -5,18 +5,18 @@
 
 namespace cordis::sim {
 
-ChangeCounter::ChangeCounter(const std::vector<engine::Behaviour>& behaviours) {
-  for (std::size_t b = 0; b < behaviours.size(); ++b) {
-    if (behaviours[b].exits.empty()) continue;
-    auto found = std::ranges::find(names_, behaviours[b].name);
-    if (found == names_.end() && names_.size() == kMostLiaisons) {
+ChangeCounter::ChangeCounter(const std::vector<engine::StateMachine>& state_machines) {
+  for (std::size_t b = 0; b < state_machines.size(); ++b) {
+    if (state_machines[b].exits.empty()) continue;
+    auto found = std::ranges::find(names_, state_machines[b].name);
+    if (found == names_.end() && names_.size() == kMaxLiaisons) {
       names_.back() = "others";
       found = names_.end() - 1;
     } else if (found == names_.end()) {
-      found = names_.insert(names_.end(), behaviours[b].name);
+      found = names_.insert(names_.end(), state_machines[b].name);
     }
     counted_.push_back({static_cast<std::uint32_t>(b),
-                        static_cast<std::uint32_t>(behaviours[b].states.size()),
+                        static_cast<std::uint32_t>(state_machines[b].states.size()),
                         static_cast<std::size_t>(found - names_.begin())});
   }
 }
@@ -26,7 +26,7 @@ ChangeCounter::Counts ChangeCounter::count(const engine::World& world) const noe
   for (const Counted& counted : counted_) {
     for (std::uint32_t from = 0; from < counted.state_count; ++from) {
       for (std::uint32_t to = 0; to < counted.state_count; ++to)
-        counts[counted.place] += world.change_count(counted.behaviour, from, to);
+        counts[counted.place] += world.change_count(counted.state_machine, from, to);
     }
   }
   return counts;

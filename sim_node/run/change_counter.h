@@ -10,24 +10,24 @@
 
 namespace cordis::sim {
 
-/// Sums the changes of state of a world by liaison: behaviours of the same name, which differ in
-/// their parameters, count together. Past kMostLiaisons the others count together as the last one.
+/// Sums the changes of state of a world by liaison: state machines of the same name, which differ in
+/// their parameters, count together. Past kMaxLiaisons the others count together as the last one.
 class ChangeCounter {
  public:
-  static constexpr std::size_t kMostLiaisons = 64;
-  using Counts = std::array<std::uint64_t, kMostLiaisons>;
+  static constexpr std::size_t kMaxLiaisons = 64;
+  using Counts = std::array<std::uint64_t, kMaxLiaisons>;
 
-  explicit ChangeCounter(const std::vector<engine::Behaviour>& behaviours);
+  explicit ChangeCounter(const std::vector<engine::StateMachine>& state_machines);
 
   /// Names of the liaisons with states, in the order of the counts.
   const std::vector<std::string>& names() const noexcept { return names_; }
 
-  /// Since the scene began; those past names() are 0. Real time: O(behaviours), no allocation.
+  /// Since the scene began; those past names() are 0. Real time: O(state machines), no allocation.
   Counts count(const engine::World& world) const noexcept;
 
  private:
   struct Counted {
-    std::uint32_t behaviour;
+    std::uint32_t state_machine;
     std::uint32_t state_count;
     std::size_t place;  // in the counts
   };

@@ -38,7 +38,7 @@ Verb verb_named(const std::string& name) {
 std::uint64_t read_steps(const config::Value& argument, config::Problems& problems) {
   if (argument.kind() == config::Value::Kind::kNothing) return 1;
   const long steps =
-      config::read_integer(argument, "the number of steps", 1, 1, kMostSingleSteps, problems);
+      config::read_integer(argument, "the number of steps", 1, 1, kMaxSingleSteps, problems);
   return static_cast<std::uint64_t>(steps);
 }
 

@@ -25,7 +25,7 @@ struct Command {
   std::string state;             ///< of kState
 };
 
-inline constexpr long kMostSingleSteps = 1'000'000'000;
+inline constexpr long kMaxSingleSteps = 1'000'000'000;
 
 /// @param verb      a word of node::control_verbs()
 /// @param argument  YAML

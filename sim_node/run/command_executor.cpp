@@ -7,15 +7,15 @@
 
 #include "node/config/count_text.h"
 #include "node/config/mapping_reader.h"
-#include "sim_node/run/link_states.h"
 #include "sim_node/plan/reduction/reduce.h"
+#include "sim_node/run/link_states.h"
 
 namespace cordis::sim {
 namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(1);  // for the end of single steps
 
-std::string at_step(const Order& order) {
+std::string at_step(const Request& order) {
   return " at step " + std::to_string(order.step);
 }
 
@@ -43,8 +43,8 @@ std::string refusal_of(const std::string& path, const config::Problems& problems
 
 }  // namespace
 
-Director::Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, std::uint64_t run,
-                   Load load, Check check, Tell tell)
+CommandExecutor::CommandExecutor(RequestMailbox& orders, std::shared_ptr<const scene::Scene> scene,
+                                 std::uint64_t run, Load load, Check check, Tell tell)
     : orders_(orders),
       scene_(std::move(scene)),
       parameters_(whole_of(scene_)),
@@ -53,20 +53,20 @@ Director::Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, 
       check_(std::move(check)),
       tell_(std::move(tell)) {}
 
-node::Answer Director::obey(const msg::ControlCommand& message) {
+node::Answer CommandExecutor::obey(const msg::ControlCommand& message) {
   Command command;
   try {
     command = read_command(message.verb(), message.argument());
   } catch (const std::invalid_argument& refusal) {
     return {false, refusal.what()};
   }
-  Order order;
+  Request order;
   switch (command.verb) {
     case Verb::kPause:
-      order.kind = Order::Kind::kPause;
+      order.kind = Request::Kind::kPause;
       return give(order, "paused");
     case Verb::kResume:
-      order.kind = Order::Kind::kResume;
+      order.kind = Request::Kind::kResume;
       return give(order, "goes on");
     case Verb::kStep:
       return step(command.steps);
@@ -82,18 +82,18 @@ node::Answer Director::obey(const msg::ControlCommand& message) {
   return {};
 }
 
-node::Answer Director::give(Order& order, const std::string& done) {
+node::Answer CommandExecutor::give(Request& order, const std::string& done) {
   if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
-  if (order.kind == Order::Kind::kPause && order.was_paused)
+  if (order.kind == Request::Kind::kPause && order.was_paused)
     return {true, "was paused already" + at_step(order)};
-  if (order.kind == Order::Kind::kResume && !order.was_paused)
+  if (order.kind == Request::Kind::kResume && !order.was_paused)
     return {true, "was running already" + at_step(order)};
   return {true, done + at_step(order)};
 }
 
-node::Answer Director::step(std::uint64_t count) {
-  Order order;
-  order.kind = Order::Kind::kStep;
+node::Answer CommandExecutor::step(std::uint64_t count) {
+  Request order;
+  order.kind = Request::Kind::kStep;
   order.steps = count;
   if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
   const auto limit = std::chrono::steady_clock::now() + kPatience;
@@ -105,10 +105,11 @@ node::Answer Director::step(std::uint64_t count) {
   return {true, "paused at step " + std::to_string(order.step + count - orders_.steps_left())};
 }
 
-node::Answer Director::restart(std::shared_ptr<const scene::Scene> scene, const std::string& done) {
-  Order order;
-  order.kind = Order::Kind::kRestart;
-  order.stage = std::make_unique<Stage>(scene, run_, version_ + 1);
+node::Answer CommandExecutor::restart(std::shared_ptr<const scene::Scene> scene,
+                                      const std::string& done) {
+  Request order;
+  order.kind = Request::Kind::kRestart;
+  order.stage = std::make_unique<LoadedScene>(scene, run_, version_ + 1);
   if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
   scene_ = std::move(scene);
   tell_(*scene_, ++version_);
@@ -116,7 +117,7 @@ node::Answer Director::restart(std::shared_ptr<const scene::Scene> scene, const 
   return {true, done + paused + "; the scene before ended" + at_step(order)};
 }
 
-node::Answer Director::load(const std::string& path) {
+node::Answer CommandExecutor::load(const std::string& path) {
   config::Problems problems;
   auto scene = std::make_shared<scene::Scene>(load_(path, problems));
   if (problems.has_errors()) return {false, refusal_of(path, problems)};
@@ -127,7 +128,7 @@ node::Answer Director::load(const std::string& path) {
   return answer;
 }
 
-node::Answer Director::set(const std::vector<NewValue>& values) {
+node::Answer CommandExecutor::set(const std::vector<NewValue>& values) {
   scene::Parameters parameters = parameters_;
   auto scene = std::make_shared<scene::Scene>(*whole_of(scene_));
   std::string done;
@@ -148,14 +149,14 @@ node::Answer Director::set(const std::vector<NewValue>& values) {
   check_(*scene, problems);
   if (problems.has_errors())
     return {false, "the values stay as they are\n" + text_without_lines(problems)};
-  Order order;
-  order.kind = Order::Kind::kExchange;
+  Request order;
+  order.kind = Request::Kind::kExchange;
   try {
-    order.stage = std::make_unique<Stage>(scene, run_, version_);
+    order.stage = std::make_unique<LoadedScene>(scene, run_, version_);
   } catch (const std::invalid_argument& refusal) {
     return {false, std::string("this cannot be simulated: ") + refusal.what()};
   }
-  order.room.reserve(order.stage->simulation.world().most_values_of_state());
+  order.room.reserve(order.stage->simulation.world().max_values_of_state());
   node::Answer answer = give(order, done);
   if (!order.done) return {false, "this changes more than parameters; load the scene anew"};
   if (!answer.accepted) return answer;
@@ -165,9 +166,9 @@ node::Answer Director::set(const std::vector<NewValue>& values) {
   return answer;
 }
 
-node::Answer Director::force(const std::string& links, const std::string& state) {
-  Order order;
-  order.kind = Order::Kind::kForceStates;
+node::Answer CommandExecutor::force(const std::string& links, const std::string& state) {
+  Request order;
+  order.kind = Request::Kind::kForceStates;
   try {
     order.forced = find_states(*scene_, links, state);
   } catch (const std::invalid_argument& refusal) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "node/command_desk.h"
+#include "node/command_server.h"
 #include "sim_node/run/command.h"
 #include "sim_node/run/request.h"
 #include "sim_node/scene/parameters.h"
@@ -18,7 +18,7 @@ namespace cordis::sim {
 
 /// The side of live change that may take its time: reads scenes, makes stages, and frees what the
 /// loop has done with. Lives in the thread of the commands.
-class Director {
+class CommandExecutor {
  public:
   static constexpr std::chrono::milliseconds kPatience{1000};
 
@@ -31,8 +31,8 @@ class Director {
 
   /// @param scene  the one that is played at first, version 1
   /// @param run    of this sim_node
-  Director(OrderBox& orders, std::shared_ptr<const scene::Scene> scene, std::uint64_t run,
-           Load load, Check check, Tell tell);
+  CommandExecutor(RequestMailbox& orders, std::shared_ptr<const scene::Scene> scene,
+                  std::uint64_t run, Load load, Check check, Tell tell);
 
   /// Returns when the loop has done what was wanted; of single steps that take longer than
   /// kPatience, when they have begun.
@@ -47,9 +47,9 @@ class Director {
   node::Answer load(const std::string& path);
   node::Answer set(const std::vector<NewValue>& values);
   node::Answer force(const std::string& links, const std::string& state);
-  node::Answer give(Order& order, const std::string& done);
+  node::Answer give(Request& order, const std::string& done);
 
-  OrderBox& orders_;
+  RequestMailbox& orders_;
   std::shared_ptr<const scene::Scene> scene_;  // with the parameters as they have been set
   scene::Parameters parameters_;
   std::uint64_t run_;

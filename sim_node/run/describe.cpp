@@ -7,7 +7,7 @@
 namespace cordis::sim {
 namespace {
 
-constexpr std::uint32_t kNoBehaviour = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoStateMachine = std::numeric_limits<std::uint32_t>::max();
 
 std::vector<msg::NamedRange> ranges_of(const std::vector<scene::NamedRange>& ranges) {
   std::vector<msg::NamedRange> told(ranges.size());
@@ -30,7 +30,7 @@ msg::PortDescription port_of(const scene::Port& port) {
   return told;
 }
 
-void tell_network(const scene::Scene& scene, msg::SceneDescription& description) {
+void report_network(const scene::Scene& scene, msg::SceneDescription& description) {
   for (std::size_t i = 0; i < scene.network.mats.size(); ++i) {
     const engine::Mat& mat = scene.network.mats[i];
     description.mat_kind().push_back(static_cast<std::uint8_t>(mat.kind));
@@ -38,29 +38,30 @@ void tell_network(const scene::Scene& scene, msg::SceneDescription& description)
     description.mat_mass_kg().push_back(static_cast<float>(mass));
     description.mat_radius_m().push_back(static_cast<float>(scene.radius_m[i]));
   }
-  const auto tell_ends = [&description](const auto& links) {
+  const auto report_ends = [&description](const auto& links) {
     for (const auto& link : links) {
       description.link_ends().push_back(link.mat_a);
       description.link_ends().push_back(link.mat_b);
     }
   };
-  tell_ends(scene.network.links);
-  tell_ends(scene.network.state_links);
-  tell_ends(scene.network.maxwell_links);
+  report_ends(scene.network.links);
+  report_ends(scene.network.state_links);
+  report_ends(scene.network.maxwell_links);
 }
 
-void tell_states(const engine::NetworkDescription& network, msg::SceneDescription& description) {
-  for (const engine::Behaviour& behaviour : network.behaviours) {
-    msg::BehaviourDescription told;
-    told.name(behaviour.name);
-    for (const engine::LinkState& state : behaviour.states) told.states().push_back(state.name);
-    description.behaviours().push_back(told);
+void report_states(const engine::NetworkDescription& network, msg::SceneDescription& description) {
+  for (const engine::StateMachine& state_machine : network.state_machines) {
+    msg::StateMachineDescription told;
+    told.name(state_machine.name);
+    for (const engine::LinkState& state : state_machine.states) told.states().push_back(state.name);
+    description.state_machines().push_back(told);
   }
   if (network.state_links.empty()) return;
-  std::vector<std::uint32_t>& behaviour = description.link_behaviour();
-  behaviour.assign(network.links.size(), kNoBehaviour);
-  for (const engine::StateLink& link : network.state_links) behaviour.push_back(link.behaviour);
-  behaviour.resize(behaviour.size() + network.maxwell_links.size(), kNoBehaviour);
+  std::vector<std::uint32_t>& state_machine = description.link_state_machine();
+  state_machine.assign(network.links.size(), kNoStateMachine);
+  for (const engine::StateLink& link : network.state_links)
+    state_machine.push_back(link.state_machine);
+  state_machine.resize(state_machine.size() + network.maxwell_links.size(), kNoStateMachine);
 }
 
 }  // namespace
@@ -79,8 +80,8 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
   description.scene_file(scene.file);
   description.matter(ranges_of(scene.matter));
   description.links(ranges_of(scene.links));
-  tell_network(scene, description);
-  tell_states(scene.network, description);
+  report_network(scene, description);
+  report_states(scene.network, description);
   for (const scene::Port& port : scene.ports) description.ports().push_back(port_of(port));
   for (const scene::Signal& signal : scene.signals.signals()) {
     msg::SignalDescription told;

@@ -37,7 +37,7 @@ struct FrameShape {
 };
 
 /// Added to the state of a link that neither pulls nor pushes in it, whatever its ends do: apart,
-/// broken. A behaviour has 64 states at most.
+/// broken. A state machine has 64 states at most.
 inline constexpr std::uint8_t kLinkIsIdle = 128;
 
 /// A frame with the signals and events of the ticks before it.

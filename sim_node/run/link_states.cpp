@@ -47,30 +47,30 @@ scene::IndexRange find_links(const scene::Scene& scene, const std::string& links
   return {range->first + picked->first, range->first + picked->last};
 }
 
-std::uint32_t find_state(const engine::Behaviour& behaviour, const std::string& state) {
+std::uint32_t find_state(const engine::StateMachine& state_machine, const std::string& state) {
   std::vector<std::string> words;
-  for (const engine::LinkState& known : behaviour.states) {
+  for (const engine::LinkState& known : state_machine.states) {
     if (known.name == state) return static_cast<std::uint32_t>(words.size());
     words.push_back(known.name);
   }
   const std::string near = config::did_you_mean(state, words);
-  throw std::invalid_argument("the liaison '" + behaviour.name + "' has no state '" + state + "'" +
-                              (near.empty() ? "" : ", " + near));
+  throw std::invalid_argument("the liaison '" + state_machine.name + "' has no state '" + state +
+                              "'" + (near.empty() ? "" : ", " + near));
 }
 
 }  // namespace
 
-std::vector<Order::ForcedState> find_states(const scene::Scene& scene, const std::string& links,
-                                            const std::string& state) {
+std::vector<Request::ForcedState> find_states(const scene::Scene& scene, const std::string& links,
+                                              const std::string& state) {
   const scene::IndexRange range = find_links(scene, links);
   const std::size_t before = scene.network.links.size();
-  std::vector<Order::ForcedState> forced;
+  std::vector<Request::ForcedState> forced;
   for (std::size_t link = range.first; link <= range.last; ++link) {
     if (link < before || link - before >= scene.network.state_links.size())
       throw std::invalid_argument("'" + links + "' has no states");
     const auto index = static_cast<std::uint32_t>(link - before);
-    const std::uint32_t behaviour = scene.network.state_links[index].behaviour;
-    forced.push_back({index, find_state(scene.network.behaviours[behaviour], state)});
+    const std::uint32_t state_machine = scene.network.state_links[index].state_machine;
+    forced.push_back({index, find_state(scene.network.state_machines[state_machine], state)});
   }
   return forced;
 }

@@ -13,7 +13,7 @@ namespace cordis::sim {
 /// state of its liaison that `state` names.
 /// @throws std::invalid_argument with one sentence when there is no such name, index or state, or a
 /// link has no states
-std::vector<Order::ForcedState> find_states(const scene::Scene& scene, const std::string& links,
-                                            const std::string& state);
+std::vector<Request::ForcedState> find_states(const scene::Scene& scene, const std::string& links,
+                                              const std::string& state);
 
 }  // namespace cordis::sim

@@ -30,10 +30,11 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
 
 }  // namespace
 
-Stage::Stage(std::shared_ptr<const scene::Scene> scene, std::uint64_t run, std::uint64_t version)
+LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t run,
+                         std::uint64_t version)
     : simulation(std::move(scene), run),
       frames(shape_of(simulation, version)),
-      changes(simulation.scene().network.behaviours),
+      changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
       struts(simulation.scene()),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}

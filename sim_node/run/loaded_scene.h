@@ -4,19 +4,19 @@
 #include <cstdint>
 #include <memory>
 
+#include "sim_node/checks/limit_watch.h"
+#include "sim_node/checks/strut_watch.h"
 #include "sim_node/run/change_counter.h"
 #include "sim_node/run/frame_store.h"
-#include "sim_node/checks/limit_watch.h"
 #include "sim_node/run/simulation.h"
-#include "sim_node/checks/strut_watch.h"
 
 namespace cordis::sim {
 
 /// A simulation and the room for its frames: all that changes hands when another scene is played.
-struct Stage {
+struct LoadedScene {
   /// @param run      of this sim_node
   /// @param version  of the description that its frames belong to
-  Stage(std::shared_ptr<const scene::Scene> scene, std::uint64_t run, std::uint64_t version);
+  LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t run, std::uint64_t version);
 
   Simulation simulation;
   FrameStore frames;

@@ -8,7 +8,7 @@ constexpr auto kLookForTheEnd = std::chrono::milliseconds(20);
 
 }  // namespace
 
-bool OrderBox::give(Order& order) noexcept {
+bool RequestMailbox::give(Request& order) noexcept {
   slot_.store(&order, std::memory_order_release);
   given_.release();
   while (!done_.try_acquire_for(kLookForTheEnd)) {
@@ -21,14 +21,14 @@ bool OrderBox::give(Order& order) noexcept {
   return true;
 }
 
-void OrderBox::obeyed() noexcept {
+void RequestMailbox::obeyed() noexcept {
   slot_.store(nullptr, std::memory_order_release);
   // May fail now and then, which costs one empty wait().
   static_cast<void>(given_.try_acquire());
   done_.release();
 }
 
-void OrderBox::wait(std::chrono::milliseconds at_most) noexcept {
+void RequestMailbox::wait(std::chrono::milliseconds at_most) noexcept {
   static_cast<void>(given_.try_acquire_for(at_most));
 }
 

@@ -14,7 +14,7 @@ namespace cordis::sim {
 
 /// Something to be done between two steps. All that costs time has been done when it is given, and
 /// what is to be freed goes back to the giver.
-struct Order {
+struct Request {
   enum class Kind : std::uint8_t {
     kPause,
     kResume,
@@ -29,8 +29,8 @@ struct Order {
   };
   Kind kind = Kind::kPause;
   std::uint64_t steps = 0;
-  std::unique_ptr<Stage> stage;  ///< the new one; afterwards the one played before
-  std::vector<double> room;      ///< of kExchange: most_values_of_state() of its world
+  std::unique_ptr<LoadedScene> stage;  ///< the new one; afterwards the one played before
+  std::vector<double> room;            ///< of kExchange: most_values_of_state() of its world
   std::vector<ForcedState> forced;
 
   bool changes_stage() const noexcept { return kind == Kind::kRestart || kind == Kind::kExchange; }
@@ -42,14 +42,14 @@ struct Order {
 };
 
 /// Room for one order on its way from one thread to the loop.
-class OrderBox {
+class RequestMailbox {
  public:
   /// Gives an order and waits until it was obeyed. One thread at a time.
   /// @return false when the loop has ended, and the order was not obeyed
-  bool give(Order& order) noexcept;
+  bool give(Request& order) noexcept;
 
   /// Loop: the order that waits, or nullptr. Real time: takes no lock.
-  Order* waiting() const noexcept { return slot_.load(std::memory_order_acquire); }
+  Request* waiting() const noexcept { return slot_.load(std::memory_order_acquire); }
   /// Loop: the waiting order was obeyed. Real time: wakes the other thread, waits for nothing.
   void obeyed() noexcept;
   /// Loop without real time: waits until there is an order, at most so long.
@@ -57,7 +57,7 @@ class OrderBox {
   /// Single steps still to be done after the last kStep; any thread.
   std::uint64_t steps_left() const noexcept { return steps_left_.load(std::memory_order_acquire); }
   /// Loop: the same, told.
-  void tell_steps_left(std::uint64_t count) noexcept {
+  void report_steps_left(std::uint64_t count) noexcept {
     steps_left_.store(count, std::memory_order_release);
   }
   /// Whether close() was called; any thread.
@@ -66,7 +66,7 @@ class OrderBox {
   void close() noexcept { closed_.store(true, std::memory_order_release); }
 
  private:
-  std::atomic<Order*> slot_{nullptr};
+  std::atomic<Request*> slot_{nullptr};
   std::atomic<std::uint64_t> steps_left_{0};
   std::atomic<bool> closed_{false};
   std::counting_semaphore<> given_{0};

@@ -6,40 +6,40 @@
 
 namespace cordis::sim {
 
-Player::Player(std::unique_ptr<Stage> stage, bool devices_wait) noexcept
+Runner::Runner(std::unique_ptr<LoadedScene> stage, bool devices_wait) noexcept
     : stage_(std::move(stage)), devices_wait_(devices_wait) {}
 
-void Player::obey(Order& order) noexcept {
+void Runner::obey(Request& order) noexcept {
   order.step = simulation().world().step_count();
   order.was_paused = paused_;
   switch (order.kind) {
-    case Order::Kind::kPause:
+    case Request::Kind::kPause:
       paused_ = true;
       steps_left_ = 0;
       break;
-    case Order::Kind::kResume:
+    case Request::Kind::kResume:
       paused_ = false;
       steps_left_ = 0;
       break;
-    case Order::Kind::kStep:
+    case Request::Kind::kStep:
       paused_ = true;
       steps_left_ = order.steps;
       break;
-    case Order::Kind::kRestart:
+    case Request::Kind::kRestart:
       steps_left_ = 0;
       restart(order.stage);
       break;
-    case Order::Kind::kExchange:
+    case Request::Kind::kExchange:
       exchange(order);
       break;
-    case Order::Kind::kForceStates:
-      for (const Order::ForcedState& forced : order.forced)
+    case Request::Kind::kForceStates:
+      for (const Request::ForcedState& forced : order.forced)
         simulation().world().force_state(forced.state_link, forced.state);
       break;
   }
 }
 
-void Player::restart(std::unique_ptr<Stage>& stage) noexcept {
+void Runner::restart(std::unique_ptr<LoadedScene>& stage) noexcept {
   for (const DeviceExchange& before : simulation().devices()) {
     DeviceExchange* now = stage->simulation.find(before.device_id());
     if (now != nullptr) now->take_over(before, /*at_once=*/false);
@@ -48,12 +48,12 @@ void Player::restart(std::unique_ptr<Stage>& stage) noexcept {
   stage_.swap(stage);
 }
 
-void Player::exchange(Order& order) noexcept {
+void Runner::exchange(Request& order) noexcept {
   order.done = order.stage->simulation.go_on_from(simulation(), order.room);
   if (order.done) stage_.swap(order.stage);
 }
 
-bool Player::advance() noexcept {
+bool Runner::advance() noexcept {
   if (paused_ && !devices_wait_) {
     for (DeviceExchange& device : simulation().devices()) device.let_go();
   }
@@ -66,7 +66,7 @@ bool Player::advance() noexcept {
   return simulation().advance(static_cast<int>(steps), stage_->frames.events());
 }
 
-double Player::played_s() const noexcept {
+double Runner::played_s() const noexcept {
   return played_before_s_ + simulation().simulated_s();
 }
 

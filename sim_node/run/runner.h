@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "sim_node/run/request.h"
 #include "sim_node/run/loaded_scene.h"
+#include "sim_node/run/request.h"
 
 namespace cordis::sim {
 
@@ -17,14 +17,14 @@ namespace cordis::sim {
 /// are let go of, so that their MATs hold still and their forces are 0, and they take over
 /// gradually when the scene goes on. Real time: everything but the constructor allocates and frees
 /// nothing, and does not throw.
-class Player {
+class Runner {
  public:
   /// @param devices_wait  whether devices wait for the scene, as in lockstep
-  Player(std::unique_ptr<Stage> stage, bool devices_wait) noexcept;
+  Runner(std::unique_ptr<LoadedScene> stage, bool devices_wait) noexcept;
 
   /// Does what the order wants; the step in progress, if any, is complete.
   /// Precondition of kRestart and kExchange: nobody uses the frames of the present stage.
-  void obey(Order& order) noexcept;
+  void obey(Request& order) noexcept;
 
   /// Whether this turn of the loop has something to do.
   bool moves() const noexcept { return !paused_ || steps_left_ > 0; }
@@ -33,7 +33,7 @@ class Player {
   /// scene stands still. @return whether a tick is complete, and its answers are due.
   bool advance() noexcept;
 
-  Stage& stage() noexcept { return *stage_; }
+  LoadedScene& stage() noexcept { return *stage_; }
   const Simulation& simulation() const noexcept { return stage_->simulation; }
   Simulation& simulation() noexcept { return stage_->simulation; }
   bool is_paused() const noexcept { return paused_; }
@@ -41,10 +41,10 @@ class Player {
   double played_s() const noexcept;  ///< simulated time of all stages together [s]
 
  private:
-  void restart(std::unique_ptr<Stage>& stage) noexcept;
-  void exchange(Order& order) noexcept;
+  void restart(std::unique_ptr<LoadedScene>& stage) noexcept;
+  void exchange(Request& order) noexcept;
 
-  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<LoadedScene> stage_;
   bool devices_wait_;
   bool paused_ = false;
   std::uint64_t steps_left_ = 0;

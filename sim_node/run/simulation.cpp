@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "sim_node/scene/naming.h"
 #include "sim_node/checks/stability_check.h"
+#include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
 namespace {
@@ -19,8 +19,8 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
     if (!known) order.push_back(port.device);
   }
   std::vector<DeviceExchange> exchanges;
-  const auto account = std::make_shared<DelayAccount>(
-      static_cast<int>(PortBrake::settled_ticks(scene) * static_cast<double>(order.size())));
+  const auto account = std::make_shared<DelayEnergyObserver>(static_cast<int>(
+      PassivityController::settled_ticks(scene) * static_cast<double>(order.size())));
   for (const std::string& device : order) {
     std::vector<scene::Port> ports;
     scene::Role role = scene::Role::kMass;
@@ -33,7 +33,7 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
     }
     exchanges.emplace_back(device, id, role, ports, scene.gesture_rate_hz, run);
     if (role == scene::Role::kLiaison)
-      exchanges.back().brake_with(PortBrake(scene, ports, account));
+      exchanges.back().brake_with(PassivityController(scene, ports, account));
   }
   return exchanges;
 }

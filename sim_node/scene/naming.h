@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "sim_node/engine/laws/liaison_id.h"
+#include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::scene {

@@ -12,7 +12,7 @@ namespace cordis::scene {
 namespace {
 
 using Outcome = Parameters::Outcome;
-using Origin = BehaviourPool::Origin;
+using Origin = StateMachinePool::Origin;
 
 Outcome refused(std::string problem, std::string hint = {}) {
   return {{}, std::move(problem), std::move(hint)};
@@ -66,8 +66,8 @@ Outcome unknown_parameter(const std::string& name, const std::string& parameter,
 }  // namespace
 
 void apply(const Change& change, engine::NetworkDescription& network) {
-  if (change.kind == Change::Kind::kBehaviour) {
-    network.behaviours[change.first] = change.behaviour;
+  if (change.kind == Change::Kind::kStateMachine) {
+    network.state_machines[change.first] = change.state_machine;
     return;
   }
   const auto put = [&](auto& links) {
@@ -80,9 +80,9 @@ void apply(const Change& change, engine::NetworkDescription& network) {
   if (change.kind == Change::Kind::kMaxwellLinks) put(network.maxwell_links);
 }
 
-/// What is changed together: the behaviours and the linear or Maxwell links of a name.
+/// What is changed together: the state machines and the linear or Maxwell links of a name.
 struct Parameters::Target {
-  std::vector<std::pair<Origin, std::uint32_t>> behaviours;
+  std::vector<std::pair<Origin, std::uint32_t>> state_machines;
   std::vector<const LinkGroup*> groups;
 
   /// Adds the changes that follow when each member is given `values_of(liaison, given)`.
@@ -101,8 +101,8 @@ struct Parameters::Target {
                                                  : problems.all().front().message);
         return false;
       }
-      if (change.kind == Change::Kind::kBehaviour) {
-        change.behaviour = *behaviour_of(*own);
+      if (change.kind == Change::Kind::kStateMachine) {
+        change.state_machine = *state_machine_of(*own);
       } else {
         change.stiffness = own->stiffness;
         change.viscosity = own->viscosity;
@@ -110,7 +110,7 @@ struct Parameters::Target {
       outcome.changes.push_back(std::move(change));
       return true;
     };
-    for (const auto& [origin, index] : behaviours) {
+    for (const auto& [origin, index] : state_machines) {
       Change change;
       change.first = index;
       if (!add(origin.liaison, origin.given, origin.part, origin.owner, change)) return outcome;
@@ -152,7 +152,7 @@ Outcome Parameters::set_of_liaison(const std::string& name, const std::string& p
   for (const auto& [origin, index] : scene.liaisons->pool().origins()) {
     if (origin.liaison != name) continue;
     used = true;
-    if (origin.given.count(parameter) == 0) target.behaviours.emplace_back(origin, index);
+    if (origin.given.count(parameter) == 0) target.state_machines.emplace_back(origin, index);
   }
   for (const LinkGroup& group : scene.link_groups) {
     if (group.liaison != name || group.kind == LinkKind::kState) continue;
@@ -183,7 +183,7 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
   const engine::NetworkDescription& network = scene.network;
   Target target;
   std::vector<std::string> words;
-  std::set<std::uint32_t> behaviours;
+  std::set<std::uint32_t> state_machines;
   std::vector<Change> plain;  // of links without a liaison
   std::vector<bool> is_own(network.state_links.size(), false);
   for (const LinkGroup& group : scene.link_groups) {
@@ -191,7 +191,7 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
     add_words(words, parameters_of_group(group, scene));
     if (group.kind == LinkKind::kState) {
       for (std::uint32_t l = group.first; l < group.first + group.count; ++l) {
-        behaviours.insert(network.state_links[l].behaviour);
+        state_machines.insert(network.state_links[l].state_machine);
         is_own[l] = true;
       }
     } else if (!group.liaison.empty()) {
@@ -206,11 +206,11 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
     }
   }
   for (std::size_t s = 0; s < network.sets.size(); ++s) {
-    if (scene.set_names[s] == name) behaviours.insert(network.sets[s].behaviour);
+    if (scene.set_names[s] == name) state_machines.insert(network.sets[s].state_machine);
   }
   for (const auto& [origin, index] : scene.liaisons->pool().origins()) {
-    if (behaviours.count(index) == 0) continue;
-    target.behaviours.emplace_back(origin, index);
+    if (state_machines.count(index) == 0) continue;
+    target.state_machines.emplace_back(origin, index);
     add_words(words, parameters_of(scene.liaisons->find(origin.liaison)->definition));
   }
   if (std::find(words.begin(), words.end(), parameter) == words.end())
@@ -219,13 +219,14 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
 
   bool shared = false;
   for (std::size_t l = 0; l < network.state_links.size(); ++l)
-    shared = shared || (!is_own[l] && behaviours.count(network.state_links[l].behaviour) != 0);
-  for (std::size_t s = 0; s < network.sets.size(); ++s)
     shared =
-        shared || (scene.set_names[s] != name && behaviours.count(network.sets[s].behaviour) != 0);
+        shared || (!is_own[l] && state_machines.count(network.state_links[l].state_machine) != 0);
+  for (std::size_t s = 0; s < network.sets.size(); ++s)
+    shared = shared || (scene.set_names[s] != name &&
+                        state_machines.count(network.sets[s].state_machine) != 0);
   if (shared) {
     return refused("'" + name + "' shares its parameters with other links",
-                   "set those of the liaison '" + target.behaviours.front().first.liaison +
+                   "set those of the liaison '" + target.state_machines.front().first.liaison +
                        "', or give these links a name of their own");
   }
   GivenParameters values = of_links_[name];

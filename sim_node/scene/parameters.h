@@ -15,22 +15,22 @@ namespace cordis::scene {
 /// two steps.
 struct Change {
   enum class Kind : std::uint8_t {
-    kBehaviour,    ///< for World::replace_behaviour; it has the states it had
-    kLinks,        ///< of linear links, which a World takes only with a new Network
-    kMaxwellLinks  ///< likewise
+    kStateMachine,  ///< for World::replace_state_machine; it has the states it had
+    kLinks,         ///< of linear links, which a World takes only with a new Network
+    kMaxwellLinks   ///< likewise
   };
-  Kind kind = Kind::kBehaviour;
+  Kind kind = Kind::kStateMachine;
   std::uint32_t first =
-      0;  ///< index of the behaviour, or of the first link among those of its kind
+      0;  ///< index of the state machine, or of the first link among those of its kind
   std::uint32_t count = 1;
-  engine::Behaviour behaviour;      ///< of kBehaviour
-  std::optional<double> stiffness;  ///< of links [N/m]; as it is when there is none
-  std::optional<double> viscosity;  ///< of links [N s/m]; as it is when there is none
+  engine::StateMachine state_machine;  ///< of kStateMachine
+  std::optional<double> stiffness;     ///< of links [N/m]; as it is when there is none
+  std::optional<double> viscosity;     ///< of links [N s/m]; as it is when there is none
 };
 
 /// Whether a change can be made without a new Network.
 inline bool is_live(const Change& change) noexcept {
-  return change.kind == Change::Kind::kBehaviour;
+  return change.kind == Change::Kind::kStateMachine;
 }
 
 /// Makes a change in a description: a World of a Network made from it is as if the scene had been
@@ -51,7 +51,7 @@ class Parameters {
   };
 
   /// Sets a parameter of a liaison, for all its links that give it no value of their own; or of the
-  /// links of a name (a `name` of the scene, or string.links), which must not share their behaviour
+  /// links of a name (a `name` of the scene, or string.links), which must not share their state machine
   /// with others. Parameters are those that a link may give. What follows from the parameter by a
   /// formula follows. Nothing is set after a problem. Not in real time.
   Outcome set(const std::string& name, const std::string& parameter, double value);

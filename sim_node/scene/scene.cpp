@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "node/config/file_kind.h"
-#include "sim_node/scene/sections/assembly.h"
-#include "sim_node/scene/naming.h"
 #include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/naming.h"
+#include "sim_node/scene/sections/assembly.h"
 #include "sim_node/scene/sections/reduction_options.h"
 
 namespace cordis::scene {
@@ -73,8 +73,8 @@ config::Place read_step(const Value& section, Scene& scene, config::Problems& pr
     integrators.emplace_back(to_string(integrator));
   scene.network.integrator =
       engine::integrator_named(reader.optional_choice("integrator", "cordis", integrators));
-  if (scene.network.integrator == engine::Integrator::kModal) {
-    scene.network.most_mode_hz = reader.optional_number("modes_to_hz", 0.0, Range::positive());
+  if (scene.network.integrator == engine::IntegratorKind::kModal) {
+    scene.network.max_mode_hz = reader.optional_number("modes_to_hz", 0.0, Range::positive());
   } else if (reader.optional_value("modes_to_hz").exists() && reader.ok()) {
     reader.error_at(
         "modes_to_hz",
@@ -219,7 +219,7 @@ void check_network(const Scene& scene, const config::Place& integrator, const co
   }
 }
 
-void set_step(Scene& scene, double rate_hz, engine::Integrator integrator) {
+void set_step(Scene& scene, double rate_hz, engine::IntegratorKind integrator) {
   scene.step_rate_hz = rate_hz;
   scene.network.step = 1.0 / rate_hz;
   scene.network.integrator = integrator;

@@ -88,14 +88,14 @@ struct Accuracy {
 };
 
 /// What a scene wants taken out of it: its `reduce`. See sim_node/plan/reduction.
-struct ReductionWish {
+struct ReductionOptions {
   bool parallel = false;   ///< linear links between the same two MATs
   bool series = false;     ///< MATs without mass between links of one kind
   bool massless = false;   ///< those between a spring and a damper; MATs too light to matter
   bool dimension = false;  ///< directions in which nothing can move
   bool is_asked = false;   ///< the scene speaks of it
 
-  static ReductionWish everything() noexcept { return {true, true, true, true, true}; }
+  static ReductionOptions everything() noexcept { return {true, true, true, true, true}; }
   /// Whether a MAT may have no mass: it is taken out.
   bool takes_out_mats() const noexcept { return series || massless; }
 };
@@ -111,7 +111,7 @@ struct Reduction {
 };
 
 /// A plane or a line, along the axes, that a scene of more dimensions is computed in.
-struct Confinement {
+struct Subspace {
   int space = 3;                               ///< dimensions of the scene as its file says it
   std::array<int, 3> axes{0, 1, 2};            ///< of that space: where those of the network lie
   engine::Vec3 origin = engine::Vec3::Zero();  ///< place along the others [m]; 0 along these
@@ -139,10 +139,10 @@ struct Scene {
   std::shared_ptr<const Liaisons> liaisons;
   std::vector<Port> ports;
   SignalReader signals;
-  std::vector<double> radius_m;            ///< per MAT, as it is drawn; 0 for a point
-  std::vector<LayoutPoint> layout;         ///< per MAT in a 1-D scene, else empty
-  std::optional<Confinement> confinement;  ///< by a reduction; then there is no layout
-  ReductionWish reduce;
+  std::vector<double> radius_m;         ///< per MAT, as it is drawn; 0 for a point
+  std::vector<LayoutPoint> layout;      ///< per MAT in a 1-D scene, else empty
+  std::optional<Subspace> confinement;  ///< by a reduction; then there is no layout
+  ReductionOptions reduce;
   std::vector<Reduction> reductions;  ///< that were made
   /// Linear links in 2-D and 3-D that stand for several in a row, which would buckle when pushed.
   std::vector<std::uint32_t> struts;
@@ -158,7 +158,7 @@ struct Scene {
 };
 
 /// Gives a scene its step rate, an integer multiple of the gesture rate, and its integrator.
-void set_step(Scene& scene, double rate_hz, engine::Integrator integrator);
+void set_step(Scene& scene, double rate_hz, engine::IntegratorKind integrator);
 
 /// Whether the engine can simulate it; if not, a problem at one of the places: of the integrator,
 /// or of what there is.

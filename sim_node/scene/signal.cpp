@@ -73,9 +73,10 @@ double value_of_link(const Signal& signal, const engine::World& world) noexcept 
 
 double changes_in(const engine::World& world) noexcept {
   std::uint64_t changes = 0;
-  const std::vector<engine::Behaviour>& behaviours = world.network().description().behaviours;
-  for (std::uint32_t b = 0; b < behaviours.size(); ++b) {
-    const auto states = static_cast<std::uint32_t>(behaviours[b].states.size());
+  const std::vector<engine::StateMachine>& state_machines =
+      world.network().description().state_machines;
+  for (std::uint32_t b = 0; b < state_machines.size(); ++b) {
+    const auto states = static_cast<std::uint32_t>(state_machines[b].states.size());
     for (std::uint32_t from = 0; from < states; ++from) {
       for (std::uint32_t to = 0; to < states; ++to) changes += world.change_count(b, from, to);
     }
@@ -189,7 +190,7 @@ double SignalReader::value_of(std::size_t index, const engine::World& world,
   const Signal& signal = signals_[index];
   if (signal.quantity == Quantity::kAwake) return 1.0 - world.asleep_count() / mass_count_;
   if (!pieces_[index]) return value_of_signal(signal, world, energy);
-  engine::ConnectedPieces& pieces = *pieces_[index];
+  engine::ConnectedComponents& pieces = *pieces_[index];
   std::size_t count = 0;
   if (!signal.state_links.empty()) {
     count = pieces.find_linked(world, signal.state_links);

@@ -97,7 +97,7 @@ class SignalReader {
 
   std::vector<Signal> signals_;
   // Room to count in, of those that count pieces; nothing is kept in it from one call to the next.
-  mutable std::vector<std::optional<engine::ConnectedPieces>> pieces_;
+  mutable std::vector<std::optional<engine::ConnectedComponents>> pieces_;
   bool wants_energy_ = false;
   double mass_count_ = 0.0;  // of the network
 };

@@ -15,7 +15,7 @@
 
 namespace {
 
-using cordis::engine::Integrator;
+using cordis::engine::IntegratorKind;
 using cordis::engine::Link;
 using cordis::engine::Mat;
 using cordis::engine::MatKind;
@@ -123,7 +123,7 @@ void step_by_integrator(benchmark::State& state) {
   const auto dimension = static_cast<int>(state.range(1));
   const auto side = static_cast<std::uint32_t>(state.range(2));
   NetworkDescription network = grid(dimension, false, side);
-  network.integrator = static_cast<Integrator>(state.range(0));
+  network.integrator = static_cast<IntegratorKind>(state.range(0));
   if (state.range(3) == 0) {
     for (Link& link : network.links) link.viscosity = 0.0;
   }
@@ -132,12 +132,12 @@ void step_by_integrator(benchmark::State& state) {
 }
 BENCHMARK(step_by_integrator)
     ->ArgNames({"integrator", "dimension", "side", "viscous"})
-    ->ArgsProduct({{static_cast<long>(Integrator::kCordis),
-                    static_cast<long>(Integrator::kLeapfrog)},
+    ->ArgsProduct({{static_cast<long>(IntegratorKind::kCordis),
+                    static_cast<long>(IntegratorKind::kLeapfrog)},
                    {1, 2},
                    {20, 60, 100},
                    {0, 1}})
-    ->ArgsProduct({{static_cast<long>(Integrator::kSymplectic4)}, {1, 2}, {20, 60, 100}, {0}});
+    ->ArgsProduct({{static_cast<long>(IntegratorKind::kSymplectic4)}, {1, 2}, {20, 60, 100}, {0}});
 
 /// 400 modes of a string; so many of its points tied to a fixed one by a link with states.
 void step_of_modes(benchmark::State& state) {
@@ -145,7 +145,7 @@ void step_of_modes(benchmark::State& state) {
   NetworkDescription network;
   network.dimension = 1;
   network.step = 1.0 / 44100.0;
-  network.integrator = Integrator::kModal;
+  network.integrator = IntegratorKind::kModal;
   for (std::uint32_t i = 0; i < kModes + 2; ++i) {
     Mat mat;
     mat.kind = i == 0 || i > kModes ? MatKind::kFixed : MatKind::kMass;
@@ -154,10 +154,10 @@ void step_of_modes(benchmark::State& state) {
     network.mats.push_back(mat);
     if (i > 0) network.links.push_back({i - 1, i, 1e4, 1e-4, 0.0});
   }
-  network.behaviours.emplace_back();
-  network.behaviours[0].states.emplace_back();
-  network.behaviours[0].states[0].stiffness = 20.0;
-  network.behaviours[0].states[0].viscosity = 0.01;
+  network.state_machines.emplace_back();
+  network.state_machines[0].states.emplace_back();
+  network.state_machines[0].states[0].stiffness = 20.0;
+  network.state_machines[0].states[0].viscosity = 0.01;
   for (std::uint32_t l = 0; l < state.range(0); ++l) {
     network.state_links.push_back({50 + 100 * l, 0, 0, 0.0});
   }

@@ -16,12 +16,12 @@
 
 namespace {
 
-using cordis::engine::Behaviour;
 using cordis::engine::LinkState;
 using cordis::engine::Mat;
 using cordis::engine::MatKind;
 using cordis::engine::Network;
 using cordis::engine::NetworkDescription;
+using cordis::engine::StateMachine;
 using cordis::engine::Vec3;
 using cordis::engine::World;
 
@@ -57,9 +57,9 @@ std::shared_ptr<const Network> agglomerate(double tolerance) {
   paste.elasticity.depth = 200.0 * diameter * diameter / 57.14628;
   paste.elasticity.diameter = diameter;
   paste.viscosity = 0.2;
-  Behaviour behaviour;
-  behaviour.states = {paste};
-  network.behaviours = {behaviour};
+  StateMachine state_machine;
+  state_machine.states = {paste};
+  network.state_machines = {state_machine};
   cordis::engine::SetLiaison set;
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) set.set_p.push_back(i);
   set.range = 1.35 * kSpacing;

@@ -43,13 +43,13 @@ std::shared_ptr<const Network> melt() {
       for (int x = (y + z) % 2; x < 2 * kCells; x += 2) place(x, y, z);
     }
   }
-  cordis::engine::Behaviour behaviour;
-  behaviour.states.resize(1);
-  behaviour.states[0].elasticity.kind = cordis::engine::Law::Kind::kLennardJones;
-  behaviour.states[0].elasticity.depth = 1.0;
-  behaviour.states[0].elasticity.diameter = 1.0;
-  behaviour.states[0].elasticity.cut = 2.5;
-  network.behaviours = {behaviour};
+  cordis::engine::StateMachine state_machine;
+  state_machine.states.resize(1);
+  state_machine.states[0].elasticity.kind = cordis::engine::Law::Kind::kLennardJones;
+  state_machine.states[0].elasticity.depth = 1.0;
+  state_machine.states[0].elasticity.diameter = 1.0;
+  state_machine.states[0].elasticity.cut = 2.5;
+  network.state_machines = {state_machine};
   cordis::engine::SetLiaison set;
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) set.set_p.push_back(i);
   set.range = 2.5;

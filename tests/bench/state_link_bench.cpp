@@ -9,14 +9,14 @@
 
 namespace {
 
-using cordis::engine::Behaviour;
-using cordis::engine::Exit;
 using cordis::engine::LinkState;
 using cordis::engine::Network;
 using cordis::engine::NetworkDescription;
 using cordis::engine::Operation;
 using cordis::engine::Program;
 using cordis::engine::Quantity;
+using cordis::engine::StateMachine;
+using cordis::engine::Transition;
 using cordis::engine::Vec3;
 using cordis::engine::World;
 
@@ -36,8 +36,8 @@ Program size_compared(Quantity quantity, Operation comparison, double threshold)
            {comparison, {}, 0.0, 0}}};
 }
 
-Behaviour collophane(Kind kind) {
-  Behaviour behaviour;
+StateMachine collophane(Kind kind) {
+  StateMachine state_machine;
   LinkState hooked;
   hooked.stiffness = 100.0;
   hooked.viscosity = 0.01;
@@ -53,11 +53,11 @@ Behaviour collophane(Kind kind) {
   unhooked.last_exit = 2;
   const double hold = kind == kManyChange ? 1e-7 : 0.005;
   const double slow = kind == kMixed ? -1.0 : kind == kManyChange ? 10.0 : 1e-6;
-  behaviour.states = {hooked, unhooked};
-  behaviour.exits = {
+  state_machine.states = {hooked, unhooked};
+  state_machine.exits = {
       {size_compared(Quantity::kElongation, Operation::kGreater, hold), 1, {}, {}, {}},
       {size_compared(Quantity::kSpeed, Operation::kLess, slow), 0, {}, {}, Quantity::kSpeed}};
-  return behaviour;
+  return state_machine;
 }
 
 /// 708 x 708 masses, each tied to its right and its upper neighbour: a million links.
@@ -66,8 +66,8 @@ std::shared_ptr<const Network> grid(int dimension, Kind kind) {
   NetworkDescription network;
   network.dimension = dimension;
   network.step = 1e-3;
-  if (kind != kLinear) network.behaviours = {collophane(kind), collophane(kind)};
-  if (kind == kMixed) network.behaviours[1].start = 1;
+  if (kind != kLinear) network.state_machines = {collophane(kind), collophane(kind)};
+  if (kind == kMixed) network.state_machines[1].start = 1;
   const auto tie = [&](std::uint32_t a, std::uint32_t b) {
     const double rest = dimension == 1 ? 0.0 : 0.0099;
     if (kind == kLinear) {

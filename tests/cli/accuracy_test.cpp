@@ -1,4 +1,4 @@
-// tests/cli/accuracy_test.cpp -- what the plan promises for `accuracy`, held against the oracle.
+// tests/cli/accuracy_test.cpp -- what the plan promises for `accuracy`, held against the reference integrator.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ TEST_P(Accuracy, IsKeptByThePlanAndByNothingAtHalfTheCost) {
   const plan::Reference reference = plan::make_reference(
       scene.network, lab.course,
       {{period, static_cast<int>(std::lround(lab.duration_s / period))}, 1e-10, 60.0, 0.0, {}});
-  ASSERT_TRUE(reference.by_oracle);
+  ASSERT_TRUE(reference.by_reference);
   ASSERT_EQ(reference.compared, reference.sampling.count);
   ASSERT_LT(reference.doubt, 0.02 * tolerance);
   const auto error = [&](const std::string& integrator, double rate_hz) {

@@ -53,7 +53,7 @@ TEST(Console, NeverWaitsForAReaderAndSaysHowManyLinesAreMissing) {
   Screen screen;
   Console console({screen.file(), screen.file()});
   const std::string text(1000, 'x');
-  const std::size_t sent = 3 * Console::kMostWaiting / text.size();
+  const std::size_t sent = 3 * Console::kMaxWaiting / text.size();
 
   for (std::size_t i = 0; i < sent; ++i)
     console.line(Stream::kOut, text);  // would hang here if it waited

@@ -74,7 +74,7 @@ class FakeStatus {
   }
 
  private:
-  static dds::Membership membership(const Self& self) {
+  static dds::ParticipantConfig membership(const Self& self) {
     config::Problems problems;
     const config::Launch launch = config::load_launch(self.launch_file, self.overrides, problems);
     return {launch.domain.value(), launch.session, self.name, false};

@@ -72,7 +72,7 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   key.latency_p99_s(98.4e-6);
   key.latency_max_s(2.31e-3);
   key.port_energy_j(-0.002);
-  key.braked_ticks(7);
+  key.passivity_ticks(7);
   board.put(key);
 
   EXPECT_EQ(

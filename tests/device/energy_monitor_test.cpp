@@ -1,5 +1,3 @@
-#include "device_node/energy_monitor.h"
-
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "device_node/force_guard.h"
+#include "device_node/passivity_observer.h"
 
 namespace cordis::device {
 namespace {
@@ -125,10 +124,10 @@ TEST_P(Delays, TheControllerEndsALimitCycleUpToTenTimesTheLimit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EnergyMonitor, Delays, ::testing::Values(0, 1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(PassivityObserver, Delays, ::testing::Values(0, 1, 2, 3));
 
-TEST(EnergyMonitor, SumsForceTimesTheWayThatFollowedIt) {
-  EnergyMonitor monitor{PassivitySettings{}};
+TEST(PassivityObserver, SumsForceTimesTheWayThatFollowedIt) {
+  PassivityObserver monitor{PassivitySettings{}};
   monitor.observe({}, {});
 
   monitor.observe({2.0, -1.0}, {0.003, 0.001});   // 6 mJ - 1 mJ
@@ -139,12 +138,12 @@ TEST(EnergyMonitor, SumsForceTimesTheWayThatFollowedIt) {
   EXPECT_EQ(monitor.given_j(), 0.0);
 }
 
-TEST(EnergyMonitor, BrakesAgainstTheMotionAndNeverBeyondItsCap) {
+TEST(PassivityObserver, BrakesAgainstTheMotionAndNeverBeyondItsCap) {
   PassivitySettings settings;
   settings.active = true;
   settings.budget_j = 0.0;
   settings.mass_kg = 0.1;
-  EnergyMonitor monitor(settings);
+  PassivityObserver monitor(settings);
   monitor.observe({}, {});
 
   monitor.observe({100.0}, {0.001});  // 0.1 J from nothing at 1 m/s
@@ -154,7 +153,7 @@ TEST(EnergyMonitor, BrakesAgainstTheMotionAndNeverBeyondItsCap) {
   EXPECT_EQ(monitor.brake_n(1), 0.0);
 }
 
-TEST(EnergyMonitor, TakesBackWhatTheLoopHasMadeAndThenLeavesTheHandFree) {
+TEST(PassivityObserver, TakesBackWhatTheLoopHasMadeAndThenLeavesTheHandFree) {
   ForceGuardSettings settings = guarded(true);
   settings.passivity.travel_m = 1e-4;  // nearly nothing is allowed for the ramp
   ForceGuard guard(settings);
@@ -180,7 +179,7 @@ TEST(EnergyMonitor, TakesBackWhatTheLoopHasMadeAndThenLeavesTheHandFree) {
   EXPECT_NEAR(taken, 0.0, 0.0003) << "what the largest braking takes in a period";
 }
 
-TEST(EnergyMonitor, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
+TEST(PassivityObserver, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
   ForceGuardSettings settings = guarded(true);
   settings.ramp_s = 0.2;
   settings.passivity.budget_j = 0.0;
@@ -205,12 +204,12 @@ TEST(EnergyMonitor, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
   EXPECT_EQ(braked, 0);
 }
 
-TEST(EnergyMonitor, DoesNotSaveMoreThanItsTank) {
+TEST(PassivityObserver, DoesNotSaveMoreThanItsTank) {
   PassivitySettings settings;
   settings.active = true;
   settings.budget_j = 0.0;
   settings.tank_j = 0.005;
-  EnergyMonitor monitor(settings);
+  PassivityObserver monitor(settings);
   monitor.observe({}, {});
 
   monitor.observe({-10.0}, {0.01});  // takes 100 mJ
@@ -220,10 +219,10 @@ TEST(EnergyMonitor, DoesNotSaveMoreThanItsTank) {
   EXPECT_TRUE(monitor.braking());
 }
 
-TEST(EnergyMonitor, RefusesSettingsOutOfRange) {
+TEST(PassivityObserver, RefusesSettingsOutOfRange) {
   PassivitySettings bad;
   bad.mass_kg = 0.0;
-  EXPECT_THROW(EnergyMonitor{bad}, std::invalid_argument);
+  EXPECT_THROW(PassivityObserver{bad}, std::invalid_argument);
 }
 
 }  // namespace

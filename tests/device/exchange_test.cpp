@@ -56,7 +56,7 @@ class FakeDriver : public Driver {
     sensed[0] = lies ? std::nan("") : -0.001 * static_cast<double>(commands.size());
     return present;
   }
-  void note_age(double age_s) noexcept override { age = age_s; }
+  void record_age(double age_s) noexcept override { age = age_s; }
   bool write(const AxisValues& commanded) noexcept override {
     commands.push_back(commanded);
     return present;

@@ -425,7 +425,7 @@ TEST_F(Kfb1Test, PullsToPlacesWithinTheLimitsOfItsFileAndLetsGoOfOldOnes) {
   double age_s = 0.0;
   ASSERT_TRUE(until(*key, {0.0}, [&](bool) {
     pull();
-    key->note_age(age_s += 0.001);
+    key->record_age(age_s += 0.001);
     return age_s >= layout.watchdog_s;
   }));
   ASSERT_TRUE(key->write({0.0}));

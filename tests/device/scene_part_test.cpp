@@ -1,8 +1,7 @@
-#include "device_node/scene_part.h"
-
 #include <gtest/gtest.h>
 
 #include "device_node/drivers/script.h"
+#include "device_node/port_assignment.h"
 
 namespace cordis::device {
 namespace {
@@ -37,14 +36,14 @@ msg::SceneDescription scene_with(std::vector<msg::PortDescription> ports) {
   return scene;
 }
 
-ScenePart part_in(const msg::SceneDescription& scene, int axes = 2) {
+PortAssignment part_in(const msg::SceneDescription& scene, int axes = 2) {
   const Trajectory rest;
   const Script driver({rest}, {rest}, 1000.0);
   return part_of(scene, keyboard_of(axes), driver);
 }
 
-TEST(ScenePart, IsTheRoleOfThePortsWithItsId) {
-  const ScenePart mass =
+TEST(PortAssignment, IsTheRoleOfThePortsWithItsId) {
+  const PortAssignment mass =
       part_in(scene_with({port("left", 1, 1, {9}), port("right", kId, 0, {0, 1})}));
   EXPECT_TRUE(mass.wanted);
   EXPECT_EQ(mass.role, Role::kMass);
@@ -55,12 +54,12 @@ TEST(ScenePart, IsTheRoleOfThePortsWithItsId) {
             Role::kLiaison);
 }
 
-TEST(ScenePart, IsNotWantedInAScenesOfOthers) {
+TEST(PortAssignment, IsNotWantedInAScenesOfOthers) {
   EXPECT_FALSE(part_in(scene_with({port("left", 1, 0, {0})})).wanted);
   EXPECT_FALSE(part_in(scene_with({})).wanted);
 }
 
-TEST(ScenePart, IsImpossibleWithAnAxisTheDeviceDoesNotHave) {
+TEST(PortAssignment, IsImpossibleWithAnAxisTheDeviceDoesNotHave) {
   EXPECT_EQ(
       part_in(scene_with({port("hand", kId, 0, {0, 2})})).impossible,
       "scene 'strings': port 'hand' wants axis 2 of device 'keyboard', which has 2 (axes 0 to "
@@ -68,7 +67,7 @@ TEST(ScenePart, IsImpossibleWithAnAxisTheDeviceDoesNotHave) {
   EXPECT_EQ(part_in(scene_with({port("hand", kId, 0, {4294967295u})})).impossible.empty(), false);
 }
 
-TEST(ScenePart, IsImpossibleWithTwoRolesOrAnUnknownOne) {
+TEST(PortAssignment, IsImpossibleWithTwoRolesOrAnUnknownOne) {
   EXPECT_EQ(
       part_in(scene_with({port("a", kId, 0, {0}), port("b", kId, 1, {1})})).impossible,
       "scene 'strings': port 'b' gives device 'keyboard' role liaison, another port role mass");
@@ -76,7 +75,7 @@ TEST(ScenePart, IsImpossibleWithTwoRolesOrAnUnknownOne) {
             "scene 'strings': port 'a' gives device 'keyboard' the unknown role 7");
 }
 
-TEST(ScenePart, IsImpossibleWhenTheDriverHasNothingToGive) {
+TEST(PortAssignment, IsImpossibleWhenTheDriverHasNothingToGive) {
   const Script positions_only({Trajectory()}, {}, 1000.0);
   EXPECT_EQ(
       part_of(scene_with({port("a", kId, 1, {0})}), keyboard_of(1), positions_only).impossible,
@@ -85,11 +84,11 @@ TEST(ScenePart, IsImpossibleWhenTheDriverHasNothingToGive) {
       "to give in it");
 }
 
-TEST(ScenePart, IsQuestionableAtAnotherRate) {
+TEST(PortAssignment, IsQuestionableAtAnotherRate) {
   msg::SceneDescription scene = scene_with({port("a", kId, 0, {0})});
   scene.gesture_rate_hz(500.0);
 
-  const ScenePart part = part_in(scene);
+  const PortAssignment part = part_in(scene);
 
   EXPECT_EQ(part.impossible, "");
   EXPECT_EQ(part.questionable,

@@ -10,10 +10,10 @@
 
 namespace cordis::test {
 
-using engine::Behaviour;
 using engine::Law;
 using engine::LinkState;
 using engine::SetLiaison;
+using engine::StateMachine;
 
 /// `count` free balls of radius 5 cm in a box of the given side along each axis, moving.
 inline NetworkDescription cloud(std::uint32_t count, double side, double speed, int dimension,
@@ -60,16 +60,16 @@ inline LinkState lennard_jones(double depth, double diameter, double cut) {
 inline void add_set(NetworkDescription& scene, const LinkState& state, double range,
                     double rest_length, std::uint32_t split) {
   SetLiaison set;
-  set.behaviour = static_cast<std::uint32_t>(scene.behaviours.size());
+  set.state_machine = static_cast<std::uint32_t>(scene.state_machines.size());
   set.range = range;
   set.rest_length = rest_length;
   for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
     (i < split ? set.set_p : set.set_q).push_back(i);
   }
-  Behaviour behaviour;
-  behaviour.name = "pair";
-  behaviour.states = {state};
-  scene.behaviours.push_back(behaviour);
+  StateMachine state_machine;
+  state_machine.name = "pair";
+  state_machine.states = {state};
+  scene.state_machines.push_back(state_machine);
   scene.sets.push_back(set);
 }
 

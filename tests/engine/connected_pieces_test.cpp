@@ -1,6 +1,4 @@
 // tests/engine/connected_pieces_test.cpp
-#include "sim_node/engine/pairs/connected_components.h"
-
 #include <limits>
 #include <numeric>
 #include <queue>
@@ -9,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/pairs/connected_components.h"
 #include "tests/engine/balls.h"
 #include "tests/support/allocation_guard.h"
 
@@ -16,7 +15,7 @@ namespace cordis::test {
 namespace {
 
 using engine::BoundPair;
-using engine::ConnectedPieces;
+using engine::ConnectedComponents;
 
 /// Flood fill over all pairs.
 std::vector<std::uint32_t> flooded(const NetworkDescription& scene, double distance) {
@@ -48,13 +47,13 @@ std::vector<std::uint32_t> flooded(const NetworkDescription& scene, double dista
   return piece;
 }
 
-TEST(ConnectedPieces, AreThoseOfAFloodFill) {
+TEST(ConnectedComponents, AreThoseOfAFloodFill) {
   for (const int dimension : {1, 2, 3}) {
     for (const std::uint32_t split : {200U, 60U}) {
       NetworkDescription scene = cloud(200, dimension == 1 ? 20.0 : 1.5, 0.0, dimension);
       add_set(scene, contact(1.0, 0.0), 0.1, -1.0, split);
       const World world = make_world(scene);
-      ConnectedPieces pieces(world.network(), 0);
+      ConnectedComponents pieces(world.network(), 0);
       for (const double distance : {0.02, 0.1, 0.2, 5.0}) {
         const std::vector<std::uint32_t> expected = flooded(scene, distance);
 
@@ -70,13 +69,13 @@ TEST(ConnectedPieces, AreThoseOfAFloodFill) {
   }
 }
 
-TEST(ConnectedPieces, AreTheSameWhetherPairsAreKeptOrNot) {
+TEST(ConnectedComponents, AreTheSameWhetherPairsAreKeptOrNot) {
   NetworkDescription scene = cloud(200, 1.5, 0.5, 2);
   World world = make_world(scene);
   std::vector<std::uint32_t> all(200);
   std::iota(all.begin(), all.end(), 0U);
-  ConnectedPieces searching(scene, all);
-  ConnectedPieces keeping(scene, all);
+  ConnectedComponents searching(scene, all);
+  ConnectedComponents keeping(scene, all);
   keeping.keep_near(0.12);
 
   for (int n = 0; n < 500; ++n) {
@@ -87,16 +86,16 @@ TEST(ConnectedPieces, AreTheSameWhetherPairsAreKeptOrNot) {
   }
 }
 
-TEST(ConnectedPieces, OfBoundPairsFollowTheChain) {
+TEST(ConnectedComponents, OfBoundPairsFollowTheChain) {
   NetworkDescription scene = cloud(8, 1.0, 0.0, 3);
   SetLiaison set;
   set.set_p = {1, 2, 4, 5, 7};
   set.range = 0.1;
   set.rest_length = 0.0;
-  scene.behaviours.push_back({"none", {LinkState{}}, {}, 0});
+  scene.state_machines.push_back({"none", {LinkState{}}, {}, 0});
   scene.sets = {set};
   const World world = make_world(scene);
-  ConnectedPieces pieces(world.network(), 0);
+  ConnectedComponents pieces(world.network(), 0);
   const std::vector<BoundPair> pairs = {{5, 7, 1, 0.0}, {1, 7, 1, 0.0}};
 
   EXPECT_EQ(pieces.find_bound(pairs), 3U);
@@ -107,11 +106,11 @@ TEST(ConnectedPieces, OfBoundPairsFollowTheChain) {
   EXPECT_EQ(pieces.find_bound({}), 5U);
 }
 
-TEST(ConnectedPieces, AreCountedWithoutAllocating) {
+TEST(ConnectedComponents, AreCountedWithoutAllocating) {
   NetworkDescription scene = cloud(200, 1.0, 0.0, 3);
   add_set(scene, contact(1.0, 0.0), 0.1, -1.0, 200);
   const World world = make_world(scene);
-  ConnectedPieces pieces(world.network(), 0);
+  ConnectedComponents pieces(world.network(), 0);
 
   const AllocationGuard guard;
   const std::size_t count = pieces.find_near(world.positions(), 0.1);
@@ -120,9 +119,9 @@ TEST(ConnectedPieces, AreCountedWithoutAllocating) {
   EXPECT_GT(count, 1U);
 }
 
-TEST(ConnectedPieces, OfASetThatDoesNotExistAreRefused) {
+TEST(ConnectedComponents, OfASetThatDoesNotExistAreRefused) {
   const World world = make_world(free_cluster(3, 2, 0.0));
-  EXPECT_THROW(ConnectedPieces(world.network(), 0), std::invalid_argument);
+  EXPECT_THROW(ConnectedComponents(world.network(), 0), std::invalid_argument);
 }
 
 }  // namespace

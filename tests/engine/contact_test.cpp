@@ -13,7 +13,7 @@ namespace cordis::test {
 namespace {
 
 /// Apart, no force; a spring-damper while the distance is below 0.
-Behaviour contact(double stiffness, double viscosity, bool clamped) {
+StateMachine contact(double stiffness, double viscosity, bool clamped) {
   LinkState touching;
   touching.stiffness = stiffness;
   touching.viscosity = viscosity;
@@ -23,17 +23,17 @@ Behaviour contact(double stiffness, double viscosity, bool clamped) {
       .exit(q(Quantity::kElongation) < 0.0, 1)
       .state(touching)
       .exit(q(Quantity::kElongation) >= 0.0, 0)
-      .behaviour;
+      .state_machine;
 }
 
 /// A mass that comes to a wall at 0 with the speed of 1 m/s; 1 dimension.
-NetworkDescription approach(Behaviour behaviour, double mass_kg, double step) {
+NetworkDescription approach(StateMachine state_machine, double mass_kg, double step) {
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = step;
   // a third of a step before the wall in every resolution
   scene.mats = {fixed(Vec3::Zero()), mass(mass_kg, Vec3(7.3 * step, 0, 0), Vec3(-1, 0, 0))};
-  scene.behaviours = {std::move(behaviour)};
+  scene.state_machines = {std::move(state_machine)};
   scene.state_links = {{0, 1, 0, 0.0}};
   return scene;
 }
@@ -77,8 +77,8 @@ TEST(Contact, OfHertzGoesAsDeepAndLastsAsLongAsItMust) {
   touching.elasticity.exponent = 1.5;
   touching.pulls = false;
   const double step = 1e-6;
-  World world =
-      make_world(approach(Behaving().state(touching).behaviour, number(data["params"]["m"]), step));
+  World world = make_world(
+      approach(Behaving().state(touching).state_machine, number(data["params"]["m"]), step));
   double depth = 0.0;
   int steps_in_contact = 0;
 
@@ -135,7 +135,7 @@ TEST(Contact, OfTwoBallsKeepsTheirMomentumAndRestitution) {
   scene.step = 1e-6;
   scene.mats = {mass(number(data["m1"]), Vec3(-1.23e-5, 0, 0), Vec3(number(data["v1"]), 0, 0)),
                 mass(number(data["m2"]), Vec3::Zero(), Vec3(number(data["v2"]), 0, 0))};
-  scene.behaviours = {contact(number(data["K"]), number(data["Z"]), false)};
+  scene.state_machines = {contact(number(data["K"]), number(data["Z"]), false)};
   scene.state_links = {{0, 1, 0, 0.0}};
   World world = make_world(scene);
   const double momentum = world.momentum().x();

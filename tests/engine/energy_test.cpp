@@ -186,7 +186,7 @@ Energy after_swinging(const LinkState& state, double step) {
   scene.dimension = 1;
   scene.step = step;
   scene.mats = {fixed(Vec3::Zero()), mass(0.1, Vec3(0.61, 0, 0), Vec3(0.2, 0, 0))};
-  scene.behaviours = {Behaving().state(state).behaviour};
+  scene.state_machines = {Behaving().state(state).state_machine};
   scene.state_links = {{0, 1, 0, 0.5}};
   World world = make_world(scene);
   Energy worst;

@@ -15,7 +15,7 @@
 namespace cordis::test {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 struct Difference {
   double largest = 0.0;  // of positions, over the peak
@@ -23,7 +23,7 @@ struct Difference {
   double awake = 0.0;    // mean part
 };
 
-Difference difference_after_strike(Integrator integrator, double tolerance) {
+Difference difference_after_strike(IntegratorKind integrator, double tolerance) {
   constexpr std::uint32_t kCount = 200;
   NetworkDescription scene = bedded_chain(kCount);
   scene.integrator = integrator;
@@ -48,7 +48,7 @@ Difference difference_after_strike(Integrator integrator, double tolerance) {
 }
 
 TEST(FreezingError, IsOffByLessThanThreeTolerances) {
-  for (const Integrator integrator : {Integrator::kCordis, Integrator::kLeapfrog}) {
+  for (const IntegratorKind integrator : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
     double awake_before = 1.0;
     for (const double tolerance : {4.5e-5, 4.5e-4, 4.5e-3}) {  // of the peak
       const Difference difference = difference_after_strike(integrator, tolerance * kPeak);
@@ -91,7 +91,7 @@ NetworkDescription resting_network(std::uint32_t seed) {
   Behaving slack;  // pulls beyond a stretch
   slack.state(0.0).exit(q(engine::Quantity::kElongation) > 0.01, 1);
   slack.state(20.0, 0.2).exit(q(engine::Quantity::kElongation) < 0.005, 0);
-  scene.behaviours = {slack.behaviour};
+  scene.state_machines = {slack.state_machine};
   for (std::uint32_t i = 0; i < 160; ++i) {
     const auto a = static_cast<std::uint32_t>(random() % kCount);
     const auto b = static_cast<std::uint32_t>(random() % scene.mats.size());
@@ -111,13 +111,13 @@ TEST(FreezingError, IsOffByLessThanTenTolerancesInAnyNetwork) {
   constexpr double kTolerance = 1e-5;
   for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(rounds(24)); ++seed) {
     NetworkDescription scene = resting_network(seed);
-    scene.integrator = seed % 2 == 0 ? Integrator::kCordis : Integrator::kLeapfrog;
+    scene.integrator = seed % 2 == 0 ? IntegratorKind::kCordis : IntegratorKind::kLeapfrog;
     World whole = make_world(scene);
     World part = make_world(frozen(scene, kTolerance));
     double square = 0.0;
     double largest = 0.0;
     double farthest = 0.0;
-    std::uint32_t most_asleep = 0;
+    std::uint32_t max_asleep = 0;
     constexpr int kSteps = 3000;
     for (int n = 0; n < kSteps; ++n) {
       for (World* world : {&whole, &part}) {
@@ -130,15 +130,15 @@ TEST(FreezingError, IsOffByLessThanTenTolerancesInAnyNetwork) {
         largest = std::max(largest, error);
         farthest = std::max(farthest, (whole.position(i) - scene.mats[i].position).norm());
       }
-      most_asleep = std::max(most_asleep, part.asleep_count());
-      if (scene.integrator != Integrator::kCordis) continue;
+      max_asleep = std::max(max_asleep, part.asleep_count());
+      if (scene.integrator != IntegratorKind::kCordis) continue;
       const engine::Energy energy = part.energy();
       ASSERT_LT(std::abs(energy.residual()), 1e-9 * energy.largest) << seed << ", step " << n;
     }
     EXPECT_LT(std::sqrt(square), 10.0) << seed;
     EXPECT_LT(largest, 100.0) << seed;
     EXPECT_GT(farthest, 100.0 * kTolerance) << seed;
-    EXPECT_GT(most_asleep, 10U) << seed;
+    EXPECT_GT(max_asleep, 10U) << seed;
     RecordProperty("network" + std::to_string(seed),
                    std::to_string(std::sqrt(square)) + ", at most " + std::to_string(largest));
   }

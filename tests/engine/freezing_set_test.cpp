@@ -16,13 +16,13 @@
 namespace cordis::test {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 constexpr double kSpacing = 0.01;  // [m]
 constexpr double kTolerance = 1e-7;
 
 /// Bound where they met, and torn off beyond a stretch.
-Behaviour sticky_balls(double age_of_wear) {
+StateMachine sticky_balls(double age_of_wear) {
   Behaving stick;
   stick.state(0.0).exit(q(engine::Quantity::kDistance) < 1.1 * kSpacing, 1, RestRule::kHere);
   stick.state(200.0, 0.3).exit(q(engine::Quantity::kElongation) > 0.5 * kSpacing, 0);
@@ -30,19 +30,19 @@ Behaviour sticky_balls(double age_of_wear) {
     stick.exit(q(engine::Quantity::kAge) > age_of_wear, 2);
     stick.state(20.0, 0.3);
   }
-  return stick.behaviour;
+  return stick.state_machine;
 }
 
 struct BallLaw {
   std::string name;
-  Behaviour behaviour;
+  StateMachine state_machine;
 };
 
 std::vector<BallLaw> ball_laws() {
   const auto stateless = [](const LinkState& state) {
-    Behaviour behaviour;
-    behaviour.states = {state};
-    return behaviour;
+    StateMachine state_machine;
+    state_machine.states = {state};
+    return state_machine;
   };
   LinkState spring = contact(200.0, 0.3);
   spring.pulls = true;
@@ -57,17 +57,17 @@ std::vector<BallLaw> ball_laws() {
           {"states", sticky_balls(0.0)}};
 }
 
-void add_set_of_all(NetworkDescription& scene, const Behaviour& behaviour) {
+void add_set_of_all(NetworkDescription& scene, const StateMachine& state_machine) {
   SetLiaison set;
   set.range = 1.4 * kSpacing;
   set.rest_length = kSpacing;
   for (std::uint32_t i = 0; i < scene.mats.size(); ++i) set.set_p.push_back(i);
-  scene.behaviours.push_back(behaviour);
+  scene.state_machines.push_back(state_machine);
   scene.sets.push_back(set);
 }
 
 /// Balls in rows of 24 in a plane, each in the gap of the two below, the lowest row fixed.
-NetworkDescription wall(std::uint32_t rows, const Behaviour& behaviour) {
+NetworkDescription wall(std::uint32_t rows, const StateMachine& state_machine) {
   NetworkDescription scene;
   scene.dimension = 2;
   scene.step = 2e-4;
@@ -79,11 +79,11 @@ NetworkDescription wall(std::uint32_t rows, const Behaviour& behaviour) {
       scene.mats.push_back(row == 0 ? fixed(at) : mass(1e-3, at));
     }
   }
-  add_set_of_all(scene, behaviour);
+  add_set_of_all(scene, state_machine);
   return scene;
 }
 
-std::string key_of(std::string name, Integrator integrator) {
+std::string key_of(std::string name, IntegratorKind integrator) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
   return name + '_' + to_string(integrator);
@@ -105,9 +105,9 @@ void poke(World& world, std::uint64_t from) {
 constexpr std::uint64_t kSettled = 2500;  // steps
 
 TEST(FreezingSet, IsOffByLessThanTenTolerances) {
-  for (const Integrator integrator : {Integrator::kCordis, Integrator::kLeapfrog}) {
+  for (const IntegratorKind integrator : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
     for (const BallLaw& law : ball_laws()) {
-      NetworkDescription scene = wall(8, law.behaviour);
+      NetworkDescription scene = wall(8, law.state_machine);
       scene.integrator = integrator;
       World whole = make_world(scene);
       scene.freeze_tolerance = kTolerance;
@@ -142,7 +142,7 @@ TEST(FreezingSet, IsOffByLessThanTenTolerances) {
 }
 
 /// A swarm that moves for ever, and a patch far off, at rest without any force.
-NetworkDescription swarm_and_patch(const Behaviour& behaviour, int dimension) {
+NetworkDescription swarm_and_patch(const StateMachine& state_machine, int dimension) {
   NetworkDescription scene = cloud(60, 0.06, 0.3, dimension);
   scene.radius.clear();
   scene.step = 1e-4;
@@ -152,15 +152,15 @@ NetworkDescription swarm_and_patch(const Behaviour& behaviour, int dimension) {
     if (dimension == 1 && i >= 4) break;
     scene.mats.push_back(mass(1e-3, at + Vec3(1, 0, 0)));
   }
-  add_set_of_all(scene, behaviour);
+  add_set_of_all(scene, state_machine);
   return scene;
 }
 
 TEST(FreezingSet, IsNotKnownToWhatIsAwake) {
-  for (const Integrator integrator : {Integrator::kCordis, Integrator::kLeapfrog}) {
+  for (const IntegratorKind integrator : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
     for (const int dimension : {1, 2, 3}) {
       for (const BallLaw& law : ball_laws()) {
-        NetworkDescription scene = swarm_and_patch(law.behaviour, dimension);
+        NetworkDescription scene = swarm_and_patch(law.state_machine, dimension);
         scene.integrator = integrator;
         World whole = make_world(scene);
         scene.freeze_tolerance = 1e-10;
@@ -183,7 +183,7 @@ TEST(FreezingSet, IsNotKnownToWhatIsAwake) {
 
 TEST(FreezingSet, KeepsTheAccount) {
   for (const BallLaw& law : ball_laws()) {
-    NetworkDescription scene = wall(8, law.behaviour);
+    NetworkDescription scene = wall(8, law.state_machine);
     scene.freeze_tolerance = kTolerance;
     World world = make_world(scene);
     for (int n = 0; n < rounds(3000); ++n) {
@@ -196,9 +196,9 @@ TEST(FreezingSet, KeepsTheAccount) {
 }
 
 TEST(FreezingSet, GoesOnFromASnapshotBitForBit) {
-  for (const Integrator integrator : {Integrator::kCordis, Integrator::kLeapfrog}) {
+  for (const IntegratorKind integrator : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
     for (const BallLaw& law : ball_laws()) {
-      NetworkDescription scene = wall(6, law.behaviour);
+      NetworkDescription scene = wall(6, law.state_machine);
       scene.integrator = integrator;
       scene.freeze_tolerance = kTolerance;
       const auto go_on = [](World& world, int steps) {
@@ -232,7 +232,7 @@ TEST(FreezingSet, GoesOnFromASnapshotBitForBit) {
 
 TEST(FreezingSet, IsTheSameBitsForEveryWidth) {
   for (const BallLaw& law : ball_laws()) {
-    NetworkDescription scene = wall(6, law.behaviour);
+    NetworkDescription scene = wall(6, law.state_machine);
     scene.freeze_tolerance = kTolerance;
     std::vector<std::uint64_t> hashes;
     for (const VectorWidth width : engine::supported_vector_widths()) {
@@ -250,7 +250,7 @@ TEST(FreezingSet, IsTheSameBitsForEveryWidth) {
 
 TEST(FreezingSet, StepsWithoutAllocating) {
   for (const BallLaw& law : ball_laws()) {
-    NetworkDescription scene = wall(6, law.behaviour);
+    NetworkDescription scene = wall(6, law.state_machine);
     scene.freeze_tolerance = kTolerance;
     World world = make_world(scene);
     world.set_external_force(140, Vec3::Zero());

@@ -18,7 +18,7 @@
 namespace cordis::test {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 TEST(Freezing, LetsAPulseIntoWhatRests) {
   constexpr std::uint32_t kCount = 100;
@@ -66,7 +66,7 @@ NetworkDescription two_pieces(int dimension) {
 }
 
 TEST(Freezing, IsNotKnownToWhatIsAwake) {
-  for (const Integrator integrator : {Integrator::kCordis, Integrator::kLeapfrog}) {
+  for (const IntegratorKind integrator : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
     for (const int dimension : {1, 2, 3}) {
       NetworkDescription scene = two_pieces(dimension);
       scene.integrator = integrator;
@@ -95,7 +95,7 @@ NetworkDescription scene_of_all_links(int dimension) {
   Behaving contact;
   contact.state(0.0).exit(size(q(engine::Quantity::kDistance)) < 0.3, 1);
   contact.state(20.0, 1.0).exit(size(q(engine::Quantity::kDistance)) > 0.3, 0);
-  scene.behaviours = {contact.behaviour};
+  scene.state_machines = {contact.state_machine};
   for (std::uint32_t i = 0; i + 9 < 30; ++i) scene.state_links.push_back({i, i + 9, 0, 0.3});
   return scene;
 }
@@ -103,21 +103,21 @@ NetworkDescription scene_of_all_links(int dimension) {
 TEST(Freezing, KeepsTheAccount) {
   for (const int dimension : {1, 3}) {
     World world = make_world(frozen(scene_of_all_links(dimension), 1e-4));
-    std::uint32_t most_asleep = 0;
+    std::uint32_t max_asleep = 0;
     for (int n = 0; n < rounds(20000); ++n) {
       if (n == 14000) world.impose_position(30, Vec3(0.3, 0, 0));
       world.step();
-      most_asleep = std::max(most_asleep, world.asleep_count());
+      max_asleep = std::max(max_asleep, world.asleep_count());
       const engine::Energy energy = world.energy();
       ASSERT_LT(std::abs(energy.residual()), 1e-9 * energy.largest) << "step " << n;
     }
-    EXPECT_TRUE(rounds(10) < 10 || most_asleep > 25U) << most_asleep;
+    EXPECT_TRUE(rounds(10) < 10 || max_asleep > 25U) << max_asleep;
   }
 }
 
 TEST(Freezing, OfLeapfrogLosesWhatItStops) {
   NetworkDescription scene = bedded_chain(40);
-  scene.integrator = Integrator::kLeapfrog;
+  scene.integrator = IntegratorKind::kLeapfrog;
   World whole = make_world(scene);
   World part = make_world(frozen(scene, 1e-3 * kPeak));
   for (int n = 0; n < 2500; ++n) {
@@ -132,7 +132,7 @@ TEST(Freezing, OfLeapfrogLosesWhatItStops) {
 }
 
 TEST(Freezing, GoesOnFromASnapshotBitForBit) {
-  for (const Integrator integrator : {Integrator::kCordis, Integrator::kLeapfrog}) {
+  for (const IntegratorKind integrator : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
     NetworkDescription scene = frozen(bedded_chain(60), 1e-4 * kPeak);
     scene.integrator = integrator;
     World first = make_world(scene);
@@ -183,8 +183,8 @@ TEST(Freezing, LeavesOutNothingThatFliesOrIsHeld) {
   scene.gravity = Vec3(0, -9.81, 0);
   Behaving contact;
   contact.state(1e6);  // a 4th of its tolerance pulls 25 times the weight of the ball
-  contact.behaviour.states[0].pulls = false;
-  scene.behaviours = {contact.behaviour};
+  contact.state_machine.states[0].pulls = false;
+  scene.state_machines = {contact.state_machine};
   scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0, 0.02, 0), Vec3(0, 0.05, 0)),
                 mass(0.01, Vec3(1, 0, 0)), fixed(Vec3(2, 0, 0))};
   scene.state_links = {{0, 1, 0, 0.01}};
@@ -219,14 +219,14 @@ TEST(Freezing, DoesNotStopAMassWithoutStiffness) {
 }
 
 /// Two masses at rest on springs, and a link with states between them.
-NetworkDescription resting_pair(const Behaving& behaviour) {
+NetworkDescription resting_pair(const Behaving& state_machine) {
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = 1e-3;
   scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.1, 0, 0)), mass(0.01, Vec3(0.2, 0, 0)),
                 fixed(Vec3(0.3, 0, 0))};
   scene.links = {{0, 1, 100.0, 0.1, 0.1}, {2, 3, 100.0, 0.1, 0.1}};
-  scene.behaviours = {behaviour.behaviour};
+  scene.state_machines = {state_machine.state_machine};
   scene.state_links = {{1, 2, 0, 0.15}};
   scene.freeze_tolerance = 1e-5;
   return scene;
@@ -272,9 +272,9 @@ TEST(Freezing, WakesWhatIsTouched) {
 
   World changed = make_world(scene);
   run(changed, 50);
-  engine::Behaviour stiff = scene.behaviours[0];
+  engine::StateMachine stiff = scene.state_machines[0];
   stiff.states[0].stiffness = 20.0;
-  changed.replace_behaviour(0, stiff);
+  changed.replace_state_machine(0, stiff);
   EXPECT_EQ(changed.asleep_count(), 0U);
   changed.step();
   EXPECT_NE(changed.velocity(1), Vec3::Zero());
@@ -285,7 +285,7 @@ TEST(Freezing, WakesWhatIsTouched) {
   World before = make_world(scene);
   run(before, 50);
   std::vector<double> room;
-  room.reserve(after.most_values_of_state());
+  room.reserve(after.max_values_of_state());
   ASSERT_TRUE(after.take_over(before, room));
   EXPECT_EQ(after.asleep_count(), 0U);
   after.step();
@@ -331,15 +331,15 @@ TEST(Freezing, StepsWithoutAllocating) {
 }
 
 TEST(Freezing, IsRefusedWhereItCannotBeKept) {
-  for (const Integrator integrator :
-       {Integrator::kImplicit, Integrator::kModal, Integrator::kSymplectic4}) {
+  for (const IntegratorKind integrator :
+       {IntegratorKind::kImplicit, IntegratorKind::kModal, IntegratorKind::kSymplectic4}) {
     NetworkDescription scene = oscillator(1.0, 1.0, 0.0, 0.1, 0.0, 1e-3);
     scene.integrator = integrator;
     EXPECT_NO_THROW(make_world(scene));
     EXPECT_THROW(make_world(frozen(scene, 1e-6)), std::invalid_argument) << to_string(integrator);
   }
   NetworkDescription in_sweeps = oscillator(1.0, 1.0, 400.0, 0.1, 0.0, 1e-3);
-  in_sweeps.integrator = Integrator::kLeapfrog;
+  in_sweeps.integrator = IntegratorKind::kLeapfrog;
   EXPECT_THROW(make_world(frozen(in_sweeps, 1e-6)), std::invalid_argument);
   EXPECT_THROW(make_world(frozen(bedded_chain(3), kNan)), std::invalid_argument);
   NetworkDescription kept = frozen(bedded_chain(3), 1e-6);

@@ -18,7 +18,7 @@ namespace {
 // Scenes and their motions are made with + - * / alone: sin and cos differ from one C library to
 // the next.
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 /// A number in [0, 1), different for each index.
 double scattered(std::uint32_t index) {
@@ -27,7 +27,7 @@ double scattered(std::uint32_t index) {
 
 /// 1 dimension: 43 masses in a medium, plucked, both ends fixed; 44 links, of which 4 share the
 /// last batch.
-World plucked_string(VectorWidth width, Integrator integrator = Integrator::kCordis) {
+World plucked_string(VectorWidth width, IntegratorKind integrator = IntegratorKind::kCordis) {
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = 1e-4;
@@ -72,7 +72,7 @@ World turning_ring(VectorWidth width) {
 }
 
 /// 3 dimensions: a net of 12 x 12 masses held at two corners, under gravity, pushed by a port.
-World pushed_net(VectorWidth width, Integrator integrator = Integrator::kCordis) {
+World pushed_net(VectorWidth width, IntegratorKind integrator = IntegratorKind::kCordis) {
   NetworkDescription scene;
   scene.step = 1e-3;
   scene.integrator = integrator;
@@ -103,7 +103,7 @@ World pushed_net(VectorWidth width, Integrator integrator = Integrator::kCordis)
 /// 3 dimensions: a net whose dampers need sweeps of their own.
 World heavily_damped_net(VectorWidth width) {
   NetworkDescription scene = free_cluster(40, 157, 20.0);
-  scene.integrator = Integrator::kLeapfrog;
+  scene.integrator = IntegratorKind::kLeapfrog;
   scene.medium_viscosity = 0.01;
   World world = make_world(scene, width);
   run(world, 2000);
@@ -111,7 +111,7 @@ World heavily_damped_net(VectorWidth width) {
 }
 
 /// 3 dimensions: links of every law, changing state under every kind of condition.
-World changing_links(VectorWidth width, Integrator integrator = Integrator::kCordis) {
+World changing_links(VectorWidth width, IntegratorKind integrator = IntegratorKind::kCordis) {
   NetworkDescription scene = network_of_many_states(3);
   scene.integrator = integrator;
   World world = make_world(scene, width);
@@ -147,26 +147,26 @@ TEST_P(GoldenHash, OfChangingLinksStays) {
 TEST_P(GoldenHash, OfTheLeapfrogStays) {
   // the damping of the net is extrapolated, that of the string too; that of a string with heavy
   // dampers goes in sweeps
-  expect(plucked_string(GetParam(), Integrator::kLeapfrog), "leapfrog_plucked_string");
-  expect(pushed_net(GetParam(), Integrator::kLeapfrog), "leapfrog_pushed_net");
-  expect(changing_links(GetParam(), Integrator::kLeapfrog), "leapfrog_changing_links");
+  expect(plucked_string(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_plucked_string");
+  expect(pushed_net(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_pushed_net");
+  expect(changing_links(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_changing_links");
   expect(heavily_damped_net(GetParam()), "leapfrog_heavily_damped_net");
 }
 
 TEST_P(GoldenHash, OfTheOtherIntegratorsStays) {
   NetworkDescription scene = free_cluster(40, 157, 0.0);
-  scene.integrator = Integrator::kSymplectic4;
+  scene.integrator = IntegratorKind::kSymplectic4;
   scene.gravity = Vec3(0, 0, -9.81);
   World symplectic = make_world(scene, GetParam());
   run(symplectic, 500);
   expect(symplectic, "symplectic4_cluster");
   scene = string_in_space(20, 0.05, 1e-3);
-  scene.integrator = Integrator::kImplicit;
+  scene.integrator = IntegratorKind::kImplicit;
   scene.gravity = Vec3(0, 0, -9.81);
   World implicit = make_world(scene, GetParam());
   run(implicit, 500);
   expect(implicit, "implicit_string");
-  World modal = plucked_string(GetParam(), Integrator::kModal);
+  World modal = plucked_string(GetParam(), IntegratorKind::kModal);
   expect(modal, "modal_plucked_string");
 }
 

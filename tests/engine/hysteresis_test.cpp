@@ -19,24 +19,25 @@ const nlohmann::json& hysteresis() {
 }
 
 /// Elastic up to the yield elongation in both directions, then flowing.
-Behaviour plastic(double stiffness, double yield) {
+StateMachine plastic(double stiffness, double yield) {
   const Term e = q(Quantity::kElongation);
   const Term rest = q(Quantity::kRestLength);
   return Behaving()
       .state(stiffness)
       .exit_to_rest(e > yield, 0, rest + (e - yield))
       .exit_to_rest(e < -yield, 0, rest + (e + yield))
-      .behaviour;
+      .state_machine;
 }
 
-/// A port at 0 joined to a fixed point by links of these behaviours; 1 dimension.
-NetworkDescription led(std::vector<Behaviour> behaviours, double step) {
+/// A port at 0 joined to a fixed point by links of these state machines; 1 dimension.
+NetworkDescription led(std::vector<StateMachine> state_machines, double step) {
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = step;
   scene.mats = {fixed(Vec3::Zero()), port(Vec3::Zero())};
-  for (std::uint32_t b = 0; b < behaviours.size(); ++b) scene.state_links.push_back({0, 1, b, 0.0});
-  scene.behaviours = std::move(behaviours);
+  for (std::uint32_t b = 0; b < state_machines.size(); ++b)
+    scene.state_links.push_back({0, 1, b, 0.0});
+  scene.state_machines = std::move(state_machines);
   return scene;
 }
 
@@ -77,7 +78,7 @@ TEST(Plastic, HardensWithASpringInParallel) {
   const double amplitude = number(hysteresis()["params"]["A"]);
   World world =
       make_world(led({plastic((1.0 - second) * stiffness, number(hysteresis()["params"]["uy"])),
-                      Behaving().state(second * stiffness).behaviour},
+                      Behaving().state(second * stiffness).state_machine},
                      2.0 * std::numbers::pi / kStepsPerCycle));
   lead(world, amplitude, 0, kStepsPerCycle / 4);
   const double before = world.energy().port_work;
@@ -94,11 +95,11 @@ TEST(Rupture, ComesAtItsElongation) {
   scene.dimension = 1;
   scene.step = step;
   scene.mats = {mass(number(data["m"]), Vec3::Zero()), port(Vec3::Zero())};
-  scene.behaviours = {Behaving()
-                          .state(number(data["k"]))
-                          .exit(q(Quantity::kElongation) > number(data["ub"]), 1)
-                          .state(0.0)
-                          .behaviour};
+  scene.state_machines = {Behaving()
+                              .state(number(data["k"]))
+                              .exit(q(Quantity::kElongation) > number(data["ub"]), 1)
+                              .state(0.0)
+                              .state_machine};
   scene.state_links = {{0, 1, 0, 0.0}};
   World world = make_world(scene);
   while (world.state_of(0) == 0 && world.step_count() < 100'000) {
@@ -123,7 +124,7 @@ TEST(Ratchet, HoldsTheTeethItHasPassed) {
   World world = make_world(led({Behaving()
                                     .state(number(data["K"]))
                                     .exit_to_rest(q(Quantity::kElongation) >= pitch, 0, next)
-                                    .behaviour},
+                                    .state_machine},
                                1e-3));
   constexpr int kSteps = 370'000;
   const double reach = number(data["A"]);
@@ -154,12 +155,12 @@ NetworkDescription block_on_a_belt(const nlohmann::json& of, double step) {
   scene.mats = {fixed(Vec3::Zero()), mass(mass_kg, Vec3::Zero(), Vec3(number(of["V"]), 0, 0)),
                 port(Vec3::Zero())};
   scene.links = {{0, 1, number(of["k"]), 0.0, 0.0}};
-  scene.behaviours = {Behaving()
-                          .state(hook, 2.0 * std::sqrt(hook * mass_kg))
-                          .exit(size(q(Quantity::kForce)) > number(of["Fs"]), 1)
-                          .state(slipping)
-                          .exit(q(Quantity::kSpeed) >= 0.0, 0, RestRule::kHere)
-                          .behaviour};
+  scene.state_machines = {Behaving()
+                              .state(hook, 2.0 * std::sqrt(hook * mass_kg))
+                              .exit(size(q(Quantity::kForce)) > number(of["Fs"]), 1)
+                              .state(slipping)
+                              .exit(q(Quantity::kSpeed) >= 0.0, 0, RestRule::kHere)
+                              .state_machine};
   scene.state_links = {{2, 1, 0, 0.0}};
   return scene;
 }

@@ -12,10 +12,10 @@
 namespace cordis::test {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 NetworkDescription by_implicit(NetworkDescription scene) {
-  scene.integrator = Integrator::kImplicit;
+  scene.integrator = IntegratorKind::kImplicit;
   return scene;
 }
 
@@ -144,7 +144,7 @@ TEST(ImplicitEuler, LeavesTheLimitOfStatesAsItIsAndLaterByWhatIsImplicit) {
       NetworkDescription scene = oscillator(1.0, linear, 0.5, 1.0, 0.0, 1.0);
       if (linear == 0.0) scene.links.clear();
       const double stiffness = linear == 0.0 ? 4.0 : 4.0 + linear + 2.0 * 0.5;
-      scene.behaviours.push_back(Behaving().state(side * stiffness).behaviour);
+      scene.state_machines.push_back(Behaving().state(side * stiffness).state_machine);
       scene.state_links = {{0, 1, 0, 0.0}};
       World world = make_world(by_implicit(scene));
       double largest = 0.0;

@@ -14,10 +14,10 @@ namespace cordis::test {
 namespace {
 
 using engine::Energy;
-using engine::Integrator;
+using engine::IntegratorKind;
 
 NetworkDescription by_leapfrog(NetworkDescription scene) {
-  scene.integrator = Integrator::kLeapfrog;
+  scene.integrator = IntegratorKind::kLeapfrog;
   return scene;
 }
 
@@ -128,7 +128,7 @@ NetworkDescription on_a_pair(double stiffness, double viscosity) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 10.0, 0.0, 1.0);
   scene.links.clear();
   scene.mats[1].position.x() = 10.5;
-  scene.behaviours.push_back(Behaving().state(stiffness, viscosity).behaviour);
+  scene.state_machines.push_back(Behaving().state(stiffness, viscosity).state_machine);
   scene.sets = {{0, {0}, {1}, 1e300, 10.0}};
   return scene;
 }
@@ -148,7 +148,7 @@ TEST(LeapfrogStability, OfStatesEndsAtAStiffnessOfFourWhateverTheirViscosity) {
     for (const double side : {0.98, 1.02}) {
       NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
       scene.links.clear();
-      scene.behaviours.push_back(Behaving().state(4.0 * side, viscosity).behaviour);
+      scene.state_machines.push_back(Behaving().state(4.0 * side, viscosity).state_machine);
       scene.state_links = {{0, 1, 0, 0.0}};
       const double largest = excursion_by_leapfrog(scene);
 
@@ -277,7 +277,7 @@ TEST(Leapfrog, IsTakenOverWithItsMotion) {
   run(first, 37);
   World second = make_world(by_leapfrog(account_scene(1e-4, 0.05)));
   std::vector<double> room;
-  room.reserve(second.most_values_of_state());
+  room.reserve(second.max_values_of_state());
   ASSERT_TRUE(second.take_over(first, room));
   run(first, 50);
   run(second, 50);

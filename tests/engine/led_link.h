@@ -8,14 +8,14 @@
 
 namespace cordis::test {
 
-/// A port at x, joined to a fixed point at 0 by one link of a behaviour; 1 dimension, dt = 0.01 s.
-inline NetworkDescription led_link(Behaviour behaviour, double x, double rest_length,
+/// A port at x, joined to a fixed point at 0 by one link of a state machine; 1 dimension, dt = 0.01 s.
+inline NetworkDescription led_link(StateMachine state_machine, double x, double rest_length,
                                    int dimension = 1) {
   NetworkDescription scene;
   scene.dimension = dimension;
   scene.step = 0.01;
   scene.mats = {fixed(Vec3::Zero()), port(Vec3(x, 0, 0))};
-  scene.behaviours = {std::move(behaviour)};
+  scene.state_machines = {std::move(state_machine)};
   scene.state_links = {{0, 1, 0, rest_length}};
   return scene;
 }

@@ -22,8 +22,8 @@ INSTANTIATE_TEST_SUITE_P(Widths, LinkQuantities,
                          [](const auto& width) { return engine::to_string(width.param); });
 
 /// Two states, of which the first is left when `quantity` exceeds `threshold`.
-Behaviour watching(Quantity quantity, double threshold) {
-  return Behaving().state(10.0, 1.0).exit(q(quantity) > threshold, 1).state(10.0).behaviour;
+StateMachine watching(Quantity quantity, double threshold) {
+  return Behaving().state(10.0, 1.0).exit(q(quantity) > threshold, 1).state(10.0).state_machine;
 }
 
 TEST_P(LinkQuantities, TellHowItStandsAndMoves) {
@@ -32,7 +32,7 @@ TEST_P(LinkQuantities, TellHowItStandsAndMoves) {
     NetworkDescription scene;
     scene.step = 0.01;
     scene.mats = {fixed(Vec3(1, 1, 1)), port(Vec3(3.7, 5.1, 0.8)), mass(2.5, Vec3(9, 9, 9))};
-    scene.behaviours = {watching(quantity, -1e9)};
+    scene.state_machines = {watching(quantity, -1e9)};
     scene.state_links = {{0, 1, 0, 2.0}};
     World world = make(scene);
     world.impose_position(1, Vec3(4.0, 5.0, 1.0));
@@ -60,7 +60,7 @@ TEST_P(LinkQuantities, TellTheMassesOfItsEnds) {
     scene.step = 0.01;
     scene.mats = {fixed(Vec3::Zero()), port(Vec3(1, 0, 0)), mass(2.5, Vec3(2, 0, 0)),
                   mass(0.5, Vec3(3, 0, 0))};
-    scene.behaviours = {watching(quantity, -1.0)};
+    scene.state_machines = {watching(quantity, -1.0)};
     scene.state_links = {{0, 2, 0, 0.0}, {3, 1, 0, 0.0}};
     World world = make(scene);
     world.step();
@@ -100,7 +100,7 @@ TEST_P(LinkQuantities, CountImpulseAndAgeFromTheEntry) {
                                   .exit(q(Quantity::kImpulse) > 0.55, 2)
                                   .state(0.0)
                                   .exit(q(Quantity::kAge) >= 0.015, 0)
-                                  .behaviour,
+                                  .state_machine,
                               1.0, 0.0));
   std::vector<std::uint32_t> states;
   for (int n = 0; n < 23; ++n) {

@@ -57,7 +57,7 @@ inline engine::Law function_law() {
 }
 
 /// Six states, one law each, left for the next one after conditions of different kinds.
-inline Behaviour behaviour_of_many_states() {
+inline StateMachine state_machine_of_many_states() {
   const auto with = [](engine::Law elasticity, engine::Law dissipation = {}) {
     LinkState state;
     state.viscosity = 0.05;
@@ -88,7 +88,7 @@ inline Behaviour behaviour_of_many_states() {
       .state(with(ring_law()))
       .exit(either(q(Quantity::kSpeedX) > q(Quantity::kSpeedY) * 2.0, q(Quantity::kAge) > 0.02), 0,
             RestRule::kHere)
-      .behaviour;
+      .state_machine;
 }
 
 /// 20 masses, joined by 75 links of many states, by linear ones, and by a damper; a port stirs.
@@ -96,7 +96,7 @@ inline NetworkDescription network_of_many_states(int dimension) {
   NetworkDescription scene = free_cluster(20, 95, 0.1, dimension);
   scene.medium_viscosity = 0.2;  // takes what the changes of state bring in
   scene.mats.push_back(port(Vec3::Zero()));
-  scene.behaviours = {behaviour_of_many_states(), Behaving().state(0.0, 0.3).behaviour};
+  scene.state_machines = {state_machine_of_many_states(), Behaving().state(0.0, 0.3).state_machine};
   for (std::size_t l = 20; l < 95; ++l) {
     const Link& link = scene.links[l];
     scene.state_links.push_back({link.mat_a, link.mat_b, l % 9 == 0 ? 1U : 0U, link.rest_length});

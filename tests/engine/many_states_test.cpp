@@ -81,10 +81,10 @@ TEST_P(ManyStates, GoOnFromASnapshotBitForBit) {
 TEST_P(ManyStates, GoOnFromASnapshotOfOtherParameters) {
   World first = make_world(network_of_many_states(GetParam()));
   stir(first, 100);
-  Behaviour stiffer = behaviour_of_many_states();
+  StateMachine stiffer = state_machine_of_many_states();
   stiffer.states[0].stiffness *= 2.0;
   stiffer.exits[0].when.code[0].quantity = Quantity::kImpulse;
-  first.replace_behaviour(0, stiffer);
+  first.replace_state_machine(0, stiffer);
   stir(first, 100);
   const engine::Snapshot snapshot = first.snapshot();
   World second = make_world(network_of_many_states(GetParam()));
@@ -120,7 +120,7 @@ TEST_P(ManyStates, AreSeenByTheHash) {
   other.state_links[3].rest_length += 1e-15;
   EXPECT_NE(make_world(scene).state_hash(), make_world(other).state_hash());
   other = scene;
-  other.behaviours[0].start = 1;
+  other.state_machines[0].start = 1;
   EXPECT_NE(make_world(scene).state_hash(), make_world(other).state_hash());
 }
 

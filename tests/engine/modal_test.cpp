@@ -15,10 +15,10 @@
 namespace cordis::test {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 NetworkDescription by_modes(NetworkDescription scene) {
-  scene.integrator = Integrator::kModal;
+  scene.integrator = IntegratorKind::kModal;
   return scene;
 }
 
@@ -40,7 +40,7 @@ NetworkDescription string(double viscosity, double step) {
 double error_after(double time, const NetworkDescription& scene) {
   NetworkDescription exact = scene;
   exact.step = 4e-6;
-  exact.integrator = Integrator::kLeapfrog;
+  exact.integrator = IntegratorKind::kLeapfrog;
   World reference = make_world(exact);
   run(reference, static_cast<int>(std::lround(time / exact.step)));
   World world = make_world(by_modes(scene));
@@ -71,7 +71,7 @@ TEST(Modal, IsExactAtStepsFarBeyondTheLimitOfTheOthers) {
 
 NetworkDescription driven_string(double step) {
   NetworkDescription scene = string(0.02, step);
-  scene.behaviours.push_back(Behaving().state(200.0).behaviour);
+  scene.state_machines.push_back(Behaving().state(200.0).state_machine);
   scene.state_links = {{0, 7, 0, 0.0}};
   return scene;
 }
@@ -102,7 +102,7 @@ TEST(Modal, BearsWhatIsFastenedToItUpToItsLimit) {
   for (const double side : {0.98, 1.02}) {
     NetworkDescription scene = driven_string(4e-4);
     const engine::ModalBlock block(by_modes(scene));
-    scene.behaviours[0].states[0].stiffness = side * block.most_stiffness(7);
+    scene.state_machines[0].states[0].stiffness = side * block.max_stiffness(7);
     World world = make_world(by_modes(scene));
     double largest = 0.0;
     for (int n = 0; n < 20000 && largest < 1e50; ++n) {
@@ -119,7 +119,7 @@ TEST(Modal, NeedsTheStaticShareOfTheModesThatItLeavesOut) {
   scene.medium_viscosity = 0.5;  // comes to rest soon
   scene.gravity = Vec3::Zero();
   for (Mat& mat : scene.mats) mat.position = mat.velocity = Vec3::Zero();
-  scene.most_mode_hz = 60.0;  // of 15 to 201
+  scene.max_mode_hz = 60.0;  // of 15 to 201
   const engine::ModalBlock block(by_modes(scene));
   ASSERT_EQ(block.mode_count(), 4U);
   World world = make_world(by_modes(scene));
@@ -153,7 +153,7 @@ TEST(Modal, RefusesWhatHasNoModes) {
   heavy.mats[4].mass = 0.1;
   EXPECT_EQ(refusal(heavy), start + "different masses in a medium");
   NetworkDescription crowd = string(0.0, 1e-4);  // whose modes would take hours, and all memory
-  crowd.mats.resize(engine::kMostModalMasses + 5, crowd.mats[5]);
+  crowd.mats.resize(engine::kMaxModalMasses + 5, crowd.mats[5]);
   EXPECT_EQ(refusal(crowd), start + "more than 2000 masses");
 }
 

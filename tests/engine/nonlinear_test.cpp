@@ -30,7 +30,7 @@ std::vector<double> pulls(const LinkState& state, const std::vector<double>& dis
   NetworkDescription scene;
   scene.step = 0.01;
   scene.mats.push_back(fixed(Vec3::Zero()));
-  scene.behaviours = {Behaving().state(state).behaviour};
+  scene.state_machines = {Behaving().state(state).state_machine};
   for (const double distance : distances) {
     scene.state_links.push_back({0, static_cast<std::uint32_t>(scene.mats.size()), 0, 0.5});
     scene.mats.push_back(fixed(Vec3(0, distance, 0)));
@@ -141,7 +141,7 @@ TEST_P(Laws, OfViscosityAnswerToTheSpeed) {
     scene.mats = {fixed(Vec3::Zero()), port(Vec3(1, 0, 0))};
     LinkState state;
     state.dissipation = dissipation;
-    scene.behaviours = {Behaving().state(state).behaviour};
+    scene.state_machines = {Behaving().state(state).state_machine};
     scene.state_links = {{0, 1, 0, 0.3}};
     World world = make_world(scene, GetParam());
     world.impose_position(1, Vec3(1.0 + 0.01 * speed, 0, 0));
@@ -157,7 +157,7 @@ TEST_P(Laws, OfViscosityAnswerToTheSpeed) {
 /// A chain between fixed ends in 1 dimension: masses at `q`, of the half-step speed that makes
 /// them start with the momenta `p`.
 NetworkDescription chain(const std::vector<double>& q, const std::vector<double>& p, double step,
-                         std::vector<Behaviour> behaviours) {
+                         std::vector<StateMachine> state_machines) {
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = step;
@@ -166,19 +166,19 @@ NetworkDescription chain(const std::vector<double>& q, const std::vector<double>
     scene.mats.push_back(mass(1.0, Vec3(q[i], 0, 0), Vec3(p[i], 0, 0)));
   }
   scene.mats.push_back(fixed(Vec3::Zero()));
-  const auto kinds = static_cast<std::uint32_t>(behaviours.size());
+  const auto kinds = static_cast<std::uint32_t>(state_machines.size());
   for (std::uint32_t l = 0; l <= q.size(); ++l) {
     scene.state_links.push_back({l, l + 1, l % kinds, 0.0});
   }
-  scene.behaviours = std::move(behaviours);
+  scene.state_machines = std::move(state_machines);
   return scene;
 }
 
 double duffing_error(double step) {
   const nlohmann::json data = reference("R07_duffing");
-  NetworkDescription scene =
-      chain({number(data["params"]["x0"])}, {0.0}, step,
-            {Behaving().state(with(power_law(number(data["params"]["k3"]), 3.0), 1.0)).behaviour});
+  NetworkDescription scene = chain(
+      {number(data["params"]["x0"])}, {0.0}, step,
+      {Behaving().state(with(power_law(number(data["params"]["k3"]), 3.0), 1.0)).state_machine});
   scene.state_links.pop_back();
   World world = make_world(scene);
   double largest = 0.0;
@@ -206,8 +206,8 @@ double stiff_chain_error(double step) {
   for (const auto& value : data["initial_p"]) momentum.push_back(number(value));
   const double omega = number(data["params"]["omega"]);
   World world = make_world(chain(start, momentum, step,
-                                 {Behaving().state(with(power_law(4.0, 3.0))).behaviour,
-                                  Behaving().state(0.5 * omega * omega).behaviour}));
+                                 {Behaving().state(with(power_law(4.0, 3.0))).state_machine,
+                                  Behaving().state(0.5 * omega * omega).state_machine}));
   const auto& row = data["rows"][0];
   const auto steps = static_cast<int>(std::lround(row["t"].get<double>() / step));
   run(world, steps);
@@ -260,7 +260,7 @@ TEST(FermiPastaUlam, SharesTheEnergyOfItsModesAsTheReference) {
   for (int i = 1; i <= 32; ++i) start.push_back(std::sin(std::numbers::pi * i / 33.0));
   const double step = 0.01;
   World world = make_world(chain(start, std::vector<double>(32, 0.0), step,
-                                 {Behaving().state(with(law, 1.0)).behaviour}));
+                                 {Behaving().state(with(law, 1.0)).state_machine}));
   run(world, 99'999);
   std::vector<double> before;
   for (std::uint32_t i = 1; i <= 32; ++i) before.push_back(world.position(i).x());

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/links/state_table.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
@@ -22,22 +22,22 @@ namespace cordis::test {
 namespace {
 
 using engine::Instruction;
-using engine::kBehaviourBatch;
 using engine::kMaxSlots;
 using engine::kQuantityCount;
+using engine::kStateBatch;
 
 constexpr double kUntouched = 1234.5;
 
 /// 8 rows with values for every quantity.
 struct Rows {
-  alignas(64) std::array<std::array<double, kBehaviourBatch>, kQuantityCount> quantity{};
-  alignas(64) std::array<double, kBehaviourBatch> growth{};
-  alignas(64) std::array<double, kBehaviourBatch> entered{};
-  alignas(64) std::array<double, kBehaviourBatch> elastic{};
-  alignas(64) std::array<double, kBehaviourBatch> elastic_before{};
-  alignas(64) std::array<double, kMaxSlots * kBehaviourBatch> memory{};
-  std::array<engine::StateIndex, kBehaviourBatch> state{};
-  engine::BehaviourRows rows;
+  alignas(64) std::array<std::array<double, kStateBatch>, kQuantityCount> quantity{};
+  alignas(64) std::array<double, kStateBatch> growth{};
+  alignas(64) std::array<double, kStateBatch> entered{};
+  alignas(64) std::array<double, kStateBatch> elastic{};
+  alignas(64) std::array<double, kStateBatch> elastic_before{};
+  alignas(64) std::array<double, kMaxSlots * kStateBatch> memory{};
+  std::array<engine::StateIndex, kStateBatch> state{};
+  engine::StateMachineRows rows;
 
   Rows() {
     memory.fill(kNan);
@@ -60,7 +60,7 @@ struct Rows {
   Rows& operator=(const Rows&) = delete;
   ~Rows() = default;
 
-  std::array<double, kBehaviourBatch>& of(Quantity which) {
+  std::array<double, kStateBatch>& of(Quantity which) {
     return quantity[static_cast<std::size_t>(which)];
   }
 };
@@ -159,16 +159,17 @@ std::uint64_t bits(double value) {
 class Programs : public testing::TestWithParam<VectorWidth> {
  protected:
   /// The values of an expression, by way of the rest length; NaN and infinity leave that alone.
-  static std::array<double, kBehaviourBatch> values(const Term& term, Rows& rows) {
-    const engine::StateTable table({Behaving().state(0.0).exit_to_rest(1.0, 0, term).behaviour},
+  static std::array<double, kStateBatch> values(const Term& term, Rows& rows) {
+    const engine::StateTable table({Behaving().state(0.0).exit_to_rest(1.0, 0, term).state_machine},
                                    rows.rows.dt);
-    engine::behaviour_kernel(GetParam()).step(table.terms(), rows.rows);
+    engine::state_kernel(GetParam()).step(table.terms(), rows.rows);
     return rows.of(Quantity::kRestLength);
   }
   static bool holds(const Term& term) {
     Rows rows;
-    const engine::StateTable table({Behaving().state(0.0).exit(term, 0).behaviour}, rows.rows.dt);
-    engine::behaviour_kernel(GetParam()).step(table.terms(), rows.rows);
+    const engine::StateTable table({Behaving().state(0.0).exit(term, 0).state_machine},
+                                   rows.rows.dt);
+    engine::state_kernel(GetParam()).step(table.terms(), rows.rows);
     EXPECT_TRUE(rows.rows.changed == 0 || rows.rows.changed == 0xffU);
     return rows.rows.changed != 0;
   }
@@ -239,11 +240,11 @@ TEST_P(Programs, LeaveARestLengthThatWouldNotBeFinite) {
 TEST_P(Programs, KnowEveryQuantityOfEveryRow) {
   for (std::size_t k = 0; k < kQuantityCount; ++k) {
     Rows rows;
-    for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
+    for (std::size_t i = 0; i < kStateBatch; ++i) {
       rows.quantity[k][i] = static_cast<double>(10 * k + i);
     }
     const auto found = values(q(static_cast<Quantity>(k)), rows);
-    for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
+    for (std::size_t i = 0; i < kStateBatch; ++i) {
       EXPECT_EQ(found[i], static_cast<double>(10 * k + i)) << "quantity " << k;
     }
   }
@@ -270,9 +271,9 @@ TEST_P(Programs, RiseAndFallFromOneStepToTheNext) {
                                       .exit(one(Operation::kFalling, q(Quantity::kSlip), 5), 2)
                                       .state(0.0)
                                       .state(0.0)
-                                      .behaviour},
+                                      .state_machine},
                                  rows.rows.dt);
-  const auto step = [&] { engine::behaviour_kernel(GetParam()).step(table.terms(), rows.rows); };
+  const auto step = [&] { engine::state_kernel(GetParam()).step(table.terms(), rows.rows); };
 
   rows.of(Quantity::kSlip) = {1, 1, 1, 1, 1, 1, 1, 1};
   step();
@@ -289,12 +290,12 @@ TEST_P(Programs, RiseAndFallFromOneStepToTheNext) {
 TEST_P(Programs, RememberAnewAfterAnEntry) {
   Rows rows;
   const engine::StateTable table(
-      {Behaving().state(0.0).exit(one(Operation::kRising, q(Quantity::kSlip)), 0).behaviour},
+      {Behaving().state(0.0).exit(one(Operation::kRising, q(Quantity::kSlip)), 0).state_machine},
       rows.rows.dt);
   std::vector<bool> changes;
   for (const double slip : {1.0, 2.0, 3.0, 4.0, 5.0}) {
     rows.of(Quantity::kSlip).fill(slip);
-    engine::behaviour_kernel(GetParam()).step(table.terms(), rows.rows);
+    engine::state_kernel(GetParam()).step(table.terms(), rows.rows);
     changes.push_back(rows.rows.changed == 0xff);
   }
   EXPECT_EQ(changes, (std::vector<bool>{false, true, false, true, false}));
@@ -330,8 +331,8 @@ TEST_P(Programs, AgreeWithTheirMeaningForTenThousandRandomOnes) {
     for (auto& of_rows : rows.quantity) {
       for (double& value : of_rows) value = static_cast<double>(random() % 17) / 4.0 - 2.0;
     }
-    std::array<double, kBehaviourBatch> expected{};
-    for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
+    std::array<double, kStateBatch> expected{};
+    for (std::size_t i = 0; i < kStateBatch; ++i) {
       const double value = worth(term.program, rows, i);
       finite += std::isfinite(value) ? 1 : 0;
       expected[i] = std::isfinite(value) ? value : rows.of(Quantity::kRestLength)[i];
@@ -339,7 +340,7 @@ TEST_P(Programs, AgreeWithTheirMeaningForTenThousandRandomOnes) {
 
     const auto found = values(term, rows);
 
-    for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
+    for (std::size_t i = 0; i < kStateBatch; ++i) {
       ASSERT_EQ(bits(found[i]), bits(expected[i])) << "program " << n << ", row " << i;
     }
   }

@@ -1,20 +1,20 @@
-// tests/engine/programs.h -- programs and behaviours, written as a person would.
+// tests/engine/programs.h -- programs and state machines, written as a person would.
 #pragma once
 
 #include <cstdint>
 #include <utility>
 
-#include "sim_node/engine/laws/behaviour.h"
+#include "sim_node/engine/links/state_machine.h"
 
 namespace cordis::test {
 
-using engine::Behaviour;
-using engine::Exit;
 using engine::LinkState;
 using engine::Operation;
 using engine::Program;
 using engine::Quantity;
 using engine::RestRule;
+using engine::StateMachine;
+using engine::Transition;
 
 /// A program under construction: `q(Quantity::kElongation) > 0.1`.
 struct Term {
@@ -77,15 +77,15 @@ inline Term size(Term u) {
   return one(Operation::kAbs, std::move(u));
 }
 
-/// A behaviour under construction.
+/// A state machine under construction.
 struct Behaving {
-  Behaviour behaviour;
+  StateMachine state_machine;
 
   /// Adds a state; the exits added next are its own.
   Behaving& state(LinkState state) {
-    state.first_exit = static_cast<std::uint32_t>(behaviour.exits.size());
+    state.first_exit = static_cast<std::uint32_t>(state_machine.exits.size());
     state.last_exit = state.first_exit;
-    behaviour.states.push_back(std::move(state));
+    state_machine.states.push_back(std::move(state));
     return *this;
   }
   Behaving& state(double stiffness, double viscosity = 0.0) {
@@ -95,23 +95,23 @@ struct Behaving {
     return this->state(state);
   }
   Behaving& exit(Term when, std::uint32_t target, RestRule rest = RestRule::kKeep) {
-    Exit exit;
+    Transition exit;
     exit.when = std::move(when.program);
     exit.target = target;
     exit.rest = rest;
     for (const engine::Instruction& instruction : exit.when.code) {
       if (instruction.operation != Operation::kQuantity) continue;
-      exit.fired = instruction.quantity;
+      exit.triggered = instruction.quantity;
       break;
     }
-    behaviour.exits.push_back(std::move(exit));
-    ++behaviour.states.back().last_exit;
+    state_machine.exits.push_back(std::move(exit));
+    ++state_machine.states.back().last_exit;
     return *this;
   }
   /// With the value of an expression as the new rest length.
   Behaving& exit_to_rest(Term when, std::uint32_t target, Term rest_length) {
     exit(std::move(when), target, RestRule::kExpression);
-    behaviour.exits.back().rest_length = std::move(rest_length.program);
+    state_machine.exits.back().rest_length = std::move(rest_length.program);
     return *this;
   }
 };

@@ -247,14 +247,14 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SetLaws,
 /// sum over all pairs.
 std::vector<double> positions_with_skin(const NetworkDescription& scene, double skin) {
   const auto width = engine::best_vector_width();
-  const engine::StateTable table(scene.behaviours, scene.step);
+  const engine::StateTable table(scene.state_machines, scene.step);
   engine::EventLog log(table, 16);
   engine::MatArray mats(scene);
   engine::SetPairs set(scene, 0, table, engine::pair_kernel(width));
   if (skin >= 0.0) set.neighbours().hold_skin(skin);
   for (std::uint64_t n = 0; n < 2000; ++n) {
     mats.clear_forces();
-    set.add_forces({table, engine::behaviour_kernel(width), log, n, false}, mats.force_columns());
+    set.add_forces({table, engine::state_kernel(width), log, n, false}, mats.force_columns());
     mats.advance(engine::step_kernel(width));
   }
   std::vector<double> positions;
@@ -352,7 +352,7 @@ TEST(SetLiaison, ReportsThatItHasNoRoomForItsPairsAndIsRightAllTheSame) {
 
   const engine::StepReport report = world.step();
 
-  EXPECT_EQ(report.crowded_sets, 1U);
+  EXPECT_EQ(report.overflowed_sets, 1U);
   for (const std::uint32_t i : {0U, 4000U, 8299U}) {
     Vec3 expected = Vec3::Zero();
     for (std::uint32_t j = 0; j < 8300; ++j) {
@@ -441,9 +441,9 @@ TEST(SetLiaison, TakesOtherParametersBetweenTwoSteps) {
   World world = make_world(scene);
   run(world, 300);
 
-  engine::Behaviour softer = scene.behaviours[0];
+  engine::StateMachine softer = scene.state_machines[0];
   softer.states[0] = contact(30.0, 0.5);
-  world.replace_behaviour(0, softer);
+  world.replace_state_machine(0, softer);
   engine::Energy energy = world.energy();
   EXPECT_LT(energy.switching, 0.0);  // nine tenths of what was stored
   EXPECT_LT(std::abs(energy.residual()), 1e-12 * energy.largest);

@@ -13,13 +13,13 @@ namespace cordis::test {
 namespace {
 
 using engine::Energy;
-using engine::Exit;
 using engine::Instruction;
 using engine::LinkEvent;
 using engine::Operation;
 using engine::Program;
 using engine::Quantity;
 using engine::RestRule;
+using engine::Transition;
 
 Instruction constant(double value) {
   return {Operation::kConstant, Quantity::kDistance, value, 0};
@@ -40,9 +40,9 @@ constexpr std::uint32_t kFree = 0;
 constexpr std::uint32_t kBound = 1;
 
 /// Free balls touch, stick where they met, and tear off again when they are pulled too far.
-Behaviour sticking(double stiffness, double viscosity, double reach) {
-  Behaviour behaviour;
-  behaviour.name = "stick";
+StateMachine sticking(double stiffness, double viscosity, double reach) {
+  StateMachine state_machine;
+  state_machine.name = "stick";
   LinkState free_state;
   free_state.name = "free";
   free_state.first_exit = 0;
@@ -53,70 +53,70 @@ Behaviour sticking(double stiffness, double viscosity, double reach) {
   bound.viscosity = viscosity;
   bound.first_exit = 1;
   bound.last_exit = 2;
-  behaviour.states = {free_state, bound};
-  Exit touch{compare(Quantity::kElongation, Operation::kLess, 0.0),
-             kBound,
-             RestRule::kHere,
-             {},
-             Quantity::kElongation};
-  Exit tear{compare(Quantity::kElongation, Operation::kGreater, reach),
-            kFree,
-            RestRule::kKeep,
-            {},
-            Quantity::kElongation};
-  behaviour.exits = {touch, tear};
-  return behaviour;
+  state_machine.states = {free_state, bound};
+  Transition touch{compare(Quantity::kElongation, Operation::kLess, 0.0),
+                   kBound,
+                   RestRule::kHere,
+                   {},
+                   Quantity::kElongation};
+  Transition tear{compare(Quantity::kElongation, Operation::kGreater, reach),
+                  kFree,
+                  RestRule::kKeep,
+                  {},
+                  Quantity::kElongation};
+  state_machine.exits = {touch, tear};
+  return state_machine;
 }
 
 /// Three states that ask for everything a pair remembers.
-Behaviour forgetful() {
-  Behaviour behaviour = sticking(60.0, 0.05, 0.03);
-  behaviour.states[kBound].last_exit = 4;
-  LinkState worn = behaviour.states[kBound];
+StateMachine forgetful() {
+  StateMachine state_machine = sticking(60.0, 0.05, 0.03);
+  state_machine.states[kBound].last_exit = 4;
+  LinkState worn = state_machine.states[kBound];
   worn.name = "worn";
   worn.stiffness = 20.0;
   worn.viscosity = 0.2;
   worn.first_exit = 4;
   worn.last_exit = 6;
-  behaviour.states.push_back(worn);
-  behaviour.exits.push_back(
+  state_machine.states.push_back(worn);
+  state_machine.exits.push_back(
       {compare(Quantity::kAge, Operation::kGreater, 0.05),
        2,
        RestRule::kExpression,
        {{quantity(Quantity::kRestLength), quantity(Quantity::kElongation), constant(0.5),
          operation(Operation::kMultiply), operation(Operation::kAdd)}},
        Quantity::kAge});
-  behaviour.exits.push_back({compare(Quantity::kSlip, Operation::kGreater, 0.9),
-                             2,
-                             RestRule::kKeep,
-                             {},
-                             Quantity::kSlip});
-  behaviour.exits.push_back({compare(Quantity::kImpulse, Operation::kLess, -0.02),
-                             kFree,
-                             RestRule::kKeep,
-                             {},
-                             Quantity::kImpulse});
-  behaviour.exits.push_back({{{quantity(Quantity::kForce), operation(Operation::kRising, 3),
-                               quantity(Quantity::kElongation), constant(0.008),
-                               operation(Operation::kGreater), operation(Operation::kAnd)}},
-                             kFree,
-                             RestRule::kKeep,
-                             {},
-                             Quantity::kForce});
-  return behaviour;
+  state_machine.exits.push_back({compare(Quantity::kSlip, Operation::kGreater, 0.9),
+                                 2,
+                                 RestRule::kKeep,
+                                 {},
+                                 Quantity::kSlip});
+  state_machine.exits.push_back({compare(Quantity::kImpulse, Operation::kLess, -0.02),
+                                 kFree,
+                                 RestRule::kKeep,
+                                 {},
+                                 Quantity::kImpulse});
+  state_machine.exits.push_back({{{quantity(Quantity::kForce), operation(Operation::kRising, 3),
+                                   quantity(Quantity::kElongation), constant(0.008),
+                                   operation(Operation::kGreater), operation(Operation::kAnd)}},
+                                 kFree,
+                                 RestRule::kKeep,
+                                 {},
+                                 Quantity::kForce});
+  return state_machine;
 }
 
-NetworkDescription with_set(NetworkDescription scene, const Behaviour& behaviour, double range,
-                            double rest_length) {
+NetworkDescription with_set(NetworkDescription scene, const StateMachine& state_machine,
+                            double range, double rest_length) {
   add_set(scene, LinkState{}, range, rest_length, 1'000'000);
-  scene.behaviours.back() = behaviour;
+  scene.state_machines.back() = state_machine;
   return scene;
 }
 
 /// The same liaison, as a state link for each pair.
-NetworkDescription with_links(NetworkDescription scene, const Behaviour& behaviour,
+NetworkDescription with_links(NetworkDescription scene, const StateMachine& state_machine,
                               double rest_length) {
-  scene.behaviours = {behaviour};
+  scene.state_machines = {state_machine};
   for (std::uint32_t a = 0; a < scene.mats.size(); ++a) {
     for (std::uint32_t b = a + 1; b < scene.mats.size(); ++b) {
       scene.state_links.push_back({a, b, 0, rest_length});
@@ -213,11 +213,11 @@ TEST(SetStates, OfABallThatIsNoLongerFiniteAreForgottenAndItIsReported) {
 
 TEST(SetStates, BeginAnewWhenAFreePairComesBackIntoRange) {
   // free at 0.05 s of age in range counts as touched; the pair leaves for a while and comes back
-  Behaviour behaviour = sticking(1.0, 0.0, 10.0);
-  behaviour.exits[0].when = compare(Quantity::kAge, Operation::kGreater, 0.05);
+  StateMachine state_machine = sticking(1.0, 0.0, 10.0);
+  state_machine.exits[0].when = compare(Quantity::kAge, Operation::kGreater, 0.05);
   NetworkDescription scene = cloud(0, 0.0, 0.0, 1);
   scene.mats = {{MatKind::kPort, 0.0, Vec3::Zero(), Vec3::Zero()}, fixed(Vec3::Zero())};
-  World world = make_world(with_set(scene, behaviour, 0.1, 0.0));
+  World world = make_world(with_set(scene, state_machine, 0.1, 0.0));
 
   std::uint64_t bound_at = 0;
   for (std::uint64_t n = 0; n < 200 && bound_at == 0; ++n) {
@@ -257,7 +257,7 @@ TEST(SetStates, AreInTheHash) {
   // two fixed points: nothing but the state of their pair changes
   NetworkDescription scene = cloud(0, 0.0, 0.0, 3);
   scene.mats = {fixed(Vec3::Zero()), fixed(Vec3(0.01, 0, 0)), mass(1.0, Vec3(5, 0, 0))};
-  Behaviour never = sticking(1.0, 0.0, 10.0);
+  StateMachine never = sticking(1.0, 0.0, 10.0);
   never.exits[0].when = compare(Quantity::kElongation, Operation::kLess, -1.0);
   World sticks = make_world(with_set(scene, sticking(1.0, 0.0, 10.0), 0.1, 0.05));
   World stays = make_world(with_set(scene, never, 0.1, 0.05));

@@ -31,10 +31,11 @@ TEST_P(StateLinks, OfOneStateArePlainLinks) {
     NetworkDescription with_states = linear;
     with_states.links.clear();
     for (const Link& link : linear.links) {
-      with_states.state_links.push_back({link.mat_a, link.mat_b,
-                                         static_cast<std::uint32_t>(with_states.behaviours.size()),
-                                         link.rest_length});
-      with_states.behaviours.push_back(Behaving().state(link.stiffness, link.viscosity).behaviour);
+      with_states.state_links.push_back(
+          {link.mat_a, link.mat_b, static_cast<std::uint32_t>(with_states.state_machines.size()),
+           link.rest_length});
+      with_states.state_machines.push_back(
+          Behaving().state(link.stiffness, link.viscosity).state_machine);
     }
     World expected = make(linear);
     World world = make(with_states);
@@ -63,7 +64,7 @@ TEST_P(StateLinks, ChangeByTheFirstExitThatHolds) {
                                   .state(10.0)
                                   .state(20.0)
                                   .state(30.0)
-                                  .behaviour,
+                                  .state_machine,
                               0.0, 0.0));
 
   lead(world, 0.5);
@@ -79,7 +80,7 @@ TEST_P(StateLinks, ChangeByTheFirstExitThatHolds) {
   EXPECT_EQ(event.link, 0U);
   EXPECT_EQ(event.mat_a, 0U);
   EXPECT_EQ(event.mat_b, 1U);
-  EXPECT_EQ(event.behaviour, 0U);
+  EXPECT_EQ(event.state_machine, 0U);
   EXPECT_EQ(event.from, 0U);
   EXPECT_EQ(event.to, 2U);
   EXPECT_EQ(event.quantity, Quantity::kElongation);
@@ -92,9 +93,15 @@ TEST_P(StateLinks, ChangeByTheFirstExitThatHolds) {
 }
 
 TEST_P(StateLinks, ChangeAtMostOnceAStep) {
-  World world = make(led_link(
-      Behaving().state(1.0).exit(1.0, 1).state(2.0).exit(1.0, 2).state(3.0).exit(1.0, 0).behaviour,
-      1.0, 0.0));
+  World world = make(led_link(Behaving()
+                                  .state(1.0)
+                                  .exit(1.0, 1)
+                                  .state(2.0)
+                                  .exit(1.0, 2)
+                                  .state(3.0)
+                                  .exit(1.0, 0)
+                                  .state_machine,
+                              1.0, 0.0));
   std::vector<std::uint32_t> states;
   for (int n = 0; n < 5; ++n) {
     world.step();
@@ -105,10 +112,10 @@ TEST_P(StateLinks, ChangeAtMostOnceAStep) {
 }
 
 TEST_P(StateLinks, StartInTheStartStateAndTestItsExitsInTheFirstStep) {
-  Behaviour behaviour =
-      Behaving().state(1.0).state(2.0).exit(q(Quantity::kDistance) > 0.0, 0).behaviour;
-  behaviour.start = 1;
-  World world = make(led_link(behaviour, 1.0, 0.0));
+  StateMachine state_machine =
+      Behaving().state(1.0).state(2.0).exit(q(Quantity::kDistance) > 0.0, 0).state_machine;
+  state_machine.start = 1;
+  World world = make(led_link(state_machine, 1.0, 0.0));
   EXPECT_EQ(world.state_of(0), 1U);
   EXPECT_EQ(world.pull_of(0), 0.0);
 
@@ -126,7 +133,7 @@ TEST_P(StateLinks, KeepTheirRestLengthOrTakeAnother) {
     } else {
       behaving.exit(q(Quantity::kElongation) > 1.0, 0, rule);
     }
-    World world = make(led_link(behaving.behaviour, 0.0, 0.25));
+    World world = make(led_link(behaving.state_machine, 0.0, 0.25));
     EXPECT_EQ(world.rest_length_of(0), 0.25);
     lead(world, 2.0);
     return world.rest_length_of(0);
@@ -142,8 +149,8 @@ TEST_P(StateLinks, FlowPlasticallyAtTheirYieldPoint) {
   // past the elongation of 0.1 m the rest length follows, so that the pull stays K * 0.1 m
   const Term yielding = q(Quantity::kElongation) > 0.1;
   const Term flowed = q(Quantity::kRestLength) + q(Quantity::kElongation) - 0.1;
-  World world =
-      make(led_link(Behaving().state(50.0).exit_to_rest(yielding, 0, flowed).behaviour, 1.0, 1.0));
+  World world = make(
+      led_link(Behaving().state(50.0).exit_to_rest(yielding, 0, flowed).state_machine, 1.0, 1.0));
 
   for (int n = 1; n <= 100; ++n) {
     lead(world, 1.0 + 0.005 * n);
@@ -157,8 +164,8 @@ TEST_P(StateLinks, FlowPlasticallyAtTheirYieldPoint) {
 TEST_P(StateLinks, DampWithoutASpikeOnEntry) {
   // the damper of a state does not answer to what moved before it was entered
   World world = make(led_link(
-      Behaving().state(0.0).exit(q(Quantity::kDistance) > 0.5, 1).state(0.0, 7.0).behaviour, 0.0,
-      0.0));
+      Behaving().state(0.0).exit(q(Quantity::kDistance) > 0.5, 1).state(0.0, 7.0).state_machine,
+      0.0, 0.0));
 
   lead(world, 1.0);
   EXPECT_EQ(world.state_of(0), 1U);
@@ -169,7 +176,7 @@ TEST_P(StateLinks, DampWithoutASpikeOnEntry) {
 
 TEST_P(StateLinks, DampOnlyOthersWhenOneOfABatchIsEntered) {
   NetworkDescription scene = led_link(
-      Behaving().state(0.0, 7.0).exit(q(Quantity::kRestLength) > 0.5, 0).behaviour, 0.0, 0.0);
+      Behaving().state(0.0, 7.0).exit(q(Quantity::kRestLength) > 0.5, 0).state_machine, 0.0, 0.0);
   scene.state_links.push_back({0, 1, 0, 1.0});  // leaves in every step
   World world = make(scene);
 
@@ -184,7 +191,7 @@ TEST_P(StateLinks, DoNotPullWhenClamped) {
   clamped.stiffness = 10.0;
   clamped.viscosity = 0.5;
   clamped.pulls = false;
-  World world = make(led_link(Behaving().state(clamped).behaviour, 0.9, 1.0));
+  World world = make(led_link(Behaving().state(clamped).state_machine, 0.9, 1.0));
 
   lead(world, 0.9);
   EXPECT_NEAR(world.pull_of(0), -1.0, 1e-12);
@@ -200,7 +207,7 @@ TEST_P(StateLinks, DoNotPushWhenTheyAreThreads) {
   LinkState thread;
   thread.stiffness = 10.0;
   thread.pushes = false;
-  World world = make(led_link(Behaving().state(thread).behaviour, 1.0, 1.0));
+  World world = make(led_link(Behaving().state(thread).state_machine, 1.0, 1.0));
 
   lead(world, 0.5);
   EXPECT_EQ(world.pull_of(0), 0.0);
@@ -213,7 +220,7 @@ TEST_P(StateLinks, NeverGoBeyondTheirForceLimit) {
   limited.stiffness = 10.0;
   limited.viscosity = 0.3;
   limited.force_limit = 2.0;
-  World world = make(led_link(Behaving().state(limited).behaviour, 1.0, 1.0));
+  World world = make(led_link(Behaving().state(limited).state_machine, 1.0, 1.0));
 
   lead(world, 1.1);
   EXPECT_EQ(world.pull_of(0), 2.0);
@@ -228,9 +235,13 @@ TEST_P(StateLinks, NeverGoBeyondTheirForceLimit) {
 }
 
 TEST_P(StateLinks, AreForcedIntoAState) {
-  World world = make(led_link(
-      Behaving().state(1.0).exit(q(Quantity::kDistance) > 0.0, 1).state(2.0).state(3.0).behaviour,
-      1.0, 0.25));
+  World world = make(led_link(Behaving()
+                                  .state(1.0)
+                                  .exit(q(Quantity::kDistance) > 0.0, 1)
+                                  .state(2.0)
+                                  .state(3.0)
+                                  .state_machine,
+                              1.0, 0.25));
   world.force_state(0, 2);
   EXPECT_EQ(world.state_of(0), 0U) << "a change of the next step";
 
@@ -247,8 +258,8 @@ TEST_P(StateLinks, AreForcedIntoAState) {
 }
 
 TEST_P(StateLinks, StandInParallelBetweenTheSameEnds) {
-  NetworkDescription scene = led_link(Behaving().state(3.0).behaviour, 1.0, 0.5);
-  scene.behaviours.push_back(Behaving().state(0.0).exit(1.0, 1).state(5.0).behaviour);
+  NetworkDescription scene = led_link(Behaving().state(3.0).state_machine, 1.0, 0.5);
+  scene.state_machines.push_back(Behaving().state(0.0).exit(1.0, 1).state(5.0).state_machine);
   for (int l = 0; l < 12; ++l) scene.state_links.push_back({0, 1, l % 2 == 0 ? 1U : 0U, 0.5});
   scene.state_links.push_back({1, 0, 0, 0.5});  // the other way round: b - a = -1, rest = 0.5
   World world = make(scene);
@@ -269,7 +280,7 @@ TEST_P(StateLinks, HaveNoForceWhileTheirLengthIsZero) {
   state.elasticity.kind = engine::Law::Kind::kLennardJones;
   state.elasticity.depth = 1e-3;
   state.elasticity.diameter = 0.1;
-  scene.behaviours = {Behaving().state(state).behaviour};
+  scene.state_machines = {Behaving().state(state).state_machine};
   scene.state_links = {{0, 1, 0, 0.5}};
   World world = make(scene);
 
@@ -281,7 +292,7 @@ TEST_P(StateLinks, HaveNoForceWhileTheirLengthIsZero) {
 }
 
 TEST_P(StateLinks, HaveRoomForAnEventEach) {
-  NetworkDescription scene = led_link(Behaving().state(1.0).exit(1.0, 0).behaviour, 1.0, 0.0);
+  NetworkDescription scene = led_link(Behaving().state(1.0).exit(1.0, 0).state_machine, 1.0, 0.0);
   for (int l = 1; l < 1500; ++l) scene.state_links.push_back({0, 1, 0, 0.0});
   World world = make(scene);
 
@@ -293,7 +304,7 @@ TEST_P(StateLinks, HaveRoomForAnEventEach) {
 }
 
 TEST(EventLog, CountsWhatFindsNoRoom) {
-  const engine::StateTable table({Behaving().state(1.0).state(2.0).behaviour}, 0.01);
+  const engine::StateTable table({Behaving().state(1.0).state(2.0).state_machine}, 0.01);
   engine::EventLog log(table, 3);
 
   for (std::uint32_t l = 0; l < 5; ++l) {
@@ -314,14 +325,14 @@ TEST(EventLog, CountsWhatFindsNoRoom) {
 
 TEST_P(StateLinks, AreSteppedWithoutAllocating) {
   NetworkDescription scene = free_cluster(30, 0, 0.0);
-  scene.behaviours = {
+  scene.state_machines = {
       Behaving()
           .state(40.0, 0.2)
           .exit(either(q(Quantity::kSpeed) > 0.2, one(Operation::kRising, q(Quantity::kSlip))), 1)
           .state(10.0)
           .exit(q(Quantity::kImpulse) > 0.001, 0, RestRule::kHere)
           .exit(q(Quantity::kAge) > 0.003, 0)
-          .behaviour};
+          .state_machine};
   for (std::uint32_t l = 0; l < 100; ++l) {
     scene.state_links.push_back(
         {l % 30, (l * 7 + 1) % 30 == l % 30 ? (l + 1) % 30 : (l * 7 + 1) % 30, 0, 0.3});
@@ -345,14 +356,15 @@ TEST_P(StateLinks, AreSteppedWithoutAllocating) {
 }
 
 TEST_P(StateLinks, TakeOtherParametersBetweenTwoSteps) {
-  World world = make(led_link(
-      Behaving().state(1.0).exit(q(Quantity::kDistance) > 0.5, 1).state(2.0).behaviour, 1.0, 0.0));
+  World world = make(
+      led_link(Behaving().state(1.0).exit(q(Quantity::kDistance) > 0.5, 1).state(2.0).state_machine,
+               1.0, 0.0));
   world.step();
   ASSERT_EQ(world.state_of(0), 1U);
   const double switched = world.energy().switching;
 
-  world.replace_behaviour(
-      0, Behaving().state(1.0).exit(q(Quantity::kDistance) > 0.5, 1).state(6.0).behaviour);
+  world.replace_state_machine(
+      0, Behaving().state(1.0).exit(q(Quantity::kDistance) > 0.5, 1).state(6.0).state_machine);
 
   EXPECT_EQ(world.state_of(0), 1U);
   EXPECT_NEAR(world.energy().switching - switched, 0.5 * (6.0 - 2.0), 1e-12);
@@ -361,19 +373,20 @@ TEST_P(StateLinks, TakeOtherParametersBetweenTwoSteps) {
   EXPECT_LT(std::abs(world.energy().residual()), 1e-12);
 }
 
-TEST_P(StateLinks, RefuseBehavioursThatDoNotFit) {
-  World world = make(led_link(Behaving().state(1.0).state(2.0).behaviour, 1.0, 0.0));
-  const Behaviour good = Behaving().state(1.0).state(2.0).behaviour;
-  Behaviour bad = good;
+TEST_P(StateLinks, RefuseStateMachinesThatDoNotFit) {
+  World world = make(led_link(Behaving().state(1.0).state(2.0).state_machine, 1.0, 0.0));
+  const StateMachine good = Behaving().state(1.0).state(2.0).state_machine;
+  StateMachine bad = good;
   bad.states[0].stiffness = -1.0;
-  Behaviour heavy = good;
+  StateMachine heavy = good;
   heavy.states[0].viscosity = std::numeric_limits<double>::max();
 
-  EXPECT_THROW(world.replace_behaviour(1, good), std::invalid_argument);
-  EXPECT_THROW(world.replace_behaviour(0, bad), std::invalid_argument);
-  EXPECT_THROW(world.replace_behaviour(0, heavy), std::invalid_argument);
-  EXPECT_THROW(world.replace_behaviour(0, Behaving().state(1.0).behaviour), std::invalid_argument);
-  EXPECT_NO_THROW(world.replace_behaviour(0, good));
+  EXPECT_THROW(world.replace_state_machine(1, good), std::invalid_argument);
+  EXPECT_THROW(world.replace_state_machine(0, bad), std::invalid_argument);
+  EXPECT_THROW(world.replace_state_machine(0, heavy), std::invalid_argument);
+  EXPECT_THROW(world.replace_state_machine(0, Behaving().state(1.0).state_machine),
+               std::invalid_argument);
+  EXPECT_NO_THROW(world.replace_state_machine(0, good));
 }
 
 }  // namespace

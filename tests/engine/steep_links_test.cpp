@@ -1,12 +1,11 @@
 // tests/engine/steep_links_test.cpp -- friction that `leapfrog` solves for its speed.
-#include "sim_node/engine/integrators/stiff_friction.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/integrators/stiff_friction.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
 #include "tests/support/allocation_guard.h"
@@ -14,7 +13,7 @@
 namespace cordis::test::steep {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 using engine::Law;
 
 Law power_of_speed(double coefficient, double exponent) {
@@ -35,13 +34,13 @@ LinkState with_friction(const Law& law) {
 NetworkDescription one_mass(const LinkState& state, double v0, double step) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, v0, step);
   scene.links.clear();
-  scene.behaviours = {Behaving().state(state).behaviour};
+  scene.state_machines = {Behaving().state(state).state_machine};
   scene.state_links = {{0, 1, 0, 0.0}};
-  scene.integrator = Integrator::kLeapfrog;
+  scene.integrator = IntegratorKind::kLeapfrog;
   return scene;
 }
 
-TEST(SteepLinks, FollowTheRecurrenceOfTheCentredDamper) {
+TEST(StiffFriction, FollowTheRecurrenceOfTheCentredDamper) {
   // (1 + Z'/2) x+ = (2 - K') x - (1 - Z'/2) x-, m = 1 and dt = 1
   constexpr double kStiffness = 1.0;
   constexpr double kViscosity = 5.0;
@@ -62,7 +61,7 @@ TEST(SteepLinks, FollowTheRecurrenceOfTheCentredDamper) {
   }
 }
 
-TEST(SteepLinks, BringDryFrictionToRestWhereItStopsAndHoldItThere) {
+TEST(StiffFriction, BringDryFrictionToRestWhereItStopsAndHoldItThere) {
   // a power of 0: 2 N against any motion. From 3 m/s 1 kg stops after 1.5 s and 2.25 m.
   World world = make_world(one_mass(with_friction(power_of_speed(2.0, 0.0)), 3.0, 1e-3));
   run(world, 1000);
@@ -82,7 +81,7 @@ TEST(SteepLinks, BringDryFrictionToRestWhereItStopsAndHoldItThere) {
   EXPECT_NEAR(world.position(1).x() - held, 1.5, 5e-3);  // 3 m/s^2 for 1 s
 }
 
-TEST(SteepLinks, AreOfSecondOrder) {
+TEST(StiffFriction, AreOfSecondOrder) {
   // a spring of 10 N/m against 50 (s/m)^3 N; 150 N s/m at 1 m/s: solved from 2 ms on
   const auto end = [](double step) {
     LinkState state = with_friction(power_of_speed(50.0, 3.0));
@@ -97,10 +96,11 @@ TEST(SteepLinks, AreOfSecondOrder) {
   EXPECT_NEAR(std::log2((end(1e-2) - truth) / (end(5e-3) - truth)), 2.0, 0.1);
 }
 
-TEST(SteepLinks, InAChainAreSolvedTogether) {
+TEST(StiffFriction, InAChainAreSolvedTogether) {
   NetworkDescription scene = free_cluster(20, 0, 0.0, 1);
-  scene.integrator = Integrator::kLeapfrog;
-  scene.behaviours = {Behaving().state(10.0, 5000.0).behaviour};  // Z' = 100 for two of 0.1 kg
+  scene.integrator = IntegratorKind::kLeapfrog;
+  scene.state_machines = {
+      Behaving().state(10.0, 5000.0).state_machine};  // Z' = 100 for two of 0.1 kg
   for (std::uint32_t i = 0; i + 1 < 20; ++i) scene.state_links.push_back({i, i + 1, 0, 0.0});
   World world = make_world(scene);
   const Vec3 momentum = world.momentum();
@@ -113,11 +113,11 @@ TEST(SteepLinks, InAChainAreSolvedTogether) {
   EXPECT_LT(world.energy().total(), world.energy().largest);
 }
 
-TEST(SteepLinks, CannotBeFrozen) {
+TEST(StiffFriction, CannotBeFrozen) {
   NetworkDescription scene = one_mass(with_friction(power_of_speed(2.0, 0.0)), 3.0, 1e-3);
   scene.freeze_tolerance = 1e-6;
   EXPECT_TRUE(engine::refusal_of(scene).has_value());
-  scene.integrator = Integrator::kCordis;
+  scene.integrator = IntegratorKind::kCordis;
   EXPECT_FALSE(engine::refusal_of(scene).has_value());
 }
 
@@ -135,7 +135,7 @@ Law bow_law(double force) {
 }
 
 /// 60 masses of 84 mg, 100 Hz, drawn by a bow of 5 N at 0.1 m/s: while it sticks, 117 N s/m.
-NetworkDescription bowed(Integrator integrator, double rate_hz) {
+NetworkDescription bowed(IntegratorKind integrator, double rate_hz) {
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = 1.0 / rate_hz;
@@ -144,13 +144,13 @@ NetworkDescription bowed(Integrator integrator, double rate_hz) {
   scene.mats.front() = scene.mats.back() = fixed(Vec3::Zero());
   for (std::uint32_t i = 0; i < 61; ++i) scene.links.push_back({i, i + 1, 12490.0, 0.004, 0.0});
   scene.mats.push_back(mass(1e3, Vec3::Zero(), Vec3(0.1, 0, 0)));
-  scene.behaviours = {Behaving().state(with_friction(bow_law(5.0))).behaviour};
+  scene.state_machines = {Behaving().state(with_friction(bow_law(5.0))).state_machine};
   scene.state_links = {{8, 62, 0, 0.0}};
   return scene;
 }
 
 /// Where the string is under the bow and at two thirds, 200 times in 45 ms.
-std::vector<double> waveform(Integrator integrator, int per_sample_of_44100) {
+std::vector<double> waveform(IntegratorKind integrator, int per_sample_of_44100) {
   World world = make_world(bowed(integrator, 44100.0 * per_sample_of_44100));
   std::vector<double> wave;
   for (int i = 0; i < 200; ++i) {
@@ -171,17 +171,18 @@ double relative_error(const std::vector<double>& wave, const std::vector<double>
   return std::sqrt(error / motion);
 }
 
-TEST(SteepLinks, PlayABowAtAudioRatesWhereAnExplicitLawChatters) {
-  const std::vector<double> truth = waveform(Integrator::kCordis, 32);  // stable from 700 kHz on
+TEST(StiffFriction, PlayABowAtAudioRatesWhereAnExplicitLawChatters) {
+  const std::vector<double> truth =
+      waveform(IntegratorKind::kCordis, 32);  // stable from 700 kHz on
 
-  EXPECT_LT(relative_error(waveform(Integrator::kLeapfrog, 1), truth), 0.05);
-  EXPECT_LT(relative_error(waveform(Integrator::kLeapfrog, 4), truth), 0.01);
-  EXPECT_GT(relative_error(waveform(Integrator::kCordis, 4), truth), 0.5);
+  EXPECT_LT(relative_error(waveform(IntegratorKind::kLeapfrog, 1), truth), 0.05);
+  EXPECT_LT(relative_error(waveform(IntegratorKind::kLeapfrog, 4), truth), 0.01);
+  EXPECT_GT(relative_error(waveform(IntegratorKind::kCordis, 4), truth), 0.5);
 }
 
-TEST(SteepLinks, KeepTheAccountOfABow) {
+TEST(StiffFriction, KeepTheAccountOfABow) {
   const auto residual = [](int per_sample) {
-    World world = make_world(bowed(Integrator::kLeapfrog, 44100.0 * per_sample));
+    World world = make_world(bowed(IntegratorKind::kLeapfrog, 44100.0 * per_sample));
     run(world, 500 * per_sample);
     const engine::Energy energy = world.energy();
     return std::abs(energy.residual()) / energy.dissipated;
@@ -190,10 +191,10 @@ TEST(SteepLinks, KeepTheAccountOfABow) {
   EXPECT_LT(residual(4), 1e-2);
 }
 
-TEST(SteepLinks, AreTheSameAtEveryVectorWidth) {
+TEST(StiffFriction, AreTheSameAtEveryVectorWidth) {
   std::vector<std::uint64_t> hashes;
   for (const VectorWidth width : engine::supported_vector_widths()) {
-    World world = make_world(bowed(Integrator::kLeapfrog, 44100.0), width);
+    World world = make_world(bowed(IntegratorKind::kLeapfrog, 44100.0), width);
     run(world, 500);
     hashes.push_back(world.state_hash());
   }
@@ -201,10 +202,10 @@ TEST(SteepLinks, AreTheSameAtEveryVectorWidth) {
   for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
 }
 
-TEST(SteepLinks, GoOnFromASnapshotBitForBitWithoutAllocating) {
-  World first = make_world(bowed(Integrator::kLeapfrog, 44100.0));
+TEST(StiffFriction, GoOnFromASnapshotBitForBitWithoutAllocating) {
+  World first = make_world(bowed(IntegratorKind::kLeapfrog, 44100.0));
   run(first, 101);
-  World second = make_world(bowed(Integrator::kLeapfrog, 44100.0));
+  World second = make_world(bowed(IntegratorKind::kLeapfrog, 44100.0));
   second.restore(first.snapshot());
   const AllocationGuard guard;
   run(first, 50);
@@ -214,19 +215,20 @@ TEST(SteepLinks, GoOnFromASnapshotBitForBitWithoutAllocating) {
   EXPECT_EQ(first.state_hash(), second.state_hash());
 }
 
-TEST(SteepLinks, AreChosenAnewWhenABehaviourIsReplaced) {
+TEST(StiffFriction, AreChosenAnewWhenAStateMachineIsReplaced) {
   World world = make_world(one_mass(with_friction(power_of_speed(0.1, 1.0)), 1.0, 1.0));
-  world.replace_behaviour(0, Behaving().state(with_friction(power_of_speed(9.0, 1.0))).behaviour);
+  world.replace_state_machine(
+      0, Behaving().state(with_friction(power_of_speed(9.0, 1.0))).state_machine);
   run(world, 200);
 
   EXPECT_LT(std::abs(world.velocity(1).x()), 1e-6);  // extrapolated it would diverge from 1 on
 }
 
-TEST(SteepLinks, AreThoseBeyondThreeTenthsTogether) {
+TEST(StiffFriction, AreThoseBeyondThreeTenthsTogether) {
   NetworkDescription scene = one_mass({}, 0.0, 1.0);
-  scene.behaviours = {Behaving().state(0.0, 3.0).behaviour,
-                      Behaving().state(with_friction(power_of_speed(1.0, 0.5))).behaviour,
-                      Behaving().state(5.0).behaviour};
+  scene.state_machines = {Behaving().state(0.0, 3.0).state_machine,
+                          Behaving().state(with_friction(power_of_speed(1.0, 0.5))).state_machine,
+                          Behaving().state(5.0).state_machine};
   scene.state_links = {{0, 1, 0, 0.0}, {0, 1, 0, 0.0}, {0, 1, 1, 0.0}, {0, 1, 2, 0.0}};
   const std::vector<double> steps = engine::largest_extrapolated_steps(scene);
 

@@ -14,10 +14,10 @@
 namespace cordis::test {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 NetworkDescription by_symplectic4(NetworkDescription scene) {
-  scene.integrator = Integrator::kSymplectic4;
+  scene.integrator = IntegratorKind::kSymplectic4;
   return scene;
 }
 
@@ -55,8 +55,8 @@ TEST(Symplectic4, IsOfTheFourthOrderForANetInSpaceWithALaw) {
   const auto end = [](double step) {
     NetworkDescription scene = string_in_space(6, 0.0, step);
     scene.gravity = Vec3(0, 0, -9.81);
-    scene.behaviours.push_back(Behaving().state(50.0).behaviour);
-    scene.behaviours[0].states[0].elasticity = power_law(1e5, 3.0);
+    scene.state_machines.push_back(Behaving().state(50.0).state_machine);
+    scene.state_machines[0].states[0].elasticity = power_law(1e5, 3.0);
     scene.state_links = {{0, 4, 0, 0.04}, {2, 6, 0, 0.04}};
     World world = make_world(by_symplectic4(scene));
     run(world, static_cast<int>(std::lround(0.02 / step)));

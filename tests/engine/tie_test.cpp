@@ -10,19 +10,19 @@ namespace cordis::test {
 namespace {
 
 using engine::Energy;
-using engine::Integrator;
+using engine::IntegratorKind;
 
 constexpr double kStiffness = 500.0;  // [N/m]
 
 /// A tool tied to a port, and a free mass tied to the tool.
-NetworkDescription tied_tools(Integrator integrator, double viscosity) {
+NetworkDescription tied_tools(IntegratorKind integrator, double viscosity) {
   NetworkDescription scene;
   scene.dimension = 3;
   scene.step = 1e-3;
   scene.integrator = integrator;
   scene.mats = {fixed(Vec3::Zero()), mass(0.05, Vec3(0.01, 0, 0), Vec3(0, 1, 0.3)),
                 mass(0.08, Vec3(0.01, 0, 0), Vec3(0.2, 0, 0))};
-  if (integrator != Integrator::kSymplectic4) scene.mats[0] = port(Vec3::Zero());
+  if (integrator != IntegratorKind::kSymplectic4) scene.mats[0] = port(Vec3::Zero());
   scene.links = {{0, 1, kStiffness, viscosity, 0.0, true}, {1, 2, 300.0, viscosity, 0.0, true}};
   return scene;
 }
@@ -39,7 +39,7 @@ NetworkDescription along(int axis, NetworkDescription scene) {
 }
 
 struct Tie {
-  Integrator integrator;
+  IntegratorKind integrator;
   double viscosity;  // [N s/m]; 16: `leapfrog` damps in sweeps
 };
 
@@ -79,11 +79,11 @@ TEST_P(EveryIntegrator, MovesATieAlongEachAxisAsALinkInOneDimension) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryIntegrator,
-                         testing::Values(Tie{Integrator::kCordis, 1.5},
-                                         Tie{Integrator::kLeapfrog, 1.5},
-                                         Tie{Integrator::kLeapfrog, 16.0},
-                                         Tie{Integrator::kSymplectic4, 0.0},
-                                         Tie{Integrator::kImplicit, 1.5}));
+                         testing::Values(Tie{IntegratorKind::kCordis, 1.5},
+                                         Tie{IntegratorKind::kLeapfrog, 1.5},
+                                         Tie{IntegratorKind::kLeapfrog, 16.0},
+                                         Tie{IntegratorKind::kSymplectic4, 0.0},
+                                         Tie{IntegratorKind::kImplicit, 1.5}));
 
 TEST(Tie, CalmsAToolThatCirclesItsHandle) {
   // x, y(n+1) = (2 - K' - Z') x(n) - (1 - Z') x(n-1): a radius that shrinks by sqrt(1 - Z') a step.
@@ -111,7 +111,7 @@ TEST(Tie, CalmsAToolThatCirclesItsHandle) {
 }
 
 TEST(Tie, KeepsMomentumStateAndAccount) {
-  NetworkDescription scene = tied_tools(Integrator::kCordis, 1.5);
+  NetworkDescription scene = tied_tools(IntegratorKind::kCordis, 1.5);
   scene.mats[0] = mass(0.1, Vec3::Zero());
   World world = make_world(scene);
   const Vec3 momentum = world.momentum();
@@ -134,7 +134,7 @@ TEST(Tie, KeepsMomentumStateAndAccount) {
 }
 
 TEST(Tie, HasNoRestLength) {
-  NetworkDescription scene = tied_tools(Integrator::kCordis, 1.5);
+  NetworkDescription scene = tied_tools(IntegratorKind::kCordis, 1.5);
   scene.links[1].rest_length = 0.1;
 
   EXPECT_THROW(make_world(scene), std::invalid_argument);

@@ -11,7 +11,7 @@ namespace cordis::test {
 namespace {
 
 using engine::Energy;
-using engine::Integrator;
+using engine::IntegratorKind;
 
 constexpr double kGravity = -9.81;  // along x [m/s^2]
 constexpr double kSpring = 500.0;   // [N/m]
@@ -19,7 +19,7 @@ constexpr double kTool = 0.05;      // [kg]
 constexpr double kHungOnIt = 0.2;   // [kg]
 
 /// A tool on a spring, a weight hung on it, and another tool and another weight by themselves.
-NetworkDescription tool_with_weight(Integrator integrator, double viscosity) {
+NetworkDescription tool_with_weight(IntegratorKind integrator, double viscosity) {
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = 1e-3;
@@ -33,7 +33,7 @@ NetworkDescription tool_with_weight(Integrator integrator, double viscosity) {
 }
 
 struct Hung {
-  Integrator integrator;
+  IntegratorKind integrator;
   double viscosity;  // [N s/m]; 40: `leapfrog` damps in sweeps
   double freeze = 0.0;
 };
@@ -61,7 +61,8 @@ TEST_P(Weightless, CarriesWhatHangsOnItAndFallsNot) {
     EXPECT_NEAR(world.position(1).x(), sag, 1e-3 * std::abs(sag));
   }
   EXPECT_EQ(world.position(3).x(), 1.0);
-  if (GetParam().integrator != Integrator::kModal) {  // which knows no mass that is tied to nothing
+  if (GetParam().integrator !=
+      IntegratorKind::kModal) {  // which knows no mass that is tied to nothing
     const double time = kSteps * scene.step;
     EXPECT_NEAR(world.position(4).x(), 2.0 + 0.5 * kGravity * time * time, 0.05);
   }
@@ -69,16 +70,17 @@ TEST_P(Weightless, CarriesWhatHangsOnItAndFallsNot) {
 
 INSTANTIATE_TEST_SUITE_P(
     Engine, Weightless,
-    testing::Values(Hung{Integrator::kCordis, 2.0}, Hung{Integrator::kCordis, 2.0, 1e-6},
-                    Hung{Integrator::kLeapfrog, 2.0}, Hung{Integrator::kLeapfrog, 40.0},
-                    Hung{Integrator::kLeapfrog, 2.0, 1e-6}, Hung{Integrator::kSymplectic4, 0.0},
-                    Hung{Integrator::kImplicit, 2.0}, Hung{Integrator::kModal, 2.0}),
+    testing::Values(Hung{IntegratorKind::kCordis, 2.0}, Hung{IntegratorKind::kCordis, 2.0, 1e-6},
+                    Hung{IntegratorKind::kLeapfrog, 2.0}, Hung{IntegratorKind::kLeapfrog, 40.0},
+                    Hung{IntegratorKind::kLeapfrog, 2.0, 1e-6},
+                    Hung{IntegratorKind::kSymplectic4, 0.0}, Hung{IntegratorKind::kImplicit, 2.0},
+                    Hung{IntegratorKind::kModal, 2.0}),
     [](const auto& tested) {
       return std::string(to_string(tested.param.integrator)) + std::to_string(tested.index);
     });
 
 TEST(Weightless, FallsAsleepWhereItIsTiedToNothingButASpring) {
-  NetworkDescription scene = tool_with_weight(Integrator::kCordis, 2.0);
+  NetworkDescription scene = tool_with_weight(IntegratorKind::kCordis, 2.0);
   scene.freeze_tolerance = 1e-6;
   scene.links.pop_back();
   World world = make_world(scene);

@@ -11,19 +11,19 @@
 namespace cordis::test {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 /// One mass on a spring and a damper that are those of a state, or linear.
 NetworkDescription one_mass(double stiffness, double viscosity, bool of_state) {
   NetworkDescription scene = oscillator(1.0, stiffness, viscosity, 1.0, 0.0, 1.0);
   if (!of_state) return scene;
   scene.links.clear();
-  scene.behaviours.push_back(Behaving().state(stiffness, viscosity).behaviour);
+  scene.state_machines.push_back(Behaving().state(stiffness, viscosity).state_machine);
   scene.state_links = {{0, 1, 0, 0.0}};
   return scene;
 }
 
-double excursion_by(Integrator integrator, NetworkDescription scene, int steps = 2000) {
+double excursion_by(IntegratorKind integrator, NetworkDescription scene, int steps = 2000) {
   scene.integrator = integrator;
   return largest_excursion(std::move(scene), steps);
 }
@@ -31,10 +31,10 @@ double excursion_by(Integrator integrator, NetworkDescription scene, int steps =
 TEST(WhereMethodsFail, CordisOnAHeavyDamperWhereTheOthersHold) {
   const NetworkDescription scene = one_mass(0.1, 2.2, false);
 
-  EXPECT_GT(excursion_by(Integrator::kCordis, scene), 1e20);
-  EXPECT_LT(excursion_by(Integrator::kLeapfrog, scene), 1.5);
-  EXPECT_LT(excursion_by(Integrator::kImplicit, scene), 1.5);
-  EXPECT_LT(excursion_by(Integrator::kModal, scene), 1.5);
+  EXPECT_GT(excursion_by(IntegratorKind::kCordis, scene), 1e20);
+  EXPECT_LT(excursion_by(IntegratorKind::kLeapfrog, scene), 1.5);
+  EXPECT_LT(excursion_by(IntegratorKind::kImplicit, scene), 1.5);
+  EXPECT_LT(excursion_by(IntegratorKind::kModal, scene), 1.5);
 }
 
 TEST(WhereMethodsFail, LeapfrogOnTheDamperOfASetWhereCordisHolds) {
@@ -43,31 +43,31 @@ TEST(WhereMethodsFail, LeapfrogOnTheDamperOfASetWhereCordisHolds) {
   scene.state_links.clear();
   scene.sets = {{0, {0}, {1}, 1e300, 10.0}};
 
-  EXPECT_GT(excursion_by(Integrator::kLeapfrog, scene), 1e3);
-  EXPECT_LT(excursion_by(Integrator::kCordis, scene), 12.0);
+  EXPECT_GT(excursion_by(IntegratorKind::kLeapfrog, scene), 1e3);
+  EXPECT_LT(excursion_by(IntegratorKind::kCordis, scene), 12.0);
 }
 
 TEST(WhereMethodsFail, CordisOnTheDamperOfAStateWhereLeapfrogHolds) {
   const NetworkDescription scene = one_mass(0.5, 2.0, true);
 
-  EXPECT_GT(excursion_by(Integrator::kCordis, scene), 1e3);
-  EXPECT_LT(excursion_by(Integrator::kLeapfrog, scene), 1.5);
+  EXPECT_GT(excursion_by(IntegratorKind::kCordis, scene), 1e3);
+  EXPECT_LT(excursion_by(IntegratorKind::kLeapfrog, scene), 1.5);
 }
 
 TEST(WhereMethodsFail, EveryExplicitOneOnAStiffSpringWhereImplicitHolds) {
   const NetworkDescription scene = one_mass(100.0, 0.0, false);
 
-  EXPECT_GT(excursion_by(Integrator::kCordis, scene), 1e20);
-  EXPECT_GT(excursion_by(Integrator::kLeapfrog, scene), 1e20);
-  EXPECT_GT(excursion_by(Integrator::kSymplectic4, scene), 1e20);
-  EXPECT_LT(excursion_by(Integrator::kImplicit, scene), 1.0);
-  EXPECT_LT(excursion_by(Integrator::kModal, scene), 1.01);
+  EXPECT_GT(excursion_by(IntegratorKind::kCordis, scene), 1e20);
+  EXPECT_GT(excursion_by(IntegratorKind::kLeapfrog, scene), 1e20);
+  EXPECT_GT(excursion_by(IntegratorKind::kSymplectic4, scene), 1e20);
+  EXPECT_LT(excursion_by(IntegratorKind::kImplicit, scene), 1.0);
+  EXPECT_LT(excursion_by(IntegratorKind::kModal, scene), 1.01);
 }
 
 TEST(WhereMethodsFail, ImplicitLetsDieWhatSwingsForeverWithTheOthers) {
-  for (const Integrator integrator :
-       {Integrator::kCordis, Integrator::kLeapfrog, Integrator::kSymplectic4, Integrator::kImplicit,
-        Integrator::kModal}) {
+  for (const IntegratorKind integrator :
+       {IntegratorKind::kCordis, IntegratorKind::kLeapfrog, IntegratorKind::kSymplectic4,
+        IntegratorKind::kImplicit, IntegratorKind::kModal}) {
     NetworkDescription scene = one_mass(0.01, 0.0, false);  // w dt = 0.1
     scene.integrator = integrator;
     World world = make_world(scene);
@@ -78,7 +78,7 @@ TEST(WhereMethodsFail, ImplicitLetsDieWhatSwingsForeverWithTheOthers) {
       late = std::max(late, std::abs(world.position(1).x()));
     }
 
-    if (integrator == Integrator::kImplicit) {
+    if (integrator == IntegratorKind::kImplicit) {
       EXPECT_LT(late, 0.01);  // e^(-0.005 n)
     } else {
       EXPECT_NEAR(late, 1.0, 0.01) << to_string(integrator);
@@ -90,8 +90,8 @@ TEST(WhereMethodsFail, ImplicitLetsDieWhatSwingsForeverWithTheOthers) {
 double speed_after_bounce(double stiffness, double phase) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 3.0 + phase, -1.0, 1.0);
   scene.links.clear();
-  scene.behaviours.push_back(Behaving().state(stiffness).behaviour);
-  scene.behaviours[0].states[0].pulls = false;
+  scene.state_machines.push_back(Behaving().state(stiffness).state_machine);
+  scene.state_machines[0].states[0].pulls = false;
   scene.state_links = {{0, 1, 0, 0.0}};
   World world = make_world(scene);
   run(world, 30);
@@ -116,12 +116,12 @@ TEST(WhereMethodsFail, CordisOnAStiffContactThoughItIsStable) {
 TEST(WhereMethodsFail, ModalNearItsNyquistFrequencyUnderALoadThatCordisBears) {
   // K' = 3.9 and 0.05 besides: 3.95 < 4; of the mode K' = 4 sin^2(w dt / 2), w dt = 3.1
   NetworkDescription scene = one_mass(9.61, 0.0, false);
-  scene.behaviours.push_back(Behaving().state(0.05).behaviour);
+  scene.state_machines.push_back(Behaving().state(0.05).state_machine);
   scene.state_links = {{0, 1, 0, 0.0}};
-  EXPECT_GT(excursion_by(Integrator::kModal, scene, 20000), 1e3);
+  EXPECT_GT(excursion_by(IntegratorKind::kModal, scene, 20000), 1e3);
 
   scene.links[0].stiffness = 3.9;
-  EXPECT_LT(excursion_by(Integrator::kCordis, scene, 20000), 20.0);
+  EXPECT_LT(excursion_by(IntegratorKind::kCordis, scene, 20000), 20.0);
 }
 
 }  // namespace

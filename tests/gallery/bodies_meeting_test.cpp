@@ -58,7 +58,7 @@ TEST(BodiesMeeting, EachDeformsAsItsMatterDoes) {
     rigid_most = std::max(rigid_most, rigid.deformation());
     deformable_most = std::max(deformable_most, deformable.deformation());
   };
-  stage.play_until(1.34, watch);  // they have met, and have parted again
+  stage.play_until(1.34, watch);  // they have met, and have diverged again
   const double dent = plastic.deformation();
   stage.play_until(1.52, watch);  // before the next of them meets the edge
 

@@ -22,7 +22,8 @@ std::uint64_t slips(const Stage& stage) {
 
 TEST(BowedString, SlipsOncePerSwingOfTheString) {
   Stage stage("bowed_string.yaml");
-  ASSERT_EQ(stage.world().network().description().behaviours.at(0).states.at(1).name, "unhooked");
+  ASSERT_EQ(stage.world().network().description().state_machines.at(0).states.at(1).name,
+            "unhooked");
   const double note_hz = lowest_note_hz(stage);
   EXPECT_NEAR(note_hz, 4.0, 0.05);
 

@@ -40,7 +40,7 @@ std::size_t pieces_by(const Stage& stage, const std::vector<engine::BoundPair>& 
   std::vector<std::uint32_t> mats(plate.count + kPosts);
   std::iota(mats.begin(), mats.begin() + plate.count, plate.first);
   std::iota(mats.begin() + plate.count, mats.end(), stage.mats("wall[0].ball").first);
-  return engine::ConnectedPieces(stage.world().network().description(), mats).find_bound(pairs);
+  return engine::ConnectedComponents(stage.world().network().description(), mats).find_bound(pairs);
 }
 
 TEST(CollageAndRupture, ShattersAPlateWhoseShardsStickToTheWall) {

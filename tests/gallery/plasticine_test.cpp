@@ -44,7 +44,7 @@ TEST(Plasticine, IsMouldedTornAndStuckTogetherAgain) {
   const Pairs before = neighbours(stage);
 
   stage.play_until(2.0, note);  // the fingers are apart
-  engine::ConnectedPieces pieces(stage.world().network(), 0);
+  engine::ConnectedComponents pieces(stage.world().network(), 0);
   ASSERT_EQ(pieces.find_near(stage.world().positions(), kReach), 2u);
   std::size_t first = 0;
   for (std::size_t i = 0; i < 400; ++i) first += pieces.piece_of(i) == 0 ? 1 : 0;

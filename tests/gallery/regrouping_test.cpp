@@ -14,7 +14,7 @@ constexpr double kNear = 0.015;  // half as far again as two balls are at rest
 
 TEST(Regrouping, ComesApartInTwoHalvesAndIsOneAgain) {
   Stage stage("regrouping.yaml");
-  engine::ConnectedPieces pieces(stage.world().network(), kCohesion);
+  engine::ConnectedComponents pieces(stage.world().network(), kCohesion);
   const auto count = [&] { return pieces.find_near(stage.world().positions(), kNear); };
   EXPECT_EQ(count(), 1u);
 

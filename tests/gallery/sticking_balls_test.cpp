@@ -13,7 +13,7 @@ constexpr double kMass = 0.02;
 
 TEST(StickingBalls, GoOnAsOnePieceWithTheMomentumOfAll) {
   Stage stage("sticking_balls.yaml");
-  engine::ConnectedPieces pieces(stage.world().network(), kLump);
+  engine::ConnectedComponents pieces(stage.world().network(), kLump);
   EXPECT_EQ(pieces.find_bound(stage.world().bound_pairs(kLump)), 6u);
 
   stage.play_until(3.5);  // all have met, the palm has not been reached

@@ -56,7 +56,7 @@ std::vector<std::uint32_t> ordered(const Stage& stage) {
 std::vector<std::size_t> cluster_sizes(const Stage& stage) {
   const std::vector<std::uint32_t> balls = ordered(stage);
   if (balls.empty()) return {};
-  engine::ConnectedPieces pieces(stage.world().network().description(), balls);
+  engine::ConnectedComponents pieces(stage.world().network().description(), balls);
   std::vector<std::size_t> sizes(pieces.find_near(stage.world().positions(), kTouch));
   for (std::size_t i = 0; i < balls.size(); ++i) ++sizes[pieces.piece_of(i)];
   std::sort(sizes.begin(), sizes.end(), std::greater<>());

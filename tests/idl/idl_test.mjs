@@ -40,7 +40,7 @@ test('the messages are those of the contract', () => {
     'control.idl': ['ControlCommand', 'ControlReply', 'LiaisonChanges', 'NodeStatus'],
     'gesture.idl': ['GesturePositions', 'GestureForces', 'DeviceDescription'],
     'scene.idl': [
-      'NamedRange', 'PortDescription', 'SignalDescription', 'BehaviourDescription', 'SceneDescription', 'SceneFrame',
+      'NamedRange', 'PortDescription', 'SignalDescription', 'StateMachineDescription', 'SceneDescription', 'SceneFrame',
       'SceneSignals', 'LinkEvent', 'SceneEvents',
     ],
   };

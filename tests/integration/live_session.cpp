@@ -23,8 +23,8 @@ LiveSession::LiveSession(const std::string& clock, const std::string& nodes,
                               "\ndomain: " + std::to_string(own_domain()) + "\nclock: " + clock +
                               "\nnodes:\n" + nodes);
   participant_ = std::make_unique<dds::Participant>(
-      dds::Membership{own_domain(), session, "observer", clock == "lockstep",
-                      nodes.find("plays:") != std::string::npos});
+      dds::ParticipantConfig{own_domain(), session, "observer", clock == "lockstep",
+                             nodes.find("plays:") != std::string::npos});
 }
 
 LiveSession::~LiveSession() {

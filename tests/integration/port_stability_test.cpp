@@ -60,7 +60,7 @@ std::string bare_key(int delay, const std::string& hand, double force_limit = 1e
 struct Swing {
   double third = 0.0;
   double last = 0.0;
-  std::uint64_t braked_ticks = 0;  // of the node that brakes in this role
+  std::uint64_t passivity_ticks = 0;  // of the node that brakes in this role
 
   /// It grows, or has grown already from almost nothing to more than 1 m or 1 N.
   bool lasts() const { return last > third || last > 1.0; }
@@ -95,7 +95,7 @@ Swing swing_of(const std::string& scene, const std::string& key, dds::Topic topi
   const bool is_mass = topic == dds::Topic::kPositions;
   if (is_mass) session.node("keyboard").signal(SIGTERM);
   EXPECT_TRUE(status.wait_for_phase(is_mass ? "keyboard" : "sim", "stopped"));
-  swing.braked_ticks = status.of(is_mass ? "keyboard" : "sim").braked_ticks();
+  swing.passivity_ticks = status.of(is_mass ? "keyboard" : "sim").passivity_ticks();
   return swing;
 }
 
@@ -163,7 +163,7 @@ TEST_P(PortStability, RoleLiaisonSwingsJustWhereItsRecurrenceSays) {
 
   const Swing within = swing_in_role_liaison(key(1.0 - kSide));
   EXPECT_FALSE(within.lasts());
-  EXPECT_EQ(within.braked_ticks, 0u);
+  EXPECT_EQ(within.passivity_ticks, 0u);
   EXPECT_TRUE(swing_in_role_liaison(key(1.0 + kSide)).lasts());
 }
 
@@ -187,7 +187,7 @@ TEST(PassivityController, EndsTheSwingOfAWallTenTimesTooStiff) {
 
   EXPECT_GT(free.last, 0.001);
   EXPECT_LT(braked.last, 0.02 * free.last);
-  EXPECT_GT(braked.braked_ticks, 0u);
+  EXPECT_GT(braked.passivity_ticks, 0u);
 }
 
 TEST(PassivityController, EndsTheSwingOfAHandTenTimesTooStiff) {
@@ -195,7 +195,7 @@ TEST(PassivityController, EndsTheSwingOfAHandTenTimesTooStiff) {
 
   const Swing braked = swing_in_role_liaison(key);
 
-  EXPECT_GT(braked.braked_ticks, 0u) << "it swung up until it was seen to";
+  EXPECT_GT(braked.passivity_ticks, 0u) << "it swung up until it was seen to";
   EXPECT_LT(braked.last, 0.1) << "[N]";
 }
 

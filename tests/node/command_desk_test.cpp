@@ -1,11 +1,11 @@
 // tests/node/command_desk_test.cpp
-#include "node/command_desk.h"
-
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "node/command_server.h"
 
 namespace cordis::node {
 namespace {
@@ -22,13 +22,13 @@ msg::ControlCommand command_for(const std::string& target, std::uint64_t id,
 
 struct Desk {
   std::vector<std::string> obeyed;
-  CommandDesk desk{"sim", "sim_node", [this](const msg::ControlCommand& command) {
-                     obeyed.push_back(command.verb());
-                     return Answer{true, "answer " + std::to_string(obeyed.size())};
-                   }};
+  CommandServer desk{"sim", "sim_node", [this](const msg::ControlCommand& command) {
+                       obeyed.push_back(command.verb());
+                       return Answer{true, "answer " + std::to_string(obeyed.size())};
+                     }};
 };
 
-TEST(CommandDesk, ObeysWhatIsForItByNameByKindOrForAll) {
+TEST(CommandServer, ObeysWhatIsForItByNameByKindOrForAll) {
   Desk desk;
   std::uint64_t id = 0;
   for (const char* target : {"sim", "sim_node", "*"}) {
@@ -42,28 +42,28 @@ TEST(CommandDesk, ObeysWhatIsForItByNameByKindOrForAll) {
   }
 }
 
-TEST(CommandDesk, IsSilentAboutWhatIsForOthers) {
+TEST(CommandServer, IsSilentAboutWhatIsForOthers) {
   Desk desk;
   for (const char* target : {"", "simulation", "keyboard", "device_node"})
     EXPECT_FALSE(desk.desk.take(command_for(target, 1)).has_value()) << target;
   EXPECT_TRUE(desk.obeyed.empty());
 }
 
-TEST(CommandDesk, ObeysACommandOnceHoweverOftenItComes) {
+TEST(CommandServer, ObeysACommandOnceHoweverOftenItComes) {
   Desk desk;
   for (int i = 0; i < 3; ++i) EXPECT_EQ(desk.desk.take(command_for("sim", 7))->text(), "answer 1");
   EXPECT_EQ(desk.obeyed.size(), 1u);
 }
 
-TEST(CommandDesk, TellsSendersApartThatUseTheSameNumber) {
+TEST(CommandServer, TellsSendersApartThatUseTheSameNumber) {
   Desk desk;
   desk.desk.take(command_for("sim", 7, "one"));
   EXPECT_EQ(desk.desk.take(command_for("sim", 7, "other"))->text(), "answer 2");
 }
 
-TEST(CommandDesk, RemembersABoundedNumberOfCommands) {
+TEST(CommandServer, RemembersABoundedNumberOfCommands) {
   Desk desk;
-  for (std::uint64_t id = 0; id <= CommandDesk::kRemembered; ++id)
+  for (std::uint64_t id = 0; id <= CommandServer::kRemembered; ++id)
     desk.desk.take(command_for("sim", id));
   const std::size_t before = desk.obeyed.size();
 
@@ -73,8 +73,8 @@ TEST(CommandDesk, RemembersABoundedNumberOfCommands) {
   EXPECT_EQ(desk.obeyed.size(), before + 1) << "forgotten, and obeyed as a new one";
 }
 
-TEST(CommandDesk, AnswersAFailureWithItsReason) {
-  CommandDesk desk("sim", "sim_node", [](const msg::ControlCommand&) -> Answer {
+TEST(CommandServer, AnswersAFailureWithItsReason) {
+  CommandServer desk("sim", "sim_node", [](const msg::ControlCommand&) -> Answer {
     throw std::runtime_error("no memory for it");
   });
   const auto reply = desk.take(command_for("sim", 1));

@@ -26,7 +26,8 @@ using namespace std::chrono_literals;
 using test::eventually;
 using test::kPatience;
 
-Membership member(const std::string& session, const std::string& node, bool lockstep = false) {
+ParticipantConfig member(const std::string& session, const std::string& node,
+                         bool lockstep = false) {
   return {test::own_domain(), session, node, lockstep};
 }
 
@@ -223,7 +224,7 @@ TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
 }
 
 TEST(Dds, SaysThatAProcessWasStartedWithAnotherLaunchFile) {
-  Membership with_stand_ins = member("mismatch", "sim");
+  ParticipantConfig with_stand_ins = member("mismatch", "sim");
   with_stand_ins.stand_ins = true;
   Participant sim(with_stand_ins);
   Participant device(member("mismatch", "keyboard"));

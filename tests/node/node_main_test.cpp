@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "node/claim.h"
+#include "node/instance_lock.h"
 #include "node/runtime_folder.h"
 #include "node/session_registry.h"
 
@@ -64,7 +64,7 @@ TEST(NodeMain, FindsItsNodeOfTheLaunchFile) {
 
   EXPECT_EQ(run_main({file.path(), "--name", "right", "right.driver=script"}, "device_node"), 0);
 
-  const dds::Membership membership = last_start.membership();
+  const dds::ParticipantConfig membership = last_start.membership();
   EXPECT_EQ(membership.node, "right");
   EXPECT_EQ(membership.session, "test");
   EXPECT_EQ(membership.domain, 7);
@@ -123,7 +123,7 @@ TEST(NodeMain, JoinsTheRunningSessionOfItsNameOrClaimsADomain) {
   waitpid(other, nullptr, 0);
 }
 
-TEST(Claim, IsHeldByOneProcessAtATimeAndLeavesNothing) {
+TEST(InstanceLock, IsHeldByOneProcessAtATimeAndLeavesNothing) {
   const std::string name = "cordis/test/claim/" + std::to_string(getpid());
   claim(name, "taken");
 

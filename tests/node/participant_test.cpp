@@ -33,7 +33,7 @@ using namespace std::chrono_literals;
 using test::eventually;
 using test::kPatience;
 
-Membership member(const std::string& session, const std::string& node) {
+ParticipantConfig member(const std::string& session, const std::string& node) {
   return {test::own_domain(), session, node};
 }
 
@@ -79,8 +79,8 @@ TEST(Participant, ForgetsAProcessThatIsKilledAndNoneThatIsStopped) {
   killed->signal(SIGKILL);
 
   // DDS takes the readers and writers of a participant away first, and the participant afterwards.
-  EXPECT_TRUE(eventually(
-      [&] { return statuses.matched_count() == 1 && !knows(here, "ends/killed"); }));
+  EXPECT_TRUE(
+      eventually([&] { return statuses.matched_count() == 1 && !knows(here, "ends/killed"); }));
   EXPECT_TRUE(knows(here, "ends/stopped")) << "it was stopped the whole time";
   stopped->signal(SIGCONT);
 }
@@ -200,7 +200,7 @@ TEST(Participant, ListensOnLoopbackAloneAndToNoMulticast) {
 
 TEST(Participant, SaysThatADomainIsFull) {
   std::vector<std::unique_ptr<ParticipantPorts>> others;
-  for (int i = 0; i < kMostParticipants; ++i) {
+  for (int i = 0; i < kMaxParticipants; ++i) {
     others.push_back(std::make_unique<ParticipantPorts>(test::own_domain()));
   }
 

@@ -15,7 +15,7 @@ namespace cordis::test::convergence {
 namespace {
 
 /// The order that a method is to show at least; none where it is not known, or shows none.
-std::map<std::string, std::map<MotionKind, double>> least_orders() {
+std::map<std::string, std::map<MotionKind, double>> min_orders() {
   // Where a change falls between two steps errors are uneven: that they fall is all there is.
   constexpr double kFalls = 0.0;
   constexpr double kCoarse = 0.75;  // `implicit`, at steps at which it damps most of the motion
@@ -32,7 +32,7 @@ double order_of(double error, double finer) {
 }
 
 TEST(Convergence, OfEveryMethodOnEveryProblem) {
-  const std::map<std::string, std::map<MotionKind, double>> least = least_orders();
+  const std::map<std::string, std::map<MotionKind, double>> least = min_orders();
   const std::vector<std::string> methods = plan::integrator_names();
   std::printf("%-28s %9s", "order, error at", "rate_hz");
   for (const std::string& method : methods) std::printf(" %20s", method.c_str());
@@ -43,10 +43,10 @@ TEST(Convergence, OfEveryMethodOnEveryProblem) {
     const double steps = 4.0 * std::ceil(0.25 * problem.rate_hz * problem.duration / kSamples);
     const plan::Sampling sampling{problem.duration / kSamples, kSamples};
     const double rate = steps / sampling.period;
-    const plan::Course nothing;
+    const plan::InputTrajectory nothing;
     const plan::Reference reference =
         plan::make_reference(problem.network, nothing, {sampling, 1e-11, 60.0, 0.0, {}});
-    ASSERT_TRUE(reference.by_oracle) << problem.name;
+    ASSERT_TRUE(reference.by_reference) << problem.name;
     ASSERT_EQ(reference.compared, kSamples) << problem.name;
 
     std::printf("%-28s %9.4g", problem.name.c_str(), rate);
@@ -77,21 +77,22 @@ TEST(Convergence, OfEveryMethodOnEveryProblem) {
 
 TEST(Convergence, GoesToWhatTheReferencesSay) {
   for (const ReferenceProblem& problem : reference_problems()) {
-    plan::Oracle oracle(problem.network, 1e-12);
+    plan::ReferenceIntegrator reference_integrator(problem.network, 1e-12);
     for (const auto& [time, mat, x] : problem.expected) {
-      oracle.advance_to(time);
-      EXPECT_NEAR(oracle.position(static_cast<std::uint32_t>(mat)).x(), x, problem.within)
+      reference_integrator.advance_to(time);
+      EXPECT_NEAR(reference_integrator.position(static_cast<std::uint32_t>(mat)).x(), x,
+                  problem.within)
           << problem.name << " at " << time;
     }
   }
 }
 
 TEST(Convergence, OfABounceGoesToItsRestitution) {
-  plan::Oracle wall(bounce().network, 1e-12);
+  plan::ReferenceIntegrator wall(bounce().network, 1e-12);
   wall.advance_to(6.0);
   EXPECT_NEAR(wall.velocity(1).x(), number(reference("R12_bounce_restitution")["rows"][3][3]),
               1e-9);
-  plan::Oracle balls(collision().network, 1e-12);
+  plan::ReferenceIntegrator balls(collision().network, 1e-12);
   balls.advance_to(0.05);
   const nlohmann::json of = reference("R19_collisions")["case"];
   EXPECT_NEAR(balls.velocity(0).x(), number(of["v1p"]), 1e-9);

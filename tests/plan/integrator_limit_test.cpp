@@ -3,22 +3,22 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/plan/stability/oscillator_error.h"
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/oscillator_error.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
-class EveryIntegrator : public testing::TestWithParam<Integrator> {};
+class EveryIntegrator : public testing::TestWithParam<IntegratorKind> {};
 
 /// What the integrator takes: the scene, or the scene without what it refuses.
-NetworkDescription for_integrator(NetworkDescription scene, Integrator integrator) {
+NetworkDescription for_integrator(NetworkDescription scene, IntegratorKind integrator) {
   scene.integrator = integrator;
-  const bool modal = integrator == Integrator::kModal;
-  if (integrator == Integrator::kSymplectic4 || (modal && scene.links.size() > 1)) {
+  const bool modal = integrator == IntegratorKind::kModal;
+  if (integrator == IntegratorKind::kSymplectic4 || (modal && scene.links.size() > 1)) {
     scene.medium_viscosity = 0.0;
     for (Link& link : scene.links) link.viscosity = 0.0;
   }
@@ -34,7 +34,7 @@ TEST_P(EveryIntegrator, DivergesOnRandomNetworksWhereThePlanSays) {
     if (!std::isfinite(stability.diverging_step)) continue;
 
     // of symplectic4, between its two limits there may be a resonance
-    const bool resonates = GetParam() == Integrator::kSymplectic4;
+    const bool resonates = GetParam() == IntegratorKind::kSymplectic4;
     const double stable = resonates ? engine::kSymplectic4Limit / 5.0269 : 1.0;
     scene.step = 0.99 * stable * stability.diverging_step;
     EXPECT_LT(largest_excursion(scene, 3000), 1e3) << seed;
@@ -46,28 +46,28 @@ TEST_P(EveryIntegrator, DivergesOnRandomNetworksWhereThePlanSays) {
 TEST(IntegratorLimit, OfModesIsWhatIsFastenedToThem) {
   NetworkDescription scene = string_in_space(20, 0.01, 4e-4);
   scene.dimension = 1;
-  scene.integrator = Integrator::kModal;
+  scene.integrator = IntegratorKind::kModal;
   for (Mat& mat : scene.mats) mat.position = Vec3(mat.position.y(), 0, 0);
-  scene.behaviours.push_back(behaviour(1000.0));
+  scene.state_machines.push_back(state_machine(1000.0));
   scene.state_links = {{0, 7, 0, 0.0}};
   const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
   const double load = std::pow(scene.step / stability.diverging_step, 2.0);
   EXPECT_NEAR(stability.certified.step, stability.diverging_step, 1e-9 * scene.step);
 
-  scene.behaviours[0].states[0].stiffness = 0.98 * 1000.0 / load;
+  scene.state_machines[0].states[0].stiffness = 0.98 * 1000.0 / load;
   EXPECT_TRUE(plan::stability_of(scene, plan::liaison_graph(scene)).holds());
   EXPECT_LT(largest_excursion(scene, 20000), 1e3);
-  scene.behaviours[0].states[0].stiffness = 1.02 * 1000.0 / load;
+  scene.state_machines[0].states[0].stiffness = 1.02 * 1000.0 / load;
   EXPECT_TRUE(plan::stability_of(scene, plan::liaison_graph(scene)).diverges());
   EXPECT_GT(largest_excursion(scene, 20000), 1e6);
 }
 
 TEST(IntegratorLimit, OfLeapfrogOnLinksItSolvesIsTheirStiffness) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1e-6);
-  scene.integrator = Integrator::kLeapfrog;
+  scene.integrator = IntegratorKind::kLeapfrog;
   scene.links.clear();
-  scene.behaviours = {behaviour(100.0)};
-  scene.behaviours[0].states[0].viscosity = 200.0;  // extrapolated up to 1.5 ms
+  scene.state_machines = {state_machine(100.0)};
+  scene.state_machines[0].states[0].viscosity = 200.0;  // extrapolated up to 1.5 ms
   scene.state_links = {{0, 1, 0, 0.0}};
   const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
   EXPECT_NEAR(stability.certified.step, 0.2, 1e-9);
@@ -77,7 +77,7 @@ TEST(IntegratorLimit, OfLeapfrogOnLinksItSolvesIsTheirStiffness) {
   EXPECT_LT(largest_excursion(scene, 3000), 10.0);
   scene.step = 1.01 * 0.2;
   EXPECT_GT(largest_excursion(scene, 20000), 1e6);
-  scene.integrator = Integrator::kCordis;
+  scene.integrator = IntegratorKind::kCordis;
   scene.step = 1e-6;
   EXPECT_LT(plan::stability_of(scene, plan::liaison_graph(scene)).certified.step, 0.0101);
 }

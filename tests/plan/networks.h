@@ -36,9 +36,9 @@ inline NetworkDescription random_network(unsigned seed) {
   return scene;
 }
 
-/// A behaviour of one state: a spring and a law.
-inline engine::Behaviour behaviour(double stiffness, engine::Law elasticity = {}) {
-  engine::Behaviour made;
+/// A state machine of one state: a spring and a law.
+inline engine::StateMachine state_machine(double stiffness, engine::Law elasticity = {}) {
+  engine::StateMachine made;
   made.states.emplace_back();
   made.states[0].stiffness = stiffness;
   made.states[0].elasticity = std::move(elasticity);
@@ -46,8 +46,8 @@ inline engine::Behaviour behaviour(double stiffness, engine::Law elasticity = {}
 }
 
 /// A spring that never pulls.
-inline engine::Behaviour contact(double stiffness) {
-  engine::Behaviour made = behaviour(stiffness);
+inline engine::StateMachine contact(double stiffness) {
+  engine::StateMachine made = state_machine(stiffness);
   made.states[0].pulls = false;
   return made;
 }

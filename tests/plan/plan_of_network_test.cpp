@@ -36,7 +36,7 @@ TEST(Plan, SaysWhatASwitchingMayGain) {
   NetworkDescription scene = oscillator(0.1, 0.0, 0.0, 1.0, 0.0, 1e-3);
   EXPECT_FALSE(plan_of(scene, 10.0).worst_contact.has_value());
   scene.links.clear();
-  scene.behaviours.push_back(contact(4000.0));
+  scene.state_machines.push_back(contact(4000.0));
   scene.state_links = {{0, 1, 0, 0.0}};
 
   const Plan plan = plan_of(scene, 10.0);

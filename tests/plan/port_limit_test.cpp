@@ -24,7 +24,7 @@ TEST(PortLimit, OfPassivityIsThatOfTheReferenceTable) {
     // The least is found on a grid: to second order in its width, pi / 4000.
     EXPECT_NEAR(limit, row.passive, 1e-5 * row.beta + 1e-4 * row.passive)
         << row.beta << " " << row.z << " " << row.delay;
-    const double least = plan::least_device_viscosity({limit, row.z}, PortLoop{1.0, row.delay});
+    const double least = plan::min_device_viscosity({limit, row.z}, PortLoop{1.0, row.delay});
     if (limit > 0.0) {
       EXPECT_NEAR(least, row.beta, 1e-9) << "the same limit, asked the other way";
     }
@@ -60,9 +60,9 @@ TEST(PortLimit, FallsWithEveryPeriodOfDelay) {
 }
 
 TEST(PortLimit, AsksADeviceForTheViscosityThatTheStiffnessCosts) {
-  EXPECT_NEAR(plan::least_device_viscosity({1000.0, 0.0}, PortLoop{1e-3, 1}), 1.5, 1e-9);
+  EXPECT_NEAR(plan::min_device_viscosity({1000.0, 0.0}, PortLoop{1e-3, 1}), 1.5, 1e-9);
   // without delay: K T / 2 + |B|
-  EXPECT_NEAR(plan::least_device_viscosity({1000.0, 0.2}, PortLoop{1e-3, 0}), 0.7, 1e-9);
+  EXPECT_NEAR(plan::min_device_viscosity({1000.0, 0.2}, PortLoop{1e-3, 0}), 0.7, 1e-9);
 }
 
 TEST(PortLimit, OfAHandIsTheViscosityItMeetsOverTheDelay) {
@@ -94,11 +94,11 @@ TEST(PortLoad, OfASetIsOnePartnerAtLeastAndAllForWhichThereIsRoomAtMost) {
   scene.mats[0].kind = engine::MatKind::kPort;
   for (std::size_t i = 1; i < 10; ++i) scene.mats[i].mass = 0.1;
   scene.radius.assign(10, 0.01);
-  engine::Behaviour contact;
+  engine::StateMachine contact;
   contact.states.resize(1);
   contact.states[0].stiffness = 300.0;
   contact.states[0].viscosity = 0.5;
-  scene.behaviours.push_back(contact);
+  scene.state_machines.push_back(contact);
   engine::SetLiaison set;
   set.set_p = {0};
   set.set_q = {1, 2, 3, 4, 5, 6, 7, 8, 9};
@@ -106,8 +106,8 @@ TEST(PortLoad, OfASetIsOnePartnerAtLeastAndAllForWhichThereIsRoomAtMost) {
   scene.sets.push_back(set);
   const plan::LiaisonGraph graph = plan::liaison_graph(scene);
 
-  EXPECT_DOUBLE_EQ(plan::least_port_load(graph, 0).stiffness, 300.0);
-  EXPECT_DOUBLE_EQ(plan::least_port_load(graph, 0).viscosity, 0.5);
+  EXPECT_DOUBLE_EQ(plan::min_port_load(graph, 0).stiffness, 300.0);
+  EXPECT_DOUBLE_EQ(plan::min_port_load(graph, 0).viscosity, 0.5);
   EXPECT_DOUBLE_EQ(plan::port_load(graph, 0).stiffness, 6 * 300.0) << "equal balls around a ball";
   EXPECT_DOUBLE_EQ(plan::port_load(graph, 5).stiffness, 300.0) << "there is one port";
 }

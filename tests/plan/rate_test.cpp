@@ -9,23 +9,23 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/plan/rate_selection.h"
-#include "sim_node/plan/stability/oscillator_error.h"
 #include "sim_node/plan/rate_trial.h"
 #include "sim_node/plan/reference/reference.h"
 #include "sim_node/plan/reference/trial_run.h"
+#include "sim_node/plan/stability/oscillator_error.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {
 namespace {
 
-using plan::AccuracyWish;
+using plan::AccuracyTarget;
 using plan::choose_rate;
 using plan::RateChoice;
 using plan::RateReason;
 
 TEST(RateChoice, OneStepPerGestureWhereNothingAsksForMore) {
-  const RateChoice choice =
-      choose_rate(oscillator(1.0, 10.0, 0.0, 1.0, 0.0, 1.0), AccuracyWish{0.01, 0.5, 0.1}, 1000.0);
+  const RateChoice choice = choose_rate(oscillator(1.0, 10.0, 0.0, 1.0, 0.0, 1.0),
+                                        AccuracyTarget{0.01, 0.5, 0.1}, 1000.0);
 
   EXPECT_EQ(choice.reason, RateReason::kGesture);
   EXPECT_STREQ(to_string(choice.reason), "the gesture rate, the lowest there is");
@@ -33,7 +33,7 @@ TEST(RateChoice, OneStepPerGestureWhereNothingAsksForMore) {
 }
 
 TEST(RateChoice, IsOneCentAtAPhaseOf118Thousandths) {
-  const AccuracyWish wish{5.778e-4, 100.0, 0.1};  // one cent
+  const AccuracyTarget wish{5.778e-4, 100.0, 0.1};  // one cent
   const RateChoice choice = choose_rate(oscillator(1.0, 10.0, 0.0, 1.0, 0.0, 1.0), wish, 1000.0);
 
   EXPECT_EQ(choice.reason, RateReason::kPitch);
@@ -44,7 +44,7 @@ TEST(RateChoice, IsOneCentAtAPhaseOf118Thousandths) {
 TEST(RateChoice, ViscosityAsksForMoreThanPitch) {
   // the rate of decay is off by Z'/2
   const RateChoice choice = choose_rate(oscillator(1.0, 4e5, 40.0, 1.0, 0.0, 1.0),
-                                        AccuracyWish{0.001, 100.0, 0.1}, 1000.0);
+                                        AccuracyTarget{0.001, 100.0, 0.1}, 1000.0);
 
   EXPECT_EQ(choice.reason, RateReason::kDecay);
   // Z / K = 1e-4 s, so at most (200 pi)^2 1e-4 = 39.5 / s at 100 Hz
@@ -54,10 +54,10 @@ TEST(RateChoice, ViscosityAsksForMoreThanPitch) {
 TEST(RateChoice, ContactsKeepTheirEnergy) {
   NetworkDescription scene = oscillator(0.1, 0.0, 0.0, 1.0, 0.0, 1e-3);
   scene.links.clear();
-  scene.behaviours.push_back(contact(1e5));
+  scene.state_machines.push_back(contact(1e5));
   scene.state_links = {{0, 1, 0, 0.0}};
 
-  const RateChoice choice = choose_rate(scene, AccuracyWish{0.1, 1.0, 0.01}, 1000.0);
+  const RateChoice choice = choose_rate(scene, AccuracyTarget{0.1, 1.0, 0.01}, 1000.0);
 
   EXPECT_EQ(choice.reason, RateReason::kContact);
   // K' = 4 * 0.01 / 1.01 at 1e6 dt^2
@@ -66,7 +66,7 @@ TEST(RateChoice, ContactsKeepTheirEnergy) {
 
 TEST(RateChoice, StaysBelowTheLimit) {
   const RateChoice choice =
-      choose_rate(oscillator(0.1, 1e6, 0.0, 1.0, 0.0, 1e-3), AccuracyWish{0.1, 1.0, 0.5}, 1000.0);
+      choose_rate(oscillator(0.1, 1e6, 0.0, 1.0, 0.0, 1e-3), AccuracyTarget{0.1, 1.0, 0.5}, 1000.0);
 
   EXPECT_EQ(choice.reason, RateReason::kStability);
   EXPECT_NEAR(choice.needed_hz, 0.5 * std::sqrt(1e7) / 0.9, 1.0);
@@ -76,7 +76,7 @@ TEST(RateChoice, StaysBelowTheLimit) {
 TEST(RateChoice, KeepsTheToleranceWhenItRuns) {
   // A chain whose lowest vibration is the whole band: its pitch, by its zero crossings.
   const double w = 2.0 * M_PI * 20.0;
-  const AccuracyWish wish{0.002, 20.0, 0.1};
+  const AccuracyTarget wish{0.002, 20.0, 0.1};
   NetworkDescription scene = oscillator(1.0, w * w, 0.2, 1.0, 0.0, 1.0);
   const RateChoice choice = choose_rate(scene, wish, 100.0);
   const auto errors = plan::oscillator_error(w, 0.2, 1.0 / choice.rate_hz);
@@ -89,7 +89,7 @@ TEST(RateChoice, KeepsTheToleranceWhenItRuns) {
 
 TEST(RateChoice, PositionsOverATimeAskForThePhase) {
   // phase w t e <= sqrt(3) tolerance with e = (w dt)^2 / 24, w = 200 pi, t = 2 s
-  AccuracyWish wish{0.01, 100.0, 0.1};
+  AccuracyTarget wish{0.01, 100.0, 0.1};
   wish.over_s = 2.0;
   const RateChoice choice = choose_rate(oscillator(1.0, 10.0, 0.0, 1.0, 0.0, 1.0), wish, 1000.0);
 
@@ -123,11 +123,11 @@ TEST(RateTrial, SaysWhyItFindsNone) {
 
 TEST(Reference, EndsWhereAChaoticMotionHasPartedAndThenKnowsTheEnergyAlone) {
   const NetworkDescription wild = free_cluster(12, 40, 0.0, 2);
-  const plan::Course nothing;
+  const plan::InputTrajectory nothing;
   const plan::Reference reference =
       plan::make_reference(wild, nothing, {{0.01, 200}, 1e-9, 60.0, 0.0, {}});
-  EXPECT_TRUE(reference.by_oracle);
-  EXPECT_TRUE(reference.parted);
+  EXPECT_TRUE(reference.by_reference);
+  EXPECT_TRUE(reference.diverged);
   EXPECT_GT(reference.compared, 10);
   EXPECT_LT(reference.compared, 150);
 
@@ -137,21 +137,21 @@ TEST(Reference, EndsWhereAChaoticMotionHasPartedAndThenKnowsTheEnergyAlone) {
   EXPECT_LT(std::abs(run.energy_error), 0.2);
 }
 
-TEST(Choice, TriesOutWhatMovesByItselfAndNotWhatIsPlayed) {
+TEST(RateSelection, TriesOutWhatMovesByItselfAndNotWhatIsPlayed) {
   const NetworkDescription scene = oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 1e-3);
-  AccuracyWish wish{0.01, 5.0, 0.1};
+  AccuracyTarget wish{0.01, 5.0, 0.1};
   wish.over_s = 1.0;
-  const plan::Choice free = plan::choose(scene, wish, 100.0, {"cordis"}, false);
+  const plan::RateSelection free = plan::choose(scene, wish, 100.0, {"cordis"}, false);
   EXPECT_GE(free.rate_hz, 1552.0);
   EXPECT_EQ(free.doubt, "");
-  const plan::Choice played = plan::choose(scene, wish, 100.0, {"cordis"}, true);
+  const plan::RateSelection played = plan::choose(scene, wish, 100.0, {"cordis"}, true);
   EXPECT_EQ(played.rate_hz, choose_rate(scene, wish, 100.0).rate_hz);
   EXPECT_NE(played.doubt, "");
 }
 
-TEST(Choice, TakesAFactorisationOnlyWhereItSavesFiftySteps) {
+TEST(RateSelection, TakesAFactorisationOnlyWhereItSavesFiftySteps) {
   const auto chosen = [](double stiffness) {
-    const AccuracyWish wish{0.1, 1.0, 0.5};  // stability alone decides
+    const AccuracyTarget wish{0.1, 1.0, 0.5};  // stability alone decides
     return plan::choose(oscillator(0.1, stiffness, 0.0, 1.0, 0.0, 1e-3), wish, 1000.0,
                         {"cordis", "implicit"}, false);
   };
@@ -160,7 +160,7 @@ TEST(Choice, TakesAFactorisationOnlyWhereItSavesFiftySteps) {
   EXPECT_EQ(chosen(1e10).rate_hz, 1000.0);
 }
 
-TEST(Choice, DoesNotThinkOfModesThatTakeLongToFind) {
+TEST(RateSelection, DoesNotThinkOfModesThatTakeLongToFind) {
   const auto thinks_of_modes = [](std::size_t masses) {
     NetworkDescription scene = oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 1e-3);
     scene.mats.resize(masses + 1, scene.mats[1]);

@@ -148,9 +148,9 @@ engine::Law power(double coefficient, double exponent) {
   return law;
 }
 
-NetworkDescription with_law(NetworkDescription scene, const engine::Behaviour& behaviour) {
+NetworkDescription with_law(NetworkDescription scene, const engine::StateMachine& state_machine) {
   scene.links.clear();
-  scene.behaviours = {behaviour};
+  scene.state_machines = {state_machine};
   scene.state_links = {{0, 1, 0, 0.0}};
   return scene;
 }
@@ -159,7 +159,7 @@ ReferenceProblem duffing() {
   ReferenceProblem made{
       "R07 cubic spring",
       MotionKind::kConservative,
-      with_law(oscillator(1.0, 0.0, 0.0, 2.0, 0.0, 1e-2), behaviour(1.0, power(0.5, 3.0))),
+      with_law(oscillator(1.0, 0.0, 0.0, 2.0, 0.0, 1e-2), state_machine(1.0, power(0.5, 3.0))),
       20.0,
       50.0,
       {}};
@@ -174,7 +174,7 @@ ReferenceProblem stiff_fpu() {
   ReferenceProblem made{
       "R09 stiff and soft chain", MotionKind::kConservative, chain(6, 1.0, {}), 1.0, 1000.0, {}};
   made.network.links.clear();
-  made.network.behaviours = {behaviour(0.0, power(4.0, 3.0))};
+  made.network.state_machines = {state_machine(0.0, power(4.0, 3.0))};
   for (std::uint32_t i = 0; i < 7; ++i) {
     if (i % 2 == 0) {
       made.network.state_links.push_back({i, i + 1, 0, 0.0});
@@ -212,7 +212,7 @@ ReferenceProblem quadratic_chain() {
   engine::Law law;
   law.kind = engine::Law::Kind::kFunction;
   law.function = std::make_shared<const QuadraticSpring>(value(params, "alpha"));
-  made.network.behaviours = {behaviour(0.0, law)};
+  made.network.state_machines = {state_machine(0.0, law)};
   for (std::uint32_t i = 0; i < 33; ++i) {
     made.network.state_links.push_back({i, i + 1, 0, 0.0});
     made.network.mats[i].position.x() = i > 0 ? std::sin(M_PI * i / 33.0) : 0.0;
@@ -238,28 +238,28 @@ ReferenceProblem dimer() {
   made.network.dimension = 2;
   made.network.step = 1e-3;
   made.network.mats = {mass(1.0, Vec3::Zero()), mass(1.0, Vec3(start, 0, 0))};
-  made.network.behaviours = {behaviour(0.0, lennard_jones())};
+  made.network.state_machines = {state_machine(0.0, lennard_jones())};
   made.network.state_links = {{0, 1, 0, 0.0}};
   made.expected = {{period, 1.0, start}};
   return made;
 }
 
 /// Touches below the rest length; `pulls`: also while it lets go, else it lets go at no force.
-engine::Behaviour touch(double stiffness, double viscosity, bool pulls) {
+engine::StateMachine touch(double stiffness, double viscosity, bool pulls) {
   const Term elongation = q(Quantity::kElongation);
-  engine::Behaviour made = Behaving()
-                               .state(0.0)
-                               .exit(elongation < 0.0, 1)
-                               .state(stiffness, viscosity)
-                               .exit(elongation >= 0.0, 0)
-                               .behaviour;
+  engine::StateMachine made = Behaving()
+                                  .state(0.0)
+                                  .exit(elongation < 0.0, 1)
+                                  .state(stiffness, viscosity)
+                                  .exit(elongation >= 0.0, 0)
+                                  .state_machine;
   made.states[1].pulls = pulls;
   return made;
 }
 
 ReferenceProblem hertz() {
   const nlohmann::json problem = reference("R13_hertz_bounce");
-  engine::Behaviour skin = behaviour(0.0, power(value(problem["params"], "K"), 1.5));
+  engine::StateMachine skin = state_machine(0.0, power(value(problem["params"], "K"), 1.5));
   skin.states[0].pulls = false;
   ReferenceProblem made{"R13 Hertz bounce",
                         MotionKind::kSwitching,
@@ -345,7 +345,7 @@ ReferenceProblem stick_slip() {
                     q(Quantity::kDistance) - hooks * stiffness / kSticking)
       .state(stick)
       .exit(q(Quantity::kElongation) > value(params, "Fs") / kSticking, 0);
-  made.network.behaviours = {rosin.behaviour};
+  made.network.state_machines = {rosin.state_machine};
   made.network.state_links = {{1, 2, 0, 0.0}};
   made.expected = {{0.2, 1.0, slipping / stiffness + swing * std::cos(0.2 * w)},
                    {0.6, 1.0, hooks + speed * (0.6 - hooked_at)},
@@ -363,7 +363,7 @@ ReferenceProblem rupture() {
                        mass(1e12, Vec3::Zero(), Vec3(value(of, "V"), 0, 0))};
   Behaving thread;
   thread.state(value(of, "k")).exit(q(Quantity::kElongation) > value(of, "ub"), 1).state(0.0);
-  made.network.behaviours = {thread.behaviour};
+  made.network.state_machines = {thread.state_machine};
   made.network.state_links = {{0, 1, 0, 0.0}};
   made.expected = {
       {0.1, 0.0, value(of, "x_break") + value(of, "v_break") * (0.1 - value(of, "t_break"))}};
@@ -395,7 +395,7 @@ ReferenceProblem cluster() {
     const auto at = [&row](std::size_t i) { return number(row[i]); };
     made.network.mats.push_back(mass(1.0, Vec3(at(0), at(1), at(2)), Vec3(at(3), at(4), at(5))));
   }
-  made.network.behaviours = {behaviour(0.0, lennard_jones())};
+  made.network.state_machines = {state_machine(0.0, lennard_jones())};
   std::vector<std::uint32_t> all(made.network.mats.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
   made.network.sets = {{0, all, {}, 30.0, 0.0}};
@@ -424,7 +424,7 @@ ReferenceProblem collision() {
   made.network.step = 1e-3;
   made.network.mats = {mass(value(of, "m1"), Vec3::Zero(), Vec3(value(of, "v1"), 0, 0)),
                        mass(value(of, "m2"), Vec3(0.05, 0, 0))};
-  made.network.behaviours = {touch(value(of, "K"), value(of, "Z"), true)};
+  made.network.state_machines = {touch(value(of, "K"), value(of, "Z"), true)};
   made.network.state_links = {{0, 1, 0, 0.04}};
   return made;
 }

@@ -25,7 +25,7 @@ Law lennard_jones(double depth, double diameter) {
 TEST(Slope, OfLennardJonesGrowsWithTheEnergyOfTheApproach) {
   // Curvature at the turning point in units of depth / diameter^2, by hand
   // (docs/stability.md, "Laws without a largest slope").
-  const engine::Behaviour ball = behaviour(0.0, lennard_jones(2.0, 0.5));
+  const engine::StateMachine ball = state_machine(0.0, lennard_jones(2.0, 0.5));
   for (const auto& [energy, curvature] :
        {std::pair(1.0, 752.0), std::pair(5.0, 1879.0), std::pair(100.0, 32032.0)}) {
     const Slope slope = largest_slope(ball, 0.5, 3, Reach{0.0, 0.0, 2.0 * energy});
@@ -39,7 +39,7 @@ TEST(Slope, OfATableIsThatOfItsSteepestPiece) {
   law.kind = Law::Kind::kTable;
   law.table = {{-0.01, 0.0, 0.02, 0.03}, {-8.0, 0.0, 1.0, 1.0}};
 
-  const Slope slope = largest_slope(behaviour(5.0, law), 0.1, 3, {});
+  const Slope slope = largest_slope(state_machine(5.0, law), 0.1, 3, {});
 
   EXPECT_DOUBLE_EQ(slope.stiffness, 805.0);
   EXPECT_TRUE(slope.bounded);
@@ -51,10 +51,10 @@ TEST(Slope, OfAPullThatLastsIsAlsoAcrossTheLink) {
   law.kind = Law::Kind::kTable;
   law.table = {{-0.08, 0.0, 1.0}, {0.0, 0.0, 0.0}};
   law.table.value = {0.0, 1.0, 1.0};
-  EXPECT_NEAR(largest_slope(behaviour(0.0, law), 0.1, 1, {}).stiffness, 12.5, 1e-12);
+  EXPECT_NEAR(largest_slope(state_machine(0.0, law), 0.1, 1, {}).stiffness, 12.5, 1e-12);
   law.table = {{-0.0801, -0.08, 1.0}, {9.99, 10.0, 10.0}};
-  EXPECT_NEAR(largest_slope(behaviour(0.0, law), 0.1, 3, {}).stiffness, 10.0 / 0.02, 5.0);
-  EXPECT_LE(largest_slope(behaviour(0.0, law), 0.1, 1, {}).stiffness, 101.0);
+  EXPECT_NEAR(largest_slope(state_machine(0.0, law), 0.1, 3, {}).stiffness, 10.0 / 0.02, 5.0);
+  EXPECT_LE(largest_slope(state_machine(0.0, law), 0.1, 1, {}).stiffness, 101.0);
 }
 
 TEST(Slope, OfAPowerIsThatAtTheReach) {
@@ -63,7 +63,7 @@ TEST(Slope, OfAPowerIsThatAtTheReach) {
   law.coefficient = 1e5;
   law.exponent = 1.5;
 
-  const Slope slope = largest_slope(behaviour(0.0, law), 0.01, 1, Reach{0.01, 1.0, 0.0});
+  const Slope slope = largest_slope(state_machine(0.0, law), 0.01, 1, Reach{0.01, 1.0, 0.0});
 
   EXPECT_NEAR(slope.stiffness, 1e5 * 1.5 * 0.1, 1e-9);
   EXPECT_FALSE(slope.bounded);
@@ -75,21 +75,21 @@ TEST(Slope, OfRingsIsThatOfTheirSteepestSum) {
   law.kind = Law::Kind::kRings;
   law.rings = {{300.0, 0.01}, {-100.0, 0.02}};
 
-  EXPECT_DOUBLE_EQ(largest_slope(behaviour(0.0, law), 0.0, 1, {}).stiffness, 200.0);
+  EXPECT_DOUBLE_EQ(largest_slope(state_machine(0.0, law), 0.0, 1, {}).stiffness, 200.0);
   // At 1 cm it pulls with 1 N: 100 N/m across, still less.
-  EXPECT_DOUBLE_EQ(largest_slope(behaviour(0.0, law), 0.0, 3, {}).stiffness, 200.0);
+  EXPECT_DOUBLE_EQ(largest_slope(state_machine(0.0, law), 0.0, 3, {}).stiffness, 200.0);
 }
 
 TEST(Tangent, IsThatOfTheStiffestStateAtTheDistance) {
-  engine::Behaviour touch = contact(100.0);
+  engine::StateMachine touch = contact(100.0);
   touch.states.push_back(touch.states[0]);
   touch.states[1].stiffness = 20.0;
   touch.states[1].viscosity = 0.5;
   EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09).stiffness, 100.0);
   EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09).viscosity, 0.5);
-  EXPECT_NEAR(plan::stiffest_tangent(behaviour(100.0), 0.1, 0.09).pull, -1.0, 1e-12);
+  EXPECT_NEAR(plan::stiffest_tangent(state_machine(100.0), 0.1, 0.09).pull, -1.0, 1e-12);
   // 57.1 in units of depth / diameter^2 at the distance of rest, 2^(1/6) diameters.
-  const engine::Behaviour ball = behaviour(0.0, lennard_jones(1.0, 1.0));
+  const engine::StateMachine ball = state_machine(0.0, lennard_jones(1.0, 1.0));
   const double rest = std::pow(2.0, 1.0 / 6.0);
   EXPECT_NEAR(plan::stiffest_tangent(ball, 1.0, rest).stiffness, 57.146, 0.01);
   EXPECT_NEAR(plan::stiffest_tangent(ball, 1.0, rest).pull, 0.0, 1e-9);

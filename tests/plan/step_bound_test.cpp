@@ -91,10 +91,10 @@ TEST(StepBound, NamesTheLightMassAndItsStiffLink) {
 TEST(StepBound, TakesEveryLinkInItsStiffestState) {
   NetworkDescription scene = oscillator(0.1, 0.0, 0.0, 1.0, 0.0, 1e-3);
   scene.links.clear();
-  scene.behaviours.emplace_back();
-  scene.behaviours[0].states.resize(2);
-  scene.behaviours[0].states[0].stiffness = 10.0;
-  scene.behaviours[0].states[1].stiffness = 4000.0;
+  scene.state_machines.emplace_back();
+  scene.state_machines[0].states.resize(2);
+  scene.state_machines[0].states[0].stiffness = 10.0;
+  scene.state_machines[0].states[1].stiffness = 4000.0;
   scene.state_links = {{0, 1, 0, 0.0}};
 
   const plan::StepBound bound = certified_bound(scene, liaison_graph(scene));
@@ -117,7 +117,7 @@ TEST(StepBound, OfASetTakesAsManyContactsAsTouchAtOnce) {
   NetworkDescription scene;
   scene.dimension = 2;
   scene.step = 1e-3;
-  scene.behaviours.push_back(contact(100.0));
+  scene.state_machines.push_back(contact(100.0));
   engine::SetLiaison paste;
   for (std::uint32_t i = 0; i < 30; ++i) {
     scene.mats.push_back(mass(0.01, Vec3(0.02 * i, 0, 0)));
@@ -135,13 +135,13 @@ TEST(StepBound, OfASetTakesAsManyContactsAsTouchAtOnce) {
 }
 
 TEST(MostNeighbours, AreTheKissingNumbersForEqualBallsAndMoreForSmallerOnes) {
-  EXPECT_EQ(plan::most_neighbours(1, 0.01, 0.01), 2.0);
-  EXPECT_EQ(plan::most_neighbours(2, 0.01, 0.01), 6.0);
-  EXPECT_EQ(plan::most_neighbours(3, 0.01, 0.01), 12.0);
-  EXPECT_EQ(plan::most_neighbours(2, 0.01, 0.02), 6.0);
+  EXPECT_EQ(plan::max_neighbours(1, 0.01, 0.01), 2.0);
+  EXPECT_EQ(plan::max_neighbours(2, 0.01, 0.01), 6.0);
+  EXPECT_EQ(plan::max_neighbours(3, 0.01, 0.01), 12.0);
+  EXPECT_EQ(plan::max_neighbours(2, 0.01, 0.02), 6.0);
   // asin(1/3) = 19.47 degrees, and 180 / 19.47 = 9.2
-  EXPECT_EQ(plan::most_neighbours(2, 0.02, 0.01), 9.0);
-  EXPECT_GE(plan::most_neighbours(3, 0.02, 0.01), 25.0);
+  EXPECT_EQ(plan::max_neighbours(2, 0.02, 0.01), 9.0);
+  EXPECT_GE(plan::max_neighbours(3, 0.02, 0.01), 25.0);
 }
 
 }  // namespace

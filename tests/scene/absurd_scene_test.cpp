@@ -24,7 +24,7 @@ std::string told_of(const std::string& sections) {
   config::Problems problems;
   load_scene_text(scene_head(2) + sections, "t", problems);
   if (problems.all().empty()) return "";
-  EXPECT_LE(problems.in_order().size(), config::Problems::kMostProblems + 1);
+  EXPECT_LE(problems.in_order().size(), config::Problems::kMaxProblems + 1);
   for (const config::Problem& problem : problems.all()) EXPECT_LT(problem.text().size(), 600u);
   return problems.in_order().front().message;
 }

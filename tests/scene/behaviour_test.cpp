@@ -36,31 +36,31 @@ constexpr const char* kCollophane =
     "            when: \"abs(speed_m_per_s) < slow_m_per_s and falling(abs(speed_m_per_s))\"\n"
     "            rest: here\n";
 
-TEST(Behaviour, HasItsStatesExitsAndParametersPutToValues) {
+TEST(StateMachine, HasItsStatesExitsAndParametersPutToValues) {
   const engine::NetworkDescription network =
       network_of(kCollophane, "  - {liaison: collophane, between: [wall, bob], rest_m: 0.9}\n");
 
-  ASSERT_EQ(network.behaviours.size(), 1u);
-  const engine::Behaviour& behaviour = network.behaviours[0];
-  ASSERT_EQ(behaviour.states.size(), 2u);
-  EXPECT_EQ(behaviour.start, 1u);
-  EXPECT_EQ(behaviour.states[0].name, "hooked");
-  EXPECT_EQ(behaviour.states[0].stiffness, 400.0);
-  EXPECT_EQ(behaviour.states[0].viscosity, 0.8);
-  EXPECT_EQ(behaviour.states[1].viscosity, 0.05);
-  ASSERT_EQ(behaviour.exits.size(), 2u);
-  EXPECT_EQ(behaviour.exits[0].target, 1u);
-  EXPECT_EQ(behaviour.exits[0].fired, engine::Quantity::kElongation);
-  EXPECT_EQ(behaviour.exits[0].rest, engine::RestRule::kKeep);
-  EXPECT_EQ(behaviour.exits[1].target, 0u);
-  EXPECT_EQ(behaviour.exits[1].fired, engine::Quantity::kSpeed);
-  EXPECT_EQ(behaviour.exits[1].rest, engine::RestRule::kHere);
-  EXPECT_EQ(behaviour.exits[1].when.code[2].constant, 0.01);  // slow, after hold
+  ASSERT_EQ(network.state_machines.size(), 1u);
+  const engine::StateMachine& state_machine = network.state_machines[0];
+  ASSERT_EQ(state_machine.states.size(), 2u);
+  EXPECT_EQ(state_machine.start, 1u);
+  EXPECT_EQ(state_machine.states[0].name, "hooked");
+  EXPECT_EQ(state_machine.states[0].stiffness, 400.0);
+  EXPECT_EQ(state_machine.states[0].viscosity, 0.8);
+  EXPECT_EQ(state_machine.states[1].viscosity, 0.05);
+  ASSERT_EQ(state_machine.exits.size(), 2u);
+  EXPECT_EQ(state_machine.exits[0].target, 1u);
+  EXPECT_EQ(state_machine.exits[0].triggered, engine::Quantity::kElongation);
+  EXPECT_EQ(state_machine.exits[0].rest, engine::RestRule::kKeep);
+  EXPECT_EQ(state_machine.exits[1].target, 0u);
+  EXPECT_EQ(state_machine.exits[1].triggered, engine::Quantity::kSpeed);
+  EXPECT_EQ(state_machine.exits[1].rest, engine::RestRule::kHere);
+  EXPECT_EQ(state_machine.exits[1].when.code[2].constant, 0.01);  // slow, after hold
   ASSERT_EQ(network.state_links.size(), 1u);
   EXPECT_EQ(network.state_links[0].rest_length, 0.9);
 }
 
-TEST(Behaviour, IsOneForEachDistinctSetOfParameters) {
+TEST(StateMachine, IsOneForEachDistinctSetOfParameters) {
   const engine::NetworkDescription network =
       network_of(kCollophane,
                  "  - {liaison: collophane, between: [wall, bob]}\n"
@@ -69,23 +69,23 @@ TEST(Behaviour, IsOneForEachDistinctSetOfParameters) {
                  "  - {liaison: collophane, between: [wall, bob], hold_m: 0.004}\n"
                  "  - {liaison: collophane, between: [wall, bob], hold_m: 0.004, name: own}\n");
   ASSERT_EQ(network.state_links.size(), 5u);
-  const auto of = [&](std::size_t link) { return network.state_links[link].behaviour; };
-  EXPECT_EQ(network.behaviours.size(), 3u);
+  const auto of = [&](std::size_t link) { return network.state_links[link].state_machine; };
+  EXPECT_EQ(network.state_machines.size(), 3u);
   EXPECT_EQ(of(0), of(1));
   EXPECT_NE(of(0), of(2));
   EXPECT_EQ(of(2), of(3));
   EXPECT_NE(of(2), of(4));  // of its own, for it has a name by which it can be changed
-  const engine::Behaviour& held = network.behaviours[of(2)];
+  const engine::StateMachine& held = network.state_machines[of(2)];
   EXPECT_EQ(held.exits[0].when.code[2].constant, 0.004);
   EXPECT_EQ(held.exits[1].when.code[2].constant, 0.02);  // what depends on it follows
 }
 
-TEST(Behaviour, LikeAnotherHasWhatItDoesNotSayItself) {
+TEST(StateMachine, LikeAnotherHasWhatItDoesNotSayItself) {
   const engine::NetworkDescription network = network_of(
       std::string("  rosin: {like: collophane, parameters: {hold_m: 0.003}}\n") + kCollophane +
           "  wet:\n    like: rosin\n    states: {hooked: {viscosity_n_s_per_m: 7}}\n",
       "  - {liaison: wet, between: [wall, bob]}\n");
-  const engine::Behaviour& wet = network.behaviours.at(0);
+  const engine::StateMachine& wet = network.state_machines.at(0);
   EXPECT_EQ(wet.states.size(), 2u);
   EXPECT_EQ(wet.start, 1u);
   EXPECT_EQ(wet.states[0].viscosity, 7.0);
@@ -93,7 +93,7 @@ TEST(Behaviour, LikeAnotherHasWhatItDoesNotSayItself) {
   EXPECT_EQ(wet.exits[0].when.code[2].constant, 0.003);
 }
 
-TEST(Behaviour, OfOneStateNeedsNoStates) {
+TEST(StateMachine, OfOneStateNeedsNoStates) {
   const engine::NetworkDescription network = network_of(
       "  clay:\n"
       "    viscosity_n_s_per_m: 0.02\n"
@@ -102,7 +102,7 @@ TEST(Behaviour, OfOneStateNeedsNoStates) {
       "    force_limit_n: 5\n"
       "    pulls: false\n",
       "  - {liaison: clay, between: [wall, bob], viscosity_n_s_per_m: 0.03}\n");
-  const engine::Behaviour& clay = network.behaviours.at(0);
+  const engine::StateMachine& clay = network.state_machines.at(0);
   ASSERT_TRUE(clay.is_stateless());
   const engine::LinkState& state = clay.states[0];
   EXPECT_EQ(state.viscosity, 0.03);
@@ -151,7 +151,7 @@ TEST(Condition, AsksForEveryQuantityByItsName) {
   }
 }
 
-TEST(Behaviour, MayHaveALimitOfItsForceThatALinkGives) {
+TEST(StateMachine, MayHaveALimitOfItsForceThatALinkGives) {
   const engine::NetworkDescription network = network_of(
       "  clutch:\n    parameters: {slip_n: 3}\n    states: {on: {stiffness_n_per_m: 9, "
       "force_limit_n: slip_n, final: true}}\n"
@@ -160,7 +160,9 @@ TEST(Behaviour, MayHaveALimitOfItsForceThatALinkGives) {
       "  - {liaison: clutch, between: [wall, bob], slip_n: 0.5}\n"
       "  - {liaison: rubber, between: [wall, bob], force_limit_n: 2}\n");
   const auto limit_of = [&](std::size_t link) {
-    return network.behaviours.at(network.state_links.at(link).behaviour).states[0].force_limit;
+    return network.state_machines.at(network.state_links.at(link).state_machine)
+        .states[0]
+        .force_limit;
   };
   EXPECT_EQ(limit_of(0), 3.0);
   EXPECT_EQ(limit_of(1), 0.5);
@@ -171,7 +173,7 @@ TEST(Law, OfEveryKindIsRead) {
   const auto law = [](const std::string& text) {
     return network_of("  l: {elasticity: " + text + "}\n",
                       "  - {liaison: l, between: [wall, bob]}\n")
-        .behaviours.at(0)
+        .state_machines.at(0)
         .states[0]
         .elasticity;
   };
@@ -196,7 +198,7 @@ TEST(Law, OfAFreeExpressionIsItsValue) {
       "    elasticity: \"k * elongation_m + 2e6 * elongation_m^3 - (distance_m > 2 ? 1 : 0)\"\n"
       "    dissipation: 3 * speed_m_per_s * mass_a_kg\n",
       "  - {liaison: l, between: [wall, bob]}\n");
-  const engine::LinkState& state = network.behaviours.at(0).states[0];
+  const engine::LinkState& state = network.state_machines.at(0).states[0];
   ASSERT_EQ(state.elasticity.kind, engine::Law::Kind::kFunction);
   const engine::LinkFunction& pull = *state.elasticity.function;
   EXPECT_NEAR(pull(1.0, 0.1, 0.0, 0.0, 0.0), 500 * 0.1 + 2e6 * 0.001, 1e-9);
@@ -261,7 +263,7 @@ TEST(SetLiaison, WithinASetReachesAsFarAsItsLaw) {
   EXPECT_EQ(sets[0].set_p, (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_TRUE(sets[0].set_q.empty());
   EXPECT_EQ(sets[0].range, 0.02);
-  EXPECT_EQ(sets[0].behaviour, sets[1].behaviour);
+  EXPECT_EQ(sets[0].state_machine, sets[1].state_machine);
   EXPECT_EQ(sets[1].range, 0.03);
   EXPECT_EQ(sets[2].set_q, (std::vector<std::uint32_t>{3, 4}));
   EXPECT_EQ(sets[2].range, 0.03);  // the radii of two balls
@@ -278,7 +280,8 @@ TEST(SetLiaison, MayBeLinear) {
       "1}\n"
       "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
       "links:\n  - {liaison: s, within: a, range_m: 2}\n");
-  const engine::Behaviour& pair = scene.network.behaviours.at(scene.network.sets.at(0).behaviour);
+  const engine::StateMachine& pair =
+      scene.network.state_machines.at(scene.network.sets.at(0).state_machine);
   EXPECT_TRUE(pair.is_stateless());
   EXPECT_EQ(pair.states[0].stiffness, 3.0);
   EXPECT_EQ(pair.states[0].viscosity, 4.0);
@@ -302,7 +305,7 @@ TEST(Matter, MayBeJoinedByLinksWithStates) {
       "  r: {of: \"bar.links[2]\", quantity: rest_length}\n"
       "  n: {quantity: changes}\n");
   ASSERT_EQ(scene.network.state_links.size(), 3u);
-  EXPECT_EQ(scene.network.behaviours.at(0).exits[0].when.code[1].constant, 0.2);
+  EXPECT_EQ(scene.network.state_machines.at(0).exits[0].when.code[1].constant, 0.2);
   engine::World world(std::make_shared<const engine::Network>(scene.network));
   world.force_state(2, 1);
   world.step();

@@ -69,15 +69,15 @@ TEST(Lattice, JoinsAllNearestNeighboursAndNoOthers) {
 }
 
 TEST(Lattice, InnerMatsHaveTheNeighboursOfTheirStructure) {
-  const auto most_links = [](int space, const std::string& keys) {
+  const auto max_links = [](int space, const std::string& keys) {
     return degrees(lattice(space, keys + ", spacing_m: 1, mass_kg: 1, stiffness_n_per_m: 1"))
         .rbegin()
         ->first;
   };
-  EXPECT_EQ(most_links(2, "structure: square, corner_m: [0, 0], counts: [5, 5]"), 4);
-  EXPECT_EQ(most_links(2, "structure: triangular, corner_m: [0, 0], counts: [5, 5]"), 6);
-  EXPECT_EQ(most_links(3, "structure: cubic, corner_m: [0, 0, 0], counts: [3, 3, 3]"), 6);
-  EXPECT_EQ(most_links(3, "structure: fcc, corner_m: [0, 0, 0], counts: [4, 5, 5]"), 12);
+  EXPECT_EQ(max_links(2, "structure: square, corner_m: [0, 0], counts: [5, 5]"), 4);
+  EXPECT_EQ(max_links(2, "structure: triangular, corner_m: [0, 0], counts: [5, 5]"), 6);
+  EXPECT_EQ(max_links(3, "structure: cubic, corner_m: [0, 0, 0], counts: [3, 3, 3]"), 6);
+  EXPECT_EQ(max_links(3, "structure: fcc, corner_m: [0, 0, 0], counts: [4, 5, 5]"), 12);
 }
 
 TEST(Lattice, ShearJoinsAllSecondNeighbours) {

@@ -47,9 +47,9 @@ class ParametersOfAScene : public testing::Test {
     for (const Change& change : outcome.changes) apply(change, network);
     return network;
   }
-  /// The elongation at which links of a behaviour break.
-  double limit_of(std::uint32_t behaviour) const {
-    return network.behaviours[behaviour].exits[0].when.code[1].constant;
+  /// The elongation at which links of a state machine break.
+  double limit_of(std::uint32_t state_machine) const {
+    return network.state_machines[state_machine].exits[0].when.code[1].constant;
   }
 
   std::shared_ptr<const Scene> scene = std::make_shared<const Scene>(sound_scene(2, kScene));
@@ -63,10 +63,10 @@ TEST_F(ParametersOfAScene, OfALiaisonAreSetForLinksThatGiveNoneOfTheirOwn) {
   after("brittle", "length_m", 0.5);
 
   EXPECT_EQ(problem, "");
-  EXPECT_EQ(limit_of(network.state_links[0].behaviour), 1.0);  // what depends on it follows
-  EXPECT_EQ(limit_of(network.state_links[1].behaviour), 1.0);
-  EXPECT_EQ(limit_of(network.state_links[2].behaviour), 0.6);
-  EXPECT_EQ(limit_of(network.sets[0].behaviour), 1.0);
+  EXPECT_EQ(limit_of(network.state_links[0].state_machine), 1.0);  // what depends on it follows
+  EXPECT_EQ(limit_of(network.state_links[1].state_machine), 1.0);
+  EXPECT_EQ(limit_of(network.state_links[2].state_machine), 0.6);
+  EXPECT_EQ(limit_of(network.sets[0].state_machine), 1.0);
   EXPECT_NO_THROW(engine::Network{network});
 }
 
@@ -74,17 +74,17 @@ TEST_F(ParametersOfAScene, OfNamedLinksAreSetForThemAlone) {
   after("strong", "length_m", 0.4);
   after("glue", "length_m", 0.05);
 
-  EXPECT_EQ(limit_of(network.state_links[0].behaviour), 0.2);
-  EXPECT_EQ(limit_of(network.state_links[2].behaviour), 0.8);
-  EXPECT_EQ(limit_of(network.sets[0].behaviour), 0.1);
+  EXPECT_EQ(limit_of(network.state_links[0].state_machine), 0.2);
+  EXPECT_EQ(limit_of(network.state_links[2].state_machine), 0.8);
+  EXPECT_EQ(limit_of(network.sets[0].state_machine), 0.1);
 }
 
 TEST_F(ParametersOfAScene, KeepWhatWasSetBefore) {
   after("glue", "length_m", 0.05);
   after("brittle", "twice_m", 3.0);
-  EXPECT_EQ(limit_of(network.sets[0].behaviour), 3.0);
+  EXPECT_EQ(limit_of(network.sets[0].state_machine), 3.0);
   after("glue", "length_m", 0.07);
-  EXPECT_EQ(limit_of(network.sets[0].behaviour), 3.0);
+  EXPECT_EQ(limit_of(network.sets[0].state_machine), 3.0);
 }
 
 TEST_F(ParametersOfAScene, OfLinearAndMaxwellLinksChangeTheDescription) {
@@ -114,7 +114,7 @@ TEST_F(ParametersOfAScene, ThatDoNotExistAreRefused) {
   after("bar.links", "k", 1.0);
   EXPECT_EQ(problem, "'bar.links' has no parameter 'k'");
   EXPECT_EQ(hint, "it has stiffness_n_per_m, viscosity_n_s_per_m");
-  EXPECT_EQ(limit_of(network.state_links[0].behaviour), 0.2);
+  EXPECT_EQ(limit_of(network.state_links[0].state_machine), 0.2);
 }
 
 TEST_F(ParametersOfAScene, OfImpossibleValuesAreRefused) {
@@ -127,7 +127,7 @@ TEST_F(ParametersOfAScene, OfImpossibleValuesAreRefused) {
   EXPECT_EQ(network.maxwell_links[0].stiffness, 5.0);
 }
 
-TEST(Parameters, OfMatterThatSharesItsBehaviourAreThoseOfTheLiaison) {
+TEST(Parameters, OfMatterThatSharesItsStateMachineAreThoseOfTheLiaison) {
   const auto scene = std::make_shared<const Scene>(sound_scene(
       2,
       "liaisons:\n"

@@ -66,7 +66,7 @@ class Rig {
   std::string state() const {
     const engine::NetworkDescription& network = scene_.network;
     const engine::StateLink& link = network.state_links[0];
-    return network.behaviours[link.behaviour].states[world_.state_of(0)].name;
+    return network.state_machines[link.state_machine].states[world_.state_of(0)].name;
   }
   double hand() const { return hand_; }
   double bob() const { return world_.position(kBob).x(); }

@@ -55,7 +55,7 @@ Scene load(const Sections& sections) {
 }
 
 /// Presses the finger 2 cm down and lets it come up again.
-/// @return per behaviour how often a link or pair went from state to state
+/// @return per state machine how often a link or pair went from state to state
 std::vector<std::uint64_t> changes_under_a_finger(const Scene& scene) {
   const auto network = std::make_shared<const engine::Network>(scene.network);
   engine::World world(network);
@@ -68,8 +68,8 @@ std::vector<std::uint64_t> changes_under_a_finger(const Scene& scene) {
   }
   EXPECT_NEAR(world.energy().residual(), 0.0, 1e-9);
   std::vector<std::uint64_t> counts;
-  for (std::uint32_t b = 0; b < scene.network.behaviours.size(); ++b) {
-    const auto states = static_cast<std::uint32_t>(scene.network.behaviours[b].states.size());
+  for (std::uint32_t b = 0; b < scene.network.state_machines.size(); ++b) {
+    const auto states = static_cast<std::uint32_t>(scene.network.state_machines[b].states.size());
     for (std::uint32_t from = 0; from < states; ++from) {
       for (std::uint32_t to = 0; to < states; ++to) {
         if (from != to) counts.push_back(world.change_count(b, from, to));

@@ -1,6 +1,4 @@
 // tests/sim/director_test.cpp
-#include "sim_node/run/command_executor.h"
-
 #include <atomic>
 #include <functional>
 #include <thread>
@@ -8,9 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/plan/reduction/reduce.h"
-#include "sim_node/run/runner.h"
 #include "sim_node/checks/stability_check.h"
+#include "sim_node/plan/reduction/reduce.h"
+#include "sim_node/run/command_executor.h"
+#include "sim_node/run/runner.h"
 #include "tests/sim/stages.h"
 
 namespace cordis::sim {
@@ -69,21 +68,21 @@ class DirectorTest : public ::testing::Test {
 
   void play() {
     while (!ending_) {
-      if (Order* order = orders_.waiting()) {
+      if (Request* order = orders_.waiting()) {
         player_.obey(*order);
-        orders_.tell_steps_left(player_.steps_left());
+        orders_.report_steps_left(player_.steps_left());
         orders_.obeyed();
       }
       player_.advance();
-      orders_.tell_steps_left(player_.steps_left());
+      orders_.report_steps_left(player_.steps_left());
     }
     orders_.close();
   }
 
-  OrderBox orders_;
-  Player player_;
+  RequestMailbox orders_;
+  Runner player_;
   std::vector<std::string> told_;
-  Director director_;
+  CommandExecutor director_;
   std::atomic<bool> ending_{false};
   std::thread loop_;
 };

@@ -27,29 +27,29 @@ engine::Program further_than(double limit) {
 }
 
 /// A link that breaks when it is longer than a limit.
-engine::Behaviour breaking(const std::string& name, double limit) {
-  engine::Behaviour behaviour;
-  behaviour.name = name;
-  behaviour.states.resize(2);
-  behaviour.states[0].name = "whole";
-  behaviour.states[0].viscosity = 1.0e-9;
-  behaviour.states[0].last_exit = 1;
-  behaviour.states[1].name = "broken";
-  behaviour.states[1].first_exit = 1;
-  behaviour.states[1].last_exit = 1;
-  behaviour.exits.resize(1);
-  behaviour.exits[0].when = further_than(limit);
-  behaviour.exits[0].target = 1;
-  behaviour.exits[0].fired = engine::Quantity::kDistance;
-  return behaviour;
+engine::StateMachine breaking(const std::string& name, double limit) {
+  engine::StateMachine state_machine;
+  state_machine.name = name;
+  state_machine.states.resize(2);
+  state_machine.states[0].name = "whole";
+  state_machine.states[0].viscosity = 1.0e-9;
+  state_machine.states[0].last_exit = 1;
+  state_machine.states[1].name = "broken";
+  state_machine.states[1].first_exit = 1;
+  state_machine.states[1].last_exit = 1;
+  state_machine.exits.resize(1);
+  state_machine.exits[0].when = further_than(limit);
+  state_machine.exits[0].target = 1;
+  state_machine.exits[0].triggered = engine::Quantity::kDistance;
+  return state_machine;
 }
 
 /// The swing with `count` links more that break, in pairs of two liaisons, when the bob has moved
 /// by a millimetre and more: the bob starts at 0.01 m, at rest.
 std::shared_ptr<const scene::Scene> breaking_scene(std::size_t count) {
   auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
-  scene->network.behaviours = {breaking("thin", 0.0101), breaking("thick", 0.0102),
-                               breaking("thin", 0.0103)};
+  scene->network.state_machines = {breaking("thin", 0.0101), breaking("thick", 0.0102),
+                                   breaking("thin", 0.0103)};
   scene->network.mats[1].velocity = engine::Vec3(1.0, 0.0, 0.0);
   const auto first = static_cast<std::uint32_t>(scene->network.links.size());
   for (std::size_t l = 0; l < count; ++l)
@@ -75,9 +75,9 @@ TEST(EventRoom, KeepsEventsInOrderAndCountsThoseBeyondItsRoom) {
   EXPECT_TRUE(room.is_empty());
 }
 
-TEST(ChangeCounter, CountsTheBehavioursOfALiaisonTogether) {
+TEST(ChangeCounter, CountsTheStateMachinesOfALiaisonTogether) {
   const auto scene = breaking_scene(9);
-  const ChangeCounter counter(scene->network.behaviours);
+  const ChangeCounter counter(scene->network.state_machines);
   EXPECT_EQ(counter.names(), (std::vector<std::string>{"thin", "thick"}));
   engine::World world(std::make_shared<const engine::Network>(scene->network));
   EXPECT_EQ(counter.count(world), ChangeCounter::Counts{});
@@ -89,10 +89,10 @@ TEST(ChangeCounter, CountsTheBehavioursOfALiaisonTogether) {
 }
 
 TEST(ChangeCounter, PutsWhatIsTooMuchTogether) {
-  std::vector<engine::Behaviour> behaviours;
-  for (int i = 0; i < 100; ++i) behaviours.push_back(breaking(std::to_string(i), 0.0102));
-  const ChangeCounter counter(behaviours);
-  ASSERT_EQ(counter.names().size(), ChangeCounter::kMostLiaisons);
+  std::vector<engine::StateMachine> state_machines;
+  for (int i = 0; i < 100; ++i) state_machines.push_back(breaking(std::to_string(i), 0.0102));
+  const ChangeCounter counter(state_machines);
+  ASSERT_EQ(counter.names().size(), ChangeCounter::kMaxLiaisons);
   EXPECT_EQ(counter.names().back(), "others");
 }
 
@@ -107,20 +107,20 @@ TEST(Description, NumbersTheLinksOfAllKindsInOneRow) {
   EXPECT_EQ(told.link_ends()[5], 1u);
   EXPECT_EQ(told.link_ends()[11], 2u);  // the Maxwell element
   constexpr std::uint32_t kNone = 0xffffffff;
-  EXPECT_EQ(told.link_behaviour(), (std::vector<std::uint32_t>{kNone, kNone, 0, 1, 2, kNone}));
-  ASSERT_EQ(told.behaviours().size(), 3u);
-  EXPECT_EQ(told.behaviours()[1].name(), "thick");
-  EXPECT_EQ(told.behaviours()[1].states(), (std::vector<std::string>{"whole", "broken"}));
+  EXPECT_EQ(told.link_state_machine(), (std::vector<std::uint32_t>{kNone, kNone, 0, 1, 2, kNone}));
+  ASSERT_EQ(told.state_machines().size(), 3u);
+  EXPECT_EQ(told.state_machines()[1].name(), "thick");
+  EXPECT_EQ(told.state_machines()[1].states(), (std::vector<std::string>{"whole", "broken"}));
 }
 
 TEST(Description, SaysNothingOfStatesWhenThereAreNone) {
   const msg::SceneDescription told = describe(*scene_of(swing_text()), 1, 1);
-  EXPECT_TRUE(told.behaviours().empty());
-  EXPECT_TRUE(told.link_behaviour().empty());
+  EXPECT_TRUE(told.state_machines().empty());
+  EXPECT_TRUE(told.link_state_machine().empty());
 }
 
-TEST(Player, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
-  Player player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
+TEST(Runner, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
+  Runner player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
   FrameStore& frames = player.stage().frames;
   frames.turn(player.simulation().world(), 0.0, 0);
   EXPECT_EQ(frames.published().link_state, std::vector<std::uint8_t>(8, 0));
@@ -133,7 +133,7 @@ TEST(Player, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
   EXPECT_TRUE(std::is_sorted(
       frame.events.events().begin(), frame.events.events().end(),
       [](const engine::LinkEvent& a, const engine::LinkEvent& b) { return a.step < b.step; }));
-  EXPECT_EQ(frame.events.events()[0].behaviour, 0u);
+  EXPECT_EQ(frame.events.events()[0].state_machine, 0u);
   EXPECT_EQ(frame.events.events()[0].to, 1u);
   EXPECT_GT(frame.events.events()[0].value, 0.0101);
   constexpr std::uint8_t kBroken = 1 + kLinkIsIdle;
@@ -179,10 +179,10 @@ TEST(LinkStates, ThatDoNotExistAreRefusedInOneSentence) {
   EXPECT_EQ(refusal("glue", "broken"), "'glue' joins sets, whose pairs cannot be put into a state");
 }
 
-TEST(Player, PutsLinksIntoStates) {
-  Player player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
-  Order order;
-  order.kind = Order::Kind::kForceStates;
+TEST(Runner, PutsLinksIntoStates) {
+  Runner player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
+  Request order;
+  order.kind = Request::Kind::kForceStates;
   order.forced = find_states(player.simulation().scene(), "fuse[1]", "broken");
   player.obey(order);
   player.advance();
@@ -193,8 +193,8 @@ TEST(Player, PutsLinksIntoStates) {
   EXPECT_EQ(events[0].quantity, engine::Quantity::kNone);
 }
 
-TEST(Player, GathersEventsWithoutAllocating) {
-  Player player(std::make_unique<Stage>(breaking_scene(60), kRunOfSim, 1), false);
+TEST(Runner, GathersEventsWithoutAllocating) {
+  Runner player(std::make_unique<Stage>(breaking_scene(60), kRunOfSim, 1), false);
   const test::AllocationGuard guard;
   for (int tick = 0; tick < 10; ++tick) {
     player.advance();

@@ -17,9 +17,9 @@ namespace cordis::sim {
 
 using engine::Vec3;
 
-inline constexpr double kTick = 1e-3;        // T [s]
-inline constexpr double kPortMass = 0.05;    // m [kg]
-inline constexpr double kMostForce = 100.0;  // of the device [N]
+inline constexpr double kTick = 1e-3;       // T [s]
+inline constexpr double kPortMass = 0.05;   // m [kg]
+inline constexpr double kMaxForce = 100.0;  // of the device [N]
 
 /// A hand that holds the first MAT of a scene through a device of role liaison.
 struct Hold {
@@ -118,7 +118,7 @@ class Loop {
   Vec3 place() const { return simulation_->world().position(0); }
   double position() const { return place().x(); }
   double hand_work() const { return hands_.front().work; }
-  std::uint64_t braked_ticks() { return devices().front().braked_ticks(); }
+  std::uint64_t passivity_ticks() { return devices().front().passivity_ticks(); }
 
  private:
   struct Hand {
@@ -141,7 +141,7 @@ class Loop {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const double now = felt.position_m()[static_cast<std::size_t>(axis)];
         const double pull =
-            std::clamp(stiffness[axis] * (target[axis] - now), -kMostForce, kMostForce);
+            std::clamp(stiffness[axis] * (target[axis] - now), -kMaxForce, kMaxForce);
         work += 0.5 * (pull + force[axis]) * (now - carried[axis]);
         carried[axis] = now;
         force[axis] = pull;

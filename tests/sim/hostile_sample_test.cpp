@@ -217,12 +217,12 @@ TEST(HostileSampleOfWork, DoesNotBrakeAnHonestHandForEver) {
     hold.stiffness = 100.0;
     Loop loop(hold);
     for (int tick = 0; tick < 2000; ++tick) loop.tick(0.001 * std::sin(0.01 * tick));
-    const std::uint64_t before = loop.braked_ticks();
+    const std::uint64_t before = loop.passivity_ticks();
     loop.lie_about_work(lie);
     loop.tick(0.0);
     for (int tick = 0; tick < 4000; ++tick) loop.tick(0.001 * std::sin(0.01 * tick));
 
-    EXPECT_EQ(loop.braked_ticks(), before) << "after a work of " << lie << " J";
+    EXPECT_EQ(loop.passivity_ticks(), before) << "after a work of " << lie << " J";
   }
 }
 

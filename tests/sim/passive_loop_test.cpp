@@ -19,7 +19,7 @@ namespace {
 using Gesture = std::function<double(double)>;  // where a hand wants to be, by time [m], [s]
 
 /// The way from 0 to 1 with the least jerk.
-double least_jerk(double u) {
+double min_jerk(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
 }
@@ -28,8 +28,8 @@ const Gesture kGestures[] = {
     [](double s) { return s < 1.0 ? 0.0 : 0.005; },                        // a jerk
     [](double s) { return 0.03 * std::sin(2.0 * std::numbers::pi * s); },  // to and fro
     [](double s) { return 0.1 * s; },                                      // pushes on
-    [](double s) { return 0.02 * least_jerk((s - 1.0) / 0.2); },           // reaches
-    [](double s) { return 0.01 * least_jerk((0.35 - std::abs(std::fmod(s, 0.7) - 0.35)) / 0.06); },
+    [](double s) { return 0.02 * min_jerk((s - 1.0) / 0.2); },             // reaches
+    [](double s) { return 0.01 * min_jerk((0.35 - std::abs(std::fmod(s, 0.7) - 0.35)) / 0.06); },
     [](double s) { return std::fmod(s, 0.5) < 0.25 ? 0.02 : 0.015; }};  // knocks
 
 constexpr double kFast = 100.0;  // decays in no time
@@ -104,7 +104,7 @@ TEST(PassiveLoop, IsNotBrakedAndASwingIsEnded) {
       for (std::size_t g = 0; g < std::size(kGestures); ++g) {
         Loop loop(hold, scene);
         for (int n = 0; n < 5000; ++n) loop.tick(kGestures[g](n * kTick));
-        EXPECT_EQ(loop.braked_ticks(), 0u) << "scene " << i << " gesture " << g;
+        EXPECT_EQ(loop.passivity_ticks(), 0u) << "scene " << i << " gesture " << g;
       }
       ++at_rest;
     } else if (late == -kFast) {

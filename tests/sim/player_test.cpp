@@ -1,69 +1,68 @@
 // tests/sim/player_test.cpp
-#include "sim_node/run/runner.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "sim_node/run/runner.h"
 #include "tests/sim/stages.h"
 #include "tests/support/allocation_guard.h"
 
 namespace cordis::sim {
 namespace {
 
-Order order_of(Order::Kind kind, std::uint64_t steps = 0) {
-  Order order;
+Request order_of(Request::Kind kind, std::uint64_t steps = 0) {
+  Request order;
   order.kind = kind;
   order.steps = steps;
   return order;
 }
 
-void obey(Player& player, Order order) {
+void obey(Runner& player, Request order) {
   player.obey(order);
 }
 
 /// A turn in which the key sends a position.
-bool turn(Player& player, std::uint64_t number, double position_m) {
+bool turn(Runner& player, std::uint64_t number, double position_m) {
   DeviceExchange& key = player.simulation().devices().front();
   key.receive(key_sample(number, position_m));
   return player.advance();
 }
 
-double force_of_key(Player& player) {
+double force_of_key(Runner& player) {
   DeviceExchange& key = player.simulation().devices().front();
   return key.answer_forces(player.simulation().world(), true, 0).force_n()[0];
 }
 
-std::uint64_t steps_of(const Player& player) {
+std::uint64_t steps_of(const Runner& player) {
   return player.simulation().world().step_count();
 }
 
-TEST(Player, PlaysATickPerTurn) {
-  Player player(stage_of(swing_text()), false);
+TEST(Runner, PlaysATickPerTurn) {
+  Runner player(stage_of(swing_text()), false);
   EXPECT_TRUE(player.advance());
   EXPECT_EQ(steps_of(player), 4u);
 }
 
-TEST(Player, StandsStillWhilePausedAndGoesOnWhereItWas) {
-  Player straight(stage_of(swing_text()), true);
-  Player paused(stage_of(swing_text()), true);
+TEST(Runner, StandsStillWhilePausedAndGoesOnWhereItWas) {
+  Runner straight(stage_of(swing_text()), true);
+  Runner paused(stage_of(swing_text()), true);
   for (std::uint64_t n = 1; n <= 50; ++n) turn(straight, n, 0.001);
   for (std::uint64_t n = 1; n <= 25; ++n) turn(paused, n, 0.001);
 
-  obey(paused, order_of(Order::Kind::kPause));
+  obey(paused, order_of(Request::Kind::kPause));
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(paused.advance());
   EXPECT_EQ(steps_of(paused), 100u);
-  obey(paused, order_of(Order::Kind::kResume));
+  obey(paused, order_of(Request::Kind::kResume));
   for (std::uint64_t n = 26; n <= 50; ++n) turn(paused, n, 0.001);
 
   EXPECT_EQ(paused.simulation().world().state_hash(), straight.simulation().world().state_hash())
       << "in lockstep a pause leaves no trace";
 }
 
-TEST(Player, DoesJustTheSingleStepsWanted) {
-  Player player(stage_of(swing_text()), true);
+TEST(Runner, DoesJustTheSingleStepsWanted) {
+  Runner player(stage_of(swing_text()), true);
   turn(player, 1, 0.0);
-  obey(player, order_of(Order::Kind::kStep, 6));
+  obey(player, order_of(Request::Kind::kStep, 6));
 
   EXPECT_TRUE(turn(player, 2, 0.0));
   EXPECT_EQ(steps_of(player), 8u);
@@ -74,47 +73,47 @@ TEST(Player, DoesJustTheSingleStepsWanted) {
   EXPECT_EQ(steps_of(player), 10u);
 }
 
-TEST(Player, CompletesATickBegunInSingleStepsAsIfItHadNotBeenInterrupted) {
-  Player straight(stage_of(swing_text()), true);
-  Player stepped(stage_of(swing_text()), true);
+TEST(Runner, CompletesATickBegunInSingleStepsAsIfItHadNotBeenInterrupted) {
+  Runner straight(stage_of(swing_text()), true);
+  Runner stepped(stage_of(swing_text()), true);
   for (std::uint64_t n = 1; n <= 40; ++n) {
     turn(straight, n, 1e-4 * static_cast<double>(n));
     DeviceExchange& key = stepped.simulation().devices().front();
     key.receive(key_sample(n, 1e-4 * static_cast<double>(n)));
-    obey(stepped, order_of(Order::Kind::kStep, 1));
+    obey(stepped, order_of(Request::Kind::kStep, 1));
     EXPECT_FALSE(stepped.advance());
-    obey(stepped, order_of(Order::Kind::kStep, 2));
+    obey(stepped, order_of(Request::Kind::kStep, 2));
     EXPECT_FALSE(stepped.advance());
-    obey(stepped, order_of(Order::Kind::kResume));
+    obey(stepped, order_of(Request::Kind::kResume));
     EXPECT_TRUE(stepped.advance());
   }
   EXPECT_EQ(stepped.simulation().world().state_hash(), straight.simulation().world().state_hash());
 }
 
-TEST(Player, GivesNoForceWhilePausedAndGivesItBackGradually) {
-  Player player(stage_of(swing_text()), /*devices_wait=*/false);
+TEST(Runner, GivesNoForceWhilePausedAndGivesItBackGradually) {
+  Runner player(stage_of(swing_text()), /*devices_wait=*/false);
   std::uint64_t number = 0;
   for (int i = 0; i < 300; ++i) turn(player, ++number, -0.01);
   ASSERT_GT(std::abs(force_of_key(player)), 0.1);
 
-  obey(player, order_of(Order::Kind::kPause));
+  obey(player, order_of(Request::Kind::kPause));
   turn(player, ++number, -0.01);
   EXPECT_EQ(force_of_key(player), 0.0);
   for (int i = 0; i < 50; ++i) turn(player, ++number, -0.03);
   EXPECT_EQ(force_of_key(player), 0.0);
 
-  obey(player, order_of(Order::Kind::kResume));
+  obey(player, order_of(Request::Kind::kResume));
   turn(player, ++number, -0.03);
   EXPECT_LT(std::abs(force_of_key(player)), 100.0 * 0.03 / 20.0) << "a hundredth of the force";
   for (int i = 0; i < 300; ++i) turn(player, ++number, -0.03);
   EXPECT_GT(std::abs(force_of_key(player)), 0.5);
 }
 
-TEST(Player, BeginsAnotherStageAndHandsTheOldOneBack) {
-  Player player(stage_of(swing_text()), false);
+TEST(Runner, BeginsAnotherStageAndHandsTheOldOneBack) {
+  Runner player(stage_of(swing_text()), false);
   for (std::uint64_t n = 1; n <= 200; ++n) turn(player, n, -0.01);
   const Stage* before = &player.stage();
-  Order order = order_of(Order::Kind::kRestart);
+  Request order = order_of(Request::Kind::kRestart);
   order.stage = stage_of(swing_text("other", 500.0), 2);
   const Stage* next = order.stage.get();
 
@@ -130,10 +129,10 @@ TEST(Player, BeginsAnotherStageAndHandsTheOldOneBack) {
   EXPECT_NEAR(player.played_s(), 0.202, 1e-12);
 }
 
-TEST(Player, StaysPausedWithAnotherStage) {
-  Player player(stage_of(swing_text()), false);
-  obey(player, order_of(Order::Kind::kPause));
-  Order order = order_of(Order::Kind::kRestart);
+TEST(Runner, StaysPausedWithAnotherStage) {
+  Runner player(stage_of(swing_text()), false);
+  obey(player, order_of(Request::Kind::kPause));
+  Request order = order_of(Request::Kind::kRestart);
   order.stage = stage_of(swing_text(), 2);
   player.obey(order);
   EXPECT_TRUE(order.was_paused);
@@ -148,21 +147,21 @@ std::unique_ptr<Stage> stage_with_stiffness(double stiffness) {
   return std::make_unique<Stage>(scene, kRunOfSim, 1);
 }
 
-Order exchange_for(std::unique_ptr<Stage> stage) {
-  Order order = order_of(Order::Kind::kExchange);
-  order.room.reserve(stage->simulation.world().most_values_of_state());
+Request exchange_for(std::unique_ptr<Stage> stage) {
+  Request order = order_of(Request::Kind::kExchange);
+  order.room.reserve(stage->simulation.world().max_values_of_state());
   order.stage = std::move(stage);
   return order;
 }
 
-TEST(Player, GoesOnBitForBitWhenTheNewParametersAreTheOldOnes) {
-  Player straight(stage_of(swing_text()), false);
-  Player exchanged(stage_of(swing_text()), false);
+TEST(Runner, GoesOnBitForBitWhenTheNewParametersAreTheOldOnes) {
+  Runner straight(stage_of(swing_text()), false);
+  Runner exchanged(stage_of(swing_text()), false);
   for (std::uint64_t n = 1; n <= 400; ++n) {
     turn(straight, n, -0.005);
     turn(exchanged, n, -0.005);
     if (n != 200) continue;
-    Order order = exchange_for(stage_of(swing_text()));
+    Request order = exchange_for(stage_of(swing_text()));
     exchanged.obey(order);
     ASSERT_TRUE(order.done);
   }
@@ -173,14 +172,14 @@ TEST(Player, GoesOnBitForBitWhenTheNewParametersAreTheOldOnes) {
             straight.simulation().world().energy().dissipated);
 }
 
-TEST(Player, TakesOverMotionForceAndAccountWithNewParameters) {
-  Player player(stage_of(swing_text()), false);
+TEST(Runner, TakesOverMotionForceAndAccountWithNewParameters) {
+  Runner player(stage_of(swing_text()), false);
   std::uint64_t number = 0;
   for (int i = 0; i < 300; ++i) turn(player, ++number, -0.01);
   const engine::Vec3 position = player.simulation().world().position(1);
   const engine::Vec3 velocity = player.simulation().world().velocity(1);
   const std::uint64_t hash = player.simulation().world().state_hash();
-  Order order = exchange_for(stage_with_stiffness(300.0));
+  Request order = exchange_for(stage_with_stiffness(300.0));
 
   const test::AllocationGuard guard;
   player.obey(order);
@@ -202,29 +201,29 @@ TEST(Player, TakesOverMotionForceAndAccountWithNewParameters) {
   EXPECT_LT(std::abs(energy.residual()), 1e-9 * energy.largest) << "the account closes";
 }
 
-TEST(Player, RefusesAStageThatDoesNotFitAndGoesOn) {
-  Player player(stage_of(swing_text()), false);
+TEST(Runner, RefusesAStageThatDoesNotFitAndGoesOn) {
+  Runner player(stage_of(swing_text()), false);
   for (std::uint64_t n = 1; n <= 10; ++n) turn(player, n, 0.0);
   auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
   scene->network.mats.push_back(scene->network.mats.back());
   scene->radius_m.push_back(0.0);
   scene->layout.push_back({});
-  Order order = exchange_for(std::make_unique<Stage>(scene, kRunOfSim, 1));
+  Request order = exchange_for(std::make_unique<Stage>(scene, kRunOfSim, 1));
   player.obey(order);
   EXPECT_FALSE(order.done);
   EXPECT_EQ(steps_of(player), 40u);
 }
 
-TEST(Player, AllocatesNothingWhatever) {
-  Player player(stage_of(swing_text()), false);
-  Order restart = order_of(Order::Kind::kRestart);
+TEST(Runner, AllocatesNothingWhatever) {
+  Runner player(stage_of(swing_text()), false);
+  Request restart = order_of(Request::Kind::kRestart);
   restart.stage = stage_of(swing_text("other"), 2);
-  Order pause = order_of(Order::Kind::kPause);
-  Order step = order_of(Order::Kind::kStep, 5);
-  Order resume = order_of(Order::Kind::kResume);
+  Request pause = order_of(Request::Kind::kPause);
+  Request step = order_of(Request::Kind::kStep, 5);
+  Request resume = order_of(Request::Kind::kResume);
 
   const test::AllocationGuard guard;
-  for (Order* order : {&pause, &step, &restart, &resume}) {
+  for (Request* order : {&pause, &step, &restart, &resume}) {
     player.obey(*order);
     player.advance();
     player.advance();

@@ -1,6 +1,4 @@
 // tests/sim/port_brake_test.cpp -- a hand that holds a simulated mass over a wire that is late.
-#include "sim_node/devices/passivity_controller.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/devices/passivity_controller.h"
 #include "sim_node/devices/recent_peak.h"
 #include "tests/engine/programs.h"
 #include "tests/sim/hand_loop.h"
@@ -36,7 +35,7 @@ TEST_P(Late, AHandUpToTenTimesTooStiffNoLongerSwings) {
 
       EXPECT_GT(swing(unbraked), 0.01) << viscosity << " " << times;
       EXPECT_LT(swing(braked), 1e-5) << viscosity << " " << times;
-      EXPECT_GT(braked.braked_ticks(), 0u);
+      EXPECT_GT(braked.passivity_ticks(), 0u);
     }
   }
 }
@@ -56,23 +55,23 @@ TEST_P(Late, AHandWithinTheLimitIsNeverBraked) {
       for (std::size_t g = 0; g < std::size(gestures); ++g) {
         Loop loop(hold);
         for (int n = 0; n < test::rounds(6000); ++n) loop.tick(gestures[g](n * kTick));
-        EXPECT_EQ(loop.braked_ticks(), 0u) << viscosity << " " << sub_steps << " gesture " << g;
+        EXPECT_EQ(loop.passivity_ticks(), 0u) << viscosity << " " << sub_steps << " gesture " << g;
       }
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(PortBrake, Late, ::testing::Values(1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(PassivityController, Late, ::testing::Values(1, 2, 3));
 
-TEST(PortBrake, KeepsToItselfWhenTheDeviceTellsNoWork) {
+TEST(PassivityController, KeepsToItselfWhenTheDeviceTellsNoWork) {
   Loop loop({5.0, 1, 10000.0, 1, false});
 
   swing(loop);
 
-  EXPECT_EQ(loop.braked_ticks(), 0u);
+  EXPECT_EQ(loop.passivity_ticks(), 0u);
 }
 
-TEST(PortBrake, ForgetsWhatAMomentWithoutAnswersHasMade) {
+TEST(PassivityController, ForgetsWhatAMomentWithoutAnswersHasMade) {
   for (const int lost : {8, 15, 30}) {
     Loop loop({5.0, 1, 0.5 * 5.0 / kTick});
     const auto hand = [](int n) { return 0.03 * std::sin(2.0 * std::numbers::pi * n * kTick); };
@@ -80,28 +79,28 @@ TEST(PortBrake, ForgetsWhatAMomentWithoutAnswersHasMade) {
     for (; n < 2000; ++n) loop.tick(hand(n));
     for (; n < 2000 + lost; ++n) loop.tick(hand(n), false);
     for (; n < 3000; ++n) loop.tick(hand(n));
-    const std::uint64_t braked = loop.braked_ticks();
+    const std::uint64_t braked = loop.passivity_ticks();
 
     for (; n < 6000; ++n) loop.tick(hand(n));
 
-    EXPECT_EQ(loop.braked_ticks(), braked) << lost;
+    EXPECT_EQ(loop.passivity_ticks(), braked) << lost;
     EXPECT_LT(std::abs(loop.position() - hand(n)), 0.001);
   }
 }
 
-TEST(PortBrake, LetsGoOfAMassThatNobodyHolds) {
+TEST(PassivityController, LetsGoOfAMassThatNobodyHolds) {
   Loop loop({5.0, 1, 10.0 * 5.0 / kTick});
   for (int n = 0; n < 1000; ++n) loop.tick(0.005);
-  ASSERT_GT(loop.braked_ticks(), 0u);
+  ASSERT_GT(loop.passivity_ticks(), 0u);
   for (int n = 0; n < 25; ++n) loop.live();  // the device is lost
-  const std::uint64_t braked = loop.braked_ticks();
+  const std::uint64_t braked = loop.passivity_ticks();
 
   for (int n = 0; n < 100; ++n) loop.live();
 
-  EXPECT_EQ(loop.braked_ticks(), braked);
+  EXPECT_EQ(loop.passivity_ticks(), braked);
 }
 
-TEST(PortBrake, HoldsAMassOfManySmallStepsToo) {
+TEST(PassivityController, HoldsAMassOfManySmallStepsToo) {
   Loop loop({5.0, 2, 10.0 * 5.0 / (2.0 * kTick), 10});
 
   EXPECT_LT(swing(loop), 1e-5);
@@ -111,24 +110,24 @@ TEST(PortBrake, HoldsAMassOfManySmallStepsToo) {
 scene::Scene wall_scene(double viscosity) {
   scene::Scene scene = bare_scene(1);
   const test::Term elongation = test::q(engine::Quantity::kElongation);
-  scene.network.behaviours = {test::Behaving()
-                                  .state(0.0)
-                                  .exit(elongation > 0.0, 1)
-                                  .state(200.0, viscosity)
-                                  .exit(elongation < 0.0, 0)
-                                  .behaviour};
-  scene.network.behaviours[0].name = "contact";
+  scene.network.state_machines = {test::Behaving()
+                                      .state(0.0)
+                                      .exit(elongation > 0.0, 1)
+                                      .state(200.0, viscosity)
+                                      .exit(elongation < 0.0, 0)
+                                      .state_machine};
+  scene.network.state_machines[0].name = "contact";
   scene.network.state_links = {{1, 0, 0, -0.001}};  // the port is pressed in by 1 mm
   return scene;
 }
 
-TEST(PortBrake, AWallWithStatesTakesWhatItTakes) {
+TEST(PassivityController, AWallWithStatesTakesWhatItTakes) {
   constexpr double kViscosity = 5.0;
   Loop loop({0.0, 1, 0.85 * kViscosity / kTick}, wall_scene(kViscosity));
 
   for (int n = 0; n < 4000; ++n) loop.tick(n % 500 < 250 ? 0.02 : 0.015);
 
-  EXPECT_EQ(loop.braked_ticks(), 0u);
+  EXPECT_EQ(loop.passivity_ticks(), 0u);
 }
 
 /// A mass on a damper of 0.1 m, which a hand has led to a quarter of a circle from its start.
@@ -147,16 +146,16 @@ Loop turned_loop(const Vec3& stiffness, bool braked = true) {
   return loop;
 }
 
-TEST(PortBrake, AMassIsNotBrakedAlongADamperThatHasTurned) {
+TEST(PassivityController, AMassIsNotBrakedAlongADamperThatHasTurned) {
   Loop loop = turned_loop(Vec3(50.0, 4000.0, 0.0));
-  const std::uint64_t before = loop.braked_ticks();
+  const std::uint64_t before = loop.passivity_ticks();
 
   for (int n = 0; n < 4000; ++n) loop.tick({-0.1, n % 500 < 250 ? 0.1 : 0.105, 0.0});
 
-  EXPECT_EQ(loop.braked_ticks(), before);
+  EXPECT_EQ(loop.passivity_ticks(), before);
 }
 
-TEST(PortBrake, AMassIsBrakedAcrossADamperThatHasTurned) {
+TEST(PassivityController, AMassIsBrakedAcrossADamperThatHasTurned) {
   const Vec3 hand(-0.095, 0.1, 0.0);
   for (const bool braked : {false, true}) {
     Loop loop = turned_loop(Vec3(500.0, 50.0, 0.0), braked);
@@ -174,16 +173,16 @@ scene::Scene chain_scene(double stiffness, double between, double to_ground) {
   return scene;
 }
 
-TEST(PortBrake, WhatIsTakenFarFromThePortCounts) {
+TEST(PassivityController, WhatIsTakenFarFromThePortCounts) {
   // k d T v^2 at the port against Z v^2 of a mass that goes with it.
   Loop loop({0.0, 1, 1000.0}, chain_scene(20000.0, 0.0, 4.0));
 
   for (int n = 0; n < 6000; ++n) loop.tick(n % 500 < 250 ? 0.0 : 0.005);
 
-  EXPECT_EQ(loop.braked_ticks(), 0u);
+  EXPECT_EQ(loop.passivity_ticks(), 0u);
 }
 
-TEST(PortBrake, ADamperWhoseEndsGoTogetherTakesNothing) {
+TEST(PassivityController, ADamperWhoseEndsGoTogetherTakesNothing) {
   for (const bool braked : {false, true}) {
     Loop loop({0.0, 1, 200.0, 1, braked}, chain_scene(5000.0, 5.0, 0.0));
     const double largest = swing(loop);
@@ -192,7 +191,7 @@ TEST(PortBrake, ADamperWhoseEndsGoTogetherTakesNothing) {
   }
 }
 
-TEST(PortBrake, AHandThatIsGivenEnergyByTheDelayIsBraked) {
+TEST(PassivityController, AHandThatIsGivenEnergyByTheDelayIsBraked) {
   // Driven at w, the port sends m w^2 d T v^2 more than it is given, and Z takes Z v^2.
   const Hold hold{0.5, 1, 400.0};
   const double limit = std::sqrt(hold.viscosity / (kPortMass * hold.delay * kTick));
@@ -208,24 +207,24 @@ TEST(PortBrake, AHandThatIsGivenEnergyByTheDelayIsBraked) {
 
     Loop braked(hold);
     shake(braked);
-    EXPECT_EQ(braked.braked_ticks() > 0, share > 1.0) << share;
+    EXPECT_EQ(braked.passivity_ticks() > 0, share > 1.0) << share;
   }
 }
 
-TEST(PortBrake, SamplesLateInBurstsBrakeNothing) {
+TEST(PassivityController, SamplesLateInBurstsBrakeNothing) {
   Loop loop({5.0, 1, 0.8 * 5.0 / kTick});
 
   for (int n = 0; n < 4000; ++n) {
     loop.tick(0.03 * std::sin(2.0 * std::numbers::pi * n * kTick), n % 400 < 385);
   }
 
-  EXPECT_EQ(loop.braked_ticks(), 0u);
+  EXPECT_EQ(loop.passivity_ticks(), 0u);
 }
 
-TEST(PortBrake, KnowsWhatEveryIntegratorTakes) {
-  for (const engine::Integrator integrator :
-       {engine::Integrator::kCordis, engine::Integrator::kLeapfrog,
-        engine::Integrator::kImplicit}) {
+TEST(PassivityController, KnowsWhatEveryIntegratorTakes) {
+  for (const engine::IntegratorKind integrator :
+       {engine::IntegratorKind::kCordis, engine::IntegratorKind::kLeapfrog,
+        engine::IntegratorKind::kImplicit}) {
     for (const int sub_steps : {1, 5}) {
       for (const double times : {0.6, 2.0}) {
         Hold hold{5.0, 1, times * 5.0 / kTick, sub_steps};
@@ -233,13 +232,13 @@ TEST(PortBrake, KnowsWhatEveryIntegratorTakes) {
         scene.network.integrator = integrator;
         Loop loop(hold, scene);
         EXPECT_LT(swing(loop), 1e-5);
-        EXPECT_EQ(loop.braked_ticks() > 0, times > 1.0) << sub_steps;
+        EXPECT_EQ(loop.passivity_ticks() > 0, times > 1.0) << sub_steps;
       }
     }
   }
 }
 
-TEST(PortBrake, TwoHandsThatSwingAtOnceAreBothBraked) {
+TEST(PassivityController, TwoHandsThatSwingAtOnceAreBothBraked) {
   for (const bool braked : {false, true}) {
     scene::Scene scene = bare_scene(1);
     scene.network.mats.push_back(mass_at(Vec3::Zero()));
@@ -254,22 +253,22 @@ TEST(PortBrake, TwoHandsThatSwingAtOnceAreBothBraked) {
   }
 }
 
-TEST(PortBrake, AHandThatGrowsStiffAfterLongPlayIsBrakedUntilItIsSoftAgain) {
+TEST(PassivityController, AHandThatGrowsStiffAfterLongPlayIsBrakedUntilItIsSoftAgain) {
   Loop loop({2.0, 1, 500.0});
   for (int n = 0; n < 4000; ++n) loop.tick(0.3 * std::sin(0.01 * n));
   for (int n = 0; n < 3000; ++n) loop.tick(0.0);
-  ASSERT_EQ(loop.braked_ticks(), 0u);
+  ASSERT_EQ(loop.passivity_ticks(), 0u);
 
   loop.hold_with(Vec3(6000.0, 0.0, 0.0));
   EXPECT_LT(swing_along(loop, Vec3(0.0002, 0.0, 0.0), 0, 2000), 0.0125);
   for (int n = 0; n < 3000; ++n) loop.tick(0.03 * std::sin(0.01 * n));
-  EXPECT_GT(loop.braked_ticks(), 2000u);
+  EXPECT_GT(loop.passivity_ticks(), 2000u);
 
   loop.hold_with(Vec3(500.0, 0.0, 0.0));
   for (int n = 3000; n < 4000; ++n) loop.tick(0.03 * std::sin(0.01 * n));
-  const std::uint64_t of_soft = loop.braked_ticks();
+  const std::uint64_t of_soft = loop.passivity_ticks();
   for (int n = 4000; n < 6000; ++n) loop.tick(0.03 * std::sin(0.01 * n));
-  EXPECT_EQ(loop.braked_ticks(), of_soft);
+  EXPECT_EQ(loop.passivity_ticks(), of_soft);
 }
 
 /// A spring that the engine does not know for one.
@@ -280,15 +279,15 @@ class HiddenSpring : public engine::LinkFunction {
   }
 };
 
-TEST(PortBrake, WhatALawTakesAndGivesBackCountsOnce) {
+TEST(PassivityController, WhatALawTakesAndGivesBackCountsOnce) {
   for (const bool braked : {false, true}) {
     scene::Scene scene = bare_scene(1);
-    engine::Behaviour behaviour;
-    behaviour.name = "hidden";
-    behaviour.states.resize(1);
-    behaviour.states[0].elasticity.kind = engine::Law::Kind::kFunction;
-    behaviour.states[0].elasticity.function = std::make_shared<HiddenSpring>();
-    scene.network.behaviours = {behaviour};
+    engine::StateMachine state_machine;
+    state_machine.name = "hidden";
+    state_machine.states.resize(1);
+    state_machine.states[0].elasticity.kind = engine::Law::Kind::kFunction;
+    state_machine.states[0].elasticity.function = std::make_shared<HiddenSpring>();
+    scene.network.state_machines = {state_machine};
     scene.network.links = {{0, 1, 0.0, 0.5, 0.0}};
     scene.network.state_links = {{0, 1, 0, 0.0}};
     Loop loop({0.0, 1, 1000.0, 1, braked}, scene);
@@ -298,7 +297,7 @@ TEST(PortBrake, WhatALawTakesAndGivesBackCountsOnce) {
   }
 }
 
-TEST(PortBrake, BrakesAlongTheAxesOfTheDeviceAlone) {
+TEST(PassivityController, BrakesAlongTheAxesOfTheDeviceAlone) {
   scene::Scene scene = bare_scene(2);
   scene.network.mats[0].velocity = Vec3(0.0, 0.2, 0.0);
   scene.network.mats[1].position = Vec3(-1000.0, 0.0, 0.0);  // the damper stays along x
@@ -308,7 +307,7 @@ TEST(PortBrake, BrakesAlongTheAxesOfTheDeviceAlone) {
   Loop loop({0.0, 1, 1500.0}, scene);
   for (int n = 0; n < 3000; ++n) loop.tick(0.005);
 
-  EXPECT_GT(loop.braked_ticks(), 0u);
+  EXPECT_GT(loop.passivity_ticks(), 0u);
   EXPECT_NEAR(loop.place().y(), 3.0 * 0.2, 0.001);
 }
 

@@ -18,7 +18,7 @@ scene::Scene settled(const std::string& step, config::Problems& problems) {
           "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}\n"
           "links: [{liaison: holder, between: [ground, bob]}]\n",
       "t", problems);
-  settle_rate(scene, problems);
+  select_rate(scene, problems);
   return scene;
 }
 

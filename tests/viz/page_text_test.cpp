@@ -77,12 +77,12 @@ TEST(PageText, TakesNothingElseForAnAcknowledgement) {
 
 TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
   msg::SceneDescription description = row_of_three();
-  msg::BehaviourDescription behaviour;
-  behaviour.name("rosin");
-  behaviour.states({"hooked", "unhooked"});
-  description.behaviours().push_back(behaviour);
+  msg::StateMachineDescription state_machine;
+  state_machine.name("rosin");
+  state_machine.states({"hooked", "unhooked"});
+  description.state_machines().push_back(state_machine);
   const Json described = Json::parse(description_text(description, 1));
-  EXPECT_EQ(described["behaviours"],
+  EXPECT_EQ(described["state_machines"],
             Json::parse(R"([{"name": "rosin", "states": ["hooked", "unhooked"]}])"));
 
   HeardEvents events;
@@ -106,7 +106,7 @@ TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
   const Json json = Json::parse(status_text({node}, events, {}, {}, 1, kNow));
 
   EXPECT_EQ(json["events"]["newest"][0],
-            Json::parse(R"({"step": 120, "link": 1, "mat_a": 0, "mat_b": 2, "behaviour": 0,
+            Json::parse(R"({"step": 120, "link": 1, "mat_a": 0, "mat_b": 2, "state_machine": 0,
                             "from": 0, "to": 1, "quantity": 1, "value": 0.002, "energy_j": null})"));
   EXPECT_EQ(json["nodes"][0]["changes"], Json::parse(R"([{"liaison": "rosin", "changes": 9}])"));
   EXPECT_EQ(json["nodes"][0]["lost_events"], 3);

@@ -26,7 +26,7 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
       {"radius", [](auto& d) { d.mat_radius_m()[1] = -1.0F; }},
       {"radius", [](auto& d) { d.mat_radius_m()[1] = std::nanf(""); }},
       {"dimensions", [](auto& d) { d.space(4); }},
-      {"behaviours", [](auto& d) { d.link_behaviour({0}); }},
+      {"state_machines", [](auto& d) { d.link_state_machine({0}); }},
       {"odd number", [](auto& d) { d.link_ends().pop_back(); }},
       {"joins a MAT", [](auto& d) { d.link_ends()[3] = 3; }},
       {"port",
@@ -48,7 +48,7 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
        }},
       {"rate", [](auto& d) { d.step_rate_hz(0.0); }},
       {"rate", [](auto& d) { d.frame_rate_hz(std::numeric_limits<double>::infinity()); }},
-      {"too many signals", [](auto& d) { d.signals().resize(kMostSignals + 1); }},
+      {"too many signals", [](auto& d) { d.signals().resize(kMaxSignals + 1); }},
   };
   for (const auto& [word, spoil] : faults) {
     msg::SceneDescription description = row_of_three();
@@ -96,7 +96,7 @@ TEST(SceneCheck, FindsBatchesThatAreNoWholeRows) {
   const std::vector<std::pair<const char*, std::function<void(msg::SceneSignals&)>>> faults = {
       {"signals", [](auto& s) { s.signal_count(3); }},
       {"values", [](auto& s) { s.value().pop_back(); }},
-      {"values", [](auto& s) { s.value().resize(kMostBatchValues + 2); }},
+      {"values", [](auto& s) { s.value().resize(kMaxBatchValues + 2); }},
       {"no steps", [](auto& s) { s.stride_steps(0); }},
   };
   for (const auto& [word, spoil] : faults) {

@@ -19,14 +19,14 @@
 
 #include "node/time.h"
 #include "viz_node/page_text.h"
-#include "viz_node/web/server_visitor.h"
+#include "viz_node/web/http_session.h"
 
 namespace cordis::viz {
 namespace {
 
 constexpr auto kStatusPeriod = std::chrono::milliseconds(250);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
-constexpr std::size_t kMostConnections = 64;
+constexpr std::size_t kMaxConnections = 64;
 constexpr int kNextPorts = 20;  // tried after an occupied one
 
 /// True if another port of the same address may do.
@@ -103,21 +103,21 @@ struct WebServer::Impl {
       accept();        // first: whatever becomes of this one, others may come
       ErrorCode none;  // a socket that takes no option still works
       socket.set_option(tcp::no_delay(true), none);
-      if (hub.connections < kMostConnections)
-        std::make_shared<Visitor>(std::move(socket), hub, pages)->read();
+      if (hub.connections < kMaxConnections)
+        std::make_shared<HttpSession>(std::move(socket), hub, pages)->read();
     });
   }
 
   void pump_all() {
-    const std::vector<Client*> now(hub.clients.begin(), hub.clients.end());
-    for (Client* client : now) client->pump();
+    const std::vector<WebSocketSession*> now(hub.clients.begin(), hub.clients.end());
+    for (WebSocketSession* client : now) client->pump();
   }
 
   /// Also pumps clients whose frames were not acknowledged in time.
-  void tell_status() {
+  void report_status() {
     tick.expires_after(kStatusPeriod);
     tick.async_wait([this](ErrorCode error) {
-      if (!error) tell_status();
+      if (!error) report_status();
     });
     hub.status = std::make_shared<const std::string>(hub.mirror.status(node::monotonic_nsec()));
     ++hub.status_number;
@@ -145,7 +145,7 @@ struct WebServer::Impl {
   }
 
   StaticPages pages;
-  Hub hub;
+  ServerState hub;
   std::string url;
   std::atomic<bool> awake{false};
   asio::io_context context{1};
@@ -160,7 +160,7 @@ WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror,
     : impl_(std::make_unique<Impl>(config, mirror, std::move(obey))) {
   mirror.on_change([impl = impl_.get()] { impl->wake(); });
   impl_->accept();
-  impl_->tell_status();
+  impl_->report_status();
   impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
 }
 

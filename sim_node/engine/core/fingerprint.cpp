@@ -60,21 +60,21 @@ class Fingerprint {
     add(state.first_exit);
     add(state.last_exit);
   }
-  void add(const Exit& exit) {
+  void add(const Transition& exit) {
     add_all(exit.when.code);
     add(exit.target);
     add(static_cast<std::uint64_t>(exit.rest));
     add_all(exit.rest_length.code);
   }
-  void add(const Behaviour& behaviour) {
-    add_all(behaviour.states);
-    add_all(behaviour.exits);
-    add(behaviour.start);
+  void add(const StateMachine& state_machine) {
+    add_all(state_machine.states);
+    add_all(state_machine.exits);
+    add(state_machine.start);
   }
   void add(const StateLink& link) {
     add(link.mat_a);
     add(link.mat_b);
-    add(link.behaviour);
+    add(link.state_machine);
     add(link.rest_length);
   }
   void add(const MaxwellLink& link) {
@@ -84,7 +84,7 @@ class Fingerprint {
     add(link.viscosity);
   }
   void add(const SetLiaison& set) {
-    add(set.behaviour);
+    add(set.state_machine);
     add_all(set.set_p);
     add_all(set.set_q);
     add(set.range);
@@ -119,7 +119,7 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   fingerprint.add_all(description.mats);
   for (const Link& link : description.links) fingerprint.add(link);
   fingerprint.add_if_any(1, description.radius);
-  fingerprint.add_if_any(2, description.behaviours);
+  fingerprint.add_if_any(2, description.state_machines);
   fingerprint.add_if_any(3, description.state_links);
   fingerprint.add_if_any(4, description.maxwell_links);
   fingerprint.add_if_any(5, description.sets);
@@ -128,10 +128,10 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
     fingerprint.add(description.freeze_tolerance);
     fingerprint.add_all(description.kept_awake);
   }
-  if (description.integrator != Integrator::kCordis) {
+  if (description.integrator != IntegratorKind::kCordis) {
     fingerprint.add(std::uint64_t{6});
     fingerprint.add(static_cast<std::uint64_t>(description.integrator));
-    fingerprint.add(description.most_mode_hz);
+    fingerprint.add(description.max_mode_hz);
   }
   return fingerprint.value();
 }

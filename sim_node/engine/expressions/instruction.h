@@ -69,7 +69,7 @@ struct Instruction {
 
 /// The most values a program may have on its stack.
 inline constexpr std::size_t kMaxStack = 16;
-/// The most slots a behaviour may use: slots are numbered below it.
+/// The most slots a state machine may use: slots are numbered below it.
 inline constexpr std::uint32_t kMaxSlots = 16;
 
 }  // namespace cordis::engine

@@ -52,7 +52,7 @@ std::size_t operand_count(Operation operation) noexcept {
   }
 }
 
-bool is_trend(Operation operation) noexcept {
+bool is_edge(Operation operation) noexcept {
   return operation == Operation::kRising || operation == Operation::kFalling;
 }
 

@@ -24,7 +24,7 @@ void check_program(const Program& program, const std::string& name);
 /// How many values an operation takes from the stack.
 std::size_t operand_count(Operation operation) noexcept;
 /// Whether it is kRising or kFalling, which compare with the step before.
-bool is_trend(Operation operation) noexcept;
+bool is_edge(Operation operation) noexcept;
 /// What an operation makes of one value or of two, the lower on the stack first; 0 for trends and
 /// for those that take none.
 double apply(Operation operation, double a, double b = 0.0) noexcept;

@@ -5,7 +5,7 @@
 
 namespace cordis::engine {
 
-void CordisMover::start(WorldState& world) noexcept {
+void CentralDifference::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   world.add_frozen_forces(mats.force_columns());
   mats.start();
@@ -14,16 +14,16 @@ void CordisMover::start(WorldState& world) noexcept {
                       world.work_since_last_call().elastic);
 }
 
-Moved CordisMover::step(WorldState& world) noexcept {
+Moved CentralDifference::step(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   Moved moved;
   StepEnergy& energy = moved.energy;
   energy.port_work = world.outside.move_ports(mats);
   energy += world.begin_forces(mats.force_columns());
-  world.add_forces_of_period(energy);
+  world.add_forces_at_half_step(energy);
   energy.port_work += world.outside.work_at_ports(mats);
 
-  energy.port_work += world.outside.push(mats);
+  energy.port_work += world.outside.kick(mats);
   if (world.freezing) energy.dissipated += world.freezing->choose_movers(world, false);
   const AdvanceReport advance = mats.advance(world.kernel);
   energy.port_work += world.outside.release(mats);
@@ -33,7 +33,7 @@ Moved CordisMover::step(WorldState& world) noexcept {
   return moved;
 }
 
-Energy CordisMover::energy(WorldState& world) const noexcept {
+Energy CentralDifference::energy(WorldState& world) const noexcept {
   return world.account.energy(world.description(), world.mats, world.work_since_last_call(),
                               world.stored_energy());
 }

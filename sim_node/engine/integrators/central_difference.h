@@ -9,7 +9,7 @@ namespace cordis::engine {
 /// x(n+1) = 2 x(n) - x(n-1) + (dt^2 / m) f(n). The delayed positions at step 0 are those of the
 /// half-step velocity v0 - a0 dt / 2, which keeps the start of second order.
 /// [Luc90 III Calculability]
-class CordisMover final : public Mover {
+class CentralDifference final : public Integrator {
  public:
   void start(WorldState& world) noexcept override;
   Moved step(WorldState& world) noexcept override;

@@ -12,8 +12,8 @@ namespace {
 
 // While some only fall asleep, the choice of liaisons is made anew every so many steps.
 constexpr std::uint64_t kStepsBetweenChoices = 16;
-constexpr double kLeastCarried = 0.9;  // of the weight
-constexpr double kShare = 0.25;        // of the tolerance, for one mass in one step
+constexpr double kMinCarried = 0.9;  // of the weight
+constexpr double kShare = 0.25;      // of the tolerance, for one mass in one step
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double dot(const Vec3& u, const Vec3& v) noexcept {
@@ -36,7 +36,7 @@ struct OfMat {
 };
 
 /// What a law pulls at an elongation as small as the tolerance, over that; 0 when nothing is known.
-double least_slope(const Law& law, double tolerance) {
+double min_slope(const Law& law, double tolerance) {
   constexpr double kSlopeAtRest = 57.14628;  // of Lennard-Jones, 72 / 2^(1/3) depth / diameter^2
   double least = kInfinity;
   switch (law.kind) {
@@ -68,10 +68,10 @@ double least_slope(const Law& law, double tolerance) {
   return 0.0;
 }
 
-void add(const Behaviour& behaviour, double tolerance, OfMat& of_mat) {
+void add(const StateMachine& state_machine, double tolerance, OfMat& of_mat) {
   double viscosity = 0.0;
-  for (const LinkState& state : behaviour.states) {
-    const double stiffness = state.stiffness + least_slope(state.elasticity, tolerance);
+  for (const LinkState& state : state_machine.states) {
+    const double stiffness = state.stiffness + min_slope(state.elasticity, tolerance);
     if (stiffness > 0.0) of_mat.least = std::min(of_mat.least, stiffness);
     viscosity = std::max(viscosity, state.viscosity);
   }
@@ -79,7 +79,7 @@ void add(const Behaviour& behaviour, double tolerance, OfMat& of_mat) {
 }
 
 std::vector<OfMat> measure(const NetworkDescription& network,
-                           const std::vector<Behaviour>& behaviours) {
+                           const std::vector<StateMachine>& state_machines) {
   std::vector<OfMat> of_mats(network.mats.size());
   for (const Link& link : network.links) {
     for (const std::uint32_t mat : {link.mat_a, link.mat_b}) {
@@ -90,37 +90,38 @@ std::vector<OfMat> measure(const NetworkDescription& network,
   const double tolerance = network.freeze_tolerance;
   for (const StateLink& link : network.state_links) {
     for (const std::uint32_t mat : {link.mat_a, link.mat_b}) {
-      add(behaviours[link.behaviour], tolerance, of_mats[mat]);
+      add(state_machines[link.state_machine], tolerance, of_mats[mat]);
     }
   }
   for (const SetLiaison& set : network.sets) {
     for (const auto* half : {&set.set_p, &set.set_q}) {
       for (const std::uint32_t mat : *half) {
-        add(behaviours[set.behaviour], tolerance, of_mats[mat]);
+        add(state_machines[set.state_machine], tolerance, of_mats[mat]);
       }
     }
   }
   return of_mats;
 }
 
-/// Whether a condition of a behaviour may come true while nothing moves.
-bool asks_for_age(const Behaviour& behaviour) {
-  return std::any_of(behaviour.exits.begin(), behaviour.exits.end(),
-                     [](const Exit& exit) { return asks_for(exit.when, Quantity::kAge); });
+/// Whether a condition of a state machine may come true while nothing moves.
+bool asks_for_age(const StateMachine& state_machine) {
+  return std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
+                     [](const Transition& exit) { return asks_for(exit.when, Quantity::kAge); });
 }
 
-bool asks_for_impulse(const Behaviour& behaviour) {
-  return std::any_of(behaviour.exits.begin(), behaviour.exits.end(), [](const Exit& exit) {
-    return asks_for(exit.when, Quantity::kImpulse) ||
-           asks_for(exit.rest_length, Quantity::kImpulse);
-  });
+bool asks_for_impulse(const StateMachine& state_machine) {
+  return std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
+                     [](const Transition& exit) {
+                       return asks_for(exit.when, Quantity::kImpulse) ||
+                              asks_for(exit.rest_length, Quantity::kImpulse);
+                     });
 }
 
 }  // namespace
 
 Freezing::Freezing(const NetworkDescription& network)
-    : most_push_(network.mats.size(), -1.0),
-      most_moved_(network.mats.size(), 0.0),
+    : max_push_(network.mats.size(), -1.0),
+      max_moved_(network.mats.size(), 0.0),
       mass_over_dt2_(network.mats.size(), 0.0),
       rest_(network.mats.size(), 0U),
       held_(network.mats.size(), false),
@@ -135,29 +136,31 @@ Freezing::Freezing(const NetworkDescription& network)
   for (const std::uint32_t mat : network.kept_awake) kept_awake_[mat] = true;
   for (auto* list : {&whole_, &computed_, &some_, &stopped_}) list->reserve(network.mats.size());
   movers_.reserve(network.mats.size() / 2 + 1);
-  adopt(network, network.behaviours);
+  adopt(network, network.state_machines);
 }
 
-void Freezing::adopt(const NetworkDescription& network, const std::vector<Behaviour>& behaviours) {
-  const std::vector<OfMat> of_mats = measure(network, behaviours);
+void Freezing::adopt(const NetworkDescription& network,
+                     const std::vector<StateMachine>& state_machines) {
+  const std::vector<OfMat> of_mats = measure(network, state_machines);
   const double tolerance = kShare * network.freeze_tolerance;
   const double dt = network.step;
   for (std::size_t i = 0; i < of_mats.size(); ++i) {
     const double stiffness = of_mats[i].stiffness();
     if (mass_over_dt2_[i] == 0.0 || stiffness == 0.0) continue;
-    double push = tolerance * stiffness / mass_over_dt2_[i];
+    double kick = tolerance * stiffness / mass_over_dt2_[i];
     const double weight_step = network.gravity_on(network.mats[i]).norm() * dt * dt;
-    if (weight_step > 0.0) push = std::min(push, (1.0 - kLeastCarried) * weight_step);
+    if (weight_step > 0.0) kick = std::min(kick, (1.0 - kMinCarried) * weight_step);
     const double viscosity = of_mats[i].viscosity + network.medium_viscosity;
     double moved = tolerance;
     if (viscosity > 0.0) moved = std::min(moved, tolerance * stiffness * dt / viscosity);
-    most_push_[i] = push * push;
-    most_moved_[i] = moved * moved;
+    max_push_[i] = kick * kick;
+    max_moved_[i] = moved * moved;
   }
-  const bool any_impulse = std::any_of(behaviours.begin(), behaviours.end(), asks_for_impulse);
+  const bool any_impulse =
+      std::any_of(state_machines.begin(), state_machines.end(), asks_for_impulse);
   never_rests_.clear();
-  for (const Behaviour& behaviour : behaviours) {
-    never_rests_.push_back(any_impulse || asks_for_age(behaviour));
+  for (const StateMachine& state_machine : state_machines) {
+    never_rests_.push_back(any_impulse || asks_for_age(state_machine));
   }
   wake_all();
 }
@@ -195,9 +198,9 @@ void Freezing::choose_roles(WorldState& world) noexcept {
   for (std::uint32_t i = 0; i < rest_.size(); ++i) {
     const bool is_mass = mass_over_dt2_[i] > 0.0;
     const bool stirs = kept_awake_[i] || (is_mass && rest_[i] < kAsleep);
-    roles_.set(i, (is_mass ? kIsMass : 0U) | (stirs ? kStirs | kMayStir | kWholeForce : 0U));
+    roles_.set(i, (is_mass ? kIsMass : 0U) | (stirs ? kActive | kMayStir | kWholeForce : 0U));
   }
-  for (const Passing& pass : {kToThoseBeside, kToThoseBeyond}) {
+  for (const WakePropagation& pass : {kToThoseBeside, kToThoseBeyond}) {
     world.links.mark_neighbours(pass, roles_);
     world.ties.mark_neighbours(pass, roles_);
     world.state_links.mark_neighbours(pass, never_rests_, roles_);
@@ -248,7 +251,7 @@ void Freezing::restore_forces(MatArray& mats) const noexcept {
 }
 
 bool Freezing::is_balanced(const MatArray& mats, std::uint32_t mat) const noexcept {
-  return square_of(mats.push_of_period(mat)) <= most_push_[mat];
+  return square_of(mats.kick_at_half_step(mat)) <= max_push_[mat];
 }
 
 double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
@@ -268,7 +271,7 @@ double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
     }
     const Vec3 moved = mats.position(mat) - mats.delayed(mat);
     const bool may_sleep = !held_[mat] && !kept_awake_[mat];
-    if (!balanced || !may_sleep || !(square_of(moved) <= most_moved_[mat])) {
+    if (!balanced || !may_sleep || !(square_of(moved) <= max_moved_[mat])) {
       rest_[mat] = 0;
     } else if (++rest_[mat] == kStepsToSleep) {
       energy += stop(mats, mat, at_moments);
@@ -282,13 +285,13 @@ double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
 /// after, half of that force times moved. At the moments it is the energy of the velocity there.
 double Freezing::stop(MatArray& mats, std::uint32_t mat, bool at_moments) noexcept {
   const Vec3 moved = mats.position(mat) - mats.delayed(mat);
-  const Vec3 push = mats.push_of_period(mat);
-  const Vec3 at_moment = moved + 0.5 * push;
+  const Vec3 kick = mats.kick_at_half_step(mat);
+  const Vec3 at_moment = moved + 0.5 * kick;
   ++asleep_count_;
   movers_changed_ = true;
   stopped_.push_back(mat);
   mats.halt(mat);
-  const double square = at_moments ? square_of(at_moment) : dot(moved, moved + push);
+  const double square = at_moments ? square_of(at_moment) : dot(moved, moved + kick);
   return 0.5 * mass_over_dt2_[mat] * square;
 }
 
@@ -308,12 +311,12 @@ void Freezing::append_state(std::vector<double>& state) const {
   for (const std::uint8_t steps : rest_) state.push_back(steps);
 }
 
-void Freezing::take_state(const Outside& outside, const double* state) noexcept {
+void Freezing::take_state(const PortInputs& outside, const double* state) noexcept {
   asleep_count_ = 0;
   for (std::uint32_t i = 0; i < rest_.size(); ++i) {
     rest_[i] = static_cast<std::uint8_t>(*state++);
     if (is_asleep(i)) ++asleep_count_;
-    held_[i] = !outside.held_force(i).isZero(0.0);
+    held_[i] = !outside.external_force(i).isZero(0.0);
   }
   roused_ = true;
 }

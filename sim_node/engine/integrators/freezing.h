@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/matter/port_inputs.h"
-#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 
@@ -45,8 +45,8 @@ class Freezing {
 
   explicit Freezing(const NetworkDescription& network);
 
-  /// Takes the stiffnesses of other behaviours, and wakes all.
-  void adopt(const NetworkDescription& network, const std::vector<Behaviour>& behaviours);
+  /// Takes the stiffnesses of other state machines, and wakes all.
+  void adopt(const NetworkDescription& network, const std::vector<StateMachine>& state_machines);
 
   void wake(std::uint32_t mat) noexcept;
   void wake_all() noexcept;
@@ -75,7 +75,7 @@ class Freezing {
   std::size_t state_size() const noexcept { return rest_.size(); }
   void append_state(std::vector<double>& state) const;
   /// @param outside  of the same state
-  void take_state(const Outside& outside, const double* state) noexcept;
+  void take_state(const PortInputs& outside, const double* state) noexcept;
 
  private:
   /// Asleep, and its liaisons have been computed with it at rest: what their conditions remember of
@@ -89,13 +89,14 @@ class Freezing {
   void list_mats(const MatArray& mats) noexcept;
   void list_movers(MatArray& mats) noexcept;
 
-  std::vector<double> most_push_;   // square of the largest push_of_period at rest; < 0: none [m^2]
-  std::vector<double> most_moved_;  // square of the largest displacement at rest [m^2]
+  std::vector<double>
+      max_push_;  // square of the largest kick_at_half_step at rest; < 0: none [m^2]
+  std::vector<double> max_moved_;      // square of the largest displacement at rest [m^2]
   std::vector<double> mass_over_dt2_;  // [kg/s^2]; 0 unless a mass
   std::vector<std::uint8_t> rest_;     // steps at rest in a row; see kAsleep
   std::vector<bool> held_;
   std::vector<bool> kept_awake_;
-  std::vector<bool> never_rests_;  // by behaviour
+  std::vector<bool> never_rests_;  // by state machine
   MatRoles roles_;
   std::vector<std::uint32_t> whole_;     // masses with whole forces, ascending
   std::vector<std::uint32_t> computed_;  // MATs that forces are added to

@@ -7,36 +7,37 @@
 
 namespace cordis::engine {
 
-void MomentMover::begin_step(WorldState& world, StepEnergy& energy) noexcept {
+void FullStepIntegrator::begin_step(WorldState& world, StepEnergy& energy) noexcept {
   energy = pending_;
   pending_ = {};
   energy.port_work += world.outside.move_ports(world.mats);
 }
 
-void MomentMover::find_forces(WorldState& world, const double* felt, StepEnergy& energy) noexcept {
-  const double half = world.add_forces_of_moment(felt, energy);
+void FullStepIntegrator::find_forces(WorldState& world, const double* felt,
+                                     StepEnergy& energy) noexcept {
+  const double half = world.add_forces_at_full_step(felt, energy);
   take_half(half + correct_forces(world), energy);
   energy.port_work += world.outside.work_at_ports(world.mats);
-  energy.port_work += world.outside.push(world.mats);
+  energy.port_work += world.outside.kick(world.mats);
 }
 
-void MomentMover::take_half(double half, StepEnergy& energy) noexcept {
+void FullStepIntegrator::take_half(double half, StepEnergy& energy) noexcept {
   energy.dissipated += half;
   pending_.dissipated += half;
 }
 
-void MomentMover::end_step(WorldState& world) noexcept {
+void FullStepIntegrator::end_step(WorldState& world) noexcept {
   world.mats.set_forces_are_present(false);
   started_ = true;
 }
 
-void MomentMover::append_state(std::vector<double>& state) const {
+void FullStepIntegrator::append_state(std::vector<double>& state) const {
   state.insert(state.end(), memory_.begin(), memory_.end());
   state.insert(state.end(),
                {pending_.dissipated, pending_.port_work, static_cast<double>(started_)});
 }
 
-const double* MomentMover::take_state(WorldState& world, const double* state) noexcept {
+const double* FullStepIntegrator::take_state(WorldState& world, const double* state) noexcept {
   std::copy_n(state, memory_.size(), memory_.data());
   state += memory_.size();
   pending_ = {};

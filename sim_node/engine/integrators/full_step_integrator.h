@@ -8,17 +8,17 @@
 
 namespace cordis::engine {
 
-/// A Mover whose account belongs to the moment of the last forces: half of the works of a step come
+/// A Integrator whose account belongs to the moment of the last forces: half of the works of a step come
 /// before that moment, the others are entered with the next step. It remembers one vector for each
 /// MAT.
-class MomentMover : public Mover {
+class FullStepIntegrator : public Integrator {
  public:
   std::size_t state_size() const noexcept final { return memory_.size() + 3; }
   void append_state(std::vector<double>& state) const final;
   const double* take_state(WorldState& world, const double* state) noexcept final;
 
  protected:
-  explicit MomentMover(std::size_t mat_count) : memory_(4 * mat_count, 0.0) {}
+  explicit FullStepIntegrator(std::size_t mat_count) : memory_(4 * mat_count, 0.0) {}
 
   /// Enters the works that were pending, and moves the ports.
   void begin_step(WorldState& world, StepEnergy& energy) noexcept;

@@ -16,8 +16,9 @@ inline bool is_idle(const LinkState& state) noexcept {
 /// Whether a link with states does so in its present state. Precondition: the link exists.
 inline bool is_idle(const World& world, std::uint32_t state_link) noexcept {
   const NetworkDescription& network = world.network().description();
-  const Behaviour& behaviour = network.behaviours[network.state_links[state_link].behaviour];
-  return is_idle(behaviour.states[world.state_of(state_link)]);
+  const StateMachine& state_machine =
+      network.state_machines[network.state_links[state_link].state_machine];
+  return is_idle(state_machine.states[world.state_of(state_link)]);
 }
 
 }  // namespace cordis::engine

@@ -8,7 +8,7 @@
 namespace cordis::engine {
 
 ImplicitEuler::ImplicitEuler(const NetworkDescription& network)
-    : MomentMover(network.mats.size()), matrix_(network), change_(memory_.size(), 0.0) {}
+    : FullStepIntegrator(network.mats.size()), matrix_(network), change_(memory_.size(), 0.0) {}
 
 /// The delayed positions of the constructor, x0 - dt v0, are those of the velocity v0.
 void ImplicitEuler::start(WorldState& world) noexcept {
@@ -44,7 +44,7 @@ Moved ImplicitEuler::step(WorldState& world) noexcept {
 
 Energy ImplicitEuler::energy(WorldState& world) const noexcept {
   const double rate = 1.0 / world.network->step();
-  return world.energy_of_moment([&](std::uint32_t mat) {
+  return world.energy_at_full_step([&](std::uint32_t mat) {
     return Vec3(rate * Vec3::Map(before_.data() + 4 * std::size_t{mat}));
   });
 }

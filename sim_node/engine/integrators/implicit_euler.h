@@ -23,7 +23,7 @@ namespace cordis::engine {
 /// The account belongs to the moment of the last forces, with the velocity that led there; the
 /// residual is what the scheme has taken.
 /// Source: Baraff, Witkin, Large steps in cloth simulation, 1998.
-class ImplicitEuler final : public MomentMover {
+class ImplicitEuler final : public FullStepIntegrator {
  public:
   explicit ImplicitEuler(const NetworkDescription& network);
 

@@ -12,22 +12,22 @@
 
 namespace cordis::engine {
 
-Vec3 Mover::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
+Vec3 Integrator::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
   return (world.mats.position(mat) - world.mats.delayed(mat)) / world.network->step();
 }
 
-std::unique_ptr<Mover> make_mover(const NetworkDescription& network) {
+std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network) {
   switch (network.integrator) {
-    case Integrator::kCordis:
-      return std::make_unique<CordisMover>();
-    case Integrator::kLeapfrog:
+    case IntegratorKind::kCordis:
+      return std::make_unique<CentralDifference>();
+    case IntegratorKind::kLeapfrog:
       return std::make_unique<Leapfrog>(network);
-    case Integrator::kSymplectic4:
+    case IntegratorKind::kSymplectic4:
       return std::make_unique<Symplectic4>(network);
-    case Integrator::kImplicit:
+    case IntegratorKind::kImplicit:
       return std::make_unique<ImplicitEuler>(network);
-    case Integrator::kModal:
-      return std::make_unique<ModalMover>(network);
+    case IntegratorKind::kModal:
+      return std::make_unique<ModalIntegrator>(network);
   }
   throw std::invalid_argument("there is no such integrator");
 }

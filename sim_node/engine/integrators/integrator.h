@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
+#include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/network.h"
-#include "sim_node/engine/core/state_hash.h"
 
 namespace cordis::engine {
 
@@ -24,12 +24,12 @@ struct Moved {
 /// One of these for each Integrator: orders the evaluations of the forces and moves the MATs. The
 /// links, states and sets of the world are the same for all. One call a step, so that being virtual
 /// costs nothing.
-class Mover {
+class Integrator {
  public:
-  Mover() = default;
-  Mover(const Mover&) = delete;
-  Mover& operator=(const Mover&) = delete;
-  virtual ~Mover() = default;
+  Integrator() = default;
+  Integrator(const Integrator&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
+  virtual ~Integrator() = default;
 
   /// Takes the MATs as their constructor leaves them to step 0, and opens the account.
   virtual void start(WorldState& world) noexcept = 0;
@@ -55,6 +55,6 @@ class Mover {
 };
 
 /// @throws std::invalid_argument when there is no such integrator.
-std::unique_ptr<Mover> make_mover(const NetworkDescription& network);
+std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network);
 
 }  // namespace cordis::engine

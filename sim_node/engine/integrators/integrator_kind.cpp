@@ -6,16 +6,16 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
+#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 namespace {
 
-/// What keeps a behaviour from being a potential; null when it is one.
-const char* not_a_potential(const Behaviour& behaviour) {
-  if (!behaviour.is_stateless()) return "states";
-  const LinkState& state = behaviour.states[0];
+/// What keeps a state machine from being a potential; null when it is one.
+const char* not_a_potential(const StateMachine& state_machine) {
+  if (!state_machine.is_stateless()) return "states";
+  const LinkState& state = state_machine.states[0];
   if (state.viscosity > 0.0 || state.dissipation.kind != Law::Kind::kNone) return "viscosity";
   if (std::isfinite(state.force_limit)) return "a force limit";
   if (state.elasticity.kind == Law::Kind::kFunction) return "a free expression";
@@ -35,12 +35,13 @@ std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
     if (network.links[l].viscosity > 0.0) return at(LiaisonKind::kLink, l, "viscosity");
   }
   for (std::size_t l = 0; l < network.state_links.size(); ++l) {
-    const char* what = not_a_potential(network.behaviours[network.state_links[l].behaviour]);
+    const char* what =
+        not_a_potential(network.state_machines[network.state_links[l].state_machine]);
     if (what != nullptr) return at(LiaisonKind::kStateLink, l, what);
   }
   if (!network.maxwell_links.empty()) return at(LiaisonKind::kMaxwellLink, 0, "viscosity");
   for (std::size_t s = 0; s < network.sets.size(); ++s) {
-    const char* what = not_a_potential(network.behaviours[network.sets[s].behaviour]);
+    const char* what = not_a_potential(network.state_machines[network.sets[s].state_machine]);
     if (what != nullptr) return at(LiaisonKind::kSet, s, what);
   }
   return std::nullopt;
@@ -76,45 +77,45 @@ std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescr
     mass = mat.mass;
   }
   if (mass == 0.0) return IntegratorRefusal{"no mass", {}};
-  if (network.mass_count() > kMostModalMasses) {
-    return IntegratorRefusal{"more than " + std::to_string(kMostModalMasses) + " masses", {}};
+  if (network.mass_count() > kMaxModalMasses) {
+    return IntegratorRefusal{"more than " + std::to_string(kMaxModalMasses) + " masses", {}};
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-const char* to_string(Integrator integrator) noexcept {
+const char* to_string(IntegratorKind integrator) noexcept {
   switch (integrator) {
-    case Integrator::kCordis:
+    case IntegratorKind::kCordis:
       return "cordis";
-    case Integrator::kLeapfrog:
+    case IntegratorKind::kLeapfrog:
       return "leapfrog";
-    case Integrator::kSymplectic4:
+    case IntegratorKind::kSymplectic4:
       return "symplectic4";
-    case Integrator::kImplicit:
+    case IntegratorKind::kImplicit:
       return "implicit";
-    case Integrator::kModal:
+    case IntegratorKind::kModal:
       return "modal";
   }
   return "";
 }
 
-Integrator integrator_named(const std::string& name) {
-  for (const Integrator integrator : kIntegrators) {
+IntegratorKind integrator_named(const std::string& name) {
+  for (const IntegratorKind integrator : kIntegrators) {
     if (name == to_string(integrator)) return integrator;
   }
   throw std::invalid_argument("no integrator is called '" + name + "'");
 }
 
-int evaluations_per_step(Integrator integrator) noexcept {
+int evaluations_per_step(IntegratorKind integrator) noexcept {
   switch (integrator) {
-    case Integrator::kSymplectic4:
+    case IntegratorKind::kSymplectic4:
       return 6;
-    case Integrator::kCordis:
-    case Integrator::kLeapfrog:
-    case Integrator::kImplicit:
-    case Integrator::kModal:
+    case IntegratorKind::kCordis:
+    case IntegratorKind::kLeapfrog:
+    case IntegratorKind::kImplicit:
+    case IntegratorKind::kModal:
       break;
   }
   return 1;
@@ -122,21 +123,21 @@ int evaluations_per_step(Integrator integrator) noexcept {
 
 std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
   if (network.freeze_tolerance > 0.0) {
-    const bool freezes =
-        network.integrator == Integrator::kCordis || network.integrator == Integrator::kLeapfrog;
+    const bool freezes = network.integrator == IntegratorKind::kCordis ||
+                         network.integrator == IntegratorKind::kLeapfrog;
     if (!freezes) return IntegratorRefusal{"freezing", {}};
-    if (damps_in_sweeps(network) || solves_steep_links(network)) {
+    if (damps_in_sweeps(network) || solves_stiff_friction(network)) {
       return IntegratorRefusal{"freezing together with viscosities above Z dt / m = 0.3", {}};
     }
   }
   switch (network.integrator) {
-    case Integrator::kSymplectic4:
+    case IntegratorKind::kSymplectic4:
       return refusal_of_what_does_not_conserve(network);
-    case Integrator::kModal:
+    case IntegratorKind::kModal:
       return refusal_of_what_has_no_modes(network);
-    case Integrator::kCordis:
-    case Integrator::kLeapfrog:
-    case Integrator::kImplicit:
+    case IntegratorKind::kCordis:
+    case IntegratorKind::kLeapfrog:
+    case IntegratorKind::kImplicit:
       break;
   }
   return std::nullopt;
@@ -159,11 +160,11 @@ double largest_extrapolated_step(const NetworkDescription& network) {
   for (const Link& link : network.links) {
     if (link.viscosity > 0.0) most = std::max(most, share(link.mat_a) + share(link.mat_b));
   }
-  return kMostExtrapolatedViscosity / most;
+  return kMaxExtrapolatedViscosity / most;
 }
 
 bool damps_in_sweeps(const NetworkDescription& network) {
-  return network.integrator == Integrator::kLeapfrog &&
+  return network.integrator == IntegratorKind::kLeapfrog &&
          network.step > largest_extrapolated_step(network);
 }
 

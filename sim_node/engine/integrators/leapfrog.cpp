@@ -15,9 +15,9 @@ Eigen::Map<Vec3> column(AlignedVector<double>& columns, std::size_t mat) noexcep
 }  // namespace
 
 Leapfrog::Leapfrog(const NetworkDescription& network)
-    : MomentMover(network.mats.size()),
+    : FullStepIntegrator(network.mats.size()),
       sweeps_(damps_in_sweeps(network) ? std::make_unique<DampingSweeps>(network) : nullptr),
-      steep_links_(network),
+      stiff_friction_(network),
       velocity_(sweeps_ ? felt_.size() : 0, 0.0) {}
 
 void Leapfrog::start(WorldState& world) noexcept {
@@ -44,7 +44,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   StepEnergy& energy = moved.energy;
   begin_step(world, energy);
   feel_ports(world);
-  steep_links_.begin_step(world);
+  stiff_friction_.begin_step(world);
   find_forces(world, felt_.data(), energy);
 
   if (sweeps_) {
@@ -73,11 +73,11 @@ double Leapfrog::stop_what_rests(WorldState& world) noexcept {
 /// A network that freezes has no links to be solved (refusal_of), whatever they are changed to.
 double Leapfrog::correct_forces(WorldState& world) noexcept {
   if (world.freezing) return 0.0;
-  return steep_links_.solve(world, felt_, sweeps_.get(), started_);
+  return stiff_friction_.solve(world, felt_, sweeps_.get(), started_);
 }
 
 void Leapfrog::adopt(WorldState& world) noexcept {
-  steep_links_.choose(world.description(), world.table.behaviours());
+  stiff_friction_.choose(world.description(), world.table.state_machines());
 }
 
 /// What a port does is given from outside: it is felt as it has moved in the last period.
@@ -100,7 +100,7 @@ std::uint32_t Leapfrog::advance_in_sweeps(WorldState& world, StepEnergy& energy)
   }
   sweeps_->clear_force();
   if (started_) {  // before step 0 nothing is known to have pushed
-    mats.push(world.kernel, 0.5, velocity_);
+    mats.kick(world.kernel, 0.5, velocity_);
     const DampingSweeps::Loss loss = sweeps_->sweep(mats, false, velocity_);
     energy.dissipated += loss.dissipated;
     energy.port_work += loss.port_work;
@@ -109,7 +109,7 @@ std::uint32_t Leapfrog::advance_in_sweeps(WorldState& world, StepEnergy& energy)
   const DampingSweeps::Loss loss = sweeps_->sweep(mats, true, velocity_);
   pending_.dissipated += loss.dissipated;
   pending_.port_work += loss.port_work;
-  mats.push(world.kernel, 0.5, velocity_);
+  mats.kick(world.kernel, 0.5, velocity_);
   const double dt = world.network->step();
   for (double& value : velocity_) value *= dt;  // displacements now
   const std::uint32_t non_finite = mats.move_by(velocity_);
@@ -131,12 +131,12 @@ Vec3 Leapfrog::centred_displacement(const WorldState& world, std::uint32_t mat) 
 
 Energy Leapfrog::energy(WorldState& world) const noexcept {
   const double rate = 1.0 / world.network->step();
-  return world.energy_of_moment(
+  return world.energy_at_full_step(
       [&](std::uint32_t mat) { return Vec3(rate * centred_displacement(world, mat)); });
 }
 
 Vec3 Leapfrog::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
-  if (!world.mats.is_mass(mat)) return Mover::velocity(world, mat);
+  if (!world.mats.is_mass(mat)) return Integrator::velocity(world, mat);
   return (world.mats.position(mat) - column(felt_, mat)) / world.network->step();
 }
 

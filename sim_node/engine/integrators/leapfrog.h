@@ -19,13 +19,13 @@ namespace cordis::engine {
 /// Where linear links or the medium are too viscous for that (damps_in_sweeps), their viscosities
 /// act in DampingSweeps between the two halves of the push by all other forces:
 /// 4 M - dt^2 K > 0 is enough then. Where the viscosity of state links is (friction, bows), they
-/// are solved one by one (SteepLinks), with the same limit. Sets are always extrapolated.
+/// are solved one by one (StiffFriction), with the same limit. Sets are always extrapolated.
 ///
 /// Ports are given, so their velocity is that of the last period; Maxwell elements answer to the
 /// growth in the last period. The account belongs to the moment of the last forces: kinetic energy
 /// of the centred velocity (x(n+1) - x(n-1)) / 2 dt, all else in closed form; what finite steps do
 /// to it is the residual, of second order.
-class Leapfrog final : public MomentMover {
+class Leapfrog final : public FullStepIntegrator {
  public:
   explicit Leapfrog(const NetworkDescription& network);
 
@@ -46,7 +46,7 @@ class Leapfrog final : public MomentMover {
 
   AlignedVector<double>& felt_ = memory_;  // x(n) - dt v(n) [m]
   std::unique_ptr<DampingSweeps> sweeps_;  // none: dampers see the extrapolated velocity
-  SteepLinks steep_links_;
+  StiffFriction stiff_friction_;
   AlignedVector<double> velocity_;  // of the step in progress, of sweeps [m/s]
 };
 

@@ -49,7 +49,7 @@ ModalBlock::ModalBlock(const NetworkDescription& network) {
   find_modes(network);
   const double dt = network.step;
   for (AlignedVector<double>* values :
-       {&persistence_, &stiffness_, &gain_, &constant_, &dissipation_}) {
+       {&velocity_retention_, &stiffness_, &gain_, &constant_, &dissipation_}) {
     values->assign(place_.size(), 0.0);
   }
   of_speed_.assign(square_.size(), 0.0);
@@ -105,19 +105,19 @@ void ModalBlock::find_modes(const NetworkDescription& network) {
     if (link.viscosity > 0.0) ratio = link.viscosity / link.stiffness;
   }
   const double of_medium = network.medium_viscosity / network.mats[masses.front()].mass;
-  const double most_stiffness = stiffness.diagonal().maxCoeff();
+  const double max_stiffness = stiffness.diagonal().maxCoeff();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness);
   const Eigen::MatrixXd& modes = solver.eigenvectors();
   const auto square_of = [&](Eigen::Index m) {
     const double square = solver.eigenvalues()[m];
-    return square > 1e-12 * most_stiffness ? square : 0.0;
+    return square > 1e-12 * max_stiffness ? square : 0.0;
   };
 
   std::vector<Eigen::Index> low;
   std::vector<Eigen::Index> high;
-  const double most = 2.0 * std::numbers::pi * network.most_mode_hz;
+  const double most = 2.0 * std::numbers::pi * network.max_mode_hz;
   for (Eigen::Index m = 0; m < count; ++m) {
-    const bool keep = network.most_mode_hz == 0.0 || square_of(m) <= most * most;
+    const bool keep = network.max_mode_hz == 0.0 || square_of(m) <= most * most;
     (keep ? low : high).push_back(m);
   }
   place_.assign(padded(low.size(), kModeBatch), 0.0);
@@ -174,7 +174,7 @@ void ModalBlock::set_mode(std::size_t mode, double dt) noexcept {
     of_force = nearly_critical ? (0.5 * (of_slow + of_fast) - rate * of_speed) / square
                                : (slow_time - of_fast / fast) / apart;
   }
-  persistence_[mode] = 1.0 - lost;
+  velocity_retention_[mode] = 1.0 - lost;
   stiffness_[mode] = stiffness;
   gain_[mode] = gain;
   dissipation_[mode] = 0.5 * lost / gain;
@@ -194,9 +194,9 @@ void ModalBlock::start(const NetworkDescription& network, const double* forces) 
     }
     force += added;
     const double first = of_speed_[m] * speed + of_force_[m] * force;
-    const double persistence = std::max(persistence_[m], 1e-100);
+    const double velocity_retention = std::max(velocity_retention_[m], 1e-100);
     place_[m] = 0.0;
-    moved_[m] = (first - gain_[m] * force) / persistence;
+    moved_[m] = (first - gain_[m] * force) / velocity_retention;
   }
 }
 
@@ -205,7 +205,7 @@ ModeRows ModalBlock::rows() noexcept {
   rows.count = place_.size();
   rows.place = place_.data();
   rows.moved = moved_.data();
-  rows.persistence = persistence_.data();
+  rows.velocity_retention = velocity_retention_.data();
   rows.stiffness = stiffness_.data();
   rows.gain = gain_.data();
   rows.constant = constant_.data();
@@ -247,14 +247,14 @@ double ModalBlock::gravity_energy() const noexcept {
 double ModalBlock::alternating_compliance(std::uint32_t a, std::uint32_t b) const noexcept {
   double compliance = residual(a, b);
   for (std::size_t m = 0; m < square_.size(); ++m) {
-    const double left = (2.0 + 2.0 * persistence_[m] - stiffness_[m]) / gain_[m];
+    const double left = (2.0 + 2.0 * velocity_retention_[m] - stiffness_[m]) / gain_[m];
     if (left <= 0.0) return std::numeric_limits<double>::infinity();
     compliance += shape(a)[m] * shape(b)[m] / left;
   }
   return compliance;
 }
 
-double ModalBlock::most_stiffness(std::uint32_t mat) const noexcept {
+double ModalBlock::max_stiffness(std::uint32_t mat) const noexcept {
   const double compliance = alternating_compliance(mat, mat);
   return compliance > 0.0 ? 1.0 / compliance : std::numeric_limits<double>::infinity();
 }

@@ -52,7 +52,7 @@ class ModalBlock {
   double alternating_compliance(std::uint32_t a, std::uint32_t b) const noexcept;
   /// How much of a stiffness between the MAT and the rest of the world every step bears, at most
   /// [N/m]: that with which an eigenvalue of the scheme reaches -1.
-  double most_stiffness(std::uint32_t mat) const noexcept;
+  double max_stiffness(std::uint32_t mat) const noexcept;
 
  private:
   void find_modes(const NetworkDescription& network);
@@ -61,21 +61,21 @@ class ModalBlock {
   AlignedVector<double> shape_;   // of MAT i: as many values as place_ has
   std::vector<double> left_out_;  // of MAT i: shapes / w of the modes left out
   std::size_t left_out_count_ = 0;
-  AlignedVector<double> place_;        // q(n) [m sqrt(kg)]
-  AlignedVector<double> moved_;        // q(n) - q(n-1)
-  AlignedVector<double> persistence_;  // 1 - Z'
-  AlignedVector<double> stiffness_;    // K'
-  AlignedVector<double> gain_;         // [s^2]
-  AlignedVector<double> constant_;     // gain * force that is always there
-  AlignedVector<double> dissipation_;  // Z' / 2 gain
-  std::vector<double> square_;         // w^2 [1/s^2]
-  std::vector<double> viscosity_;      // 2 s [1/s]
-  std::vector<double> of_speed_;       // what the first step makes of 1 m sqrt(kg) / s [s]
-  std::vector<double> of_force_;       // and of a force that begins then [s^2]
-  std::vector<double> link_force_;     // at the start
-  std::vector<double> weight_;         // gravity
-  double elastic_at_start_ = 0.0;      // [J]
-  double gravity_at_start_ = 0.0;      // [J]
+  AlignedVector<double> place_;               // q(n) [m sqrt(kg)]
+  AlignedVector<double> moved_;               // q(n) - q(n-1)
+  AlignedVector<double> velocity_retention_;  // 1 - Z'
+  AlignedVector<double> stiffness_;           // K'
+  AlignedVector<double> gain_;                // [s^2]
+  AlignedVector<double> constant_;            // gain * force that is always there
+  AlignedVector<double> dissipation_;         // Z' / 2 gain
+  std::vector<double> square_;                // w^2 [1/s^2]
+  std::vector<double> viscosity_;             // 2 s [1/s]
+  std::vector<double> of_speed_;              // what the first step makes of 1 m sqrt(kg) / s [s]
+  std::vector<double> of_force_;              // and of a force that begins then [s^2]
+  std::vector<double> link_force_;            // at the start
+  std::vector<double> weight_;                // gravity
+  double elastic_at_start_ = 0.0;             // [J]
+  double gravity_at_start_ = 0.0;             // [J]
 };
 
 }  // namespace cordis::engine

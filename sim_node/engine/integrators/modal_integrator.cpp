@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim_node/engine/simd/kernel_of_width.h"
 #include "sim_node/engine/integrators/world_state.h"
+#include "sim_node/engine/simd/kernel_of_width.h"
 
 namespace cordis::engine {
 
@@ -13,12 +13,12 @@ const ModalKernel& modal_kernel(VectorWidth width) noexcept {
   return kernel_of_width(width, kModalKernelSse2, kModalKernelAvx2, kModalKernelAvx512);
 }
 
-ModalMover::ModalMover(const NetworkDescription& network)
+ModalIntegrator::ModalIntegrator(const NetworkDescription& network)
     : block_(network),
       is_end_(network.mats.size(), 0),
       is_driven_(network.mats.size(), 0),
       force_(network.mats.size(), 0.0),
-      leaves_modes_out_(network.most_mode_hz > 0.0) {
+      leaves_modes_out_(network.max_mode_hz > 0.0) {
   for (const Mat& mat : network.mats) {
     start_.push_back(mat.position.x());
     is_mass_.push_back(mat.kind == MatKind::kMass ? 1 : 0);
@@ -49,7 +49,7 @@ ModalMover::ModalMover(const NetworkDescription& network)
 }
 
 /// There is room for all MATs.
-void ModalMover::drive(std::uint32_t mat) {
+void ModalIntegrator::drive(std::uint32_t mat) {
   if (is_end_[mat] == 0) ends_.push_back(mat);
   is_end_[mat] = 1;
   if (is_driven_[mat] != 0 || is_mass_[mat] == 0) return;
@@ -58,7 +58,7 @@ void ModalMover::drive(std::uint32_t mat) {
   drives_.push_back({0.0, block_.shape(mat), 0.0});
 }
 
-void ModalMover::start(WorldState& world) noexcept {
+void ModalIntegrator::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   kernel_ = &modal_kernel(world.width);
   world.add_frozen_forces(mats.force_columns());
@@ -77,7 +77,7 @@ void ModalMover::start(WorldState& world) noexcept {
   world.account.open(energy(world).total(), stored);
 }
 
-Moved ModalMover::step(WorldState& world) noexcept {
+Moved ModalIntegrator::step(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   Moved moved;
   StepEnergy& energy = moved.energy;
@@ -89,9 +89,9 @@ Moved ModalMover::step(WorldState& world) noexcept {
   }
   energy.port_work = world.outside.move_ports(mats);
   for (const std::uint32_t mat : ends_) mats.set_force(mat, Vec3::Zero());
-  world.add_forces_of_period(energy);
+  world.add_forces_at_half_step(energy);
   energy.port_work += world.outside.work_at_ports(mats);
-  energy.port_work += world.outside.push(mats);
+  energy.port_work += world.outside.kick(mats);
 
   for (std::size_t k = 0; k < driven_.size(); ++k) {
     drives_[k].force = mats.force(driven_[k]).x();
@@ -111,14 +111,14 @@ Moved ModalMover::step(WorldState& world) noexcept {
   return moved;
 }
 
-double ModalMover::residual_at(std::uint32_t mat) const noexcept {
+double ModalIntegrator::residual_at(std::uint32_t mat) const noexcept {
   if (!leaves_modes_out_) return 0.0;
   double sum = 0.0;
   for (const std::uint32_t other : driven_) sum += block_.residual(mat, other) * force_[other];
   return sum;
 }
 
-void ModalMover::show(WorldState& world, std::uint32_t mat) const noexcept {
+void ModalIntegrator::show(WorldState& world, std::uint32_t mat) const noexcept {
   if (is_mass_[mat] == 0 || is_driven_[mat] != 0) return;
   const double* shape = block_.shape(mat);
   const std::size_t count = block_.place().size();
@@ -127,35 +127,35 @@ void ModalMover::show(WorldState& world, std::uint32_t mat) const noexcept {
   world.mats.set_motion(mat, now, now - kernel_->read(shape, block_.moved().data(), count));
 }
 
-void ModalMover::show_all(WorldState& world) const noexcept {
+void ModalIntegrator::show_all(WorldState& world) const noexcept {
   for (std::uint32_t i = 0; i < is_mass_.size(); ++i) show(world, i);
 }
 
-Energy ModalMover::energy(WorldState& world) const noexcept {
+Energy ModalIntegrator::energy(WorldState& world) const noexcept {
   double left_out = 0.0;
   for (const std::uint32_t mat : driven_) left_out += 0.5 * force_[mat] * residual_at(mat);
-  return world.account.at_middle(
+  return world.account.at_half_step(
       {block_.kinetic_energy(), block_.elastic_energy() + left_out, block_.gravity_energy()},
       world.work_since_last_call(), world.stored_energy());
 }
 
-void ModalMover::add_to(StateHash& hash) const noexcept {
+void ModalIntegrator::add_to(StateHash& hash) const noexcept {
   for (const double value : block_.place()) hash.add(value);
   for (const double value : block_.moved()) hash.add(value);
 }
 
-std::size_t ModalMover::state_size() const noexcept {
+std::size_t ModalIntegrator::state_size() const noexcept {
   return 2 * block_.place().size() + force_.size() + is_driven_.size();
 }
 
-void ModalMover::append_state(std::vector<double>& state) const {
+void ModalIntegrator::append_state(std::vector<double>& state) const {
   state.insert(state.end(), block_.place().begin(), block_.place().end());
   state.insert(state.end(), block_.moved().begin(), block_.moved().end());
   state.insert(state.end(), force_.begin(), force_.end());
   state.insert(state.end(), is_driven_.begin(), is_driven_.end());
 }
 
-const double* ModalMover::take_state(WorldState&, const double* state) noexcept {
+const double* ModalIntegrator::take_state(WorldState&, const double* state) noexcept {
   for (AlignedVector<double>* values : {&block_.place(), &block_.moved()}) {
     std::copy_n(state, values->size(), values->data());
     state += values->size();

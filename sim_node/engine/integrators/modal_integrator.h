@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "sim_node/engine/integrators/modal_block.h"
 #include "sim_node/engine/integrators/integrator.h"
+#include "sim_node/engine/integrators/modal_block.h"
 
 namespace cordis::engine {
 
@@ -16,9 +16,9 @@ namespace cordis::engine {
 ///
 /// World::link_force knows nothing of the links in the block. The account is that of `cordis`, and
 /// closes to rounding; with modes left out, to their share.
-class ModalMover final : public Mover {
+class ModalIntegrator final : public Integrator {
  public:
-  explicit ModalMover(const NetworkDescription& network);
+  explicit ModalIntegrator(const NetworkDescription& network);
 
   void start(WorldState& world) noexcept override;
   Moved step(WorldState& world) noexcept override;

@@ -24,13 +24,13 @@ struct ModeDrive {
 /// One value of each mode; arrays 64-byte aligned, padded with modes that rest to a multiple of 8.
 struct ModeRows {
   std::size_t count = 0;
-  double* place = nullptr;              // q(n), then q(n+1) [m sqrt(kg)]
-  double* moved = nullptr;              // q(n) - q(n-1), then that of n + 1
-  const double* persistence = nullptr;  // 1 - Z'
-  const double* stiffness = nullptr;    // K'
-  const double* gain = nullptr;         // what a force does [s^2]
-  const double* constant = nullptr;     // gain * force that is always there
-  const double* dissipation = nullptr;  // Z' / 2 gain [1/s^2]
+  double* place = nullptr;                     // q(n), then q(n+1) [m sqrt(kg)]
+  double* moved = nullptr;                     // q(n) - q(n-1), then that of n + 1
+  const double* velocity_retention = nullptr;  // 1 - Z'
+  const double* stiffness = nullptr;           // K'
+  const double* gain = nullptr;                // what a force does [s^2]
+  const double* constant = nullptr;            // gain * force that is always there
+  const double* dissipation = nullptr;         // Z' / 2 gain [1/s^2]
   ModeDrive* drives = nullptr;
   std::size_t drive_count = 0;
 };

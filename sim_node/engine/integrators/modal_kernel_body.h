@@ -1,8 +1,8 @@
 // sim_node/engine/integrators/modal_kernel_body.h -- the loops over modes.
 #pragma once
 
-#include "sim_node/engine/simd/lane_batch.h"
 #include "sim_node/engine/integrators/modal_kernel.h"
+#include "sim_node/engine/simd/lane_batch.h"
 
 namespace cordis::engine {
 
@@ -61,7 +61,7 @@ double step_driven_modes(const ModeRows& modes) noexcept {
       }
       const Row place = Lanes::load(rows.place + at);
       const Row moved = Lanes::load(rows.moved + at);
-      const Row moving = Lanes::load(rows.persistence + at) * moved -
+      const Row moving = Lanes::load(rows.velocity_retention + at) * moved -
                          Lanes::load(rows.stiffness + at) * place +
                          (Lanes::load(rows.constant + at) + Lanes::load(rows.gain + at) * force);
       const Row next = place + moving;

@@ -13,7 +13,7 @@ namespace cordis::engine {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr double kMostSpeed = 1.0;  // at which a law without a steepest place is looked at [m/s]
+constexpr double kMaxSpeed = 1.0;  // at which a law without a steepest place is looked at [m/s]
 
 double inverse_mass(const Mat& mat) noexcept {
   return mat.kind == MatKind::kMass ? 1.0 / mat.mass : 0.0;
@@ -29,8 +29,8 @@ double steepest_of_table(const Table& table) noexcept {
 
 double steepest_of_function(const LinkFunction& law) noexcept {
   constexpr int kParts = 64;
-  constexpr double kStep = 2.0 * kMostSpeed / kParts;
-  const auto pull = [&](int i) { return law(1.0, 0.0, kStep * i - kMostSpeed, 1.0, 1.0); };
+  constexpr double kStep = 2.0 * kMaxSpeed / kParts;
+  const auto pull = [&](int i) { return law(1.0, 0.0, kStep * i - kMaxSpeed, 1.0, 1.0); };
   double most = 0.0;
   for (int i = 1; i <= kParts; ++i) most = std::max(most, (pull(i) - pull(i - 1)) / kStep);
   return std::isfinite(most) ? most : kUnbounded;
@@ -54,28 +54,28 @@ double steepest(const Law& law) noexcept {
   return 0.0;
 }
 
-/// @param slope, viscosity, steps  room for one value of each behaviour, MAT and state link
-void find_steps(const NetworkDescription& network, const std::vector<Behaviour>& behaviours,
+/// @param slope, viscosity, steps  room for one value of each state machine, MAT and state link
+void find_steps(const NetworkDescription& network, const std::vector<StateMachine>& state_machines,
                 std::vector<double>& slope, std::vector<double>& viscosity,
                 std::vector<double>& steps) noexcept {
-  for (std::size_t i = 0; i < behaviours.size(); ++i) {
+  for (std::size_t i = 0; i < state_machines.size(); ++i) {
     slope[i] = 0.0;
-    for (const LinkState& state : behaviours[i].states) {
+    for (const LinkState& state : state_machines[i].states) {
       slope[i] = std::max(slope[i], state.viscosity + steepest(state.dissipation));
     }
   }
   std::fill(viscosity.begin(), viscosity.end(), 0.0);
   for (const StateLink& link : network.state_links) {
-    if (std::isinf(slope[link.behaviour])) continue;  // never extrapolated
+    if (std::isinf(slope[link.state_machine])) continue;  // never extrapolated
     for (const std::uint32_t mat : {link.mat_a, link.mat_b}) {
-      viscosity[mat] += slope[link.behaviour] * inverse_mass(network.mats[mat]);
+      viscosity[mat] += slope[link.state_machine] * inverse_mass(network.mats[mat]);
     }
   }
   for (std::size_t l = 0; l < steps.size(); ++l) {
     const StateLink& link = network.state_links[l];
     const double of_ends = viscosity[link.mat_a] + viscosity[link.mat_b];
-    steps[l] = slope[link.behaviour] > 0.0 ? kMostExtrapolatedViscosity / of_ends : kUnbounded;
-    if (std::isinf(slope[link.behaviour])) steps[l] = 0.0;
+    steps[l] = slope[link.state_machine] > 0.0 ? kMaxExtrapolatedViscosity / of_ends : kUnbounded;
+    if (std::isinf(slope[link.state_machine])) steps[l] = 0.0;
   }
 }
 
@@ -85,7 +85,7 @@ class PullOverSpeed {
   static constexpr std::size_t kCount = 8;
 
   PullOverSpeed(const WorldState& world, std::uint32_t link) noexcept
-      : find_pulls_(world.behaviours.pulls),
+      : find_pulls_(world.state_machines.pulls),
         state_(world.table.terms()[world.state_links.state_index(link)]),
         dt_(world.network->step()) {
     const NetworkDescription& network = world.description();
@@ -179,11 +179,11 @@ bool find_bracket(PullOverSpeed& of, double begin, double at_begin, double half_
 /// Narrows it down to rounding; a jump of the law as well as a smooth place.
 double find_root(PullOverSpeed& of, double half_mobility, double free_speed,
                  Bracket bracket) noexcept {
-  constexpr int kMostLooks = 40;  // each takes three quarters away, where it finds no better
+  constexpr int kMaxLooks = 40;  // each takes three quarters away, where it finds no better
   constexpr double kNear = 1.0 / (1 << 13);
   constexpr double kNearest = kNear * kNear;
   const double rounding = 1e-15 * (std::abs(free_speed) + std::abs(bracket.high));
-  for (int look = 0; look < kMostLooks && bracket.at_high != 0.0; ++look) {
+  for (int look = 0; look < kMaxLooks && bracket.at_high != 0.0; ++look) {
     const double width = bracket.high - bracket.low;
     if (!(std::abs(width) > rounding)) break;
     const double guess = bracket.secant();
@@ -208,34 +208,34 @@ double find_root(PullOverSpeed& of, double half_mobility, double free_speed,
 }  // namespace
 
 std::vector<double> largest_extrapolated_steps(const NetworkDescription& network) {
-  std::vector<double> slope(network.behaviours.size());
+  std::vector<double> slope(network.state_machines.size());
   std::vector<double> viscosity(network.mats.size());
   std::vector<double> steps(network.state_links.size());
-  find_steps(network, network.behaviours, slope, viscosity, steps);
+  find_steps(network, network.state_machines, slope, viscosity, steps);
   return steps;
 }
 
-bool solves_steep_links(const NetworkDescription& network) {
-  if (network.integrator != Integrator::kLeapfrog) return false;
+bool solves_stiff_friction(const NetworkDescription& network) {
+  if (network.integrator != IntegratorKind::kLeapfrog) return false;
   const std::vector<double> steps = largest_extrapolated_steps(network);
   return std::any_of(steps.begin(), steps.end(),
                      [&network](double step) { return network.step > step; });
 }
 
-SteepLinks::SteepLinks(const NetworkDescription& network)
+StiffFriction::StiffFriction(const NetworkDescription& network)
     : dt_(network.step),
       in_line_(network.dimension == 1),
       steps_(network.state_links.size()),
       viscosity_(network.mats.size()),
-      slope_(network.behaviours.size()),
+      slope_(network.state_machines.size()),
       met_(network.mats.size()) {
   solved_.reserve(network.state_links.size());
-  choose(network, network.behaviours);
+  choose(network, network.state_machines);
 }
 
-void SteepLinks::choose(const NetworkDescription& network,
-                        const std::vector<Behaviour>& behaviours) noexcept {
-  find_steps(network, behaviours, slope_, viscosity_, steps_);
+void StiffFriction::choose(const NetworkDescription& network,
+                           const std::vector<StateMachine>& state_machines) noexcept {
+  find_steps(network, state_machines, slope_, viscosity_, steps_);
   solved_.clear();
   std::fill(met_.begin(), met_.end(), std::uint8_t{0});
   share_masses_ = false;
@@ -256,20 +256,20 @@ void SteepLinks::choose(const NetworkDescription& network,
   }
 }
 
-void SteepLinks::add_pull(WorldState& world, const Solved& solved, double pull) noexcept {
+void StiffFriction::add_pull(WorldState& world, const Solved& solved, double pull) noexcept {
   const StateLink& ends = world.description().state_links[solved.link];
   const Vec3 force = pull * solved.axis;
   world.mats.set_force(ends.mat_a, world.mats.force(ends.mat_a) + force);
   world.mats.set_force(ends.mat_b, world.mats.force(ends.mat_b) - force);
 }
 
-void SteepLinks::begin_step(const WorldState& world) noexcept {
+void StiffFriction::begin_step(const WorldState& world) noexcept {
   for (Solved& solved : solved_) solved.pull = world.state_links.pull(solved.link);
 }
 
 /// Takes the pull of the last step in place of the one with the extrapolated speed, which may be
 /// far too large.
-void SteepLinks::prepare(WorldState& world, const Around& around, Solved& solved) noexcept {
+void StiffFriction::prepare(WorldState& world, const Around& around, Solved& solved) noexcept {
   const StateLink& ends = world.description().state_links[solved.link];
   Vec3 along = world.mats.position(ends.mat_b) - world.mats.position(ends.mat_a);
   const double length =
@@ -293,14 +293,14 @@ void SteepLinks::prepare(WorldState& world, const Around& around, Solved& solved
 
 /// The centred speed that all forces but its own pull leave a link. In the first step, which begins
 /// with a velocity that its explicit forces have made, that of the middle of the step.
-double SteepLinks::free_speed(const WorldState& world, const Around& around,
-                              const Solved& solved) const noexcept {
+double StiffFriction::free_speed(const WorldState& world, const Around& around,
+                                 const Solved& solved) const noexcept {
   const StateLink& ends = world.description().state_links[solved.link];
   const double part = around.started ? 0.5 : 1.0;
   const auto moved = [&](std::uint32_t mat) {
     Vec3 moving = world.mats.position(mat) - world.mats.delayed(mat);
     if (!world.mats.is_mass(mat)) return moving;
-    Vec3 force = world.mats.force(mat) + world.outside.held_force(mat);
+    Vec3 force = world.mats.force(mat) + world.outside.external_force(mat);
     if (around.sweeps != nullptr) {
       force += Vec3::Map(around.sweeps->force().data() + 4 * std::size_t{mat});
     } else {
@@ -316,8 +316,8 @@ double SteepLinks::free_speed(const WorldState& world, const Around& around,
 
 /// @param pull  of the link, then that of its root
 /// @return its speed; the pull stays when no root is found
-double SteepLinks::solve_one(const WorldState& world, const Solved& solved, double free_speed,
-                             double& pull) noexcept {
+double StiffFriction::solve_one(const WorldState& world, const Solved& solved, double free_speed,
+                                double& pull) noexcept {
   PullOverSpeed of(world, solved.link);
   of.find({solved.speed});
   const double value = solved.speed - free_speed + solved.half_mobility * of.pull(0);
@@ -333,12 +333,12 @@ double SteepLinks::solve_one(const WorldState& world, const Solved& solved, doub
   return speed;
 }
 
-double SteepLinks::solve(WorldState& world, const AlignedVector<double>& felt,
-                         const DampingSweeps* sweeps, bool started) noexcept {
+double StiffFriction::solve(WorldState& world, const AlignedVector<double>& felt,
+                            const DampingSweeps* sweeps, bool started) noexcept {
   const Around around{felt, sweeps, started};
   for (Solved& solved : solved_) prepare(world, around, solved);
   constexpr double kSettled = 1e-10;  // of the largest pull
-  for (int round = 0; round < (share_masses_ ? kMostRounds : 1); ++round) {
+  for (int round = 0; round < (share_masses_ ? kMaxRounds : 1); ++round) {
     double largest = 0.0;
     double changed = 0.0;
     for (Solved& solved : solved_) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/network.h"
 
 namespace cordis::engine {
@@ -15,14 +15,14 @@ class DampingSweeps;
 struct WorldState;
 
 /// For each state link of a network the largest step [s] at which `leapfrog` feeds its viscosity an
-/// extrapolated velocity: dt (W_a + W_b) is kMostExtrapolatedViscosity there, W the sum over the
+/// extrapolated velocity: dt (W_a + W_b) is kMaxExtrapolatedViscosity there, W the sum over the
 /// state links of an end of their steepest viscosities, over its mass. 0 where a law is steeper
 /// than any number (dry friction, a root of the speed); infinite without viscosity. A power above 1
 /// is taken at 1 m/s, a free expression at its steepest between -1 and 1 m/s.
 std::vector<double> largest_extrapolated_steps(const NetworkDescription& network);
 
 /// Whether `leapfrog` solves state links of this network at its step.
-bool solves_steep_links(const NetworkDescription& network);
+bool solves_stiff_friction(const NetworkDescription& network);
 
 /// What `leapfrog` does to the state links beyond those steps: each is solved by itself for the
 /// centred speed u that its own pull leaves,
@@ -34,17 +34,18 @@ bool solves_steep_links(const NetworkDescription& network);
 /// Where a law falls with the speed there may be three roots: the one on the side and branch of the
 /// extrapolated speed is taken, so that what sticks goes on sticking until it cannot. Links that
 /// share a mass are solved in turn, each with the last pulls of the others, until these no longer
-/// change, at most kMostRounds times. In the step in which a state is entered its speed is 0, as
+/// change, at most kMaxRounds times. In the step in which a state is entered its speed is 0, as
 /// everywhere.
-class SteepLinks {
+class StiffFriction {
  public:
-  static constexpr int kMostRounds = 32;
+  static constexpr int kMaxRounds = 32;
 
-  explicit SteepLinks(const NetworkDescription& network);
+  explicit StiffFriction(const NetworkDescription& network);
 
-  /// Finds the links to be solved, with these behaviours in place of those of the network. Real
+  /// Finds the links to be solved, with these state machines in place of those of the network. Real
   /// time: O(links), no allocation.
-  void choose(const NetworkDescription& network, const std::vector<Behaviour>& behaviours) noexcept;
+  void choose(const NetworkDescription& network,
+              const std::vector<StateMachine>& state_machines) noexcept;
 
   /// Notes the pulls of the last step. Before the forces of a step are computed.
   void begin_step(const WorldState& world) noexcept;
@@ -53,7 +54,7 @@ class SteepLinks {
   /// @param sweeps   what damps the linear links; null when they are among the forces
   /// @param started  a step has been done
   /// @return half of what that changes in the energy that viscosity takes in a period [J]
-  /// Real time: O(links to be solved * kMostRounds), no allocation.
+  /// Real time: O(links to be solved * kMaxRounds), no allocation.
   double solve(WorldState& world, const AlignedVector<double>& felt, const DampingSweeps* sweeps,
                bool started) noexcept;
 
@@ -85,7 +86,7 @@ class SteepLinks {
   bool in_line_;
   std::vector<double> steps_;      // of all state links: largest_extrapolated_steps
   std::vector<double> viscosity_;  // room: of each MAT over its mass [1/s]
-  std::vector<double> slope_;      // room: of each behaviour [N s/m]
+  std::vector<double> slope_;      // room: of each state machine [N s/m]
   std::vector<Solved> solved_;     // room for all state links
   std::vector<std::uint8_t> met_;  // room: by MAT, an end of a link to be solved
   bool share_masses_ = false;

@@ -19,7 +19,7 @@ constexpr double kDrift2 = 0.604872665711080;
 constexpr double kDrift3 = 0.5 - (kDrift1 + kDrift2);
 
 struct Stage {
-  double push;
+  double kick;
   double drift;  // at the velocity after the push
 };
 constexpr std::array<Stage, 6> kStages{{{kPush1, kDrift1},
@@ -37,7 +37,7 @@ double symplectic4_trace(double stiffness) noexcept {
     double place = displaced ? 1.0 : 0.0;
     double moved = displaced ? 0.0 : 1.0;
     for (const Stage& stage : kStages) {
-      moved -= stage.push * stiffness * place;
+      moved -= stage.kick * stiffness * place;
       place += stage.drift * moved;
     }
     moved -= kPush1 * stiffness * place;
@@ -68,12 +68,12 @@ Moved Symplectic4::step(WorldState& world) noexcept {
   Moved moved;
   if (world.outside.held_count() > 0) mats.delay();  // for the work of the held forces
   for (const Stage& stage : kStages) {
-    world.outside.push(mats);
-    mats.push_and_drift(world.kernel, stage.push, stage.drift, velocity_);
+    world.outside.kick(mats);
+    mats.kick_and_drift(world.kernel, stage.kick, stage.drift, velocity_);
     add_forces(world);
   }
-  world.outside.push(mats);
-  mats.push(world.kernel, kPush1, velocity_);
+  world.outside.kick(mats);
+  mats.kick(world.kernel, kPush1, velocity_);
   moved.energy.port_work = 2.0 * world.outside.release(mats);  // over the way from x(n)
   moved.non_finite_mats = mats.delay_by(world.kernel, velocity_);
   return moved;
@@ -88,14 +88,14 @@ void Symplectic4::find_forces(WorldState& world) noexcept {
 void Symplectic4::add_forces(WorldState& world) noexcept {
   ForceColumns at_rest = world.mats.force_columns();
   at_rest.delayed = at_rest.position;
-  world.links.add_forces_of_moment(world.kernel, at_rest);
-  world.ties.add_forces_of_moment(world.kernel, at_rest);
-  world.state_links.add_forces_before_start(world.behaviours, world.table, at_rest);
+  world.links.add_forces_at_full_step(world.kernel, at_rest);
+  world.ties.add_forces_at_full_step(world.kernel, at_rest);
+  world.state_links.add_forces_before_start(world.state_machines, world.table, at_rest);
   world.sets.add_forces(world.pair_step(true), at_rest);
 }
 
 Energy Symplectic4::energy(WorldState& world) const noexcept {
-  return world.energy_of_moment([this](std::uint32_t mat) {
+  return world.energy_at_full_step([this](std::uint32_t mat) {
     return Vec3(Vec3::Map(velocity_.data() + 4 * std::size_t{mat}));
   });
 }

@@ -18,7 +18,7 @@ namespace cordis::engine {
 /// steps have done. The delayed positions are x(n) - dt v(n).
 /// Source: Blanes, Moan, Practical symplectic partitioned Runge-Kutta and Runge-Kutta-Nystrom
 /// methods, 2002 (order 4, 6 stages, b).
-class Symplectic4 final : public Mover {
+class Symplectic4 final : public Integrator {
  public:
   explicit Symplectic4(const NetworkDescription& network);
 

@@ -10,7 +10,7 @@
 namespace cordis::engine {
 namespace {
 
-constexpr std::size_t kLeastEventRoom = 1024;
+constexpr std::size_t kMinEventRoom = 1024;
 
 std::shared_ptr<const Network> require(std::shared_ptr<const Network> network) {
   if (!network) throw std::invalid_argument("a world needs a network");
@@ -28,7 +28,7 @@ VectorWidth require(VectorWidth width) {
 /// Without those that `modal` takes as modes.
 SpringDamperArray stepped_links(const NetworkDescription& network) {
   constexpr auto kAlong = SpringDamperArray::Kind::kAlong;
-  if (network.integrator != Integrator::kModal) return {network, kAlong};
+  if (network.integrator != IntegratorKind::kModal) return {network, kAlong};
   NetworkDescription stepped = network;
   std::erase_if(stepped.links, [&network](const Link& link) {
     return network.mats[link.mat_a].kind != MatKind::kPort &&
@@ -43,24 +43,25 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
     : network(require(std::move(network_of_world))),
       width(require(width_of_step)),
       kernel(step_kernel(width)),
-      behaviours(behaviour_kernel(width)),
+      state_machines(state_kernel(width)),
       mats(description()),
       positions(mats.position()),
       links(stepped_links(description())),
       ties(description(), SpringDamperArray::Kind::kTie),
-      table(make_table(description().behaviours)),
+      table(make_table(description().state_machines)),
       state_links(description(), table),
       maxwell_links(description()),
       sets(description(), table, pair_kernel(width)),
-      log(table, std::max(kLeastEventRoom, description().state_links.size())),
+      log(table, std::max(kMinEventRoom, description().state_links.size())),
       outside(description()),
       freezing(description().freeze_tolerance > 0.0 ? std::make_unique<Freezing>(description())
                                                     : nullptr),
-      mover(make_mover(description())) {}
+      scheme(make_integrator(description())) {}
 
-StateTable WorldState::make_table(std::vector<Behaviour> from) const {
-  const Integrator integrator = description().integrator;
-  const bool whole_steps = integrator != Integrator::kCordis && integrator != Integrator::kModal;
+StateTable WorldState::make_table(std::vector<StateMachine> from) const {
+  const IntegratorKind integrator = description().integrator;
+  const bool whole_steps =
+      integrator != IntegratorKind::kCordis && integrator != IntegratorKind::kModal;
   return StateTable(std::move(from), network->step(), whole_steps);
 }
 
@@ -68,11 +69,11 @@ StepReport WorldState::step() noexcept {
   StepReport report;
   report.refused_inputs = outside.take_refused();
   log.begin_step();
-  const Moved moved = mover->step(*this);
+  const Moved moved = scheme->step(*this);
   account.add(moved.energy);
   ++step_count;
   report.non_finite_mats = moved.non_finite_mats;
-  report.crowded_sets = sets.crowded_count();
+  report.overflowed_sets = sets.overflowed_count();
   report.lost_events = log.lost();
   return report;
 }
@@ -80,7 +81,7 @@ StepReport WorldState::step() noexcept {
 void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
   links.add_forces(kernel, columns);
   ties.add_forces(kernel, columns);
-  state_links.add_forces_before_start(behaviours, table, columns);
+  state_links.add_forces_before_start(state_machines, table, columns);
   sets.add_forces(pair_step(true), columns);
 }
 
@@ -132,34 +133,35 @@ StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
                   : sets.add_forces(pair_step(false), columns);
 }
 
-void WorldState::add_forces_of_period(StepEnergy& energy) noexcept {
+void WorldState::add_forces_at_half_step(StepEnergy& energy) noexcept {
   const ForceColumns columns = mats.force_columns();
   energy += links.add_forces(kernel, columns);
   energy += ties.add_forces(kernel, columns);
   if (!state_links.empty()) {
-    energy += state_links.add_forces(behaviours, table, columns, step_count, log);
+    energy += state_links.add_forces(state_machines, table, columns, step_count, log);
   }
-  energy += maxwell_links.add_forces(behaviours, columns);
+  energy += maxwell_links.add_forces(state_machines, columns);
   energy += add_set_forces(columns);
   if (freezing) freezing->restore_forces(mats);
 }
 
-double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy& energy) noexcept {
+double WorldState::add_forces_at_full_step(const double* felt_positions,
+                                           StepEnergy& energy) noexcept {
   const ForceColumns as_it_moved = mats.force_columns();
   ForceColumns felt = as_it_moved;
   felt.delayed = felt_positions;
   sets.start();
   const StepEnergy of_last_sets = begin_forces(felt);
 
-  StepEnergy of_links = links.add_forces_of_moment(kernel, felt);
-  of_links += ties.add_forces_of_moment(kernel, felt);
+  StepEnergy of_links = links.add_forces_at_full_step(kernel, felt);
+  of_links += ties.add_forces_at_full_step(kernel, felt);
   of_links.dissipated *= 0.5;
   // Without the viscous forces of the last step, half the work of those of this one is returned.
   if (!state_links.empty()) {
     state_links.forget_viscous_forces();
-    of_links += state_links.add_forces(behaviours, table, felt, step_count, log);
+    of_links += state_links.add_forces(state_machines, table, felt, step_count, log);
   }
-  energy.dissipated += maxwell_links.add_forces(behaviours, as_it_moved).dissipated;
+  energy.dissipated += maxwell_links.add_forces(state_machines, as_it_moved).dissipated;
   of_links += of_last_sets;
   of_links += add_set_forces(felt);
   if (freezing) freezing->restore_forces(mats);
@@ -167,35 +169,35 @@ double WorldState::add_forces_of_moment(const double* felt_positions, StepEnergy
   return of_links.dissipated;
 }
 
-void WorldState::replace_behaviour(std::uint32_t index, const Behaviour& behaviour) {
-  if (index >= table.behaviours().size()) {
-    throw std::invalid_argument("behaviour " + std::to_string(index) + " does not exist");
+void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& state_machine) {
+  if (index >= table.state_machines().size()) {
+    throw std::invalid_argument("state machine " + std::to_string(index) + " does not exist");
   }
-  check_behaviour(behaviour, "behaviour " + std::to_string(index));
-  if (behaviour.states.size() != table.behaviours()[index].states.size()) {
-    throw std::invalid_argument("a behaviour is replaced by one of as many states");
+  check_state_machine(state_machine, "state machine " + std::to_string(index));
+  if (state_machine.states.size() != table.state_machines()[index].states.size()) {
+    throw std::invalid_argument("a state machine is replaced by one of as many states");
   }
-  for (const LinkState& state : behaviour.states) {
+  for (const LinkState& state : state_machine.states) {
     if (!std::isfinite(state.viscosity / network->step())) {
       throw std::invalid_argument("a viscosity is too large for the step");
     }
   }
   const double before = stored_energy();
-  table.replace(index, behaviour);
+  table.replace(index, state_machine);
   state_links.adopt(table);
   sets.adopt(table);
-  if (freezing) freezing->adopt(description(), table.behaviours());
+  if (freezing) freezing->adopt(description(), table.state_machines());
   StepEnergy change;
   change.switching = stored_energy() - before;
   account.add(change);
-  mover->adopt(*this);
+  scheme->adopt(*this);
   replaced = true;
 }
 
 std::size_t WorldState::state_size_before_sets() const noexcept {
   return mats.state_size() + links.state_size() + ties.state_size() + state_links.state_size() +
          maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize +
-         mover->state_size() + (freezing ? freezing->state_size() : 0);
+         scheme->state_size() + (freezing ? freezing->state_size() : 0);
 }
 
 bool WorldState::can_take(const std::vector<double>& state) const noexcept {
@@ -210,9 +212,9 @@ void WorldState::restore(const Snapshot& snapshot) {
   if (snapshot.network != network->fingerprint()) {
     throw std::invalid_argument("the snapshot is of another network");
   }
-  const std::vector<Behaviour>& own = description().behaviours;
+  const std::vector<StateMachine>& own = description().state_machines;
   StateTable table_of_snapshot =
-      make_table(snapshot.behaviours.empty() ? own : snapshot.behaviours);
+      make_table(snapshot.state_machines.empty() ? own : snapshot.state_machines);
   StateLinkArray links_of_snapshot(description(), table_of_snapshot);
   std::swap(table, table_of_snapshot);
   std::swap(state_links, links_of_snapshot);
@@ -224,8 +226,8 @@ void WorldState::restore(const Snapshot& snapshot) {
     throw std::invalid_argument("the snapshot is not complete");
   }
   step_count = snapshot.step;
-  replaced = !snapshot.behaviours.empty();
-  if (freezing) freezing->adopt(description(), table.behaviours());
+  replaced = !snapshot.state_machines.empty();
+  if (freezing) freezing->adopt(description(), table.state_machines());
   take_state(snapshot.state);
 }
 
@@ -237,7 +239,7 @@ void WorldState::append_state(std::vector<double>& state) const {
   maxwell_links.append_state(state);
   log.append_state(state);
   account.append_state(state);
-  mover->append_state(state);
+  scheme->append_state(state);
   if (freezing) freezing->append_state(state);
   sets.append_state(state);
   outside.append_state(state);
@@ -251,7 +253,7 @@ void WorldState::take_state(const std::vector<double>& state) noexcept {
   next = maxwell_links.take_state(next);
   next = log.take_state(next);
   next = account.take_state(next);
-  next = mover->take_state(*this, next);
+  next = scheme->take_state(*this, next);
   const double* rest = next;
   if (freezing) next += freezing->state_size();
   next = sets.take_state(next);

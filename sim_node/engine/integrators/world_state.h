@@ -5,18 +5,18 @@
 #include <memory>
 #include <vector>
 
-#include "sim_node/engine/links/behaviour_kernel.h"
-#include "sim_node/engine/links/event_log.h"
 #include "sim_node/engine/integrators/freezing.h"
-#include "sim_node/engine/matter/mat_array.h"
-#include "sim_node/engine/links/maxwell_links.h"
 #include "sim_node/engine/integrators/integrator.h"
-#include "sim_node/engine/matter/port_inputs.h"
-#include "sim_node/engine/pairs/set_liaisons.h"
+#include "sim_node/engine/links/event_log.h"
+#include "sim_node/engine/links/maxwell_links.h"
 #include "sim_node/engine/links/spring_damper.h"
+#include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/links/state_links.h"
 #include "sim_node/engine/links/state_table.h"
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/matter/port_inputs.h"
 #include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/pairs/set_liaisons.h"
 #include "sim_node/engine/world.h"
 
 namespace cordis::engine {
@@ -30,15 +30,17 @@ struct WorldState {
   const NetworkDescription& description() const noexcept { return network->description(); }
   StepReport step() noexcept;
   void restore(const Snapshot& snapshot);
-  void replace_behaviour(std::uint32_t index, const Behaviour& behaviour);
+  void replace_state_machine(std::uint32_t index, const StateMachine& state_machine);
 
   std::size_t state_size_before_sets() const noexcept;
   bool can_take(const std::vector<double>& state) const noexcept;
   void append_state(std::vector<double>& state) const;
   void take_state(const std::vector<double>& state) noexcept;
-  StateTable make_table(std::vector<Behaviour> behaviours) const;
+  StateTable make_table(std::vector<StateMachine> state_machines) const;
 
-  PairStep pair_step(bool frozen) noexcept { return {table, behaviours, log, step_count, frozen}; }
+  PairStep pair_step(bool frozen) noexcept {
+    return {table, state_machines, log, step_count, frozen};
+  }
   /// Adds the forces of all liaisons, as they are, without testing an exit; Maxwell elements left
   /// out.
   void add_frozen_forces(const ForceColumns& columns) noexcept;
@@ -58,15 +60,15 @@ struct WorldState {
   /// Adds the forces of the sets after that.
   StepEnergy add_set_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of all liaisons as `cordis` does; enters what they take.
-  void add_forces_of_period(StepEnergy& energy) noexcept;
+  void add_forces_at_half_step(StepEnergy& energy) noexcept;
   /// Clears the forces and adds those of all liaisons for an account that is kept at moments:
   /// dampers and conditions see the velocity (position - felt) / dt, Maxwell elements how the MATs
   /// have moved. Enters changes of state and what Maxwell elements have taken.
   /// @return half of what viscosity takes in a period at this moment [J]
-  double add_forces_of_moment(const double* felt, StepEnergy& energy) noexcept;
+  double add_forces_at_full_step(const double* felt, StepEnergy& energy) noexcept;
   /// The account at the moment of the last forces. @param velocity_of  of a MAT at that moment
   template <class VelocityOf>
-  Energy energy_of_moment(VelocityOf velocity_of) noexcept {
+  Energy energy_at_full_step(VelocityOf velocity_of) noexcept {
     double kinetic = 0.0;
     double gravity = 0.0;
     for (std::uint32_t i = 0; i < mats.count(); ++i) {
@@ -81,7 +83,7 @@ struct WorldState {
   std::shared_ptr<const Network> network;
   VectorWidth width;
   const StepKernel& kernel;
-  const BehaviourKernel& behaviours;
+  const StateKernel& state_machines;
   MatArray mats;
   Columns positions;  // of mats
   SpringDamperArray links;
@@ -91,12 +93,12 @@ struct WorldState {
   MaxwellArray maxwell_links;
   SetLiaisons sets;
   EventLog log;
-  Outside outside;
+  PortInputs outside;
   EnergyAccount account;
   std::unique_ptr<Freezing> freezing;  // none: every MAT is always awake
-  std::unique_ptr<Mover> mover;
+  std::unique_ptr<Integrator> scheme;
   std::uint64_t step_count = 0;
-  bool replaced = false;  // a behaviour is no longer that of the network
+  bool replaced = false;  // a state machine is no longer that of the network
 };
 
 }  // namespace cordis::engine

@@ -5,8 +5,8 @@ namespace cordis::engine {
 
 EventLog::EventLog(const StateTable& table, std::size_t capacity) : events_(capacity) {
   std::size_t first = 0;
-  for (const Behaviour& behaviour : table.behaviours()) {
-    const std::size_t state_count = behaviour.states.size();
+  for (const StateMachine& state_machine : table.state_machines()) {
+    const std::size_t state_count = state_machine.states.size();
     matrices_.push_back({first, state_count});
     first += state_count * state_count;
   }
@@ -19,7 +19,7 @@ void EventLog::begin_step() noexcept {
 }
 
 void EventLog::add(const LinkEvent& event) noexcept {
-  ++change_count_[place(event.behaviour, event.from, event.to)];
+  ++change_count_[place(event.state_machine, event.from, event.to)];
   if (count_ == events_.size()) {
     ++lost_;
     return;
@@ -27,9 +27,9 @@ void EventLog::add(const LinkEvent& event) noexcept {
   events_[count_++] = event;
 }
 
-std::uint64_t EventLog::change_count(std::uint32_t behaviour, std::uint32_t from,
+std::uint64_t EventLog::change_count(std::uint32_t state_machine, std::uint32_t from,
                                      std::uint32_t to) const noexcept {
-  return change_count_[place(behaviour, from, to)];
+  return change_count_[place(state_machine, from, to)];
 }
 
 void EventLog::append_state(std::vector<double>& state) const {
@@ -42,9 +42,9 @@ const double* EventLog::take_state(const double* state) noexcept {
   return state;
 }
 
-std::size_t EventLog::place(std::uint32_t behaviour, std::uint32_t from,
+std::size_t EventLog::place(std::uint32_t state_machine, std::uint32_t from,
                             std::uint32_t to) const noexcept {
-  const Matrix& matrix = matrices_[behaviour];
+  const Matrix& matrix = matrices_[state_machine];
   return matrix.first + from * matrix.state_count + to;
 }
 

@@ -24,8 +24,8 @@ class EventLog {
 
   std::span<const LinkEvent> events() const noexcept { return {events_.data(), count_}; }
   std::uint32_t lost() const noexcept { return lost_; }  ///< that found no room in this step
-  /// How often a behaviour went from a state to another since step 0.
-  std::uint64_t change_count(std::uint32_t behaviour, std::uint32_t from,
+  /// How often a state machine went from a state to another since step 0.
+  std::uint64_t change_count(std::uint32_t state_machine, std::uint32_t from,
                              std::uint32_t to) const noexcept;
 
   std::size_t state_size() const noexcept { return change_count_.size(); }
@@ -37,15 +37,16 @@ class EventLog {
  private:
   struct Matrix {
     std::size_t first;        // of its counts: from * state_count + to
-    std::size_t state_count;  // of the behaviour
+    std::size_t state_count;  // of the state machine
   };
 
-  std::size_t place(std::uint32_t behaviour, std::uint32_t from, std::uint32_t to) const noexcept;
+  std::size_t place(std::uint32_t state_machine, std::uint32_t from,
+                    std::uint32_t to) const noexcept;
 
   std::vector<LinkEvent> events_;
   std::size_t count_ = 0;
   std::uint32_t lost_ = 0;
-  std::vector<Matrix> matrices_;  // one per behaviour
+  std::vector<Matrix> matrices_;  // one per state machine
   std::vector<std::uint64_t> change_count_;
 };
 

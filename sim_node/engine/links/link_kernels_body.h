@@ -7,13 +7,13 @@
 namespace cordis::engine {
 
 template <class Lanes>
-constexpr BehaviourKernel make_behaviour_kernel() noexcept {
-  return BehaviourKernel{BehaviourLoop<Lanes>::step,
-                         BehaviourLoop<Lanes>::find_pulls,
-                         StateLinkLoop<Lanes, MotionInLine>::add_forces,
-                         StateLinkLoop<Lanes, MotionInSpace>::add_forces,
-                         add_maxwell_forces<Lanes, GrowthInLine>,
-                         add_maxwell_forces<Lanes, GrowthInSpace>};
+constexpr StateKernel make_state_kernel() noexcept {
+  return StateKernel{StateMachineLoop<Lanes>::step,
+                     StateMachineLoop<Lanes>::find_pulls,
+                     StateLinkLoop<Lanes, MotionInLine>::add_forces,
+                     StateLinkLoop<Lanes, MotionInSpace>::add_forces,
+                     add_maxwell_forces<Lanes, GrowthInLine>,
+                     add_maxwell_forces<Lanes, GrowthInSpace>};
 }
 
 }  // namespace cordis::engine

@@ -1,7 +1,7 @@
 // sim_node/engine/links/maxwell_kernel_body.h -- the loops of Maxwell elements, 8 at a time.
 #pragma once
 
-#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/matter/step_kernel.h"
 
 namespace cordis::engine {
@@ -60,7 +60,7 @@ template <class Lanes, template <class> class Growth>
 void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
                         LinkWork& work_of_all) noexcept {
   using Row = typename Lanes::Row;
-  constexpr std::size_t kParts = kBehaviourBatch / Lanes::kWidth;
+  constexpr std::size_t kParts = kStateBatch / Lanes::kWidth;
   Row stored[kParts];
   Row taken[kParts];
   for (std::size_t part = 0; part < kParts; ++part) {
@@ -68,7 +68,7 @@ void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
     taken[part] = Lanes::load(work_of_all.dissipated + part * Lanes::kWidth);
   }
 
-  for (std::size_t l = 0; l < links.count; l += kBehaviourBatch) {
+  for (std::size_t l = 0; l < links.count; l += kStateBatch) {
 #pragma GCC unroll 4
     for (std::size_t part = 0; part < kParts; ++part) {
       const std::size_t i = l + part * Lanes::kWidth;
@@ -76,8 +76,8 @@ void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
       const std::uint32_t* b = links.column_b + i;
       const Growth<Lanes> link(columns, a, b);
       const Row before = Lanes::load(links.pull + i);
-      const Row pull =
-          Lanes::load(links.persistence + i) * before + Lanes::load(links.gain + i) * link.growth;
+      const Row pull = Lanes::load(links.velocity_retention + i) * before +
+                       Lanes::load(links.gain + i) * link.growth;
       const Row factor = link.factor(pull);
       const Row work = pull * link.growth + Lanes::load(links.factor + i) * link.before_moved;
       const Row more = (pull * pull - before * before) * Lanes::load(links.compliance + i);

@@ -20,9 +20,9 @@ double share_of_decay(double x) noexcept {
 MaxwellArray::MaxwellArray(const NetworkDescription& description)
     : in_line_(description.dimension == 1),
       link_count_(description.maxwell_links.size()),
-      column_a_(padded(link_count_, kBehaviourBatch), 0U),
+      column_a_(padded(link_count_, kStateBatch), 0U),
       column_b_(column_a_.size(), 0U),
-      persistence_(column_a_.size(), 0.0),
+      velocity_retention_(column_a_.size(), 0.0),
       gain_(column_a_.size(), 0.0),
       compliance_(column_a_.size(), 0.0),
       pull_(column_a_.size(), 0.0),
@@ -32,7 +32,7 @@ MaxwellArray::MaxwellArray(const NetworkDescription& description)
     const double share = share_of_decay(link.stiffness * description.step / link.viscosity);
     column_a_[l] = 4 * link.mat_a;
     column_b_[l] = 4 * link.mat_b;
-    persistence_[l] = 1.0 - share;
+    velocity_retention_[l] = 1.0 - share;
     gain_[l] = link.viscosity / description.step * share;
     compliance_[l] = 1.0 / link.stiffness;
   }
@@ -41,18 +41,18 @@ MaxwellArray::MaxwellArray(const NetworkDescription& description)
   }
 }
 
-StepEnergy MaxwellArray::add_forces(const BehaviourKernel& kernel,
+StepEnergy MaxwellArray::add_forces(const StateKernel& kernel,
                                     const ForceColumns& columns) noexcept {
   if (link_count_ == 0) return {};
-  const MaxwellRows rows{column_a_.size(),    column_a_.data(), column_b_.data(),
-                         persistence_.data(), gain_.data(),     compliance_.data(),
-                         pull_.data(),        factor_.data()};
+  const MaxwellRows rows{
+      column_a_.size(), column_a_.data(),   column_b_.data(), velocity_retention_.data(),
+      gain_.data(),     compliance_.data(), pull_.data(),     factor_.data()};
   LinkWork work;
   (in_line_ ? kernel.maxwell_1d : kernel.maxwell_3d)(rows, columns, work);
   return half_of(work);
 }
 
-void MaxwellArray::mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept {
+void MaxwellArray::mark_neighbours(const WakePropagation& pass, MatRoles& roles) const noexcept {
   for (std::size_t l = 0; l < link_count_; ++l) {
     roles.join(column_a_[l] / 4, column_b_[l] / 4, pass);
     for (const std::uint32_t mat : {column_a_[l] / 4, column_b_[l] / 4}) {

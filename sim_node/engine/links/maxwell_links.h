@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
-#include "sim_node/engine/network.h"
-#include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 
@@ -26,11 +26,11 @@ class MaxwellArray {
 
   /// Adds the force of every element to its two MATs, in order. Real time: O(elements), no
   /// allocation. @return stored and dissipated energy, as EnergyAccount counts them.
-  StepEnergy add_forces(const BehaviourKernel& kernel, const ForceColumns& columns) noexcept;
+  StepEnergy add_forces(const StateKernel& kernel, const ForceColumns& columns) noexcept;
 
   /// As that of SpringDamperArray. All are computed in every step, since their forces fade while
   /// nothing moves: of their ends the whole force is needed.
-  void mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept;
+  void mark_neighbours(const WakePropagation& pass, MatRoles& roles) const noexcept;
 
   /// Work of the forces of the last call up to the present positions. Real time: O(elements), no
   /// allocation.
@@ -48,13 +48,13 @@ class MaxwellArray {
  private:
   bool in_line_;  // 1 dimension
   std::size_t link_count_;
-  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
-  AlignedVector<std::uint32_t> column_b_;  // all arrays: padded to a multiple of kBehaviourBatch
-  AlignedVector<double> persistence_;      // e^(-K dt / Z)
-  AlignedVector<double> gain_;             // Z (1 - e^(-K dt / Z)) / dt [N/m]
-  AlignedVector<double> compliance_;       // 1 / K [m/N]
-  AlignedVector<double> pull_;             // F(n) [N]
-  AlignedVector<double> factor_;           // force of the last call = factor * vector from a to b
+  AlignedVector<std::uint32_t> column_a_;     // 4 * MAT index
+  AlignedVector<std::uint32_t> column_b_;     // all arrays: padded to a multiple of kStateBatch
+  AlignedVector<double> velocity_retention_;  // e^(-K dt / Z)
+  AlignedVector<double> gain_;                // Z (1 - e^(-K dt / Z)) / dt [N/m]
+  AlignedVector<double> compliance_;          // 1 / K [m/N]
+  AlignedVector<double> pull_;                // F(n) [N]
+  AlignedVector<double> factor_;  // force of the last call = factor * vector from a to b
 };
 
 }  // namespace cordis::engine

@@ -82,15 +82,16 @@ StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel,
   return add(in_line_ ? in_line : in_space, columns);
 }
 
-StepEnergy SpringDamperArray::add_forces_of_moment(const StepKernel& kernel,
-                                                   const ForceColumns& columns) noexcept {
+StepEnergy SpringDamperArray::add_forces_at_full_step(const StepKernel& kernel,
+                                                      const ForceColumns& columns) noexcept {
   const AddLinkForces in_line = viscous_ ? kernel.moment_spring_dampers_1d : kernel.springs_1d;
   const AddLinkForces in_space =
       viscous_ ? kernel.moment_spring_dampers_3d : kernel.moment_springs_3d;
   return {0.0, 2.0 * add(in_line_ ? in_line : in_space, columns).dissipated, 0.0, 0.0};
 }
 
-void SpringDamperArray::mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept {
+void SpringDamperArray::mark_neighbours(const WakePropagation& pass,
+                                        MatRoles& roles) const noexcept {
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
     roles.join(column_a_[l] / 4, column_b_[l] / 4, pass);
   }

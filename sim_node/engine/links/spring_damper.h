@@ -8,8 +8,8 @@
 #include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 
@@ -17,7 +17,7 @@ namespace cordis::engine {
 ///
 /// pull = K (d - rest) + Z (growth of the link along its axis during the last period) / dt; see
 /// Link for d. Ties are taken apart into one such link along each axis, as in 1 dimension.
-/// Source: [Luc90 III.2.2 Modelisation of the material in its continuous behaviour].
+/// Source: [Luc90 III.2.2 Modelisation of the material in its continuous state machine].
 class SpringDamperArray {
  public:
   enum class Kind : std::uint8_t {
@@ -36,10 +36,11 @@ class SpringDamperArray {
 
   /// The same for an account that is kept at moments: only the energy [J] that the viscous forces
   /// take in a period at the velocity (x - delayed) / dt is returned, and nothing remembered.
-  StepEnergy add_forces_of_moment(const StepKernel& kernel, const ForceColumns& columns) noexcept;
+  StepEnergy add_forces_at_full_step(const StepKernel& kernel,
+                                     const ForceColumns& columns) noexcept;
 
   /// Passes on along each link.
-  void mark_neighbours(const Passing& pass, MatRoles& roles) const noexcept;
+  void mark_neighbours(const WakePropagation& pass, MatRoles& roles) const noexcept;
   /// From now on only links at MATs with kWholeForce, and some beside them, are computed; of the
   /// others neither end has moved. Real time: O(links), no allocation.
   void choose_active(MatRoles& roles) noexcept;

@@ -1,22 +1,22 @@
-// sim_node/engine/links/state_link_kernel_body.h -- the loops of state links: kinematics, behaviours,
+// sim_node/engine/links/state_link_kernel_body.h -- the loops of state links: kinematics, state machines,
 // forces, 8 links at a time.
 #pragma once
 
-#include "sim_node/engine/links/behaviour_kernel_body.h"
+#include "sim_node/engine/links/state_kernel_body.h"
 #include "sim_node/engine/matter/step_kernel.h"
 
 namespace cordis::engine {
 
 /// How 8 links stand and move; values of the batch that its programs may ask for.
 struct LinkMotion {
-  alignas(64) double distance[kBehaviourBatch];
-  alignas(64) double growth[kBehaviourBatch];        // [m]
-  alignas(64) double before_moved[kBehaviourBatch];  // former vector * its change [m^2]
-  alignas(64) double along[3][kBehaviourBatch];      // vector from a to b [m]
-  alignas(64) double inverse[kBehaviourBatch];       // 1 / distance, 0 where that is 0
-  alignas(64) double speed[kBehaviourBatch];
-  alignas(64) double velocity[3][kBehaviourBatch];
-  alignas(64) double slip[kBehaviourBatch];
+  alignas(64) double distance[kStateBatch];
+  alignas(64) double growth[kStateBatch];        // [m]
+  alignas(64) double before_moved[kStateBatch];  // former vector * its change [m^2]
+  alignas(64) double along[3][kStateBatch];      // vector from a to b [m]
+  alignas(64) double inverse[kStateBatch];       // 1 / distance, 0 where that is 0
+  alignas(64) double speed[kStateBatch];
+  alignas(64) double velocity[3][kStateBatch];
+  alignas(64) double slip[kStateBatch];
   std::uint32_t still;  // bit i: link i has no direction
 };
 
@@ -114,7 +114,7 @@ template <class Lanes, template <class> class Motion>
 class StateLinkLoop {
   using Row = typename Lanes::Row;
   using Batch = LaneBatch<Lanes>;
-  static constexpr std::size_t kParts = kBehaviourBatch / Lanes::kWidth;
+  static constexpr std::size_t kParts = kStateBatch / Lanes::kWidth;
 
  public:
   static void add_forces(const StateLinkRows& links, const ForceColumns& columns,
@@ -132,8 +132,8 @@ class StateLinkLoop {
       viscous_work_[part] = Lanes::load(work.dissipated + part * Lanes::kWidth);
     }
     prepare();
-    for (std::size_t l = 0; l < links_.count; l += kBehaviourBatch) {
-      step_behaviours(l);
+    for (std::size_t l = 0; l < links_.count; l += kStateBatch) {
+      step_state_machines(l);
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < kParts; ++part) add_part(l, part);
     }
@@ -168,10 +168,10 @@ class StateLinkLoop {
     rows_.elastic_before = elastic_before_;
   }
 
-  void step_behaviours(std::size_t l) noexcept {
+  void step_state_machines(std::size_t l) noexcept {
     motion_.still = 0;
 #pragma GCC unroll 4
-    for (std::size_t i = 0; i < kBehaviourBatch; i += Lanes::kWidth) {
+    for (std::size_t i = 0; i < kStateBatch; i += Lanes::kWidth) {
       Motion<Lanes>::find(links_, columns_, l, i, motion_);
     }
     rows_.still = motion_.still;
@@ -196,7 +196,7 @@ class StateLinkLoop {
           age_, [&](Row entered) { return (now - entered) * dt; }, rows_.entered);
     }
 
-    BehaviourLoop<Lanes>::step(links_.states, rows_);
+    StateMachineLoop<Lanes>::step(links_.states, rows_);
     if (rows_.changed != 0) links_.on_change(links_.owner, l, rows_);
   }
 
@@ -221,12 +221,12 @@ class StateLinkLoop {
 
   const StateLinkRows& links_;
   const ForceColumns& columns_;
-  BehaviourRows rows_;
+  StateMachineRows rows_;
   LinkMotion motion_;
-  alignas(64) double elongation_[kBehaviourBatch];
-  alignas(64) double age_[kBehaviourBatch];
-  alignas(64) double elastic_[kBehaviourBatch];
-  alignas(64) double elastic_before_[kBehaviourBatch];
+  alignas(64) double elongation_[kStateBatch];
+  alignas(64) double age_[kStateBatch];
+  alignas(64) double elastic_[kStateBatch];
+  alignas(64) double elastic_before_[kStateBatch];
   Row elastic_work_[kParts];
   Row viscous_work_[kParts];
 };

@@ -28,11 +28,11 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
       dt_(description.step),
       rate_(1.0 / description.step),
       link_count_(description.state_links.size()),
-      column_a_(padded(link_count_, kBehaviourBatch), 0U),
+      column_a_(padded(link_count_, kStateBatch), 0U),
       column_b_(column_a_.size(), 0U),
       mass_a_(column_a_.size(), 0.0),
       mass_b_(column_a_.size(), 0.0),
-      behaviour_(column_a_.size(), 0U),
+      state_machine_(column_a_.size(), 0U),
       state_(column_a_.size(), table.padding_state()),
       rest_length_(column_a_.size(), 0.0),
       pull_(column_a_.size(), 0.0),
@@ -41,15 +41,15 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
       forced_(column_a_.size(), kNotForced),
       elastic_factor_(column_a_.size(), 0.0),
       viscous_factor_(column_a_.size(), 0.0),
-      active_(column_a_.size(), kBehaviourBatch) {
+      active_(column_a_.size(), kStateBatch) {
   for (std::size_t l = 0; l < link_count_; ++l) {
     const StateLink& link = description.state_links[l];
     column_a_[l] = 4 * link.mat_a;
     column_b_[l] = 4 * link.mat_b;
     mass_a_[l] = mass_of(description.mats[link.mat_a]);
     mass_b_[l] = mass_of(description.mats[link.mat_b]);
-    behaviour_[l] = link.behaviour;
-    state_[l] = table.start_state(link.behaviour);
+    state_machine_[l] = link.state_machine;
+    state_[l] = table.start_state(link.state_machine);
     rest_length_[l] = link.rest_length;
   }
   for (std::size_t l = link_count_; l < column_a_.size(); ++l) {
@@ -84,7 +84,7 @@ StateLinkRows StateLinkArray::rows(const StateTable& table, const ActiveLinks::R
   return rows;
 }
 
-void StateLinkArray::add_forces_before_start(const BehaviourKernel& kernel, const StateTable& table,
+void StateLinkArray::add_forces_before_start(const StateKernel& kernel, const StateTable& table,
                                              const ForceColumns& columns) noexcept {
   LinkWork none;
   for (const ActiveLinks::Run& run : active_.runs()) {
@@ -104,7 +104,7 @@ void StateLinkArray::forget_viscous_forces() noexcept {
   std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
 }
 
-StepEnergy StateLinkArray::add_forces(const BehaviourKernel& kernel, const StateTable& table,
+StepEnergy StateLinkArray::add_forces(const StateKernel& kernel, const StateTable& table,
                                       const ForceColumns& columns, std::uint64_t step,
                                       EventLog& log) noexcept {
   struct Entry {
@@ -116,18 +116,18 @@ StepEnergy StateLinkArray::add_forces(const BehaviourKernel& kernel, const State
     double switching;    // [J]
   };
   Entry entry{this, &table, &log, step, 0, 0.0};
-  const auto on_change = [](void* owner, std::size_t first, const BehaviourRows& rows) noexcept {
+  const auto on_change = [](void* owner, std::size_t first, const StateMachineRows& rows) noexcept {
     auto& to = *static_cast<Entry*>(owner);
-    for (std::size_t i = 0; i < kBehaviourBatch; ++i) {
+    for (std::size_t i = 0; i < kStateBatch; ++i) {
       if ((rows.changed >> i & 1U) == 0) continue;
       const std::size_t l = to.origin + first + i;
-      const StateIndex first_state = to.table->first_state(to.links->behaviour_[l]);
+      const StateIndex first_state = to.table->first_state(to.links->state_machine_[l]);
       const double energy = to.table->change_energy(rows, i);
       to.switching += energy;
       to.log->add({to.step, static_cast<std::uint32_t>(l), to.links->column_a_[l] / 4,
-                   to.links->column_b_[l] / 4, to.links->behaviour_[l], rows.from[i] - first_state,
-                   rows.state[i] - first_state, to.table->fired(rows.from[i], rows.exit[i]),
-                   rows.fired_value[i], energy});
+                   to.links->column_b_[l] / 4, to.links->state_machine_[l],
+                   rows.from[i] - first_state, rows.state[i] - first_state,
+                   to.table->triggered(rows.from[i], rows.exit[i]), rows.fired_value[i], energy});
     }
   };
   LinkWork work;
@@ -145,13 +145,14 @@ StepEnergy StateLinkArray::add_forces(const BehaviourKernel& kernel, const State
   return energy;
 }
 
-void StateLinkArray::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+void StateLinkArray::mark_neighbours(const WakePropagation& pass,
+                                     const std::vector<bool>& never_rests,
                                      MatRoles& roles) const noexcept {
   for (std::size_t l = 0; l < link_count_; ++l) {
     const std::uint32_t a = column_a_[l] / 4;
     const std::uint32_t b = column_b_[l] / 4;
     roles.join(a, b, pass);
-    if (!never_rests[behaviour_[l]]) continue;
+    if (!never_rests[state_machine_[l]]) continue;
     const bool is_mass_a = roles.has(a, kIsMass);
     const bool is_mass_b = roles.has(b, kIsMass);
     if (is_mass_a || !is_mass_b) roles.add(a, kWholeForce);
@@ -190,8 +191,8 @@ double StateLinkArray::stored_energy(const StateTable& table, const MatArray& ma
 
 void StateLinkArray::force_state(const StateTable& table, std::uint32_t link,
                                  std::uint32_t state) noexcept {
-  assert(link < link_count_ && state < table.behaviours()[behaviour_[link]].states.size());
-  forced_[link] = table.first_state(behaviour_[link]) + state;
+  assert(link < link_count_ && state < table.state_machines()[state_machine_[link]].states.size());
+  forced_[link] = table.first_state(state_machine_[link]) + state;
   any_forced_ = true;
 }
 
@@ -210,7 +211,7 @@ void StateLinkArray::adopt(const StateTable& table) {
 }
 
 std::uint32_t StateLinkArray::state_of(const StateTable& table, std::uint32_t link) const noexcept {
-  return state_[link] - table.first_state(behaviour_[link]);
+  return state_[link] - table.first_state(state_machine_[link]);
 }
 
 void StateLinkArray::add_to(StateHash& hash) const noexcept {

@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/links/behaviour_kernel.h"
-#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/links/event_log.h"
+#include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/links/state_table.h"
+#include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
-#include "sim_node/engine/network.h"
-#include "sim_node/engine/core/state_hash.h"
-#include "sim_node/engine/links/state_table.h"
 #include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 
@@ -26,7 +26,7 @@ class StateLinkArray {
   bool empty() const noexcept { return link_count_ == 0; }
 
   /// Adds the forces of all links in their present states, without testing an exit: before step 0.
-  void add_forces_before_start(const BehaviourKernel& kernel, const StateTable& table,
+  void add_forces_before_start(const StateKernel& kernel, const StateTable& table,
                                const ForceColumns& columns) noexcept;
   /// Forgets pulls and viscous forces: those before step 0 take no work.
   void start() noexcept;
@@ -36,13 +36,13 @@ class StateLinkArray {
   /// One step: exits, changes of state, then the force of every link on its two MATs, in link
   /// order. Enters the changes in the log. Real time: O(links), no allocation.
   /// @return elastic, dissipated and switched energy, as EnergyAccount counts them.
-  StepEnergy add_forces(const BehaviourKernel& kernel, const StateTable& table,
+  StepEnergy add_forces(const StateKernel& kernel, const StateTable& table,
                         const ForceColumns& columns, std::uint64_t step, EventLog& log) noexcept;
 
-  /// As those of SpringDamperArray. Links of a behaviour whose conditions may come true while both
+  /// As those of SpringDamperArray. Links of a state machine whose conditions may come true while both
   /// ends rest are always computed: their masses get kWholeForce.
-  /// @param never_rests  by behaviour
-  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+  /// @param never_rests  by state machine
+  void mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                        MatRoles& roles) const noexcept;
   void choose_active(MatRoles& roles) noexcept;
 
@@ -86,10 +86,10 @@ class StateLinkArray {
   double rate_;   // 1 / dt [1/s]
   std::size_t link_count_;
   AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
-  AlignedVector<std::uint32_t> column_b_;  // all arrays: padded to a multiple of kBehaviourBatch
+  AlignedVector<std::uint32_t> column_b_;  // all arrays: padded to a multiple of kStateBatch
   AlignedVector<double> mass_a_;           // [kg], 0 unless a mass
   AlignedVector<double> mass_b_;
-  AlignedVector<std::uint32_t> behaviour_;
+  AlignedVector<std::uint32_t> state_machine_;
   AlignedVector<StateIndex> state_;
   AlignedVector<double> rest_length_;  // [m]
   AlignedVector<double> pull_;         // [N]

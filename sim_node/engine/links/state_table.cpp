@@ -83,22 +83,22 @@ ProgramTerm ready(const Program& program) {
 }  // namespace
 
 struct StateTable::Content {
-  std::vector<Behaviour> behaviours;
+  std::vector<StateMachine> state_machines;
   double dt = 0.0;
   double part_of_work = 0.5;  // that the account has not entered yet
   std::vector<StateTerm> terms;
-  std::vector<std::vector<ExitTerm>> exits;  // by behaviour
-  std::vector<ReadyLaw> laws;                // of all terms, in order: elasticity, dissipation
-  std::vector<StateIndex> first_state;       // by behaviour
-  std::vector<std::uint32_t> behaviour_of;   // by state
+  std::vector<std::vector<ExitTerm>> exits;     // by state machine
+  std::vector<ReadyLaw> laws;                   // of all terms, in order: elasticity, dissipation
+  std::vector<StateIndex> first_state;          // by state machine
+  std::vector<std::uint32_t> state_machine_of;  // by state
   std::array<bool, kQuantityCount> needs{};
   std::uint32_t slot_count = 0;
 
   void build();
-  void add_behaviour(const Behaviour& behaviour);
-  void add_state(const LinkState& state, const std::vector<ExitTerm>& exits_of_behaviour);
-  void note_needs(const Program& program);
-  void note_needs(const Law& law);
+  void add_state_machine(const StateMachine& state_machine);
+  void add_state(const LinkState& state, const std::vector<ExitTerm>& exits_of_state_machine);
+  void record_needs(const Program& program);
+  void record_needs(const Law& law);
 };
 
 void StateTable::Content::build() {
@@ -106,55 +106,55 @@ void StateTable::Content::build() {
   exits.clear();
   laws.clear();
   first_state.clear();
-  behaviour_of.clear();
+  state_machine_of.clear();
   needs.fill(false);
   slot_count = 0;
-  for (const Behaviour& behaviour : behaviours) add_behaviour(behaviour);
+  for (const StateMachine& state_machine : state_machines) add_state_machine(state_machine);
   terms.emplace_back();  // the padding
 }
 
-void StateTable::Content::add_behaviour(const Behaviour& behaviour) {
+void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
   const auto first = static_cast<StateIndex>(terms.size());
-  std::vector<ExitTerm> exits_of_behaviour;
-  for (const Exit& exit : behaviour.exits) {
-    note_needs(exit.when);
-    note_needs(exit.rest_length);
-    if (exit.fired != Quantity::kNone) needs[static_cast<std::size_t>(exit.fired)] = true;
-    exits_of_behaviour.push_back({ready(exit.when), ready(exit.rest_length),
-                                  static_cast<RestCode>(exit.rest), first + exit.target,
-                                  exit.fired});
+  std::vector<ExitTerm> exits_of_state_machine;
+  for (const Transition& exit : state_machine.exits) {
+    record_needs(exit.when);
+    record_needs(exit.rest_length);
+    if (exit.triggered != Quantity::kNone) needs[static_cast<std::size_t>(exit.triggered)] = true;
+    exits_of_state_machine.push_back({ready(exit.when), ready(exit.rest_length),
+                                      static_cast<RestCode>(exit.rest), first + exit.target,
+                                      exit.triggered});
   }
-  exits.push_back(std::move(exits_of_behaviour));
+  exits.push_back(std::move(exits_of_state_machine));
   first_state.push_back(first);
-  for (const LinkState& state : behaviour.states) {
-    note_needs(state.elasticity);
-    note_needs(state.dissipation);
-    behaviour_of.push_back(static_cast<std::uint32_t>(first_state.size() - 1));
+  for (const LinkState& state : state_machine.states) {
+    record_needs(state.elasticity);
+    record_needs(state.dissipation);
+    state_machine_of.push_back(static_cast<std::uint32_t>(first_state.size() - 1));
     add_state(state, exits.back());
   }
 }
 
 void StateTable::Content::add_state(const LinkState& state,
-                                    const std::vector<ExitTerm>& exits_of_behaviour) {
+                                    const std::vector<ExitTerm>& exits_of_state_machine) {
   StateTerm term;
   term.stiffness = state.stiffness;
   term.viscosity_over_dt = state.viscosity / dt;
-  term.least_pull = state.pushes ? -state.force_limit : 0.0;
-  term.most_pull = state.pulls ? state.force_limit : 0.0;
-  term.least_elongation = state.pushes ? -kUnlimited : 0.0;
-  term.most_elongation = state.pulls ? kUnlimited : 0.0;
+  term.min_pull = state.pushes ? -state.force_limit : 0.0;
+  term.max_pull = state.pulls ? state.force_limit : 0.0;
+  term.min_elongation = state.pushes ? -kUnlimited : 0.0;
+  term.max_elongation = state.pulls ? kUnlimited : 0.0;
   term.one_sided = !(state.pulls && state.pushes);
   term.limited = term.one_sided || state.force_limit < kUnlimited;
   for (LawTerm* target : {&term.elasticity, &term.dissipation}) {
     laws.push_back(ready(target == &term.elasticity ? state.elasticity : state.dissipation));
     *target = laws.back().term;
   }
-  term.exits = exits_of_behaviour.data() + state.first_exit;
+  term.exits = exits_of_state_machine.data() + state.first_exit;
   term.exit_count = state.last_exit - state.first_exit;
   terms.push_back(term);
 }
 
-void StateTable::Content::note_needs(const Program& program) {
+void StateTable::Content::record_needs(const Program& program) {
   for (const Instruction& instruction : program.code) {
     if (instruction.operation == Operation::kQuantity) {
       needs[static_cast<std::size_t>(instruction.quantity)] = true;
@@ -166,15 +166,15 @@ void StateTable::Content::note_needs(const Program& program) {
   }
 }
 
-void StateTable::Content::note_needs(const Law& law) {
+void StateTable::Content::record_needs(const Law& law) {
   if (law.kind != Law::Kind::kFunction) return;
   needs[static_cast<std::size_t>(Quantity::kMassA)] = true;
   needs[static_cast<std::size_t>(Quantity::kMassB)] = true;
 }
 
-StateTable::StateTable(std::vector<Behaviour> behaviours, double dt, bool whole_steps)
+StateTable::StateTable(std::vector<StateMachine> state_machines, double dt, bool whole_steps)
     : content_(std::make_unique<Content>()) {
-  content_->behaviours = std::move(behaviours);
+  content_->state_machines = std::move(state_machines);
   content_->dt = dt;
   content_->part_of_work = whole_steps ? 0.0 : 0.5;
   content_->build();
@@ -189,32 +189,32 @@ const StateTerm* StateTable::terms() const noexcept {
 }
 
 std::size_t StateTable::state_count() const noexcept {
-  return content_->behaviour_of.size();
+  return content_->state_machine_of.size();
 }
 
 StateIndex StateTable::padding_state() const noexcept {
   return static_cast<StateIndex>(state_count());
 }
 
-StateIndex StateTable::first_state(std::uint32_t behaviour) const noexcept {
-  return content_->first_state[behaviour];
+StateIndex StateTable::first_state(std::uint32_t state_machine) const noexcept {
+  return content_->first_state[state_machine];
 }
 
-StateIndex StateTable::start_state(std::uint32_t behaviour) const noexcept {
-  return first_state(behaviour) + content_->behaviours[behaviour].start;
+StateIndex StateTable::start_state(std::uint32_t state_machine) const noexcept {
+  return first_state(state_machine) + content_->state_machines[state_machine].start;
 }
 
-std::uint32_t StateTable::behaviour_of(StateIndex state) const noexcept {
-  return content_->behaviour_of[state];
+std::uint32_t StateTable::state_machine_of(StateIndex state) const noexcept {
+  return content_->state_machine_of[state];
 }
 
-const std::vector<Behaviour>& StateTable::behaviours() const noexcept {
-  return content_->behaviours;
+const std::vector<StateMachine>& StateTable::state_machines() const noexcept {
+  return content_->state_machines;
 }
 
 const LinkState& StateTable::state(StateIndex state) const noexcept {
-  const std::uint32_t behaviour = behaviour_of(state);
-  return content_->behaviours[behaviour].states[state - first_state(behaviour)];
+  const std::uint32_t state_machine = state_machine_of(state);
+  return content_->state_machines[state_machine].states[state - first_state(state_machine)];
 }
 
 bool StateTable::needs(Quantity quantity) const noexcept {
@@ -229,13 +229,13 @@ double StateTable::stored_energy(StateIndex index, double distance,
                                  double rest_length) const noexcept {
   const StateTerm& term = content_->terms[index];
   const double elongation =
-      std::min(term.most_elongation, std::max(term.least_elongation, distance - rest_length));
+      std::min(term.max_elongation, std::max(term.min_elongation, distance - rest_length));
   const double linear = 0.5 * term.stiffness * elongation * elongation;
   if (term.elasticity.code == LawCode::kNone) return linear;
   return linear + engine::stored_energy(state(index).elasticity, distance, elongation);
 }
 
-double StateTable::change_energy(const BehaviourRows& rows, std::size_t row) const noexcept {
+double StateTable::change_energy(const StateMachineRows& rows, std::size_t row) const noexcept {
   const double part = content_->part_of_work;
   const double distance = rows.quantity[static_cast<std::size_t>(Quantity::kDistance)][row];
   const double after = stored_energy(rows.state[row], distance, rows.rest_length[row]) -
@@ -245,12 +245,12 @@ double StateTable::change_energy(const BehaviourRows& rows, std::size_t row) con
   return after - before;
 }
 
-Quantity StateTable::fired(StateIndex from, std::uint32_t exit) const noexcept {
-  return exit == kNotForced ? Quantity::kNone : content_->terms[from].exits[exit].fired;
+Quantity StateTable::triggered(StateIndex from, std::uint32_t exit) const noexcept {
+  return exit == kNotForced ? Quantity::kNone : content_->terms[from].exits[exit].triggered;
 }
 
-void StateTable::replace(std::uint32_t index, const Behaviour& behaviour) {
-  content_->behaviours[index] = behaviour;
+void StateTable::replace(std::uint32_t index, const StateMachine& state_machine) {
+  content_->state_machines[index] = state_machine;
   content_->build();
 }
 

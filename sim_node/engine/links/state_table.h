@@ -1,4 +1,4 @@
-// sim_node/engine/links/state_table.h -- the behaviours of a network, made ready for stepping.
+// sim_node/engine/links/state_table.h -- the state machines of a network, made ready for stepping.
 #pragma once
 
 #include <cstdint>
@@ -6,19 +6,19 @@
 #include <span>
 #include <vector>
 
-#include "sim_node/engine/laws/behaviour.h"
-#include "sim_node/engine/links/behaviour_kernel.h"
+#include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/links/state_machine.h"
 
 namespace cordis::engine {
 
-/// All states of all behaviours in one row, in order: StateIndex of state s of behaviour b is
+/// All states of all state machines in one row, in order: StateIndex of state s of state machine b is
 /// first_state(b) + s. After the last stands a state of no force and no exit, for padding.
 class StateTable {
  public:
-  /// Precondition: check_behaviour has passed all of them.
+  /// Precondition: check_state_machine has passed all of them.
   /// @param whole_steps  the account of the world belongs to the moments x(n), not to the middles
   ///                     between them
-  StateTable(std::vector<Behaviour> behaviours, double dt, bool whole_steps = false);
+  StateTable(std::vector<StateMachine> state_machines, double dt, bool whole_steps = false);
   ~StateTable();
   StateTable(StateTable&&) noexcept;
   StateTable& operator=(StateTable&&) noexcept;
@@ -26,13 +26,13 @@ class StateTable {
   const StateTerm* terms() const noexcept;
   std::size_t state_count() const noexcept;  ///< without the padding
   StateIndex padding_state() const noexcept;
-  StateIndex first_state(std::uint32_t behaviour) const noexcept;
-  StateIndex start_state(std::uint32_t behaviour) const noexcept;
-  std::uint32_t behaviour_of(StateIndex state) const noexcept;
-  const std::vector<Behaviour>& behaviours() const noexcept;
+  StateIndex first_state(std::uint32_t state_machine) const noexcept;
+  StateIndex start_state(std::uint32_t state_machine) const noexcept;
+  std::uint32_t state_machine_of(StateIndex state) const noexcept;
+  const std::vector<StateMachine>& state_machines() const noexcept;
   const LinkState& state(StateIndex state) const noexcept;
 
-  /// Whether a program or function of any behaviour asks for the quantity.
+  /// Whether a program or function of any state machine asks for the quantity.
   bool needs(Quantity quantity) const noexcept;
   std::uint32_t slot_count() const noexcept;  ///< one more than the largest slot used
 
@@ -42,13 +42,13 @@ class StateTable {
   double stored_energy(StateIndex state, double distance, double rest_length) const noexcept;
   /// What a change adds to the stored energy as the account keeps it: after minus before. In the
   /// middle of the last period that is stored energy less half of the elastic work of the period.
-  double change_energy(const BehaviourRows& rows, std::size_t row) const noexcept;
+  double change_energy(const StateMachineRows& rows, std::size_t row) const noexcept;
   /// The condition's quantity of an exit; kNone when it was forced.
-  Quantity fired(StateIndex from, std::uint32_t exit) const noexcept;
+  Quantity triggered(StateIndex from, std::uint32_t exit) const noexcept;
 
-  /// Gives a behaviour other parameters. Allocates.
+  /// Gives a state machine other parameters. Allocates.
   /// Precondition: as many states as before, well-formed.
-  void replace(std::uint32_t index, const Behaviour& behaviour);
+  void replace(std::uint32_t index, const StateMachine& state_machine);
 
  private:
   struct Content;

@@ -74,13 +74,13 @@ void EnergyAccount::add(const StepEnergy& step) noexcept {
 
 Energy EnergyAccount::energy(const NetworkDescription& network, const MatArray& mats,
                              const StepEnergy& since, double stored) const noexcept {
-  return at_middle(
+  return at_half_step(
       {kinetic_energy(network, mats), elastic_energy(network, mats), gravity_energy(network, mats)},
       since, stored);
 }
 
-Energy EnergyAccount::at_middle(const OfMatter& matter, const StepEnergy& since,
-                                double stored) const noexcept {
+Energy EnergyAccount::at_half_step(const OfMatter& matter, const StepEnergy& since,
+                                   double stored) const noexcept {
   Energy energy;
   energy.kinetic = matter.kinetic;
   energy.elastic = matter.elastic + (stored_ + since.elastic);

@@ -105,7 +105,8 @@ class EnergyAccount {
     double elastic;
     double gravity;
   };
-  Energy at_middle(const OfMatter& matter, const StepEnergy& since, double stored) const noexcept;
+  Energy at_half_step(const OfMatter& matter, const StepEnergy& since,
+                      double stored) const noexcept;
 
   static constexpr std::size_t kStateSize = 6;
   /// The state as a row of values.

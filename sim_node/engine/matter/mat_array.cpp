@@ -17,7 +17,7 @@ MatArray::MatArray(const NetworkDescription& description)
       delayed_(position_.size(), 0.0),
       force_(position_.size(), 0.0),
       dt2_over_mass_(description.mats.size(), 0.0),
-      persistence_(description.mats.size(), 1.0),
+      velocity_retention_(description.mats.size(), 1.0),
       dt_(description.step),
       weight_step_(description.gravity * description.step * description.step),
       medium_viscosity_over_dt_(description.medium_viscosity / description.step) {
@@ -32,7 +32,7 @@ MatArray::MatArray(const NetworkDescription& description)
     if (mat.kind != MatKind::kMass) continue;
 
     dt2_over_mass_[i] = dt * dt / mat.mass;
-    persistence_[i] = 1.0 - dt * description.medium_viscosity / mat.mass;
+    velocity_retention_[i] = 1.0 - dt * description.medium_viscosity / mat.mass;
     if (masses.empty() || masses.back().last != i) masses.push_back({i, i});
     masses.back().last = i + 1;
     if (!mat.weightless || description.gravity.isZero(0.0)) continue;
@@ -52,7 +52,7 @@ void MatArray::start() noexcept {
       const auto mat = static_cast<std::uint32_t>(i);
       const Vec3 moved = position(mat) - delayed(mat);  // v0 dt
       const Vec3 pushed =                               // a0 dt^2
-          push_of_period(mat) - (1.0 - persistence_[i]) * moved;
+          kick_at_half_step(mat) - (1.0 - velocity_retention_[i]) * moved;
       set_column(delayed_, i, position(mat) - (moved - 0.5 * pushed));
     }
   }
@@ -109,7 +109,7 @@ MassColumns MatArray::columns(double* felt) noexcept {
           delayed_.data(),
           force_.data(),
           dt2_over_mass_.data(),
-          persistence_.data(),
+          velocity_retention_.data(),
           felt};
 }
 
@@ -136,24 +136,24 @@ AdvanceReport MatArray::advance_rows(Advance advance_row, double* felt, double s
   return report;
 }
 
-void MatArray::push(const StepKernel& kernel, double part,
+void MatArray::kick(const StepKernel& kernel, double part,
                     AlignedVector<double>& velocity) noexcept {
   MassColumns row = columns(nullptr);
-  const Pushing by{velocity.data(), part / dt_, 0.0, nullptr};
+  const KickColumns by{velocity.data(), part / dt_, 0.0, nullptr};
   for (const Range& range : masses_) {
     choose_rows(row, range);
-    kernel.push(row, by);
+    kernel.kick(row, by);
   }
 }
 
-void MatArray::push_and_drift(const StepKernel& kernel, double push, double drift,
+void MatArray::kick_and_drift(const StepKernel& kernel, double kick, double drift,
                               AlignedVector<double>& velocity) noexcept {
   MassColumns row = columns(nullptr);
-  const Pushing by{velocity.data(), push / dt_, drift * dt_, force_.data()};
+  const KickColumns by{velocity.data(), kick / dt_, drift * dt_, force_.data()};
   std::size_t cleared = 0;
   for (const Range& range : masses_) {
     choose_rows(row, range);
-    kernel.push_and_drift(row, by);
+    kernel.kick_and_drift(row, by);
     std::fill(force_.data() + 4 * cleared, force_.data() + 4 * range.first, 0.0);
     cleared = range.last;
   }
@@ -189,14 +189,14 @@ void MatArray::find_displacements(AlignedVector<double>& displacement) const noe
 }
 
 double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
-                                     AlignedVector<double>& push) const noexcept {
+                                     AlignedVector<double>& kick) const noexcept {
   const double dt_viscosity = medium_viscosity_over_dt_ * dt_ * dt_;
   double product = 0.0;
-  std::fill(push.begin(), push.end(), 0.0);
+  std::fill(kick.begin(), kick.end(), 0.0);
   for (const Range& range : masses_) {
     for (std::size_t i = range.first; i < range.last; ++i) {
       const Vec3 moved = Vec3::Map(displacement.data() + 4 * i);
-      set_column(push, i,
+      set_column(kick, i,
                  dt_ * dt_ * force(static_cast<std::uint32_t>(i)) + mass_[i] * weight_step(i) -
                      dt_viscosity * moved);
       product += moved.x() * moved.x() + moved.y() * moved.y() + moved.z() * moved.z();

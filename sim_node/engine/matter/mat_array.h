@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 
@@ -52,7 +52,7 @@ class MatArray {
   /// From now on only these rows of masses are moved; at first all masses are.
   void move_only(std::span<const Range> rows) noexcept;
   /// What forces and gravity add to the displacement of a mass in this period [m].
-  Vec3 push_of_period(std::uint32_t mat) const noexcept { return pushed_by(mat, force(mat)); }
+  Vec3 kick_at_half_step(std::uint32_t mat) const noexcept { return pushed_by(mat, force(mat)); }
   /// A mass stays where it is, at rest.
   void halt(std::uint32_t mat) noexcept;
 
@@ -64,10 +64,10 @@ class MatArray {
   AdvanceReport extrapolate(const StepKernel& kernel, AlignedVector<double>& felt) noexcept;
 
   /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
-  void push(const StepKernel& kernel, double part, AlignedVector<double>& velocity) noexcept;
+  void kick(const StepKernel& kernel, double part, AlignedVector<double>& velocity) noexcept;
   /// The same; then moves them by a part of a period at these velocities, where the delayed
   /// positions stay, and clears all forces.
-  void push_and_drift(const StepKernel& kernel, double push, double drift,
+  void kick_and_drift(const StepKernel& kernel, double kick, double drift,
                       AlignedVector<double>& velocity) noexcept;
   /// Moves the masses by these displacements. @return how many are not finite then
   std::uint32_t move_by(const AlignedVector<double>& displacement) noexcept;
@@ -85,7 +85,7 @@ class MatArray {
   /// dt^2 times the forces and weights of the masses, and what the medium takes of these
   /// displacements, 4 x N [kg m]. @return half of what it takes in a period [J]
   double find_push_in_medium(const AlignedVector<double>& displacement,
-                             AlignedVector<double>& push) const noexcept;
+                             AlignedVector<double>& kick) const noexcept;
   /// What a force and gravity add to the way of a mass in a period [m].
   Vec3 pushed_by(std::uint32_t mat, const Vec3& force) const noexcept {
     return dt2_over_mass_[mat] * force + weight_step(mat);
@@ -146,15 +146,15 @@ class MatArray {
   AlignedVector<double> position_;
   AlignedVector<double> delayed_;
   AlignedVector<double> force_;
-  AlignedVector<double> dt2_over_mass_;   // [s^2/kg], 0 unless a mass
-  AlignedVector<double> persistence_;     // 1 - dt Z / m
-  std::vector<double> mass_;              // [kg], 0 unless a mass
-  std::vector<std::uint8_t> weightless_;  // by MAT; empty: none, or no gravity
-  std::vector<Range> masses_;             // rows of neighbouring masses, of one weight
-  std::vector<Range> moving_;             // those that are moved
-  double dt_;                             // [s]
-  Vec3 weight_step_;                      // gravity * dt^2 [m]
-  double medium_viscosity_over_dt_;       // Z / dt [N/m]
+  AlignedVector<double> dt2_over_mass_;       // [s^2/kg], 0 unless a mass
+  AlignedVector<double> velocity_retention_;  // 1 - dt Z / m
+  std::vector<double> mass_;                  // [kg], 0 unless a mass
+  std::vector<std::uint8_t> weightless_;      // by MAT; empty: none, or no gravity
+  std::vector<Range> masses_;                 // rows of neighbouring masses, of one weight
+  std::vector<Range> moving_;                 // those that are moved
+  double dt_;                                 // [s]
+  Vec3 weight_step_;                          // gravity * dt^2 [m]
+  double medium_viscosity_over_dt_;           // Z / dt [N/m]
   bool forces_are_present_ = false;
 };
 

@@ -10,19 +10,19 @@ namespace cordis::engine {
 
 // What a MAT is to a step that leaves out what rests; bits of MatRoles.
 inline constexpr unsigned kIsMass = 1;  ///< may have to move: not a fixed point, nor a port mass
-inline constexpr unsigned kStirs = 2;   ///< moves, or may begin to in this step
+inline constexpr unsigned kActive = 2;  ///< moves, or may begin to in this step
 inline constexpr unsigned kWholeForce = 4;  ///< each of its liaisons is computed
 inline constexpr unsigned kSomeForce = 8;   ///< some are, along with those of others
 inline constexpr unsigned kMayStir = 16;    ///< and so is each of those of its neighbours
 
 /// Who passes what on to the masses beside it: those beside what stirs may wake, and so those
 /// beside them need their whole forces.
-struct Passing {
+struct WakePropagation {
   unsigned from;
   unsigned to;
 };
-inline constexpr Passing kToThoseBeside{kStirs, kMayStir | kWholeForce};
-inline constexpr Passing kToThoseBeyond{kMayStir, kWholeForce};
+inline constexpr WakePropagation kToThoseBeside{kActive, kMayStir | kWholeForce};
+inline constexpr WakePropagation kToThoseBeyond{kMayStir, kWholeForce};
 
 /// The roles of all MATs.
 class MatRoles {
@@ -39,7 +39,7 @@ class MatRoles {
     roles_[mat] = static_cast<std::uint8_t>(roles_[mat] | roles);
   }
   /// There is a liaison between two MATs.
-  void join(std::size_t a, std::size_t b, const Passing& pass) noexcept {
+  void join(std::size_t a, std::size_t b, const WakePropagation& pass) noexcept {
     if (has(a, pass.from) && has(b, kIsMass)) add(b, pass.to);
     if (has(b, pass.from) && has(a, kIsMass)) add(a, pass.to);
   }

@@ -23,7 +23,7 @@ void append(std::vector<double>& state, const Vec3& value) {
 
 }  // namespace
 
-Outside::Outside(const NetworkDescription& description)
+PortInputs::PortInputs(const NetworkDescription& description)
     : dimension_(description.dimension), slot_(description.mats.size(), kNoSlot) {
   for (std::size_t i = 0; i < description.mats.size(); ++i) {
     if (description.mats[i].kind != MatKind::kPort) continue;
@@ -34,7 +34,7 @@ Outside::Outside(const NetworkDescription& description)
   forces_.reserve(description.mass_count());
 }
 
-void Outside::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
+void PortInputs::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
   assert(mat < slot_.size() && slot_[mat] < ports_.size() && ports_[slot_[mat]].mat == mat);
   if (!position.allFinite()) {
     ++refused_;
@@ -43,7 +43,7 @@ void Outside::impose_position(std::uint32_t mat, const Vec3& position) noexcept 
   ports_[slot_[mat]].next = within_dimension(position);
 }
 
-void Outside::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
+void PortInputs::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
   assert(mat < slot_.size() && (slot_[mat] == kNoSlot || forces_[slot_[mat]].mat == mat));
   const bool refused = !force.allFinite();
   if (refused) ++refused_;
@@ -56,19 +56,19 @@ void Outside::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
   forces_[slot_[mat]].force = held;
 }
 
-Vec3 Outside::held_force(std::uint32_t mat) const noexcept {
+Vec3 PortInputs::external_force(std::uint32_t mat) const noexcept {
   return slot_[mat] == kNoSlot ? Vec3(Vec3::Zero()) : forces_[slot_[mat]].force;
 }
 
-std::uint32_t Outside::take_refused() noexcept {
+std::uint32_t PortInputs::take_refused() noexcept {
   return std::exchange(refused_, 0U);
 }
 
-void Outside::start(const MatArray& mats) noexcept {
+void PortInputs::start(const MatArray& mats) noexcept {
   for (Port& port : ports_) port.link_force = mats.force(port.mat);
 }
 
-double Outside::move_ports(MatArray& mats) noexcept {
+double PortInputs::move_ports(MatArray& mats) noexcept {
   double work = 0.0;
   for (const Port& port : ports_) {
     work -= 0.5 * port.link_force.dot(port.next - mats.position(port.mat));
@@ -77,7 +77,7 @@ double Outside::move_ports(MatArray& mats) noexcept {
   return work;
 }
 
-double Outside::work_at_ports(const MatArray& mats) noexcept {
+double PortInputs::work_at_ports(const MatArray& mats) noexcept {
   double work = 0.0;
   for (Port& port : ports_) {
     port.link_force = mats.force(port.mat);
@@ -86,7 +86,7 @@ double Outside::work_at_ports(const MatArray& mats) noexcept {
   return work;
 }
 
-double Outside::push(MatArray& mats) noexcept {
+double PortInputs::kick(MatArray& mats) noexcept {
   double work = 0.0;
   for (HeldForce& held : forces_) {
     held.link_force = mats.force(held.mat);
@@ -96,7 +96,7 @@ double Outside::push(MatArray& mats) noexcept {
   return work;
 }
 
-double Outside::release(MatArray& mats) const noexcept {
+double PortInputs::release(MatArray& mats) const noexcept {
   double work = 0.0;
   for (const HeldForce& held : forces_) {
     mats.set_force(held.mat, held.link_force);
@@ -105,7 +105,7 @@ double Outside::release(MatArray& mats) const noexcept {
   return work;
 }
 
-void Outside::append_state(std::vector<double>& state) const {
+void PortInputs::append_state(std::vector<double>& state) const {
   for (const Port& port : ports_) {
     append(state, port.next);
     append(state, port.link_force);
@@ -118,13 +118,14 @@ void Outside::append_state(std::vector<double>& state) const {
   }
 }
 
-bool Outside::is_end_of_state(const std::vector<double>& state, std::size_t first) const noexcept {
+bool PortInputs::is_end_of_state(const std::vector<double>& state,
+                                 std::size_t first) const noexcept {
   const std::size_t forces = first + kValuesPerPort * ports_.size() + 2;
   return state.size() >= forces &&
          static_cast<double>(state.size() - forces) == kValuesPerForce * state[forces - 1];
 }
 
-const double* Outside::take_state(const double* state) noexcept {
+const double* PortInputs::take_state(const double* state) noexcept {
   for (Port& port : ports_) {
     state = take(state, port.next);
     state = take(state, port.link_force);
@@ -142,7 +143,7 @@ const double* Outside::take_state(const double* state) noexcept {
   return state;
 }
 
-Vec3 Outside::within_dimension(Vec3 value) const noexcept {
+Vec3 PortInputs::within_dimension(Vec3 value) const noexcept {
   for (int axis = dimension_; axis < 3; ++axis) value[axis] = 0.0;
   return value;
 }

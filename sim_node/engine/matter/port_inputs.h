@@ -13,9 +13,9 @@ namespace cordis::engine {
 /// The two halves of the dual dipole: a port mass is given positions and its links answer with a
 /// force; a mass is given forces and answers with a position. Keeps the work they do. [Luc90 V.
 /// Outside communication]
-class Outside {
+class PortInputs {
  public:
-  explicit Outside(const NetworkDescription& description);
+  explicit PortInputs(const NetworkDescription& description);
 
   /// The position a port mass takes at the beginning of the next step [m]. Real time: O(1), no
   /// allocation.
@@ -23,7 +23,7 @@ class Outside {
   /// The force [N] held on a mass from the next step on. Real time: O(1), no allocation.
   void hold_force(std::uint32_t mat, const Vec3& force) noexcept;
   /// The force held on a mass [N].
-  Vec3 held_force(std::uint32_t mat) const noexcept;
+  Vec3 external_force(std::uint32_t mat) const noexcept;
   /// How many positions and forces were not finite since this was last asked.
   std::uint32_t take_refused() noexcept;
 
@@ -44,7 +44,7 @@ class Outside {
 
   /// Adds the held forces to those of the links. @return half of their work [J] over the last
   /// period.
-  double push(MatArray& mats) noexcept;
+  double kick(MatArray& mats) noexcept;
   /// Takes them away again after the masses have moved. @return half of their work [J] over the new
   /// period.
   double release(MatArray& mats) const noexcept;
@@ -52,7 +52,7 @@ class Outside {
   /// The state as a row of values; the number of held forces decides its length.
   void append_state(std::vector<double>& state) const;
   /// Values of the longest such row.
-  std::size_t most_values() const noexcept { return 6 * ports_.size() + 2 + 4 * slot_.size(); }
+  std::size_t max_values() const noexcept { return 6 * ports_.size() + 2 + 4 * slot_.size(); }
   /// Whether the values from `first` on are such a row, of a network with the same ports.
   bool is_end_of_state(const std::vector<double>& state, std::size_t first) const noexcept;
   /// Takes it back. @return one past the last value taken.

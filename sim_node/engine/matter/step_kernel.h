@@ -53,13 +53,13 @@ using AddLinkForces = void (*)(const LinkRows& links, const ForceColumns& column
 
 /// A row of neighbouring masses, and what moves them.
 struct MassColumns {
-  std::size_t first = 0;                  // index of the first mass
-  std::size_t last = 0;                   // one past the last
-  double* position = nullptr;             // x(n), then x(n+1) [m]
-  double* delayed = nullptr;              // x(n-1), then x(n) [m]
-  const double* force = nullptr;          // f(n) [N]
-  const double* dt2_over_mass = nullptr;  // dt^2 / m [s^2/kg], one per MAT
-  const double* persistence = nullptr;    // 1 - dt Z / m, with Z of the medium; one per MAT
+  std::size_t first = 0;                       // index of the first mass
+  std::size_t last = 0;                        // one past the last
+  double* position = nullptr;                  // x(n), then x(n+1) [m]
+  double* delayed = nullptr;                   // x(n-1), then x(n) [m]
+  const double* force = nullptr;               // f(n) [N]
+  const double* dt2_over_mass = nullptr;       // dt^2 / m [s^2/kg], one per MAT
+  const double* velocity_retention = nullptr;  // 1 - dt Z / m, with Z of the medium; one per MAT
   double* felt = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
   alignas(32) double weight_step[4] = {};  // gravity * dt^2 [m]
 };
@@ -71,18 +71,18 @@ struct AdvanceResult {
   bool all_finite = true;
 };
 
-/// x(n+1) = x(n) + persistence (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2.
+/// x(n+1) = x(n) + velocity retention (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2.
 using Advance = AdvanceResult (*)(const MassColumns& masses) noexcept;
 
 /// For schemes that keep velocities: v += push a, and, when it drifts, x += drift v and the forces
 /// are 0 then.
-struct Pushing {
+struct KickColumns {
   double* velocity = nullptr;  // 4 x N [m/s]
-  double push_over_dt = 0.0;   // of what moves a mass by dt^2 / m f(n) + gravity dt^2 [1/s]
+  double kick_over_dt = 0.0;   // of what moves a mass by dt^2 / m f(n) + gravity dt^2 [1/s]
   double drift = 0.0;          // [s]
   double* force = nullptr;     // to be cleared; null: no drift
 };
-using Push = void (*)(const MassColumns& masses, const Pushing& by) noexcept;
+using Kick = void (*)(const MassColumns& masses, const KickColumns& by) noexcept;
 
 /// x(n-1) = x(n) - dt v. @param dt  [s]
 using Delay = AdvanceResult (*)(const MassColumns& masses, const double* velocity,
@@ -92,7 +92,7 @@ using Delay = AdvanceResult (*)(const MassColumns& masses, const double* velocit
 /// `dissipated` the viscous power of these forces times dt, once. The last two keep in `felt` the
 /// velocity that dampers and medium see, v(n) = 1.5 v(n-1/2) - 0.5 v(n-3/2): x(n+1) = x(n) + (x(n)
 /// - x(n-1)) + (dt^2 / m) f(n)
-/// + gravity dt^2 - (1 - persistence) dt v(n).
+/// + gravity dt^2 - (1 - velocity retention) dt v(n).
 struct StepKernel {
   AddLinkForces springs_1d = nullptr;  // no link has viscosity; distances are signed
   AddLinkForces spring_dampers_1d = nullptr;
@@ -101,12 +101,13 @@ struct StepKernel {
   AddLinkForces moment_spring_dampers_1d = nullptr;  // of springs_1d there is only one
   AddLinkForces moment_springs_3d = nullptr;
   AddLinkForces moment_spring_dampers_3d = nullptr;
-  Advance advance = nullptr;  // without a medium: persistence is not read, moved_product stays 0
+  Advance advance =
+      nullptr;  // without a medium: velocity retention is not read, moved_product stays 0
   Advance advance_in_medium = nullptr;
   Advance extrapolate = nullptr;  // of `leapfrog`
   Advance extrapolate_in_medium = nullptr;
-  Push push = nullptr;
-  Push push_and_drift = nullptr;
+  Kick kick = nullptr;
+  Kick kick_and_drift = nullptr;
   Delay delay = nullptr;
 };
 

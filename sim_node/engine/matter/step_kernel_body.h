@@ -142,7 +142,7 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
   using Column = typename Lanes::Column;
   const Column weight_step = Lanes::load_column(masses.weight_step);
   Column product = Lanes::broadcast(0.0);
-  Column blemish = Lanes::broadcast(0.0);
+  Column nonfinite = Lanes::broadcast(0.0);
 
   for (std::size_t i = masses.first; i < masses.last; ++i) {
     const Column position = Lanes::load_column(masses.position + 4 * i);
@@ -151,16 +151,16 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
         Lanes::load_column(masses.force + 4 * i) * Lanes::broadcast(masses.dt2_over_mass[i]) +
         weight_step;
     Column moving = moved + pushed;
-    if constexpr (kMedium) moving = moved * Lanes::broadcast(masses.persistence[i]) + pushed;
+    if constexpr (kMedium) moving = moved * Lanes::broadcast(masses.velocity_retention[i]) + pushed;
     const Column next = position + moving;
     if constexpr (kMedium) product = product + moved * (moved + (next - position));
 
     Lanes::store_column(masses.delayed + 4 * i, position);
     Lanes::store_column(masses.position + 4 * i, next);
     // 0 for finite values, else NaN
-    blemish = Lanes::unite(blemish, next - next);  // NOLINT(misc-redundant-expression)
+    nonfinite = Lanes::unite(nonfinite, next - next);  // NOLINT(misc-redundant-expression)
   }
-  return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(blemish)};
+  return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(nonfinite)};
 }
 
 template <class Lanes, bool kMedium>
@@ -170,7 +170,7 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
   const Column one = Lanes::broadcast(1.0);
   const Column half = Lanes::broadcast(0.5);
   Column product = Lanes::broadcast(0.0);
-  Column blemish = Lanes::broadcast(0.0);
+  Column nonfinite = Lanes::broadcast(0.0);
 
   for (std::size_t i = masses.first; i < masses.last; ++i) {
     const Column position = Lanes::load_column(masses.position + 4 * i);
@@ -180,7 +180,7 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
         weight_step;
     if constexpr (kMedium) {
       const Column seen = position - Lanes::load_column(masses.felt + 4 * i);
-      pushed = pushed - seen * (one - Lanes::broadcast(masses.persistence[i]));
+      pushed = pushed - seen * (one - Lanes::broadcast(masses.velocity_retention[i]));
       product = product + seen * seen;
     }
     const Column moving = moved + pushed;
@@ -190,16 +190,16 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
     Lanes::store_column(masses.position + 4 * i, next);
     Lanes::store_column(masses.felt + 4 * i, position - half * pushed);
     // 0 for finite values, else NaN
-    blemish = Lanes::unite(blemish, next - next);  // NOLINT(misc-redundant-expression)
+    nonfinite = Lanes::unite(nonfinite, next - next);  // NOLINT(misc-redundant-expression)
   }
-  return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(blemish)};
+  return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(nonfinite)};
 }
 
 template <class Lanes, bool kDrifts>
-void push_masses(const MassColumns& masses, const Pushing& by) noexcept {
+void kick_masses(const MassColumns& masses, const KickColumns& by) noexcept {
   using Column = typename Lanes::Column;
   const Column weight_step = Lanes::load_column(masses.weight_step);
-  const Column push = Lanes::broadcast(by.push_over_dt);
+  const Column kick = Lanes::broadcast(by.kick_over_dt);
   const Column drift = Lanes::broadcast(by.drift);
   const Column none = Lanes::broadcast(0.0);
 
@@ -207,7 +207,7 @@ void push_masses(const MassColumns& masses, const Pushing& by) noexcept {
     const Column pushed =
         Lanes::broadcast(masses.dt2_over_mass[i]) * Lanes::load_column(masses.force + 4 * i) +
         weight_step;
-    const Column velocity = Lanes::load_column(by.velocity + 4 * i) + push * pushed;
+    const Column velocity = Lanes::load_column(by.velocity + 4 * i) + kick * pushed;
     Lanes::store_column(by.velocity + 4 * i, velocity);
     if constexpr (kDrifts) {
       const Column position = Lanes::load_column(masses.position + 4 * i);
@@ -221,16 +221,16 @@ template <class Lanes>
 AdvanceResult delay_masses(const MassColumns& masses, const double* velocity, double dt) noexcept {
   using Column = typename Lanes::Column;
   const Column period = Lanes::broadcast(dt);
-  Column blemish = Lanes::broadcast(0.0);
+  Column nonfinite = Lanes::broadcast(0.0);
 
   for (std::size_t i = masses.first; i < masses.last; ++i) {
     const Column position = Lanes::load_column(masses.position + 4 * i);
     const Column delayed = position - period * Lanes::load_column(velocity + 4 * i);
     Lanes::store_column(masses.delayed + 4 * i, delayed);
     // 0 for finite values, else NaN
-    blemish = Lanes::unite(blemish, position - position);  // NOLINT(misc-redundant-expression)
+    nonfinite = Lanes::unite(nonfinite, position - position);  // NOLINT(misc-redundant-expression)
   }
-  return AdvanceResult{0.0, Lanes::is_zero(blemish)};
+  return AdvanceResult{0.0, Lanes::is_zero(nonfinite)};
 }
 
 template <class Lanes>
@@ -248,8 +248,8 @@ constexpr StepKernel make_step_kernel() noexcept {
                     advance_masses<Lanes, true>,
                     extrapolate_masses<Lanes, false>,
                     extrapolate_masses<Lanes, true>,
-                    push_masses<Lanes, false>,
-                    push_masses<Lanes, true>,
+                    kick_masses<Lanes, false>,
+                    kick_masses<Lanes, true>,
                     delay_masses<Lanes>};
 }
 

@@ -26,14 +26,14 @@ void ActivePairs::find_roles(const std::vector<std::uint32_t>& column,
 }
 
 /// What has been passed on, to masses.
-void ActivePairs::give_roles(const std::vector<std::uint32_t>& column, const Passing& pass,
+void ActivePairs::give_roles(const std::vector<std::uint32_t>& column, const WakePropagation& pass,
                              MatRoles& roles) const noexcept {
   for (std::size_t m = 0; m < column.size(); ++m) {
     if ((role_[m] & kIsMass) != 0) roles.add(column[m] / 4, role_[m] & pass.to);
   }
 }
 
-void ActivePairs::pass_to_all(const std::vector<std::uint32_t>& column, const Passing& pass,
+void ActivePairs::pass_to_all(const std::vector<std::uint32_t>& column, const WakePropagation& pass,
                               MatRoles& roles) noexcept {
   find_roles(column, roles);
   const bool any = std::any_of(role_.begin(), role_.end(),
@@ -42,7 +42,8 @@ void ActivePairs::pass_to_all(const std::vector<std::uint32_t>& column, const Pa
   give_roles(column, pass, roles);
 }
 
-void ActivePairs::pass_on(const PairsOfSet& pairs, const Passing& pass, MatRoles& roles) noexcept {
+void ActivePairs::pass_on(const PairsOfSet& pairs, const WakePropagation& pass,
+                          MatRoles& roles) noexcept {
   find_roles(pairs.column, roles);
   const auto passes_on = [&](std::size_t member) { return (role_[member] & pass.from) != 0; };
   const NeighbourRows& rows = pairs.rows;
@@ -57,7 +58,7 @@ void ActivePairs::pass_on(const PairsOfSet& pairs, const Passing& pass, MatRoles
     }
   }
   // Those that are bound beyond their range.
-  pairs.behaviours.visit_bound([&](std::size_t a, const PairState& pair) {
+  pairs.state_machines.visit_bound([&](std::size_t a, const PairState& pair) {
     const std::size_t b = pair.column / 4;
     if (passes_on(a)) give(role_[b], pass.to);
     if (passes_on(b)) give(role_[a], pass.to);
@@ -98,17 +99,17 @@ void ActivePairs::choose(const PairsOfSet& pairs, MatRoles& roles) noexcept {
 
 /// Of pairs with states all those of a row are computed, or none.
 bool ActivePairs::is_row_whole(const PairsOfSet& pairs, std::size_t a) const noexcept {
-  if (!pairs.behaviours.has_states()) return false;
+  if (!pairs.state_machines.has_states()) return false;
   const auto is_whole = [this](std::uint32_t column) {
     return (role_[column / 4] & kWholeForce) != 0;
   };
-  const PairStates& states = pairs.behaviours.states();
+  const PairStates& states = pairs.state_machines.states();
   const NeighbourRows& rows = pairs.rows;
   bool active =
       std::any_of(rows.neighbour + rows.start[a], rows.neighbour + rows.start[a + 1], is_whole);
   for (std::size_t i = states.begin(a); i < states.end(a) && !active; ++i) {
-    active =
-        states.state(i).state != pairs.behaviours.start_state() && is_whole(states.state(i).column);
+    active = states.state(i).state != pairs.state_machines.start_state() &&
+             is_whole(states.state(i).column);
   }
   return active;
 }
@@ -116,8 +117,8 @@ bool ActivePairs::is_row_whole(const PairsOfSet& pairs, std::size_t a) const noe
 /// Bound pairs beyond their range take part too.
 void ActivePairs::add_row(const PairsOfSet& pairs, std::size_t a) noexcept {
   give(role_[a], kSomeForce);
-  if (pairs.behaviours.has_states()) {
-    const PairStates& states = pairs.behaviours.states();
+  if (pairs.state_machines.has_states()) {
+    const PairStates& states = pairs.state_machines.states();
     for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
       give(role_[states.state(i).column / 4], kSomeForce);
     }

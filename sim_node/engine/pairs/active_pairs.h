@@ -7,14 +7,14 @@
 
 #include "sim_node/engine/matter/mat_roles.h"
 #include "sim_node/engine/pairs/neighbour_list.h"
-#include "sim_node/engine/pairs/pair_behaviours.h"
+#include "sim_node/engine/pairs/pair_state_machines.h"
 
 namespace cordis::engine {
 
 /// The pairs of a set as its members and its neighbour list have them now.
 struct PairsOfSet {
   const std::vector<std::uint32_t>& column;  ///< of the MAT of each member
-  const PairBehaviours& behaviours;
+  const PairStateMachines& state_machines;
   NeighbourRows rows;  ///< all of them
 };
 
@@ -38,9 +38,9 @@ class ActivePairs {
   void choose(const PairsOfSet& pairs, MatRoles& roles) noexcept;
 
   /// Passes on between members that are near each other or bound.
-  void pass_on(const PairsOfSet& pairs, const Passing& pass, MatRoles& roles) noexcept;
+  void pass_on(const PairsOfSet& pairs, const WakePropagation& pass, MatRoles& roles) noexcept;
   /// Passes on as if each were beside all others.
-  void pass_to_all(const std::vector<std::uint32_t>& column, const Passing& pass,
+  void pass_to_all(const std::vector<std::uint32_t>& column, const WakePropagation& pass,
                    MatRoles& roles) noexcept;
 
   bool are_all() const noexcept { return all_; }
@@ -52,7 +52,7 @@ class ActivePairs {
 
  private:
   void find_roles(const std::vector<std::uint32_t>& column, const MatRoles& roles) noexcept;
-  void give_roles(const std::vector<std::uint32_t>& column, const Passing& pass,
+  void give_roles(const std::vector<std::uint32_t>& column, const WakePropagation& pass,
                   MatRoles& roles) const noexcept;
   bool is_row_whole(const PairsOfSet& pairs, std::size_t a) const noexcept;
   void add_row(const PairsOfSet& pairs, std::size_t a) noexcept;

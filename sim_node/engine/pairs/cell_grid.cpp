@@ -11,9 +11,9 @@ namespace {
 constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 constexpr double kFarthestCell = 1099511627776.0;  // 2^40
 constexpr double kCellMargin = 1.0 + 1.0 / 256.0;
-constexpr std::size_t kLeastExtent = 4;  // so that 3 cells in a row have 3 places
+constexpr std::size_t kMinExtent = 4;  // so that 3 cells in a row have 3 places
 constexpr std::size_t kSample = 256;
-constexpr double kMostCellsPerMetre = 1e300;  // so that 0 is in cell 0
+constexpr double kMaxCellsPerMetre = 1e300;  // so that 0 is in cell 0
 
 std::size_t power_of_two_above(std::size_t value) noexcept {
   std::size_t power = 1;
@@ -29,8 +29,8 @@ bool is_finite_point(const double* point) noexcept {
 
 CellGrid::CellGrid(std::size_t capacity, int dimension)
     : dimension_(dimension),
-      most_cells_(std::max<std::size_t>(64, power_of_two_above(2 * capacity))),
-      begin_(most_cells_ + 1, 0),
+      max_cells_(std::max<std::size_t>(64, power_of_two_above(2 * capacity))),
+      begin_(max_cells_ + 1, 0),
       place_(capacity, kNowhere),
       x_(capacity + kPairBatch, 0.0),
       y_(x_.size(), 0.0),
@@ -39,7 +39,7 @@ CellGrid::CellGrid(std::size_t capacity, int dimension)
       member_(x_.size(), 0U) {}
 
 void CellGrid::fill(const double* position, std::size_t count, double reach) noexcept {
-  cells_per_metre_ = std::min(1.0 / (reach * kCellMargin), kMostCellsPerMetre);
+  cells_per_metre_ = std::min(1.0 / (reach * kCellMargin), kMaxCellsPerMetre);
   choose_extent(position, count);
   const std::size_t cells = extent_[0] * extent_[1] * extent_[2];
 
@@ -90,9 +90,9 @@ void CellGrid::choose_extent(const double* position, std::size_t count) noexcept
   }
 
   for (int axis = 0; axis < kAxes; ++axis) {
-    extent_[static_cast<std::size_t>(axis)] = axis < dimension_ ? kLeastExtent : 1;
+    extent_[static_cast<std::size_t>(axis)] = axis < dimension_ ? kMinExtent : 1;
   }
-  while (2 * extent_[0] * extent_[1] * extent_[2] <= most_cells_) {
+  while (2 * extent_[0] * extent_[1] * extent_[2] <= max_cells_) {
     std::size_t shortest = 0;
     double shortage = 1.0;
     for (std::size_t axis = 0; axis < kAxes; ++axis) {

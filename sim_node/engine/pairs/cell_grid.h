@@ -71,7 +71,7 @@ class CellGrid {
   int dimension_;
   double cells_per_metre_ = 0.0;
   std::array<std::size_t, kAxes> extent_{1, 1, 1};  // of the table, powers of two
-  std::size_t most_cells_;
+  std::size_t max_cells_;
   std::vector<std::size_t> begin_;    // by place in the table; one past the last too
   std::vector<std::uint32_t> place_;  // by point; kNowhere when it is not finite
   AlignedVector<double> x_;

@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim_node/engine/integrators/idle_state.h"
 #include "sim_node/engine/core/vector_width.h"
+#include "sim_node/engine/integrators/idle_state.h"
 
 namespace cordis::engine {
 namespace {
@@ -24,19 +24,19 @@ const SetLiaison& set_of(const NetworkDescription& network, std::size_t set) {
 
 }  // namespace
 
-ConnectedPieces::ConnectedPieces(const Network& network, std::size_t set)
-    : ConnectedPieces(network.description(), set) {}
+ConnectedComponents::ConnectedComponents(const Network& network, std::size_t set)
+    : ConnectedComponents(network.description(), set) {}
 
-ConnectedPieces::ConnectedPieces(const NetworkDescription& network, std::size_t set)
-    : ConnectedPieces(network, set_of(network, set).set_p, set_of(network, set).set_q) {}
+ConnectedComponents::ConnectedComponents(const NetworkDescription& network, std::size_t set)
+    : ConnectedComponents(network, set_of(network, set).set_p, set_of(network, set).set_q) {}
 
-ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
-                                 const std::vector<std::uint32_t>& mats)
-    : ConnectedPieces(network, mats, {}) {}
+ConnectedComponents::ConnectedComponents(const NetworkDescription& network,
+                                         const std::vector<std::uint32_t>& mats)
+    : ConnectedComponents(network, mats, {}) {}
 
-ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
-                                 const std::vector<std::uint32_t>& set_p,
-                                 const std::vector<std::uint32_t>& set_q)
+ConnectedComponents::ConnectedComponents(const NetworkDescription& network,
+                                         const std::vector<std::uint32_t>& set_p,
+                                         const std::vector<std::uint32_t>& set_q)
     : count_p_(set_p.size()),
       across_(!set_q.empty()),
       dimension_(network.dimension),
@@ -58,7 +58,7 @@ ConnectedPieces::ConnectedPieces(const NetworkDescription& network,
   position_.resize(4 * (mat_.size() + kPairBatch), 0.0);
 }
 
-void ConnectedPieces::keep_near(double distance) {
+void ConnectedComponents::keep_near(double distance) {
   const std::size_t members = mat_.size();
   const std::size_t all = across_ ? count_p_ * (members - count_p_) : members * (members - 1) / 2;
   kept_.emplace(count_p_, members - count_p_, dimension_, distance,
@@ -66,7 +66,7 @@ void ConnectedPieces::keep_near(double distance) {
   kept_distance_ = distance;
 }
 
-std::size_t ConnectedPieces::find_near(const Columns& positions, double distance) noexcept {
+std::size_t ConnectedComponents::find_near(const Columns& positions, double distance) noexcept {
   begin();
   for (std::size_t m = 0; m < mat_.size(); ++m) {
     std::copy_n(positions.col(mat_[m]).data(), 4, position_.data() + 4 * m);
@@ -79,7 +79,7 @@ std::size_t ConnectedPieces::find_near(const Columns& positions, double distance
   return number_pieces();
 }
 
-void ConnectedPieces::join_kept(double distance) noexcept {
+void ConnectedComponents::join_kept(double distance) noexcept {
   const double* position = position_.data();
   kept_->refresh(position);
   for (NeighbourRows rows = kept_->first_rows(position); rows.first < rows.last;
@@ -98,7 +98,7 @@ void ConnectedPieces::join_kept(double distance) noexcept {
   }
 }
 
-void ConnectedPieces::join_found(double distance) noexcept {
+void ConnectedComponents::join_found(double distance) noexcept {
   grid_.fill(position_.data(), count_p_, distance);
   const CellPlaces places = grid_.places();
   for (std::size_t b = across_ ? count_p_ : 0; b < mat_.size(); ++b) {
@@ -117,23 +117,23 @@ void ConnectedPieces::join_found(double distance) noexcept {
   }
 }
 
-std::size_t ConnectedPieces::find_bound(std::span<const BoundPair> pairs) noexcept {
+std::size_t ConnectedComponents::find_bound(std::span<const BoundPair> pairs) noexcept {
   begin();
   for (const BoundPair& pair : pairs) join(pair);
   return number_pieces();
 }
 
-std::size_t ConnectedPieces::find_bound(const World& world, std::size_t set) noexcept {
+std::size_t ConnectedComponents::find_bound(const World& world, std::size_t set) noexcept {
   begin();
   const VisitBoundPair add = [](void* owner, const BoundPair& pair) {
-    static_cast<ConnectedPieces*>(owner)->join(pair);
+    static_cast<ConnectedComponents*>(owner)->join(pair);
   };
   world.visit_bound_pairs(set, add, this);
   return number_pieces();
 }
 
-std::size_t ConnectedPieces::find_linked(const World& world,
-                                         std::span<const std::uint32_t> state_links) noexcept {
+std::size_t ConnectedComponents::find_linked(const World& world,
+                                             std::span<const std::uint32_t> state_links) noexcept {
   begin();
   const std::vector<StateLink>& links = world.network().description().state_links;
   for (const std::uint32_t link : state_links) {
@@ -142,17 +142,17 @@ std::size_t ConnectedPieces::find_linked(const World& world,
   return number_pieces();
 }
 
-void ConnectedPieces::join(const BoundPair& pair) noexcept {
+void ConnectedComponents::join(const BoundPair& pair) noexcept {
   const std::uint32_t a = member_[pair.mat_a];
   const std::uint32_t b = member_[pair.mat_b];
   if (a != kNoMember && b != kNoMember) join(a, b);
 }
 
-void ConnectedPieces::begin() noexcept {
+void ConnectedComponents::begin() noexcept {
   for (std::uint32_t m = 0; m < parent_.size(); ++m) parent_[m] = m;
 }
 
-std::uint32_t ConnectedPieces::root_of(std::uint32_t member) noexcept {
+std::uint32_t ConnectedComponents::root_of(std::uint32_t member) noexcept {
   while (parent_[member] != member) {
     parent_[member] = parent_[parent_[member]];
     member = parent_[member];
@@ -160,14 +160,14 @@ std::uint32_t ConnectedPieces::root_of(std::uint32_t member) noexcept {
   return member;
 }
 
-void ConnectedPieces::join(std::uint32_t a, std::uint32_t b) noexcept {
+void ConnectedComponents::join(std::uint32_t a, std::uint32_t b) noexcept {
   const std::uint32_t root_a = root_of(a);
   const std::uint32_t root_b = root_of(b);
   parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
 }
 
 /// The root of a piece is its first member, so that its number is known to all later ones.
-std::size_t ConnectedPieces::number_pieces() noexcept {
+std::size_t ConnectedComponents::number_pieces() noexcept {
   std::uint32_t count = 0;
   for (std::uint32_t m = 0; m < parent_.size(); ++m) {
     const std::uint32_t root = root_of(m);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/network.h"
 #include "sim_node/engine/pairs/cell_grid.h"
 #include "sim_node/engine/pairs/neighbour_list.h"
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/world.h"
 
@@ -21,15 +21,15 @@ namespace cordis::engine {
 /// liaison: across its two sets, or within its one; of members that no liaison joins it is any two.
 /// [Luc90 IX Experimentation] tells of matter that shatters and regroups: this is the number it is
 /// told by.
-class ConnectedPieces {
+class ConnectedComponents {
  public:
   /// @param set  index in NetworkDescription::sets
   /// @throws std::invalid_argument when the network has no such set.
-  ConnectedPieces(const Network& network, std::size_t set);
-  ConnectedPieces(const NetworkDescription& network, std::size_t set);
+  ConnectedComponents(const Network& network, std::size_t set);
+  ConnectedComponents(const NetworkDescription& network, std::size_t set);
   /// Of MATs that no set liaison need join: all pairs within `mats` count.
   /// @throws std::invalid_argument when the network has no such MAT, or one stands there twice.
-  ConnectedPieces(const NetworkDescription& network, const std::vector<std::uint32_t>& mats);
+  ConnectedComponents(const NetworkDescription& network, const std::vector<std::uint32_t>& mats);
 
   /// Keeps the pairs that are about so near [m], > 0, from one find_near() to the next while no
   /// member goes far: for who asks for the same distance again and again. Allocates.
@@ -56,8 +56,8 @@ class ConnectedPieces {
   std::span<const std::uint32_t> members() const noexcept { return mat_; }
 
  private:
-  ConnectedPieces(const NetworkDescription& network, const std::vector<std::uint32_t>& set_p,
-                  const std::vector<std::uint32_t>& set_q);
+  ConnectedComponents(const NetworkDescription& network, const std::vector<std::uint32_t>& set_p,
+                      const std::vector<std::uint32_t>& set_q);
   void begin() noexcept;
   void join_kept(double distance) noexcept;
   void join_found(double distance) noexcept;

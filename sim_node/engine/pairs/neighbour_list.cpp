@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMargin = 1e-9;        // relative, of squares; far above their rounding
 constexpr double kFirstSkin = 0.1;      // of the range
-constexpr double kLeastSkin = 0.02;     // of the range
+constexpr double kMinSkin = 0.02;       // of the range
 constexpr double kLargestSkin = 0.5;    // of the range
 constexpr double kBuildOverUse = 12.0;  // time to make the list over time to go through it once
 
@@ -69,7 +69,7 @@ void NeighbourList::choose_skin() noexcept {
   const double b = kBuildOverUse * 2.0 * speed / range_;
   const double half = 0.5 * static_cast<double>(dimension_ - 1) * b;
   const double root = (std::sqrt(half * half + dimension_ * b) - half) / dimension_;
-  skin_ = range_ * (root >= kLeastSkin ? std::min(root, kLargestSkin) : kLeastSkin);
+  skin_ = range_ * (root >= kMinSkin ? std::min(root, kLargestSkin) : kMinSkin);
 }
 
 void NeighbourList::build(const double* position) noexcept {
@@ -116,7 +116,7 @@ std::size_t NeighbourList::find_all(const double* position) noexcept {
   } else {
     for (std::size_t b = count_p_; b < member_count(); ++b) {
       std::uint32_t* found = found_.data() + std::min(total, capacity_);
-      total = note_found(b, find_before(b, position, 0, count_p_, found), total);
+      total = record_found(b, find_before(b, position, 0, count_p_, found), total);
     }
   }
   start_[0] = 0;
@@ -143,15 +143,15 @@ std::size_t NeighbourList::find_all_within(std::size_t total) noexcept {
         const CellGrid::Run run = around.runs[r];
         count += kernel_->find_near(places, run.begin, run.end, query, found + count);
       }
-      total = note_found(places.member[at], count, total);
+      total = record_found(places.member[at], count, total);
     }
   }
   return total;
 }
 
 /// @return how many pairs there are then
-std::size_t NeighbourList::note_found(std::size_t b, std::size_t count,
-                                      std::size_t total) noexcept {
+std::size_t NeighbourList::record_found(std::size_t b, std::size_t count,
+                                        std::size_t total) noexcept {
   found_begin_[b] = std::min(total, capacity_);
   const std::uint32_t* found = found_.data() + found_begin_[b];
   for (std::size_t i = 0; i < count; ++i) ++fill_[found[i]];

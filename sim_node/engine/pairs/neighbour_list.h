@@ -62,7 +62,7 @@ class NeighbourList {
   /// @return how many
   std::size_t find_all(const double* position) noexcept;
   std::size_t find_all_within(std::size_t total) noexcept;
-  std::size_t note_found(std::size_t b, std::size_t count, std::size_t total) noexcept;
+  std::size_t record_found(std::size_t b, std::size_t count, std::size_t total) noexcept;
   std::size_t find_before(std::size_t b, const double* position, std::size_t first,
                           std::size_t last, std::uint32_t* found) const noexcept;
   void sort_found() noexcept;

@@ -101,10 +101,10 @@ using SpreadRows = void (*)(const PairRows& rows, const double* factor, double* 
 struct LinearPair {
   double stiffness = 0.0;          // [N/m]
   double viscosity_over_dt = 0.0;  // [N/m]
-  double least_pull = 0.0;         // [N]
-  double most_pull = 0.0;          // [N]
-  double least_elongation = 0.0;   // that stores energy [m]
-  double most_elongation = 0.0;    // [m]
+  double min_pull = 0.0;           // [N]
+  double max_pull = 0.0;           // [N]
+  double min_elongation = 0.0;     // that stores energy [m]
+  double max_elongation = 0.0;     // [m]
 };
 
 /// Finds pull / distance of each pair, and the part of it that stores no energy.

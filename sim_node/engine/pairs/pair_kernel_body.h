@@ -240,17 +240,17 @@ void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count,
   using Row = typename Lanes::Row;
   const Row stiffness = Lanes::every(pair.stiffness);
   const Row viscosity = Lanes::every(pair.viscosity_over_dt);
-  const Row least_pull = Lanes::every(pair.least_pull);
-  const Row most_pull = Lanes::every(pair.most_pull);
-  const Row least_elongation = Lanes::every(pair.least_elongation);
-  const Row most_elongation = Lanes::every(pair.most_elongation);
+  const Row min_pull = Lanes::every(pair.min_pull);
+  const Row max_pull = Lanes::every(pair.max_pull);
+  const Row min_elongation = Lanes::every(pair.min_elongation);
+  const Row max_elongation = Lanes::every(pair.max_elongation);
   for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
     const Row inverse = Lanes::load(row.inverse + i);
     const Row elongation = Lanes::load(row.length + i) - Lanes::load(rest + i);
     const Row pull = stiffness * elongation + viscosity * Lanes::load(row.growth + i);
-    const Row limited = Lanes::minimum(most_pull, Lanes::maximum(least_pull, pull));
+    const Row limited = Lanes::minimum(max_pull, Lanes::maximum(min_pull, pull));
     const Row stored =
-        stiffness * Lanes::minimum(most_elongation, Lanes::maximum(least_elongation, elongation));
+        stiffness * Lanes::minimum(max_elongation, Lanes::maximum(min_elongation, elongation));
     Lanes::store(factor + i, limited * inverse);
     Lanes::store(viscous_factor + i, (limited - stored) * inverse);
   }

@@ -83,7 +83,7 @@ void PairStates::append_state(std::vector<double>& state) const {
                written_.memory.begin() + static_cast<std::ptrdiff_t>(written_.count * slot_count_));
 }
 
-std::size_t PairStates::most_values() const noexcept {
+std::size_t PairStates::max_values() const noexcept {
   return 2 + written_.start.size() + written_.states.size() * (kValuesOfState + slot_count_);
 }
 

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_node/engine/links/behaviour_kernel.h"
 #include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/links/state_kernel.h"
 
 namespace cordis::engine {
 
-/// What a pair remembers from one step to the next, as in BehaviourRows.
+/// What a pair remembers from one step to the next, as in StateMachineRows.
 struct PairState {
   std::uint32_t column = 0;  // of the later member
   StateIndex state = 0;
@@ -64,7 +64,7 @@ class PairStates {
   /// The state as a row of values, of a length that depends on it.
   void append_state(std::vector<double>& state) const;
   /// Values of the longest such row.
-  std::size_t most_values() const noexcept;
+  std::size_t max_values() const noexcept;
   /// How long such a row is that begins with these values; 0 when it is none.
   std::size_t size_of_state(const double* state, std::size_t available) const noexcept;
   /// Takes it back. @return one past the last value taken.

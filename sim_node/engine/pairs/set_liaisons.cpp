@@ -36,7 +36,7 @@ StepEnergy SetLiaisons::add_pair_forces(const PairStep& step,
   return energy;
 }
 
-void SetLiaisons::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+void SetLiaisons::mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                                   MatRoles& roles) noexcept {
   for (SetPairs& set : sets_) set.mark_neighbours(pass, never_rests, roles);
 }
@@ -65,9 +65,9 @@ void SetLiaisons::adopt(const StateTable& table) {
   for (SetPairs& set : sets_) set.adopt(table);
 }
 
-std::uint32_t SetLiaisons::crowded_count() const noexcept {
+std::uint32_t SetLiaisons::overflowed_count() const noexcept {
   std::uint32_t count = 0;
-  for (const SetPairs& set : sets_) count += set.is_crowded() ? 1U : 0U;
+  for (const SetPairs& set : sets_) count += set.is_overflowed() ? 1U : 0U;
   return count;
 }
 
@@ -79,9 +79,9 @@ void SetLiaisons::append_state(std::vector<double>& state) const {
   for (const SetPairs& set : sets_) set.append_state(state);
 }
 
-std::size_t SetLiaisons::most_values() const noexcept {
+std::size_t SetLiaisons::max_values() const noexcept {
   std::size_t values = 0;
-  for (const SetPairs& set : sets_) values += set.most_values();
+  for (const SetPairs& set : sets_) values += set.max_values();
   return values;
 }
 

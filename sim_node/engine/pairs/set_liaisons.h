@@ -23,18 +23,18 @@ class SetLiaisons {
   StepEnergy take_positions(const ForceColumns& columns) noexcept;
   bool refresh() noexcept;
   StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
-  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+  void mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                        MatRoles& roles) noexcept;
   void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   double stored_energy(const StateTable& table) noexcept;
   void start() noexcept;
   void adopt(const StateTable& table);
-  std::uint32_t crowded_count() const noexcept;
+  std::uint32_t overflowed_count() const noexcept;
   void add_to(StateHash& hash) const noexcept;
 
   void append_state(std::vector<double>& state) const;
-  std::size_t most_values() const noexcept;
+  std::size_t max_values() const noexcept;
   /// How long the row of values is that begins with these. @return false when they are none.
   bool find_size_of_state(const double* state, std::size_t available,
                           std::size_t& size) const noexcept;

@@ -9,8 +9,8 @@ namespace {
 
 // Entries of a neighbour list: room for all pairs where they are few, else for twice those of the
 // start with a large skin, within bounds.
-constexpr std::size_t kLeastCapacity = std::size_t{1} << 20;
-constexpr std::size_t kMostCapacity = std::size_t{1} << 25;
+constexpr std::size_t kMinCapacity = std::size_t{1} << 20;
+constexpr std::size_t kMaxCapacity = std::size_t{1} << 25;
 constexpr std::size_t kStatesPerMember = 64;
 
 std::size_t all_pairs(const SetLiaison& set) {
@@ -21,7 +21,7 @@ std::size_t all_pairs(const SetLiaison& set) {
 std::size_t list_capacity(const NetworkDescription& description, const SetLiaison& set,
                           const PairKernel& kernel) {
   const std::size_t all = all_pairs(set);
-  if (all <= kLeastCapacity) return all;
+  if (all <= kMinCapacity) return all;
   NeighbourList trial(set.set_p.size(), set.set_q.size(), description.dimension, set.range, 0,
                       kernel);
   trial.hold_skin(0.5 * set.range);
@@ -34,12 +34,12 @@ std::size_t list_capacity(const NetworkDescription& description, const SetLiaiso
   }
   position.resize(4 * padded(position.size() / 4, kPairBatch), 0.0);
   trial.refresh(position.data());
-  return std::min(all, std::clamp(2 * trial.entry_count(), kLeastCapacity, kMostCapacity));
+  return std::min(all, std::clamp(2 * trial.entry_count(), kMinCapacity, kMaxCapacity));
 }
 
 std::size_t state_capacity(const SetLiaison& set) {
   const std::size_t members = set.set_p.size() + set.set_q.size();
-  return std::min(all_pairs(set), std::max(kLeastCapacity / 8, kStatesPerMember * members));
+  return std::min(all_pairs(set), std::max(kMinCapacity / 8, kStatesPerMember * members));
 }
 
 double dot(const double* u, const double* v) noexcept {
@@ -51,15 +51,15 @@ double dot(const double* u, const double* v) noexcept {
 SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
                    const StateTable& table, const PairKernel& kernel)
     : kernel_(kernel),
-      behaviour_(description.sets[index].behaviour),
+      state_machine_(description.sets[index].state_machine),
       rest_length_(description.sets[index].rest_length),
       range_(description.sets[index].range),
       neighbours_(description.sets[index].set_p.size(), description.sets[index].set_q.size(),
                   description.dimension, range_,
                   list_capacity(description, description.sets[index], kernel), kernel),
       block_(description.sets[index].set_p.size() + description.sets[index].set_q.size()),
-      behaviours_(description, description.sets[index], table,
-                  state_capacity(description.sets[index]), block_.capacity()) {
+      state_machines_(description, description.sets[index], table,
+                      state_capacity(description.sets[index]), block_.capacity()) {
   const SetLiaison& set = description.sets[index];
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
@@ -80,15 +80,15 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
 }
 
 void SetPairs::adopt(const StateTable& table) {
-  behaviours_.adopt(table);
-  const StateTerm& term = table.terms()[table.start_state(behaviour_)];
-  const bool plain = !behaviours_.has_states() && term.dissipation.code == LawCode::kNone;
+  state_machines_.adopt(table);
+  const StateTerm& term = table.terms()[table.start_state(state_machine_)];
+  const bool plain = !state_machines_.has_states() && term.dissipation.code == LawCode::kNone;
   const bool bare = term.stiffness == 0.0 && term.viscosity_over_dt == 0.0 && !term.limited;
-  path_ = Path::kAnyBehaviour;
+  path_ = Path::kAnyStateMachine;
   if (plain && term.elasticity.code == LawCode::kNone) {
     path_ = Path::kLinear;
-    linear_ = {term.stiffness, term.viscosity_over_dt, term.least_pull,
-               term.most_pull, term.least_elongation,  term.most_elongation};
+    linear_ = {term.stiffness, term.viscosity_over_dt, term.min_pull,
+               term.max_pull,  term.min_elongation,    term.max_elongation};
   } else if (plain && bare && term.elasticity.code == LawCode::kLennardJones) {
     path_ = Path::kLennardJones;
     const double range = std::min(range_, term.elasticity.cut);
@@ -97,7 +97,7 @@ void SetPairs::adopt(const StateTable& table) {
   const auto is_bare_limit = [](double pull) { return pull == 0.0 || std::isinf(pull); };
   const bool conservative = path_ == Path::kLennardJones ||
                             (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 &&
-                             is_bare_limit(term.least_pull) && is_bare_limit(term.most_pull));
+                             is_bare_limit(term.min_pull) && is_bare_limit(term.max_pull));
   has_viscous_ = has_viscous_ || !conservative;  // forces of the last step may have been
 }
 
@@ -125,7 +125,7 @@ bool SetPairs::refresh() noexcept {
 
 StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept {
   clear_forces();
-  behaviours_.begin_step(step);
+  state_machines_.begin_step(step);
   if (active_.are_all()) {
     for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
          rows = neighbours_.rows_after(rows, position_.data())) {
@@ -135,18 +135,18 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
     step_active_rows(step);
   }
   StepEnergy energy = give_forces(columns);
-  energy.switching += behaviours_.switching();
+  energy.switching += state_machines_.switching();
   return energy;
 }
 
 void SetPairs::step_active_rows(const PairStep& step) noexcept {
   std::size_t next = 0;
   for (const NeighbourRows& rows : active_.rows()) {
-    behaviours_.keep_rows(step, next, rows.first);
+    state_machines_.keep_rows(step, next, rows.first);
     step_rows(step, rows);
     next = rows.last;
   }
-  behaviours_.keep_rows(step, next, active_.row_count());
+  state_machines_.keep_rows(step, next, active_.row_count());
 }
 
 /// Of members.
@@ -170,7 +170,7 @@ void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexce
     for (; a < rows.last && !block_.is_full(); ++a) {
       const std::size_t near = gather(rows, a);
       const PairRow row = block_.next_row();
-      block_.end_row(behaviours_.add_bound(kernel_, step, members(), a, near, row));
+      block_.end_row(state_machines_.add_bound(kernel_, step, members(), a, near, row));
     }
     step_block(step);
   }
@@ -201,7 +201,7 @@ void SetPairs::step_block(const PairStep& step) noexcept {
     kernel_.linear_pairs(linear_, rows.pairs, rows.count, block_.rest_length(), block_.factor(),
                          block_.viscous_factor());
   } else {
-    behaviours_.step(step, members(), range_ * range_, block_);
+    state_machines_.step(step, members(), range_ * range_, block_);
   }
   kernel_.spread_rows(rows, block_.factor(), force_.data());
   if (has_viscous_) kernel_.spread_rows(rows, block_.viscous_factor(), viscous_.data());
@@ -253,10 +253,10 @@ StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noex
 }
 
 PairsOfSet SetPairs::pairs() noexcept {
-  return {column_, behaviours_, neighbours_.first_rows(position_.data())};
+  return {column_, state_machines_, neighbours_.first_rows(position_.data())};
 }
 
-void SetPairs::mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+void SetPairs::mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                                MatRoles& roles) noexcept {
   if (computes_all(never_rests)) {
     active_.pass_to_all(column_, pass, roles);
@@ -285,8 +285,8 @@ StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
 double SetPairs::stored_energy(const StateTable& table) noexcept {
   double sum = 0.0;
   const PairRest rest_of = rest();
-  const PairStates& states = behaviours_.states();
-  const StateIndex start = behaviours_.start_state();
+  const PairStates& states = state_machines_.states();
+  const StateIndex start = state_machines_.start_state();
   const auto distance = [this](std::size_t a, std::size_t b) {
     double square = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -295,7 +295,7 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
     }
     return std::sqrt(square);
   };
-  if (behaviours_.has_states() && states.has_rows()) {
+  if (state_machines_.has_states() && states.has_rows()) {
     for (std::size_t a = 0; a < states.row_count(); ++a) {
       for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
         const PairState& pair = states.state(i);
@@ -320,9 +320,9 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
 }
 
 void SetPairs::visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const {
-  behaviours_.visit_bound([&](std::size_t a, const PairState& pair) {
+  state_machines_.visit_bound([&](std::size_t a, const PairState& pair) {
     visit(owner, {column_[a] / 4, column_[pair.column / 4] / 4,
-                  pair.state - table.first_state(behaviour_), pair.rest_length});
+                  pair.state - table.first_state(state_machine_), pair.rest_length});
   });
 }
 
@@ -332,31 +332,33 @@ void SetPairs::start() noexcept {
   std::fill(viscous_.begin(), viscous_.end(), 0.0);
 }
 
-bool SetPairs::is_crowded() const noexcept {
-  return !neighbours_.is_whole() || behaviours_.forgotten() > 0;
+bool SetPairs::is_overflowed() const noexcept {
+  return !neighbours_.is_whole() || state_machines_.forgotten() > 0;
 }
 
 void SetPairs::add_to(StateHash& hash) const noexcept {
-  if (behaviours_.has_states()) behaviours_.states().add_to(hash);
+  if (state_machines_.has_states()) state_machines_.states().add_to(hash);
 }
 
 void SetPairs::append_state(std::vector<double>& state) const {
   state.insert(state.end(), force_.begin(), force_.end());
   state.insert(state.end(), viscous_.begin(), viscous_.end());
   state.insert(state.end(), position_.begin(), position_.end());
-  if (behaviours_.has_states()) behaviours_.states().append_state(state);
+  if (state_machines_.has_states()) state_machines_.states().append_state(state);
 }
 
-std::size_t SetPairs::most_values() const noexcept {
-  const std::size_t states = behaviours_.has_states() ? behaviours_.states().most_values() : 0;
+std::size_t SetPairs::max_values() const noexcept {
+  const std::size_t states =
+      state_machines_.has_states() ? state_machines_.states().max_values() : 0;
   return force_.size() + viscous_.size() + position_.size() + states;
 }
 
 std::size_t SetPairs::size_of_state(const double* state, std::size_t available) const noexcept {
   const std::size_t forces = force_.size() + viscous_.size() + position_.size();
   if (available < forces) return 0;
-  if (!behaviours_.has_states()) return forces;
-  const std::size_t states = behaviours_.states().size_of_state(state + forces, available - forces);
+  if (!state_machines_.has_states()) return forces;
+  const std::size_t states =
+      state_machines_.states().size_of_state(state + forces, available - forces);
   return states > 0 ? forces + states : 0;
 }
 
@@ -368,7 +370,7 @@ const double* SetPairs::take_state(const double* state) noexcept {
   neighbours_.forget();
   neighbours_.refresh(position_.data());
   active_.choose_all();
-  return behaviours_.has_states() ? behaviours_.states().take_state(state) : state;
+  return state_machines_.has_states() ? state_machines_.states().take_state(state) : state;
 }
 
 }  // namespace cordis::engine

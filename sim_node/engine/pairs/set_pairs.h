@@ -5,17 +5,17 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_node/engine/pairs/active_pairs.h"
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
-#include "sim_node/engine/pairs/neighbour_list.h"
+#include "sim_node/engine/matter/step_kernel.h"
 #include "sim_node/engine/network.h"
-#include "sim_node/engine/pairs/pair_behaviours.h"
+#include "sim_node/engine/pairs/active_pairs.h"
+#include "sim_node/engine/pairs/neighbour_list.h"
 #include "sim_node/engine/pairs/pair_block.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
-#include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/pairs/pair_state_machines.h"
 #include "sim_node/engine/world.h"
 
 namespace cordis::engine {
@@ -53,8 +53,8 @@ class SetPairs {
   /// Passes on between members that are near each other or bound. All are beside all others where
   /// all pairs are computed in every step: because their conditions may come true while they rest,
   /// or because the neighbour list has no room for all of them.
-  /// @param never_rests  by behaviour
-  void mark_neighbours(const Passing& pass, const std::vector<bool>& never_rests,
+  /// @param never_rests  by state machine
+  void mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                        MatRoles& roles) noexcept;
   /// From now on only pairs with a MAT with kWholeForce, and some beside them, are computed; of the
   /// others neither has moved. Real time: O(members + entries of the neighbour list), no
@@ -72,26 +72,26 @@ class SetPairs {
   void start() noexcept;
 
   /// Whether the pairs found no room in the neighbour list in the last step, or to be remembered.
-  bool is_crowded() const noexcept;
+  bool is_overflowed() const noexcept;
   NeighbourList& neighbours() noexcept { return neighbours_; }
 
   void add_to(StateHash& hash) const noexcept;
   /// The state as a row of values, of a length that depends on it.
   void append_state(std::vector<double>& state) const;
   /// Values of the longest such row.
-  std::size_t most_values() const noexcept;
+  std::size_t max_values() const noexcept;
   /// How long such a row is that begins with these values; 0 when it is none.
   std::size_t size_of_state(const double* state, std::size_t available) const noexcept;
   /// Takes it back. @return one past the last value taken.
   const double* take_state(const double* state) noexcept;
 
  private:
-  enum class Path { kLinear, kLennardJones, kAnyBehaviour };
+  enum class Path { kLinear, kLennardJones, kAnyStateMachine };
 
   template <class Visit>
   void visit_active(Visit visit) const noexcept;
   bool computes_all(const std::vector<bool>& never_rests) const noexcept {
-    return never_rests[behaviour_] || !neighbours_.is_whole();
+    return never_rests[state_machine_] || !neighbours_.is_whole();
   }
   /// Precondition: the neighbour list is whole.
   PairsOfSet pairs() noexcept;
@@ -107,17 +107,17 @@ class SetPairs {
   StepEnergy work_of(std::size_t member, const double* moved) const noexcept;
 
   const PairKernel& kernel_;
-  std::uint32_t behaviour_;
+  std::uint32_t state_machine_;
   std::vector<std::uint32_t> column_;  // of the MAT of each member
   std::vector<double> radius_;         // of each member [m]; empty when the rest length is given
   double rest_length_;                 // [m]
   double range_;                       // [m]
-  Path path_ = Path::kAnyBehaviour;
+  Path path_ = Path::kAnyStateMachine;
   LinearPair linear_;
   LennardJonesPair lennard_jones_;
   NeighbourList neighbours_;
   PairBlock block_;
-  PairBehaviours behaviours_;
+  PairStateMachines state_machines_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches and one batch more
   AlignedVector<double> moved_;
   AlignedVector<double> force_;

@@ -34,8 +34,8 @@ bool asks_for_an_axis(const engine::Program& program) {
 }
 
 bool asks_for_an_axis(const engine::NetworkDescription& network) {
-  for (const engine::Behaviour& behaviour : network.behaviours) {
-    for (const engine::Exit& exit : behaviour.exits) {
+  for (const engine::StateMachine& state_machine : network.state_machines) {
+    for (const engine::Transition& exit : state_machine.exits) {
       if (asks_for_an_axis(exit.when) || asks_for_an_axis(exit.rest_length)) return true;
     }
   }
@@ -68,7 +68,7 @@ bool fits_a_line(const scene::Scene& scene) {
 /// The vectors of a scene in the directions that are left.
 class Projection {
  public:
-  explicit Projection(const scene::Confinement& confinement, int dimension)
+  explicit Projection(const scene::Subspace& confinement, int dimension)
       : confinement_(confinement), dimension_(dimension) {}
 
   Vec3 operator()(const Vec3& vector) const {
@@ -80,11 +80,11 @@ class Projection {
   }
 
  private:
-  const scene::Confinement& confinement_;
+  const scene::Subspace& confinement_;
   int dimension_;
 };
 
-void project(const scene::Confinement& confinement, int dimension, scene::Scene& scene) {
+void project(const scene::Subspace& confinement, int dimension, scene::Scene& scene) {
   const Projection project(confinement, dimension);
   engine::NetworkDescription& network = scene.network;
   network.dimension = dimension;
@@ -111,7 +111,7 @@ void project(const scene::Confinement& confinement, int dimension, scene::Scene&
 }  // namespace
 
 std::string confine(scene::Scene& scene) {
-  scene::Confinement confinement;
+  scene::Subspace confinement;
   confinement.space = scene.space();
   std::vector<int> left;
   std::string places;

@@ -8,16 +8,16 @@ namespace cordis::plan {
 
 std::optional<scene::Reduction> modal_truncation(const scene::Scene& scene, double band_hz) {
   const engine::NetworkDescription& network = scene.network;
-  if (network.integrator != engine::Integrator::kModal || network.most_mode_hz == 0.0) return {};
+  if (network.integrator != engine::IntegratorKind::kModal || network.max_mode_hz == 0.0) return {};
   const std::size_t masses = network.mass_count();
   const std::size_t kept = engine::ModalBlock(network).mode_count();
   if (kept == masses) return {};
-  const double ratio = band_hz / network.most_mode_hz;
+  const double ratio = band_hz / network.max_mode_hz;
   scene::Reduction reduction;
   reduction.name = "modal";
   reduction.count = masses - kept;
   reduction.what = std::to_string(reduction.count) + " of " + std::to_string(masses) +
-                   " modes, above " + config::number_text(network.most_mode_hz) +
+                   " modes, above " + config::number_text(network.max_mode_hz) +
                    " Hz, count as static";
   reduction.bound = "r^2 / (1 - r^2) of their share in the motion, r = band over modes_to_hz";
   reduction.budget =

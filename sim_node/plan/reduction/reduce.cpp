@@ -92,7 +92,7 @@ void refuse_massless(const scene::Scene& scene, const LightMats& mats, config::P
 }  // namespace
 
 scene::Scene reduce(scene::Scene scene, config::Problems& problems) {
-  const scene::ReductionWish& wish = scene.reduce;
+  const scene::ReductionOptions& wish = scene.reduce;
   if (!wish.parallel && !wish.takes_out_mats() && !wish.dimension) return scene;
   auto whole = std::make_shared<const scene::Scene>(scene);
   if (wish.dimension) {
@@ -126,9 +126,9 @@ scene::Scene reduce(scene::Scene scene, config::Problems& problems) {
   return scene;
 }
 
-AccuracyWish wish_of(const scene::Scene& scene) {
+AccuracyTarget wish_of(const scene::Scene& scene) {
   const scene::Accuracy& asked = *scene.accuracy;
-  AccuracyWish wish{asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s};
+  AccuracyTarget wish{asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s};
   for (const scene::Reduction& reduction : scene.reductions) wish.tolerance -= reduction.budget;
   return wish;
 }

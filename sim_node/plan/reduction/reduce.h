@@ -15,6 +15,6 @@ scene::Scene reduce(scene::Scene scene, config::Problems& problems);
 
 /// What the `accuracy` of a scene leaves to its step: its tolerance less the budgets of its
 /// reductions. Precondition: it has one.
-AccuracyWish wish_of(const scene::Scene& scene);
+AccuracyTarget wish_of(const scene::Scene& scene);
 
 }  // namespace cordis::plan

@@ -9,13 +9,13 @@ namespace {
 
 using engine::Vec3;
 
-const Vec3& entry(const Track& track, std::size_t index) {
+const Vec3& entry(const Channel& track, std::size_t index) {
   return track.value[std::min(index, track.value.size() - 1)];
 }
 
 }  // namespace
 
-Vec3 value_at(const Course& course, const Track& track, double time) {
+Vec3 value_at(const InputTrajectory& course, const Channel& track, double time) {
   constexpr double kRounding = 1e-9;  // of a period
   const double periods = time / course.period + kRounding;
   const double whole = std::floor(periods);
@@ -25,14 +25,14 @@ Vec3 value_at(const Course& course, const Track& track, double time) {
   return from + (periods - whole) * (entry(track, index + 1) - from);
 }
 
-Vec3 velocity_in(const Course& course, const Track& track, std::size_t period) {
+Vec3 velocity_in(const InputTrajectory& course, const Channel& track, std::size_t period) {
   if (track.is_force) return Vec3::Zero();
   return (entry(track, period + 1) - entry(track, period)) / course.period;
 }
 
-bool goes_on(const Course& course, std::size_t period) {
+bool goes_on(const InputTrajectory& course, std::size_t period) {
   if (period == 0) return false;
-  return std::all_of(course.tracks.begin(), course.tracks.end(), [&](const Track& track) {
+  return std::all_of(course.tracks.begin(), course.tracks.end(), [&](const Channel& track) {
     if (track.is_force) return entry(track, period) == entry(track, period - 1);
     return velocity_in(course, track, period) == velocity_in(course, track, period - 1);
   });

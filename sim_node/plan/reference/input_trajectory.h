@@ -10,7 +10,7 @@
 namespace cordis::plan {
 
 /// What one MAT is given from outside: positions of a port, or forces on a mass.
-struct Track {
+struct Channel {
   std::uint32_t mat = 0;
   bool is_force = false;
   /// At 0, one period, two periods, ...: a position goes straight from one to the next [m], a force
@@ -19,16 +19,16 @@ struct Track {
 };
 
 /// The same gesture for every step: a function of time alone.
-struct Course {
+struct InputTrajectory {
   double period = 1e-3;  ///< [s]
-  std::vector<Track> tracks;
+  std::vector<Channel> tracks;
 };
 
 /// Of a track at a time >= 0.
-engine::Vec3 value_at(const Course& course, const Track& track, double time);
+engine::Vec3 value_at(const InputTrajectory& course, const Channel& track, double time);
 /// With which a position moves in one period [m/s]; 0 for a force.
-engine::Vec3 velocity_in(const Course& course, const Track& track, std::size_t period);
+engine::Vec3 velocity_in(const InputTrajectory& course, const Channel& track, std::size_t period);
 /// Whether a track goes on from one period to the next as it did.
-bool goes_on(const Course& course, std::size_t period);
+bool goes_on(const InputTrajectory& course, std::size_t period);
 
 }  // namespace cordis::plan

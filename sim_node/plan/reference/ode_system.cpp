@@ -15,45 +15,46 @@ using engine::Vec3;
 
 constexpr double kMoment = 1e-3;  // of a step of the network: how much earlier a trend looks
 
-Vec3 column(const Motion::Values& values, std::size_t first, std::uint32_t mat) {
+Vec3 column(const OdeSystem::Values& values, std::size_t first, std::uint32_t mat) {
   return Vec3::Map(values.data() + first + 3 * static_cast<std::size_t>(mat));
 }
 
 void refuse_impulse(const engine::Program& program) {
   if (!asks_for(program, engine::Quantity::kImpulse)) return;
-  throw std::invalid_argument("conditions on the impulse of a link have no oracle");
+  throw std::invalid_argument("conditions on the impulse of a link have no reference integrator");
 }
 
 }  // namespace
 
 /// A link at one moment.
-struct Motion::Geometry {
+struct OdeSystem::Geometry {
   double distance = 0.0;
   double speed = 0.0;
   Vec3 direction = Vec3::Zero();  // of unit length, or 0
   Vec3 velocity = Vec3::Zero();   // of b relative to a
 };
 
-Motion::Motion(engine::NetworkDescription network)
+OdeSystem::OdeSystem(engine::NetworkDescription network)
     : network_(std::move(network)), held_(network_.mats.size(), Vec3::Zero()) {
-  for (const engine::Behaviour& behaviour : network_.behaviours) {
-    for (const engine::Exit& exit : behaviour.exits) {
+  for (const engine::StateMachine& state_machine : network_.state_machines) {
+    for (const engine::Transition& exit : state_machine.exits) {
       refuse_impulse(exit.when);
       refuse_impulse(exit.rest_length);
     }
   }
   for (const engine::StateLink& link : network_.state_links) {
-    const engine::Behaviour& behaviour = network_.behaviours[link.behaviour];
-    states_.push_back({behaviour.start, link.rest_length, -1.0});
-    has_states_ = has_states_ || !behaviour.exits.empty();
+    const engine::StateMachine& state_machine = network_.state_machines[link.state_machine];
+    states_.push_back({state_machine.start, link.rest_length, -1.0});
+    has_states_ = has_states_ || !state_machine.exits.empty();
   }
   for (std::uint32_t s = 0; s < network_.sets.size(); ++s) {
     sets_.push_back({NearPairs(network_, s), {}});
-    has_states_ = has_states_ || !network_.behaviours[network_.sets[s].behaviour].exits.empty();
+    has_states_ =
+        has_states_ || !network_.state_machines[network_.sets[s].state_machine].exits.empty();
   }
 }
 
-Motion::Values Motion::start() const {
+OdeSystem::Values OdeSystem::start() const {
   Values values(2 * position_count() + network_.maxwell_links.size(), 0.0);
   for (std::size_t i = 0; i < network_.mats.size(); ++i) {
     std::copy_n(network_.mats[i].position.data(), 3, values.data() + 3 * i);
@@ -62,44 +63,45 @@ Motion::Values Motion::start() const {
   return values;
 }
 
-engine::Vec3 Motion::position(const Values& values, std::uint32_t mat) const {
+engine::Vec3 OdeSystem::position(const Values& values, std::uint32_t mat) const {
   return column(values, 0, mat);
 }
 
-engine::Vec3 Motion::velocity(const Values& values, std::uint32_t mat) const {
+engine::Vec3 OdeSystem::velocity(const Values& values, std::uint32_t mat) const {
   return column(values, position_count(), mat);
 }
 
-void Motion::hold_force(std::uint32_t mat, const Vec3& force) {
+void OdeSystem::hold_force(std::uint32_t mat, const Vec3& force) {
   held_[mat] = force;
 }
 
-double Motion::mass(std::uint32_t mat) const {
+double OdeSystem::mass(std::uint32_t mat) const {
   return network_.mats[mat].kind == engine::MatKind::kMass ? network_.mats[mat].mass : 0.0;
 }
 
-Motion::Joined Motion::joined(std::uint32_t state_link) const {
+OdeSystem::Joined OdeSystem::joined(std::uint32_t state_link) const {
   const engine::StateLink& link = network_.state_links[state_link];
-  return {link.mat_a, link.mat_b, network_.behaviours[link.behaviour], states_[state_link], false};
+  return {link.mat_a, link.mat_b, network_.state_machines[link.state_machine], states_[state_link],
+          false};
 }
 
-Motion::Joined Motion::joined(std::uint32_t set, NearPairs::Pair pair,
-                              const Present& present) const {
-  return {pair.first, pair.second, network_.behaviours[network_.sets[set].behaviour], present,
-          true};
+OdeSystem::Joined OdeSystem::joined(std::uint32_t set, NearPairs::Pair pair,
+                                    const Present& present) const {
+  return {pair.first, pair.second, network_.state_machines[network_.sets[set].state_machine],
+          present, true};
 }
 
-Motion::Present Motion::fresh(std::uint32_t set, NearPairs::Pair pair) const {
+OdeSystem::Present OdeSystem::fresh(std::uint32_t set, NearPairs::Pair pair) const {
   const engine::SetLiaison& of = network_.sets[set];
   const double rest = of.rest_length < 0.0
                           ? network_.radius[pair.first] + network_.radius[pair.second]
                           : of.rest_length;
-  return {network_.behaviours[of.behaviour].start, rest, -1.0};
+  return {network_.state_machines[of.state_machine].start, rest, -1.0};
 }
 
 /// All pairs that are in range or bound, each with what it remembers.
 template <class Visit>
-void Motion::each_pair(std::uint32_t set, const Values& values, Visit visit) {
+void OdeSystem::each_pair(std::uint32_t set, const Values& values, Visit visit) {
   Set& of = sets_[set];
   const double range = network_.sets[set].range;
   for (const NearPairs::Pair& pair : of.near.near(values.data())) {
@@ -112,7 +114,7 @@ void Motion::each_pair(std::uint32_t set, const Values& values, Visit visit) {
   }
 }
 
-Motion::Geometry Motion::geometry(const Values& values, const Joined& joined) const {
+OdeSystem::Geometry OdeSystem::geometry(const Values& values, const Joined& joined) const {
   Geometry link;
   const Vec3 along = position(values, joined.mat_b) - position(values, joined.mat_a);
   link.velocity = velocity(values, joined.mat_b) - velocity(values, joined.mat_a);
@@ -127,8 +129,8 @@ Motion::Geometry Motion::geometry(const Values& values, const Joined& joined) co
   return link;
 }
 
-double Motion::pull(const Joined& joined, const Geometry& link) const {
-  const engine::LinkState& state = joined.behaviour.states[joined.present.state];
+double OdeSystem::pull(const Joined& joined, const Geometry& link) const {
+  const engine::LinkState& state = joined.state_machine.states[joined.present.state];
   const double elongation = link.distance - joined.present.rest_length;
   const double mass_a = mass(joined.mat_a);
   const double mass_b = mass(joined.mat_b);
@@ -141,14 +143,14 @@ double Motion::pull(const Joined& joined, const Geometry& link) const {
   return std::clamp(pull, -state.force_limit, state.force_limit);
 }
 
-void Motion::rate(const Values& values, Values& rate) {
+void OdeSystem::rate(const Values& values, Values& rate) {
   const std::size_t n = position_count();
   rate.assign(values.size(), 0.0);
   const auto push = [&](std::uint32_t a, std::uint32_t b, const Vec3& force) {
     Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(a)) += force;
     Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(b)) -= force;
   };
-  static const engine::Behaviour kNone;
+  static const engine::StateMachine kNone;
   static const Present kNothing;
   for (const engine::Link& link : network_.links) {
     const Geometry at = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
@@ -195,7 +197,8 @@ void Motion::rate(const Values& values, Values& rate) {
   }
 }
 
-LinkQuantities Motion::quantities(const Joined& joined, double time, const Geometry& link) const {
+LinkQuantities OdeSystem::quantities(const Joined& joined, double time,
+                                     const Geometry& link) const {
   return {link.distance,
           link.distance - joined.present.rest_length,
           link.speed,
@@ -211,7 +214,7 @@ LinkQuantities Motion::quantities(const Joined& joined, double time, const Geome
           mass(joined.mat_b)};
 }
 
-const Motion::Values& Motion::earlier(double time, const Values& values) {
+const OdeSystem::Values& OdeSystem::earlier(double time, const Values& values) {
   if (earlier_is_known_) return earlier_;
   const double moment = kMoment * network_.step;
   rate(values, rate_);
@@ -221,12 +224,12 @@ const Motion::Values& Motion::earlier(double time, const Values& values) {
   return earlier_;
 }
 
-std::int64_t Motion::exit_of(const Joined& joined, double time, const Values& values) {
-  const engine::LinkState& state = joined.behaviour.states[joined.present.state];
+std::int64_t OdeSystem::exit_of(const Joined& joined, double time, const Values& values) {
+  const engine::LinkState& state = joined.state_machine.states[joined.present.state];
   if (state.first_exit == state.last_exit) return -1;
   const LinkQuantities now = quantities(joined, time, geometry(values, joined));
   for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
-    const engine::Program& when = joined.behaviour.exits[e].when;
+    const engine::Program& when = joined.state_machine.exits[e].when;
     // A trend is not known yet at the moment in which the state is entered, nor at the start.
     if (asks_for_trend(when) && time > std::max(joined.present.entered, 0.0)) {
       const LinkQuantities before =
@@ -239,14 +242,14 @@ std::int64_t Motion::exit_of(const Joined& joined, double time, const Values& va
   return -1;
 }
 
-std::optional<Motion::Change> Motion::next_change(double time, const Values& values) {
+std::optional<OdeSystem::Change> OdeSystem::next_change(double time, const Values& values) {
   earlier_is_known_ = false;
   for (std::uint32_t l = 0; l < states_.size(); ++l) {
     if (exit_of(joined(l), time, values) >= 0) return Change{l, 0, {}};
   }
   std::optional<Change> found;
   for (std::uint32_t s = 0; s < sets_.size() && !found; ++s) {
-    if (network_.behaviours[network_.sets[s].behaviour].exits.empty()) continue;
+    if (network_.state_machines[network_.sets[s].state_machine].exits.empty()) continue;
     each_pair(s, values, [&](NearPairs::Pair pair, const Present& present) {
       if (exit_of(joined(s, pair, present), time, values) >= 0) found = Change{{}, s, pair};
       return !found;
@@ -255,7 +258,7 @@ std::optional<Motion::Change> Motion::next_change(double time, const Values& val
   return found;
 }
 
-void Motion::change(const Change& change, double time, const Values& values) {
+void OdeSystem::change(const Change& change, double time, const Values& values) {
   earlier_is_known_ = false;
   Present present;
   if (change.state_link) {
@@ -269,7 +272,7 @@ void Motion::change(const Change& change, double time, const Values& values) {
       change.state_link ? joined(*change.state_link) : joined(change.set, change.pair, present);
   const std::int64_t exit_index = exit_of(link, time, values);
   if (exit_index < 0) return;
-  const engine::Exit& exit = link.behaviour.exits[static_cast<std::size_t>(exit_index)];
+  const engine::Transition& exit = link.state_machine.exits[static_cast<std::size_t>(exit_index)];
   const Geometry at = geometry(values, link);
   if (exit.rest == engine::RestRule::kExpression) {
     present.rest_length = value_of(exit.rest_length, quantities(link, time, at));
@@ -280,7 +283,7 @@ void Motion::change(const Change& change, double time, const Values& values) {
   present.entered = time;
   if (change.state_link) {
     states_[*change.state_link] = present;
-  } else if (present.state == link.behaviour.start) {
+  } else if (present.state == link.state_machine.start) {
     sets_[change.set].bound.erase(change.pair);
   } else {
     sets_[change.set].bound[change.pair] = present;

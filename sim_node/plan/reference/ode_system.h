@@ -16,9 +16,9 @@ namespace cordis::plan {
 ///
 /// Its values are a row: positions, velocities (3 per MAT each), the internal forces of the Maxwell
 /// elements. Ports go on with the velocity they have. A liaison changes its state at the very
-/// moment a condition becomes true; whoever moves the values has to find that moment (see Oracle).
+/// moment a condition becomes true; whoever moves the values has to find that moment (see Reference integrator).
 /// `rising` and `falling` ask for the slope of their value in time.
-class Motion {
+class OdeSystem {
  public:
   using Values = std::vector<double>;
 
@@ -30,7 +30,7 @@ class Motion {
   };
 
   /// @throws std::invalid_argument for what is not known here: the impulse of a link.
-  explicit Motion(engine::NetworkDescription network);
+  explicit OdeSystem(engine::NetworkDescription network);
 
   Values start() const;
   /// How the values change per second, in the present states. Resizes `rate`.
@@ -65,7 +65,7 @@ class Motion {
   struct Joined {
     std::uint32_t mat_a;
     std::uint32_t mat_b;
-    const engine::Behaviour& behaviour;
+    const engine::StateMachine& state_machine;
     const Present& present;
     bool of_set;
   };

@@ -13,7 +13,7 @@ using engine::Operation;
 
 bool asks_for_trend(const engine::Program& program) {
   return std::any_of(program.code.begin(), program.code.end(),
-                     [](const Instruction& each) { return engine::is_trend(each.operation); });
+                     [](const Instruction& each) { return engine::is_edge(each.operation); });
 }
 
 double value_of(const engine::Program& program, const LinkQuantities& now,
@@ -31,7 +31,7 @@ double value_of(const engine::Program& program, const LinkQuantities& now,
       stack[top] = now[quantity];
       earlier[top] = before != nullptr ? (*before)[quantity] : now[quantity];
       ++top;
-    } else if (engine::is_trend(operation)) {
+    } else if (engine::is_edge(operation)) {
       const double growth = stack[top - 1] - earlier[top - 1];
       const bool is_so = operation == Operation::kRising ? growth > 0.0 : growth < 0.0;
       stack[top - 1] = is_so ? 1.0 : 0.0;

@@ -24,7 +24,7 @@ bool is_multiple(double value, double of) {
 
 }  // namespace
 
-Ladder make_ladder(double limit_hz, const LadderWish& wish) {
+RateSweep make_ladder(double limit_hz, const RateSweepOptions& wish) {
   constexpr double kLowest = 0.35;  // of the limit, half of the lowest rate
   constexpr double kNoLimit = 0.1;  // of the scene's own rate, likewise
   double base = round_below(limit_hz > 0.0 ? kLowest * limit_hz : kNoLimit * wish.own_hz);
@@ -33,7 +33,7 @@ Ladder make_ladder(double limit_hz, const LadderWish& wish) {
     base = round_below(0.999 * base);
   }
   const double highest = wish.highest_factor * std::max(limit_hz, lowest);
-  Ladder ladder;
+  RateSweep ladder;
   for (double rate = 2.0 * base; rate <= highest; rate *= 2.0) {
     if (rate >= 0.7 * lowest) ladder.rates_hz.push_back(rate);
     const bool between = !wish.coarse && 1.5 * rate >= 0.7 * lowest && 1.5 * rate <= highest;
@@ -47,7 +47,7 @@ Ladder make_ladder(double limit_hz, const LadderWish& wish) {
     std::sort(ladder.rates_hz.begin(), ladder.rates_hz.end());
   }
   const double periods = std::max(1.0, std::ceil(wish.duration * base - 1e-9));
-  const double stride = std::ceil(periods / wish.most_samples);
+  const double stride = std::ceil(periods / wish.max_samples);
   ladder.sampling = {stride / base, static_cast<int>(std::ceil(periods / stride))};
   return ladder;
 }

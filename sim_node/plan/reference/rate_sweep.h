@@ -8,22 +8,22 @@
 
 namespace cordis::plan {
 
-struct LadderWish {
+struct RateSweepOptions {
   double duration = 2.0;         ///< of a run, at least [s]
   double own_hz = 0.0;           ///< the rate of the scene itself
   double highest_factor = 64.0;  ///< the highest rate over the lowest stable one
   bool coarse = false;           ///< twice as much from rung to rung, instead of 1.33 or 1.5 times
-  int most_samples = 400;
+  int max_samples = 400;
 };
 
 /// Rates from below the limit upwards, round numbers all, multiples of one rate, so that runs at
 /// all of them are sampled at the same moments.
-struct Ladder {
+struct RateSweep {
   std::vector<double> rates_hz;  ///< ascending
   Sampling sampling;
 };
 
 /// @param limit_hz  below it a run diverges; 0 when it never does
-Ladder make_ladder(double limit_hz, const LadderWish& wish);
+RateSweep make_ladder(double limit_hz, const RateSweepOptions& wish);
 
 }  // namespace cordis::plan

@@ -15,10 +15,10 @@ namespace {
 
 using engine::Vec3;
 
-constexpr double kLooser = 100.0;  // than the tolerance, the second oracle
+constexpr double kLooser = 100.0;  // than the tolerance, the second reference integrator
 constexpr double kShorter = 0.75;  // its longest step: where that decides, it differs all the same
 constexpr double kParted = 1e-3;   // of the amplitude
-constexpr double kFiner = 8.0;     // than the finest trial, where there is no oracle
+constexpr double kFiner = 8.0;     // than the finest trial, where there is no reference integrator
 
 std::vector<std::uint32_t> masses_of(const engine::NetworkDescription& network) {
   std::vector<std::uint32_t> masses;
@@ -29,24 +29,25 @@ std::vector<std::uint32_t> masses_of(const engine::NetworkDescription& network) 
 }
 
 /// A motion as it is sampled.
-struct Film {
+struct SampledTrajectory {
   std::vector<double> position;
   std::vector<double> kinetic;
   std::uint64_t evaluations = 0;
 };
 
 /// Takes the samples of one motion.
-class Camera {
+class Sampler {
  public:
-  Camera(const engine::NetworkDescription& network, const ReferenceWish& wish, double share_before)
+  Sampler(const engine::NetworkDescription& network, const ReferenceOptions& wish,
+          double share_before)
       : network_(network),
         wish_(wish),
         share_before_(share_before),
         masses_(masses_of(network)),
         begin_(Clock::now()) {}
 
-  template <class Motion>
-  void take(const Motion& motion) {
+  template <class OdeSystem>
+  void take(const OdeSystem& motion) {
     double kinetic = 0.0;
     for (const std::uint32_t mat : masses_) {
       const Vec3 x = motion.position(mat);
@@ -63,31 +64,32 @@ class Camera {
     return std::chrono::duration<double>(Clock::now() - begin_).count() > wish_.longest_s;
   }
 
-  Film film;
+  SampledTrajectory film;
 
  private:
   using Clock = std::chrono::steady_clock;
   const engine::NetworkDescription& network_;
-  const ReferenceWish& wish_;
+  const ReferenceOptions& wish_;
   double share_before_;
   std::vector<std::uint32_t> masses_;
   Clock::time_point begin_;
 };
 
-/// Ends before the last sample where the oracle finds no way on, or not in time.
-Film film_of_oracle(const engine::NetworkDescription& network, const Course& course,
-                    const ReferenceWish& wish, double tolerance, double share_before) {
-  Oracle oracle(network, tolerance);
-  Camera camera(network, wish, share_before);
+/// Ends before the last sample where the reference integrator finds no way on, or not in time.
+SampledTrajectory film_of_reference(const engine::NetworkDescription& network,
+                                    const InputTrajectory& course, const ReferenceOptions& wish,
+                                    double tolerance, double share_before) {
+  ReferenceIntegrator reference_integrator(network, tolerance);
+  Sampler camera(network, wish, share_before);
   std::size_t period = 0;
   const auto begin_period = [&] {
     if (goes_on(course, period)) return;
-    for (const Track& track : course.tracks) {
+    for (const Channel& track : course.tracks) {
       const double begin = static_cast<double>(period) * course.period;
       if (track.is_force) {
-        oracle.hold_force(track.mat, value_at(course, track, begin));
+        reference_integrator.hold_force(track.mat, value_at(course, track, begin));
       } else {
-        oracle.set_velocity(track.mat, velocity_in(course, track, period));
+        reference_integrator.set_velocity(track.mat, velocity_in(course, track, period));
       }
     }
   };
@@ -99,27 +101,28 @@ Film film_of_oracle(const engine::NetworkDescription& network, const Course& cou
              static_cast<double>(period + 1) * course.period <= until * (1.0 + 1e-12)) {
         ++period;
         if (goes_on(course, period)) continue;
-        oracle.advance_to(static_cast<double>(period) * course.period);
+        reference_integrator.advance_to(static_cast<double>(period) * course.period);
         begin_period();
         if (camera.is_late()) break;
       }
       if (camera.is_late()) break;
-      oracle.advance_to(until);
-      camera.take(oracle);
+      reference_integrator.advance_to(until);
+      camera.take(reference_integrator);
     }
   } catch (const std::runtime_error&) {
     // what has been reached is what there is
   }
-  camera.film.evaluations = oracle.force_evaluations();
+  camera.film.evaluations = reference_integrator.force_evaluations();
   return std::move(camera.film);
 }
 
-Film film_of_scheme(const engine::NetworkDescription& network, const Course& course,
-                    const ReferenceWish& wish, double rate_hz, double share_before) {
+SampledTrajectory film_of_scheme(const engine::NetworkDescription& network,
+                                 const InputTrajectory& course, const ReferenceOptions& wish,
+                                 double rate_hz, double share_before) {
   const auto steps =
       static_cast<std::uint64_t>(std::max(1.0, std::round(rate_hz * wish.sampling.period)));
   CourseRun run(network, "cordis", static_cast<double>(steps) / wish.sampling.period, course);
-  Camera camera(network, wish, share_before);
+  Sampler camera(network, wish, share_before);
   for (int sample = 0; sample < wish.sampling.count && !camera.is_late(); ++sample) {
     if (!run.advance(steps)) break;
     camera.take(run.world());
@@ -145,15 +148,15 @@ double amplitude_of(const Reference& reference) {
 }
 
 /// Compares with the second film, and ends the comparison where they part.
-void hold_against(const Film& second, Reference& reference) {
+void hold_against(const SampledTrajectory& second, Reference& reference) {
   double sum = 0.0;
   const auto samples = static_cast<int>(second.kinetic.size());
   for (int sample = 0; sample < std::min(samples, reference.sampling.count); ++sample) {
     const double apart =
         reference.distance(sample, second.position.data() + static_cast<std::size_t>(sample) * 3 *
                                                                 reference.masses.size());
-    reference.parted = !(apart < kParted);
-    if (reference.parted) break;
+    reference.diverged = !(apart < kParted);
+    if (reference.diverged) break;
     sum += apart * apart;
     reference.compared = sample + 1;
   }
@@ -171,23 +174,23 @@ double Reference::distance(int sample, const double* positions) const noexcept {
   return std::sqrt(sum / static_cast<double>(masses.size())) / amplitude;
 }
 
-Reference make_reference(const engine::NetworkDescription& network, const Course& course,
-                         const ReferenceWish& wish) {
+Reference make_reference(const engine::NetworkDescription& network, const InputTrajectory& course,
+                         const ReferenceOptions& wish) {
   Reference reference;
   reference.masses = masses_of(network);
-  Film first;
-  Film second;
+  SampledTrajectory first;
+  SampledTrajectory second;
   try {
-    first = film_of_oracle(network, course, wish, wish.tolerance, 0.0);
+    first = film_of_reference(network, course, wish, wish.tolerance, 0.0);
     engine::NetworkDescription other = network;
     other.step *= kShorter;
-    second = film_of_oracle(other, course, wish, kLooser * wish.tolerance, 0.5);
-    reference.made_by = "oracle";
+    second = film_of_reference(other, course, wish, kLooser * wish.tolerance, 0.5);
+    reference.made_by = "reference integrator";
   } catch (const std::invalid_argument& refusal) {
     const double rate = kFiner * wish.finest_hz;
     first = film_of_scheme(network, course, wish, rate, 0.0);
     second = film_of_scheme(network, course, wish, 0.5 * rate, 0.5);
-    reference.by_oracle = false;
+    reference.by_reference = false;
     reference.made_by = std::string("the scheme itself at ") + std::to_string(std::lround(rate)) +
                         " Hz, because " + refusal.what();
   }
@@ -202,17 +205,18 @@ Reference make_reference(const engine::NetworkDescription& network, const Course
   reference.amplitude = amplitude_of(reference);
   if (!(reference.amplitude > 0.0)) throw NothingMoves();
   hold_against(second, reference);
-  if (reference.compared == 0) throw std::runtime_error("no reference: two oracles never agree");
+  if (reference.compared == 0)
+    throw std::runtime_error("no reference: two reference integrators never agree");
   return reference;
 }
 
-std::uint64_t key_of(const engine::NetworkDescription& network, const Course& course,
+std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& course,
                      const Sampling& sampling, double tolerance) {
   engine::StateHash hash;
   hash.add(engine::Network(network).fingerprint());
   for (const double value : {course.period, sampling.period, tolerance}) hash.add(value);
   hash.add(static_cast<std::uint64_t>(sampling.count));
-  for (const Track& track : course.tracks) {
+  for (const Channel& track : course.tracks) {
     hash.add(static_cast<std::uint64_t>(track.mat));
     for (const Vec3& value : track.value) {
       for (int axis = 0; axis < 3; ++axis) hash.add(value[axis]);

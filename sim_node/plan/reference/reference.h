@@ -22,7 +22,7 @@ struct Sampling {
 
 /// The motion of the masses of a network, and how far it can be trusted.
 ///
-/// Made twice, by an Oracle of one tolerance and by one of a hundred times that. Where the two
+/// Made twice, by an Reference integrator of one tolerance and by one of a hundred times that. Where the two
 /// part, the motion is chaotic: no step will follow it any further.
 struct Reference {
   Sampling sampling;
@@ -31,11 +31,11 @@ struct Reference {
   std::vector<double> kinetic;        ///< energy per sample [J]
   /// Root of the mean square of the distance of a mass from its mean position [m].
   double amplitude = 0.0;
-  int compared = 0;     ///< samples at which positions mean something
-  bool parted = false;  ///< why they mean nothing any more: the two have parted
+  int compared = 0;       ///< samples at which positions mean something
+  bool diverged = false;  ///< why they mean nothing any more: the two have diverged
   double doubt =
       0.0;  ///< root of the mean square by which the two differ there, over the amplitude
-  bool by_oracle = true;          ///< false: by the scheme itself at a very high rate
+  bool by_reference = true;       ///< false: by the scheme itself at a very high rate
   std::string made_by;            ///< for a person
   std::uint64_t evaluations = 0;  ///< of all forces
 
@@ -51,20 +51,20 @@ struct NothingMoves : std::runtime_error {
   NothingMoves() : std::runtime_error("nothing moves") {}
 };
 
-struct ReferenceWish {
+struct ReferenceOptions {
   Sampling sampling;
-  double tolerance = 1e-10;  ///< of the better of the two oracles
+  double tolerance = 1e-10;  ///< of the better of the two reference integrators
   double longest_s = 300.0;  ///< wall time for one of the two; then the comparison ends there
   double finest_hz = 0.0;    ///< the highest rate that will be compared with it
   std::function<void(double)> progress;  ///< told the part that is done, 0 to 1; may be empty
 };
 
 /// @throws NothingMoves; std::runtime_error when not even the first sample can be reached.
-Reference make_reference(const engine::NetworkDescription& network, const Course& course,
-                         const ReferenceWish& wish);
+Reference make_reference(const engine::NetworkDescription& network, const InputTrajectory& course,
+                         const ReferenceOptions& wish);
 
 /// 64-bit hash of all that a reference depends on.
-std::uint64_t key_of(const engine::NetworkDescription& network, const Course& course,
+std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& course,
                      const Sampling& sampling, double tolerance);
 
 }  // namespace cordis::plan

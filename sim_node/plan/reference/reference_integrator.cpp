@@ -25,7 +25,7 @@ double factor_for(double error, int columns) {
 
 }  // namespace
 
-Oracle::Oracle(engine::NetworkDescription network, double tolerance)
+ReferenceIntegrator::ReferenceIntegrator(engine::NetworkDescription network, double tolerance)
     : motion_(std::move(network)),
       tolerance_(tolerance),
       next_step_(motion_.network().step),
@@ -34,12 +34,12 @@ Oracle::Oracle(engine::NetworkDescription network, double tolerance)
       values_(motion_.start()),
       columns_(kColumns) {}
 
-void Oracle::set_velocity(std::uint32_t mat, const engine::Vec3& velocity) {
+void ReferenceIntegrator::set_velocity(std::uint32_t mat, const engine::Vec3& velocity) {
   const std::size_t first = motion_.position_count() + 3 * static_cast<std::size_t>(mat);
   std::copy_n(velocity.data(), 3, values_.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
-void Oracle::midpoint(double step, int parts, Values& after) {
+void ReferenceIntegrator::midpoint(double step, int parts, Values& after) {
   const double part = step / parts;
   motion_.rate(values_, rate_);
   first_ = values_;
@@ -59,7 +59,7 @@ void Oracle::midpoint(double step, int parts, Values& after) {
   evaluations_ += static_cast<std::uint64_t>(parts) + 1;
 }
 
-double Oracle::difference(const Values& after, const Values& lower) const {
+double ReferenceIntegrator::difference(const Values& after, const Values& lower) const {
   double error = 0.0;
   const std::size_t n = motion_.position_count();
   const std::size_t ends[] = {0, n, 2 * n, after.size()};
@@ -76,7 +76,7 @@ double Oracle::difference(const Values& after, const Values& lower) const {
   return error;
 }
 
-Oracle::Trial Oracle::try_step(double step, Values& after) {
+ReferenceIntegrator::Trial ReferenceIntegrator::try_step(double step, Values& after) {
   Trial trial;
   for (int k = 0; k < kColumns; ++k) {
     const int parts = 2 * (k + 1);
@@ -103,12 +103,12 @@ Oracle::Trial Oracle::try_step(double step, Values& after) {
   return trial;
 }
 
-void Oracle::accept(double step, Values& after) {
+void ReferenceIntegrator::accept(double step, Values& after) {
   time_ += step;
   std::swap(values_, after);
 }
 
-void Oracle::locate_change(double step, Values& after) {
+void ReferenceIntegrator::locate_change(double step, Values& after) {
   // The condition is false at the beginning of the step and true at its end.
   double low = 0.0;
   double high = step;
@@ -123,7 +123,7 @@ void Oracle::locate_change(double step, Values& after) {
   accept(high, after);
 }
 
-void Oracle::advance_to(double time) {
+void ReferenceIntegrator::advance_to(double time) {
   Values after;
   while (time - time_ > kSmallestShare * std::max(1.0, time)) {
     while (const auto change = motion_.next_change(time_, values_)) {

@@ -14,10 +14,10 @@ namespace cordis::plan {
 /// order 16; the error of a step is the difference of the last two. Source: Hairer, Norsett,
 /// Wanner, Solving Ordinary Differential Equations I, II.9. With states no step is longer than that
 /// of the network, so that a condition which holds for as long is not overlooked.
-class Oracle {
+class ReferenceIntegrator {
  public:
   /// @param tolerance  of a step, relative to the largest position, velocity and internal force
-  explicit Oracle(engine::NetworkDescription network, double tolerance = 1e-13);
+  explicit ReferenceIntegrator(engine::NetworkDescription network, double tolerance = 1e-13);
 
   /// Goes on to a time [s], not before the present one.
   /// @throws std::runtime_error when a step becomes shorter than the numbers can tell
@@ -35,7 +35,7 @@ class Oracle {
   std::uint64_t state_changes() const noexcept { return changes_; }
 
  private:
-  using Values = Motion::Values;
+  using Values = OdeSystem::Values;
 
   struct Trial {
     double error = 0.0;  // over the tolerance
@@ -50,7 +50,7 @@ class Oracle {
   void locate_change(double step, Values& after);
   void accept(double step, Values& after);
 
-  Motion motion_;
+  OdeSystem motion_;
   double tolerance_;
   double time_ = 0.0;
   double next_step_ = 0.0;

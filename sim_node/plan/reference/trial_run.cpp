@@ -74,11 +74,11 @@ class Comparison {
 }  // namespace
 
 std::vector<std::string> integrators_for(engine::NetworkDescription network) {
-  constexpr std::size_t kMostUnaskedModes = 400;  // found in 0.04 s, however often it is tried out
+  constexpr std::size_t kMaxUnaskedModes = 400;  // found in 0.04 s, however often it is tried out
   const std::size_t masses = network.mass_count();
   std::vector<std::string> names;
   for (const auto integrator : engine::kIntegrators) {
-    if (integrator == engine::Integrator::kModal && masses > kMostUnaskedModes) continue;
+    if (integrator == engine::IntegratorKind::kModal && masses > kMaxUnaskedModes) continue;
     network.integrator = integrator;
     if (!engine::refusal_of(network)) names.emplace_back(to_string(integrator));
   }
@@ -103,14 +103,14 @@ std::string refusal_of(engine::NetworkDescription network, const std::string& in
 }
 
 CourseRun::CourseRun(engine::NetworkDescription network, const std::string& integrator,
-                     double rate_hz, const Course& course)
+                     double rate_hz, const InputTrajectory& course)
     : course_(course), world_(world_at(std::move(network), integrator, rate_hz)) {}
 
 bool CourseRun::advance(std::uint64_t steps) {
   const double step = world_.network().step();
   for (std::uint64_t n = 0; n < steps; ++n) {
     const double time = static_cast<double>(world_.step_count()) * step;
-    for (const Track& track : course_.tracks) {
+    for (const Channel& track : course_.tracks) {
       const engine::Vec3 value = value_at(course_, track, time);
       if (track.is_force) {
         world_.set_external_force(track.mat, value);
@@ -124,7 +124,7 @@ bool CourseRun::advance(std::uint64_t steps) {
 }
 
 TrialResult try_out(const engine::NetworkDescription& network, const std::string& integrator,
-                    double rate_hz, const Course& course, const Reference& reference) {
+                    double rate_hz, const InputTrajectory& course, const Reference& reference) {
   TrialResult result;
   result.integrator = integrator;
   result.rate_hz = rate_hz;

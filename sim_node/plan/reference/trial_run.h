@@ -28,14 +28,14 @@ class CourseRun {
   /// @throws std::invalid_argument when the engine does not take the network, or the integrator
   ///         not this network
   CourseRun(engine::NetworkDescription network, const std::string& integrator, double rate_hz,
-            const Course& course);
+            const InputTrajectory& course);
 
   /// So many steps, or until a position is not finite. @return whether all still are
   bool advance(std::uint64_t steps);
   const engine::World& world() const noexcept { return world_; }
 
  private:
-  const Course& course_;
+  const InputTrajectory& course_;
   engine::World world_;
 };
 
@@ -47,7 +47,7 @@ struct TrialResult {
   double instructions_per_s = 0.0;  ///< per simulated second; 0 where they cannot be counted
   double error = 0.0;  ///< root of the mean square of position errors, over the amplitude
   double energy_error =
-      0.0;  ///< of the mean kinetic energy after the reference has parted, relative
+      0.0;  ///< of the mean kinetic energy after the reference has diverged, relative
   bool blown_up = false;
   double blown_up_at = 0.0;  ///< [s]
 };
@@ -55,6 +55,6 @@ struct TrialResult {
 /// Runs it to the end of the reference.
 /// @throws as CourseRun
 TrialResult try_out(const engine::NetworkDescription& network, const std::string& integrator,
-                    double rate_hz, const Course& course, const Reference& reference);
+                    double rate_hz, const InputTrajectory& course, const Reference& reference);
 
 }  // namespace cordis::plan

@@ -21,13 +21,14 @@ double smallest_radius(const NetworkDescription& network, const std::vector<std:
   return smallest;
 }
 
-Crowd crowd(const NetworkDescription& network, const std::vector<std::uint32_t>& members,
-            const std::vector<std::uint32_t>& others, const Slope& slope, std::uint32_t set) {
-  Crowd side{members, others, {}, slope.stiffness, slope.viscosity, set, slope.bounded};
+ContactBound crowd(const NetworkDescription& network, const std::vector<std::uint32_t>& members,
+                   const std::vector<std::uint32_t>& others, const Slope& slope,
+                   std::uint32_t set) {
+  ContactBound side{members, others, {}, slope.stiffness, slope.viscosity, set, slope.bounded};
   const double smallest = smallest_radius(network, others);
   const double available = static_cast<double>(others.size() - (&members == &others ? 1 : 0));
   for (const std::uint32_t mat : members) {
-    const double most = most_neighbours(network.dimension, radius_of(network, mat), smallest);
+    const double most = max_neighbours(network.dimension, radius_of(network, mat), smallest);
     side.neighbours.push_back(std::min(most, available));
   }
   return side;
@@ -41,7 +42,7 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
                           ? set.rest_length
                           : smallest_radius(network, set.set_p) + smallest_radius(network, others);
   const Slope slope =
-      largest_slope(network.behaviours[set.behaviour], rest, network.dimension, reach);
+      largest_slope(network.state_machines[set.state_machine], rest, network.dimension, reach);
   graph.bounded = graph.bounded && slope.bounded;
   graph.crowds.push_back(crowd(network, set.set_p, others, slope, index));
   if (!set.set_q.empty()) {
@@ -51,13 +52,13 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
 
 }  // namespace
 
-double largest_of_others(const Crowd& crowd, const std::vector<double>& values) {
+double largest_of_others(const ContactBound& crowd, const std::vector<double>& values) {
   double most = 0.0;
   for (const std::uint32_t mat : crowd.others) most = std::max(most, values[mat]);
   return most;
 }
 
-double most_neighbours(int dimension, double own, double other) {
+double max_neighbours(int dimension, double own, double other) {
   if (dimension == 1) return 2.0;
   if (other >= own || other <= 0.0) return dimension == 2 ? 6.0 : 12.0;
   const double half_angle = std::asin(other / (own + other));  // under which one ball is seen
@@ -67,7 +68,7 @@ double most_neighbours(int dimension, double own, double other) {
 }
 
 void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
-  for (Joint& joint : joints) {
+  for (Edge& joint : joints) {
     if (joint.liaison.kind != LiaisonKind::kMaxwellLink) continue;
     const engine::MaxwellLink& link = network.maxwell_links[joint.liaison.index];
     const double turn = 0.5 * link.stiffness * step / link.viscosity;
@@ -91,7 +92,7 @@ LiaisonGraph liaison_graph(const NetworkDescription& network) {
   const Reach reach = reach_of(network);
   index = 0;
   for (const engine::StateLink& link : network.state_links) {
-    const Slope slope = largest_slope(network.behaviours[link.behaviour], link.rest_length,
+    const Slope slope = largest_slope(network.state_machines[link.state_machine], link.rest_length,
                                       network.dimension, reach);
     graph.bounded = graph.bounded && slope.bounded;
     graph.joints.push_back({link.mat_a,

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_node/engine/laws/liaison_id.h"
+#include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/plan/stability/slope.h"
 
@@ -15,7 +15,7 @@ using engine::LiaisonId;
 using engine::LiaisonKind;
 
 /// A liaison between two MATs with the largest slopes it can have.
-struct Joint {
+struct Edge {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
   double stiffness = 0.0;  ///< [N/m]
@@ -25,7 +25,7 @@ struct Joint {
 };
 
 /// One side of a set liaison: each member meets at most so many of the others at once.
-struct Crowd {
+struct ContactBound {
   std::vector<std::uint32_t> members;
   std::vector<std::uint32_t> others;
   std::vector<double> neighbours;  ///< per member
@@ -36,14 +36,14 @@ struct Crowd {
 };
 
 /// The largest of these values, one per MAT, that a neighbour of a member may have; 0 if none.
-double largest_of_others(const Crowd& crowd, const std::vector<double>& values);
+double largest_of_others(const ContactBound& crowd, const std::vector<double>& values);
 
 /// The scalar graph of a network: masses, and between them the largest slopes of all liaisons. Any
 /// tangent, in any pose and any combination of states, is below the Laplacian of this graph.
 struct LiaisonGraph {
   std::vector<double> inverse_mass;  ///< per MAT [1/kg]; 0 for fixed points and port masses
-  std::vector<Joint> joints;
-  std::vector<Crowd> crowds;
+  std::vector<Edge> joints;
+  std::vector<ContactBound> crowds;
   double medium_viscosity = 0.0;  ///< on every mass [N s/m]
   bool bounded = true;            ///< false: a law has no largest slope of its own; see Reach
 
@@ -56,6 +56,6 @@ LiaisonGraph liaison_graph(const engine::NetworkDescription& network);
 
 /// How many balls of radius `other` touch a ball of radius `own` at once, at most: the kissing
 /// number of the space for balls that are not smaller, a bound of packing for smaller ones.
-double most_neighbours(int dimension, double own, double other);
+double max_neighbours(int dimension, double own, double other);
 
 }  // namespace cordis::plan

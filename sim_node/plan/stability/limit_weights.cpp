@@ -5,30 +5,32 @@
 
 namespace cordis::plan {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 LimitWeights limit_weights(const engine::NetworkDescription& network, Limit limit) {
   constexpr double kSurelyDiverging = 5.0269;  // w dt of symplectic4
   LimitWeights weights;
   switch (network.integrator) {
-    case Integrator::kCordis:
+    case IntegratorKind::kCordis:
       break;
-    case Integrator::kLeapfrog:  // 4 M - dt^2 K - 4 dt Z > 0, without Z in sweeps
+    case IntegratorKind::kLeapfrog:  // 4 M - dt^2 K - 4 dt Z > 0, without Z in sweeps
       weights.link_viscosity = engine::damps_in_sweeps(network) ? 0.0 : 2.0;
       weights.viscosity = 2.0;
       for (const double step : engine::largest_extrapolated_steps(network)) {
         weights.solved.push_back(network.step > step ? 1 : 0);
       }
       break;
-    case Integrator::kSymplectic4: {  // w dt below these, where `cordis` has 2
+    case IntegratorKind::kSymplectic4: {  // w dt below these, where `cordis` has 2
       const double most = limit == Limit::kStable ? engine::kSymplectic4Limit : kSurelyDiverging;
       weights.link_stiffness = weights.stiffness = 4.0 / (most * most);
       break;
     }
-    case Integrator::kModal:  // its linear links are exact; what drives them is checked by itself
+    case IntegratorKind::
+        kModal:  // its linear links are exact; what drives them is checked by itself
       weights.link_stiffness = weights.link_viscosity = 0.0;
       break;
-    case Integrator::kImplicit:  // 4 M + dt^2 K + 2 dt Z, of linear links, less that of all others
+    case IntegratorKind::
+        kImplicit:  // 4 M + dt^2 K + 2 dt Z, of linear links, less that of all others
       weights.link_stiffness = weights.link_viscosity = limit == Limit::kStable ? 0.0 : -1.0;
       break;
   }
@@ -36,7 +38,7 @@ LimitWeights limit_weights(const engine::NetworkDescription& network, Limit limi
 }
 
 std::vector<double> changing_steps(const engine::NetworkDescription& network) {
-  if (network.integrator != Integrator::kLeapfrog) return {};
+  if (network.integrator != IntegratorKind::kLeapfrog) return {};
   std::vector<double> steps = engine::largest_extrapolated_steps(network);
   steps.push_back(engine::largest_extrapolated_step(network));
   std::erase_if(steps, [](double step) { return !(step > 0.0 && std::isfinite(step)); });
@@ -45,7 +47,7 @@ std::vector<double> changing_steps(const engine::NetworkDescription& network) {
 }
 
 LiaisonGraph weighted(LiaisonGraph graph, const LimitWeights& weights) {
-  for (Joint& joint : graph.joints) {
+  for (Edge& joint : graph.joints) {
     const bool linear = joint.liaison.kind == LiaisonKind::kLink;
     joint.stiffness *= linear ? weights.link_stiffness : weights.stiffness;
     joint.viscosity *= linear ? weights.link_viscosity : weights.viscosity;
@@ -54,7 +56,7 @@ LiaisonGraph weighted(LiaisonGraph graph, const LimitWeights& weights) {
       joint.viscosity = 0.0;
     }
   }
-  for (Crowd& crowd : graph.crowds) {
+  for (ContactBound& crowd : graph.crowds) {
     crowd.stiffness *= weights.stiffness;
     crowd.viscosity *= weights.viscosity;
   }

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
+#include "sim_node/engine/network.h"
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/step_bound.h"
 
@@ -57,12 +57,12 @@ std::vector<double> changing_steps(const engine::NetworkDescription& network);
 /// @return the limit that a network comes to as its step grows
 template <class LimitOf>
 auto limit_of_all_steps(const engine::NetworkDescription& network, LimitOf limit_of) {
-  constexpr int kMostRounds = 16;
+  constexpr int kMaxRounds = 16;
   const std::vector<double> changes = changing_steps(network);
   auto limit = limit_of(network);
   engine::NetworkDescription at;
   double before = network.step;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const auto after = std::lower_bound(changes.begin(), changes.end(), step_of(limit));
     if (after == changes.begin() || !(*(after - 1) >= before)) break;
     if (at.mats.empty()) at = network;

@@ -6,7 +6,7 @@
 namespace cordis::plan {
 namespace {
 
-using engine::Integrator;
+using engine::IntegratorKind;
 
 /// A pair of roots of z^2 - trace z + product: what one period does to an oscillation.
 struct Roots {
@@ -27,22 +27,22 @@ Roots of_extrapolated_damping(double stiffness, double viscosity) {
   return {-a - real, b + real * (a + real)};
 }
 
-Roots roots_of(Integrator integrator, double stiffness, double viscosity) {
+Roots roots_of(IntegratorKind integrator, double stiffness, double viscosity) {
   switch (integrator) {
-    case Integrator::kCordis:
+    case IntegratorKind::kCordis:
       break;
-    case Integrator::kLeapfrog: {
-      if (viscosity <= engine::kMostExtrapolatedViscosity) {
+    case IntegratorKind::kLeapfrog: {
+      if (viscosity <= engine::kMaxExtrapolatedViscosity) {
         return of_extrapolated_damping(stiffness, viscosity);
       }
       const double left = std::exp(-viscosity);
       return {(1.0 + left) * (1.0 - 0.5 * stiffness), left};
     }
-    case Integrator::kSymplectic4:
+    case IntegratorKind::kSymplectic4:
       return {engine::symplectic4_trace(stiffness), 1.0};
-    case Integrator::kModal:
+    case IntegratorKind::kModal:
       break;
-    case Integrator::kImplicit: {
+    case IntegratorKind::kImplicit: {
       const double whole = 1.0 + viscosity + stiffness;
       return {(2.0 + viscosity) / whole, 1.0 / whole};
     }
@@ -53,13 +53,13 @@ Roots roots_of(Integrator integrator, double stiffness, double viscosity) {
 }  // namespace
 
 OscillatorError oscillator_error(double angular_frequency, double viscosity, double step,
-                                 Integrator integrator) {
+                                 IntegratorKind integrator) {
   const double rate = 0.5 * viscosity;  // of decay
   const double square = angular_frequency * angular_frequency - rate * rate;
   const Roots roots =
       roots_of(integrator, angular_frequency * angular_frequency * step * step, viscosity * step);
   OscillatorError error;
-  if (integrator == Integrator::kModal) {  // exact
+  if (integrator == IntegratorKind::kModal) {  // exact
     error.oscillates = square > 0.0;
     return error;
   }

@@ -18,8 +18,9 @@ struct OscillatorError {
 
 /// @param angular_frequency  sqrt(K / m) [1/s], > 0
 /// @param viscosity          Z / m [1/s], >= 0
-OscillatorError oscillator_error(double angular_frequency, double viscosity, double step,
-                                 engine::Integrator integrator = engine::Integrator::kCordis);
+OscillatorError oscillator_error(
+    double angular_frequency, double viscosity, double step,
+    engine::IntegratorKind integrator = engine::IntegratorKind::kCordis);
 
 /// An interval of pitch in cents, hundredths of a semitone.
 double cents(double relative_pitch_error);

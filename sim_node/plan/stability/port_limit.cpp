@@ -23,11 +23,11 @@ PortLoad load_of(const LiaisonGraph& graph, std::uint32_t mat, bool least) {
     load.stiffness += count * stiffness;
     load.viscosity += count * viscosity;
   };
-  for (const Joint& joint : graph.joints) {
+  for (const Edge& joint : graph.joints) {
     if (joint.mat_a != mat && joint.mat_b != mat) continue;
     add(1.0, joint.stiffness, joint.viscosity, joint.bounded);
   }
-  for (const Crowd& crowd : graph.crowds) {
+  for (const ContactBound& crowd : graph.crowds) {
     for (std::size_t i = 0; i < crowd.members.size(); ++i) {
       if (crowd.members[i] != mat) continue;
       const double count = least ? std::min(1.0, crowd.neighbours[i]) : crowd.neighbours[i];
@@ -56,7 +56,7 @@ Complex wall_on_boundary(const PortDevice& device, const PortLoop& loop, Complex
 
 /// The least positive real value that `curve` takes on the upper half of the unit circle.
 template <class Curve>
-double least_real_value(const Curve& curve) {
+double min_real_value(const Curve& curve) {
   double least = std::numeric_limits<double>::infinity();
   double theta_before = 1e-4;
   Complex before = curve(std::polar(1.0, theta_before));
@@ -88,11 +88,11 @@ PortLoad port_load(const LiaisonGraph& graph, std::uint32_t mat) {
   return load_of(graph, mat, /*least=*/false);
 }
 
-PortLoad least_port_load(const LiaisonGraph& graph, std::uint32_t mat) {
+PortLoad min_port_load(const LiaisonGraph& graph, std::uint32_t mat) {
   return load_of(graph, mat, /*least=*/true);
 }
 
-double least_device_viscosity(const PortLoad& load, const PortLoop& loop) {
+double min_device_viscosity(const PortLoad& load, const PortLoop& loop) {
   const double d = loop.delay;
   // The limit of the quotient of sines for w = 0.
   double least = load.stiffness * loop.period * (0.5 + d) - load.viscosity;
@@ -121,14 +121,14 @@ double largest_port_stiffness(double device_viscosity, double port_viscosity,
 }
 
 double stable_port_viscosity(const PortDevice& device, const PortLoop& loop) {
-  return least_real_value(
+  return min_real_value(
       [&](Complex z) { return loop.period * wall_on_boundary(device, loop, z) / (1.0 - 1.0 / z); });
 }
 
 double stable_port_stiffness(const PortDevice& device, double port_viscosity,
                              const PortLoop& loop) {
   if (port_viscosity >= stable_port_viscosity(device, loop)) return 0.0;
-  return least_real_value([&](Complex z) {
+  return min_real_value([&](Complex z) {
     return wall_on_boundary(device, loop, z) - port_viscosity * (1.0 - 1.0 / z) / loop.period;
   });
 }

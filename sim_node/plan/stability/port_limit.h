@@ -34,7 +34,7 @@ PortLoad port_load(const LiaisonGraph& graph, std::uint32_t mat);
 
 /// At least: of every set one partner, and no law without a largest slope. What is above a limit
 /// with this load is too stiff as soon as its liaisons are in their stiffest states.
-PortLoad least_port_load(const LiaisonGraph& graph, std::uint32_t mat);
+PortLoad min_port_load(const LiaisonGraph& graph, std::uint32_t mat);
 
 /// Role mass. The viscosity [N s/m] that the device itself must have at least, so that the loop is
 /// passive: then no passive hand can make it oscillate.
@@ -42,7 +42,7 @@ PortLoad least_port_load(const LiaisonGraph& graph, std::uint32_t mat);
 ///     b > max over w of (K T / 2) sin((2 d + 1) w / 2) / sin(w / 2) - B cos((d + 1) w)
 ///
 /// With B = 0 that is K (T / 2 + d T). [Colgate and Schenkel for d = 0]
-double least_device_viscosity(const PortLoad& load, const PortLoop& loop);
+double min_device_viscosity(const PortLoad& load, const PortLoop& loop);
 
 /// Role mass. The stiffness [N/m] a scene may show at the port to a device of this viscosity so
 /// that the loop is passive; 0 when its own viscosity at the port is too much already.

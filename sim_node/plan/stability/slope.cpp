@@ -11,8 +11,8 @@ namespace {
 
 using engine::Law;
 
-constexpr double kLeastSpeed = 1.0;  // [m/s]
-constexpr int kSamples = 400;        // of a law that is known by its values alone
+constexpr double kMinSpeed = 1.0;  // [m/s]
+constexpr int kSamples = 400;      // of a law that is known by its values alone
 
 /// Elastic laws take elongations and distances, viscous ones speeds.
 struct Argument {
@@ -107,12 +107,12 @@ Slope of_law(const Law& law, const Argument& about, const Reach& reach) {
 
 }  // namespace
 
-Slope largest_slope(const engine::Behaviour& behaviour, double rest_length, int dimension,
+Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach) {
   const Argument elastic{reach.elongation, rest_length, true, dimension > 1};
   const Argument viscous{reach.speed, rest_length, false, false};
   Slope largest;
-  for (const engine::LinkState& state : behaviour.states) {
+  for (const engine::LinkState& state : state_machine.states) {
     const Slope spring = of_law(state.elasticity, elastic, reach);
     const Slope damper = of_law(state.dissipation, viscous, reach);
     largest.stiffness = std::max(largest.stiffness, state.stiffness + spring.stiffness);
@@ -122,7 +122,8 @@ Slope largest_slope(const engine::Behaviour& behaviour, double rest_length, int 
   return largest;
 }
 
-Tangent stiffest_tangent(const engine::Behaviour& behaviour, double rest_length, double distance) {
+Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_length,
+                         double distance) {
   const double elongation = distance - rest_length;
   const double nearby = 1e-6 * std::max(std::abs(distance), 1e-6);
   const Argument elastic{0.0, rest_length, true, false};
@@ -132,14 +133,14 @@ Tangent stiffest_tangent(const engine::Behaviour& behaviour, double rest_length,
     return (value(law, at + nearby, about) - value(law, at - nearby, about)) / (2.0 * nearby);
   };
   Tangent stiffest;
-  for (const engine::LinkState& state : behaviour.states) {
+  for (const engine::LinkState& state : state_machine.states) {
     stiffest.stiffness =
         std::max(stiffest.stiffness, state.stiffness + rise(state.elasticity, elongation, elastic));
     stiffest.viscosity =
         std::max(stiffest.viscosity, state.viscosity + rise(state.dissipation, 0.0, viscous));
   }
-  const engine::LinkState& first = behaviour.states.front();
-  if (behaviour.is_stateless()) {
+  const engine::LinkState& first = state_machine.states.front();
+  if (state_machine.is_stateless()) {
     stiffest.pull = first.stiffness * elongation + value(first.elasticity, elongation, elastic);
   }
   return stiffest;
@@ -147,7 +148,7 @@ Tangent stiffest_tangent(const engine::Behaviour& behaviour, double rest_length,
 
 Reach reach_of(const engine::NetworkDescription& network) {
   Reach reach;
-  reach.speed = kLeastSpeed;
+  reach.speed = kMinSpeed;
   for (const engine::StateLink& link : network.state_links) {
     const double distance =
         (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();

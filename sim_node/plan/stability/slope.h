@@ -20,10 +20,10 @@ struct Slope {
   bool bounded = true;     ///< false: they hold within the Reach alone
 };
 
-/// Over all states of a behaviour. [Luc90 III.2.3 b formalism to modify the liaison]
+/// Over all states of a state machine. [Luc90 III.2.3 b formalism to modify the liaison]
 /// @param rest_length  of the liaison [m]; of a set, that of its nearest pair
 /// @param dimension    of the network: in 1 dimension a link never turns
-Slope largest_slope(const engine::Behaviour& behaviour, double rest_length, int dimension,
+Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach);
 
 /// The tangent of a liaison at one distance of its ends and no speed, in the stiffest of its
@@ -31,10 +31,11 @@ Slope largest_slope(const engine::Behaviour& behaviour, double rest_length, int 
 struct Tangent {
   double stiffness = 0.0;  ///< along the link [N/m]
   double viscosity = 0.0;  ///< [N s/m]
-  double pull = 0.0;       ///< of a behaviour of one state, else 0 [N]
+  double pull = 0.0;       ///< of a state machine of one state, else 0 [N]
 };
 
-Tangent stiffest_tangent(const engine::Behaviour& behaviour, double rest_length, double distance);
+Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_length,
+                         double distance);
 
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the
 /// fastest MAT, at least 1 m/s; two such MATs meeting.

@@ -17,8 +17,8 @@ namespace {
 
 using Columns = Eigen::Matrix3Xd;
 
-constexpr int kRounds = 40;           // of the step, each from the direction found in the last one
-constexpr int kMostIterations = 400;  // in one round
+constexpr int kRounds = 40;          // of the step, each from the direction found in the last one
+constexpr int kMaxIterations = 400;  // in one round
 constexpr int kFewestIterations = 24;
 constexpr double kWork =
     1e7;  // iterations times links  // iterations times links  // iterations times links
@@ -130,9 +130,9 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   }
   std::uint32_t index = 0;
   for (const engine::StateLink& link : network.state_links) {
-    const engine::Behaviour& behaviour = network.behaviours[link.behaviour];
+    const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
     const double length = distance(link.mat_a, link.mat_b);
-    const Tangent tangent = stiffest_tangent(behaviour, link.rest_length, length);
+    const Tangent tangent = stiffest_tangent(state_machine, link.rest_length, length);
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
         weights.stiffness * tangent.pull,
         weights.viscosity_of_state_link(index++) * tangent.viscosity, 0.0);
@@ -184,7 +184,7 @@ StartTangent::Columns StartTangent::times(const Columns& x, double stiffness_fac
   return forces * root_of_inverse_mass_.asDiagonal();
 }
 
-int StartTangent::climb(Columns& x, double step, int most_iterations) const {
+int StartTangent::climb(Columns& x, double step, int max_iterations) const {
   const auto image = [&](const Columns& value) {
     return times(value, step * step, 2.0 * step, step);
   };
@@ -193,7 +193,7 @@ int StartTangent::climb(Columns& x, double step, int most_iterations) const {
   double value = dot(present.value, present.image);
   double gain = 0.0;  // of the last iterations, fading
   int n = 0;
-  while (n < most_iterations) {
+  while (n < max_iterations) {
     ++n;
     Direction uphill{present.image - value * present.value, {}};
     if (!(uphill.value.norm() > kRounding * std::abs(value))) break;
@@ -228,7 +228,7 @@ double StartTangent::diverging_step() const {
     const bool settled = !std::isfinite(step) || std::abs(step - before) < 0.1 * kTolerance * step;
     if (settled || left <= 0) break;
     // The first rounds only bring the step near, and take a part of the work.
-    left -= climb(x, step, std::min({left, kMostIterations, round < 2 ? kFewestIterations : left}));
+    left -= climb(x, step, std::min({left, kMaxIterations, round < 2 ? kFewestIterations : left}));
   }
   return step;
 }

@@ -45,7 +45,7 @@ class StartTangent {
                 double step) const;
   /// Goes from a direction towards that of the largest eigenvalue at a step.
   /// @return the number of iterations it took
-  int climb(Columns& x, double step, int most_iterations) const;
+  int climb(Columns& x, double step, int max_iterations) const;
 
   std::vector<Part> parts_;
   Eigen::RowVectorXd root_of_inverse_mass_;

@@ -22,14 +22,14 @@ struct Rows {
 /// (D + A) x: all entries of the matrix taken as positive.
 Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
   Rows rows{std::vector<double>(x.size(), 0.0), std::vector<double>(x.size(), 0.0)};
-  for (const Joint& joint : graph.joints) {
+  for (const Edge& joint : graph.joints) {
     const double sum = x[joint.mat_a] + x[joint.mat_b];
     for (const std::uint32_t mat : {joint.mat_a, joint.mat_b}) {
       rows.stiffness[mat] += joint.stiffness * sum;
       rows.viscosity[mat] += joint.viscosity * sum;
     }
   }
-  for (const Crowd& crowd : graph.crowds) {
+  for (const ContactBound& crowd : graph.crowds) {
     const double most = largest_of_others(crowd, x);
     for (std::size_t i = 0; i < crowd.members.size(); ++i) {
       const std::uint32_t mat = crowd.members[i];
@@ -52,11 +52,11 @@ std::optional<LiaisonId> strongest_at(const LiaisonGraph& graph, std::uint32_t m
     most = weight;
     strongest = id;
   };
-  for (const Joint& joint : graph.joints) {
+  for (const Edge& joint : graph.joints) {
     if (joint.mat_a != mat && joint.mat_b != mat) continue;
     consider(joint.stiffness, joint.viscosity, joint.liaison);
   }
-  for (const Crowd& crowd : graph.crowds) {
+  for (const ContactBound& crowd : graph.crowds) {
     for (std::size_t i = 0; i < crowd.members.size(); ++i) {
       if (crowd.members[i] != mat) continue;
       consider(crowd.neighbours[i] * crowd.stiffness, crowd.neighbours[i] * crowd.viscosity,
@@ -167,14 +167,14 @@ StepBound edge_bound(const LiaisonGraph& graph) {
                  a);
   };
   for (std::uint32_t i = 0; i < count; ++i) consider(i, 0.0, 0.0);
-  for (const Joint& joint : graph.joints) {
+  for (const Edge& joint : graph.joints) {
     if (joint.stiffness == 0.0 && joint.viscosity == 0.0) continue;
     const bool a_is_driven = sums.stiffness[joint.mat_a] >= sums.stiffness[joint.mat_b];
     const std::uint32_t driven = a_is_driven ? joint.mat_a : joint.mat_b;
     const std::uint32_t other = a_is_driven ? joint.mat_b : joint.mat_a;
     consider(driven, sums.stiffness[other], sums.viscosity[other]);
   }
-  for (const Crowd& crowd : graph.crowds) {
+  for (const ContactBound& crowd : graph.crowds) {
     const double stiffness = largest_of_others(crowd, sums.stiffness);
     const double viscosity = largest_of_others(crowd, sums.viscosity);
     for (const std::uint32_t mat : crowd.members) consider(mat, stiffness, viscosity);

@@ -16,8 +16,8 @@ namespace {
 using config::Value;
 using engine::Operation;
 
-constexpr int kMostLevels = 50;            // of nesting
-constexpr std::size_t kMostWords = 1'000;  // of one expression
+constexpr int kMaxLevels = 50;            // of nesting
+constexpr std::size_t kMaxWords = 1'000;  // of one expression
 
 struct FunctionWord {
   const char* word;
@@ -101,7 +101,7 @@ class Parser {
 
  private:
   Operand read_or() {
-    if (++level_ > kMostLevels) throw Fault{at_, "is nested too deeply", {}};
+    if (++level_ > kMaxLevels) throw Fault{at_, "is nested too deeply", {}};
     Operand left = read_and();
     for (std::size_t at = at_; take_word("or", at); at = at_) {
       left = join(left, read_and(), Operation::kOr, Type::kTruth, Type::kTruth, at);
@@ -121,7 +121,7 @@ class Parser {
   Operand read_not() {
     std::size_t at = at_;
     if (!take_word("not", at)) return read_comparison();
-    if (++level_ > kMostLevels) throw Fault{at, "is nested too deeply", {}};
+    if (++level_ > kMaxLevels) throw Fault{at, "is nested too deeply", {}};
     const Operand operand = read_not();
     --level_;
     require(operand, Type::kTruth, "not");
@@ -171,7 +171,7 @@ class Parser {
     std::size_t at = at_;
     const bool minus = take("-", at);
     if (!minus && !take("+", at)) return read_primary();
-    if (++level_ > kMostLevels) throw Fault{at, "is nested too deeply", {}};
+    if (++level_ > kMaxLevels) throw Fault{at, "is nested too deeply", {}};
     const Operand operand = read_sign();
     --level_;
     require(operand, Type::kNumber, minus ? "-" : "+");
@@ -285,7 +285,7 @@ class Parser {
     add({ExpressionWord::Kind::kOperation, 0.0, {}, operation, at});
   }
   void add(ExpressionWord word) {
-    if (words_.size() >= kMostWords) throw Fault{word.at, "has more than 1000 words", {}};
+    if (words_.size() >= kMaxWords) throw Fault{word.at, "has more than 1000 words", {}};
     words_.push_back(std::move(word));
   }
 

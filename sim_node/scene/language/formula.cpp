@@ -16,8 +16,8 @@ using config::Value;
 using engine::Instruction;
 using engine::Operation;
 
-constexpr std::size_t kMostParameters = 1'000;  // of a liaison
-constexpr std::size_t kMostOpen = 64;           // parameters that wait for each other
+constexpr std::size_t kMaxParameters = 1'000;  // of a liaison
+constexpr std::size_t kMaxOpen = 64;           // parameters that wait for each other
 
 /// Whether a value is to be read as a number rather than as a formula: because it is one, or
 /// because what is said about a wrong number fits it best (.nan, 3 N, a sequence).
@@ -54,7 +54,7 @@ bool is_constant(const Instruction& instruction) {
 /// Adds an operation to a program, or its result when its operands are constants.
 void add_operation(std::vector<Instruction>& code, Operation operation, std::uint32_t& next_slot) {
   const std::size_t operands = engine::operand_count(operation);
-  const bool remembers = engine::is_trend(operation);
+  const bool remembers = engine::is_edge(operation);
   const bool foldable =
       !remembers && code.size() >= operands &&
       std::all_of(code.end() - static_cast<std::ptrdiff_t>(operands), code.end(), is_constant);
@@ -179,9 +179,9 @@ struct ParameterValues::Evaluation {
 
   /// The parameters that a formula names. @return false when it names itself in the end.
   bool put_names(const Value::Entry& entry, const Expression& formula) {
-    if (open.size() >= kMostOpen) {
+    if (open.size() >= kMaxOpen) {
       problems.error(entry.value.place(),
-                     "more than " + std::to_string(kMostOpen) + " parameters of " + what +
+                     "more than " + std::to_string(kMaxOpen) + " parameters of " + what +
                          " each depend on the next, down to '" + entry.key + "'");
       return false;
     }
@@ -218,9 +218,9 @@ ParameterValues::ParameterValues(const Value& section, const std::map<std::strin
     problems.error(section.place(), "'parameters' in " + what + " must be a mapping of keys, got " +
                                         section.described());
   }
-  if (section.entries().size() > kMostParameters) {
+  if (section.entries().size() > kMaxParameters) {
     problems.error(section.place(), "'parameters' in " + what + " has more than " +
-                                        std::to_string(kMostParameters) + " parameters");
+                                        std::to_string(kMaxParameters) + " parameters");
     return;
   }
   for (const Value::Entry& entry : section.entries()) {

@@ -12,11 +12,11 @@ namespace cordis::scene {
 
 namespace {
 
-using engine::Behaviour;
-using engine::Exit;
 using engine::LinkState;
 using engine::Operation;
 using engine::Program;
+using engine::StateMachine;
+using engine::Transition;
 using Quantities = std::array<double, engine::kQuantityCount>;
 
 constexpr std::size_t kTries = 32;            // entries tried for one exit
@@ -43,7 +43,7 @@ double value_of(const Program& program, const Quantities& quantities, double edg
     } else if (engine::operand_count(instruction.operation) == 2) {
       --depth;
       stack[depth - 1] = apply(instruction.operation, stack[depth - 1], stack[depth]);
-    } else if (engine::is_trend(instruction.operation)) {
+    } else if (engine::is_edge(instruction.operation)) {
       stack[depth - 1] = edge;
     } else {
       stack[depth - 1] = apply(instruction.operation, stack[depth - 1]);
@@ -82,9 +82,9 @@ class Dice {
 /// Links about to change state: what their quantities may be.
 class Entries {
  public:
-  explicit Entries(const Behaviour& behaviour) : behaviour_(behaviour) {
+  explicit Entries(const StateMachine& state_machine) : state_machine_(state_machine) {
     std::size_t word_count = 0;
-    for (const Exit& exit : behaviour.exits) {
+    for (const Transition& exit : state_machine.exits) {
       for (const engine::Instruction& instruction : exit.when.code) {
         const double size = std::abs(instruction.constant);
         if (instruction.operation == Operation::kConstant && size > 0.0) sizes_.push_back(size);
@@ -97,7 +97,7 @@ class Entries {
 
   /// Links that have just been led out of `from` by an exit while their ends moved slowly, as the
   /// next state finds them.
-  std::vector<Quantities> through(const LinkState& from, const Exit& exit) {
+  std::vector<Quantities> through(const LinkState& from, const Transition& exit) {
     std::vector<Quantities> entries;
     for (std::size_t t = 0; t < tries_; ++t) {
       if (std::optional<Quantities> entry = try_entry(from, exit)) {
@@ -108,7 +108,7 @@ class Entries {
   }
 
  private:
-  std::optional<Quantities> try_entry(const LinkState& from, const Exit& exit) {
+  std::optional<Quantities> try_entry(const LinkState& from, const Transition& exit) {
     std::optional<Quantities> before;
     std::optional<Quantities> after;
     for (int d = 0; d < kDrawsOfATry && (!before || !after); ++d) {
@@ -152,7 +152,7 @@ class Entries {
     return drawn;
   }
 
-  Quantities entered(Quantities link, const Exit& exit) const {
+  Quantities entered(Quantities link, const Transition& exit) const {
     const double distance = at(link, engine::Quantity::kDistance);
     if (exit.rest == engine::RestRule::kHere) at(link, engine::Quantity::kRestLength) = distance;
     if (exit.rest == engine::RestRule::kExpression)
@@ -161,40 +161,41 @@ class Entries {
       at(link, engine::Quantity::kElongation) = distance - at(link, engine::Quantity::kRestLength);
     at(link, engine::Quantity::kAge) = 0.0;
     at(link, engine::Quantity::kImpulse) = 0.0;
-    const LinkState& state = behaviour_.states[exit.target];
+    const LinkState& state = state_machine_.states[exit.target];
     if (is_linear(state))
       at(link, engine::Quantity::kForce) = pull_of(state, at(link, engine::Quantity::kElongation));
     return link;
   }
 
-  const Behaviour& behaviour_;
+  const StateMachine& state_machine_;
   std::vector<double> sizes_;
   std::size_t tries_ = kTries;
   Dice dice_;
 };
 
-void lint_states(const Behaviour& behaviour, const BehaviourPlaces& places, const std::string& what,
-                 config::Problems& problems) {
-  std::vector<bool> reached(behaviour.states.size(), false);
-  std::vector<std::uint32_t> open{behaviour.start};
-  reached[behaviour.start] = true;
+void lint_states(const StateMachine& state_machine, const StateMachinePlaces& places,
+                 const std::string& what, config::Problems& problems) {
+  std::vector<bool> reached(state_machine.states.size(), false);
+  std::vector<std::uint32_t> open{state_machine.start};
+  reached[state_machine.start] = true;
   while (!open.empty()) {
-    const LinkState& state = behaviour.states[open.back()];
+    const LinkState& state = state_machine.states[open.back()];
     open.pop_back();
     for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
-      const std::uint32_t target = behaviour.exits[e].target;
+      const std::uint32_t target = state_machine.exits[e].target;
       if (!reached[target]) open.push_back(target);
       reached[target] = true;
     }
   }
-  for (std::size_t s = 0; s < behaviour.states.size(); ++s) {
-    const LinkState& state = behaviour.states[s];
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    const LinkState& state = state_machine.states[s];
     const bool acts = state.stiffness > 0.0 || state.viscosity > 0.0 || !is_linear(state) ||
                       state.dissipation.kind != engine::Law::Kind::kNone;
     if (!reached[s]) {
       problems.error(places.states[s].place, "state '" + state.name + "' of " + what +
                                                  " cannot be reached from its start, '" +
-                                                 behaviour.states[behaviour.start].name + "'");
+                                                 state_machine.states[state_machine.start].name +
+                                                 "'");
     } else if (acts && !places.states[s].is_final && state.first_exit == state.last_exit) {
       problems.warning(places.states[s].place,
                        "no exit leads out of state '" + state.name + "' of " + what,
@@ -214,21 +215,21 @@ bool lint_condition(const Program& when, const config::Place& place, const std::
 
 }  // namespace
 
-void lint(const Behaviour& behaviour, const BehaviourPlaces& places, const std::string& what,
-          config::Problems& problems) {
-  lint_states(behaviour, places, what, problems);
-  std::vector<bool> open(behaviour.exits.size());
-  for (std::size_t e = 0; e < behaviour.exits.size(); ++e)
-    open[e] = lint_condition(behaviour.exits[e].when, places.exits[e], what, problems);
+void lint(const StateMachine& state_machine, const StateMachinePlaces& places,
+          const std::string& what, config::Problems& problems) {
+  lint_states(state_machine, places, what, problems);
+  std::vector<bool> open(state_machine.exits.size());
+  for (std::size_t e = 0; e < state_machine.exits.size(); ++e)
+    open[e] = lint_condition(state_machine.exits[e].when, places.exits[e], what, problems);
 
-  Entries entries(behaviour);
-  for (const LinkState& from : behaviour.states) {
+  Entries entries(state_machine);
+  for (const LinkState& from : state_machine.states) {
     for (std::uint32_t e = from.first_exit; e < from.last_exit; ++e) {
-      const Exit& entry = behaviour.exits[e];
+      const Transition& entry = state_machine.exits[e];
       const std::vector<Quantities> links = entries.through(from, entry);
-      const LinkState& to = behaviour.states[entry.target];
+      const LinkState& to = state_machine.states[entry.target];
       for (std::uint32_t next = to.first_exit; next < to.last_exit && !links.empty(); ++next) {
-        const Exit& exit = behaviour.exits[next];
+        const Transition& exit = state_machine.exits[next];
         const bool holds = std::all_of(links.begin(), links.end(), [&](const Quantities& link) {
           return value_of(exit.when, link, 0.0) != 0.0;
         });

@@ -1,7 +1,7 @@
-// sim_node/scene/liaisons/diagnostics.h -- behaviours that can be simulated, but hardly as they were meant.
+// sim_node/scene/liaisons/diagnostics.h -- state machines that can be simulated, but hardly as they were meant.
 #pragma once
 
-#include "sim_node/scene/liaisons/behaviour.h"
+#include "sim_node/scene/liaisons/state_machine.h"
 
 namespace cordis::scene {
 
@@ -13,7 +13,7 @@ namespace cordis::scene {
 ///   trying entries of many links whose ends move slowly: the speed is 0 unless the condition of
 ///   the entry asks for one.
 /// @param what  names the liaison in messages
-void lint(const engine::Behaviour& behaviour, const BehaviourPlaces& places,
+void lint(const engine::StateMachine& state_machine, const StateMachinePlaces& places,
           const std::string& what, config::Problems& problems);
 
 }  // namespace cordis::scene

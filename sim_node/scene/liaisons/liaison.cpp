@@ -11,7 +11,7 @@ namespace {
 
 using config::Value;
 
-constexpr std::size_t kMostLikenesses = 64;  // of liaisons that are like each other
+constexpr std::size_t kMaxLikenesses = 64;  // of liaisons that are like each other
 
 /// `base` with `own` laid on it: mappings merge unless they are of different kinds, everything else
 /// is replaced.
@@ -102,7 +102,7 @@ class Liaisons::Reader {
       problems_.error(like.place(), "the liaison '" + name + "' is like itself",
                       circle + like.text());
       liaison.sound = false;
-    } else if (waiting_.size() > kMostLikenesses) {
+    } else if (waiting_.size() > kMaxLikenesses) {
       problems_.error(like.place(), "more than 64 liaisons are like each other");
       liaison.sound = false;
     } else if (like.exists()) {

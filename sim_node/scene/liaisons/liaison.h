@@ -1,4 +1,4 @@
-// sim_node/scene/liaisons/liaison.h -- the liaisons of a scene: named behaviours that links are made of.
+// sim_node/scene/liaisons/liaison.h -- the liaisons of a scene: named state machines that links are made of.
 #pragma once
 
 #include <map>
@@ -48,13 +48,13 @@ class Liaisons {
   /// problem.
   config::Value completed(const config::Value& definition, config::Problems& problems) const;
 
-  /// Where links get their behaviours from: those of the network, once it is assembled.
-  BehaviourPool& pool() const noexcept { return pool_; }
+  /// Where links get their state machines from: those of the network, once it is assembled.
+  StateMachinePool& pool() const noexcept { return pool_; }
 
  private:
   class Reader;
 
-  mutable BehaviourPool pool_;
+  mutable StateMachinePool pool_;
   std::map<std::string, Liaison> liaisons_;
   std::vector<std::string> names_;
 };

@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim_node/scene/liaisons/behaviour.h"
-#include "sim_node/scene/liaisons/liaison.h"
 #include "sim_node/scene/liaisons/diagnostics.h"
+#include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/liaisons/state_machine.h"
 
 namespace cordis::scene {
 
@@ -17,7 +17,7 @@ using config::Problems;
 using config::Range;
 using config::Value;
 
-constexpr std::size_t kMostParts = 64;  // of a parallel liaison, those in its parts counted too
+constexpr std::size_t kMaxParts = 64;  // of a parallel liaison, those in its parts counted too
 
 constexpr const char* kRestLength = "rest_m";
 
@@ -39,7 +39,7 @@ constexpr std::array<LiaisonKind, 6> kLiaisonKinds{{
 /// The kind that a liaison is of by its keys; empty when it must be written.
 std::string kind_by_keys(const Value& definition) {
   if (definition.find("parallel").exists()) return "parallel";
-  return looks_like_behaviour(definition) ? "behaviour" : "";
+  return looks_like_state_machine(definition) ? "behaviour" : "";
 }
 
 /// The definition with given values in the place of those of its plain keys.
@@ -147,20 +147,20 @@ class LiaisonReader {
     LinkLaw law;
     law.kind = LinkKind::kState;
     const std::size_t errors_before = problems_.error_count();
-    BehaviourPlaces places;
-    engine::Behaviour behaviour = read_behaviour(reader, parameters, places, problems_);
+    StateMachinePlaces places;
+    engine::StateMachine state_machine = read_state_machine(reader, parameters, places, problems_);
     read_rest(reader, law, parameters);
     law.reach = read_reach(reader, parameters);
     if (problems_.error_count() != errors_before) return law;
-    behaviour.name = open_.back();
+    state_machine.name = open_.back();
     try {
-      engine::check_behaviour(behaviour, reader.what());
+      engine::check_state_machine(state_machine, reader.what());
     } catch (const std::invalid_argument& refusal) {
       problems_.error(reader.place(), refusal.what());
       return law;
     }
-    if (told_) lint(behaviour, places, reader.what(), problems_);
-    law.behaviour = std::make_shared<const engine::Behaviour>(std::move(behaviour));
+    if (told_) lint(state_machine, places, reader.what(), problems_);
+    law.state_machine = std::make_shared<const engine::StateMachine>(std::move(state_machine));
     return law;
   }
 
@@ -188,9 +188,9 @@ class LiaisonReader {
       all.insert(all.begin(), part);
       for (LinkLaw& one : all) {
         one.beside.clear();
-        if (parts.size() < kMostParts) parts.push_back(std::move(one));
+        if (parts.size() < kMaxParts) parts.push_back(std::move(one));
       }
-      if (parts.size() < kMostParts) continue;
+      if (parts.size() < kMaxParts) continue;
       reader.error_at("parallel", "'parallel' in " + reader.what() + " has too many parts");
       break;
     }
@@ -219,8 +219,8 @@ class LiaisonReader {
                       circle + name);
       return law;
     }
-    if (open_.size() >= kMostParts) {
-      problems_.error(item.place(), "more than " + std::to_string(kMostParts) +
+    if (open_.size() >= kMaxParts) {
+      problems_.error(item.place(), "more than " + std::to_string(kMaxParts) +
                                         " liaisons stand in parallel within each other");
       return law;
     }

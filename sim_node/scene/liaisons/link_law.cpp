@@ -108,14 +108,14 @@ GivenParameters read_given(MappingReader& reader, const std::vector<std::string>
 }
 
 /// Gives the states of a law their place in the network.
-void place_behaviours(const Use& use, const std::string& liaison, const GivenParameters& given,
-                      LinkLaw& law) {
+void place_state_machines(const Use& use, const std::string& liaison, const GivenParameters& given,
+                          LinkLaw& law) {
   const auto put = [&](LinkLaw& part) {
     part.liaison = liaison;
     part.given = given;
     if (part.kind != LinkKind::kState) return;
-    part.behaviour_index =
-        use.liaisons.pool().index_of({liaison, given, part.part, use.owner}, *part.behaviour);
+    part.state_machine_index =
+        use.liaisons.pool().index_of({liaison, given, part.part, use.owner}, *part.state_machine);
   };
   put(law);
   for (LinkLaw& part : law.beside) put(part);
@@ -141,30 +141,31 @@ std::optional<LinkLaw> law_of_liaison(const Use& use, const Value& name, const L
   }
   read_rest(use, law);
   if (use.place == LawPlace::kMatter) read_tension(reader, law);
-  if (reader.ok()) place_behaviours(use, name.text(), given, law);
+  if (reader.ok()) place_state_machines(use, name.text(), given, law);
   return law;
 }
 
 }  // namespace
 
-std::shared_ptr<const engine::Behaviour> behaviour_of(const LinkLaw& law) {
-  if (law.kind == LinkKind::kState) return law.behaviour;
-  engine::Behaviour behaviour;
-  behaviour.states.emplace_back();
-  behaviour.states.back().stiffness = law.stiffness;
-  behaviour.states.back().viscosity = law.viscosity;
-  return std::make_shared<const engine::Behaviour>(std::move(behaviour));
+std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law) {
+  if (law.kind == LinkKind::kState) return law.state_machine;
+  engine::StateMachine state_machine;
+  state_machine.states.emplace_back();
+  state_machine.states.back().stiffness = law.stiffness;
+  state_machine.states.back().viscosity = law.viscosity;
+  return std::make_shared<const engine::StateMachine>(std::move(state_machine));
 }
 
-bool BehaviourPool::Origin::operator<(const Origin& other) const {
+bool StateMachinePool::Origin::operator<(const Origin& other) const {
   return std::tie(liaison, given, part, owner) <
          std::tie(other.liaison, other.given, other.part, other.owner);
 }
 
-std::uint32_t BehaviourPool::index_of(const Origin& origin, const engine::Behaviour& behaviour) {
-  const auto next = static_cast<std::uint32_t>(behaviours_.size());
+std::uint32_t StateMachinePool::index_of(const Origin& origin,
+                                         const engine::StateMachine& state_machine) {
+  const auto next = static_cast<std::uint32_t>(state_machines_.size());
   const auto [known, is_new] = indices_.emplace(origin, next);
-  if (is_new) behaviours_.push_back(behaviour);
+  if (is_new) state_machines_.push_back(state_machine);
   return known->second;
 }
 
@@ -221,7 +222,7 @@ bool LinkLists::join_alone(const LinkLaw& law, std::uint32_t a, std::uint32_t b,
       links.push_back({a, b, law.stiffness, law.viscosity, rest});
       return space == 1 || rest >= 0.0;
     case LinkKind::kState:
-      state_links.push_back({a, b, law.behaviour_index, rest});
+      state_links.push_back({a, b, law.state_machine_index, rest});
       break;
     case LinkKind::kMaxwell:
       maxwell_links.push_back({a, b, law.stiffness, law.viscosity});

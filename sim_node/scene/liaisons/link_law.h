@@ -41,26 +41,26 @@ struct LinkLaw {
   std::optional<double> rest_length;  ///< [m]; the distance at the start when there is none
   bool rest_is_radii = false;         ///< the rest length is the sum of the radii of the two balls
   std::optional<double> tension;      ///< [N] at the start, instead of a rest length
-  std::shared_ptr<const engine::Behaviour> behaviour;  ///< of kState
-  std::uint32_t behaviour_index = 0;  ///< of kState, in the network, once a link uses it
-  Reach reach;                        ///< of kState
-  std::string part;                   ///< its name in a parallel liaison, else empty
-  std::string liaison;                ///< the name of that it was made from, or empty
-  GivenParameters given;              ///< what the link gave to it
-  std::vector<LinkLaw> beside;        ///< the others of a parallel liaison
+  std::shared_ptr<const engine::StateMachine> state_machine;  ///< of kState
+  std::uint32_t state_machine_index = 0;  ///< of kState, in the network, once a link uses it
+  Reach reach;                            ///< of kState
+  std::string part;                       ///< its name in a parallel liaison, else empty
+  std::string liaison;                    ///< the name of that it was made from, or empty
+  GivenParameters given;                  ///< what the link gave to it
+  std::vector<LinkLaw> beside;            ///< the others of a parallel liaison
 };
 
 inline constexpr const char* kStiffness = "stiffness_n_per_m";
 inline constexpr const char* kViscosity = "viscosity_n_s_per_m";
 
-/// What the pairs of a set are joined by: a linear law is a behaviour of one state.
+/// What the pairs of a set are joined by: a linear law is a state machine of one state.
 /// Precondition: the law is not of kMaxwell.
-std::shared_ptr<const engine::Behaviour> behaviour_of(const LinkLaw& law);
+std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law);
 
-/// The behaviours of a network, one for each distinct set of parameter values.
-class BehaviourPool {
+/// The state machines of a network, one for each distinct set of parameter values.
+class StateMachinePool {
  public:
-  /// Where a behaviour of the pool comes from.
+  /// Where a state machine of the pool comes from.
   struct Origin {
     std::string liaison;
     GivenParameters given;
@@ -69,13 +69,15 @@ class BehaviourPool {
     bool operator<(const Origin& other) const;
   };
 
-  /// Index of the behaviour of this origin, which is added when it is new.
-  std::uint32_t index_of(const Origin& origin, const engine::Behaviour& behaviour);
+  /// Index of the state machine of this origin, which is added when it is new.
+  std::uint32_t index_of(const Origin& origin, const engine::StateMachine& state_machine);
   const std::map<Origin, std::uint32_t>& origins() const noexcept { return indices_; }
-  const std::vector<engine::Behaviour>& behaviours() const noexcept { return behaviours_; }
+  const std::vector<engine::StateMachine>& state_machines() const noexcept {
+    return state_machines_;
+  }
 
  private:
-  std::vector<engine::Behaviour> behaviours_;
+  std::vector<engine::StateMachine> state_machines_;
   std::map<Origin, std::uint32_t> indices_;
 };
 
@@ -100,7 +102,7 @@ enum class LawPlace { kLink, kMatter };
 
 /// Reads `liaison` and the parameters that override it. Nothing after a problem.
 /// @param owner  the name of the links when they bear one of their own: then they share their
-///               behaviour with no others, so that it can be changed for them alone
+///               state machine with no others, so that it can be changed for them alone
 std::optional<LinkLaw> read_law(config::MappingReader& reader, LawPlace place,
                                 const Liaisons& liaisons, int space, const std::string& owner = {});
 

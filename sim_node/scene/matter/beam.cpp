@@ -12,9 +12,9 @@ struct BeamShape {
   Vec3 from = Vec3::Zero();
   Vec3 to = Vec3::Zero();
   std::uint32_t cells = 1;
-  std::vector<Vec3> section;             // from the axis [m]: 2 corners in 2-D, 4 in 3-D
-  std::vector<Joint> sides;              // of the section
-  std::vector<Joint> section_diagonals;  // of the section
+  std::vector<Vec3> section;            // from the axis [m]: 2 corners in 2-D, 4 in 3-D
+  std::vector<Edge> sides;              // of the section
+  std::vector<Edge> section_diagonals;  // of the section
 
   std::uint32_t corners() const { return static_cast<std::uint32_t>(section.size()); }
   std::uint32_t index(std::uint32_t station, std::uint32_t corner) const {
@@ -53,7 +53,7 @@ BeamShape read_shape(Source& source) {
   config::MappingReader& reader = source.reader;
   shape.from = required_point(reader, "from_m", source.space);
   shape.to = required_point(reader, "to_m", source.space);
-  const long most = kMostMats / (source.space == 2 ? 2 : 4) - 1;
+  const long most = kMaxMats / (source.space == 2 ? 2 : 4) - 1;
   shape.cells = static_cast<std::uint32_t>(reader.required_integer("cells", 1, most));
   const double height = reader.required_number("height_m", {0.0, kFarthest, true});
   const double length = (shape.to - shape.from).norm();
@@ -78,8 +78,8 @@ BeamShape read_shape(Source& source) {
 
 /// The links of a section at every station, then those of every cell: along it, and crosswise in
 /// each of its faces.
-std::vector<Joint> joints_of(const BeamShape& shape) {
-  std::vector<Joint> joints;
+std::vector<Edge> joints_of(const BeamShape& shape) {
+  std::vector<Edge> joints;
   for (std::uint32_t s = 0; s <= shape.cells; ++s) {
     for (const auto& all : {shape.sides, shape.section_diagonals}) {
       for (const auto& [a, b] : all) joints.emplace_back(shape.index(s, a), shape.index(s, b));
@@ -103,7 +103,7 @@ Piece read_beam(Source& source) {
   config::MappingReader& reader = source.reader;
   const std::size_t errors_before = source.problems.error_count();
   const BeamShape shape = read_shape(source);
-  const Grain grain = read_grain(source);
+  const PointSpec grain = read_grain(source);
   const FixedEnds ends = read_ends(reader);
   const std::optional<LinkLaw> law = read_neighbour_law(source);
   if (!law || source.problems.error_count() != errors_before) return piece;

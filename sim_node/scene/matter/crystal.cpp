@@ -76,8 +76,8 @@ class Sites {
     }
   }
 
-  std::vector<Joint> joints(const std::vector<Structure::Triple>& steps) const {
-    std::vector<Joint> joints;
+  std::vector<Edge> joints(const std::vector<Structure::Triple>& steps) const {
+    std::vector<Edge> joints;
     for_each([&](const Structure::Triple& t) {
       const std::int32_t a = index_[site(t)];
       if (a < 0) return;
@@ -143,7 +143,7 @@ std::optional<Crystal> crystal_in(const Structure& structure, double spacing,
     const double below = std::floor((origin[axis] - region.lowest[axis] + tolerance) / step);
     const double above = std::floor((region.highest[axis] - origin[axis] + tolerance) / step);
     sites *= below + above + 1.0;
-    if (sites > kMostSites) return std::nullopt;
+    if (sites > kMaxSites) return std::nullopt;
     lowest[static_cast<std::size_t>(axis)] = -static_cast<int>(below);
     highest[static_cast<std::size_t>(axis)] = static_cast<int>(above);
   }

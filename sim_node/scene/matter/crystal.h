@@ -30,19 +30,19 @@ const Structure* structure_named(const std::string& name);
 /// Points of a structure in the order of x, then y, then z.
 struct Crystal {
   std::vector<engine::Vec3> points;  ///< [m]
-  std::vector<Joint> neighbours;
-  std::vector<Joint> second_neighbours;
+  std::vector<Edge> neighbours;
+  std::vector<Edge> second_neighbours;
 };
 
 /// The most points between opposite corners of which a crystal may be cut.
-inline constexpr double kMostSites = 8.0e6;
+inline constexpr double kMaxSites = 8.0e6;
 
 /// A block with `counts` points along each axis, the first of them at `corner`.
 Crystal crystal_block(const Structure& structure, double spacing, const engine::Vec3& corner,
                       const std::array<long, 3>& counts);
 
 /// All points that lie in a region: in a box counted from its lowest corner, in a round region from
-/// its centre. Nothing when the box around it has more than kMostSites.
+/// its centre. Nothing when the box around it has more than kMaxSites.
 std::optional<Crystal> crystal_in(const Structure& structure, double spacing, const Region& region);
 
 }  // namespace cordis::scene

@@ -35,8 +35,8 @@ Crystal fill_region(Source& source, const Structure& structure, const CrystalKey
   const Region room = region.without_margin(keys.grain.radius);
   std::optional<Crystal> crystal;
   if (room.is_possible()) crystal = crystal_in(structure, keys.spacing, room);
-  if (room.is_possible() && (!crystal || crystal->points.size() > kMostMats)) {
-    reader.error_at(key, reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
+  if (room.is_possible() && (!crystal || crystal->points.size() > kMaxMats)) {
+    reader.error_at(key, reader.what() + " has more than " + std::to_string(kMaxMats) + " MATs");
   } else if (!crystal || crystal->points.empty()) {
     reader.error_at(key, "no ball of " + reader.what() + " fits into it");
   }

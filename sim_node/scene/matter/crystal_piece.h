@@ -8,7 +8,7 @@ namespace cordis::scene {
 
 /// What the MATs of a crystal are, how far from each other, and how joined.
 struct CrystalKeys {
-  Grain grain;
+  PointSpec grain;
   double spacing = 1.0;          ///< of nearest neighbours [m]
   std::optional<LinkLaw> law;    ///< of nearest neighbours; nothing when they are not joined
   std::optional<LinkLaw> shear;  ///< of second neighbours

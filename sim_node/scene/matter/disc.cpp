@@ -26,7 +26,7 @@ constexpr std::uint32_t first_of_ring(std::uint32_t ring) {
 }
 
 /// Joins of a ring to itself and to the one within, so that all meshes are triangles.
-void join_ring(std::uint32_t ring, std::vector<Joint>& joints) {
+void join_ring(std::uint32_t ring, std::vector<Edge>& joints) {
   const std::uint32_t first = first_of_ring(ring);
   const std::uint32_t first_within = first_of_ring(ring - 1);
   const std::uint32_t count = 6 * ring;
@@ -64,10 +64,10 @@ Crystal read_rings(Source& source, const CrystalKeys& keys, double radius) {
     return {};
   }
   const double count = inner / keys.spacing;
-  if (3.0 * count * (count + 1.0) < static_cast<double>(kMostMats))
+  if (3.0 * count * (count + 1.0) < static_cast<double>(kMaxMats))
     return rings(keys.spacing, inner);
   reader.error_at("radius_m",
-                  reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
+                  reader.what() + " has more than " + std::to_string(kMaxMats) + " MATs");
   return {};
 }
 

@@ -26,11 +26,10 @@ struct GridShape {
 GridShape read_grid_shape(Source& source) {
   GridShape shape;
   config::MappingReader& reader = source.reader;
-  shape.rows = reader.required_integer("rows", 2, kMostMats / 2);
-  shape.columns = reader.required_integer("columns", 2, kMostMats / 2);
-  if (reader.ok() && shape.rows * shape.columns > kMostMats) {
-    reader.error_at("rows",
-                    reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
+  shape.rows = reader.required_integer("rows", 2, kMaxMats / 2);
+  shape.columns = reader.required_integer("columns", 2, kMaxMats / 2);
+  if (reader.ok() && shape.rows * shape.columns > kMaxMats) {
+    reader.error_at("rows", reader.what() + " has more than " + std::to_string(kMaxMats) + " MATs");
   }
   if (source.space == 1) {
     shape.corner = optional_point(reader, "at_m", Vec3::Zero(), 1);
@@ -53,8 +52,8 @@ GridShape read_grid_shape(Source& source) {
   return shape;
 }
 
-void place_grid(Piece& piece, const GridShape& shape, const Grain& grain, const std::string& border,
-                int space) {
+void place_grid(Piece& piece, const GridShape& shape, const PointSpec& grain,
+                const std::string& border, int space) {
   for (long row = 0; row < shape.rows; ++row) {
     for (long column = 0; column < shape.columns; ++column) {
       const auto r = static_cast<double>(row);
@@ -73,8 +72,8 @@ void place_grid(Piece& piece, const GridShape& shape, const Grain& grain, const 
 }
 
 /// Along the rows, then along the columns.
-std::vector<Joint> sides_of(const GridShape& shape) {
-  std::vector<Joint> joints;
+std::vector<Edge> sides_of(const GridShape& shape) {
+  std::vector<Edge> joints;
   for (long row = 0; row < shape.rows; ++row) {
     for (long column = 0; column + 1 < shape.columns; ++column)
       joints.emplace_back(shape.index(row, column), shape.index(row, column + 1));
@@ -86,8 +85,8 @@ std::vector<Joint> sides_of(const GridShape& shape) {
   return joints;
 }
 
-std::vector<Joint> diagonals_of(const GridShape& shape) {
-  std::vector<Joint> joints;
+std::vector<Edge> diagonals_of(const GridShape& shape) {
+  std::vector<Edge> joints;
   for (long row = 0; row + 1 < shape.rows; ++row) {
     for (long column = 0; column + 1 < shape.columns; ++column) {
       joints.emplace_back(shape.index(row, column), shape.index(row + 1, column + 1));
@@ -103,7 +102,7 @@ Piece read_grid(Source& source) {
   Piece piece;
   config::MappingReader& reader = source.reader;
   const GridShape shape = read_grid_shape(source);
-  const Grain grain = read_grain(source);
+  const PointSpec grain = read_grain(source);
   const std::string border = reader.optional_choice("border", "free", {"free", "fixed", "corners"});
   const std::optional<LinkLaw> law = read_neighbour_law(source);
   const std::optional<LinkLaw> shear = read_shear_law(reader);

@@ -32,13 +32,13 @@ std::vector<Vec3> corners_of_icosahedron() {
   return corners;
 }
 
-Joint in_order(std::uint32_t a, std::uint32_t b) {
-  return a < b ? Joint{a, b} : Joint{b, a};
+Edge in_order(std::uint32_t a, std::uint32_t b) {
+  return a < b ? Edge{a, b} : Edge{b, a};
 }
 
 /// Divides every triangle into four.
 std::vector<Triangle> divide(const std::vector<Triangle>& triangles, std::vector<Vec3>& points) {
-  std::map<Joint, std::uint32_t> middles;
+  std::map<Edge, std::uint32_t> middles;
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
     const auto next = static_cast<std::uint32_t>(points.size());
     const auto [known, is_new] = middles.emplace(in_order(a, b), next);
@@ -65,10 +65,10 @@ Icosphere icosphere(int subdivisions) {
   std::vector<Triangle> triangles(kIcosahedron.begin(), kIcosahedron.end());
   for (int i = 0; i < subdivisions; ++i) triangles = divide(triangles, sphere.points);
 
-  std::map<Joint, std::uint32_t> far_corner_of_first;  // of the first triangle at each edge
+  std::map<Edge, std::uint32_t> far_corner_of_first;  // of the first triangle at each edge
   for (const Triangle& t : triangles) {
     for (std::size_t side = 0; side < 3; ++side) {
-      const Joint edge = in_order(t[side], t[(side + 1) % 3]);
+      const Edge edge = in_order(t[side], t[(side + 1) % 3]);
       const std::uint32_t far = t[(side + 2) % 3];
       const auto [known, is_new] = far_corner_of_first.emplace(edge, far);
       if (is_new) continue;

@@ -12,7 +12,7 @@ using engine::Vec3;
 Crystal read_block(Source& source, const Structure* structure, double spacing) {
   config::MappingReader& reader = source.reader;
   const Vec3 corner = required_point(reader, "corner_m", source.space);
-  const std::vector<long> numbers = reader.required_integers("counts", 1, kMostMats);
+  const std::vector<long> numbers = reader.required_integers("counts", 1, kMaxMats);
   const auto space = static_cast<std::size_t>(source.space);
   if (reader.has("counts") && reader.ok() && numbers.size() != space) {
     reader.error_at("counts", "'counts' in " + reader.what() + " must have " +
@@ -26,10 +26,9 @@ Crystal read_block(Source& source, const Structure* structure, double spacing) {
     counts[axis] = numbers[axis];
     total *= static_cast<double>(numbers[axis]);
   }
-  if (total <= static_cast<double>(kMostMats))
+  if (total <= static_cast<double>(kMaxMats))
     return crystal_block(*structure, spacing, corner, counts);
-  reader.error_at("counts",
-                  reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
+  reader.error_at("counts", reader.what() + " has more than " + std::to_string(kMaxMats) + " MATs");
   return {};
 }
 

@@ -10,7 +10,7 @@ Piece read_mass(Source& source) {
   Piece piece;
   const std::vector<Vec3> points =
       required_points(source.reader, "at_m", source.space, source.problems);
-  const Grain grain = read_grain(source);
+  const PointSpec grain = read_grain(source);
   const Vec3 velocity =
       optional_point(source.reader, "velocity_m_per_s", Vec3::Zero(), source.space);
   for (const Vec3& point : points) {
@@ -25,10 +25,10 @@ Piece read_fixed(Source& source) {
   Piece piece;
   const std::vector<Vec3> points =
       required_points(source.reader, "at_m", source.space, source.problems);
-  const std::optional<Grain> ball = optional_ball(source.reader, false, source.problems);
+  const std::optional<PointSpec> ball = optional_ball(source.reader, false, source.problems);
   for (const Vec3& point : points) {
     piece.mats.push_back({MatKind::kFixed, 0.0, point, Vec3::Zero()});
-    piece.radius_m.push_back(ball.value_or(Grain{}).radius);
+    piece.radius_m.push_back(ball.value_or(PointSpec{}).radius);
   }
   piece.layout = row_layout(source, piece.mats.size());
   return piece;

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "node/config/mapping_reader.h"
-#include "sim_node/scene/sections/assembly.h"
 #include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
-inline constexpr long kMostMats = 1'000'000;  ///< of a scene
+inline constexpr long kMaxMats = 1'000'000;  ///< of a scene
 
 /// Reads one piece of matter: its kind and what the kind wants. Whatever is wrong is a problem;
 /// then the piece is not to be used.

@@ -20,7 +20,7 @@ std::size_t read_count(Source& source, const Region& region, double ball) {
   config::MappingReader& reader = source.reader;
   if (!reader.optional_value("fill").exists()) {
     if (reader.has("count"))
-      return static_cast<std::size_t>(reader.required_integer("count", 1, kMostMats));
+      return static_cast<std::size_t>(reader.required_integer("count", 1, kMaxMats));
     reader.error_at("count", "missing key 'count' in " + reader.what(), "give 'count' or 'fill'");
     return 0;
   }
@@ -29,10 +29,10 @@ std::size_t read_count(Source& source, const Region& region, double ball) {
     reader.error_at("count", "either 'count' or 'fill' can be given in " + reader.what());
   if (!reader.ok()) return 0;
   const double count = std::round(fill * region.measure() / ball);
-  if (count >= 1.0 && count <= static_cast<double>(kMostMats))
+  if (count >= 1.0 && count <= static_cast<double>(kMaxMats))
     return static_cast<std::size_t>(count);
   reader.error_at("fill", "'fill' in " + reader.what() + " asks for " + config::number_text(count) +
-                              " balls, which must be between 1 and " + std::to_string(kMostMats));
+                              " balls, which must be between 1 and " + std::to_string(kMaxMats));
   return 0;
 }
 
@@ -55,7 +55,7 @@ Piece read_pack(Source& source) {
   config::MappingReader& reader = source.reader;
   const std::size_t errors_before = source.problems.error_count();
   if (!reader.has("ball")) reader.required_value("ball");
-  const std::optional<Grain> ball = optional_ball(reader, true, source.problems);
+  const std::optional<PointSpec> ball = optional_ball(reader, true, source.problems);
   const Region region = read_region(reader.required_mapping("region"), source);
   const long seed = reader.optional_integer("seed", 1, 0, 1'000'000'000);
   const bool sound = ball && source.problems.error_count() == errors_before;

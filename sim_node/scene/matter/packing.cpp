@@ -10,7 +10,7 @@ namespace {
 
 using engine::Vec3;
 
-constexpr int kMostRounds = 3000;
+constexpr int kMaxRounds = 3000;
 constexpr double kWider = 1.0 + 1.0e-4;  // the distance strived for, so that the end is reached
 constexpr double kSkin = 0.5;            // of the list of near pairs, in radii
 
@@ -125,7 +125,7 @@ class Packing {
 
   /// @return whether it came to an end.
   bool settle() {
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       push_apart();
       if (has_moved_far()) list_pairs();
       if (none_overlap()) return true;
@@ -138,7 +138,7 @@ class Packing {
  private:
   void push_apart() {
     const double wanted = touching_ * kWider;
-    for (const Joint& pair : pairs_) {
+    for (const Edge& pair : pairs_) {
       Vec3& a = points_[pair.first];
       Vec3& b = points_[pair.second];
       const double squared = squared_distance(a, b);
@@ -153,7 +153,7 @@ class Packing {
   }
 
   bool none_overlap() const {
-    return std::all_of(pairs_.begin(), pairs_.end(), [&](const Joint& pair) {
+    return std::all_of(pairs_.begin(), pairs_.end(), [&](const Edge& pair) {
       return std::sqrt(squared_distance(points_[pair.first], points_[pair.second])) >= touching_;
     });
   }
@@ -184,7 +184,7 @@ class Packing {
   double skin_;
   std::vector<Vec3> points_;
   Cells cells_;
-  std::vector<Joint> pairs_;     // all that are nearer than the skin allows to be ignored
+  std::vector<Edge> pairs_;      // all that are nearer than the skin allows to be ignored
   std::vector<Vec3> listed_at_;  // the points when they were listed
 };
 

@@ -11,8 +11,8 @@ using engine::Vec3;
 Piece read_ring(Source& source) {
   Piece piece;
   config::MappingReader& reader = source.reader;
-  const long count = reader.required_integer("count", 3, kMostMats);
-  const Grain grain = read_grain(source);
+  const long count = reader.required_integer("count", 3, kMaxMats);
+  const PointSpec grain = read_grain(source);
   const bool flat = source.space == 1;  // all at one displacement; the circle is only the layout
   const Vec3 center = flat ? optional_point(reader, "at_m", Vec3::Zero(), 1)
                            : required_point(reader, "center_m", source.space);
@@ -24,7 +24,7 @@ Piece read_ring(Source& source) {
 
   const double layout_radius =
       static_cast<double>(count) * layout.spacing / (2.0 * std::numbers::pi);
-  std::vector<Joint> joints;
+  std::vector<Edge> joints;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double angle =
         2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);

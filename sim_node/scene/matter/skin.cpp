@@ -14,8 +14,8 @@ using engine::Vec3;
 /// The points of a closed surface and how they lie to each other.
 struct Surface {
   std::vector<Vec3> points;
-  std::vector<Joint> edges;
-  std::vector<Joint> across;  // second neighbours
+  std::vector<Edge> edges;
+  std::vector<Edge> across;  // second neighbours
 };
 
 Surface closed_line(std::vector<Vec3> points) {
@@ -32,7 +32,7 @@ Surface read_circle(Source& source) {
   config::MappingReader& reader = source.reader;
   const Vec3 center = required_point(reader, "center_m", 2);
   const double radius = reader.required_number("radius_m", {0.0, kFarthest, true});
-  const long count = reader.required_integer("count", 3, kMostMats - 1);
+  const long count = reader.required_integer("count", 3, kMaxMats - 1);
   std::vector<Vec3> points;
   for (long i = 0; i < count && reader.ok(); ++i) {
     const double angle =
@@ -57,9 +57,9 @@ Surface read_polygon(Source& source) {
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const Vec3 side = corners[(c + 1) % corners.size()] - corners[c];
     const double pieces = std::max(1.0, std::round(side.norm() / spacing));
-    if (static_cast<double>(points.size()) + pieces >= static_cast<double>(kMostMats)) {
+    if (static_cast<double>(points.size()) + pieces >= static_cast<double>(kMaxMats)) {
       reader.error_at("spacing_m",
-                      reader.what() + " has more than " + std::to_string(kMostMats) + " MATs");
+                      reader.what() + " has more than " + std::to_string(kMaxMats) + " MATs");
       return {};
     }
     for (double i = 0.0; i < pieces; i += 1.0) points.push_back(corners[c] + (i / pieces) * side);
@@ -69,10 +69,10 @@ Surface read_polygon(Source& source) {
 
 Surface read_sphere(Source& source) {
   config::MappingReader& reader = source.reader;
-  constexpr long kMostSubdivisions = 8;  // 655,362 MATs
+  constexpr long kMaxSubdivisions = 8;  // 655,362 MATs
   const Vec3 center = required_point(reader, "center_m", 3);
   const double radius = reader.required_number("radius_m", {0.0, kFarthest, true});
-  const long subdivisions = reader.required_integer("subdivisions", 0, kMostSubdivisions);
+  const long subdivisions = reader.required_integer("subdivisions", 0, kMaxSubdivisions);
   if (!reader.ok()) return {};
   Icosphere sphere = icosphere(static_cast<int>(subdivisions));
   for (Vec3& point : sphere.points) point = center + radius * point;
@@ -88,14 +88,14 @@ Surface read_surface(Source& source) {
 void add_core(Source& source, Piece& piece, const config::Value& section) {
   config::MappingReader reader(section, "'core' of " + source.reader.what(), source.problems);
   Source inner{reader, source.liaisons, source.space, false, source.problems};
-  const Grain grain = read_grain(inner);
+  const PointSpec grain = read_grain(inner);
   const std::optional<LinkLaw> law = read_neighbour_law(inner);
   reader.finish();
   if (!law || !reader.ok() || piece.mats.empty()) return;
 
   const auto count = static_cast<std::uint32_t>(piece.mats.size());
   Vec3 sum = Vec3::Zero();
-  std::vector<Joint> spokes;
+  std::vector<Edge> spokes;
   for (std::uint32_t i = 0; i < count; ++i) {
     sum += piece.mats[i].position;
     spokes.emplace_back(count, i);
@@ -110,7 +110,7 @@ void add_core(Source& source, Piece& piece, const config::Value& section) {
 Piece read_skin(Source& source) {
   config::MappingReader& reader = source.reader;
   const Surface surface = read_surface(source);
-  const Grain grain = read_grain(source);
+  const PointSpec grain = read_grain(source);
   const std::optional<LinkLaw> law = read_neighbour_law(source);
   const std::optional<LinkLaw> shear = read_shear_law(reader);
   const config::Value core = reader.optional_mapping("core");

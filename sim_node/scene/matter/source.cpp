@@ -8,22 +8,22 @@ using config::Range;
 using engine::MatKind;
 using engine::Vec3;
 
-std::optional<Grain> optional_ball(config::MappingReader& reader, bool with_mass,
-                                   config::Problems& problems) {
+std::optional<PointSpec> optional_ball(config::MappingReader& reader, bool with_mass,
+                                       config::Problems& problems) {
   const config::Value section = reader.optional_mapping("ball");
   if (!section.exists()) return std::nullopt;
   config::MappingReader ball(section, "'ball' of " + reader.what(), problems);
-  Grain grain;
+  PointSpec grain;
   if (with_mass) grain.mass = ball.required_number("mass_kg", Range::positive());
   grain.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
   ball.finish();
   return grain;
 }
 
-Grain read_grain(Source& source) {
+PointSpec read_grain(Source& source) {
   config::MappingReader& reader = source.reader;
   const config::Value mass = reader.optional_value("mass_kg");
-  const std::optional<Grain> ball = optional_ball(reader, true, source.problems);
+  const std::optional<PointSpec> ball = optional_ball(reader, true, source.problems);
   if (!reader.has("ball")) {
     const Range range = source.may_be_massless ? Range::not_negative() : Range::positive();
     return {reader.required_number("mass_kg", range), 0.0};
@@ -31,10 +31,10 @@ Grain read_grain(Source& source) {
   if (mass.exists()) {
     reader.error_at("mass_kg", "either 'mass_kg' or 'ball' can be given in " + reader.what());
   }
-  return ball.value_or(Grain{});
+  return ball.value_or(PointSpec{});
 }
 
-void add_mass(Piece& piece, const Grain& grain, const Vec3& position) {
+void add_mass(Piece& piece, const PointSpec& grain, const Vec3& position) {
   piece.mats.push_back({MatKind::kMass, grain.mass, position, Vec3::Zero()});
   piece.radius_m.push_back(grain.radius);
 }
@@ -44,7 +44,7 @@ void fix(engine::Mat& mat) {
   mat.mass = 0.0;
 }
 
-void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Joint>& joints) {
+void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Edge>& joints) {
   piece.law = piece.links.count() == 0 ? std::optional(law) : std::nullopt;
   bool possible = true;
   double shortest = kFarthest;

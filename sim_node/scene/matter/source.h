@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "node/config/mapping_reader.h"
-#include "sim_node/scene/sections/assembly.h"
 #include "sim_node/scene/liaisons/liaison.h"
 #include "sim_node/scene/matter/matter.h"
 #include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -25,29 +25,29 @@ struct Source {
 };
 
 /// One MAT as a generator repeats it: a punctual mass or a ball.
-struct Grain {
+struct PointSpec {
   double mass = 0.0;    ///< [kg]
   double radius = 0.0;  ///< [m]; 0 for a punctual mass
 };
 
 /// `mass_kg` of punctual masses, or `ball: {mass_kg, radius_m}`.
-Grain read_grain(Source& source);
+PointSpec read_grain(Source& source);
 
 /// `ball: {mass_kg, radius_m}`; the mass is not asked for where something else decides on it.
 /// @return nothing when there is no such key.
-std::optional<Grain> optional_ball(config::MappingReader& reader, bool with_mass,
-                                   config::Problems& problems);
+std::optional<PointSpec> optional_ball(config::MappingReader& reader, bool with_mass,
+                                       config::Problems& problems);
 
 /// Adds a mass to a piece.
-void add_mass(Piece& piece, const Grain& grain, const engine::Vec3& position);
+void add_mass(Piece& piece, const PointSpec& grain, const engine::Vec3& position);
 /// Makes a mass a point that never moves.
 void fix(engine::Mat& mat);
 
 /// Two MATs of a piece.
-using Joint = std::pair<std::uint32_t, std::uint32_t>;
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Joins MATs of the piece by a law; a negative rest length where there is none is a problem.
-void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Joint>& joints);
+void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Edge>& joints);
 
 /// The law of the links between neighbours; nothing after a problem.
 std::optional<LinkLaw> read_neighbour_law(Source& source);

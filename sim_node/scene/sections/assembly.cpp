@@ -28,9 +28,9 @@ void Assembly::put(Piece& piece) const {
 bool Assembly::add(Piece piece, const config::Place& place) {
   const std::size_t mats = scene_.network.mats.size() + piece.mats.size();
   const std::size_t links = sum(link_counts()) + piece.links.count();
-  if (mats > static_cast<std::size_t>(kMostMats) || links > kMostLinks) {
-    problems_.error(place, "the scene has more than " + std::to_string(kMostMats) + " MATs or " +
-                               std::to_string(kMostLinks) + " links");
+  if (mats > static_cast<std::size_t>(kMaxMats) || links > kMaxLinks) {
+    problems_.error(place, "the scene has more than " + std::to_string(kMaxMats) + " MATs or " +
+                               std::to_string(kMaxLinks) + " links");
     return false;
   }
   if (!open_parts_.empty()) put(piece);

@@ -11,9 +11,9 @@
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/scene/liaisons/liaison.h"
-#include "sim_node/scene/sections/part.h"
 #include "sim_node/scene/matter/placement.h"
 #include "sim_node/scene/scene.h"
+#include "sim_node/scene/sections/part.h"
 #include "sim_node/scene/selection.h"
 
 namespace cordis::scene {
@@ -29,7 +29,7 @@ struct Piece {
   std::vector<NamedRange> names;       ///< of MATs within it, from 0
 };
 
-inline constexpr std::size_t kMostLinks = 8'000'000;  ///< of a scene
+inline constexpr std::size_t kMaxLinks = 8'000'000;  ///< of a scene
 
 /// How many links of each kind there are, by LinkKind.
 using LinkCounts = std::array<std::uint32_t, kLinkKindCount>;

@@ -77,8 +77,8 @@ bool Assembly::join(const Selection& from, const Selection& to, const LinkLaw& l
     return false;
   }
   const std::uint32_t count = std::max(from.count(), to.count());
-  if (sum(link_counts()) + count > kMostLinks) {
-    problems_.error(place, "the scene has more than " + std::to_string(kMostLinks) + " links");
+  if (sum(link_counts()) + count > kMaxLinks) {
+    problems_.error(place, "the scene has more than " + std::to_string(kMaxLinks) + " links");
     return false;
   }
   LinkLists added;
@@ -146,7 +146,7 @@ double Assembly::radius_of(std::uint32_t mat) const noexcept {
 }
 
 void Assembly::finish() {
-  scene_.network.behaviours = liaisons_->pool().behaviours();
+  scene_.network.state_machines = liaisons_->pool().state_machines();
   scene_.liaisons = liaisons_;
   number_links(scene_);
 }

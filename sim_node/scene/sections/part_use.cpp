@@ -1,8 +1,8 @@
 // Matter that is a part: its body is added once, or once per copy, where it is put.
 #include <algorithm>
 
-#include "sim_node/scene/sections/assembly.h"
 #include "sim_node/scene/matter/matter.h"
+#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -38,7 +38,7 @@ std::optional<Assembly::PartUse> Assembly::read_use(const Value::Entry& entry) {
   reader.finish();
   if (repeat.exists()) {
     config::MappingReader repeat_reader(repeat, "'repeat' of " + reader.what(), problems_);
-    use.copies = static_cast<std::uint32_t>(repeat_reader.required_integer("count", 1, kMostMats));
+    use.copies = static_cast<std::uint32_t>(repeat_reader.required_integer("count", 1, kMaxMats));
     use.step = read_placement(repeat_reader, scene_.space(), problems_);
     repeat_reader.finish();
   }

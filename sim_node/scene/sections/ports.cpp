@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "node/config/name_hash.h"
-#include "sim_node/scene/sections/assembly.h"
-#include "sim_node/scene/matter/source.h"
 #include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/matter/source.h"
+#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -17,7 +17,7 @@ using config::Range;
 using config::Value;
 using engine::Vec3;
 
-constexpr long kMostAxes = 16;
+constexpr long kMaxAxes = 16;
 
 const char* word_of(Role role) {
   return role == Role::kMass ? "mass" : "liaison";
@@ -112,8 +112,8 @@ PortNeeds read_needs(config::MappingReader& reader, config::Problems& problems) 
 }
 
 /// The ball of a port, its mass 0 when it does not say.
-Grain read_port_ball(config::MappingReader& reader, config::Problems& problems) {
-  Grain grain;
+PointSpec read_port_ball(config::MappingReader& reader, config::Problems& problems) {
+  PointSpec grain;
   const Value section = reader.optional_mapping("ball");
   if (!section.exists()) return grain;
   config::MappingReader ball(section, "'ball' of " + reader.what(), problems);
@@ -127,7 +127,7 @@ Grain read_port_ball(config::MappingReader& reader, config::Problems& problems) 
 /// The mass that the port says itself, of the simulated MAT that the scene touches: of the port in
 /// role liaison, of the tool in role mass; 0 when it does not say. The same keys serve both roles,
 /// so that the role is switched by one word.
-double read_port_mass(config::MappingReader& reader, const Grain& ball) {
+double read_port_mass(config::MappingReader& reader, const PointSpec& ball) {
   reader.optional_value("mass_kg");
   if (!reader.has("mass_kg")) return ball.mass;
   if (ball.mass > 0.0) {
@@ -185,13 +185,13 @@ void Assembly::read_port(const Value::Entry& entry) {
   port.place = entry.key_place;
   port.device = reader.required_text("device");
   port.device_id = config::name_hash(port.device);
-  for (const long axis : reader.required_integers("axes", 0, kMostAxes - 1))
+  for (const long axis : reader.required_integers("axes", 0, kMaxAxes - 1))
     port.axes.push_back(static_cast<std::uint32_t>(axis));
   const bool is_mass = reader.required_choice("role", {"mass", "liaison"}) != "liaison";
   port.role = is_mass ? Role::kMass : Role::kLiaison;
   port.rest = space == 1 ? optional_point(reader, "at_m", Vec3::Zero(), 1)
                          : required_point(reader, "at_m", space);
-  const Grain ball = read_port_ball(reader, problems_);
+  const PointSpec ball = read_port_ball(reader, problems_);
   const double own_mass = read_port_mass(reader, ball);
   Piece piece = port_piece(reader, port, ball.radius, space);
   if (space == 1 && !reader.has("layout_at_m")) ports_without_layout_.push_back(mat_count());

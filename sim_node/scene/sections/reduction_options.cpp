@@ -13,17 +13,17 @@ using config::Value;
 
 struct ReductionWord {
   const char* name;
-  bool ReductionWish::*wanted;
+  bool ReductionOptions::*wanted;
 };
 constexpr std::array<ReductionWord, 4> kReductionWords{{
-    {"parallel", &ReductionWish::parallel},
-    {"series", &ReductionWish::series},
-    {"massless", &ReductionWish::massless},
-    {"dimension", &ReductionWish::dimension},
+    {"parallel", &ReductionOptions::parallel},
+    {"series", &ReductionOptions::series},
+    {"massless", &ReductionOptions::massless},
+    {"dimension", &ReductionOptions::dimension},
 }};
 
 /// The reductions of a list.
-void read_names(const Value& list, ReductionWish& wish, config::Problems& problems) {
+void read_names(const Value& list, ReductionOptions& wish, config::Problems& problems) {
   std::vector<std::string> words;
   for (const ReductionWord& known : kReductionWords) words.emplace_back(known.name);
   for (const Value& item : list.items()) {
@@ -43,8 +43,8 @@ void read_names(const Value& list, ReductionWish& wish, config::Problems& proble
 
 }  // namespace
 
-ReductionWish read_reduce(const Value& value, bool by_itself, config::Problems& problems) {
-  ReductionWish wish;
+ReductionOptions read_reduce(const Value& value, bool by_itself, config::Problems& problems) {
+  ReductionOptions wish;
   wish.is_asked = value.exists();
   if (value.kind() == Value::Kind::kSequence) {
     read_names(value, wish, problems);

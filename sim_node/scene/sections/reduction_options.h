@@ -8,6 +8,7 @@ namespace cordis::scene {
 
 /// `reduce`: all, none, a list of reductions, or a mapping of some of them to true and false.
 /// @param by_itself  whether the reductions that the value does not speak of are made
-ReductionWish read_reduce(const config::Value& value, bool by_itself, config::Problems& problems);
+ReductionOptions read_reduce(const config::Value& value, bool by_itself,
+                             config::Problems& problems);
 
 }  // namespace cordis::scene

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim_node/scene/sections/assembly.h"
 #include "sim_node/scene/liaisons/law.h"
+#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -21,22 +21,22 @@ bool depends_on_rest(const engine::Program& program) {
   });
 }
 
-/// Whether anything in a behaviour asks for the rest length of a pair.
-bool depends_on_rest(const engine::Behaviour& behaviour) {
+/// Whether anything in a state machine asks for the rest length of a pair.
+bool depends_on_rest(const engine::StateMachine& state_machine) {
   const auto asks = [](const engine::LinkState& state) {
     const Law::Kind kind = state.elasticity.kind;
     return state.stiffness > 0.0 || kind == Law::Kind::kTable || kind == Law::Kind::kPower ||
            kind == Law::Kind::kFunction || state.dissipation.kind == Law::Kind::kFunction;
   };
-  return std::any_of(behaviour.states.begin(), behaviour.states.end(), asks) ||
-         std::any_of(behaviour.exits.begin(), behaviour.exits.end(),
-                     [](const engine::Exit& exit) { return depends_on_rest(exit.when); });
+  return std::any_of(state_machine.states.begin(), state_machine.states.end(), asks) ||
+         std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
+                     [](const engine::Transition& exit) { return depends_on_rest(exit.when); });
 }
 
-/// The distance from which on a behaviour does nothing by itself [m]; 0 when there is none.
-double reach_of_all(const engine::Behaviour& behaviour) {
+/// The distance from which on a state machine does nothing by itself [m]; 0 when there is none.
+double reach_of_all(const engine::StateMachine& state_machine) {
   double reach = 0.0;
-  for (const engine::LinkState& state : behaviour.states) {
+  for (const engine::LinkState& state : state_machine.states) {
     const double own = reach_of(state.elasticity);
     if (state.stiffness > 0.0 || own <= 0.0) return 0.0;
     reach = std::max(reach, own);
@@ -45,9 +45,9 @@ double reach_of_all(const engine::Behaviour& behaviour) {
 }
 
 /// How far apart two MATs may be to be joined [m]; 0 when nothing limits it.
-double range_of(const LinkLaw& law, const engine::Behaviour& behaviour, double rest) {
+double range_of(const LinkLaw& law, const engine::StateMachine& state_machine, double rest) {
   if (law.reach.rule == Reach::Rule::kLength) return law.reach.length;
-  return law.reach.rule == Reach::Rule::kRest ? rest : reach_of_all(behaviour);
+  return law.reach.rule == Reach::Rule::kRest ? rest : reach_of_all(state_machine);
 }
 
 constexpr const char* kOneOfThem =
@@ -131,9 +131,9 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
       reader.error_at("liaison", "a Maxwell element joins two MATs, not sets");
       return;
     }
-    const std::shared_ptr<const engine::Behaviour> behaviour = behaviour_of(part);
+    const std::shared_ptr<const engine::StateMachine> state_machine = state_machine_of(part);
     const bool by_radii = !part.rest_length && radii > 0.0;
-    if (!part.rest_length && !by_radii && depends_on_rest(*behaviour)) {
+    if (!part.rest_length && !by_radii && depends_on_rest(*state_machine)) {
       reader.error_at("liaison", "a liaison of sets whose MATs have no radius needs a 'rest_m'");
       return;
     }
@@ -141,18 +141,18 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
     set.set_p = p;
     set.set_q = q;
     set.rest_length = by_radii ? -1.0 : part.rest_length.value_or(0.0);
-    set.range =
-        has_range ? given_range : range_of(part, *behaviour, by_radii ? radii : set.rest_length);
+    set.range = has_range ? given_range
+                          : range_of(part, *state_machine, by_radii ? radii : set.rest_length);
     if (set.range <= 0.0) {
       reader.error_at("liaison", "the liaison '" + reader.optional_text("liaison", "") +
                                      "' of sets reaches to any distance, it needs a 'range_m'");
       return;
     }
     const std::string owner = entry.has_name ? names_.full(entry.name) : "";
-    set.behaviour =
-        part.kind == LinkKind::kState
-            ? part.behaviour_index
-            : liaisons_->pool().index_of({part.liaison, part.given, part.part, owner}, *behaviour);
+    set.state_machine = part.kind == LinkKind::kState
+                            ? part.state_machine_index
+                            : liaisons_->pool().index_of(
+                                  {part.liaison, part.given, part.part, owner}, *state_machine);
     const std::string name =
         names_.full(parts.size() == 1 ? entry.name : entry.name + "." + part.part);
     if (entry.has_name) {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <utility>
 
-#include "sim_node/scene/sections/assembly.h"
 #include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -208,8 +208,8 @@ void Assembly::read_signal_of_set(config::MappingReader& reader, const std::stri
   if (is_pieces && reader.has("near_m")) {
     signal.near = reader.required_number("near_m", config::Range::positive());
   }
-  const std::uint32_t behaviour = scene_.network.sets[set].behaviour;
-  const bool binds = liaisons_->pool().behaviours()[behaviour].states.size() > 1;
+  const std::uint32_t state_machine = scene_.network.sets[set].state_machine;
+  const bool binds = liaisons_->pool().state_machines()[state_machine].states.size() > 1;
   if (quantity != nullptr && !binds && !reader.has("near_m")) {
     reader.error_at("quantity", "pairs of a liaison of one state are never bound",
                     "count pieces of balls nearer than near_m");

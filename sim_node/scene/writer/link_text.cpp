@@ -146,7 +146,7 @@ std::string LinkText::sets() {
   for (std::uint32_t s = 0; s < network_.sets.size(); ++s) {
     const engine::SetLiaison& set = network_.sets[s];
     const auto origin = std::find_if(origins.begin(), origins.end(), [&](const auto& known) {
-      return known.second == set.behaviour;
+      return known.second == set.state_machine;
     });
     const auto& [liaison, given, part, owner] = origin->first;
     text += "  - {liaison: " + given_text(liaison, part, given);

@@ -46,8 +46,8 @@ class SceneWriter {
     if (!scene_.integrator_is_open) {
       text += std::string(", integrator: ") + engine::to_string(network_.integrator);
     }
-    if (network_.most_mode_hz > 0.0) {
-      text += ", modes_to_hz: " + number_text(network_.most_mode_hz);
+    if (network_.max_mode_hz > 0.0) {
+      text += ", modes_to_hz: " + number_text(network_.max_mode_hz);
     }
     if (network_.freeze_tolerance > 0.0) {
       text += ", freeze: {tolerance_m: " + number_text(network_.freeze_tolerance) + "}";

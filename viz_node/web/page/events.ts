@@ -24,8 +24,8 @@ const QUANTITIES: [string, string][] = [
 /** One line for a person: 1.250 s  rosin[3]  hooked → unhooked  elongation 2.1 mm  −3.2 µJ */
 export function eventLine(event: LinkEvent, description: Description | null): string {
   const time = (event.step / (description?.step_rate_hz ?? 1)).toFixed(3);
-  const behaviour = description?.behaviours[event.behaviour];
-  const state = (index: number) => behaviour?.states[index] ?? `state ${index}`;
+  const state_machine = description?.state_machines[event.state_machine];
+  const state = (index: number) => state_machine?.states[index] ?? `state ${index}`;
   const [quantity, unit] = QUANTITIES[event.quantity] ?? ['', ''];
   const why = quantity === '' ? 'forced' : `${quantity} ${joined(withUnit(event.value, unit))}`;
   const energy = event.energy_j ? `  ${joined(withUnit(event.energy_j, 'J'))}` : '';
@@ -34,7 +34,7 @@ export function eventLine(event: LinkEvent, description: Description | null): st
 
 function nameOf(event: LinkEvent, description: Description | null): string {
   if (event.link === NO_LINK) {
-    const liaison = description?.behaviours[event.behaviour]?.name ?? 'pair';
+    const liaison = description?.state_machines[event.state_machine]?.name ?? 'pair';
     return `${liaison}(${matName(event.mat_a, description)}, ${matName(event.mat_b, description)})`;
   }
   return indexed(event.link, description?.links) ?? `link ${event.link}`;

@@ -205,7 +205,7 @@ function makeRow(): HTMLElement {
 }
 
 function writeRow(row: HTMLElement, node: NodeState): void {
-  const device = `${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.braked_ticks)} ticks braked`;
+  const device = `${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.passivity_ticks)} ticks braked`;
   row.dataset.state = node.state;
   row.title = node.kind === 'device_node' ? node.text + (node.text && '; ') + device : node.text;
   const texts = [

@@ -87,7 +87,7 @@ export interface Description {
   link_count: number;
   matter: NamedRange[];
   links: NamedRange[];
-  behaviours: { name: string; states: string[] }[];
+  state_machines: { name: string; states: string[] }[];
   ports: Port[];
   signals: { name: string; unit: string }[];
 }
@@ -126,7 +126,7 @@ export interface NodeState {
   dissipated_j: Figure; // taken by viscosity
   largest_limit_number: Figure; // K' + 2 Z' seen: below 4 nothing diverges
   port_energy_j: Figure; // of a device: given to the hand, net
-  braked_ticks: number;
+  passivity_ticks: number;
   step: number;
   changes: LiaisonChanges[]; // since the scene began
   lost_events: number;
@@ -150,7 +150,7 @@ export interface LinkEvent {
   link: number; // 4294967295: a pair of a set liaison
   mat_a: number;
   mat_b: number;
-  behaviour: number;
+  state_machine: number;
   from: number;
   to: number;
   quantity: number;

@@ -1,4 +1,4 @@
-// node/claim.h -- names of which one process of this machine is the holder.
+// node/instance_lock.h -- names of which one process of this machine is the holder.
 #pragma once
 
 #include <string>

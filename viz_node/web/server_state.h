@@ -1,4 +1,4 @@
-// viz_node/web/server_hub.h -- what all connections of the server share.
+// viz_node/web/server_state.h -- what all connections of the server share.
 //
 // Boost.Beast takes half a minute to compile: the headers server_*.h are for server.cpp alone.
 #pragma once
@@ -32,11 +32,11 @@ using ErrorCode = boost::system::error_code;
 
 inline constexpr auto kRequestTimeout = std::chrono::seconds(10);
 
-class Client;
+class WebSocketSession;
 
 /// What all connections share. Lives in the server's thread, but for the latency.
-struct Hub {
-  Hub(SceneMirror& of, std::function<void(const PageCommand&)> call)
+struct ServerState {
+  ServerState(SceneMirror& of, std::function<void(const PageCommand&)> call)
       : mirror(of), obey(std::move(call)) {}
 
   SceneMirror& mirror;
@@ -46,23 +46,23 @@ struct Hub {
   std::uint64_t status_number = 0;
   bool loopback_only = true;
   std::size_t connections = 0;
-  std::unordered_set<Client*> clients;
+  std::unordered_set<WebSocketSession*> clients;
   mutable std::mutex latency_mutex;
   node::LatencyHistogram latency;
 };
 
 /// Counts a connection for as long as it lives, as HTTP or as WebSocket.
-class Seat {
+class ConnectionSlot {
  public:
-  explicit Seat(Hub& hub) noexcept : hub_(&hub) { ++hub_->connections; }
-  Seat(Seat&& other) noexcept : hub_(std::exchange(other.hub_, nullptr)) {}
-  Seat& operator=(Seat&&) = delete;
-  ~Seat() {
+  explicit ConnectionSlot(ServerState& hub) noexcept : hub_(&hub) { ++hub_->connections; }
+  ConnectionSlot(ConnectionSlot&& other) noexcept : hub_(std::exchange(other.hub_, nullptr)) {}
+  ConnectionSlot& operator=(ConnectionSlot&&) = delete;
+  ~ConnectionSlot() {
     if (hub_ != nullptr) --hub_->connections;
   }
 
  private:
-  Hub* hub_;
+  ServerState* hub_;
 };
 
 }  // namespace cordis::viz

@@ -1,8 +1,8 @@
-// sim_node/engine/links/behaviour_kernel.h -- behaviours for 8 rows at a time, compiled for each vector
+// sim_node/engine/links/state_kernel.h -- state machines for 8 rows at a time, compiled for each vector
 // width.
 //
 // A row is a state link, or a pair of a set. Whoever owns the rows finds their kinematics, calls
-// StepBehaviours, and puts the pulls on the MATs. As in step_kernel.h, nothing here has a member
+// StepStateMachines, and puts the pulls on the MATs. As in step_kernel.h, nothing here has a member
 // function, so that the linker never mixes up code of two widths.
 #pragma once
 
@@ -10,20 +10,20 @@
 #include <cstdint>
 #include <limits>
 
-#include "sim_node/engine/expressions/instruction.h"
 #include "sim_node/engine/core/vector_width.h"
+#include "sim_node/engine/expressions/instruction.h"
 
 namespace cordis::engine {
 
 /// Rows are stepped 8 at a time, whatever the width.
-inline constexpr std::size_t kBehaviourBatch = 8;
+inline constexpr std::size_t kStateBatch = 8;
 
 /// In a slot of the memory of a row: none yet.
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-/// Index of a state in a StateTable, which numbers the states of all its behaviours.
+/// Index of a state in a StateTable, which numbers the states of all its state machines.
 using StateIndex = std::uint32_t;
-/// BehaviourRows::forced of a row that is not forced; exit of a change that was.
+/// StateMachineRows::forced of a row that is not forced; exit of a change that was.
 inline constexpr std::uint32_t kNotForced = 0xffffffffU;
 
 /// Kinds of Law as the kernels see them.
@@ -66,17 +66,17 @@ struct ExitTerm {
   ProgramTerm rest_length;
   RestCode rest = RestCode::kKeep;
   StateIndex target = 0;
-  Quantity fired = Quantity::kNone;
+  Quantity triggered = Quantity::kNone;
 };
 
 /// A LinkState, made ready.
 struct StateTerm {
   double stiffness = 0.0;          // K [N/m]
   double viscosity_over_dt = 0.0;  // Z / dt [N/m]
-  double least_pull = 0.0;         // [N]; 0 when it does not push
-  double most_pull = 0.0;          // [N]; 0 when it does not pull
-  double least_elongation = 0.0;   // that its stored energy knows: 0 when it does not push [m]
-  double most_elongation = 0.0;    // 0 when it does not pull
+  double min_pull = 0.0;           // [N]; 0 when it does not push
+  double max_pull = 0.0;           // [N]; 0 when it does not pull
+  double min_elongation = 0.0;     // that its stored energy knows: 0 when it does not push [m]
+  double max_elongation = 0.0;     // 0 when it does not pull
   bool one_sided = false;          // one of the two above is finite
   bool limited = false;            // one of the pulls above is finite
   LawTerm elasticity;
@@ -86,7 +86,7 @@ struct StateTerm {
 };
 
 /// 8 rows; every array holds 8 values and is 64-byte aligned.
-struct BehaviourRows {
+struct StateMachineRows {
   // given: what does not depend on the state, and all that the states' programs and functions ask
   // for (StateTable::needs); what nobody asks for may be null. quantity[kElongation], [kForce],
   // [kImpulse] and [kRestLength] are the arrays below.
@@ -111,16 +111,16 @@ struct BehaviourRows {
   double* elastic = nullptr;         // the part of the pull that stores energy [N]
   double* elastic_before = nullptr;  // that of the state before the change; valid where one changed
   std::uint32_t changed = 0;         // bit i: row i has changed
-  StateIndex from[kBehaviourBatch];  // valid where changed:
-  std::uint32_t exit[kBehaviourBatch];  // number among the exits of `from`, or kNotForced
-  double fired_value[kBehaviourBatch];  // of the quantity that fired
-  double rest_before[kBehaviourBatch];  // [m]
+  StateIndex from[kStateBatch];      // valid where changed:
+  std::uint32_t exit[kStateBatch];   // number among the exits of `from`, or kNotForced
+  double fired_value[kStateBatch];   // of the quantity that triggered
+  double rest_before[kStateBatch];   // [m]
 };
 
-/// One step of the behaviours of 8 rows: exits of the present state in order, at most one change a
+/// One step of the state machines of 8 rows: exits of the present state in order, at most one change a
 /// row, pull of the state it is in then. Updates impulse, entered and memory. In a row that has
 /// changed, the dampers see no growth.
-using StepBehaviours = void (*)(const StateTerm* states, BehaviourRows& rows) noexcept;
+using StepStateMachines = void (*)(const StateTerm* states, StateMachineRows& rows) noexcept;
 
 /// Rows in one state without exits; arrays 64-byte aligned, padded to a multiple of 8.
 struct PlainRows {
@@ -149,7 +149,7 @@ struct StateLinkRows {
   const double* mass_b = nullptr;
   const StateTerm* states = nullptr;
   StateIndex* state = nullptr;
-  double* rest_length = nullptr;  // as in BehaviourRows, all of these
+  double* rest_length = nullptr;  // as in StateMachineRows, all of these
   double* pull = nullptr;
   double* impulse = nullptr;
   double* entered = nullptr;
@@ -164,7 +164,7 @@ struct StateLinkRows {
   bool frozen = false;               // no exit is tested
   bool needs_velocity = false;       // some program asks for it, or for the slip
   bool needs_age = false;
-  void (*on_change)(void* owner, std::size_t first_row, const BehaviourRows& rows) noexcept =
+  void (*on_change)(void* owner, std::size_t first_row, const StateMachineRows& rows) noexcept =
       nullptr;  // called after a batch in which rows have changed
   void* owner = nullptr;
 };
@@ -172,7 +172,7 @@ struct StateLinkRows {
 struct ForceColumns;
 struct LinkWork;
 
-/// Steps the behaviours of all links and adds their forces, in link order, and their works as
+/// Steps the state machines of all links and adds their forces, in link order, and their works as
 /// AddLinkForces counts them: of the elastic parts of the pulls, and of the rest.
 using AddStateLinkForces = void (*)(const StateLinkRows& links, const ForceColumns& columns,
                                     LinkWork& work) noexcept;
@@ -183,11 +183,11 @@ struct MaxwellRows {
   std::size_t count;              // rows, padding included
   const std::uint32_t* column_a;  // 4 * MAT index
   const std::uint32_t* column_b;
-  const double* persistence;  // e^(-K dt / Z)
-  const double* gain;         // Z (1 - persistence) / dt [N/m]
-  const double* compliance;   // 1 / K [m/N]
-  double* pull;               // [N]
-  double* factor;             // force of the last call = factor * vector from a to b
+  const double* velocity_retention;  // e^(-K dt / Z)
+  const double* gain;                // Z (1 - velocity retention) / dt [N/m]
+  const double* compliance;          // 1 / K [m/N]
+  double* pull;                      // [N]
+  double* factor;                    // force of the last call = factor * vector from a to b
 };
 
 /// Adds the forces of all elements, in order, and their works as AddStateLinkForces; elastic is the
@@ -196,8 +196,8 @@ using AddMaxwellForces = void (*)(const MaxwellRows& links, const ForceColumns& 
                                   LinkWork& work) noexcept;
 
 /// The loops of one width.
-struct BehaviourKernel {
-  StepBehaviours step = nullptr;
+struct StateKernel {
+  StepStateMachines step = nullptr;
   FindPulls pulls = nullptr;
   AddStateLinkForces state_links_1d = nullptr;
   AddStateLinkForces state_links_3d = nullptr;  // for 2 dimensions too
@@ -205,10 +205,10 @@ struct BehaviourKernel {
   AddMaxwellForces maxwell_3d = nullptr;
 };
 
-extern const BehaviourKernel kBehaviourKernelSse2;
-extern const BehaviourKernel kBehaviourKernelAvx2;
-extern const BehaviourKernel kBehaviourKernelAvx512;
+extern const StateKernel kStateKernelSse2;
+extern const StateKernel kStateKernelAvx2;
+extern const StateKernel kStateKernelAvx512;
 
-const BehaviourKernel& behaviour_kernel(VectorWidth width) noexcept;
+const StateKernel& state_kernel(VectorWidth width) noexcept;
 
 }  // namespace cordis::engine

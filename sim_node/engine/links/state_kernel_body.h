@@ -1,35 +1,35 @@
-// sim_node/engine/links/behaviour_kernel_body.h -- one step of the behaviours of 8 rows.
+// sim_node/engine/links/state_kernel_body.h -- one step of the state machines of 8 rows.
 //
 // The rows of a batch that are in the same state go through the exits and the law of that state
 // together, the others left as they are; a batch in one state, the common case, goes once.
 #pragma once
 
-#include "sim_node/engine/links/behaviour_kernel.h"
-#include "sim_node/engine/simd/lane_batch.h"
-#include "sim_node/engine/laws/law_kernel_body.h"
 #include "sim_node/engine/expressions/program_kernel_body.h"
+#include "sim_node/engine/laws/law_kernel_body.h"
+#include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/simd/lane_batch.h"
 
 namespace cordis::engine {
 
 template <class Lanes>
-class BehaviourLoop {
+class StateMachineLoop {
   using Row = typename Lanes::Row;
   using Batch = LaneBatch<Lanes>;
 
  public:
-  static void step(const StateTerm* states, BehaviourRows& rows) noexcept {
-    BehaviourLoop(states, rows).step();
+  static void step(const StateTerm* states, StateMachineRows& rows) noexcept {
+    StateMachineLoop(states, rows).step();
   }
 
   static void find_pulls(const StateTerm& state, const PlainRows& rows) noexcept {
     alignas(64) double elongation[Batch::kRows];
     alignas(64) double elastic[Batch::kRows];
     const auto quantity = [](Quantity which) { return static_cast<std::size_t>(which); };
-    BehaviourRows batch{};
+    StateMachineRows batch{};
     batch.rate = rows.rate;
     batch.elongation = elongation;
     batch.elastic = elastic;
-    BehaviourLoop loop(&state, batch);
+    StateMachineLoop loop(&state, batch);
     const auto per_distance = [](Row pull, Row inverse) {
       const auto still = Lanes::equal(inverse, Lanes::zero());
       return Lanes::select(still, Lanes::zero(), pull * inverse);
@@ -53,7 +53,7 @@ class BehaviourLoop {
   }
 
  private:
-  BehaviourLoop(const StateTerm* states, BehaviourRows& rows) noexcept
+  StateMachineLoop(const StateTerm* states, StateMachineRows& rows) noexcept
       : states_(states), rows_(rows) {}
 
   void step() noexcept {
@@ -84,7 +84,7 @@ class BehaviourLoop {
   /// Notes which rows leave, and where to. The programs of all exits run, so that what they
   /// remember does not depend on who leaves.
   void test_exits(const StateTerm& state, std::uint32_t group) noexcept {
-    if (rows_.forced != nullptr) note_forced(group);
+    if (rows_.forced != nullptr) record_forced(group);
     for (std::uint32_t e = 0; e < state.exit_count; ++e) {
       const double* value = program_.evaluate(state.exits[e].when, rows_, group);
       const std::uint32_t holding =
@@ -94,7 +94,7 @@ class BehaviourLoop {
     }
   }
 
-  void note_forced(std::uint32_t group) noexcept {
+  void record_forced(std::uint32_t group) noexcept {
     for (std::uint32_t i = 0; i < Batch::kRows; ++i) {
       if ((group >> i & 1U) == 0 || rows_.forced[i] == kNotForced) continue;
       rows_.exit[i] = kNotForced;
@@ -107,11 +107,11 @@ class BehaviourLoop {
 
   void note(const StateTerm& state, std::uint32_t exit, std::uint32_t leaving) noexcept {
     const ExitTerm& term = state.exits[exit];
-    const double* fired = rows_.quantity[static_cast<std::size_t>(term.fired)];
+    const double* triggered = rows_.quantity[static_cast<std::size_t>(term.triggered)];
     for (std::uint32_t i = 0; i < Batch::kRows; ++i) {
       if ((leaving >> i & 1U) == 0) continue;
       rows_.exit[i] = exit;
-      rows_.fired_value[i] = fired[i];
+      rows_.fired_value[i] = triggered[i];
       target_[i] = term.target;
     }
     rows_.changed |= leaving;
@@ -143,15 +143,15 @@ class BehaviourLoop {
     LawLoop<Lanes>::add(state.dissipation, of, pull);
 
     if (state.limited) {
-      const Row least = Lanes::every(state.least_pull);
-      const Row most = Lanes::every(state.most_pull);
+      const Row least = Lanes::every(state.min_pull);
+      const Row most = Lanes::every(state.max_pull);
       Batch::each(
           pull, [&](Row p) { return Lanes::minimum(most, Lanes::maximum(least, p)); }, pull);
     }
     if (state.one_sided) {
       alignas(64) double elongation[Batch::kRows];
-      const Row least = Lanes::every(state.least_elongation);
-      const Row most = Lanes::every(state.most_elongation);
+      const Row least = Lanes::every(state.min_elongation);
+      const Row most = Lanes::every(state.max_elongation);
       Batch::each(
           elongation, [&](Row e) { return Lanes::minimum(most, Lanes::maximum(least, e)); },
           rows_.elongation);
@@ -250,7 +250,7 @@ class BehaviourLoop {
   }
 
   const StateTerm* states_;
-  BehaviourRows& rows_;
+  StateMachineRows& rows_;
   ProgramLoop<Lanes> program_;
   alignas(64) double pull_[Batch::kRows];
   StateIndex target_[Batch::kRows];

@@ -1,4 +1,4 @@
-// sim_node/engine/laws/liaison_id.h -- which liaison of a network is meant.
+// sim_node/engine/core/liaison_id.h -- which liaison of a network is meant.
 #pragma once
 
 #include <cstdint>

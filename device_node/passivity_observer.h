@@ -1,4 +1,4 @@
-// device_node/energy_monitor.h -- the energy that passes from the motors to the hand, and a brake
+// device_node/passivity_observer.h -- the energy that passes from the motors to the hand, and a brake
 // for a loop that makes energy.
 #pragma once
 
@@ -35,10 +35,10 @@ struct PassivitySettings {
 /// the growing share s of a force f may store up to ds |f| travel, which is added to the budget.
 /// And both accounts fall without bound in a damped scene, which would let a later fault pass for
 /// long: they are held above -tank.
-class EnergyMonitor {
+class PassivityObserver {
  public:
   /// @throws std::invalid_argument when a setting is out of range.
-  explicit EnergyMonitor(const PassivitySettings& settings);
+  explicit PassivityObserver(const PassivitySettings& settings);
 
   void start() noexcept;  ///< an empty account; the next position is the first
 

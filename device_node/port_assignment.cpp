@@ -1,5 +1,5 @@
-// device_node/scene_part.cpp
-#include "device_node/scene_part.h"
+// device_node/port_assignment.cpp
+#include "device_node/port_assignment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,9 +39,9 @@ std::string trouble_with(const msg::PortDescription& port, const DeviceConfig& d
 
 }  // namespace
 
-ScenePart part_of(const msg::SceneDescription& scene, const DeviceConfig& device,
-                  const Driver& driver) {
-  ScenePart part;
+PortAssignment part_of(const msg::SceneDescription& scene, const DeviceConfig& device,
+                       const Driver& driver) {
+  PortAssignment part;
   for (const msg::PortDescription& port : scene.ports()) {
     if (port.device_id() != device.device_id) continue;
     part.impossible = trouble_with(port, device);

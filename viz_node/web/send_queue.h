@@ -1,4 +1,4 @@
-// viz_node/web/server_feed.h -- what a page is sent, and when.
+// viz_node/web/send_queue.h -- what a page is sent, and when.
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@
 #include "node/time.h"
 #include "viz_node/frame_encoder.h"
 #include "viz_node/web/client_credit.h"
-#include "viz_node/web/server_hub.h"
+#include "viz_node/web/server_state.h"
 
 namespace cordis::viz {
 
 /// What one page has not been sent yet, the most due first.
-class Feed {
+class SendQueue {
  public:
   struct Message {
     bool is_text = false;
     std::array<asio::const_buffer, 3> parts;  ///< stay until next() is called again
   };
 
-  explicit Feed(Hub& hub) : hub_(hub) {}
+  explicit SendQueue(ServerState& hub) : hub_(hub) {}
 
   /// The next thing that is due, which counts as sent; nothing when the page has it all.
   std::optional<Message> next() {
@@ -93,7 +93,7 @@ class Feed {
                     asio::buffer(frame.link_state())}};
   }
 
-  Hub& hub_;
+  ServerState& hub_;
   ClientCredit credit_;
   bool hello_sent_ = false;
   bool frame_first_ = false;

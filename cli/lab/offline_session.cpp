@@ -1,5 +1,5 @@
-// cli/lab/stage.cpp
-#include "cli/lab/stage.h"
+// cli/lab/offline_session.cpp
+#include "cli/lab/offline_session.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -75,9 +75,9 @@ scene::NamedRange range_of(const std::vector<scene::NamedRange>& ranges, const s
 }  // namespace
 
 /// One device of the stage.
-class Stage::Player {
+class OfflineSession::Runner {
  public:
-  Player(device::LoadedDevice device, sim::DeviceExchange& simulated)
+  Runner(device::LoadedDevice device, sim::DeviceExchange& simulated)
       : device_(std::move(device)),
         channel_(simulated),
         exchange_(device_.config,
@@ -102,7 +102,8 @@ class Stage::Player {
   device::Exchange exchange_;
 };
 
-Stage::Stage(const std::string& launch_file, const std::vector<std::string>& overrides) {
+OfflineSession::OfflineSession(const std::string& launch_file,
+                               const std::vector<std::string>& overrides) {
   config::Problems problems;
   const config::Launch launch = config::load_launch(launch_file, overrides, problems);
   for (const config::LaunchNode& node : launch.nodes) {
@@ -121,30 +122,30 @@ Stage::Stage(const std::string& launch_file, const std::vector<std::string>& ove
     sim::DeviceExchange* simulated = simulation_->find(loaded.config.device_id);
     const bool is_simulated = loaded.config.driver == "mock" || loaded.config.driver == "script";
     if (simulated == nullptr || !is_simulated) continue;
-    players_.push_back(std::make_unique<Player>(std::move(loaded), *simulated));
+    players_.push_back(std::make_unique<Runner>(std::move(loaded), *simulated));
   }
   row_.resize(scene().signals.count());
   events_ = sim::EventRoom(world().network().description().state_links.size());
 }
 
-Stage::~Stage() = default;
+OfflineSession::~OfflineSession() = default;
 
-const Stage::Player* Stage::player_of(const scene::Port& port) const noexcept {
+const OfflineSession::Runner* OfflineSession::player_of(const scene::Port& port) const noexcept {
   for (const auto& player : players_) {
     if (player->config().device_id == port.device_id) return player.get();
   }
   return nullptr;
 }
 
-bool Stage::plays(const scene::Port& port) const noexcept {
+bool OfflineSession::plays(const scene::Port& port) const noexcept {
   return player_of(port) != nullptr;
 }
 
-std::string Stage::driver_of(const scene::Port& port) const {
+std::string OfflineSession::driver_of(const scene::Port& port) const {
   return player_of(port)->config().driver;
 }
 
-engine::Vec3 Stage::given(const scene::Port& port) const {
+engine::Vec3 OfflineSession::given(const scene::Port& port) const {
   if (port.role == Role::kMass) return world().position(port.mat);
   engine::Vec3 force = engine::Vec3::Zero();
   for (std::size_t i = 0; i < port.axes.size(); ++i) {
@@ -153,7 +154,7 @@ engine::Vec3 Stage::given(const scene::Port& port) const {
   return force;
 }
 
-void Stage::play_until(double time_s, const std::function<void()>& after_tick) {
+void OfflineSession::play_until(double time_s, const std::function<void()>& after_tick) {
   const double half_a_step = 0.5 * world().network().step();
   while (this->time_s() < time_s - half_a_step) {
     for (const auto& player : players_) player->speak();
@@ -166,23 +167,23 @@ void Stage::play_until(double time_s, const std::function<void()>& after_tick) {
   }
 }
 
-scene::NamedRange Stage::mats(const std::string& name) const {
+scene::NamedRange OfflineSession::mats(const std::string& name) const {
   return range_of(scene().matter, name);
 }
 
-scene::NamedRange Stage::links(const std::string& name) const {
+scene::NamedRange OfflineSession::links(const std::string& name) const {
   return range_of(scene().links, name);
 }
 
-engine::Vec3 Stage::position(const std::string& name, std::uint32_t index) const {
+engine::Vec3 OfflineSession::position(const std::string& name, std::uint32_t index) const {
   return world().position(mats(name).first + index);
 }
 
-engine::Vec3 Stage::velocity(const std::string& name, std::uint32_t index) const {
+engine::Vec3 OfflineSession::velocity(const std::string& name, std::uint32_t index) const {
   return world().velocity(mats(name).first + index);
 }
 
-double Stage::signal(const std::string& name) const {
+double OfflineSession::signal(const std::string& name) const {
   const std::vector<scene::Signal>& signals = scene().signals.signals();
   for (std::size_t i = 0; i < signals.size(); ++i) {
     if (signals[i].name == name) return row_[i];
@@ -190,7 +191,7 @@ double Stage::signal(const std::string& name) const {
   throw std::out_of_range("the scene has no signal '" + name + "'");
 }
 
-double Stage::energy_residual() const {
+double OfflineSession::energy_residual() const {
   const engine::Energy energy = world().energy();
   return energy.residual() / energy.largest;
 }

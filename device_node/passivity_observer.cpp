@@ -1,5 +1,5 @@
-// device_node/energy_monitor.cpp
-#include "device_node/energy_monitor.h"
+// device_node/passivity_observer.cpp
+#include "device_node/passivity_observer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,21 +8,21 @@
 
 namespace cordis::device {
 
-EnergyMonitor::EnergyMonitor(const PassivitySettings& settings) : settings_(settings) {
+PassivityObserver::PassivityObserver(const PassivitySettings& settings) : settings_(settings) {
   const bool valid = settings.mass_kg > 0.0 && settings.viscosity_n_s_per_m >= 0.0 &&
                      settings.budget_j >= 0.0 && settings.tank_j > 0.0 && settings.travel_m > 0.0 &&
                      settings.period_s > 0.0;
   if (!valid) throw std::invalid_argument("a setting of the energy monitor is out of range");
 }
 
-void EnergyMonitor::start() noexcept {
+void PassivityObserver::start() noexcept {
   speed_.fill(0.0);
   any_position_ = false;
   given_ = account_ = strict_ = allowance_ = damping_ = 0.0;
   caught_ = false;
 }
 
-void EnergyMonitor::observe(const AxisValues& held_n, const AxisValues& position_m) noexcept {
+void PassivityObserver::observe(const AxisValues& held_n, const AxisValues& position_m) noexcept {
   damping_ = 0.0;
   if (!std::exchange(any_position_, true)) {
     last_ = position_m;
@@ -51,7 +51,7 @@ void EnergyMonitor::observe(const AxisValues& held_n, const AxisValues& position
   damping_ = std::min(largest, strict_ * settings_.period_s / moved_squared);
 }
 
-void EnergyMonitor::allow_for_ramp(const AxisValues& wanted_n, double share) noexcept {
+void PassivityObserver::allow_for_ramp(const AxisValues& wanted_n, double share) noexcept {
   for (const double wanted : wanted_n) allowance_ += share * std::abs(wanted) * settings_.travel_m;
 }
 

@@ -1,4 +1,4 @@
-// viz_node/web/server_visitor.h -- what a browser asks for by HTTP.
+// viz_node/web/http_session.h -- what a browser asks for by HTTP.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 #include <boost/asio/buffer.hpp>
 
 #include "viz_node/web/gate.h"
-#include "viz_node/web/server_client.h"
 #include "viz_node/web/static_pages.h"
+#include "viz_node/web/websocket_session.h"
 
 namespace cordis::viz {
 
@@ -24,9 +24,9 @@ inline constexpr const char* kContentPolicy =
     "frame-ancestors 'none'";
 
 /// One HTTP connection, until it ends or becomes a Client.
-class Visitor : public std::enable_shared_from_this<Visitor> {
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  Visitor(tcp::socket&& socket, Hub& hub, const StaticPages& pages)
+  HttpSession(tcp::socket&& socket, ServerState& hub, const StaticPages& pages)
       : stream_(std::move(socket)), seat_(hub), hub_(hub), pages_(pages) {}
 
   void read() {
@@ -59,7 +59,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
                                     hub_.loopback_only);
     if (refusal) return reply(refusal->status, "text/plain; charset=utf-8", refusal->text);
     if (upgrade) {
-      std::make_shared<Client>(std::move(stream_), std::move(seat_), hub_)
+      std::make_shared<WebSocketSession>(std::move(stream_), std::move(seat_), hub_)
           ->start(http::request<http::empty_body>(request));
       return;
     }
@@ -99,8 +99,8 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
   }
 
   beast::tcp_stream stream_;
-  Seat seat_;
-  Hub& hub_;
+  ConnectionSlot seat_;
+  ServerState& hub_;
   const StaticPages& pages_;
   beast::flat_buffer buffer_{kLongestRequest};
   std::array<char, 1024> discarded_{};

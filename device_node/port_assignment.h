@@ -1,4 +1,4 @@
-// device_node/scene_part.h -- the part that a scene gives to a device.
+// device_node/port_assignment.h -- the part that a scene gives to a device.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace cordis::device {
 
 /// What the ports of a scene want of one device.
-struct ScenePart {
+struct PortAssignment {
   bool wanted = false;       ///< the scene has a port for the device
   Role role = Role::kMass;   ///< in all its ports
   std::string impossible;    ///< why the device cannot play it, one sentence; empty when it can
@@ -17,7 +17,7 @@ struct ScenePart {
 };
 
 /// Finds the ports with the device's id in a scene, and compares them with what the device has.
-ScenePart part_of(const msg::SceneDescription& scene, const DeviceConfig& device,
-                  const Driver& driver);
+PortAssignment part_of(const msg::SceneDescription& scene, const DeviceConfig& device,
+                       const Driver& driver);
 
 }  // namespace cordis::device

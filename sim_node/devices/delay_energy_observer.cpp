@@ -1,11 +1,12 @@
-// sim_node/devices/delay_account.cpp
-#include "sim_node/devices/delay_account.h"
+// sim_node/devices/delay_energy_observer.cpp
+#include "sim_node/devices/delay_energy_observer.h"
 
 #include <algorithm>
 
 namespace cordis::sim {
 
-void DelayAccount::enter(double made_j, double doubt_j, double taken_j, double moved_j) noexcept {
+void DelayEnergyObserver::enter(double made_j, double doubt_j, double taken_j,
+                                double moved_j) noexcept {
   // A law that is no potential may give back what it took, and take it again: that counts once.
   const double newly_taken = std::max(taken_j - taken_, 0.0);
   taken_ += newly_taken;

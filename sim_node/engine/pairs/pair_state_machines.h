@@ -1,4 +1,4 @@
-// sim_node/engine/pairs/pair_behaviours.h -- the behaviour of the pairs of a set.
+// sim_node/engine/pairs/pair_state_machines.h -- the state machine of the pairs of a set.
 #pragma once
 
 #include <cstddef>
@@ -6,20 +6,20 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/links/behaviour_kernel.h"
 #include "sim_node/engine/links/event_log.h"
+#include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/links/state_table.h"
 #include "sim_node/engine/network.h"
 #include "sim_node/engine/pairs/pair_block.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/pairs/pair_states.h"
-#include "sim_node/engine/links/state_table.h"
 
 namespace cordis::engine {
 
 /// What is the same for all pairs of a step.
 struct PairStep {
   const StateTable& table;
-  const BehaviourKernel& behaviours;
+  const StateKernel& state_machines;
   EventLog& log;
   std::uint64_t step;  // step count
   bool frozen;         // before step 0: no exit is tested, nothing is remembered
@@ -35,14 +35,14 @@ struct PairRest {
   }
 };
 
-/// Steps the behaviour of pairs, whatever its law and states. A pair remembers its state while it
+/// Steps the state machine of pairs, whatever its law and states. A pair remembers its state while it
 /// is in range, and as long as it is in another state than that of the start.
-class PairBehaviours {
+class PairStateMachines {
  public:
   /// @param capacity        pairs in range or bound there is room for
   /// @param block_capacity  that of the blocks it is given
-  PairBehaviours(const NetworkDescription& description, const SetLiaison& set,
-                 const StateTable& table, std::size_t capacity, std::size_t block_capacity);
+  PairStateMachines(const NetworkDescription& description, const SetLiaison& set,
+                    const StateTable& table, std::size_t capacity, std::size_t block_capacity);
 
   /// Fits what is remembered to a table that has been changed. Allocates.
   void adopt(const StateTable& table);
@@ -111,12 +111,12 @@ class PairBehaviours {
   void begin_pair(std::size_t pair, StateIndex state, const PairStep& step) noexcept;
   void find_quantities(const PairStep& step, PairBlock& block) noexcept;
   void step_batches(const PairStep& step, PairBlock& block) noexcept;
-  void note_changes(const PairStep& step, std::size_t i, const PairRows& pairs,
-                    const BehaviourRows& rows) noexcept;
+  void record_changes(const PairStep& step, std::size_t i, const PairRows& pairs,
+                      const StateMachineRows& rows) noexcept;
   void remember(double range_square, PairBlock& block) noexcept;
   void find_factors(double range_square, PairBlock& block) noexcept;
 
-  std::uint32_t behaviour_;
+  std::uint32_t state_machine_;
   double dt_;
   std::size_t row_count_;
   std::vector<std::uint32_t> mat_;  // of each member

@@ -1,4 +1,4 @@
-// sim_node/devices/delay_account.h -- whether forces that are late make more energy than a scene takes.
+// sim_node/devices/delay_energy_observer.h -- whether forces that are late make more energy than a scene takes.
 #pragma once
 
 #include "sim_node/devices/recent_peak.h"
@@ -23,7 +23,7 @@ namespace cordis::sim {
 /// is a loop that makes energy, until the scene has taken what was too much.
 ///
 /// As long as other things in the scene lose more energy than a loop makes, it is not seen.
-class DelayAccount {
+class DelayEnergyObserver {
  public:
   static constexpr double kShare = 0.98;    ///< of D
   static constexpr double kBudget = 0.001;  ///< [J]
@@ -31,7 +31,7 @@ class DelayAccount {
   static constexpr double kTank = 0.05;     ///< most that A remembers to be below 0 [J]
 
   /// @param memory  calls of enter() for which f . dx counts, at least
-  explicit DelayAccount(int memory) noexcept : moved_(memory) {}
+  explicit DelayEnergyObserver(int memory) noexcept : moved_(memory) {}
 
   /// Once a tick for every device.
   /// @param made_j   by how much its M has grown

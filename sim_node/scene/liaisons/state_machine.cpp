@@ -1,4 +1,4 @@
-#include "sim_node/scene/liaisons/behaviour.h"
+#include "sim_node/scene/liaisons/state_machine.h"
 
 #include <algorithm>
 #include <array>
@@ -13,10 +13,10 @@ namespace {
 using config::Problems;
 using config::Range;
 using config::Value;
-using engine::Exit;
 using engine::LinkState;
+using engine::Transition;
 
-constexpr std::size_t kMostExits = 1'000;  // of a liaison
+constexpr std::size_t kMaxExits = 1'000;  // of a liaison
 
 /// What a state's exits are read from.
 struct ExitSource {
@@ -42,7 +42,7 @@ LinkState read_physics(config::MappingReader& reader, const ParameterValues& par
   return state;
 }
 
-void read_rest(config::MappingReader& reader, const ExitSource& source, Exit& exit) {
+void read_rest(config::MappingReader& reader, const ExitSource& source, Transition& exit) {
   const Value rest = reader.optional_value("rest");
   if (!rest.exists() || rest.text() == "keep") return;
   if (rest.text() == "here") {
@@ -64,8 +64,9 @@ void read_rest(config::MappingReader& reader, const ExitSource& source, Exit& ex
   }
 }
 
-Exit read_exit(config::MappingReader& reader, const ExitSource& source, std::uint32_t& next_slot) {
-  Exit exit;
+Transition read_exit(config::MappingReader& reader, const ExitSource& source,
+                     std::uint32_t& next_slot) {
+  Transition exit;
   const std::string to = reader.required_choice("to", source.states);
   const auto target = std::find(source.states.begin(), source.states.end(), to);
   exit.target = static_cast<std::uint32_t>(target - source.states.begin());
@@ -81,7 +82,7 @@ Exit read_exit(config::MappingReader& reader, const ExitSource& source, std::uin
                             "compare it: " + when.text() + " > 0");
     } else if (compiled) {
       exit.when = std::move(compiled->program);
-      if (compiled->first != engine::Quantity::kNone) exit.fired = compiled->first;
+      if (compiled->first != engine::Quantity::kNone) exit.triggered = compiled->first;
     }
   }
   read_rest(reader, source, exit);
@@ -90,7 +91,7 @@ Exit read_exit(config::MappingReader& reader, const ExitSource& source, std::uin
 }
 
 void read_state(const Value::Entry& entry, const std::string& liaison, const ExitSource& source,
-                engine::Behaviour& behaviour, BehaviourPlaces& places) {
+                engine::StateMachine& state_machine, StateMachinePlaces& places) {
   const std::string what = "state '" + entry.key + "' of " + liaison;
   config::MappingReader reader(entry.value, what, source.problems);
   if (!is_free_name(entry.key)) {
@@ -98,42 +99,43 @@ void read_state(const Value::Entry& entry, const std::string& liaison, const Exi
   }
   LinkState state = read_physics(reader, source.parameters, source.problems);
   state.name = entry.key;
-  state.first_exit = static_cast<std::uint32_t>(behaviour.exits.size());
+  state.first_exit = static_cast<std::uint32_t>(state_machine.exits.size());
   std::uint32_t next_slot = 0;
   const Value exits = reader.optional_sequence("exits");
-  if (behaviour.exits.size() + exits.items().size() > kMostExits) {
-    reader.error_at("exits", liaison + " has more than " + std::to_string(kMostExits) + " exits");
+  if (state_machine.exits.size() + exits.items().size() > kMaxExits) {
+    reader.error_at("exits", liaison + " has more than " + std::to_string(kMaxExits) + " exits");
     return;
   }
   for (const Value& exit : exits.items()) {
     config::MappingReader exit_reader(exit, "exit of " + what, source.problems);
-    behaviour.exits.push_back(read_exit(exit_reader, source, next_slot));
+    state_machine.exits.push_back(read_exit(exit_reader, source, next_slot));
     places.exits.push_back(exit_reader.place_of("when"));
   }
-  state.last_exit = static_cast<std::uint32_t>(behaviour.exits.size());
+  state.last_exit = static_cast<std::uint32_t>(state_machine.exits.size());
   places.states.push_back({entry.key_place, reader.optional_truth("final", false)});
   reader.finish();
-  behaviour.states.push_back(std::move(state));
+  state_machine.states.push_back(std::move(state));
 }
 
-constexpr std::array<const char*, 6> kSignsOfBehaviour{
+constexpr std::array<const char*, 6> kSignsOfStateMachine{
     {"states", "elasticity", "dissipation", "force_limit_n", "pulls", "pushes"}};
 
 }  // namespace
 
-bool looks_like_behaviour(const Value& liaison) {
-  return std::any_of(kSignsOfBehaviour.begin(), kSignsOfBehaviour.end(),
+bool looks_like_state_machine(const Value& liaison) {
+  return std::any_of(kSignsOfStateMachine.begin(), kSignsOfStateMachine.end(),
                      [&](const char* key) { return liaison.find(key).exists(); });
 }
 
-engine::Behaviour read_behaviour(config::MappingReader& reader, const ParameterValues& parameters,
-                                 BehaviourPlaces& places, Problems& problems) {
-  engine::Behaviour behaviour;
+engine::StateMachine read_state_machine(config::MappingReader& reader,
+                                        const ParameterValues& parameters,
+                                        StateMachinePlaces& places, Problems& problems) {
+  engine::StateMachine state_machine;
   if (!reader.has("states")) {
-    behaviour.states.push_back(read_physics(reader, parameters, problems));
+    state_machine.states.push_back(read_physics(reader, parameters, problems));
     places.states.push_back({reader.place(), true});
     reader.optional_value("states");
-    return behaviour;
+    return state_machine;
   }
   const Value states = reader.optional_mapping("states");
   std::vector<std::string> names;
@@ -146,15 +148,15 @@ engine::Behaviour read_behaviour(config::MappingReader& reader, const ParameterV
   }
   if (names.empty() || names.size() > engine::kMaxStates) {
     reader.optional_value("start");
-    return behaviour;
+    return state_machine;
   }
   const std::string start = reader.optional_choice("start", names.front(), names);
-  behaviour.start =
+  state_machine.start =
       static_cast<std::uint32_t>(std::find(names.begin(), names.end(), start) - names.begin());
   const ExitSource source{parameters, names, problems};
   for (const Value::Entry& entry : states.entries())
-    read_state(entry, reader.what(), source, behaviour, places);
-  return behaviour;
+    read_state(entry, reader.what(), source, state_machine, places);
+  return state_machine;
 }
 
 }  // namespace cordis::scene

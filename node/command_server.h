@@ -1,4 +1,4 @@
-// node/command_desk.h -- which commands are meant for a node, and that each is obeyed once.
+// node/command_server.h -- which commands are meant for a node, and that each is obeyed once.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@ using Obey = std::function<Answer(const msg::ControlCommand&)>;
 
 /// Picks the commands for one node, and answers each. A sender that hears no reply sends the same
 /// command again: it is answered again, and not obeyed again.
-class CommandDesk {
+class CommandServer {
  public:
   static constexpr std::size_t kRemembered = 64;
 
-  CommandDesk(std::string node, std::string kind, Obey obey);
+  CommandServer(std::string node, std::string kind, Obey obey);
 
   /// The reply to a command; nothing when it is for others.
   std::optional<msg::ControlReply> take(const msg::ControlCommand& command);

@@ -1,4 +1,4 @@
-// sim_node/engine/laws/behaviour.h -- what a liaison with states is.
+// sim_node/engine/links/state_machine.h -- what a liaison with states is.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/engine/laws/law.h"
 #include "sim_node/engine/expressions/program.h"
+#include "sim_node/engine/laws/law.h"
 
 namespace cordis::engine {
 
@@ -28,7 +28,7 @@ struct LinkState {
   bool pulls = true;       ///< false: clamped, no pulling at the release of a contact
   bool pushes = true;      ///< false: a thread
   double force_limit = std::numeric_limits<double>::infinity();  ///< [N], > 0
-  std::uint32_t first_exit = 0;  ///< its exits are Behaviour::exits[first_exit, last_exit)
+  std::uint32_t first_exit = 0;  ///< its exits are State machine::exits[first_exit, last_exit)
   std::uint32_t last_exit = 0;
 };
 
@@ -40,33 +40,34 @@ enum class RestRule : std::uint8_t {
 };
 
 /// A state change condition, and where it leads.
-struct Exit {
+struct Transition {
   Program when;
-  std::uint32_t target = 0;  ///< a state of the behaviour; may be the state itself
+  std::uint32_t target = 0;  ///< a state of the state machine; may be the state itself
   RestRule rest = RestRule::kKeep;
-  Program rest_length;                     ///< of RestRule::kExpression, otherwise empty
-  Quantity fired = Quantity::kElongation;  ///< the one an event shows: the first of the condition
+  Program rest_length;  ///< of RestRule::kExpression, otherwise empty
+  Quantity triggered =
+      Quantity::kElongation;  ///< the one an event shows: the first of the condition
 };
 
 /// A liaison with states. In each step, for each link: the quantities; the exits of its present
 /// state in the order written, of which the first that holds changes the state; the pull of the
 /// state it is in then. So a link changes at most once a step.
 /// [Luc90 III.2.3 b formalism to modify the liaison]
-struct Behaviour {
+struct StateMachine {
   std::string name;
   std::vector<LinkState> states;
-  std::vector<Exit> exits;
+  std::vector<Transition> exits;
   std::uint32_t start = 0;  ///< state at step 0
 
   bool is_stateless() const noexcept { return states.size() == 1 && exits.empty(); }
 };
 
-/// The most states a behaviour may have.
+/// The most states a state machine may have.
 inline constexpr std::size_t kMaxStates = 64;
 
 /// @throws std::invalid_argument beginning with `name`, with the first thing that is wrong: no
 /// state, a value out of range, an exit or a target that does not exist, a program that is not
 /// well-formed, a slot used twice by the exits of a state.
-void check_behaviour(const Behaviour& behaviour, const std::string& name);
+void check_state_machine(const StateMachine& state_machine, const std::string& name);
 
 }  // namespace cordis::engine

@@ -1,4 +1,4 @@
-// cli/lab/stage.h -- a launch file played in one process: its scene and its devices, without
+// cli/lab/offline_session.h -- a launch file played in one process: its scene and its devices, without
 // DDS and without clocks.
 #pragma once
 
@@ -10,21 +10,22 @@
 
 #include "device_node/exchange.h"
 #include "sim_node/run/event_room.h"
-#include "sim_node/sim_config.h"
 #include "sim_node/run/simulation.h"
+#include "sim_node/sim_config.h"
 
 namespace cordis::cli {
 
 /// The scene of a launch file and all its devices, with their own drivers and guards, in lockstep:
 /// what a run of the processes computes, bit for bit.
-class Stage {
+class OfflineSession {
  public:
   /// A device whose driver is hardware stays away, its ports at rest.
   /// @param launch_file  its path
   /// @param overrides    as on the command line of `cordis run`
   /// @throws config::ConfigError with all problems of the files.
-  explicit Stage(const std::string& launch_file, const std::vector<std::string>& overrides = {});
-  ~Stage();
+  explicit OfflineSession(const std::string& launch_file,
+                          const std::vector<std::string>& overrides = {});
+  ~OfflineSession();
 
   /// Plays on until so much time is simulated. @param after_tick  called once per gesture period
   /// @throws std::runtime_error when the scene diverges.
@@ -57,11 +58,11 @@ class Stage {
   double energy_residual() const;
 
  private:
-  class Player;
-  const Player* player_of(const scene::Port& port) const noexcept;
+  class Runner;
+  const Runner* player_of(const scene::Port& port) const noexcept;
 
   std::unique_ptr<sim::Simulation> simulation_;
-  std::vector<std::unique_ptr<Player>> players_;
+  std::vector<std::unique_ptr<Runner>> players_;
   std::vector<double> row_;
   sim::EventRoom events_;
 };

@@ -1,4 +1,4 @@
-// viz_node/web/server_client.h -- the connection to one page.
+// viz_node/web/websocket_session.h -- the connection to one page.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 #include "node/time.h"
 #include "viz_node/page_text.h"
-#include "viz_node/web/server_feed.h"
+#include "viz_node/web/send_queue.h"
 
 namespace cordis::viz {
 
@@ -21,16 +21,16 @@ inline constexpr std::size_t kLongestFromClient = 1024;  // [bytes]
 
 /// One page. Sends one message at a time, whatever is most due; reads acknowledgements and
 /// commands.
-class Client : public std::enable_shared_from_this<Client> {
+class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
-  Client(beast::tcp_stream&& stream, Seat&& seat, Hub& hub)
+  WebSocketSession(beast::tcp_stream&& stream, ConnectionSlot&& seat, ServerState& hub)
       : stream_(std::move(stream)), seat_(std::move(seat)), hub_(hub) {}
-  ~Client() {
+  ~WebSocketSession() {
     hub_.clients.erase(this);
     if (joined_) spdlog::debug("a page left, {} frames passed it by", feed_.credit().dropped());
   }
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
+  WebSocketSession(const WebSocketSession&) = delete;
+  WebSocketSession& operator=(const WebSocketSession&) = delete;
 
   void start(const http::request<http::empty_body>& request) {
     beast::get_lowest_layer(stream_).expires_never();
@@ -60,7 +60,7 @@ class Client : public std::enable_shared_from_this<Client> {
   }
 
  private:
-  void send(const Feed::Message& message) {
+  void send(const SendQueue::Message& message) {
     writing_ = true;
     stream_.binary(!message.is_text);
     stream_.async_write(message.parts, [self = shared_from_this()](ErrorCode error, std::size_t) {
@@ -100,9 +100,9 @@ class Client : public std::enable_shared_from_this<Client> {
   }
 
   websocket::stream<beast::tcp_stream> stream_;
-  Seat seat_;
-  Hub& hub_;
-  Feed feed_{hub_};
+  ConnectionSlot seat_;
+  ServerState& hub_;
+  SendQueue feed_{hub_};
   beast::flat_buffer incoming_;
   bool joined_ = false;
   bool writing_ = false;

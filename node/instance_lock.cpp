@@ -1,5 +1,5 @@
-// node/claim.cpp
-#include "node/claim.h"
+// node/instance_lock.cpp
+#include "node/instance_lock.h"
 
 #include <algorithm>
 #include <cstddef>

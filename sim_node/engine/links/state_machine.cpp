@@ -1,5 +1,5 @@
-// sim_node/engine/laws/behaviour.cpp
-#include "sim_node/engine/laws/behaviour.h"
+// sim_node/engine/links/state_machine.cpp
+#include "sim_node/engine/links/state_machine.h"
 
 #include <cmath>
 
@@ -24,10 +24,11 @@ std::vector<std::uint32_t> slot_uses(const Program& program) {
   return slots;
 }
 
-void check_exit(const Behaviour& behaviour, const Exit& exit, const std::string& name) {
+void check_exit(const StateMachine& state_machine, const Transition& exit,
+                const std::string& name) {
   check_program(exit.when, name + ": condition");
-  require(exit.target < behaviour.states.size(), name + ": target", "a state of the behaviour");
-  require(static_cast<std::size_t>(exit.fired) < kQuantityCount, name + ": fired",
+  require(exit.target < state_machine.states.size(), name + ": target", "a state of the state machine");
+  require(static_cast<std::size_t>(exit.triggered) < kQuantityCount, name + ": fired",
           "a known quantity");
   if (exit.rest == RestRule::kExpression) {
     check_program(exit.rest_length, name + ": rest length");
@@ -39,17 +40,18 @@ void check_exit(const Behaviour& behaviour, const Exit& exit, const std::string&
   }
 }
 
-void check_state(const Behaviour& behaviour, const LinkState& state, const std::string& name) {
+void check_state(const StateMachine& state_machine, const LinkState& state,
+                 const std::string& name) {
   require(is_finite_and_at_least_zero(state.stiffness), name + ": stiffness", "finite and >= 0");
   require(is_finite_and_at_least_zero(state.viscosity), name + ": viscosity", "finite and >= 0");
   require(state.force_limit > 0.0, name + ": force limit", "> 0");
   check_elasticity(state.elasticity, name + ": elasticity");
   check_dissipation(state.dissipation, name + ": dissipation");
-  require(state.first_exit <= state.last_exit && state.last_exit <= behaviour.exits.size(),
-          name + ": exits", "a range of the exits of the behaviour");
+  require(state.first_exit <= state.last_exit && state.last_exit <= state_machine.exits.size(),
+          name + ": exits", "a range of the exits of the state machine");
   std::vector<bool> used(kMaxSlots, false);
   for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
-    for (const std::uint32_t slot : slot_uses(behaviour.exits[e].when)) {
+    for (const std::uint32_t slot : slot_uses(state_machine.exits[e].when)) {
       require(!used[slot], name + ": slot " + std::to_string(slot),
               "used once among the exits of the state");
       used[slot] = true;
@@ -59,16 +61,17 @@ void check_state(const Behaviour& behaviour, const LinkState& state, const std::
 
 }  // namespace
 
-void check_behaviour(const Behaviour& behaviour, const std::string& name) {
-  require(!behaviour.states.empty(), name + ": number of states", "at least 1");
-  require(behaviour.states.size() <= kMaxStates, name + ": number of states", "at most 64");
-  require(behaviour.start < behaviour.states.size(), name + ": start", "a state of the behaviour");
-  for (std::size_t e = 0; e < behaviour.exits.size(); ++e) {
-    check_exit(behaviour, behaviour.exits[e], name + ": exit " + std::to_string(e));
+void check_state_machine(const StateMachine& state_machine, const std::string& name) {
+  require(!state_machine.states.empty(), name + ": number of states", "at least 1");
+  require(state_machine.states.size() <= kMaxStates, name + ": number of states", "at most 64");
+  require(state_machine.start < state_machine.states.size(), name + ": start",
+          "a state of the state machine");
+  for (std::size_t e = 0; e < state_machine.exits.size(); ++e) {
+    check_exit(state_machine, state_machine.exits[e], name + ": exit " + std::to_string(e));
   }
-  for (std::size_t s = 0; s < behaviour.states.size(); ++s) {
-    const LinkState& state = behaviour.states[s];
-    check_state(behaviour, state, name + ": " + quoted("state", s, state.name));
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    const LinkState& state = state_machine.states[s];
+    check_state(state_machine, state, name + ": " + quoted("state", s, state.name));
   }
 }
 

@@ -1,5 +1,5 @@
-// node/command_desk.cpp
-#include "node/command_desk.h"
+// node/command_server.cpp
+#include "node/command_server.h"
 
 #include <algorithm>
 #include <exception>
@@ -7,10 +7,10 @@
 
 namespace cordis::node {
 
-CommandDesk::CommandDesk(std::string node, std::string kind, Obey obey)
+CommandServer::CommandServer(std::string node, std::string kind, Obey obey)
     : node_(std::move(node)), kind_(std::move(kind)), obey_(std::move(obey)) {}
 
-std::optional<msg::ControlReply> CommandDesk::take(const msg::ControlCommand& command) {
+std::optional<msg::ControlReply> CommandServer::take(const msg::ControlCommand& command) {
   const std::string& target = command.target();
   if (target != "*" && target != node_ && target != kind_) return std::nullopt;
 

@@ -1,5 +1,5 @@
-// sim_node/engine/pairs/pair_behaviours.cpp
-#include "sim_node/engine/pairs/pair_behaviours.h"
+// sim_node/engine/pairs/pair_state_machines.cpp
+#include "sim_node/engine/pairs/pair_state_machines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +12,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-PairBehaviours::PairBehaviours(const NetworkDescription& description, const SetLiaison& set,
-                               const StateTable& table, std::size_t capacity,
-                               std::size_t block_capacity)
-    : behaviour_(set.behaviour),
+PairStateMachines::PairStateMachines(const NetworkDescription& description, const SetLiaison& set,
+                                     const StateTable& table, std::size_t capacity,
+                                     std::size_t block_capacity)
+    : state_machine_(set.state_machine),
       dt_(description.step),
       row_count_(set.set_p.size()),
       block_capacity_(block_capacity),
@@ -35,8 +35,8 @@ PairBehaviours::PairBehaviours(const NetworkDescription& description, const SetL
   adopt(table);
 }
 
-void PairBehaviours::adopt(const StateTable& table) {
-  start_ = table.start_state(behaviour_);
+void PairStateMachines::adopt(const StateTable& table) {
+  start_ = table.start_state(state_machine_);
   padding_ = table.padding_state();
   needs_velocity_ = false;
   for (const Quantity quantity :
@@ -46,7 +46,7 @@ void PairBehaviours::adopt(const StateTable& table) {
   needs_mass_ = table.needs(Quantity::kMassA) || table.needs(Quantity::kMassB);
   needs_impulse_ = table.needs(Quantity::kImpulse);
   const bool was_stateless = stateless_;
-  stateless_ = table.behaviours()[behaviour_].is_stateless();
+  stateless_ = table.state_machines()[state_machine_].is_stateless();
   if (!stateless_ && was_stateless) {
     states_ = PairStates(row_count_, capacity_, table.slot_count());
   } else if (!stateless_ && states_.slot_count() != table.slot_count()) {
@@ -55,16 +55,16 @@ void PairBehaviours::adopt(const StateTable& table) {
   memory_.assign(block_capacity_ * table.slot_count(), kNoValue);
 }
 
-void PairBehaviours::begin_step(const PairStep& step) noexcept {
+void PairStateMachines::begin_step(const PairStep& step) noexcept {
   switching_ = 0.0;
   forgotten_ = 0;
   if (!stateless_ && !step.frozen) states_.begin_step();
 }
 
 /// Puts the bound pairs of the last step that are out of range among those in range.
-std::size_t PairBehaviours::add_bound(const PairKernel& kernel, const PairStep& step,
-                                      const MemberColumns& members, std::size_t a,
-                                      std::size_t count, const PairRow& row) noexcept {
+std::size_t PairStateMachines::add_bound(const PairKernel& kernel, const PairStep& step,
+                                         const MemberColumns& members, std::size_t a,
+                                         std::size_t count, const PairRow& row) noexcept {
   if (!remembers(step)) return count;
   std::size_t merged = 0;
   std::size_t next = 0;
@@ -80,8 +80,8 @@ std::size_t PairBehaviours::add_bound(const PairKernel& kernel, const PairStep& 
   return kernel.gather_pairs(members, a, merged_.data(), merged, kInfinity, row);
 }
 
-void PairBehaviours::step(const PairStep& step, const MemberColumns& members, double range_square,
-                          PairBlock& block) noexcept {
+void PairStateMachines::step(const PairStep& step, const MemberColumns& members,
+                             double range_square, PairBlock& block) noexcept {
   if (needs_mass_) find_masses(block.rows());
   if (stateless_) {
     find_plain_pulls(step, block);
@@ -95,7 +95,7 @@ void PairBehaviours::step(const PairStep& step, const MemberColumns& members, do
   find_factors(range_square, block);
 }
 
-void PairBehaviours::find_plain_pulls(const PairStep& step, PairBlock& block) noexcept {
+void PairStateMachines::find_plain_pulls(const PairStep& step, PairBlock& block) noexcept {
   const PairRow pairs = block.rows().pairs;
   PlainRows plain;
   plain.count = block.padded_count();
@@ -108,11 +108,11 @@ void PairBehaviours::find_plain_pulls(const PairStep& step, PairBlock& block) no
   plain.rate = 1.0 / dt_;
   plain.factor = block.factor();
   plain.viscous_factor = block.viscous_factor();
-  step.behaviours.pulls(step.table.terms()[start_], plain);
+  step.state_machines.pulls(step.table.terms()[start_], plain);
 }
 
 /// Of each pair of the block what it remembers, or what a new one begins with.
-void PairBehaviours::recall(const PairStep& step, PairBlock& block) noexcept {
+void PairStateMachines::recall(const PairStep& step, PairBlock& block) noexcept {
   const std::size_t slots = states_.slot_count();
   const std::uint32_t* column = block.rows().pairs.column;
   for (std::size_t a = block.first(); a < block.last(); ++a) {
@@ -138,7 +138,8 @@ void PairBehaviours::recall(const PairStep& step, PairBlock& block) noexcept {
   for (std::size_t i = block.count(); i < block.padded_count(); ++i) begin_pair(i, padding_, step);
 }
 
-void PairBehaviours::begin_pair(std::size_t pair, StateIndex state, const PairStep& step) noexcept {
+void PairStateMachines::begin_pair(std::size_t pair, StateIndex state,
+                                   const PairStep& step) noexcept {
   state_[pair] = state;
   array(kPull)[pair] = 0.0;
   array(kImpulse)[pair] = 0.0;
@@ -146,14 +147,15 @@ void PairBehaviours::begin_pair(std::size_t pair, StateIndex state, const PairSt
   for (std::size_t s = 0; s < states_.slot_count(); ++s) memory_of(pair)[s * kPairBatch] = kNoValue;
 }
 
-void PairBehaviours::find_masses(const PairRows& rows) noexcept {
+void PairStateMachines::find_masses(const PairRows& rows) noexcept {
   for (std::size_t i = 0; i < padded(rows.count, kPairBatch); ++i) {
     array(kMassA)[i] = mass_[rows.column_a[i] / 4];
     array(kMassB)[i] = mass_[rows.pairs.column[i] / 4];
   }
 }
 
-void PairBehaviours::find_velocities(const MemberColumns& members, const PairRows& rows) noexcept {
+void PairStateMachines::find_velocities(const MemberColumns& members,
+                                        const PairRows& rows) noexcept {
   const double rate = 1.0 / dt_;
   const PairRow& pairs = rows.pairs;
   for (std::size_t i = 0; i < padded(rows.count, kPairBatch); ++i) {
@@ -172,7 +174,7 @@ void PairBehaviours::find_velocities(const MemberColumns& members, const PairRow
   }
 }
 
-void PairBehaviours::find_quantities(const PairStep& step, PairBlock& block) noexcept {
+void PairStateMachines::find_quantities(const PairStep& step, PairBlock& block) noexcept {
   const double rate = 1.0 / dt_;
   const PairRow pairs = block.rows().pairs;
   const double* rest_length = block.rest_length();
@@ -188,23 +190,23 @@ void PairBehaviours::find_quantities(const PairStep& step, PairBlock& block) noe
   }
 }
 
-void PairBehaviours::step_batches(const PairStep& step, PairBlock& block) noexcept {
-  alignas(64) double elastic_before[kBehaviourBatch] = {};
+void PairStateMachines::step_batches(const PairStep& step, PairBlock& block) noexcept {
+  alignas(64) double elastic_before[kStateBatch] = {};
   const PairRows pairs = block.rows();
-  BehaviourRows rows{};
+  StateMachineRows rows{};
   rows.dt = dt_;
   rows.rate = 1.0 / dt_;
   rows.now = static_cast<double>(step.step);
   rows.frozen = step.frozen;
   rows.memory_slots = states_.slot_count();
   rows.elastic_before = elastic_before;
-  for (std::size_t i = 0; i < block.padded_count(); i += kBehaviourBatch) {
+  for (std::size_t i = 0; i < block.padded_count(); i += kStateBatch) {
     const auto set = [&rows](Quantity quantity, const double* values) {
       rows.quantity[static_cast<std::size_t>(quantity)] = values;
     };
     rows.growth = pairs.pairs.growth + i;
     rows.still = 0;
-    for (std::uint32_t j = 0; j < kBehaviourBatch; ++j) {
+    for (std::uint32_t j = 0; j < kStateBatch; ++j) {
       rows.still |= static_cast<std::uint32_t>(pairs.pairs.square[i + j] == 0.0) << j;
     }
     rows.state = state_.data() + i;
@@ -228,26 +230,26 @@ void PairBehaviours::step_batches(const PairStep& step, PairBlock& block) noexce
     set(Quantity::kRestLength, rows.rest_length);
     set(Quantity::kMassA, array(kMassA) + i);
     set(Quantity::kMassB, array(kMassB) + i);
-    step.behaviours.step(step.table.terms(), rows);
-    if (rows.changed != 0) note_changes(step, i, pairs, rows);
+    step.state_machines.step(step.table.terms(), rows);
+    if (rows.changed != 0) record_changes(step, i, pairs, rows);
   }
 }
 
-void PairBehaviours::note_changes(const PairStep& step, std::size_t i, const PairRows& pairs,
-                                  const BehaviourRows& rows) noexcept {
-  const StateIndex first = step.table.first_state(behaviour_);
-  for (std::size_t j = 0; j < kBehaviourBatch; ++j) {
+void PairStateMachines::record_changes(const PairStep& step, std::size_t i, const PairRows& pairs,
+                                       const StateMachineRows& rows) noexcept {
+  const StateIndex first = step.table.first_state(state_machine_);
+  for (std::size_t j = 0; j < kStateBatch; ++j) {
     if ((rows.changed >> j & 1U) == 0) continue;
     const double energy = step.table.change_energy(rows, j);
     switching_ += energy;
     step.log.add({step.step, kNoLink, mat_[pairs.column_a[i + j] / 4],
-                  mat_[pairs.pairs.column[i + j] / 4], behaviour_, rows.from[j] - first,
-                  rows.state[j] - first, step.table.fired(rows.from[j], rows.exit[j]),
+                  mat_[pairs.pairs.column[i + j] / 4], state_machine_, rows.from[j] - first,
+                  rows.state[j] - first, step.table.triggered(rows.from[j], rows.exit[j]),
                   rows.fired_value[j], energy});
   }
 }
 
-void PairBehaviours::remember(double range_square, PairBlock& block) noexcept {
+void PairStateMachines::remember(double range_square, PairBlock& block) noexcept {
   const PairRow pairs = block.rows().pairs;
   for (std::size_t a = block.first(); a < block.last(); ++a) {
     for (std::size_t i = block.begin_of(a); i < block.end_of(a); ++i) {
@@ -261,7 +263,7 @@ void PairBehaviours::remember(double range_square, PairBlock& block) noexcept {
   }
 }
 
-void PairBehaviours::find_factors(double range_square, PairBlock& block) noexcept {
+void PairStateMachines::find_factors(double range_square, PairBlock& block) noexcept {
   const PairRow pairs = block.rows().pairs;
   const double* pull = array(kPull);
   const double* elastic = array(kElastic);

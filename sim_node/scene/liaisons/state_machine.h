@@ -1,0 +1,32 @@
+// sim_node/scene/liaisons/state_machine.h -- liaisons with states, as a scene writes them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim_node/engine/links/state_machine.h"
+#include "sim_node/scene/language/formula.h"
+
+namespace cordis::scene {
+
+/// Where the parts of a state machine stand, and what was said about them beside their physics.
+struct StateMachinePlaces {
+  struct State {
+    config::Place place;
+    bool is_final = false;  ///< the person knows that nothing leads out of it
+  };
+  std::vector<State> states;
+  std::vector<config::Place> exits;  ///< of their conditions
+};
+
+/// Reads the keys `states` and `start`, or those of a single state, which then stand in the liaison
+/// itself. Whatever is wrong is a problem; then the state machine is not to be used.
+/// The language is described in docs/language.md. [Luc90 III.2.3 b formalism to modify the liaison]
+engine::StateMachine read_state_machine(config::MappingReader& reader,
+                                        const ParameterValues& parameters,
+                                        StateMachinePlaces& places, config::Problems& problems);
+
+/// Whether the keys of a liaison without `kind` can only be those of a state machine.
+bool looks_like_state_machine(const config::Value& liaison);
+
+}  // namespace cordis::scene
