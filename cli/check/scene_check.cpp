@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim_node/plan/reduction/modal_truncation.h"
+#include "sim_node/checks/rate_choice.h"
 #include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/plan/reference/load.h"
 #include "sim_node/plan/reference/trial_run.h"
@@ -50,12 +50,7 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.scene = plan::reduce(std::move(check.scene), problems);
   problems.throw_if_any();
   if (check.scene.accuracy) {
-    check.choice =
-        plan::choose(check.scene.network, plan::wish_of(check.scene), check.scene.gesture_rate_hz,
-                     check.scene.integrator_is_open
-                         ? plan::integrators_for(check.scene.network)
-                         : std::vector<std::string>{to_string(check.scene.network.integrator)},
-                     !check.scene.ports.empty());
+    check.choice = sim::rate_selection_of(check.scene);
     if (check.scene.rate_is_open) {
       scene::set_step(check.scene, check.choice->rate_hz,
                       engine::integrator_named(check.choice->integrator));
@@ -64,9 +59,6 @@ SceneCheck check_scene(const CheckOptions& options) {
   constexpr double kBand = 100.0;
   if (check.options.band_hz == 0.0) {
     check.options.band_hz = check.scene.accuracy ? check.scene.accuracy->band_hz : kBand;
-  }
-  if (auto modes = plan::modal_truncation(check.scene, check.options.band_hz)) {
-    check.scene.reductions.push_back(std::move(*modes));
   }
   const engine::NetworkDescription& network = check.scene.network;
   check.plan = plan::plan_of(network, check.options.band_hz);
