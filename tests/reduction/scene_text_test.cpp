@@ -98,7 +98,7 @@ TEST(SceneText, PartsOfParallelLiaisonsBecomeLiaisonsOfTheirOwn) {
       "    parallel:\n"
       "      - thread\n"
       "      - {kind: spring, stiffness_n_per_m: k}\n"
-      "      - {kind: behaviour, start: whole, states: {\n"
+      "      - {kind: state_machine, start: whole, states: {\n"
       "          whole: {stiffness_n_per_m: 2 * k, exits: [{to: off, when: elongation_m > "
       "yield_m}]},\n"
       "          off: {final: true}}}\n"
