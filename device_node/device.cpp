@@ -89,7 +89,7 @@ void Device::describe() {
   told.rate_hz(limits.rate_hz);
   told.lowest_m(limits.lowest_m);
   told.highest_m(limits.highest_m);
-  told.slice_width_m(limits.slice_width_m);
+  told.key_pitch_m(limits.key_pitch_m);
   told.force_limit_n(limits.force_limit_n);
   told.moving_mass_kg(limits.coordinate_mass_kg());
   told.viscosity_n_s_per_m(limits.coordinate_viscosity_n_s_per_m());

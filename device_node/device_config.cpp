@@ -156,20 +156,20 @@ void check_stand_in(const DeviceConfig& config, const config::LaunchNode& node, 
                     config::Problems& problems) {
   constexpr double kLowestRate = 100.0;  // two samples within the deadline of the topic, 20 ms
   if (config.name == node.name) return;
-  if (!node.section.find("plays").exists()) {
+  if (!node.section.find("standby_for").exists()) {
     problems.error(node.place,
-                   "'plays' belongs in the launch file, where every node of the session "
+                   "'standby_for' belongs in the launch file, where every node of the session "
                    "reads it, and not in the device file of '" +
                        node.name + "'");
   }
   if (clock == config::Clock::kLockstep) {
     problems.error(node.place,
-                   "a lockstep session has no stand-ins: '" + node.name + "' cannot play '" +
+                   "a lockstep session has no hot standby: '" + node.name + "' cannot play '" +
                        config.name + "'",
-                   "clock: realtime, or without 'plays'");
+                   "clock: realtime, or without 'standby_for'");
   }
   if (config.layout.rate_hz < kLowestRate) {
-    problems.error(node.place, "'" + node.name + "' plays '" + config.name +
+    problems.error(node.place, "'" + node.name + "' is hot standby for '" + config.name +
                                    "', for which rate_hz must be at least " +
                                    number_text(kLowestRate) + ", got " +
                                    number_text(config.layout.rate_hz));
@@ -200,7 +200,7 @@ std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig
 
 std::string what_it_is(const DeviceConfig& config) {
   const int count = config.layout.count;
-  const double width_mm = config.limits.slice_width_m * 1e3;
+  const double width_mm = config.limits.key_pitch_m * 1e3;
   if (width_mm == 0.0) {
     return count_text(static_cast<std::size_t>(count), "axis", "axes") + ", driver " +
            config.driver;

@@ -91,6 +91,63 @@ TEST(Layering, EveryIncludePointsToItsOwnLevelOrDownwards) {
   }
 }
 
+/// Floors of a part of the tree, the lowest first. A file includes its own floor and those below.
+/// A file belongs to the floor whose entry is the longest beginning of its path.
+const std::vector<std::vector<std::vector<std::string>>> kFloors = {
+    {{"sim_node/engine/core/"},
+     {"sim_node/engine/simd/"},
+     {"sim_node/engine/expressions/"},
+     {"sim_node/engine/laws/"},
+     {"sim_node/engine/description/"},
+     {"sim_node/engine/matter/"},
+     {"sim_node/engine/links/"},
+     {"sim_node/engine/pairs/"},
+     {"sim_node/engine/integrators/"},
+     {"sim_node/engine/"}},
+    {{"sim_node/scene/language/"}, {"sim_node/scene/"}},
+    {{"sim_node/plan/stability/"},
+     {"sim_node/plan/reference/"},
+     {"sim_node/plan/"},
+     {"sim_node/plan/reduction/"}},
+    {{"sim_node/engine/"},
+     {"sim_node/scene/", "sim_node/plan/"},
+     {"sim_node/checks/"},
+     {"sim_node/devices/"},
+     {"sim_node/run/"},
+     {"sim_node/"}},
+};
+
+/// The floor of a file; -1 when it belongs to none.
+int floor_of(const std::vector<std::vector<std::string>>& floors, const std::string& file) {
+  int floor = -1;
+  std::size_t longest = 0;
+  for (std::size_t i = 0; i < floors.size(); ++i) {
+    for (const std::string& beginning : floors[i]) {
+      if (file.starts_with(beginning) && beginning.size() > longest) {
+        floor = static_cast<int>(i);
+        longest = beginning.size();
+      }
+    }
+  }
+  return floor;
+}
+
+TEST(Layering, NoFileIncludesAFloorAboveItsOwn) {
+  for (const auto& floors : kFloors) {
+    int checked = 0;
+    for (const Include& include : all_includes()) {
+      if (!include.quoted) continue;
+      const int own = floor_of(floors, include.file);
+      const int other = floor_of(floors, include.target);
+      if (own < 0 || other < 0) continue;
+      ++checked;
+      EXPECT_GE(own, other) << include.file << ":" << include.line << " includes \""
+                            << include.target << "\"";
+    }
+    EXPECT_GT(checked, 10) << "the floors above " << floors.front().front() << " were not found";
+  }
+}
+
 TEST(Layering, EveryQuotedIncludeIsSpelledFromTheRoot) {
   for (const Include& include : all_includes()) {
     if (!include.quoted || include.target.starts_with("idl/")) continue;  // idl/ is generated
@@ -106,7 +163,9 @@ TEST(Layering, HeadersOfAForeignLibraryStandInOnePlace) {
       {"fastcdr/", {"node/dds/"}},
       {"yaml-cpp/", {"node/config/"}},
       {"muParser", {"sim_node/scene/language/link_expression.cpp"}},
-      {"boost/", {"viz_node/web/server"}},
+      {"boost/",
+       {"viz_node/web/server", "viz_node/web/http_session.", "viz_node/web/send_queue.",
+        "viz_node/web/websocket_session."}},
       {"Eigen/", {"sim_node/engine/", "sim_node/plan/"}},
       {"CLI/", {"cli/"}},
   };

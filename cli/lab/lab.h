@@ -8,7 +8,7 @@
 
 #include "cli/lab/lab_scene.h"
 #include "sim_node/plan/plan.h"
-#include "sim_node/plan/reference/rate_sweep.h"
+#include "sim_node/plan/rate_sweep.h"
 #include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::cli {

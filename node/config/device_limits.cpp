@@ -95,7 +95,7 @@ DeviceLimits read_device_limits(MappingReader& reader) {
   const std::string rest = reader.optional_choice("rest", "top", {"top", "middle", "bottom"});
   limits.lowest_m = rest == "top" ? -travel_m : rest == "middle" ? -travel_m / 2.0 : 0.0;
   limits.highest_m = limits.lowest_m + travel_m;
-  limits.slice_width_m = reader.optional_number("slice_width_m", 0.0, Range::between(0.002, 0.2));
+  limits.key_pitch_m = reader.optional_number("key_pitch_m", 0.0, Range::between(0.002, 0.2));
   limits.rate_hz = reader.optional_number("rate_hz", 1000.0, Range::between(1.0, 20000.0));
   limits.force_limit_n = reader.optional_number("force_limit_n", 20.0, Range::positive());
   set_reach(limits, map);
@@ -116,7 +116,7 @@ PlayedDevice read_played_device(MappingReader& reader, const std::string& node) 
   constexpr int kOwn = 10;
   constexpr int kOfAnother = 5;
   PlayedDevice played;
-  played.name = reader.optional_text("plays", node);
+  played.name = reader.optional_text("standby_for", node);
   played.strength = static_cast<int>(
       reader.optional_integer("strength", played.name == node ? kOwn : kOfAnother, 1, 1000));
   return played;

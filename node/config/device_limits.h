@@ -18,8 +18,7 @@ struct DeviceLimits {
   double rate_hz = 1000.0;
   double lowest_m = -0.04;  ///< workspace of an axis; rest is 0, up is positive
   double highest_m = 0.0;
-  double slice_width_m =
-      0.0;  ///< of a key, which stands side by side with the next; 0: no keyboard
+  double key_pitch_m = 0.0;  ///< of a key, which stands side by side with the next; 0: no keyboard
   double force_limit_n = 20.0;
   /// Of each coordinate, from stop to stop while the others are free; 0: unknown.
   std::array<double, 16> coordinate_travel_m{};
@@ -47,7 +46,7 @@ DeviceLimits read_device_limits(MappingReader& reader);
 
 /// Which device a node plays. Of several nodes that play one, the strongest that is there is heard.
 struct PlayedDevice {
-  std::string name;   ///< `plays`: the name of the node itself when it is not given
+  std::string name;   ///< `standby_for`: the name of the node itself when it is not given
   int strength = 10;  ///< `strength`: 5 for a node that plays another's device; 1..1000
 };
 

@@ -175,8 +175,9 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
 }  // namespace
 
 bool Launch::has_stand_ins() const noexcept {
-  return std::any_of(nodes.begin(), nodes.end(),
-                     [](const LaunchNode& node) { return node.section.find("plays").exists(); });
+  return std::any_of(nodes.begin(), nodes.end(), [](const LaunchNode& node) {
+    return node.section.find("standby_for").exists();
+  });
 }
 
 const LaunchNode* Launch::find(const std::string& name) const noexcept {

@@ -40,7 +40,7 @@ struct Launch {
   Clock clock = Clock::kRealtime;
   std::vector<LaunchNode> nodes;  ///< in the order of the file
 
-  /// Whether a node plays the device of another (`plays` in its section).
+  /// Whether a node plays the device of another (`standby_for` in its section).
   bool has_stand_ins() const noexcept;
 
   /// nullptr when there is none.

@@ -1,6 +1,8 @@
 #include "node/config/mapping_reader.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 namespace cordis::config {
@@ -22,6 +24,23 @@ std::string nested(const std::string& dotted) {
     text += c == '.' ? std::string(": {") : std::string(1, c);
   }
   return text + ":" + ends;
+}
+
+/// Words of files that have another name since, and that name.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kRenamed{{
+    {"behaviour", "state_machine"},
+    {"plays", "standby_for"},
+    {"slice_width_m", "key_pitch_m"},
+}};
+
+/// The hint for a word that was renamed to one of `words`; empty for any other.
+std::string renamed_hint(const std::string& word, const std::vector<std::string>& words) {
+  for (const auto& [before, now] : kRenamed) {
+    if (word == before && std::ranges::find(words, now) != words.end()) {
+      return "'" + word + "' is called '" + std::string(now) + "' now";
+    }
+  }
+  return {};
 }
 
 /// What a required number is taken for after a problem: in range, so that no second problem follows
@@ -179,7 +198,8 @@ void MappingReader::finish() {
   for (const Value::Entry& entry : value_.entries()) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
     if (problems_.is_full()) return;
-    std::string hint = did_you_mean(entry.key, known_);
+    std::string hint = renamed_hint(entry.key, known_);
+    if (hint.empty()) hint = did_you_mean(entry.key, known_);
     if (hint.empty() && entry.key.find(':') != std::string::npos)
       hint = "write a space after the ':'";
     if (hint.empty() && entry.key.find('.') != std::string::npos)
@@ -249,9 +269,10 @@ std::string MappingReader::choice_of(const Value& value, const std::string& key,
   if (value.kind() == Value::Kind::kScalar &&
       std::find(choices.begin(), choices.end(), word) != choices.end())
     return word;
+  const std::string hint = renamed_hint(word, choices);
   report(value.place(),
          name_of(key) + " must be one of " + listed(choices) + ", got " + value.described(),
-         did_you_mean(word, choices));
+         hint.empty() ? did_you_mean(word, choices) : hint);
   return fallback;
 }
 

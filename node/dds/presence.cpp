@@ -202,8 +202,8 @@ void Presence::compare(const Endpoint& endpoint, bool writes, bool gone) {
     const bool reliable = endpoint.m_qos.m_reliability.kind == fast::RELIABLE_RELIABILITY_QOS;
     const char* what = nullptr;
     if (exclusive != (row.exclusive_for_msec > 0)) {
-      what = exclusive ? "names stand-ins ('plays'), and that of this node none"
-                       : "names no stand-ins ('plays'), and that of this node does";
+      what = exclusive ? "names a hot standby ('standby_for'), and that of this node none"
+                       : "names no hot standby ('standby_for'), and that of this node does";
     } else if (reliable != row.reliable && reliable != writes) {
       what = "has another clock than that of this node";
     }

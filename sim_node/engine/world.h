@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sim_node/engine/core/vector_width.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/link_event.h"
 #include "sim_node/engine/matter/energy.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 

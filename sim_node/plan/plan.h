@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/plan/stability/oscillator_error.h"
 #include "sim_node/plan/stability/port_limit.h"
 #include "sim_node/plan/stability/step_bound.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/plan/rate.h"
 
 namespace cordis::plan {

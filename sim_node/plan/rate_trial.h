@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 
 namespace cordis::plan {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim_node/engine/integrators/idle_state.h"
+#include "sim_node/engine/idle_state.h"
 
 namespace cordis::sim {
 namespace {

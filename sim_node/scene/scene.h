@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "node/config/problem.h"
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/scene/liaisons/link_law.h"
 #include "sim_node/scene/signal.h"
 

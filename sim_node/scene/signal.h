@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/engine/pairs/connected_components.h"
+#include "sim_node/engine/connected_components.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/liaisons/link_law.h"
 

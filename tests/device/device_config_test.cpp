@@ -75,16 +75,16 @@ TEST(DeviceConfig, IsRefusedWhereTimeIsNotThatOfAHand) {
 TEST(DeviceConfig, MayPlayTheDeviceOfAnotherNode) {
   const DeviceConfig own = launched("keyboard.yaml", {}).config;
   EXPECT_EQ(own.strength, 10);
-  const DeviceConfig stand_in = launched("keyboard.yaml", {"keyboard.plays=organ"}).config;
+  const DeviceConfig stand_in = launched("keyboard.yaml", {"keyboard.standby_for=organ"}).config;
   EXPECT_EQ(stand_in.name, "organ");
   EXPECT_EQ(stand_in.device_id, config::name_hash("organ"));
   EXPECT_EQ(stand_in.strength, 5);
-  EXPECT_EQ(
-      launched("keyboard.yaml", {"keyboard.plays=organ", "keyboard.strength=7"}).config.strength,
-      7);
-  EXPECT_THROW(launched("keyboard.yaml", {"keyboard.plays=organ", "clock=lockstep"}),
+  EXPECT_EQ(launched("keyboard.yaml", {"keyboard.standby_for=organ", "keyboard.strength=7"})
+                .config.strength,
+            7);
+  EXPECT_THROW(launched("keyboard.yaml", {"keyboard.standby_for=organ", "clock=lockstep"}),
                config::ConfigError);
-  EXPECT_THROW(launched("keyboard.yaml", {"keyboard.plays=organ", "keyboard.rate_hz=50"}),
+  EXPECT_THROW(launched("keyboard.yaml", {"keyboard.standby_for=organ", "keyboard.rate_hz=50"}),
                config::ConfigError);
 }
 
@@ -117,13 +117,13 @@ TEST(DeviceConfig, GivesItsLimitsToBothGuards) {
 
 TEST(DeviceConfig, KnowsHowWideItsKeysAre) {
   const DeviceConfig one = launched("keyboard.yaml", {}).config;
-  EXPECT_EQ(one.limits.slice_width_m, 0.01375);
+  EXPECT_EQ(one.limits.key_pitch_m, 0.01375);
   EXPECT_EQ(what_it_is(one), "1 key, 13.75 mm wide, driver mock");
   // One number adds keys.
   const DeviceConfig more = launched("keyboard.yaml", {"keyboard.axes=12"}).config;
   EXPECT_EQ(what_it_is(more), "12 keys of 13.75 mm, 165 mm side by side, driver mock");
   const DeviceConfig plane = device_of("{axes: 2, driver: mock}").config;
-  EXPECT_EQ(plane.limits.slice_width_m, 0.0);
+  EXPECT_EQ(plane.limits.key_pitch_m, 0.0);
   EXPECT_EQ(what_it_is(plane), "2 axes, driver mock");
 }
 
@@ -213,8 +213,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadDevice{"travel_m: 0.03", "device.yaml:1:1: error: "},
         BadDevice{"axes: 17", "device.yaml:1:7: error: 'axes' in device 'keyboard'"},
-        BadDevice{"{axes: 1, slice_width_m: 13.75}",
-                  "device.yaml:1:26: error: 'slice_width_m' in device 'keyboard' must be "},
+        BadDevice{"{axes: 1, key_pitch_m: 13.75}",
+                  "device.yaml:1:24: error: 'key_pitch_m' in device 'keyboard' must be "},
+        BadDevice{"{axes: 1, slice_width_m: 0.01}", "'slice_width_m' is called 'key_pitch_m' now"},
         BadDevice{"{axes: 1, travel: 0.03}", "device.yaml:1:11: error: unknown key 'travel'"},
         BadDevice{"{axes: 1, driver: moc}", "did you mean 'mock'?"},
         BadDevice{"{axes: 1, driver: script}", "error: script needs positions or forces"},

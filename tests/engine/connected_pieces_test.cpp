@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/pairs/connected_components.h"
+#include "sim_node/engine/connected_components.h"
 #include "tests/engine/balls.h"
 #include "tests/support/allocation_guard.h"
 

@@ -1,5 +1,5 @@
 // tests/engine/network_test.cpp
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 
 #include <functional>
 #include <limits>

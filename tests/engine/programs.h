@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "sim_node/engine/links/state_machine.h"
+#include "sim_node/engine/description/state_machine.h"
 
 namespace cordis::test {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/world.h"
 
 namespace cordis::test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/pairs/connected_components.h"
+#include "sim_node/engine/connected_components.h"
 #include "tests/gallery/stage.h"
 
 namespace cordis::test {

@@ -58,7 +58,7 @@ class Failover : public ::testing::Test {
       : session_("realtime",
                  "  sim: {node: sim_node, scene: scene.yaml}\n"
                  "  keyboard: {node: device_node, device: key.yaml, required: false}\n"
-                 "  stand_in: {node: device_node, device: mock.yaml, plays: keyboard}\n"),
+                 "  stand_in: {node: device_node, device: mock.yaml, standby_for: keyboard}\n"),
         board_(1),
         status_(session_.participant(), dds::Topic::kStatus),
         forces_(session_.participant(), dds::Topic::kForces) {

@@ -24,7 +24,7 @@ LiveSession::LiveSession(const std::string& clock, const std::string& nodes,
                               "\nnodes:\n" + nodes);
   participant_ = std::make_unique<dds::Participant>(
       dds::ParticipantConfig{own_domain(), session, "observer", clock == "lockstep",
-                             nodes.find("plays:") != std::string::npos});
+                             nodes.find("standby_for:") != std::string::npos});
 }
 
 LiveSession::~LiveSession() {

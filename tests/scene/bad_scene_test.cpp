@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead1,
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: ^sprng}\n",
                  "'kind' in liaison 's' must be one of spring, damper, spring_damper, maxwell, "
-                 "behaviour, parallel, got 'sprng'",
+                 "state_machine, parallel, got 'sprng'",
                  "did you mean 'spring'?"},
         BadScene{kHead1,
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: spring, "

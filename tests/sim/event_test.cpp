@@ -120,7 +120,7 @@ TEST(Description, SaysNothingOfStatesWhenThereAreNone) {
 }
 
 TEST(Runner, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
-  Runner player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
+  Runner player(std::make_unique<LoadedScene>(breaking_scene(6), kRunOfSim, 1), false);
   FrameStore& frames = player.stage().frames;
   frames.turn(player.simulation().world(), 0.0, 0);
   EXPECT_EQ(frames.published().link_state, std::vector<std::uint8_t>(8, 0));
@@ -180,7 +180,7 @@ TEST(LinkStates, ThatDoNotExistAreRefusedInOneSentence) {
 }
 
 TEST(Runner, PutsLinksIntoStates) {
-  Runner player(std::make_unique<Stage>(breaking_scene(6), kRunOfSim, 1), false);
+  Runner player(std::make_unique<LoadedScene>(breaking_scene(6), kRunOfSim, 1), false);
   Request order;
   order.kind = Request::Kind::kForceStates;
   order.forced = find_states(player.simulation().scene(), "fuse[1]", "broken");
@@ -194,7 +194,7 @@ TEST(Runner, PutsLinksIntoStates) {
 }
 
 TEST(Runner, GathersEventsWithoutAllocating) {
-  Runner player(std::make_unique<Stage>(breaking_scene(60), kRunOfSim, 1), false);
+  Runner player(std::make_unique<LoadedScene>(breaking_scene(60), kRunOfSim, 1), false);
   const test::AllocationGuard guard;
   for (int tick = 0; tick < 10; ++tick) {
     player.advance();

@@ -112,10 +112,10 @@ TEST(Runner, GivesNoForceWhilePausedAndGivesItBackGradually) {
 TEST(Runner, BeginsAnotherStageAndHandsTheOldOneBack) {
   Runner player(stage_of(swing_text()), false);
   for (std::uint64_t n = 1; n <= 200; ++n) turn(player, n, -0.01);
-  const Stage* before = &player.stage();
+  const LoadedScene* before = &player.stage();
   Request order = order_of(Request::Kind::kRestart);
   order.stage = stage_of(swing_text("other", 500.0), 2);
-  const Stage* next = order.stage.get();
+  const LoadedScene* next = order.stage.get();
 
   player.obey(order);
 
@@ -141,13 +141,13 @@ TEST(Runner, StaysPausedWithAnotherStage) {
 }
 
 /// The swing with another stiffness of its springs.
-std::unique_ptr<Stage> stage_with_stiffness(double stiffness) {
+std::unique_ptr<LoadedScene> stage_with_stiffness(double stiffness) {
   auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
   for (engine::Link& link : scene->network.links) link.stiffness = stiffness;
-  return std::make_unique<Stage>(scene, kRunOfSim, 1);
+  return std::make_unique<LoadedScene>(scene, kRunOfSim, 1);
 }
 
-Request exchange_for(std::unique_ptr<Stage> stage) {
+Request exchange_for(std::unique_ptr<LoadedScene> stage) {
   Request order = order_of(Request::Kind::kExchange);
   order.room.reserve(stage->simulation.world().max_values_of_state());
   order.stage = std::move(stage);
@@ -208,7 +208,7 @@ TEST(Runner, RefusesAStageThatDoesNotFitAndGoesOn) {
   scene->network.mats.push_back(scene->network.mats.back());
   scene->radius_m.push_back(0.0);
   scene->layout.push_back({});
-  Request order = exchange_for(std::make_unique<Stage>(scene, kRunOfSim, 1));
+  Request order = exchange_for(std::make_unique<LoadedScene>(scene, kRunOfSim, 1));
   player.obey(order);
   EXPECT_FALSE(order.done);
   EXPECT_EQ(steps_of(player), 40u);

@@ -41,8 +41,8 @@ inline std::shared_ptr<const scene::Scene> scene_of(const std::string& text) {
   return scene;
 }
 
-inline std::unique_ptr<Stage> stage_of(const std::string& text, std::uint64_t version = 1) {
-  return std::make_unique<Stage>(scene_of(text), kRunOfSim, version);
+inline std::unique_ptr<LoadedScene> stage_of(const std::string& text, std::uint64_t version = 1) {
+  return std::make_unique<LoadedScene>(scene_of(text), kRunOfSim, version);
 }
 
 /// What the keyboard sends.

@@ -26,7 +26,7 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
       {"radius", [](auto& d) { d.mat_radius_m()[1] = -1.0F; }},
       {"radius", [](auto& d) { d.mat_radius_m()[1] = std::nanf(""); }},
       {"dimensions", [](auto& d) { d.space(4); }},
-      {"state_machines", [](auto& d) { d.link_state_machine({0}); }},
+      {"state machines", [](auto& d) { d.link_state_machine({0}); }},
       {"odd number", [](auto& d) { d.link_ends().pop_back(); }},
       {"joins a MAT", [](auto& d) { d.link_ends()[3] = 3; }},
       {"port",

@@ -29,14 +29,14 @@ inline constexpr std::string_view kLivePath = "/live";
 std::string_view path_of(std::string_view target) noexcept;
 
 /// Refuses
-///   405  anything but GET,
-///   400  a target that is no path,
-///   403  a path with "..", "%", "\" or a control character: no file of the page has such a name,
+///   405  anything but GET
+///   400  a target that is no path
+///   403  a path with "..", "%", "\" or a control character: no file of the page has such a name
 ///   403  a Host that is not this machine while the server listens on loopback only, so that a
-///   foreign name that was made to
-///        point here (DNS rebinding) gets nothing,
-///   403  an Origin that is not Host: another site's page in the same browser,
-///   404  a WebSocket anywhere but at kLivePath, 426 that path without one.
+///        foreign name that resolves to this machine (DNS rebinding) gets nothing
+///   403  an Origin that is not Host: another site's page in the same browser
+///   404  a WebSocket anywhere but at kLivePath
+///   426  kLivePath without a WebSocket
 /// @param loopback_only  whether the server listens on a loopback address
 std::optional<Refusal> refusal_of(const Request& request, bool loopback_only);
 

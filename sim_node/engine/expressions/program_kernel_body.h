@@ -1,7 +1,7 @@
 // sim_node/engine/expressions/program_kernel_body.h -- the value of a program for 8 rows at a time.
 #pragma once
 
-#include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/expressions/program_term.h"
 #include "sim_node/engine/simd/lane_batch.h"
 
 namespace cordis::engine {
@@ -15,7 +15,7 @@ class ProgramLoop {
   /// One step per instruction, none of them depending on a value. Precondition: well-formed.
   /// @param remembering  bit i: row i keeps what `rising` and `falling` have seen.
   /// @return 8 values, valid until the next call.
-  const double* evaluate(const ProgramTerm& program, const StateMachineRows& rows,
+  const double* evaluate(const ProgramTerm& program, const ProgramRows& rows,
                          std::uint32_t remembering) noexcept {
     std::size_t depth = 0;
     for (std::size_t i = 0; i < program.count; ++i) {
@@ -114,7 +114,7 @@ class ProgramLoop {
   }
 
   // A memory without a value is NaN, with which every comparison is false.
-  void compare_with_memory(const Instruction& instruction, const StateMachineRows& rows,
+  void compare_with_memory(const Instruction& instruction, const ProgramRows& rows,
                            std::uint32_t remembering, std::size_t place) noexcept {
     double* memory = rows.memory + Batch::kRows * instruction.slot;
     alignas(64) double before[Batch::kRows];

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 

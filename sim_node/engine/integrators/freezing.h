@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
 #include "sim_node/engine/matter/port_inputs.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 

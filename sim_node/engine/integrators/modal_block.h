@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/integrators/modal_kernel.h"
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
+#include "sim_node/engine/simd/modal_kernel.h"
 
 namespace cordis::engine {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/state_kernel.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 

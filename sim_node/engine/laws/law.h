@@ -42,7 +42,7 @@ class LinkFunction {
 };
 
 /// An elastic law gives a pull over the elongation or the distance, a viscous one over the speed.
-/// [Luc90 III.2.2 Modelisation of the material in its continuous state machine]
+/// [Luc90 III.2.2 Modelisation of the material in its continuous behaviour]
 struct Law {
   enum class Kind : std::uint8_t {
     kNone,          ///< 0

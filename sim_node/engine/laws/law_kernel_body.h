@@ -3,7 +3,7 @@
 // Powers are made by multiplication and square root alone: those round the same everywhere.
 #pragma once
 
-#include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/laws/law_term.h"
 #include "sim_node/engine/simd/lane_batch.h"
 
 namespace cordis::engine {

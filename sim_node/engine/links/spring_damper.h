@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
 #include "sim_node/engine/matter/step_kernel.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 
@@ -17,7 +17,7 @@ namespace cordis::engine {
 ///
 /// pull = K (d - rest) + Z (growth of the link along its axis during the last period) / dt; see
 /// Link for d. Ties are taken apart into one such link along each axis, as in 1 dimension.
-/// Source: [Luc90 III.2.2 Modelisation of the material in its continuous state machine].
+/// Source: [Luc90 III.2.2 Modelisation of the material in its continuous behaviour].
 class SpringDamperArray {
  public:
   enum class Kind : std::uint8_t {

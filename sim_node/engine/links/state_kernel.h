@@ -11,52 +11,15 @@
 #include <limits>
 
 #include "sim_node/engine/core/vector_width.h"
-#include "sim_node/engine/expressions/instruction.h"
+#include "sim_node/engine/expressions/program_term.h"
+#include "sim_node/engine/laws/law_term.h"
 
 namespace cordis::engine {
-
-/// Rows are stepped 8 at a time, whatever the width.
-inline constexpr std::size_t kStateBatch = 8;
-
-/// In a slot of the memory of a row: none yet.
-inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// Index of a state in a StateTable, which numbers the states of all its state machines.
 using StateIndex = std::uint32_t;
 /// StateMachineRows::forced of a row that is not forced; exit of a change that was.
 inline constexpr std::uint32_t kNotForced = 0xffffffffU;
-
-/// Kinds of Law as the kernels see them.
-enum class LawCode : std::uint8_t { kNone, kTable, kPower, kLennardJones, kRings, kFunction };
-
-struct RingTerm {
-  double stiffness;  // [N/m]
-  double radius;     // [m]
-};
-
-/// A Law, made ready.
-struct LawTerm {
-  LawCode code = LawCode::kNone;
-  std::size_t count = 0;          // points of the table, or rings
-  const double* at = nullptr;     // table: points, ascending
-  const double* value = nullptr;  // at the points
-  const double* slope = nullptr;  // to the next point; 0 at the last
-  const RingTerm* rings = nullptr;
-  double coefficient = 0.0;       // power
-  std::uint32_t half_powers = 0;  // 2 * exponent
-  double attraction = 0.0;        // Lennard-Jones: 24 depth s^6 [J m^6]
-  double repulsion = 0.0;         // 48 depth s^12 [J m^12]
-  double cut = 0.0;               // [m]; infinity for none
-  double (*call)(const void* function, double distance, double elongation, double speed,
-                 double mass_a, double mass_b) noexcept = nullptr;
-  const void* function = nullptr;
-};
-
-/// A Program, made ready.
-struct ProgramTerm {
-  const Instruction* code = nullptr;
-  std::size_t count = 0;
-};
 
 /// What a change of state does with the rest length: RestRule as the kernels see it.
 enum class RestCode : std::uint8_t { kKeep, kHere, kExpression };

@@ -86,7 +86,8 @@ class StateMachineLoop {
   void test_exits(const StateTerm& state, std::uint32_t group) noexcept {
     if (rows_.forced != nullptr) record_forced(group);
     for (std::uint32_t e = 0; e < state.exit_count; ++e) {
-      const double* value = program_.evaluate(state.exits[e].when, rows_, group);
+      const double* value =
+          program_.evaluate(state.exits[e].when, {rows_.quantity, rows_.memory}, group);
       const std::uint32_t holding =
           Batch::bits(value, [](Row v) { return Lanes::not_equal(v, Lanes::zero()); });
       const std::uint32_t leaving = holding & group & ~rows_.changed;
@@ -229,7 +230,8 @@ class StateMachineLoop {
       case RestCode::kExpression:
         break;
     }
-    const double value = program_.evaluate(exit.rest_length, rows_, 0)[row];
+    const double value =
+        program_.evaluate(exit.rest_length, {rows_.quantity, rows_.memory}, 0)[row];
     const bool finite = __builtin_isfinite(value) != 0;
     return finite ? value : before;
   }

@@ -6,6 +6,7 @@
 
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/event_log.h"
 #include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/links/state_table.h"
@@ -13,7 +14,6 @@
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
 #include "sim_node/engine/matter/step_kernel.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "sim_node/engine/description/state_machine.h"
 #include "sim_node/engine/links/state_kernel.h"
-#include "sim_node/engine/links/state_machine.h"
 
 namespace cordis::engine {
 

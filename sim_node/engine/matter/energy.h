@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 

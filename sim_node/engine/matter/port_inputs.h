@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 

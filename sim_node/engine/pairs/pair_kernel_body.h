@@ -2,12 +2,11 @@
 // registers of each width.
 //
 // `Lanes` is a type of lanes as step_kernel_body.h says, and gives besides
-//   load_any                        of values that need not be aligned
-//   vectors(columns, at)            the columns that begin at `at`, as x, y, z
-//   neighbours(columns)             those that stand one after the other
-//   subtract(columns, at, v)        takes v from the columns at `at`, one after the other
-//   pack(out, v, chosen)            writes the chosen lanes one after the other, kWidth values in
-//   all
+//   load_any                 loads values that need not be aligned
+//   vectors(columns, at)     the columns that begin at `at`, as x, y, z
+//   neighbours(columns)      columns that follow one another
+//   subtract(columns, at, v) subtracts v from the columns at `at`, one after the other
+//   pack(out, v, chosen)     writes the chosen lanes one after the other, kWidth values in all
 // Each + - * is rounded by itself: no operation may be contracted or reordered.
 #pragma once
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/event_log.h"
 #include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/links/state_table.h"
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/pairs/pair_block.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/pairs/pair_states.h"

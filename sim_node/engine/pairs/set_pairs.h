@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
 #include "sim_node/engine/matter/step_kernel.h"
-#include "sim_node/engine/network.h"
 #include "sim_node/engine/pairs/active_pairs.h"
 #include "sim_node/engine/pairs/neighbour_list.h"
 #include "sim_node/engine/pairs/pair_block.h"

@@ -1,7 +1,7 @@
 // sim_node/plan/reference/load.h -- how long a step takes on this machine.
 #pragma once
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 
 namespace cordis::plan {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 
 namespace cordis::plan {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/plan/reference/near_pairs.h"
 #include "sim_node/plan/reference/program_value.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/liaison_id.h"
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/plan/stability/slope.h"
 
 namespace cordis::plan {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
-#include "sim_node/engine/network.h"
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/step_bound.h"
 

@@ -1,7 +1,7 @@
 // sim_node/plan/stability/oscillator_error.h -- what the scheme makes of one damped oscillation.
 #pragma once
 
-#include "sim_node/engine/integrators/integrator_kind.h"
+#include "sim_node/engine/description/integrator_kind.h"
 
 namespace cordis::plan {
 

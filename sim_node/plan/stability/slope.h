@@ -1,7 +1,7 @@
 // sim_node/plan/stability/slope.h -- how stiff and how viscous a liaison can become.
 #pragma once
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 
 namespace cordis::plan {
 

@@ -32,14 +32,14 @@ constexpr std::array<LiaisonKind, 6> kLiaisonKinds{{
     {"damper", false, true},
     {"spring_damper", true, true},
     {"maxwell", true, true},
-    {"behaviour", true, true},
+    {"state_machine", true, true},
     {"parallel", false, false},
 }};
 
 /// The kind that a liaison is of by its keys; empty when it must be written.
 std::string kind_by_keys(const Value& definition) {
   if (definition.find("parallel").exists()) return "parallel";
-  return looks_like_state_machine(definition) ? "behaviour" : "";
+  return looks_like_state_machine(definition) ? "state_machine" : "";
 }
 
 /// The definition with given values in the place of those of its plain keys.
@@ -84,7 +84,7 @@ class LiaisonReader {
     if (problems_.error_count() != errors_before) return law;
     if (kind == "parallel") {
       law = read_parallel(reader, parameters);
-    } else if (kind == "behaviour") {
+    } else if (kind == "state_machine") {
       law = read_states(reader, parameters);
     } else {
       law = read_linear(reader, kind, parameters);

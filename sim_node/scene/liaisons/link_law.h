@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "node/config/mapping_reader.h"
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 
 namespace cordis::scene {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim_node/engine/links/state_machine.h"
+#include "sim_node/engine/description/state_machine.h"
 #include "sim_node/scene/language/formula.h"
 
 namespace cordis::scene {

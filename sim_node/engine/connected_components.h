@@ -1,4 +1,4 @@
-// sim_node/engine/pairs/connected_components.h -- how many pieces the balls of a set form.
+// sim_node/engine/connected_components.h -- how many pieces the balls of a set form.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/pairs/cell_grid.h"
 #include "sim_node/engine/pairs/neighbour_list.h"
 #include "sim_node/engine/pairs/pair_kernel.h"

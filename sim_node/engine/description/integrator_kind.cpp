@@ -1,13 +1,13 @@
-// sim_node/engine/integrators/integrator_kind.cpp
-#include "sim_node/engine/integrators/integrator_kind.h"
+// sim_node/engine/description/integrator_kind.cpp
+#include "sim_node/engine/description/integrator_kind.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
+#include "sim_node/engine/description/network.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
-#include "sim_node/engine/network.h"
 
 namespace cordis::engine {
 namespace {

@@ -1,9 +1,9 @@
-// sim_node/engine/core/fingerprint.h -- one number that two equal networks share.
+// sim_node/engine/description/fingerprint.h -- one number that two equal networks share.
 #pragma once
 
 #include <cstdint>
 
-#include "sim_node/engine/network.h"
+#include "sim_node/engine/description/network.h"
 
 namespace cordis::engine {
 

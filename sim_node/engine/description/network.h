@@ -1,12 +1,12 @@
-// sim_node/engine/network.h -- what a scene is made of, fixed once it is assembled.
+// sim_node/engine/description/network.h -- what a scene is made of, fixed once it is assembled.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "sim_node/engine/core/vec.h"
-#include "sim_node/engine/integrators/integrator_kind.h"
-#include "sim_node/engine/links/state_machine.h"
+#include "sim_node/engine/description/integrator_kind.h"
+#include "sim_node/engine/description/state_machine.h"
 
 namespace cordis::engine {
 
@@ -24,11 +24,13 @@ struct Mat {
 };
 
 /// One linear LIA: spring (viscosity 0), damper (stiffness 0) or both in parallel.
-/// [Luc90 III.2.2 Modelisation of the material in its continuous state machine]
+/// [Luc90 III.2.2 Modelisation of the material in its continuous behaviour]
 ///
-/// In 2 and 3 dimensions, with d the distance of the ends: pull = K (d - rest) + Z (d(n) - d(n-1))
-/// / dt along the line of centres (the growth taken as the relative displacement projected on that
-/// line), no force while d is 0. In 1 dimension d is signed, d = x_b - x_a, and so is the rest
+/// In 2 and 3 dimensions, with d the distance of the ends, along the line of centres
+///
+///     pull = K (d - rest) + Z (d(n) - d(n-1)) / dt
+///
+/// where the growth is the relative displacement projected on that line; no force while d is 0. In 1 dimension d is signed, d = x_b - x_a, and so is the rest
 /// length: ends may cross.
 ///
 /// An isotropic one is a tie: K (x_b - x_a) + Z (its growth in the last period, as a vector) / dt,
@@ -49,7 +51,7 @@ struct Link {
 struct StateLink {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
-  std::uint32_t state_machine = 0;  ///< index in NetworkDescription::state machines
+  std::uint32_t state_machine = 0;  ///< index in NetworkDescription::state_machines
   double rest_length = 0.0;         ///< at step 0 [m]; any finite value
 };
 
@@ -73,7 +75,7 @@ struct MaxwellLink {
 /// as long as it is bound, that is in another state than that of the start.
 /// [Luc90 III.2.3 a formalism for inter-connection]
 struct SetLiaison {
-  std::uint32_t state_machine = 0;   ///< index in NetworkDescription::state machines
+  std::uint32_t state_machine = 0;   ///< index in NetworkDescription::state_machines
   std::vector<std::uint32_t> set_p;  ///< MATs, each once
   std::vector<std::uint32_t> set_q;  ///< MATs, none of them in P; empty: within P
   double range = 0.0;                ///< distance from which on there is no force [m], > 0
@@ -110,9 +112,8 @@ struct NetworkDescription {
 class Network {
  public:
   /// @throws std::invalid_argument naming the first MAT, link, state machine or set that is out of
-  /// range or not finite, or that joins a
-  ///         MAT to itself or to one that does not exist; when no MAT is given; when a mass is so
-  ///         small, or a viscosity so large, that dt^2 / m or Z / dt is not a finite number.
+  ///         range or not finite, or that joins a MAT to itself or to one that does not exist; when
+  ///         no MAT is given; when dt^2 / m of a mass or Z / dt of a viscosity is not finite
   explicit Network(NetworkDescription description);
 
   const NetworkDescription& description() const noexcept { return description_; }

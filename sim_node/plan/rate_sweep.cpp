@@ -1,5 +1,5 @@
-// sim_node/plan/reference/rate_sweep.cpp
-#include "sim_node/plan/reference/rate_sweep.h"
+// sim_node/plan/rate_sweep.cpp
+#include "sim_node/plan/rate_sweep.h"
 
 #include <algorithm>
 #include <cmath>

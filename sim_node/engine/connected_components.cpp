@@ -1,5 +1,5 @@
-// sim_node/engine/pairs/connected_components.cpp
-#include "sim_node/engine/pairs/connected_components.h"
+// sim_node/engine/connected_components.cpp
+#include "sim_node/engine/connected_components.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "sim_node/engine/core/vector_width.h"
-#include "sim_node/engine/integrators/idle_state.h"
+#include "sim_node/engine/idle_state.h"
 
 namespace cordis::engine {
 namespace {

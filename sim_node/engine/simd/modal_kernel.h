@@ -1,4 +1,4 @@
-// sim_node/engine/integrators/modal_kernel.h -- the loops over the modes of a block, one set for each vector
+// sim_node/engine/simd/modal_kernel.h -- the loops over the modes of a block, one set for each vector
 // width.
 //
 // As in step_kernel.h, nothing here has a member function, so that the linker never mixes up code

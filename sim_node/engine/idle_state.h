@@ -1,4 +1,4 @@
-// sim_node/engine/integrators/idle_state.h -- states in which a liaison is as good as absent.
+// sim_node/engine/idle_state.h -- states in which a liaison is as good as absent.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// sim_node/plan/reference/rate_sweep.h -- the rates at which a network is tried out.
+// sim_node/plan/rate_sweep.h -- the rates at which a network is tried out.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// sim_node/engine/core/fingerprint.cpp
-#include "sim_node/engine/core/fingerprint.h"
+// sim_node/engine/description/fingerprint.cpp
+#include "sim_node/engine/description/fingerprint.h"
 
 #include "sim_node/engine/core/state_hash.h"
 

@@ -1,8 +1,8 @@
-// sim_node/engine/integrators/modal_kernel_body.h -- the loops over modes.
+// sim_node/engine/simd/modal_kernel_body.h -- the loops over modes.
 #pragma once
 
-#include "sim_node/engine/integrators/modal_kernel.h"
 #include "sim_node/engine/simd/lane_batch.h"
+#include "sim_node/engine/simd/modal_kernel.h"
 
 namespace cordis::engine {
 

@@ -1,5 +1,5 @@
-// sim_node/engine/links/state_machine.cpp
-#include "sim_node/engine/links/state_machine.h"
+// sim_node/engine/description/state_machine.cpp
+#include "sim_node/engine/description/state_machine.h"
 
 #include <cmath>
 
@@ -27,7 +27,8 @@ std::vector<std::uint32_t> slot_uses(const Program& program) {
 void check_exit(const StateMachine& state_machine, const Transition& exit,
                 const std::string& name) {
   check_program(exit.when, name + ": condition");
-  require(exit.target < state_machine.states.size(), name + ": target", "a state of the state machine");
+  require(exit.target < state_machine.states.size(), name + ": target",
+          "a state of the state machine");
   require(static_cast<std::size_t>(exit.triggered) < kQuantityCount, name + ": fired",
           "a known quantity");
   if (exit.rest == RestRule::kExpression) {

@@ -1,4 +1,4 @@
-// sim_node/engine/links/state_machine.h -- what a liaison with states is.
+// sim_node/engine/description/state_machine.h -- what a liaison with states is.
 #pragma once
 
 #include <cstdint>

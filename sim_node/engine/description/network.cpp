@@ -1,5 +1,5 @@
-// sim_node/engine/network.cpp
-#include "sim_node/engine/network.h"
+// sim_node/engine/description/network.cpp
+#include "sim_node/engine/description/network.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "sim_node/engine/core/fingerprint.h"
 #include "sim_node/engine/core/require.h"
+#include "sim_node/engine/description/fingerprint.h"
 
 namespace cordis::engine {
 namespace {

@@ -1,0 +1,29 @@
+// sim_node/engine/expressions/program_term.h -- a program as the kernels of every vector width read it.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "sim_node/engine/expressions/instruction.h"
+
+namespace cordis::engine {
+
+/// Rows are stepped 8 at a time, whatever the width.
+inline constexpr std::size_t kStateBatch = 8;
+
+/// In a slot of the memory of a row: none yet.
+inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+
+/// A Program, made ready.
+struct ProgramTerm {
+  const Instruction* code = nullptr;
+  std::size_t count = 0;
+};
+
+/// What a program reads, for 8 rows; every array holds 8 values and is 64-byte aligned.
+struct ProgramRows {
+  const double* const* quantity;  ///< of every Quantity; what the program does not read may be null
+  double* memory;                 ///< of slot s: memory[8 * s], 8 values, kNoValue at first
+};
+
+}  // namespace cordis::engine
