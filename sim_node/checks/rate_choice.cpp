@@ -4,24 +4,20 @@
 #include <string>
 
 #include "node/config/mapping_reader.h"
+#include "sim_node/plan/rate_selection.h"
 #include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::sim {
 
-plan::RateSelection rate_selection_of(const scene::Scene& scene) {
+void select_rate(scene::Scene& scene, config::Problems& problems) {
+  if (!scene.accuracy) return;
   const scene::Accuracy& asked = *scene.accuracy;
-  return plan::choose(
+  const plan::RateSelection choice = plan::choose(
       scene.network, {asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s},
       scene.gesture_rate_hz,
       scene.integrator_is_open ? plan::integrators_for(scene.network)
                                : std::vector<std::string>{to_string(scene.network.integrator)},
       !scene.ports.empty());
-}
-
-void select_rate(scene::Scene& scene, config::Problems& problems) {
-  if (!scene.accuracy) return;
-  const scene::Accuracy& asked = *scene.accuracy;
-  const plan::RateSelection choice = rate_selection_of(scene);
   if (!choice.doubt.empty()) problems.warning(asked.place, choice.doubt);
   if (scene.rate_is_open) {
     scene::set_step(scene, choice.rate_hz, engine::integrator_named(choice.integrator));
