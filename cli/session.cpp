@@ -66,7 +66,7 @@ class Session : public Watcher {
     output_.say(node.name + ": " + (failed ? ending.text() : "has ended") +
                 why_not_again(node, ending) +
                 (node.required ? "; stopping the others" : "; the others go on"));
-    stopped_ = stopped_ || node.required;
+    if (node.required) stop();
     if (failure_ == kSuccess) failure_ = ending.exit_code();
     return node.required;
   }
@@ -77,7 +77,7 @@ class Session : public Watcher {
   }
 
   void interrupted(bool again) override {
-    stopped_ = true;
+    stop();
     output_.say(again ? "killing all nodes; devices have 0.5 s to let go"
                       : "stopping; once more kills");
   }
@@ -86,7 +86,7 @@ class Session : public Watcher {
     take_statuses();
     output_.flush();
     const bool over = plan_.wall_duration && is_over(*plan_.wall_duration);
-    stopped_ = stopped_ || over;
+    if (over) stop();
     return over;
   }
 
@@ -109,6 +109,11 @@ class Session : public Watcher {
   }
 
  private:
+  void stop() {
+    stopped_ = true;
+    board_.begin_stop();
+  }
+
   /// The reason why a node that may respawn is not started again; empty if there is none to state.
   static std::string why_not_again(const PlannedNode& node, const Ending& ending) {
     if (!node.respawn || ending.exit_code() == kSuccess) return "";

@@ -138,13 +138,13 @@ void Device::ask_for_realtime() {
 
 void Device::play_paced(Exchange& exchange) {
   node::PacedLoop pace(config_.layout.rate_hz);
-  std::uint64_t overruns = 0;
   while (has_part() && !node::stop_requested()) {
     exchange.send_sample();
     pace.wait();
+    meter_.late_ticks().count(pace.late_cause());
     exchange.receive();
     exchange.live();
-    meter_.add_overruns(pace.overruns() - std::exchange(overruns, pace.overruns()));
+    if (exchange.misses_the_scene()) meter_.late_ticks().count_silent();
     note_phase(exchange);
     keep_guardian();
   }
