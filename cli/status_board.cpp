@@ -109,6 +109,15 @@ void StatusBoard::begin_life(const std::string& node, std::uint64_t first_run) {
   newest_.erase(node);
 }
 
+LateTickSum StatusBoard::late_ticks() const {
+  LateTickSum sum;
+  for (const auto& [node, status] : newest_) {
+    sum.by_machine += status.late_by_machine();
+    sum.by_work += status.late_by_work();
+  }
+  return sum;
+}
+
 const msg::NodeStatus* StatusBoard::find(const std::string& node) const {
   const auto found = newest_.find(node);
   return found == newest_.end() ? nullptr : &found->second;

@@ -10,6 +10,12 @@
 
 namespace cordis::cli {
 
+/// Late ticks by cause.
+struct LateTickSum {
+  std::uint64_t by_machine = 0;
+  std::uint64_t by_work = 0;
+};
+
 /// Keeps the newest status of each node by name.
 class StatusBoard {
  public:
@@ -28,6 +34,9 @@ class StatusBoard {
   /// The session is being stopped: from now on no node answers for the silence of another, which
   /// is stopped before it.
   void begin_stop() { stopping_ = true; }
+
+  /// Over all nodes.
+  LateTickSum late_ticks() const;
 
   const msg::NodeStatus* find(
       const std::string& node) const;  ///< nullptr when this life of it never spoke

@@ -82,6 +82,7 @@ void Session::listen_to_devices() {
     while (device_reader_.take(told)) {
       if (refused_.hear(told)) reaches_.put(told.device_id(), told.run(), reach_of(told));
     }
+    refused_.report_repeats();
     if (!ending_) device_reader_.wait(kLongestWait);
   }
 }

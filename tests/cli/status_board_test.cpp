@@ -48,6 +48,18 @@ TEST(StatusBoard, RefusesProcessesOlderThanTheRun) {
   EXPECT_EQ(board.find("sim"), nullptr);
 }
 
+TEST(StatusBoard, AddsUpTheLateTicksOfAllNodes) {
+  StatusBoard board(/*first_run=*/0);
+  for (const char* node : {"sim", "key"}) {
+    msg::NodeStatus status = status_of(node, "device_node", 1);
+    status.late_by_machine(3);
+    status.late_by_work(1);
+    board.put(status);
+  }
+  EXPECT_EQ(board.late_ticks().by_machine, 6u);
+  EXPECT_EQ(board.late_ticks().by_work, 2u);
+}
+
 TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   StatusBoard board(0);
   msg::NodeStatus sim = status_of("sim", "sim_node", 1);
