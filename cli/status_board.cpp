@@ -21,7 +21,6 @@ std::string microseconds(double seconds) {
 
 /// The late ticks by their causes, and those without an answer of the other side.
 std::string causes_of(const msg::NodeStatus& status) {
-  if (status.target_rate_hz() <= 0.0) return "-";
   const bool simulates = status.kind() == "sim_node";
   std::string text;
   const auto add = [&text](const char* cause, std::uint64_t ticks) {
@@ -40,14 +39,15 @@ Row row_of(const std::string& node, const msg::NodeStatus* status) {
   const bool simulates = status->kind() == "sim_node";
   row.push_back(paced || status->ticks() > 0 ? fmt::format("{:.1f}", status->mean_rate_hz()) : "-");
   row.push_back(paced ? fmt::format("{:g}", status->target_rate_hz()) : "-");
-  row.push_back(paced ? std::to_string(status->overruns()) : "-");
+  const bool has_deadlines = paced && status->kind() != "viz_node";
+  row.push_back(has_deadlines ? std::to_string(status->overruns()) : "-");
   row.push_back(std::to_string(status->dropped()));
   const bool timed = status->latency_count() > 0;
   row.push_back(timed ? microseconds(status->latency_p50_s()) : "-");
   row.push_back(timed ? microseconds(status->latency_p99_s()) : "-");
   row.push_back(timed ? microseconds(status->latency_max_s()) : "-");
   row.push_back(simulates ? fmt::format("{:.2g}", status->energy_drift()) : "-");
-  row.push_back(causes_of(*status));
+  row.push_back(has_deadlines ? causes_of(*status) : "-");
   return row;
 }
 
