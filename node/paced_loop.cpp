@@ -46,7 +46,6 @@ std::uint64_t PacedLoop::wait() noexcept {
   const auto period = static_cast<std::int64_t>(1e9 / rate_hz_);
   ++ticks_;
   const bool is_first = ticks_ == 1;
-  const std::int64_t computed = is_first ? 0 : processor_nsec() - woken_processor_nsec_;
   if (is_first) {
     const double periods = static_cast<double>(monotonic_nsec()) * rate_hz_ / 1e9 - phase_;
     deadline_index_ = static_cast<std::int64_t>(periods);  // the present or the last one
@@ -57,7 +56,9 @@ std::uint64_t PacedLoop::wait() noexcept {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr);
 
   const std::int64_t late = monotonic_nsec() - due;
-  woken_processor_nsec_ = processor_nsec();
+  const std::int64_t used = processor_nsec();  // nothing of it while it slept
+  const std::int64_t computed = is_first ? 0 : used - woken_processor_nsec_;
+  woken_processor_nsec_ = used;
   lateness_.record(late);
   late_cause_ = LateCause::kNone;
   if (late < period) return 0;
