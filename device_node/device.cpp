@@ -50,6 +50,10 @@ Device::Device(LoadedDevice device, dds::Participant& participant, dds::Particip
       description_(participant, dds::Topic::kDevice),
       roster_(participant),
       series_{run, 0},
+      phases_(config_.name, config_.driver,
+              clock == config::Clock::kLockstep
+                  ? std::chrono::duration<double>(kLockstepPatience).count()
+                  : config_.force_guard.watchdog_s),
       scenes_(participant, config_, *driver_),
       status_(participant, "device_node", run, [this](msg::NodeStatus& status) {
         meter_.fill(status);
@@ -71,6 +75,7 @@ void Device::live() {
       record_unused();
       scenes_.wait_for_another(part_, kLookAround);
       watch_guardian();
+      phases_.report(node::monotonic_nsec());
     }
   }
   meter_.publish_latency();
@@ -117,7 +122,7 @@ void Device::play(Role role) {
   const bool lockstep = clock_ == config::Clock::kLockstep;
   Exchange exchange(config_, role, series_, lockstep, *driver_, *channel, meter_,
                     &node::monotonic_nsec, &since_boot_nsec);
-  noted_phase_ = Phase::kWaiting;
+  phases_.start();
   if (lockstep) {
     play_in_lockstep(exchange);
   } else {
@@ -138,13 +143,13 @@ void Device::ask_for_realtime() {
 
 void Device::play_paced(Exchange& exchange) {
   node::PacedLoop pace(config_.layout.rate_hz);
-  std::uint64_t overruns = 0;
   while (has_part() && !node::stop_requested()) {
     exchange.send_sample();
     pace.wait();
+    meter_.late_ticks().count(pace.late_cause());
     exchange.receive();
     exchange.live();
-    meter_.add_overruns(pace.overruns() - std::exchange(overruns, pace.overruns()));
+    if (exchange.misses_the_scene()) meter_.late_ticks().count_silent();
     record_phase(exchange);
     keep_guardian();
   }
@@ -205,36 +210,11 @@ void Device::keep_guardian() const noexcept {
   if (meter_.ticks() % ticks_per_look == 0) watch_guardian();
 }
 
-/// Tells of a change of phase, once.
+/// Reports a change of phase.
 void Device::record_phase(const Exchange& exchange) {
-  const Phase phase = meter_.phase();
-  if (phase == noted_phase_) return;
-  const bool plays_on = phase == Phase::kRunning;
-  if (phase == Phase::kStandby) {
-    spdlog::info("another node plays '{}' with more strength; ready to take over", config_.name);
-  } else if (phase == Phase::kDisconnected) {
-    lost_since_nsec_ = node::monotonic_nsec();
-    spdlog::warn(
-        "driver {}: the motors have been let go of outside the loop; forces return by the ramp",
-        config_.driver);
-  } else if (phase == Phase::kLost) {
-    lost_since_nsec_ = node::monotonic_nsec();
-    if (!exchange.has_device()) {
-      spdlog::warn("driver {}: the device does not answer; trying again", config_.driver);
-    } else {
-      spdlog::warn("no answer from the scene for more than {} ms: motors at zero",
-                   clock_ == config::Clock::kLockstep
-                       ? static_cast<double>(kLockstepPatience.count())
-                       : config_.force_guard.watchdog_s * 1e3);
-    }
-  } else if (plays_on && noted_phase_ == Phase::kStandby) {
-    spdlog::info("takes over '{}'", config_.name);
-  } else if (plays_on && (noted_phase_ == Phase::kLost || noted_phase_ == Phase::kDisconnected)) {
-    spdlog::info("plays again after {:.3f} s",
-                 static_cast<double>(node::monotonic_nsec() - lost_since_nsec_) * 1e-9);
-  }
-  noted_phase_ = phase;
-  status_.publish_now();
+  const std::int64_t now = node::monotonic_nsec();
+  if (phases_.note(meter_.phase(), exchange.has_device(), now)) status_.publish_now();
+  phases_.report(now);
 }
 
 }  // namespace cordis::device

@@ -7,6 +7,7 @@
 #include "device_node/device_config.h"
 #include "device_node/exchange.h"
 #include "device_node/loop_meter.h"
+#include "device_node/phase_log.h"
 #include "device_node/scene_watch.h"
 #include "idl/gesture.h"
 #include "node/config/launch.h"
@@ -53,8 +54,7 @@ class Device {
   SceneWatch::Part part_;  // that is played
   Exchange::Series series_;
   LoopMeter meter_;
-  Phase noted_phase_ = Phase::kWaiting;
-  std::int64_t lost_since_nsec_ = 0;
+  PhaseLog phases_;
   bool realtime_asked_ = false;
   bool silence_told_ = false;
   SceneWatch scenes_;             // its thread reads what stands above

@@ -111,7 +111,10 @@ bool Exchange::consider(const GestureMessage& answer) noexcept {
 }
 
 void Exchange::accept(const GestureMessage& answer) noexcept {
-  if (!any_answer_ || answer.answered_sample > used_.answered_sample) unfelt_ = true;
+  if (!any_answer_ || answer.answered_sample > used_.answered_sample) {
+    unfelt_ = true;
+    unanswered_periods_ = 0;
+  }
   any_answer_ = true;
   used_ = answer;
   late_[answer.answered_sample % late_.size()] = answer;
@@ -180,6 +183,9 @@ void Exchange::live() noexcept {
 void Exchange::record_phase(bool in_time) noexcept {
   const double since_other_s = static_cast<double>(clock_() - other_answered_nsec_) * 1e-9;
   const bool other = other_answered_ && since_other_s < config_.force_guard.watchdog_s;
+  const double unanswered_s = static_cast<double>(++unanswered_periods_) / config_.layout.rate_hz;
+  misses_scene_ =
+      present_ && any_answer_ && !other && unanswered_s > config_.force_guard.watchdog_s;
   if (present_ && in_time) {
     meter_.set_phase(Phase::kRunning);
   } else if (present_ && other) {

@@ -71,6 +71,10 @@ class Exchange {
   void live() noexcept;
 
   bool has_device() const noexcept { return present_; }  ///< whether the driver has one
+  /// Whether the scene has fallen silent: it answered this exchange, for longer than the watchdog
+  /// it has answered no new sample, and no other node gets the answers. Counted in periods: one in
+  /// which this loop stood still is not the scene's.
+  bool misses_the_scene() const noexcept { return misses_scene_; }
   bool has_motors() const noexcept { return driver_.has_motors(); }
 
   /// The part is over: motors are not switched off in the middle of a force. From now on nothing is
@@ -120,7 +124,9 @@ class Exchange {
   double leaving_age_s_ = 0.0;            // that the last answer is given; 0: it has its own
   bool present_ = false;                  // the driver has its device
   bool any_answer_ = false;
-  bool unfelt_ = false;  // the newest answer has not been handed to the driver yet
+  bool misses_scene_ = false;
+  std::int64_t unanswered_periods_ = 0;  // since an answer to a new sample
+  bool unfelt_ = false;                  // the newest answer has not been handed to the driver yet
 };
 
 }  // namespace cordis::device

@@ -56,7 +56,7 @@ void LoopMeter::fill(msg::NodeStatus& status) const {
   status.phase(words.phase);
   status.text(words.text);
   status.ticks(ticks());
-  status.overruns(overruns_.load(std::memory_order_relaxed));
+  late_ticks_.fill(status);
   status.dropped(dropped());
   status.port_energy_j(given_j_.load(std::memory_order_relaxed));
   status.passivity_ticks(passivity_ticks_.load(std::memory_order_relaxed));

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "idl/control.h"
+#include "node/late_ticks.h"
 #include "node/latency.h"
 
 namespace cordis::device {
@@ -28,9 +29,7 @@ class LoopMeter {
 
   void count_tick() noexcept;
   void count_dropped() noexcept { dropped_.fetch_add(1, std::memory_order_relaxed); }
-  void add_overruns(std::uint64_t count) noexcept {
-    overruns_.fetch_add(count, std::memory_order_relaxed);
-  }
+  node::LateTicks& late_ticks() noexcept { return late_ticks_; }
 
   /// After a tick: the energy given to the hand, and whether the motors braked it.
   void record_energy(double given_j, bool braking) noexcept;
@@ -50,7 +49,7 @@ class LoopMeter {
  private:
   std::atomic<Phase> phase_{Phase::kWaiting};
   std::atomic<std::uint64_t> ticks_{0};
-  std::atomic<std::uint64_t> overruns_{0};
+  node::LateTicks late_ticks_;
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<double> given_j_{0.0};
   std::atomic<std::uint64_t> passivity_ticks_{0};

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "device_node/port_assignment.h"
+#include "node/time.h"
 
 namespace cordis::device {
 namespace {
@@ -64,6 +65,8 @@ void SceneWatch::loop() {
   msg::SceneDescription scene;
   while (!ending_) {
     while (!ending_ && reader_.take(scene)) take(scene);
+    const std::int64_t now = node::monotonic_nsec();
+    for (node::RepeatedEvent* event : {&questions_, &changes_, &refusals_}) event->report(now);
     if (!ending_) reader_.wait(kLongestWait);
   }
 }
@@ -73,7 +76,8 @@ void SceneWatch::take(const msg::SceneDescription& scene) {
   const PortAssignment wanted = part_of(scene, device_, driver_);
   if (!wanted.impossible.empty()) return refuse(wanted.impossible);
   refuse({});
-  if (wanted.questionable != questionable_ && !wanted.questionable.empty())
+  if (wanted.questionable != questionable_ && !wanted.questionable.empty() &&
+      questions_.record(node::monotonic_nsec()))
     spdlog::warn("{}", wanted.questionable);
   questionable_ = wanted.questionable;
 
@@ -85,15 +89,17 @@ void SceneWatch::take(const msg::SceneDescription& scene) {
   part_.store(packed(now), std::memory_order_release);
 }
 
-/// Remembers why a description is refused, and tells it once. @param why  empty: it is not
+/// Remembers why a description is refused, and tells it when it is another reason. @param why
+/// empty: it is not
 void SceneWatch::refuse(const std::string& why) {
   const std::lock_guard lock(refusal_mutex_);
   if (refusal_ == why) return;
   refusal_ = why;
-  if (!why.empty()) spdlog::error("{}: refused", why);
+  if (!why.empty() && refusals_.record(node::monotonic_nsec())) spdlog::error("{}: refused", why);
 }
 
 void SceneWatch::tell(const Part& part, const msg::SceneDescription& scene) {
+  if (!changes_.record(node::monotonic_nsec())) return;
   if (part.wanted) {
     spdlog::info("role {} in scene '{}'", name_of(part.role), scene.name());
   } else {

@@ -12,6 +12,7 @@
 #include "idl/scene.h"
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
+#include "node/repeated_event.h"
 
 namespace cordis::device {
 
@@ -54,6 +55,9 @@ class SceneWatch {
   const DeviceConfig& device_;
   const Driver& driver_;
   dds::Reader<msg::SceneDescription> reader_;
+  node::RepeatedEvent questions_{"other scenes are questionable"};  // of the thread
+  node::RepeatedEvent changes_{"the part of the device in the scene changed", spdlog::level::info};
+  node::RepeatedEvent refusals_{"other descriptions of scenes were refused", spdlog::level::err};
   std::string questionable_;          // of the thread
   std::atomic<std::uint64_t> part_;   // packed
   mutable std::mutex refusal_mutex_;  // of the thread and who tells the status

@@ -12,6 +12,16 @@
 #include "node/time.h"
 
 namespace cordis::node {
+namespace {
+
+/// Processor time of the calling thread [ns].
+std::int64_t processor_nsec() noexcept {
+  timespec used{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return static_cast<std::int64_t>(used.tv_sec) * 1'000'000'000 + used.tv_nsec;
+}
+
+}  // namespace
 
 RealtimeGrant make_realtime(int priority) noexcept {
   RealtimeGrant grant;
@@ -35,7 +45,8 @@ std::int64_t PacedLoop::deadline(std::int64_t index) const noexcept {
 std::uint64_t PacedLoop::wait() noexcept {
   const auto period = static_cast<std::int64_t>(1e9 / rate_hz_);
   ++ticks_;
-  if (ticks_ == 1) {
+  const bool is_first = ticks_ == 1;
+  if (is_first) {
     const double periods = static_cast<double>(monotonic_nsec()) * rate_hz_ / 1e9 - phase_;
     deadline_index_ = static_cast<std::int64_t>(periods);  // the present or the last one
   }
@@ -45,8 +56,13 @@ std::uint64_t PacedLoop::wait() noexcept {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr);
 
   const std::int64_t late = monotonic_nsec() - due;
+  const std::int64_t used = processor_nsec();  // nothing of it while it slept
+  const std::int64_t computed = is_first ? 0 : used - woken_processor_nsec_;
+  woken_processor_nsec_ = used;
   lateness_.record(late);
+  late_cause_ = LateCause::kNone;
   if (late < period) return 0;
+  late_cause_ = computed < period ? LateCause::kMachine : LateCause::kWork;
   ++overruns_;
   const std::int64_t skipped = late / period;
   deadline_index_ += skipped;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "node/late_ticks.h"
 #include "node/latency.h"
 
 namespace cordis::node {
@@ -41,6 +42,10 @@ class PacedLoop {
   std::uint64_t overruns() const noexcept {
     return overruns_;
   }  ///< ticks that began a period or more too late
+  /// Why the present tick began too late. A tick that computes for a period or more delays the
+  /// next one by itself; every other delay is the machine's. Time in which the tick waits counts as
+  /// the machine's too.
+  LateCause late_cause() const noexcept { return late_cause_; }
   double rate_hz() const noexcept { return rate_hz_; }
   const LatencyHistogram& lateness() const noexcept {
     return lateness_;
@@ -52,6 +57,8 @@ class PacedLoop {
   std::int64_t deadline_index_ = 0;  // periods since the clock was 0
   std::uint64_t ticks_ = 0;
   std::uint64_t overruns_ = 0;
+  LateCause late_cause_ = LateCause::kNone;
+  std::int64_t woken_processor_nsec_ = 0;  // of the thread, when the present tick began
   LatencyHistogram lateness_;
 
   std::int64_t deadline(std::int64_t index) const noexcept;

@@ -73,7 +73,8 @@ void StatusPublisher::loop() {
 /// once.
 void StatusPublisher::report_mismatch() {
   const std::string mismatch = participant_.mismatch();
-  if (mismatch != mismatch_ && !mismatch.empty()) spdlog::warn("{}", mismatch);
+  if (mismatch != mismatch_ && !mismatch.empty() && mismatches_.record(monotonic_nsec()))
+    spdlog::warn("{}", mismatch);
   mismatch_ = mismatch;
   if (mismatch.empty()) return;
   status_.text(status_.text().empty() ? mismatch : status_.text() + "; " + mismatch);
@@ -83,7 +84,8 @@ void StatusPublisher::report_mismatch() {
 void StatusPublisher::report_rejoin() {
   const std::uint64_t count = participant_.rejoin_count();
   if (count == std::exchange(rejoin_count_, count)) return;
-  spdlog::warn("a process that DDS had dropped is there again; this node has joined anew");
+  if (rejoins_.record(monotonic_nsec()))
+    spdlog::warn("a process that DDS had dropped is there again; this node has joined anew");
 }
 
 void StatusPublisher::publish() {
@@ -92,6 +94,8 @@ void StatusPublisher::publish() {
   fill_(status_);
   report_mismatch();
   report_rejoin();
+  mismatches_.report(now);
+  rejoins_.report(now);
   rate_.look(now, status_.ticks());
   status_.reached_rate_hz(rate_.reached_hz());
   status_.mean_rate_hz(rate_.mean_hz());

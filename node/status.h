@@ -12,6 +12,7 @@
 #include "idl/control.h"
 #include "node/dds/participant.h"
 #include "node/dds/writer.h"
+#include "node/repeated_event.h"
 #include "node/tick_rate.h"
 
 namespace cordis::node {
@@ -46,6 +47,8 @@ class StatusPublisher {
 
   const dds::Participant& participant_;
   std::string mismatch_;
+  RepeatedEvent mismatches_{"this node did not fit other processes of the session"};
+  RepeatedEvent rejoins_{"processes that DDS had dropped were there again"};
   std::uint64_t rejoin_count_ = 0;  // told
   dds::Writer<msg::NodeStatus> writer_;
   Fill fill_;

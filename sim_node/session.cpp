@@ -82,6 +82,7 @@ void Session::listen_to_devices() {
     while (device_reader_.take(told)) {
       if (refused_.hear(told)) reaches_.put(told.device_id(), told.run(), reach_of(told));
     }
+    refused_.report_repeats();
     if (!ending_) device_reader_.wait(kLongestWait);
   }
 }
@@ -130,17 +131,15 @@ void Session::run_realtime() {
                grant.fifo ? "granted" : "not permitted, going on without",
                grant.memory_locked ? "locked" : "not locked");
   node::PacedLoop loop(player_.simulation().scene().gesture_rate_hz, kPhase);
-  std::uint64_t earlier_overruns = 0;
   while (!finished()) {
     loop.wait();
-    overruns_.store(earlier_overruns + loop.overruns(), std::memory_order_relaxed);
+    late_ticks_.count(loop.late_cause());
     const bool plays = obey();
-    if (loop.rate_hz() != player_.simulation().scene().gesture_rate_hz) {
-      earlier_overruns += loop.overruns();
+    if (loop.rate_hz() != player_.simulation().scene().gesture_rate_hz)
       loop = node::PacedLoop(player_.simulation().scene().gesture_rate_hz, kPhase);
-    }
     receive();
     if (plays) advance();
+    if (player_.simulation().misses_a_device()) late_ticks_.count_silent();
     answer_all();
   }
 }
@@ -327,7 +326,7 @@ void Session::fill(msg::NodeStatus& status) {
   status.text(refused_.text());
   status.target_rate_hz(target_rate_hz_.load());
   status.ticks(ticks_.load());
-  status.overruns(overruns_.load());
+  late_ticks_.fill(status);
   status.dropped(dropped_.load());
   status.passivity_ticks(passivity_ticks_.load());
   if (status.passivity_ticks() > 0 && !std::exchange(passivity_reported_, true)) {

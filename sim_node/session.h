@@ -13,6 +13,7 @@
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
+#include "node/late_ticks.h"
 #include "node/node_main.h"
 #include "node/paced_loop.h"
 #include "node/roster.h"
@@ -102,7 +103,7 @@ class Session {
   bool passivity_reported_ = false;  // of the status thread
   std::atomic<const char*> phase_{"starting"};
   std::atomic<std::uint64_t> ticks_{0};
-  std::atomic<std::uint64_t> overruns_{0};
+  node::LateTicks late_ticks_;
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> passivity_ticks_{0};
   std::atomic<double> target_rate_hz_{0.0};

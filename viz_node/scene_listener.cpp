@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "node/dds/reader.h"
+#include "node/repeated_event.h"
 #include "node/time.h"
 
 namespace cordis::viz {
@@ -22,7 +23,10 @@ constexpr auto kLongestWait = std::chrono::seconds(1);
 template <class Message>
 class Follower {
  public:
-  Follower(dds::Participant& participant, dds::Topic topic) : reader_(participant, topic) {}
+  Follower(dds::Participant& participant, dds::Topic topic)
+      : reader_(participant, topic),
+        refusals_(std::string("refused other messages of ") +
+                  dds::qos_of(topic, false, false).name) {}
 
   ~Follower() {
     ending_ = true;
@@ -37,15 +41,15 @@ class Follower {
   void follow(Use use) {
     thread_ = std::thread([this, use] {
       Message message;
-      std::string last_fault;
       while (!ending_) {
-        if (!reader_.wait(kLongestWait)) continue;
+        const bool any = reader_.wait(kLongestWait);
+        refusals_.report(node::monotonic_nsec());
+        if (!any) continue;
         while (!ending_ && reader_.take(message)) {
-          std::string fault = fault_of(message, use);
+          const std::string fault = fault_of(message, use);
           message = Message();
-          if (fault.empty() || fault == last_fault) continue;
-          spdlog::warn("refused {}", fault);
-          last_fault = std::move(fault);
+          if (!fault.empty() && refusals_.record(node::monotonic_nsec()))
+            spdlog::warn("refused {}", fault);
         }
       }
     });
@@ -63,6 +67,7 @@ class Follower {
   }
 
   dds::Reader<Message> reader_;
+  node::RepeatedEvent refusals_;  // of the thread
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

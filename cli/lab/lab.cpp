@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cli/lab/lab_store.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/plan/reference/instruction_counter.h"
 #include "sim_node/plan/reference/load.h"
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "cli/run/child.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
 
 namespace cordis::cli {
 namespace {

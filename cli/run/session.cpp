@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <optional>
 
 #include "cli/duration.h"
 #include "cli/exit_code.h"
+#include "cli/run/machine_watch.h"
 #include "cli/run/node_output.h"
 #include "cli/run/respawn_policy.h"
 #include "cli/run/status_board.h"
 #include "node/config/count_text.h"
 #include "node/dds/reader.h"
+#include "node/machine/timer_watch.h"
 #include "node/time.h"
 
 namespace cordis::cli {
@@ -35,6 +38,7 @@ class Session : public Watcher {
         killed_(plan.nodes.size(), false),
         restarts_(plan.nodes.size(), 0),
         started_(Clock::now()) {
+    if (launch.clock == config::Clock::kRealtime) timers_.emplace();
     output_.say("session '" + launch.session + "' in DDS domain " +
                 std::to_string(registration.domain()));
   }
@@ -66,7 +70,7 @@ class Session : public Watcher {
     output_.say(node.name + ": " + (failed ? ending.text() : "has ended") +
                 why_not_again(node, ending) +
                 (node.required ? "; stopping the others" : "; the others go on"));
-    stopped_ = stopped_ || node.required;
+    if (node.required) stop();
     if (failure_ == kSuccess) failure_ = ending.exit_code();
     return node.required;
   }
@@ -77,16 +81,18 @@ class Session : public Watcher {
   }
 
   void interrupted(bool again) override {
-    stopped_ = true;
+    stop();
     output_.say(again ? "killing all nodes; devices have 0.5 s to let go"
                       : "stopping; once more kills");
   }
 
   bool tick() override {
     take_statuses();
+    const std::string reason = machine_.sentence_when_repeated(board_.late_ticks());
+    if (!reason.empty()) output_.say(reason);
     output_.flush();
     const bool over = plan_.wall_duration && is_over(*plan_.wall_duration);
-    stopped_ = stopped_ || over;
+    if (over) stop();
     return over;
   }
 
@@ -100,6 +106,8 @@ class Session : public Watcher {
     if (heard) {
       output_.print("");
       output_.print(status_table(names, board_));
+      const std::string reason = machine_.sentence(board_.late_ticks());
+      if (!reason.empty()) output_.print(reason);
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (restarts_[i] > 0)
@@ -109,6 +117,11 @@ class Session : public Watcher {
   }
 
  private:
+  void stop() {
+    stopped_ = true;
+    board_.begin_stop();
+  }
+
   /// The reason why a node that may respawn is not started again; empty if there is none to state.
   static std::string why_not_again(const PlannedNode& node, const Ending& ending) {
     if (!node.respawn || ending.exit_code() == kSuccess) return "";
@@ -165,6 +178,8 @@ class Session : public Watcher {
   node::SessionRegistration& registration_;
   NodeOutput output_;
   StatusBoard board_;
+  std::optional<machine::TimerWatch> timers_;  // in realtime: elsewhere no tick is late
+  MachineWatch machine_{[this] { return timers_ ? timers_->figures() : machine::TimerFigures{}; }};
   dds::Participant participant_;
   dds::Reader<msg::NodeStatus> statuses_;
   std::map<std::string, std::string> pages_;  // address shown, by node

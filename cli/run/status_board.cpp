@@ -12,11 +12,24 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-const Row kHeader{"node", "rate [Hz]", "wanted",      "overruns", "lost", "latency p50 [us]",
-                  "p99",  "max",       "energy drift"};
+const Row kHeader{"node", "rate [Hz]", "wanted",       "overruns",  "lost", "latency p50 [us]",
+                  "p99",  "max",       "energy drift", "late ticks"};
 
 std::string microseconds(double seconds) {
   return fmt::format("{:.0f}", seconds * 1e6);
+}
+
+/// The late ticks by their causes, and those without an answer of the other side.
+std::string causes_of(const msg::NodeStatus& status) {
+  const bool simulates = status.kind() == "sim_node";
+  std::string text;
+  const auto add = [&text](const char* cause, std::uint64_t ticks) {
+    if (ticks > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cause, ticks);
+  };
+  add("machine", status.late_by_machine());
+  add(simulates ? "scene too slow" : "own work too slow", status.late_by_work());
+  add(simulates ? "device silent" : "scene silent", status.silent_ticks());
+  return text.empty() ? "none" : text;
 }
 
 Row row_of(const std::string& node, const msg::NodeStatus* status) {
@@ -26,13 +39,15 @@ Row row_of(const std::string& node, const msg::NodeStatus* status) {
   const bool simulates = status->kind() == "sim_node";
   row.push_back(paced || status->ticks() > 0 ? fmt::format("{:.1f}", status->mean_rate_hz()) : "-");
   row.push_back(paced ? fmt::format("{:g}", status->target_rate_hz()) : "-");
-  row.push_back(paced ? std::to_string(status->overruns()) : "-");
+  const bool has_deadlines = paced && status->kind() != "viz_node";
+  row.push_back(has_deadlines ? std::to_string(status->overruns()) : "-");
   row.push_back(std::to_string(status->dropped()));
   const bool timed = status->latency_count() > 0;
   row.push_back(timed ? microseconds(status->latency_p50_s()) : "-");
   row.push_back(timed ? microseconds(status->latency_p99_s()) : "-");
   row.push_back(timed ? microseconds(status->latency_max_s()) : "-");
   row.push_back(simulates ? fmt::format("{:.2g}", status->energy_drift()) : "-");
+  row.push_back(has_deadlines ? causes_of(*status) : "-");
   return row;
 }
 
@@ -69,7 +84,8 @@ std::string aligned(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     text += fmt::format("{:<{}}", row[0], widths[0]);
     for (std::size_t c = 1; c < row.size(); ++c) {
-      text += fmt::format("  {:>{}}", row[c], row.size() < kHeader.size() ? 0 : widths[c]);
+      const bool is_text = row.size() < kHeader.size() || c + 1 == kHeader.size();
+      text += fmt::format("  {:>{}}", row[c], is_text ? 0 : widths[c]);
     }
     text += '\n';
   }
@@ -81,13 +97,25 @@ std::string aligned(const std::vector<Row>& rows) {
 bool StatusBoard::put(const msg::NodeStatus& status) {
   const auto life = first_run_of_.find(status.node());
   if (status.run() < (life == first_run_of_.end() ? first_run_ : life->second)) return false;
-  newest_[status.node()] = status;
+  msg::NodeStatus& newest = newest_[status.node()];
+  const std::uint64_t silent_ticks = newest.silent_ticks();
+  newest = status;
+  if (stopping_) newest.silent_ticks(silent_ticks);
   return true;
 }
 
 void StatusBoard::begin_life(const std::string& node, std::uint64_t first_run) {
   first_run_of_[node] = first_run;
   newest_.erase(node);
+}
+
+LateTickSum StatusBoard::late_ticks() const {
+  LateTickSum sum;
+  for (const auto& [node, status] : newest_) {
+    sum.by_machine += status.late_by_machine();
+    sum.by_work += status.late_by_work();
+  }
+  return sum;
 }
 
 const msg::NodeStatus* StatusBoard::find(const std::string& node) const {

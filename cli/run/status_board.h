@@ -10,6 +10,12 @@
 
 namespace cordis::cli {
 
+/// Late ticks by cause.
+struct LateTickSum {
+  std::uint64_t by_machine = 0;
+  std::uint64_t by_work = 0;
+};
+
 /// Keeps the newest status of each node by name.
 class StatusBoard {
  public:
@@ -25,18 +31,27 @@ class StatusBoard {
   /// @param first_run  as above
   void begin_life(const std::string& node, std::uint64_t first_run);
 
+  /// The session is being stopped: from now on no node answers for the silence of another, which
+  /// is stopped before it.
+  void begin_stop() { stopping_ = true; }
+
+  /// Over all nodes.
+  LateTickSum late_ticks() const;
+
   const msg::NodeStatus* find(
       const std::string& node) const;  ///< nullptr when this life of it never spoke
 
  private:
   std::uint64_t first_run_;
+  bool stopping_ = false;
   std::map<std::string, std::uint64_t> first_run_of_;  // of those that were started again
   std::map<std::string, msg::NodeStatus> newest_;
 };
 
-/// A line per node in the order of `nodes`: rate reached, overruns, latency, energy drift; then, of
-/// a simulation, its running account and its state as `state hash 0123456789abcdef after N steps`;
-/// of a device what its hand was given; of a node that failed its reason. Ends with a newline.
+/// A line per node in the order of `nodes`: rate reached, overruns, latency, energy drift, late
+/// ticks by their cause and those without an answer of the other side; then, of a simulation, its
+/// running account and its state as `state hash 0123456789abcdef after N steps`; of a device what
+/// its hand was given; of a node that failed its reason. Ends with a newline.
 std::string status_table(const std::vector<std::string>& nodes, const StatusBoard& board);
 
 }  // namespace cordis::cli

@@ -231,11 +231,14 @@ bool Guardian::has_ended() noexcept {
 }
 
 void Guardian::watch() noexcept {
+  const std::int64_t now = node::monotonic_nsec();
+  restarts_.report(now);
   if (id_ <= 0 || !has_ended()) return;
   close(socket_);
   socket_ = -1;
   if (start()) {
-    spdlog::warn("the guardian process of the motors was killed; it has been started again");
+    if (restarts_.record(now))
+      spdlog::warn("the guardian process of the motors was killed; it has been started again");
     if (file_ >= 0) send(file_);
     return;
   }

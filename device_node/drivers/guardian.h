@@ -9,6 +9,7 @@
 #include <sys/types.h>
 
 #include "device_node/drivers/motor_release.h"
+#include "node/repeated_event.h"
 
 namespace cordis::device {
 
@@ -64,6 +65,7 @@ class Guardian {
   int socket_ = -1;
   int file_ = -1;
   ReleaseFrame frame_;
+  node::RepeatedEvent restarts_{"the guardian process of the motors was killed and started again"};
 };
 
 }  // namespace cordis::device

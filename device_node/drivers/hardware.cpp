@@ -51,6 +51,7 @@ bool Hardware::read(AxisValues& sensed) noexcept {
 bool Hardware::write(const AxisValues& commanded) noexcept {
   const std::int64_t now = node::monotonic_nsec();
   is_let_go_ = false;
+  report_repeats(now);
   if (contact_ == Contact::kLost) try_to_open(now);
   if (contact_ != Contact::kLost) listen(now);  // what came late answers an earlier request
   if (contact_ == Contact::kGreeting && now >= next_greeting_nsec_) greet_now(now);

@@ -92,6 +92,8 @@ class Hardware : public Driver {
   /// Writes the request that carries forces [N].
   virtual std::size_t request(const AxisValues& force_n, Message& message) noexcept = 0;
   virtual Heard hear(std::uint8_t byte) noexcept = 0;
+  /// In every period: tells what has repeated itself. @param now_nsec  CLOCK_MONOTONIC
+  virtual void report_repeats(std::int64_t /*now_nsec*/) noexcept {}
   /// It has listened, and nothing has come at all.
   virtual void fall_silent() noexcept {}
   virtual void position(AxisValues& position_m) const noexcept = 0;  ///< of the newest sample

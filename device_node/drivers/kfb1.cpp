@@ -165,7 +165,7 @@ Hardware::Heard Kfb1::take_frame() noexcept {
   return Heard::kNothing;  // or of a later version
 }
 
-/// Logs each event once while the board repeats it.
+/// While the board repeats an event because it lasts, that is one event.
 Hardware::Heard Kfb1::take_event(std::uint8_t code) noexcept {
   constexpr std::uint8_t kSaturated = 3;
   constexpr std::uint8_t kWatchdogFired = 4;
@@ -178,7 +178,8 @@ Hardware::Heard Kfb1::take_event(std::uint8_t code) noexcept {
   const bool goes_on = code == told_ && now - event_nsec_ < kOver;
   told_ = code;
   event_nsec_ = now;
-  if (!goes_on) spdlog::warn("kfb1: the board reports: {}", kWords[code]);
+  if (!goes_on && events_[code].record(now))
+    spdlog::warn("kfb1: the board reports: {}", kWords[code]);
   if (code == kSaturated) return Heard::kNothing;
   return code == kWatchdogFired ? Heard::kLetGoOnce : Heard::kLetGo;
 }
@@ -187,6 +188,7 @@ Hardware::Heard Kfb1::take_info(Bytes payload) noexcept {
   if (payload.size() < 17) return Heard::kBad;
   const int keys = payload[2];
   if (payload[1] != kVersion || keys != layout().count || get32(payload, 7) == 0) {
+    if (!wrong_boards_.record(node::monotonic_nsec())) return Heard::kWrong;
     spdlog::error("kfb1: the device has {} and speaks version {}; the device file says {}",
                   config::count_text(payload[2], "key"), payload[1],
                   config::count_text(static_cast<std::size_t>(layout().count), "axis", "axes"));
@@ -199,16 +201,20 @@ Hardware::Heard Kfb1::take_info(Bytes payload) noexcept {
 
 /// Tells where the device is not what its file promises to scenes. A device that is stronger than
 /// the file says is told to stay within it.
-void Kfb1::compare_with_file() const noexcept {
+void Kfb1::compare_with_file() noexcept {
   constexpr double kUnit = 1e-6;  // in which it tells its travel [m]
   const double travel_m = layout().highest_m - layout().lowest_m;
-  if (std::abs(travel_m_ - travel_m) > kUnit) {
+  const bool other_travel = std::abs(travel_m_ - travel_m) > kUnit;
+  const bool less_force = force_n_ < layout().force_limit_n;
+  if (!other_travel && !less_force) return;
+  if (!comparisons_.record(node::monotonic_nsec())) return;
+  if (other_travel) {
     spdlog::warn(
         "kfb1: the keys have a travel of {:.6g} m, and travel_m of the device file is "
         "{:.6g} m: scenes are held against that",
         travel_m_, travel_m);
   }
-  if (force_n_ < layout().force_limit_n) {
+  if (less_force) {
     spdlog::warn(
         "kfb1: the motors give {:.6g} N at most, and force_limit_n of the device file is "
         "{:.6g} N: forces above their most are cut off",
@@ -242,8 +248,15 @@ bool Kfb1::has_restarted(std::uint32_t board_usec) noexcept {
   const std::int64_t board_passed_usec = static_cast<std::uint32_t>(board_usec - board_usec_);
   const bool is_older = board_passed_usec > 0xffffffff - kReordered;
   if (is_older || board_passed_usec <= passed_usec + kClockError) return false;
-  spdlog::warn("kfb1: the board has restarted; it is greeted and configured again");
+  if (restarts_.record(node::monotonic_nsec()))
+    spdlog::warn("kfb1: the board has restarted; it is greeted and configured again");
   return true;
+}
+
+void Kfb1::report_repeats(std::int64_t now_nsec) noexcept {
+  for (node::RepeatedEvent& event : events_) event.report(now_nsec);
+  for (node::RepeatedEvent* event : {&restarts_, &wrong_boards_, &comparisons_})
+    event->report(now_nsec);
 }
 
 std::unique_ptr<Driver> make_kfb1(const config::Value& section, const AxisLayout& layout,

@@ -1,7 +1,10 @@
 // device_node/drivers/kfb1.h -- keyboards that people build themselves: docs/kfb1.md.
 #pragma once
 
+#include <array>
+
 #include "device_node/drivers/hardware.h"
+#include "node/repeated_event.h"
 
 namespace cordis::device {
 
@@ -21,6 +24,7 @@ class Kfb1 final : public Hardware {
   std::size_t release(Message& message) const noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
   Heard hear(std::uint8_t byte) noexcept override;
+  void report_repeats(std::int64_t now_nsec) noexcept override;
   void position(AxisValues& position_m) const noexcept override { position_m = newest_; }
 
  public:
@@ -32,7 +36,7 @@ class Kfb1 final : public Hardware {
   Heard take_state(std::span<const std::uint8_t> payload) noexcept;
   Heard take_event(std::uint8_t code) noexcept;
   bool has_restarted(std::uint32_t board_usec) noexcept;
-  void compare_with_file() const noexcept;
+  void compare_with_file() noexcept;
 
   Message frame_{};  // bytes since the last 0
   std::size_t length_ = 0;
@@ -45,6 +49,17 @@ class Kfb1 final : public Hardware {
   std::uint32_t board_usec_ = 0;       // time of the board in a STATE
   std::int64_t board_asked_nsec_ = 0;  // when that STATE was asked for at the latest; 0: none
   AxisValues newest_{};                // [m]
+  std::array<node::RepeatedEvent, 5> events_{
+      // by the code of the EVENT
+      node::RepeatedEvent("kfb1: an event without a name"),
+      node::RepeatedEvent("kfb1: the board reports again: it is too hot"),
+      node::RepeatedEvent("kfb1: the board reports again: emergency stop"),
+      node::RepeatedEvent("kfb1: the board reports again: a motor is saturated"),
+      node::RepeatedEvent("kfb1: the board reports again: its watchdog has fired")};
+  node::RepeatedEvent restarts_{"kfb1: the board has restarted again"};
+  node::RepeatedEvent wrong_boards_{"kfb1: the device is still not that of the device file",
+                                    spdlog::level::err};
+  node::RepeatedEvent comparisons_{"kfb1: the device was greeted again, and differs from its file"};
 };
 
 /// Reads the mapping `kfb1:` of a device file. Empty when it has errors.

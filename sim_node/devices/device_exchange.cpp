@@ -41,12 +41,14 @@ void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexc
   from_ = before.from_;
   to_ = before.to_;
   silent_ticks_ = before.silent_ticks_;
+  is_expected_ = before.is_expected_;
   rejoin_left_ = before.rejoin_left_;
   even_ticks_ = before.even_ticks_;
 }
 
 void DeviceExchange::let_go() noexcept {
   has_new_ = false;
+  is_expected_ = false;
   silent_ticks_ = lost_after_ticks_ + 1;
 }
 
@@ -129,6 +131,7 @@ void DeviceExchange::begin_tick() noexcept {
   const bool stood_still = gap && even_ticks_ == rejoin_ticks_;
   even_ticks_ = gap ? 0 : std::min(even_ticks_ + 1, rejoin_ticks_);
   if (!borne_) {
+    is_expected_ = false;
     silent_ticks_ = lost_after_ticks_ + 1;
   } else if (has_new_) {
     if (is_lost() || new_run_ || stood_still) {
@@ -136,6 +139,7 @@ void DeviceExchange::begin_tick() noexcept {
       if (brake_) brake_->start();
     }
     new_run_ = false;
+    is_expected_ = true;
     silent_ticks_ = 0;
   } else if (!is_lost()) {
     ++silent_ticks_;

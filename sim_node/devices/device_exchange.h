@@ -92,6 +92,8 @@ class DeviceExchange {
   Role role() const noexcept { return role_; }
   bool has_new_sample() const noexcept { return has_new_; }
   bool is_lost() const noexcept { return silent_ticks_ > lost_after_ticks_; }
+  /// True if a device was there, fell silent, and was not let go of.
+  bool is_missed() const noexcept { return is_expected_ && is_lost(); }
   bool was_heard() const noexcept { return received_run_ != 0; }
   /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
   std::int64_t heard_time_nsec() const noexcept { return received_time_nsec_; }
@@ -132,6 +134,7 @@ class DeviceExchange {
   bool new_work_ = false;   // what it tells of its work does not follow from what it told before
   bool after_gap_ = false;  // it is the first after a gap of kLostAfter
   bool borne_ = true;
+  bool is_expected_ = false;  // it was there in a tick, and nobody has let go of it since
 
   std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick
   std::array<double, kMaxAxes> to_{};    // and at its end

@@ -7,6 +7,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "node/time.h"
+
 namespace cordis::sim {
 namespace {
 
@@ -78,9 +80,18 @@ void RefusedDevices::judge() {
     text += (text.empty() ? "" : "; ") + why + ": driver " + device.driver + " is given no force";
   }
   for (; count < kMost; ++count) refused_[count].store(0, std::memory_order_relaxed);
-  if (text != text_ && !text.empty()) spdlog::error("{}", text);
-  if (text != text_ && text.empty()) spdlog::info("every device can bear the scene again");
+  const std::int64_t now = node::monotonic_nsec();
+  if (text != text_ && !text.empty() && refusals_.record(now)) spdlog::error("{}", text);
+  if (text != text_ && text.empty() && returns_.record(now))
+    spdlog::info("every device can bear the scene again");
   text_ = std::move(text);
+}
+
+void RefusedDevices::report_repeats() {
+  const std::int64_t now = node::monotonic_nsec();
+  const std::lock_guard lock(mutex_);
+  refusals_.report(now);
+  returns_.report(now);
 }
 
 bool RefusedDevices::refuses(std::uint64_t run) const noexcept {

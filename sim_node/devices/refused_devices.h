@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "idl/gesture.h"
+#include "node/repeated_event.h"
 #include "sim_node/checks/port_check.h"
 
 namespace cordis::sim {
@@ -28,6 +29,9 @@ class RefusedDevices {
   /// A device tells what it is; not believed when a number in it makes no sense, or when the same
   /// process has told something before. @return whether it is believed
   bool hear(const msg::DeviceDescription& told);
+
+  /// Tells what has repeated itself. To be called at least now and then.
+  void report_repeats();
 
   /// Whether the process of this run is refused. Real time.
   bool refuses(std::uint64_t run) const noexcept;
@@ -52,6 +56,8 @@ class RefusedDevices {
   std::vector<PortDemand> demands_;
   std::deque<Known> known_;  // the newest ones, oldest first
   std::string text_;
+  node::RepeatedEvent refusals_{"other devices that cannot bear the scene", spdlog::level::err};
+  node::RepeatedEvent returns_{"every device could bear the scene again", spdlog::level::info};
   std::array<std::atomic<std::uint64_t>, kMost> refused_{};  // runs; 0: none
 };
 

@@ -8,41 +8,13 @@
 
 #include "sim_node/engine/core/vector_width.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/links/link_event.h"
 #include "sim_node/engine/matter/energy.h"
 
 namespace cordis::engine {
 
 struct WorldState;
-
-/// What one step has to report. Everything is 0 when nothing is wrong.
-struct StepReport {
-  std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
-  std::uint32_t refused_inputs =
-      0;  ///< positions and forces from outside that were not finite, since the last step
-  std::uint32_t overflowed_sets =
-      0;  ///< sets with more pairs in range than there was room for: correct, but slow
-  std::uint32_t lost_events = 0;  ///< changes of state that found no room in events()
-};
-
-/// A pair of a set liaison that is in another state than that of the start.
-struct BoundPair {
-  std::uint32_t mat_a = 0;
-  std::uint32_t mat_b = 0;
-  std::uint32_t state = 0;   ///< of the state machine of the set
-  double rest_length = 0.0;  ///< [m]
-};
-
-using VisitBoundPair = void (*)(void* owner, const BoundPair& pair);
-
-/// Everything needed to go on later from the same state, bit for bit.
-struct Snapshot {
-  std::uint64_t network = 0;  ///< Network::fingerprint()
-  std::uint64_t step = 0;
-  std::vector<double> state;  ///< opaque
-  std::vector<StateMachine>
-      state_machines;  ///< all of them, if one has been replaced; otherwise none
-};
 
 /// A network in motion.
 ///
@@ -51,7 +23,8 @@ struct Snapshot {
 /// on every run, optimisation level and vector width.
 class World {
  public:
-  /// @throws std::invalid_argument without a network, or when the processor lacks the vector
+  /// @throws std::invalid_argument without a network, when its integrator does not take it (see
+  /// refusal_of), or when the processor lacks the vector
   /// instructions.
   explicit World(std::shared_ptr<const Network> network, VectorWidth width = best_vector_width());
   ~World();

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/plan/rate_trial.h"
 #include "sim_node/plan/reference/trial_run.h"
 

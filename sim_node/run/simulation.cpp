@@ -95,6 +95,11 @@ std::int64_t Simulation::action_time_nsec() const noexcept {
   return newest;
 }
 
+bool Simulation::misses_a_device() const noexcept {
+  return std::any_of(devices_.begin(), devices_.end(),
+                     [](const DeviceExchange& device) { return device.is_missed(); });
+}
+
 double Simulation::simulated_s() const noexcept {
   return static_cast<double>(world_.step_count()) * world_.network().step();
 }

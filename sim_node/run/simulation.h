@@ -40,6 +40,9 @@ class Simulation {
   /// Of the newest sample of all devices that are there; 0 when none is [ns].
   std::int64_t action_time_nsec() const noexcept;
 
+  /// Whether a device has fallen silent that was there: DeviceExchange::is_missed().
+  bool misses_a_device() const noexcept;
+
   const scene::Scene& scene() const noexcept { return *scene_; }
   const std::shared_ptr<const scene::Scene>& shared_scene() const noexcept { return scene_; }
   const engine::World& world() const noexcept { return world_; }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "node/config/file_kind.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/naming.h"
 #include "sim_node/scene/sections/assembly.h"

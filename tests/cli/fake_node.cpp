@@ -11,8 +11,11 @@
 //   and again, without end exit N        ends                        die N        is killed by
 //   signal N run TEXT      publishes node/status: phase running, text TEXT, some figures
 //   phase PHASE   the same in another phase
+//   late N        the same, running, N ticks late by the machine; the other side is silent for one
+//   tick, and for 500 once the node is asked to stop
 // At the end it waits for SIGINT or SIGTERM, says `stopped`, and ends with exit code 0.
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -56,21 +59,26 @@ Self read_words(int argc, char** argv) {
   return self;
 }
 
+std::atomic<bool> is_stopping{false};
+
 /// Says what a node says of itself, as long as it lives.
 class FakeStatus {
  public:
-  FakeStatus(const Self& self, const std::string& phase, const std::string& text)
+  FakeStatus(const Self& self, const std::string& phase, const std::string& text,
+             std::uint64_t late = 0)
       : participant_(membership(self)) {
     const auto run = static_cast<std::uint64_t>(node::monotonic_nsec());
-    publisher_ = std::make_unique<node::StatusPublisher>(participant_, self.kind, run,
-                                                         [phase, text](msg::NodeStatus& status) {
-                                                           status.phase(phase);
-                                                           status.text(text);
-                                                           status.target_rate_hz(1000);
-                                                           status.ticks(status.ticks() + 1);
-                                                           status.step(4711);
-                                                           status.state_hash(0x0123456789abcdefull);
-                                                         });
+    publisher_ = std::make_unique<node::StatusPublisher>(
+        participant_, self.kind, run, [phase, text, late](msg::NodeStatus& status) {
+          status.phase(phase);
+          status.text(text);
+          status.target_rate_hz(1000);
+          status.ticks(status.ticks() + 1);
+          if (late > 0) status.silent_ticks(is_stopping ? 500 : 1);
+          status.late_by_machine(late);
+          status.step(4711);
+          status.state_hash(0x0123456789abcdefull);
+        });
   }
 
  private:
@@ -140,6 +148,7 @@ void obey(const std::string& command, const Self& self, std::unique_ptr<FakeStat
   if (verb == "exit") std::exit(std::stoi(rest));
   if (verb == "die") raise(std::stoi(rest));
   if (verb == "run") status = std::make_unique<FakeStatus>(self, "running", rest);
+  if (verb == "late") status = std::make_unique<FakeStatus>(self, "running", "", std::stoul(rest));
   if (verb == "phase") status = std::make_unique<FakeStatus>(self, rest, "");
 }
 
@@ -160,6 +169,7 @@ int main(int argc, char** argv) {
   if (self.check) return 0;
 
   wait_for({SIGINT, SIGTERM});
+  is_stopping = true;
   std::cout << "stopped" << std::endl;
   return 0;
 }

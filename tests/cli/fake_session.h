@@ -82,6 +82,13 @@ class FakeSession {
   std::map<std::string, std::string> environment_;
 };
 
+/// How often `part` occurs in a text.
+inline std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++count;
+  return count;
+}
+
 /// Numbers N of all lines `... pid N` in the output.
 inline std::vector<pid_t> pids_in(const std::string& output) {
   std::vector<pid_t> pids;

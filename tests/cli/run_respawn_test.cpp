@@ -7,12 +7,6 @@
 namespace cordis::test {
 namespace {
 
-std::size_t count_of(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++count;
-  return count;
-}
-
 /// A session whose nodes start again when they die.
 class RunRespawn : public testing::Test {
  protected:

@@ -14,6 +14,11 @@ msg::NodeStatus status_of(const std::string& node, const std::string& kind, std:
   return status;
 }
 
+bool ends_with_dash(const std::string& table, const std::string& node) {
+  const std::size_t row = table.find("\n" + node + " ") + 1;
+  return row > 0 && table.substr(0, table.find('\n', row)).ends_with("  -");
+}
+
 TEST(StatusBoard, KeepsTheNewestOfEachNode) {
   StatusBoard board(/*first_run=*/100);
   msg::NodeStatus status = status_of("sim", "sim_node", 150);
@@ -48,12 +53,27 @@ TEST(StatusBoard, RefusesProcessesOlderThanTheRun) {
   EXPECT_EQ(board.find("sim"), nullptr);
 }
 
+TEST(StatusBoard, AddsUpTheLateTicksOfAllNodes) {
+  StatusBoard board(/*first_run=*/0);
+  for (const char* node : {"sim", "key"}) {
+    msg::NodeStatus status = status_of(node, "device_node", 1);
+    status.late_by_machine(3);
+    status.late_by_work(1);
+    board.put(status);
+  }
+  EXPECT_EQ(board.late_ticks().by_machine, 6u);
+  EXPECT_EQ(board.late_ticks().by_work, 2u);
+}
+
 TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   StatusBoard board(0);
   msg::NodeStatus sim = status_of("sim", "sim_node", 1);
   sim.target_rate_hz(1000);
   sim.mean_rate_hz(999.96);
   sim.overruns(12);
+  sim.late_by_machine(9);
+  sim.late_by_work(3);
+  sim.silent_ticks(240);
   sim.energy_drift(1.25e-7);
   sim.energy_j(0.0125);
   sim.port_work_j(0.03);
@@ -77,14 +97,59 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
 
   EXPECT_EQ(
       status_table({"sim", "keyboard", "view"}, board),
-      "node      rate [Hz]  wanted  overruns  lost  latency p50 [us]  p99   max  energy drift\n"
-      "sim          1000.0    1000        12     0                 -    -     -       1.2e-07\n"
-      "keyboard     1000.0    1000         0     3                56   98  2310             -\n"
+      "node      rate [Hz]  wanted  overruns  lost  latency p50 [us]  p99   max  energy drift  "
+      "late ticks\n"
+      "sim          1000.0    1000        12     0                 -    -     -       1.2e-07  "
+      "machine 9, scene too slow 3, device silent 240\n"
+      "keyboard     1000.0    1000         0     3                56   98  2310             -  "
+      "none\n"
       "view      no status was received\n"
       "energy 0.0125 J: 0.03 J through the ports, -0.0005 J by changes of state, 0.017 J taken by "
       "viscosity; largest K' + 2 Z' 1.75 of 4\n"
       "state hash 0123456789abcdef after 10000 steps\n"
       "keyboard gave the hand -0.002 J, braked in 7 ticks\n");
+}
+
+TEST(StatusTable, TellsCausesInTheWordsOfTheNode) {
+  StatusBoard board(0);
+  msg::NodeStatus key = status_of("key", "device_node", 1);
+  key.target_rate_hz(1000);
+  key.late_by_work(2);
+  key.silent_ticks(31);
+  board.put(key);
+  EXPECT_NE(status_table({"key"}, board).find("  own work too slow 2, scene silent 31\n"),
+            std::string::npos);
+}
+
+TEST(StatusTable, TellsNoCausesOfANodeWithoutARate) {
+  StatusBoard board(0);
+  msg::NodeStatus sim = status_of("sim", "sim_node", 1);  // as in lockstep and asap
+  sim.ticks(1000);
+  sim.silent_ticks(31);
+  board.put(sim);
+  EXPECT_EQ(status_table({"sim"}, board).find("silent"), std::string::npos);
+  EXPECT_TRUE(ends_with_dash(status_table({"sim"}, board), "sim"));
+
+  msg::NodeStatus view = status_of("view", "viz_node", 1);  // it skips frames, and is never late
+  view.target_rate_hz(25);
+  board.put(view);
+  EXPECT_TRUE(ends_with_dash(status_table({"view"}, board), "view"));
+}
+
+TEST(StatusTable, CountsNoSilenceOfANodeThatIsStopped) {
+  StatusBoard board(0);
+  msg::NodeStatus sim = status_of("sim", "sim_node", 1);
+  sim.target_rate_hz(1000);
+  sim.silent_ticks(31);
+  board.put(sim);
+
+  board.begin_stop();
+  sim.silent_ticks(500);
+  sim.late_by_machine(1);
+  board.put(sim);
+
+  EXPECT_NE(status_table({"sim"}, board).find("  machine 1, device silent 31\n"),
+            std::string::npos);
 }
 
 TEST(StatusTable, TellsWhyANodeFailed) {

@@ -331,6 +331,41 @@ TEST(Exchange, ANewRunOfTheSceneMayAnswerWhatAnEarlierOneHasAnswered) {
   EXPECT_EQ(rig.driver.commands.back()[0], 2.0);
 }
 
+TEST(Exchange, MissesASceneThatAnswersNoNewSampleForLongerThanTheWatchdog) {
+  now_nsec = 0;
+  Rig rig(false);
+  for (int n = 0; n < 100; ++n) rig.period(false);
+  EXPECT_FALSE(rig.exchange.misses_the_scene()) << "it has never answered";
+
+  for (int n = 0; n < 5; ++n) rig.period(true, 1.0);
+  const GestureMessage last = rig.answer(1.0);
+  for (int n = 0; n < 19; ++n) rig.period(false);
+  EXPECT_FALSE(rig.exchange.misses_the_scene());
+  rig.period(false);
+  EXPECT_TRUE(rig.exchange.misses_the_scene());
+
+  GestureMessage again = last;  // the scene goes on, and hears nothing of this device
+  again.sample = ++rig.scene_sample;
+  rig.channel.waiting.push_back(again);
+  rig.period(false);
+  EXPECT_TRUE(rig.exchange.misses_the_scene());
+
+  rig.period(true, 1.0);
+  EXPECT_FALSE(rig.exchange.misses_the_scene());
+}
+
+TEST(Exchange, BlamesNoSceneForTheTimeInWhichItStoodStillItself) {
+  now_nsec = 0;
+  Rig rig(false);
+  for (int n = 0; n < 5; ++n) rig.period(true, 1.0);
+
+  now_nsec += 1'000 * kPeriodNsec;
+  rig.period(false);
+
+  EXPECT_EQ(rig.driver.commands.back()[0], 0.0);
+  EXPECT_FALSE(rig.exchange.misses_the_scene());
+}
+
 TEST(Exchange, MeasuresFromSendingToTakingTheAnswer) {
   now_nsec = 0;
   Rig rig(false);

@@ -16,13 +16,20 @@ TEST(LoopMeter, TellsWhatWasCounted) {
   for (int n = 0; n < 5; ++n) meter.count_tick();
   meter.count_dropped();
   meter.count_dropped();
-  meter.add_overruns(3);
+  meter.late_ticks().count(node::LateCause::kMachine);
+  meter.late_ticks().count(node::LateCause::kMachine);
+  meter.late_ticks().count(node::LateCause::kWork);
+  meter.late_ticks().count(node::LateCause::kNone);
+  for (int n = 0; n < 4; ++n) meter.late_ticks().count_silent();
 
   const msg::NodeStatus status = status_of(meter);
 
   EXPECT_EQ(status.ticks(), 5u);
   EXPECT_EQ(status.dropped(), 2u);
   EXPECT_EQ(status.overruns(), 3u);
+  EXPECT_EQ(status.late_by_machine(), 2u);
+  EXPECT_EQ(status.late_by_work(), 1u);
+  EXPECT_EQ(status.silent_ticks(), 4u);
 }
 
 TEST(LoopMeter, TellsItsPhase) {

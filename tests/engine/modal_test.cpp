@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/modal_block.h"
 #include "tests/engine/many_states.h"
 #include "tests/engine/scenes.h"
@@ -132,7 +133,7 @@ TEST(Modal, MovesAsFarAsASteadyForceShouldMoveIt) {
 TEST(Modal, RefusesWhatHasNoModes) {
   const auto refusal = [](const NetworkDescription& scene) -> std::string {
     try {
-      const engine::Network network(by_modes(scene));
+      const World world = make_world(by_modes(scene));
     } catch (const std::invalid_argument& error) {
       return error.what();
     }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"

@@ -117,7 +117,7 @@ TEST(Symplectic4, CountsTheWorkOfAForceFromOutside) {
 TEST(Symplectic4, RefusesWhatDoesNotConserveTheEnergy) {
   const auto refusal = [](const NetworkDescription& scene) -> std::string {
     try {
-      const engine::Network network(by_symplectic4(scene));
+      const World world = make_world(by_symplectic4(scene));
     } catch (const std::invalid_argument& error) {
       return error.what();
     }

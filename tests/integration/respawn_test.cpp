@@ -4,9 +4,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -24,29 +21,6 @@ namespace cordis::test {
 namespace {
 
 using namespace std::chrono_literals;
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// The process of a node that this launcher has started; 0 when there is none.
-pid_t process_of(const ChildProcess& launcher, const std::string& node) {
-  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    const std::string number = entry.path().filename();
-    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
-    const std::string stat = text_of(entry.path() / "stat");
-    const std::size_t name_end = stat.rfind(')');
-    int parent = 0;
-    if (name_end == std::string::npos ||
-        std::sscanf(stat.c_str() + name_end, ") %*c %d", &parent) != 1 || parent != launcher.id())
-      continue;
-    const std::string words = text_of(entry.path() / "cmdline");
-    if (words.find(std::string("--name\0", 7) + node + '\0') != std::string::npos)
-      return std::stoi(number);
-  }
-  return 0;
-}
 
 /// What a page's server at http://127.0.0.1:PORT answers to a GET, or nothing.
 std::string get(const std::string& url) {

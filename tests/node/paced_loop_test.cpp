@@ -20,6 +20,13 @@ void sleep_nsec(std::int64_t nsec) {
   nanosleep(&time, nullptr);
 }
 
+/// Of the calling thread.
+std::int64_t processor_nsec() {
+  timespec used{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return used.tv_sec * 1'000'000'000 + used.tv_nsec;
+}
+
 TEST(PacedLoop, NeverTicksBeforeItsDeadline) {
   PacedLoop loop(2000.0);
   const std::int64_t start = monotonic_nsec();
@@ -50,6 +57,38 @@ TEST(PacedLoop, SkipsAndCountsDeadlinesMissedInsteadOfCatchingUp) {
   for (int tick = 0; tick < 5; ++tick) deadlines += 1 + loop.wait();
   // The next deadlines lay ahead again: no burst. The first of them may be just over at `start`.
   EXPECT_GE(monotonic_nsec() - start, static_cast<std::int64_t>(deadlines - 1) * 1'000'000);
+}
+
+TEST(PacedLoop, TakesATickThatComputesTooLongForTheCauseOfALateOne) {
+  constexpr std::int64_t kPeriod = 1'000'000;
+  PacedLoop loop(1000.0);
+  loop.wait();
+
+  const std::int64_t begun = processor_nsec();
+  while (processor_nsec() - begun < 3 * kPeriod) {
+  }
+  EXPECT_GE(loop.wait(), 1u);
+
+  EXPECT_EQ(loop.late_cause(), LateCause::kWork);
+}
+
+TEST(PacedLoop, TakesTheMachineForTheCauseOfALateTickThatComputedNothing) {
+  PacedLoop loop(1000.0);
+  loop.wait();
+
+  sleep_nsec(20'500'000);
+  EXPECT_GE(loop.wait(), 19u);
+
+  EXPECT_EQ(loop.late_cause(), LateCause::kMachine);
+}
+
+TEST(PacedLoop, HasACauseForEachOverrunAndForNoOtherTick) {
+  PacedLoop loop(2000.0);
+  for (int tick = 0; tick < 200; ++tick) {
+    const std::uint64_t before = loop.overruns();
+    loop.wait();
+    EXPECT_EQ(loop.overruns() > before, loop.late_cause() != LateCause::kNone);
+  }
 }
 
 TEST(PacedLoop, OfTheSameRateTakeTurnsByTheirPhase) {

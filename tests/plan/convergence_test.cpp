@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/plan/reference/reference_integrator.h"
 #include "sim_node/plan/reference/trial_run.h"
 #include "tests/plan/reference_problems.h"

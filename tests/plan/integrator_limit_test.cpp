@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/stability/oscillator_error.h"
 #include "tests/plan/networks.h"

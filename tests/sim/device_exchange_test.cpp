@@ -314,6 +314,40 @@ TEST(DeviceExchange, HoldsItsMatsWhenTheDeviceFallsSilent) {
   EXPECT_DOUBLE_EQ(world.position(0).x(), 1.02);
 }
 
+TEST(DeviceExchange, MissesADeviceThatFallsSilentUntilItIsBack) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  for (int tick = 0; tick < 100; ++tick) exchange.begin_tick();
+  EXPECT_TRUE(exchange.is_lost());
+  EXPECT_FALSE(exchange.is_missed()) << "it was never there";
+
+  const std::uint64_t number = settle(exchange, world, 0.0);
+  for (int tick = 0; tick < 20; ++tick) exchange.begin_tick();
+  EXPECT_FALSE(exchange.is_missed());
+  exchange.begin_tick();
+  EXPECT_TRUE(exchange.is_missed());
+
+  exchange.receive(sample_at(number + 22, 0.0));
+  exchange.begin_tick();
+  EXPECT_FALSE(exchange.is_missed());
+}
+
+TEST(DeviceExchange, DoesNotMissADeviceThatItHasLetGoOfOrThatIsRefused) {
+  engine::World world = world_with_a_port();
+  DeviceExchange exchange = mass_exchange();
+  const std::uint64_t number = settle(exchange, world, 0.0);
+
+  exchange.let_go();
+  for (int tick = 0; tick < 100; ++tick) exchange.begin_tick();
+  EXPECT_FALSE(exchange.is_missed()) << "the scene was paused";
+
+  exchange.receive(sample_at(number + 100, 0.0));
+  exchange.begin_tick();
+  exchange.receive(sample_at(number + 101, 0.0), /*borne=*/false);
+  for (int tick = 0; tick < 100; ++tick) exchange.begin_tick();
+  EXPECT_FALSE(exchange.is_missed()) << "the scene refuses it";
+}
+
 TEST(DeviceExchange, LetsGoOfAMassWhenTheForceFallsSilent) {
   engine::World world = world_with_a_port();
   DeviceExchange exchange("key", kDevice, Role::kLiaison,

@@ -121,6 +121,7 @@ struct WebServer::Impl {
     });
     hub.status = std::make_shared<const std::string>(hub.mirror.status(node::monotonic_nsec()));
     ++hub.status_number;
+    hub.closures.report(node::monotonic_nsec());
     pump_all();
   }
 
@@ -139,7 +140,8 @@ struct WebServer::Impl {
       try {
         context.run();
       } catch (const std::exception& error) {
-        spdlog::error("the web server closed a connection: {}", error.what());
+        if (hub.closures.record(node::monotonic_nsec()))
+          spdlog::error("the web server closed a connection: {}", error.what());
       }
     }
   }

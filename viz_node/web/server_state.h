@@ -19,6 +19,7 @@
 #include <boost/beast/websocket.hpp>
 
 #include "node/latency.h"
+#include "node/repeated_event.h"
 #include "viz_node/scene_mirror.h"
 
 namespace cordis::viz {
@@ -47,6 +48,7 @@ struct ServerState {
   bool loopback_only = true;
   std::size_t connections = 0;
   std::unordered_set<WebSocketSession*> clients;
+  node::RepeatedEvent closures{"closed connections to pages"};
   mutable std::mutex latency_mutex;
   node::LatencyHistogram latency;
 };

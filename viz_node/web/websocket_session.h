@@ -54,7 +54,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
       if (writing_) return;
       if (const auto message = feed_.next()) send(*message);
     } catch (const std::exception& error) {
-      spdlog::warn("closed the connection to a page: {}", error.what());
+      if (hub_.closures.record(node::monotonic_nsec()))
+        spdlog::warn("closed the connection to a page: {}", error.what());
       leave();
     }
   }

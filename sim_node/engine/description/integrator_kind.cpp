@@ -1,89 +1,9 @@
 // sim_node/engine/description/integrator_kind.cpp
 #include "sim_node/engine/description/integrator_kind.h"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
-#include <vector>
-
-#include "sim_node/engine/description/network.h"
-#include "sim_node/engine/integrators/stiff_friction.h"
 
 namespace cordis::engine {
-namespace {
-
-/// What keeps a state machine from being a potential; null when it is one.
-const char* not_a_potential(const StateMachine& state_machine) {
-  if (!state_machine.is_stateless()) return "states";
-  const LinkState& state = state_machine.states[0];
-  if (state.viscosity > 0.0 || state.dissipation.kind != Law::Kind::kNone) return "viscosity";
-  if (std::isfinite(state.force_limit)) return "a force limit";
-  if (state.elasticity.kind == Law::Kind::kFunction) return "a free expression";
-  return nullptr;
-}
-
-std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
-    const NetworkDescription& network) {
-  if (network.medium_viscosity > 0.0) return IntegratorRefusal{"viscosity", {}};
-  for (const Mat& mat : network.mats) {
-    if (mat.kind == MatKind::kPort) return IntegratorRefusal{"a port with the role mass", {}};
-  }
-  const auto at = [](LiaisonKind kind, std::size_t index, const char* what) {
-    return IntegratorRefusal{what, LiaisonId{kind, static_cast<std::uint32_t>(index)}};
-  };
-  for (std::size_t l = 0; l < network.links.size(); ++l) {
-    if (network.links[l].viscosity > 0.0) return at(LiaisonKind::kLink, l, "viscosity");
-  }
-  for (std::size_t l = 0; l < network.state_links.size(); ++l) {
-    const char* what =
-        not_a_potential(network.state_machines[network.state_links[l].state_machine]);
-    if (what != nullptr) return at(LiaisonKind::kStateLink, l, what);
-  }
-  if (!network.maxwell_links.empty()) return at(LiaisonKind::kMaxwellLink, 0, "viscosity");
-  for (std::size_t s = 0; s < network.sets.size(); ++s) {
-    const char* what = not_a_potential(network.state_machines[network.sets[s].state_machine]);
-    if (what != nullptr) return at(LiaisonKind::kSet, s, what);
-  }
-  return std::nullopt;
-}
-
-/// Real modes need viscosities in proportion to stiffnesses and masses.
-std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescription& network) {
-  if (network.dimension != 1) return IntegratorRefusal{"2 or 3 dimensions", {}};
-  constexpr double kRounding = 1e-9;
-  const auto differ = [](double u, double v) {
-    return std::abs(u - v) > kRounding * std::max(std::abs(u), std::abs(v));
-  };
-  const Link* first = nullptr;
-  for (std::size_t l = 0; l < network.links.size(); ++l) {
-    const Link& link = network.links[l];
-    const auto is_port = [&](std::uint32_t mat) {
-      return mat < network.mats.size() && network.mats[mat].kind == MatKind::kPort;
-    };
-    if (is_port(link.mat_a) || is_port(link.mat_b)) continue;
-    if (first == nullptr) first = &link;
-    if (differ(link.viscosity * first->stiffness, first->viscosity * link.stiffness) ||
-        (link.viscosity > 0.0 && link.stiffness == 0.0)) {
-      return IntegratorRefusal{"a viscosity that is not in the same proportion to the stiffness",
-                               LiaisonId{LiaisonKind::kLink, static_cast<std::uint32_t>(l)}};
-    }
-  }
-  double mass = 0.0;
-  for (const Mat& mat : network.mats) {
-    if (mat.kind != MatKind::kMass) continue;
-    if (network.medium_viscosity > 0.0 && mass > 0.0 && differ(mass, mat.mass)) {
-      return IntegratorRefusal{"different masses in a medium", {}};
-    }
-    mass = mat.mass;
-  }
-  if (mass == 0.0) return IntegratorRefusal{"no mass", {}};
-  if (network.mass_count() > kMaxModalMasses) {
-    return IntegratorRefusal{"more than " + std::to_string(kMaxModalMasses) + " masses", {}};
-  }
-  return std::nullopt;
-}
-
-}  // namespace
 
 const char* to_string(IntegratorKind integrator) noexcept {
   switch (integrator) {
@@ -106,66 +26,6 @@ IntegratorKind integrator_named(const std::string& name) {
     if (name == to_string(integrator)) return integrator;
   }
   throw std::invalid_argument("no integrator is called '" + name + "'");
-}
-
-int evaluations_per_step(IntegratorKind integrator) noexcept {
-  switch (integrator) {
-    case IntegratorKind::kSymplectic4:
-      return 6;
-    case IntegratorKind::kCordis:
-    case IntegratorKind::kLeapfrog:
-    case IntegratorKind::kImplicit:
-    case IntegratorKind::kModal:
-      break;
-  }
-  return 1;
-}
-
-std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
-  if (network.freeze_tolerance > 0.0) {
-    const bool freezes = network.integrator == IntegratorKind::kCordis ||
-                         network.integrator == IntegratorKind::kLeapfrog;
-    if (!freezes) return IntegratorRefusal{"freezing", {}};
-    if (damps_in_sweeps(network) || solves_stiff_friction(network)) {
-      return IntegratorRefusal{"freezing together with viscosities above Z dt / m = 0.3", {}};
-    }
-  }
-  switch (network.integrator) {
-    case IntegratorKind::kSymplectic4:
-      return refusal_of_what_does_not_conserve(network);
-    case IntegratorKind::kModal:
-      return refusal_of_what_has_no_modes(network);
-    case IntegratorKind::kCordis:
-    case IntegratorKind::kLeapfrog:
-    case IntegratorKind::kImplicit:
-      break;
-  }
-  return std::nullopt;
-}
-
-double largest_extrapolated_step(const NetworkDescription& network) {
-  std::vector<double> viscosity(network.mats.size(), network.medium_viscosity);
-  for (const Link& link : network.links) {
-    viscosity[link.mat_a] += link.viscosity;
-    viscosity[link.mat_b] += link.viscosity;
-  }
-  const auto share = [&](std::uint32_t mat) {
-    const bool moves = network.mats[mat].kind == MatKind::kMass;
-    return moves ? viscosity[mat] / network.mats[mat].mass : 0.0;
-  };
-  double most = 0.0;
-  for (std::uint32_t i = 0; i < viscosity.size(); ++i) {
-    if (network.medium_viscosity > 0.0) most = std::max(most, share(i));
-  }
-  for (const Link& link : network.links) {
-    if (link.viscosity > 0.0) most = std::max(most, share(link.mat_a) + share(link.mat_b));
-  }
-  return kMaxExtrapolatedViscosity / most;
-}
-
-bool damps_in_sweeps(const NetworkDescription& network) {
-  return network.integrator == IntegratorKind::kLeapfrog &&
-         network.step > largest_extrapolated_step(network);
 }
 
 }  // namespace cordis::engine

@@ -151,10 +151,6 @@ void check(const NetworkDescription& description) {
   for (const std::uint32_t mat : description.kept_awake) {
     require(mat < description.mats.size(), "each MAT that is kept awake", "one of the network");
   }
-  if (const auto refusal = refusal_of(description)) {
-    throw std::invalid_argument(std::string("the integrator ") + to_string(description.integrator) +
-                                " does not take " + refusal->what);
-  }
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 #include "sim_node/engine/integrators/integrator.h"
 
 #include <stdexcept>
+#include <string>
 
 #include "sim_node/engine/integrators/central_difference.h"
 #include "sim_node/engine/integrators/implicit_euler.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/leapfrog.h"
 #include "sim_node/engine/integrators/modal_integrator.h"
 #include "sim_node/engine/integrators/symplectic4.h"
@@ -17,6 +19,10 @@ Vec3 Integrator::velocity(const WorldState& world, std::uint32_t mat) const noex
 }
 
 std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network) {
+  if (const auto refusal = refusal_of(network)) {
+    throw std::invalid_argument(std::string("the integrator ") + to_string(network.integrator) +
+                                " does not take " + refusal->what);
+  }
   switch (network.integrator) {
     case IntegratorKind::kCordis:
       return std::make_unique<CentralDifference>();

@@ -54,7 +54,7 @@ class Integrator {
   virtual const double* take_state(WorldState&, const double* state) noexcept { return state; }
 };
 
-/// @throws std::invalid_argument when there is no such integrator.
+/// @throws std::invalid_argument when the integrator does not take the network: see refusal_of().
 std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network);
 
 }  // namespace cordis::engine

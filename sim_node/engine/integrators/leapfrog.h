@@ -7,6 +7,7 @@
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/integrators/damping_sweeps.h"
 #include "sim_node/engine/integrators/full_step_integrator.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
 
 namespace cordis::engine {

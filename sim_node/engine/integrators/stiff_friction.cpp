@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim_node/engine/integrators/damping_sweeps.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/world_state.h"
 
 namespace cordis::engine {

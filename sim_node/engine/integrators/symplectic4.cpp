@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/world_state.h"
 
 namespace cordis::engine {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/integrators/freezing.h"
 #include "sim_node/engine/integrators/integrator.h"
 #include "sim_node/engine/links/event_log.h"
@@ -17,7 +18,6 @@
 #include "sim_node/engine/matter/port_inputs.h"
 #include "sim_node/engine/matter/step_kernel.h"
 #include "sim_node/engine/pairs/set_liaisons.h"
-#include "sim_node/engine/world.h"
 
 namespace cordis::engine {
 

@@ -7,6 +7,7 @@
 
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/matter/energy.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
@@ -16,7 +17,6 @@
 #include "sim_node/engine/pairs/pair_block.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/pairs/pair_state_machines.h"
-#include "sim_node/engine/world.h"
 
 namespace cordis::engine {
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/plan/reference/instruction_counter.h"
 
 namespace cordis::plan {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
+
 namespace cordis::plan {
 
 using engine::IntegratorKind;

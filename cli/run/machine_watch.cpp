@@ -1,0 +1,37 @@
+#include "cli/run/machine_watch.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace cordis::cli {
+
+MachineWatch::MachineWatch(std::function<machine::TimerFigures()> figures)
+    : figures_(std::move(figures)) {}
+
+std::string MachineWatch::sentence(const LateTickSum& late) const {
+  if (late.by_machine <= late.by_work) return "";
+  const machine::TimerFigures figures = figures_();
+  const double stolen = figures.stolen_share.value_or(0.0);
+  std::string text;
+  if (figures.late_share > kManyLateShare || figures.worst_s > kLongStallS) {
+    text = fmt::format("the machine itself woke {:.2g} % of timers late; worst {:.3g} ms",
+                       100.0 * figures.late_share, 1e3 * figures.worst_s);
+  }
+  if (stolen > kMuchStolenShare) {
+    text +=
+        fmt::format("{} {:.2g} % of the processor time",
+                    text.empty() ? "the hypervisor took" : "; its hypervisor took", 100.0 * stolen);
+  }
+  return text.empty() ? "" : text + " (`cordis doctor` says what to do)";
+}
+
+std::string MachineWatch::sentence_when_repeated(const LateTickSum& late) {
+  if (is_told_ || late.by_machine < kRepeated) return "";
+  if (figures_().watched_s < machine::TimerWatch::kFirstLookS) return "";
+  const std::string text = sentence(late);
+  is_told_ = !text.empty();
+  return text;
+}
+
+}  // namespace cordis::cli

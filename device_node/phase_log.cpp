@@ -1,0 +1,63 @@
+#include "device_node/phase_log.h"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace cordis::device {
+
+PhaseLog::PhaseLog(std::string device, std::string driver, double silence_s)
+    : device_(std::move(device)),
+      driver_(std::move(driver)),
+      silence_s_(silence_s),
+      standby_("another node played '" + device_ + "' with more strength", spdlog::level::info),
+      let_go_("driver " + driver_ + ": the motors were let go of outside the loop"),
+      no_device_("driver " + driver_ + ": the device did not answer"),
+      no_scene_("no answer from the scene in time, motors at zero"),
+      takes_over_("took over '" + device_ + "'", spdlog::level::info),
+      returns_("played again", spdlog::level::info) {}
+
+bool PhaseLog::note(Phase phase, bool has_device, std::int64_t now_nsec) noexcept {
+  if (phase == noted_) return false;
+  const bool was_lost = noted_ == Phase::kLost || noted_ == Phase::kDisconnected;
+  if (phase == Phase::kStandby && standby_.record(now_nsec)) {
+    spdlog::info("another node plays '{}' with more strength; ready to take over", device_);
+  } else if (phase == Phase::kDisconnected || phase == Phase::kLost) {
+    lost_since_nsec_ = now_nsec;
+    if (phase == Phase::kLost) {
+      log_loss(has_device, now_nsec);
+    } else if (let_go_.record(now_nsec)) {
+      spdlog::warn(
+          "driver {}: the motors have been let go of outside the loop; forces return by the ramp",
+          driver_);
+    }
+  } else if (phase == Phase::kRunning && noted_ == Phase::kStandby) {
+    if (takes_over_.record(now_nsec)) spdlog::info("takes over '{}'", device_);
+  } else if (phase == Phase::kRunning && was_lost) {
+    log_return(now_nsec);
+  }
+  noted_ = phase;
+  return true;
+}
+
+void PhaseLog::log_loss(bool has_device, std::int64_t now_nsec) noexcept {
+  if (!has_device) {
+    if (no_device_.record(now_nsec))
+      spdlog::warn("driver {}: the device does not answer; trying again", driver_);
+  } else if (no_scene_.record(now_nsec)) {
+    spdlog::warn("no answer from the scene for more than {} ms: motors at zero", silence_s_ * 1e3);
+  }
+}
+
+void PhaseLog::log_return(std::int64_t now_nsec) noexcept {
+  const double away_s = static_cast<double>(now_nsec - lost_since_nsec_) * 1e-9;
+  if (returns_.record(now_nsec, away_s)) spdlog::info("plays again after {:.3f} s", away_s);
+}
+
+void PhaseLog::report(std::int64_t now_nsec) noexcept {
+  for (node::RepeatedEvent* event :
+       {&standby_, &let_go_, &no_device_, &no_scene_, &takes_over_, &returns_})
+    event->report(now_nsec);
+}
+
+}  // namespace cordis::device

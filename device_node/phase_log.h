@@ -1,0 +1,46 @@
+// device_node/phase_log.h -- tells a person how a device stands with the scene.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "device_node/loop_meter.h"
+#include "node/repeated_event.h"
+
+namespace cordis::device {
+
+/// Logs the changes of phase of a device; a phase that comes and goes is a line per 5 s. Real time:
+/// takes no lock, allocates nothing.
+class PhaseLog {
+ public:
+  /// @param silence_s  of the scene after which a device is lost
+  PhaseLog(std::string device, std::string driver, double silence_s);
+
+  /// A part begins, in which the device waits at first.
+  void start() noexcept { noted_ = Phase::kWaiting; }
+
+  /// Notes the present phase. @param has_device  whether the driver has one. @param now_nsec
+  /// CLOCK_MONOTONIC. @return whether it has changed
+  bool note(Phase phase, bool has_device, std::int64_t now_nsec) noexcept;
+
+  /// Tells what has repeated itself. To be called at least now and then.
+  void report(std::int64_t now_nsec) noexcept;
+
+ private:
+  void log_loss(bool has_device, std::int64_t now_nsec) noexcept;
+  void log_return(std::int64_t now_nsec) noexcept;
+
+  std::string device_;
+  std::string driver_;
+  double silence_s_;
+  Phase noted_ = Phase::kWaiting;
+  std::int64_t lost_since_nsec_ = 0;
+  node::RepeatedEvent standby_;
+  node::RepeatedEvent let_go_;
+  node::RepeatedEvent no_device_;
+  node::RepeatedEvent no_scene_;
+  node::RepeatedEvent takes_over_;
+  node::RepeatedEvent returns_;
+};
+
+}  // namespace cordis::device

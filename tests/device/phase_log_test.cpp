@@ -1,0 +1,60 @@
+#include "device_node/phase_log.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/captured_log.h"
+
+namespace cordis::device {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+PhaseLog key_log() {
+  return {"keyboard", "kfb1", 0.02};
+}
+
+TEST(PhaseLog, TellsEachChangeInItsWords) {
+  const test::CapturedLog log;
+  PhaseLog phases = key_log();
+  EXPECT_FALSE(phases.note(Phase::kWaiting, true, 0)) << "it waits at first";
+  EXPECT_TRUE(phases.note(Phase::kRunning, true, 0));
+  EXPECT_TRUE(phases.note(Phase::kLost, true, 0));
+  EXPECT_FALSE(phases.note(Phase::kLost, true, 0));
+  phases.note(Phase::kRunning, true, 250 * kMillisecond);
+  phases.note(Phase::kLost, false, 300 * kMillisecond);
+  phases.note(Phase::kDisconnected, true, 400 * kMillisecond);
+  phases.note(Phase::kStandby, true, 500 * kMillisecond);
+  phases.note(Phase::kRunning, true, 600 * kMillisecond);
+
+  EXPECT_EQ(log.lines(""),
+            "no answer from the scene for more than 20 ms: motors at zero\n"
+            "plays again after 0.250 s\n"
+            "driver kfb1: the device does not answer; trying again\n"
+            "driver kfb1: the motors have been let go of outside the loop; forces return by the "
+            "ramp\n"
+            "another node plays 'keyboard' with more strength; ready to take over\n"
+            "takes over 'keyboard'\n");
+}
+
+TEST(PhaseLog, CountsAPhaseThatComesAndGoes) {
+  const test::CapturedLog log;
+  PhaseLog phases = key_log();
+  phases.note(Phase::kRunning, true, 0);
+  for (std::int64_t n = 0; n < 50; ++n) {
+    const std::int64_t now = n * 100 * kMillisecond;
+    phases.note(Phase::kDisconnected, true, now);
+    phases.report(now);
+    phases.note(Phase::kRunning, true, now + (n + 1) * kMillisecond);
+  }
+  phases.report(5'001 * kMillisecond);
+
+  EXPECT_EQ(log.lines(""),
+            "driver kfb1: the motors have been let go of outside the loop; forces return by the "
+            "ramp\n"
+            "plays again after 0.001 s\n"
+            "driver kfb1: the motors were let go of outside the loop: 49 more times in 5 s\n"
+            "played again: 49 more times in 5 s, the worst 50 ms\n");
+}
+
+}  // namespace
+}  // namespace cordis::device
