@@ -13,4 +13,7 @@ void add_run_verb(CommandLine& line);
 void add_simplify_verb(CommandLine& line);
 void add_test_verb(CommandLine& line);
 
+/// Every verb, in the order of the help, and the examples of the program itself.
+void add_verbs(CommandLine& line);
+
 }  // namespace cordis::cli

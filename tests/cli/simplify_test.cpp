@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "cli/exit_code.h"
 #include "cli/check/scene_check.h"
+#include "cli/exit_code.h"
 #include "cli/verbs.h"
 #include "tests/cli/captured_run.h"
 #include "tests/reduction/scenes.h"

@@ -1,8 +1,8 @@
 #include <array>
 
-#include "sim_node/run/describe.h"
-#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/checks/strut_watch.h"
+#include "sim_node/plan/reduction/reduce.h"
+#include "sim_node/run/describe.h"
 #include "tests/sim/stages.h"
 
 namespace cordis::sim {

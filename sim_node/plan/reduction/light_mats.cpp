@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "node/config/count_text.h"
 #include "sim_node/plan/reduction/held.h"
 #include "sim_node/plan/reduction/take_out.h"
 
@@ -121,9 +122,8 @@ class LightMatsReduction {
   /// @return empty, or why there is no such row
   std::string find_row(std::uint32_t mat, Row& row) const {
     if (held_.mats[mat]) return "a port, a signal, a set or a link with states asks for it";
-    if (at_[mat].size() != 2) {
-      return "it has " + std::to_string(at_[mat].size()) + " links instead of 2";
-    }
+    if (at_[mat].size() != 2)
+      return "it has " + config::count_text(at_[mat].size(), "link") + " instead of 2";
     if (network_.medium_viscosity > 0.0) return "the medium acts on it";
     row = {branches_[at_[mat][0]], branches_[at_[mat][1]]};
     if (row[0].mat_b != mat) turn(row[0]);

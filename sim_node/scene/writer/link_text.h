@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "sim_node/scene/writer/plain_liaisons.h"
 #include "sim_node/scene/scene.h"
+#include "sim_node/scene/writer/plain_liaisons.h"
 #include "sim_node/scene/writer/scene_words.h"
 
 namespace cordis::scene {
