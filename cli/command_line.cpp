@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 #include <utility>
 
 #include <CLI/App.hpp>
@@ -60,10 +61,60 @@ class HelpText : public CLI::Formatter {
   std::string usage_;
 };
 
+/// A text as it stands in the cell of a table.
+std::string table_cell(const std::string& text) {
+  std::string cell;
+  for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
+  return cell;
+}
+
+/// One row for each word and option of a verb.
+std::string option_table(const CLI::App& app) {
+  std::string rows = "| word or option | meaning |\n| --- | --- |\n";
+  for (const CLI::Option* option : app.get_options({})) {
+    std::string name = option->get_name(option->get_positional(), /*all_options=*/true);
+    if (!option->get_positional() && option->get_items_expected_max() > 0)
+      name += " " + option->get_type_name();
+    rows += "| `" + table_cell(name) + "` | " + table_cell(option->get_description()) + " |\n";
+  }
+  return rows;
+}
+
+std::string without_outer_newlines(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of('\n');
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find_last_not_of('\n') - begin + 1);
+}
+
+std::string code_block(const std::string& language, const std::string& text) {
+  const std::string lines = without_outer_newlines(text);
+  return lines.empty() ? "" : "\n```" + language + "\n" + lines + "\n```\n";
+}
+
+/// The lines that end a help: what it explains, and its examples without their indentation.
+std::string footer_blocks(const std::string& footer) {
+  const std::string heading = "Examples:\n";
+  const std::size_t found = footer.find(heading);
+  if (found == std::string::npos) return code_block("text", footer);
+  std::string examples;
+  std::istringstream lines(footer.substr(found + heading.size()));
+  for (std::string line; std::getline(lines, line);)
+    examples += line.substr(std::min(line.find_first_not_of(' '), line.size())) + "\n";
+  return code_block("text", footer.substr(0, found)) + code_block("sh", examples);
+}
+
+/// The help of one verb, or of the program itself.
+std::string section_of(const CLI::App& app, const std::string& title, const std::string& usage) {
+  return "## " + title + "\n\n" + app.get_description() + "\n" +
+         code_block("text", "Usage: " + usage) + "\n" + option_table(app) +
+         footer_blocks(app.get_footer());
+}
+
 }  // namespace
 
 struct Verb::Impl {
   CLI::App* app;
+  std::string usage;
   std::vector<std::pair<std::string, const std::string*>> required;
   std::vector<std::string>* handed_on = nullptr;
   std::function<int()> act;
@@ -118,6 +169,7 @@ void Verb::action(std::function<int()> act) {
 
 struct CommandLine::Impl {
   CLI::App app;
+  std::string usage;
   std::string speaker;  // whose refusals they are: the program, or the program and the verb
   std::vector<std::unique_ptr<Verb>> verbs;
 };
@@ -130,7 +182,8 @@ CommandLine::CommandLine(const std::string& program, const std::string& summary,
   app.description(summary);
   app.set_help_flag("-h,--help", "Print this help");
   app.set_version_flag("--version", program + " " + version, "Print the version");
-  app.formatter(std::make_shared<HelpText>(program + " VERB [words]"));
+  impl_->usage = program + " VERB [words]";
+  app.formatter(std::make_shared<HelpText>(impl_->usage));
   app.allow_extras();
 }
 
@@ -143,10 +196,11 @@ void CommandLine::examples(const std::string& text) {
 Verb& CommandLine::verb(const std::string& name, const std::string& usage,
                         const std::string& summary) {
   CLI::App* app = impl_->app.add_subcommand(name, summary)->group("Verbs");
-  app->formatter(std::make_shared<HelpText>(impl_->app.get_name() + " " + name + " " + usage));
+  auto impl = std::make_unique<Verb::Impl>();
+  impl->usage = impl_->app.get_name() + " " + name + " " + usage;
+  app->formatter(std::make_shared<HelpText>(impl->usage));
   app->set_help_flag("-h,--help", "Print this help");
   app->allow_extras();
-  auto impl = std::make_unique<Verb::Impl>();
   impl->app = app;
   impl_->verbs.push_back(std::make_unique<Verb>(std::move(impl)));
   return *impl_->verbs.back();
@@ -185,6 +239,16 @@ int CommandLine::dispatch(const std::vector<std::string>& words) {
     if (value->empty()) throw UsageError(placeholder + " is missing");
   }
   return verb.act();
+}
+
+std::string CommandLine::reference() const {
+  const std::string program = impl_->app.get_name();
+  std::string text = section_of(impl_->app, program, impl_->usage);
+  for (const auto& verb : impl_->verbs) {
+    const Verb::Impl& impl = verb->impl();
+    text += "\n" + section_of(*impl.app, program + " " + impl.app->get_name(), impl.usage);
+  }
+  return text;
 }
 
 int CommandLine::run(const std::vector<std::string>& words) {

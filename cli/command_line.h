@@ -69,6 +69,10 @@ class CommandLine {
   /// Lines that end the help of the program.
   void examples(const std::string& text);
 
+  /// The help of the program and of every verb, as a document in Markdown. The examples of each
+  /// help stand in a block of shell commands.
+  std::string reference() const;
+
   /// Understands the words after the program's name and does what they ask for. Help goes to
   /// stdout, refusals to stderr. @return the exit code; never throws for what a person typed or
   /// what an action threw.

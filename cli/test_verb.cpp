@@ -48,9 +48,9 @@ void add_test_verb(CommandLine& line) {
   verb.hand_on_words(*wishes);
   verb.examples(
       "Examples:\n"
-      "  cordis test                    all tests, also under the sanitizers\n"
-      "  cordis test -L unit            those with a label: unit, golden, integration\n"
-      "  cordis test -R World -V        those whose name matches, with all they print\n");
+      "  cordis test                    # all tests, also under the sanitizers\n"
+      "  cordis test -L unit            # those with a label: unit, golden, integration\n"
+      "  cordis test -R World -V        # those whose name matches, with all they print\n");
   verb.action([wishes] { return hand_over_to_ctest(*wishes); });
 }
 

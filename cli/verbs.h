@@ -12,4 +12,7 @@ void add_lab_verb(CommandLine& line);
 void add_run_verb(CommandLine& line);
 void add_test_verb(CommandLine& line);
 
+/// Every verb, in the order of the help, and the examples of the program itself.
+void add_verbs(CommandLine& line);
+
 }  // namespace cordis::cli

@@ -43,7 +43,8 @@ std::string fault_of(const msg::SceneDescription& description) {
     return "a port of the description is at a MAT that does not exist";
   if (!ranges_fit(description.matter(), mats) || !ranges_fit(description.links(), ends / 2))
     return "a name of the description reaches past the last MAT or link";
-  if (!description.link_state_machine().empty() && description.link_state_machine().size() != ends / 2)
+  if (!description.link_state_machine().empty() &&
+      description.link_state_machine().size() != ends / 2)
     return count_fault("state machines of links in the description",
                        description.link_state_machine().size(), ends / 2);
   if (!is_rate(description.step_rate_hz()) || !is_rate(description.frame_rate_hz()))

@@ -5,9 +5,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "cli/check/scene_check.h"
 #include "cli/exit_code.h"
 #include "cli/number.h"
-#include "cli/check/scene_check.h"
 #include "cli/verbs.h"
 
 namespace cordis::cli {

@@ -76,7 +76,7 @@ ControlWords read_control_words(const std::string& name, const std::vector<std::
 std::string control_verb_list() {
   std::string text;
   for (const node::ControlVerb& verb : node::control_verbs()) {
-    text += fmt::format("  {:<28}{}\n", fmt::format("{} {}", verb.name, verb.words), verb.summary);
+    text += fmt::format("  {:<30}{}\n", fmt::format("{} {}", verb.name, verb.words), verb.summary);
   }
   return text;
 }

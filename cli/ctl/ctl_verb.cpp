@@ -133,8 +133,8 @@ void add_ctl_verb(CommandLine& line) {
                 "Examples:\n"
                 "  cordis ctl launch_configs/plucked_string.yaml pause\n"
                 "  cordis ctl plucked_string step 10\n"
-                "  cordis ctl plucked_string set pluck.stiffness_n_per_m=300\n"
-                "  cordis ctl bowed_string state \"rosin[3]\" unhooked\n"
+                "  cordis ctl plucked_string set finger.stiffness_n_per_m=160\n"
+                "  cordis ctl bowed_string state rosin unhooked\n"
                 "  cordis ctl plucked_string load launch_configs/scenes/membrane.yaml\n");
   verb.action([words] { return ctl(*words); });
 }

@@ -5,12 +5,12 @@
 
 #include <unistd.h>
 
-#include "cli/run/console.h"
 #include "cli/doctor/diagnosis.h"
 #include "cli/doctor/report.h"
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/number.h"
+#include "cli/run/console.h"
 #include "cli/verbs.h"
 
 namespace cordis::cli {

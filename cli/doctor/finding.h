@@ -11,7 +11,7 @@ namespace cordis::cli {
 enum class Level {
   kOk,
   kWarning,  ///< a force loop works, but not as well as it could
-  kFailure   ///< a force loop at 1 kHz cannot work
+  kUnusable  ///< a force loop at 1 kHz cannot work
 };
 
 struct Finding {

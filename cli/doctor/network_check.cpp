@@ -101,7 +101,7 @@ Finding check_loopback() {
   finding.values = {{"works", works}};
   finding.text = "a datagram sent to 127.0.0.1 arrives";
   if (works) return finding;
-  finding.level = Level::kFailure;
+  finding.level = Level::kUnusable;
   finding.text = "a datagram sent to 127.0.0.1 does not arrive: no node finds another";
   finding.advice = "bring the loopback interface up";
   finding.commands = {"sudo ip link set lo up"};

@@ -20,7 +20,7 @@ const char* word_of(Level level) {
       return "OK";
     case Level::kWarning:
       return "warning";
-    case Level::kFailure:
+    case Level::kUnusable:
       return "FAILURE";
   }
   return "";
@@ -81,7 +81,7 @@ std::size_t count_of(const std::vector<Finding>& findings, Level level) {
 }  // namespace
 
 bool force_loop_works(const std::vector<Finding>& findings) {
-  return count_of(findings, Level::kFailure) == 0;
+  return count_of(findings, Level::kUnusable) == 0;
 }
 
 std::string report_text(const std::vector<Finding>& findings, bool coloured) {
@@ -108,7 +108,7 @@ std::string report_json(const std::vector<Finding>& findings) {
   }
   const nlohmann::json report{{"force_loop_at_1_khz", force_loop_works(findings)},
                               {"warnings", count_of(findings, Level::kWarning)},
-                              {"failures", count_of(findings, Level::kFailure)},
+                              {"failures", count_of(findings, Level::kUnusable)},
                               {"checks", checks}};
   return report.dump(2) + "\n";
 }

@@ -81,7 +81,7 @@ Finding check_resolution(long resolution_nsec) {
   finding.values = {{"resolution_s", static_cast<double>(resolution_nsec) * 1e-9}};
   finding.text = fmt::format("{} ns", resolution_nsec);
   if (resolution_nsec < kCoarseNsec) return finding;
-  finding.level = Level::kFailure;
+  finding.level = Level::kUnusable;
   finding.text += ": too coarse for a loop at 1 kHz";
   finding.advice = "use a kernel with CONFIG_HIGH_RES_TIMERS, and boot it without highres=off";
   return finding;
@@ -113,7 +113,7 @@ Finding check_wakeups(const std::vector<CoreWakeups>& cores, double duration_s) 
                              duration_s, 100.0 * sum.late, 1e3 * sum.worst_s);
   finding.table = table_of(cores);
   if (sum.lost > kTooManyLost) {
-    finding.level = Level::kFailure;
+    finding.level = Level::kUnusable;
     finding.text +=
         fmt::format("; {:.2g} % of the ticks of a force loop would be lost", 100.0 * sum.lost);
   } else if (sum.late > kManyLate || sum.worst_s > kLongStallS) {

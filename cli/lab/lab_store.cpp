@@ -36,10 +36,10 @@ void take(std::ifstream& file, Value& value) {
 }
 template <class Value>
 void take(std::ifstream& file, std::vector<Value>& values) {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 28;
+  constexpr std::uint64_t kMax = std::uint64_t{1} << 28;
   std::uint64_t count = 0;
   take(file, count);
-  if (!file || count > kMost) {
+  if (!file || count > kMax) {
     file.setstate(std::ios::failbit);
     return;
   }

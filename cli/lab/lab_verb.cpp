@@ -65,11 +65,9 @@ void add_lab_verb(CommandLine& line) {
   verb.flag("--quick", options.quick, "Few rates, within half a minute");
   verb.flag("--again", options.again, "Forget what an earlier lab has left in the folder");
   verb.examples(
-      "The error of a run is the root of the mean square of its position errors against the "
-      "reference integrator,\n"
-      "over that of the motion itself (docs/lab.md). A lab that was interrupted goes on "
-      "where\n"
-      "it was when it is started again.\n\n"
+      "The error of a run is the root mean square of its position errors against the reference\n"
+      "integrator, over that of the motion itself (docs/lab.md). An interrupted lab continues\n"
+      "where it was when it is started again.\n\n"
       "Examples:\n"
       "  cordis lab launch_configs/scenes/membrane.yaml --quick\n"
       "  cordis lab launch_configs/bowed_string.yaml --duration 3s --jobs 2 --out /tmp/bow\n");

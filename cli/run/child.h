@@ -24,6 +24,7 @@ struct Ending {
 
 /// The two streams of output of a process.
 enum class Stream { kOut, kError };
+inline constexpr std::array kStreams{Stream::kOut, Stream::kError};
 
 /// A process in a process group of its own, so that a Ctrl-C at the terminal reaches the launcher
 /// alone, and the processes it starts itself can be ended with it. Every signal has its default

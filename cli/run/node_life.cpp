@@ -12,8 +12,6 @@
 namespace cordis::cli {
 namespace {
 
-constexpr std::array kStreams{Stream::kOut, Stream::kError};
-
 bool is_death(const Ending& ending) {
   return ending.exit_code() != kSuccess && ending.exit_code() != kBadInput;
 }

@@ -6,8 +6,8 @@
 
 #include "cli/duration.h"
 #include "cli/exit_code.h"
-#include "cli/run/node_check.h"
 #include "cli/programs.h"
+#include "cli/run/node_check.h"
 #include "cli/run/session.h"
 #include "cli/verbs.h"
 #include "node/runtime_folder.h"

@@ -19,7 +19,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kTick{100};
 constexpr std::chrono::milliseconds kSameTarget{300};  // timeout(1) sends its signal twice
-constexpr std::array kStreams{Stream::kOut, Stream::kError};
 
 class Supervision {
  public:

@@ -100,8 +100,9 @@ Clock read_clock(MappingReader& reader) {
   return clock == "asap" ? Clock::kAsap : Clock::kRealtime;
 }
 
-bool is_key_of_launcher(const std::string& key) {
-  return key == "node" || key == "required" || key == "respawn";
+bool is_of_launcher(const std::string& key) {
+  const std::vector<std::string>& keys = launcher_keys();
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
 LaunchNode read_node(const Value::Entry& entry, Clock clock, Problems& problems) {
@@ -122,7 +123,7 @@ LaunchNode read_node(const Value::Entry& entry, Clock clock, Problems& problems)
 
   std::vector<Value::Entry> rest;
   for (const Value::Entry& key : entry.value.entries()) {
-    if (!is_key_of_launcher(key.key)) rest.push_back(key);
+    if (!is_of_launcher(key.key)) rest.push_back(key);
   }
   if (sound) node.section = Value::mapping(std::move(rest), entry.value.place());
   return node;
@@ -173,6 +174,11 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
 }
 
 }  // namespace
+
+const std::vector<std::string>& launcher_keys() {
+  static const std::vector<std::string> kKeys{"node", "required", "respawn"};
+  return kKeys;
+}
 
 bool Launch::has_stand_ins() const noexcept {
   return std::any_of(nodes.begin(), nodes.end(), [](const LaunchNode& node) {

@@ -26,10 +26,13 @@ struct LaunchNode {
   std::string program;   ///< sim_node, device_node or viz_node
   bool required = true;  ///< whether the session ends when this node ends for good
   bool respawn = true;   ///< whether the launcher starts it again when it dies
-  Value
-      section;  ///< its mapping without `node`, `required` and `respawn`; the node reads it itself
-  Place place;  ///< of the name
+  Value section;         ///< its mapping without launcher_keys(); the node reads it itself
+  Place place;           ///< of the name
 };
+
+/// The keys of a node that the launcher reads: `node`, `required`, `respawn`. All others belong to
+/// the node itself.
+const std::vector<std::string>& launcher_keys();
 
 /// What a launch file says, with the overrides of the command line laid on it.
 struct Launch {

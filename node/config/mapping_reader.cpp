@@ -194,7 +194,7 @@ void MappingReader::error_at(const std::string& key, std::string message, std::s
 }
 
 void MappingReader::finish() {
-  constexpr std::size_t kMaxListed = 12;
+  constexpr std::size_t kMaxListed = 40;
   for (const Value::Entry& entry : value_.entries()) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
     if (problems_.is_full()) return;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "node/config/count_text.h"
 #include "node/config/problem.h"
 #include "sim_node/scene/selection.h"
 
@@ -41,8 +42,9 @@ scene::IndexRange find_links(const scene::Scene& scene, const std::string& links
   if (!picked)
     throw std::invalid_argument("'" + links + "' is not of the form name, name[3] or name[2..5]");
   if (picked->last >= range->count) {
-    throw std::invalid_argument("'" + name + "' has " + std::to_string(range->count) +
-                                " links, from 0 to " + std::to_string(range->count - 1));
+    throw std::invalid_argument(
+        "'" + name + "' has " + config::count_text(range->count, "link") +
+        (range->count == 1 ? ": 0" : ", from 0 to " + std::to_string(range->count - 1)));
   }
   return {range->first + picked->first, range->first + picked->last};
 }

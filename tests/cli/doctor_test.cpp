@@ -106,7 +106,7 @@ TEST(Doctor, WarnsOfAHypervisorThatTakesProcessorTime) {
 
 TEST(Doctor, FailsWithoutATimerThatIsFineEnough) {
   EXPECT_EQ(check_resolution(1).level, Level::kOk);
-  EXPECT_EQ(check_resolution(4'000'000).level, Level::kFailure);
+  EXPECT_EQ(check_resolution(4'000'000).level, Level::kUnusable);
   EXPECT_EQ(check_slack(50'000, 1).level, Level::kOk);
   EXPECT_EQ(check_slack(50'000, 50'000).level, Level::kWarning);
 }
@@ -127,10 +127,10 @@ TEST(Doctor, JudgesWakeUpsAsTheLoopsGetThem) {
   // Late by 2 ms once in 100: 1 % and more.
   EXPECT_EQ(check_wakeups({core_with(0, 2 * kMillisecond)}, 3.0).level, Level::kWarning);
   // By 30 ms: a fourth of all ticks is lost.
-  EXPECT_EQ(check_wakeups({core_with(0, 30 * kMillisecond)}, 3.0).level, Level::kFailure);
+  EXPECT_EQ(check_wakeups({core_with(0, 30 * kMillisecond)}, 3.0).level, Level::kUnusable);
   EXPECT_EQ(check_wakeups({core_with(0, 30 * kMillisecond, true)}, 3.0).level, Level::kOk);
   // A core that did not wake once.
-  EXPECT_EQ(check_wakeups({CoreWakeups{}}, 3.0).level, Level::kFailure);
+  EXPECT_EQ(check_wakeups({CoreWakeups{}}, 3.0).level, Level::kUnusable);
 }
 
 TEST(Doctor, ShowsTheWorstOfManyCoresAndKeepsAllForPrograms) {
@@ -248,7 +248,7 @@ TEST(DoctorReport, SaysWhetherAForceLoopWorks) {
             "warning  something            is well\n"
             "                              What to do: mend it.\n"
             "A force loop at 1 kHz works on this machine, with 1 warning.\n");
-  finding.level = Level::kFailure;
+  finding.level = Level::kUnusable;
   finding.commands = {"mend it"};
   EXPECT_FALSE(force_loop_works({finding}));
   EXPECT_EQ(report_text({finding}, false),
@@ -259,7 +259,7 @@ TEST(DoctorReport, SaysWhetherAForceLoopWorks) {
 }
 
 TEST(DoctorReport, IsJsonForPrograms) {
-  Finding finding{.key = "a.b", .title = "something", .level = Level::kFailure, .text = "is ill"};
+  Finding finding{.key = "a.b", .title = "something", .level = Level::kUnusable, .text = "is ill"};
   finding.values = {{"share", 0.5}};
   const auto report = nlohmann::json::parse(report_json({finding}));
   EXPECT_EQ(report["force_loop_at_1_khz"], false);

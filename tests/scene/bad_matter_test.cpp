@@ -131,7 +131,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2,
                  "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: 1, "
                  "stiffness_n_per_m: 1, ^plane: xz}\n",
-                 "unknown key 'plane' in matter 'a'", ""},
+                 "unknown key 'plane' in matter 'a'",
+                 "known keys: kind, count, mass_kg, ball, center_m, radius_m, liaison, "
+                 "stiffness_n_per_m, viscosity_n_s_per_m, rest_m, rest, tension_n, "
+                 "drawn_radius_m"},
         BadScene{kHead3,
                  "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0, 0], radius_m: "
                  "1, stiffness_n_per_m: 1, plane: ^zx}\n",
@@ -139,7 +142,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead1,
                  "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, ^radius_m: 1, "
                  "stiffness_n_per_m: 1}\n",
-                 "unknown key 'radius_m' in matter 'a'", ""},
+                 "unknown key 'radius_m' in matter 'a'",
+                 "known keys: kind, count, mass_kg, ball, at_m, liaison, stiffness_n_per_m, "
+                 "viscosity_n_s_per_m, rest_m, rest, tension_n, layout_at_m, layout_spacing_m, "
+                 "drawn_radius_m"},
         BadScene{kHead2,
                  "matter:\n  a: {kind: grid, rows: ^1, columns: 2, mass_kg: 1, corner_m: [0, 0], "
                  "spacing_m: 1, stiffness_n_per_m: 1}\n",

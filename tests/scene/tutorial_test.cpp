@@ -33,7 +33,7 @@ Sections sections_of(const std::string& text) {
 std::vector<Sections> tutorial() {
   std::ifstream file(CORDIS_SOURCE_DIR "/docs/tutorial.md");
   const std::string text(std::istreambuf_iterator<char>(file), {});
-  const std::regex fenced("```yaml\n([^`]*)```");
+  const std::regex fenced("```yaml[^\n]*\n([^`]*)```");
   std::vector<Sections> scenes;
   for (std::sregex_iterator block(text.begin(), text.end(), fenced), end; block != end; ++block) {
     Sections next = sections_of((*block)[1]);

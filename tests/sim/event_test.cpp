@@ -155,6 +155,16 @@ TEST(LinkStates, AreFoundByTheNamesOfLinksAndStates) {
   EXPECT_EQ(find_states(*scene, "fuse[3]", "broken").at(0).state_link, 3u);
 }
 
+TEST(LinkStates, TheRefusalOfAnIndexCountsOneLinkInTheSingular) {
+  const auto scene = breaking_scene(1);
+  try {
+    find_states(*scene, "fuse[3]", "broken");
+    FAIL() << "an index beyond the links was accepted";
+  } catch (const std::invalid_argument& refused) {
+    EXPECT_STREQ(refused.what(), "'fuse' has 1 link: 0");
+  }
+}
+
 TEST(LinkStates, ThatDoNotExistAreRefusedInOneSentence) {
   const auto scene = std::make_shared<scene::Scene>(*breaking_scene(6));
   scene->set_names = {"glue"};

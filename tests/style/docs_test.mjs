@@ -67,6 +67,31 @@ test('documents that the code, the scenes and the programs name exist', () => {
   }
 });
 
+/** The paragraphs and items of a document, without headings, tables and code. */
+function paragraphsOf(text) {
+  const paragraphs = [''];
+  for (const line of outsideCode(text).replace(/<!--.*?-->/gs, '').split('\n')) {
+    if (line.trim() === '' || /^(#|\s*\|)/.test(line)) paragraphs.push('');
+    else if (/^\s*([-*]|\d+\.) /.test(line)) paragraphs.push(line.replace(/^\s*\S+ /, ''));
+    else paragraphs.push(`${paragraphs.pop()} ${line.trim()}`);
+  }
+  return paragraphs;
+}
+
+test('the sentences of these documents have at most 25 words', () => {
+  const MOST_WORDS = 25;
+  for (const document of ['device', 'glossary', 'integrators', 'kfb1', 'launch', 'reductions']) {
+    const prose = outsideCode(read(join(root, 'docs', `${document}.md`)));
+    const text = prose.replace(/`[^`\n]*`/g, 'X').replace(/\]\([^)]*\)/g, ']');
+    const sentences = paragraphsOf(text).flatMap((paragraph) => paragraph.split(/(?<=[.!?:]) +(?=[A-Z[*])/));
+    assert.ok(sentences.length > 10, `${document}: ${sentences.length} sentences`);
+    for (const sentence of sentences) {
+      const words = sentence.split(/\s+/).filter((word) => /\w/.test(word)).length;
+      assert.ok(words <= MOST_WORDS, `docs/${document}.md, ${words} words: ${sentence}`);
+    }
+  }
+});
+
 test('programs, benchmarks and suites that documents name exist', () => {
   const lists = filesBelow(root, /^CMakeLists\.txt$/).map(read).join('\n');  // of programs and of their sources
   const sources = filesBelow(join(root, 'tests'), /\.cpp$/).map(read).join('\n');

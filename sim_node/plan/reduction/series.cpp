@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "node/config/count_text.h"
 #include "sim_node/plan/reduction/held.h"
 #include "sim_node/plan/reduction/take_out.h"
 
@@ -91,7 +92,7 @@ class SeriesReduction {
     }
     if (held_.mats[mat]) return "a port, a signal, a set or a link with states asks for it";
     if (links_at_[mat].size() != 2) {
-      return "it has " + std::to_string(links_at_[mat].size()) + " links instead of 2";
+      return "it has " + config::count_text(links_at_[mat].size(), "link") + " instead of 2";
     }
     if (network_.medium_viscosity > 0.0) return "the medium acts on it";
     std::array<Link, 2> ends{network_.links[links_at_[mat][0]], network_.links[links_at_[mat][1]]};

@@ -20,10 +20,9 @@ using Columns = Eigen::Matrix3Xd;
 constexpr int kRounds = 40;          // of the step, each from the direction found in the last one
 constexpr int kMaxIterations = 400;  // in one round
 constexpr int kFewestIterations = 24;
-constexpr double kWork =
-    1e7;  // iterations times links  // iterations times links  // iterations times links
+constexpr double kWork = 1e7;  // iterations times links
 constexpr double kTolerance = 1e-7;
-constexpr double kRounding = 1e-14;
+constexpr double kFlat = 1e-14;
 constexpr double kNoStep = 1e-300;  // [s]
 
 double dot(const Columns& a, const Columns& b) {
@@ -196,7 +195,7 @@ int StartTangent::climb(Columns& x, double step, int max_iterations) const {
   while (n < max_iterations) {
     ++n;
     Direction uphill{present.image - value * present.value, {}};
-    if (!(uphill.value.norm() > kRounding * std::abs(value))) break;
+    if (!(uphill.value.norm() > kFlat * std::abs(value))) break;
     uphill.value.normalize();
     uphill.image = image(uphill.value);
     last = improve(present, std::move(uphill), std::move(last));

@@ -84,8 +84,8 @@ class StateMachinePool {
 /// Reads what a liaison is.
 /// @param definition  its mapping, complete
 /// @param name        of the liaison
-/// @param given       values that stand for those of the definition: of `parameters`, and of the
-///                    plain keys that can_be_given() allows
+/// @param given       values that replace those of the definition: of `parameters`, and of the
+///                    plain keys that parameters_of() lists
 /// @param space       of the scene
 /// @param told        whether things that may be meant so are warned of
 std::optional<LinkLaw> read_liaison(const config::Value& definition, const std::string& name,

@@ -1,0 +1,250 @@
+// Every example of the documents and of the help texts (docs/cli.md) works: commands run, scenes, launch files and devices load.
+//
+// The first words after ``` say what a block is:
+//   sh             commands of `cordis`, one per line; they run in a copy of launch_configs
+//   sh by hand     commands for another machine or another right; only their syntax is checked
+//   yaml scene     a whole scene         yaml scene part   top level keys, laid on the scene below
+//   yaml launch    a whole launch file   yaml nodes        its nodes        yaml device   a device file
+//   yaml change    what the tutorial changes in the scene before; tests/scene/tutorial_test.cpp plays it
+//   c              a program for a board
+//   text           a drawing or the words of a program
+// A path after it is where the reader writes the file.
+//
+// usage: node examples_test.mjs SOURCE_FOLDER PROGRAM_FOLDER
+import assert from 'node:assert/strict';
+import { execFile, spawn } from 'node:child_process';
+import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, join } from 'node:path';
+import test from 'node:test';
+
+const [, , root, programs] = process.argv;
+const LONGEST_MS = 120_000;
+
+const folder = mkdtempSync(join(tmpdir(), 'cordis-examples-'));
+process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
+cpSync(join(root, 'launch_configs'), join(folder, 'launch_configs'), { recursive: true });
+symlinkSync(join(programs, 'cordis'), join(folder, 'cordis'));
+const environment = {
+  ...process.env, PATH: `${programs}:${process.env.PATH}`, CORDIS_RUNTIME_DIR: join(folder, 'sessions'), NO_COLOR: '1',
+};
+
+/** Runs a line of a shell in the copy. @return its exit code and all it said. */
+function shell(line) {
+  return new Promise((resolve) => {
+    const options = { cwd: folder, env: environment, timeout: LONGEST_MS, maxBuffer: 1 << 26 };
+    execFile('bash', ['-c', line], options, (error, out, complaints) =>
+      resolve({ code: error ? error.code ?? error.signal : 0, text: out + complaints }));
+  });
+}
+
+async function runs(line, origin, codes = [0]) {
+  const { code, text } = await shell(line);
+  assert.ok(codes.includes(code), `${origin}: '${line}' ends with ${code}\n${text}`);
+  return text;
+}
+
+const documents = [
+  ...readdirSync(join(root, 'docs')).filter((name) => name.endsWith('.md')).map((name) => join('docs', name)),
+  'README.md', 'CONTRIBUTING.md', join('idl', 'README.md'),
+].map((name) => ({ name, text: readFileSync(join(root, name), 'utf8') }));
+
+/** All blocks of code: where, of what kind, the path that is written to, the text. */
+const blocks = documents.flatMap(({ name, text }) =>
+  [...text.matchAll(/^```(.*)\n([^]*?)^```$/gm)].map(([, info, code]) => {
+    const [, kind, path = ''] = /^(.*?)(?: ([\w./]+\.yaml))?$/.exec(info);
+    return { name, kind, path, code };
+  }));
+const blocksOf = (kind) => blocks.filter((block) => block.kind === kind);
+const prose = ({ text }) => text.replace(/^```.*?^```$/gms, '');
+
+/** Commands of documents: those of blocks, and in the prose those between backticks that name a file. */
+function commands() {
+  const found = new Map(); // line: where it stands
+  const take = (line, origin) => found.set(line.replace(/\s+#.*$/, '').replace(/^\.\//, '').trim(), origin);
+  for (const { name, code } of blocksOf('sh')) {
+    for (const line of code.split('\n')) if (line.trim() && !line.startsWith('#')) take(line, name);
+  }
+  for (const document of documents) {
+    for (const [, words] of prose(document).matchAll(/`((?:\.\/)?cordis [^`]+)`/g)) {
+      const line = words.replace(/\s+/g, ' ');
+      if (isMention(line)) mentions.set(line, document.name);
+      else take(line, document.name);
+    }
+  }
+  return found;
+}
+const mentions = new Map(); // of a verb or with words that the reader fills in
+const isMention = (line) => !/^(\.\/)?cordis (test|doctor)$/.test(line) &&
+  (!line.includes('launch_configs/') || /\b[A-Z]{2,}\b/.test(line));
+
+const all = commands();
+const ofVerb = (verb) => [...all].filter(([line]) => line.split(' ')[1] === verb);
+
+test('every block of code says what it is', () => {
+  const KINDS = ['sh', 'sh by hand', 'yaml scene', 'yaml scene part', 'yaml launch', 'yaml nodes', 'yaml device', 'yaml change', 'c', 'text'];
+  for (const { name, kind } of blocks) assert.ok(KINDS.includes(kind), `${name}: a block of '${kind}'`);
+  for (const { name } of blocksOf('yaml change')) assert.equal(name, 'docs/tutorial.md');
+  for (const document of documents) {
+    const bare = /^ {4}(\.\/)?cordis .*$/m.exec(prose(document));
+    assert.equal(bare, null, `${document.name}: '${bare}' stands outside of a block`);
+  }
+  for (const [line, origin] of all) assert.match(line, /^cordis [a-z]/, origin);
+  assert.ok(all.size > 25, `${all.size} commands found`);
+});
+
+test('verbs and options that documents mention exist', async () => {
+  const help = new Map();
+  for (const [line, origin] of mentions) {
+    const verb = line.split(' ')[1];
+    if (verb === 'VERB') continue;
+    if (!help.has(verb)) help.set(verb, await runs(`cordis ${verb} --help`, origin));
+    for (const [option] of line.matchAll(/--[a-z-]+/g)) assert.ok(help.get(verb).includes(option), `${origin}: '${line}'`);
+  }
+  assert.ok(mentions.size > 10, `${mentions.size} mentions found`);
+});
+
+// A scene on which the fragments of the documents are laid: what they name is there.
+const HOST = {
+  cordis: '1', name: 'host', space: '2', step: '{rate_hz: 8000}',
+  matter: `
+  bow: {kind: mass, mass_kg: 0.1, at_m: [0.1, 0.1]}
+  string: {kind: string, count: 42, mass_kg: 0.01, from_m: [0, 0], to_m: [0.5, 0], ends: fixed, stiffness_n_per_m: 100}
+  hand: {kind: mass, at_m: [0, 0.2], ball: {mass_kg: 0.1, radius_m: 0.01}}
+  paste: {kind: disc, structure: triangular, center_m: [0.2, 0.3], radius_m: 0.03, spacing_m: 0.009,
+          ball: {mass_kg: 0.01, radius_m: 0.004}}`,
+  liaisons: `
+  include: [../liaisons/standard.yaml]
+  spoke: {kind: spring, stiffness_n_per_m: 100}
+  rosin: {like: collophane, parameters: {hold_m: 0.003}}
+  clay: {viscosity_n_s_per_m: 0.02, elasticity: {kind: lennard_jones, depth_j: 1.0e-5, diameter_m: 0.008, cut_m: 0.02}}`,
+};
+
+/** The top level keys of a text, each with all that belongs to it. */
+function sectionsOf(text) {
+  const sections = {};
+  for (const section of text.split(/^(?=\w+:)/m)) {
+    const key = /^(\w+):/.exec(section)?.[1];
+    if (key) sections[key] = section.slice(key.length + 1).trimEnd();
+  }
+  return sections;
+}
+
+let written = 0;
+/** Writes a file of an example where it belongs, or beside the shipped ones. */
+function write(below, path, text) {
+  const file = path || join('launch_configs', below, `example_${(written += 1)}.yaml`);
+  writeFileSync(join(folder, file), text);
+  return file;
+}
+
+test('scenes load, are stable, and fragments fit into a scene', async () => {
+  for (const { name, path, code } of blocksOf('yaml scene')) await runs(`cordis check ${write('scenes', path, code)}`, name);
+  for (const { name, code } of blocksOf('yaml scene part')) {
+    const sections = { ...HOST, ...sectionsOf(code) };
+    const text = Object.entries(sections).map(([key, value]) => `${key}: ${value}\n`).join('');
+    await runs(`cordis check ${write('scenes', '', text)}`, `${name}\n${text}`);
+  }
+  assert.ok(blocksOf('yaml scene').length >= 2 && blocksOf('yaml scene part').length >= 5);
+});
+
+/** Every node of a launch file reads all that it would use. */
+async function checkNodes(file, origin) {
+  const nodes = (await runs(`cordis run ${file} --dry-run`, origin)).trim().split('\n');
+  for (const node of nodes) await runs(`${node} --check`, origin);
+  return nodes.length;
+}
+
+test('launch files, nodes and device files load', async () => {
+  for (const { name, path, code } of blocksOf('yaml launch')) await checkNodes(write('', path, code), name);
+  for (const { name, code } of blocksOf('yaml nodes')) await checkNodes(write('', '', `cordis: 1\n${code}`), name);
+  for (const { name, code } of blocksOf('yaml device')) {
+    const device = write('devices', '', code);
+    const launch = `cordis: 1\nnodes: {device: {node: device_node, device: devices/${basename(device)}}}\n`;
+    await checkNodes(write('', '', launch), name);
+  }
+});
+
+test('the launch files that ship load, as their first lines say', async () => {
+  let count = 0;
+  for (const file of readdirSync(join(root, 'launch_configs')).filter((name) => name.endsWith('.yaml'))) {
+    const path = join('launch_configs', file);
+    const [, example] = /^#\s+\.\/cordis run (\S+)$/m.exec(readFileSync(join(root, path), 'utf8')) ?? [];
+    assert.equal(example, path, `${path} says how it is started`);
+    await checkNodes(path, path);
+    count += 1;
+  }
+  assert.ok(count > 10, `${count} launch files`);
+});
+
+test('the example of a board compiles', async () => {
+  for (const { name, code } of blocksOf('c')) {
+    writeFileSync(join(folder, 'board.c'), code);
+    await runs(`cc -std=c99 -Wall -Wextra -Werror -fsyntax-only -I '${root}' board.c`, name);
+  }
+  for (const { name, code } of blocksOf('sh by hand')) {
+    writeFileSync(join(folder, 'by_hand.sh'), code);
+    await runs('bash -n by_hand.sh', name);
+  }
+});
+
+test('cordis run', async () => {
+  for (const [line, origin] of ofVerb('run')) await runs(line.includes('--duration') ? line : `${line} --duration 300ms`, origin);
+});
+
+test('cordis ctl', async () => {
+  const sessions = new Map(); // name: lines
+  for (const [line, origin] of ofVerb('ctl')) {
+    const session = basename(line.split(' ')[2], '.yaml');
+    sessions.set(session, [...(sessions.get(session) ?? []), [line, origin]]);
+  }
+  for (const [session, lines] of sessions) {
+    lines.sort(([a], [b]) => a.includes(' load ') - b.includes(' load ')); // another scene has other links
+    const words = ['run', `launch_configs/${session}.yaml`];
+    const launcher = spawn(join(programs, 'cordis'), words, { cwd: folder, env: environment, stdio: ['ignore', 'pipe', 'pipe'] });
+    let said = '';
+    for (const stream of [launcher.stdout, launcher.stderr]) stream.on('data', (text) => (said += text));
+    const ended = new Promise((resolve) => launcher.on('close', resolve));
+    try {
+      const end = Date.now() + LONGEST_MS;
+      while ((await shell(`cordis ctl ${session} pause`)).code !== 0) assert.ok(Date.now() < end, `${session} does not start\n${said}`);
+      for (const [line, origin] of lines) await runs(`${line} --timeout 60s`, origin);
+    } finally {
+      launcher.kill('SIGINT');
+      await ended;
+    }
+  }
+  assert.ok(sessions.size >= 2, 'sessions of examples');
+});
+
+test('cordis check', async () => {
+  const lines = ofVerb('check');
+  for (const [line, origin] of lines) await runs(line, origin);
+  assert.ok(lines.length > 3);
+});
+
+test('cordis lab', async () => {
+  for (const [line, origin] of ofVerb('lab')) {
+    const quick = line.includes('--quick') ? line : `${line} --quick --duration 20ms`;
+    await runs(`${quick} --out lab_${(written += 1)}`, origin);
+  }
+});
+
+test('cordis doctor', async () => {
+  for (const [line, origin] of ofVerb('doctor')) {
+    const text = await runs(`${line} --duration 200ms`, origin, [0, 1]); // 1: no force loop works on this machine
+    assert.match(text, /force_loop_at_1_khz|A force loop at 1 kHz /, origin);
+  }
+});
+
+test('cordis test lists what it would run', async () => {
+  for (const [line, origin] of ofVerb('test')) {
+    assert.match(await runs(`${line} -N`, origin), /Total Tests: [1-9]/, `${origin}: ${line}`);
+  }
+});
+
+test('no verb has examples that nothing runs', () => {
+  const RUN = ['run', 'ctl', 'check', 'lab', 'doctor', 'test'];
+  for (const [line, origin] of all) assert.ok(RUN.includes(line.split(' ')[1]), `${origin}: ${line}`);
+  for (const verb of RUN) assert.ok(ofVerb(verb).length > 0, verb);
+});
