@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "node/config/count_text.h"
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/plan/reduction/dimension.h"
 #include "sim_node/plan/reduction/light_mats.h"
 #include "sim_node/plan/reduction/parallel.h"
@@ -127,6 +128,7 @@ scene::Scene reduce(scene::Scene scene, config::Problems& problems) {
 }
 
 AccuracyTarget wish_of(const scene::Scene& scene) {
+  CORDIS_ASSERT(scene.accuracy.has_value());
   const scene::Accuracy& asked = *scene.accuracy;
   AccuracyTarget wish{asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s};
   for (const scene::Reduction& reduction : scene.reductions) wish.tolerance -= reduction.budget;
