@@ -6,6 +6,11 @@ target_include_directories(cordis_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(cordis_options INTERFACE
   -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
 
+# Preconditions are checked in debug and sanitizer builds (sim_node/engine/core/assert.h).
+if(CORDIS_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
+  target_compile_definitions(cordis_options INTERFACE CORDIS_ASSERTIONS)
+endif()
+
 if(CORDIS_SANITIZE)
   target_compile_options(cordis_options INTERFACE
     -fsanitize=${CORDIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer

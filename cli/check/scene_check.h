@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/rate_selection.h"
 #include "sim_node/scene/naming.h"
@@ -51,6 +52,7 @@ struct SceneCheck {
   /// The tolerance that the scene can have at another rate, about: the errors of the scheme with
   /// viscosity are of first order. Precondition: it has a choice.
   double tolerance_at(double rate_hz) const noexcept {
+    CORDIS_ASSERT(scene.accuracy && choice);
     return scene.accuracy->tolerance * choice->needed_hz / rate_hz;
   }
   /// Whether the scene keeps its `accuracy`, or has none.

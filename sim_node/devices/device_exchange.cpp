@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim_node/engine/core/assert.h"
+
 namespace cordis::sim {
 
 DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role role,
@@ -101,11 +103,13 @@ DeviceExchange::Reception DeviceExchange::receive(
 
 DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample, bool borne,
                                                   const DeviceReach& reach) noexcept {
+  CORDIS_ASSERT(role_ == Role::kMass);
   return receive(sample, sample.position_m(), borne, reach.travel_m);
 }
 
 DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample, bool borne,
                                                   const DeviceReach& reach) noexcept {
+  CORDIS_ASSERT(role_ == Role::kLiaison);
   const std::uint64_t before = missed_count_;
   const Reception reception = receive(sample, sample.force_n(), borne, reach.force_n);
   if (reception == Reception::kNew) take_work(sample, reach, missed_count_ - before + 1);

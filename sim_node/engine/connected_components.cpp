@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/vector_width.h"
 #include "sim_node/engine/idle_state.h"
 
@@ -137,12 +138,14 @@ std::size_t ConnectedComponents::find_linked(const World& world,
   begin();
   const std::vector<StateLink>& links = world.network().description().state_links;
   for (const std::uint32_t link : state_links) {
+    CORDIS_ASSERT(link < links.size());
     if (!is_idle(world, link)) join(BoundPair{links[link].mat_a, links[link].mat_b});
   }
   return number_pieces();
 }
 
 void ConnectedComponents::join(const BoundPair& pair) noexcept {
+  CORDIS_ASSERT(pair.mat_a < member_.size() && pair.mat_b < member_.size());
   const std::uint32_t a = member_[pair.mat_a];
   const std::uint32_t b = member_[pair.mat_b];
   if (a != kNoMember && b != kNoMember) join(a, b);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/world.h"
 
 namespace cordis::engine {
@@ -16,6 +17,7 @@ inline bool is_idle(const LinkState& state) noexcept {
 /// Whether a link with states does so in its present state. Precondition: the link exists.
 inline bool is_idle(const World& world, std::uint32_t state_link) noexcept {
   const NetworkDescription& network = world.network().description();
+  CORDIS_ASSERT(state_link < network.state_links.size());
   const StateMachine& state_machine =
       network.state_machines[network.state_links[state_link].state_machine];
   return is_idle(state_machine.states[world.state_of(state_link)]);

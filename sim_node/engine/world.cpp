@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/integrators/world_state.h"
 
@@ -40,6 +41,7 @@ void World::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
 }
 
 void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
+  CORDIS_ASSERT(mat < state_->mats.count() && state_->mats.is_mass(mat));
   const Vec3 before = state_->outside.external_force(mat);
   state_->outside.hold_force(mat, force);
   if (!state_->freezing) return;
@@ -79,14 +81,17 @@ std::span<const LinkEvent> World::events() const noexcept {
 }
 
 std::uint32_t World::state_of(std::uint32_t state_link) const noexcept {
+  CORDIS_ASSERT(state_link < network().description().state_links.size());
   return state_->state_links.state_of(state_->table, state_link);
 }
 
 double World::rest_length_of(std::uint32_t state_link) const noexcept {
+  CORDIS_ASSERT(state_link < network().description().state_links.size());
   return state_->state_links.rest_length(state_link);
 }
 
 double World::pull_of(std::uint32_t state_link) const noexcept {
+  CORDIS_ASSERT(state_link < network().description().state_links.size());
   return state_->state_links.pull(state_link);
 }
 
@@ -105,6 +110,7 @@ std::vector<BoundPair> World::bound_pairs(std::size_t set) const {
 }
 
 void World::visit_bound_pairs(std::size_t set, VisitBoundPair visit, void* owner) const {
+  CORDIS_ASSERT(set < network().description().sets.size());
   state_->sets.set(set).visit_bound_pairs(state_->table, visit, owner);
 }
 
@@ -113,16 +119,19 @@ std::uint64_t World::step_count() const noexcept {
 }
 
 Vec3 World::position(std::uint32_t mat) const noexcept {
+  CORDIS_ASSERT(mat < network().mat_count());
   state_->scheme->show(*state_, mat);
   return state_->mats.position(mat);
 }
 
 Vec3 World::velocity(std::uint32_t mat) const noexcept {
+  CORDIS_ASSERT(mat < network().mat_count());
   state_->scheme->show(*state_, mat);
   return state_->scheme->velocity(*state_, mat);
 }
 
 Vec3 World::link_force(std::uint32_t mat) const noexcept {
+  CORDIS_ASSERT(mat < network().mat_count());
   return state_->mats.force(mat);
 }
 

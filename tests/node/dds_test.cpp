@@ -234,8 +234,8 @@ TEST(Dds, SaysThatAProcessWasStartedWithAnotherLaunchFile) {
   std::optional<Writer<msg::GesturePositions>> writer(std::in_place, device, Topic::kPositions);
 
   EXPECT_TRUE(eventually([&] { return !sim.mismatch().empty() && !device.mismatch().empty(); }));
-  EXPECT_NE(sim.mismatch().find("names no stand-ins"), std::string::npos) << sim.mismatch();
-  EXPECT_NE(device.mismatch().find("names stand-ins"), std::string::npos) << device.mismatch();
+  EXPECT_NE(sim.mismatch().find("names no hot standby"), std::string::npos) << sim.mismatch();
+  EXPECT_NE(device.mismatch().find("names a hot standby"), std::string::npos) << device.mismatch();
   EXPECT_EQ(neighbour.mismatch(), "");
 
   const node::StatusPublisher publisher(sim, "sim_node", 77, [](msg::NodeStatus&) {});

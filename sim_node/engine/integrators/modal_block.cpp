@@ -7,6 +7,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "sim_node/engine/core/assert.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/links/maxwell_links.h"
 
 namespace cordis::engine {
@@ -45,6 +47,7 @@ bool is_of_block(const NetworkDescription& network, const Link& link) {
 }  // namespace
 
 ModalBlock::ModalBlock(const NetworkDescription& network) {
+  CORDIS_ASSERT(!refusal_of(network));
   find_modes(network);
   const double dt = network.step;
   for (AlignedVector<double>* values :

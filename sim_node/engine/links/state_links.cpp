@@ -2,9 +2,9 @@
 #include "sim_node/engine/links/state_links.h"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/links/link_growth.h"
 
 namespace cordis::engine {
@@ -191,7 +191,8 @@ double StateLinkArray::stored_energy(const StateTable& table, const MatArray& ma
 
 void StateLinkArray::force_state(const StateTable& table, std::uint32_t link,
                                  std::uint32_t state) noexcept {
-  assert(link < link_count_ && state < table.state_machines()[state_machine_[link]].states.size());
+  CORDIS_ASSERT(link < link_count_ &&
+                state < table.state_machines()[state_machine_[link]].states.size());
   forced_[link] = table.first_state(state_machine_[link]) + state;
   any_forced_ = true;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/links/stored_energy.h"
 
 namespace cordis::engine {
@@ -250,6 +251,8 @@ Quantity StateTable::triggered(StateIndex from, std::uint32_t exit) const noexce
 }
 
 void StateTable::replace(std::uint32_t index, const StateMachine& state_machine) {
+  CORDIS_ASSERT(index < content_->state_machines.size() &&
+                state_machine.states.size() == content_->state_machines[index].states.size());
   content_->state_machines[index] = state_machine;
   content_->build();
 }

@@ -1,9 +1,10 @@
 // sim_node/engine/matter/port_inputs.cpp
 #include "sim_node/engine/matter/port_inputs.h"
 
-#include <cassert>
 #include <limits>
 #include <utility>
+
+#include "sim_node/engine/core/assert.h"
 
 namespace cordis::engine {
 namespace {
@@ -35,7 +36,7 @@ PortInputs::PortInputs(const NetworkDescription& description)
 }
 
 void PortInputs::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
-  assert(mat < slot_.size() && slot_[mat] < ports_.size() && ports_[slot_[mat]].mat == mat);
+  CORDIS_ASSERT(mat < slot_.size() && slot_[mat] < ports_.size() && ports_[slot_[mat]].mat == mat);
   if (!position.allFinite()) {
     ++refused_;
     return;
@@ -44,7 +45,7 @@ void PortInputs::impose_position(std::uint32_t mat, const Vec3& position) noexce
 }
 
 void PortInputs::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
-  assert(mat < slot_.size() && (slot_[mat] == kNoSlot || forces_[slot_[mat]].mat == mat));
+  CORDIS_ASSERT(mat < slot_.size() && (slot_[mat] == kNoSlot || forces_[slot_[mat]].mat == mat));
   const bool refused = !force.allFinite();
   if (refused) ++refused_;
   const Vec3 held = refused ? Vec3(Vec3::Zero()) : within_dimension(force);

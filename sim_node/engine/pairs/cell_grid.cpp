@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim_node/engine/core/assert.h"
+
 namespace cordis::engine {
 namespace {
 
@@ -135,6 +137,7 @@ void CellGrid::add_run(Surroundings& found, std::size_t first, std::size_t end,
 }
 
 CellGrid::Surroundings CellGrid::around(const double* point, std::size_t last) const noexcept {
+  CORDIS_ASSERT(std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]));
   return around_place(place_of(point), last);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/links/state_kernel.h"
 
@@ -35,6 +36,7 @@ class PairStates {
   const PairState& old_state(std::size_t index) const noexcept { return read_.states[index]; }
   /// The value of a slot. Precondition: below the number of slots.
   double old_memory(std::size_t index, std::size_t slot) const noexcept {
+    CORDIS_ASSERT(slot < slot_count_);
     return read_.memory[index * slot_count_ + slot];
   }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/pairs/set_pairs.h"
 
@@ -16,7 +17,10 @@ class SetLiaisons {
               const PairKernel& kernel);
 
   bool empty() const noexcept { return sets_.empty(); }
-  SetPairs& set(std::size_t index) noexcept { return sets_[index]; }
+  SetPairs& set(std::size_t index) noexcept {
+    CORDIS_ASSERT(index < sets_.size());
+    return sets_[index];
+  }
 
   /// As those of SetPairs, for all sets:
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim_node/engine/core/assert.h"
+
 namespace cordis::engine {
 namespace {
 
@@ -253,6 +255,7 @@ StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noex
 }
 
 PairsOfSet SetPairs::pairs() noexcept {
+  CORDIS_ASSERT(neighbours_.is_whole());
   return {column_, state_machines_, neighbours_.first_rows(position_.data())};
 }
 

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/scene/language/formula.h"
 #include "sim_node/scene/liaisons/liaison.h"
 
@@ -148,6 +149,7 @@ std::optional<LinkLaw> law_of_liaison(const Use& use, const Value& name, const L
 }  // namespace
 
 std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law) {
+  CORDIS_ASSERT(law.kind != LinkKind::kMaxwell);
   if (law.kind == LinkKind::kState) return law.state_machine;
   engine::StateMachine state_machine;
   state_machine.states.emplace_back();
