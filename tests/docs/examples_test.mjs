@@ -220,7 +220,7 @@ test('cordis ctl', async () => {
 test('cordis check', async () => {
   const lines = ofVerb('check');
   for (const [line, origin] of lines) await runs(line, origin);
-  assert.ok(lines.length > 3);
+  assert.ok(lines.length >= 3);
 });
 
 test('cordis lab', async () => {
