@@ -10,7 +10,7 @@ namespace cordis::cli {
 /// @throws UsageError when the text is anything else, not longer than 0, or longer than 10000 h.
 std::chrono::nanoseconds parse_duration(const std::string& text);
 
-/// The same span in seconds, as short as it can be written without loss: "10", "0.5".
+/// The span in seconds, as short as it can be written without loss: "10", "0.5".
 std::string in_seconds(std::chrono::nanoseconds duration);
 
 }  // namespace cordis::cli

@@ -15,7 +15,7 @@ inline constexpr int kMaxCoordinates = 12;  ///< degrees of freedom of a handle 
 /// same on both sides. Where the handle is carried, x = A+ q with the pseudo-inverse
 /// A+ = A^T (A A^T)^-1, and its forces are F = (A+)^T f.
 ///
-/// Without a map the coordinates are the axes. Source: [Luc90 V.1 Force feedback gestual
+/// The coordinates are the axes when there is no map. Source: [Luc90 V.1 Force feedback gestual
 /// transducers], the end-pieces fixed on the slices of the keyboard.
 class EndPiece {
  public:

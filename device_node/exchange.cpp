@@ -7,7 +7,7 @@
 namespace cordis::device {
 namespace {
 
-// Of the loop itself: boards have a watchdog of 20 ms, which must not be missed by a hair.
+// Limits of a stall of the loop itself, safely below the watchdog of 20 ms that boards have.
 constexpr double kStandstill = 0.018;       // [s]
 constexpr double kStandstillPeriods = 1.9;  // of a slow device
 
@@ -84,7 +84,7 @@ void Exchange::leave() noexcept {
   leaving_age_s_ = std::max(age_s(), guard.watchdog_s - guard.limit_n / guard.slew_n_per_s);
 }
 
-/// Whether an answer is well formed, answers this process, and is newer than the one in use.
+/// True if an answer is well formed, answers this process, and is newer than the one in use.
 /// A new run of the scene is recognised by what it answers alone.
 bool Exchange::consider(const GestureMessage& answer) noexcept {
   if (answer.answered_run == 0) return false;  // the scene has not heard this device yet
@@ -118,7 +118,7 @@ void Exchange::accept(const GestureMessage& answer) noexcept {
   any_answer_ = true;
   used_ = answer;
   late_[answer.answered_sample % late_.size()] = answer;
-  // With room for the delay and one: the next to be replaced is the oldest.
+  // The ring holds the delay and one more: the next to be replaced is the oldest.
   felt_ = lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer;
   const bool finite = role_ == Role::kMass
                           ? force_guard_.accept(config_.end_piece.axis_forces_of(felt_.value))
@@ -139,7 +139,7 @@ bool Exchange::stood_still() noexcept {
   return !lockstep_ && since_s > std::max(kStandstill, kStandstillPeriods / config_.layout.rate_hz);
 }
 
-/// Of a hand that was carried, its force known before and after: f dx, exact for one that is a
+/// Work of a hand that was carried, its force known before and after: f dx, exact for one that is a
 /// spring. At the end of the travel the scene goes on under the force of a hand that cannot: that
 /// counts as if it did, for it is not the age of the force that makes the difference.
 void Exchange::add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept {

@@ -71,7 +71,7 @@ class Exchange {
   void live() noexcept;
 
   bool has_device() const noexcept { return present_; }  ///< whether the driver has one
-  /// Whether the scene has fallen silent: it answered this exchange, for longer than the watchdog
+  /// True if the scene has fallen silent: it answered this exchange, for longer than the watchdog
   /// it has answered no new sample, and no other node gets the answers. Counted in periods: one in
   /// which this loop stood still is not the scene's.
   bool misses_the_scene() const noexcept { return misses_scene_; }

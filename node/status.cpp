@@ -69,7 +69,7 @@ void StatusPublisher::loop() {
   }
 }
 
-/// Of this node with another process of the session: in the status as long as it lasts, in the log
+/// Reports a mismatch with another process of the session: in the status while it lasts, in the log
 /// once.
 void StatusPublisher::report_mismatch() {
   const std::string mismatch = participant_.mismatch();

@@ -31,7 +31,7 @@ class FramePublisher {
   bool offer(FrameStore& store, const engine::World& world, double simulated_s,
              std::int64_t now_nsec, std::int64_t action_nsec = 0) noexcept;
 
-  /// Whether the thread uses the store that was offered last.
+  /// True if the thread uses the store that was offered last.
   bool is_busy() const noexcept { return busy_.load(std::memory_order_acquire); }
 
   /// Loop without real time: waits until the thread has finished with the last frame, so that none

@@ -156,7 +156,7 @@ void Session::run_lockstep() {
   }
 }
 
-/// Without devices: a scene whose time is not that of a hand has no force for it.
+/// Runs without devices: a scene whose time is not that of a hand has no force for it.
 void Session::run_asap() {
   while (!finished()) {
     if (obey_or_rest()) advance();

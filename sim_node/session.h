@@ -48,7 +48,7 @@ class Session {
   /// Obeys the order that waits, if any. @return false when the order is another stage, and the
   /// scene has to stand still until all that happened in it is told
   bool obey();
-  /// Without real time: obeys, and spends a while when the scene stands still.
+  /// Executes requests without real time, and waits a while when the scene is paused.
   /// @return whether it moves
   bool obey_or_rest();
   /// Takes what the devices have sent, and answers again what was asked again.

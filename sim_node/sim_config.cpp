@@ -47,7 +47,7 @@ std::vector<LaunchedDevice> devices_of(const config::Launch& launch) {
   return devices;
 }
 
-/// That nobody plays the device of a port.
+/// Warns that no node plays the device of a port.
 void warn_of_nobody(const config::Launch& launch, const std::vector<LaunchedDevice>& devices,
                     const scene::Port& port, config::Problems& problems) {
   std::vector<std::string> names;
@@ -135,7 +135,7 @@ std::filesystem::path below(const std::filesystem::path& folder, const std::stri
   return end == folder.end() && rest != file.end() ? file : std::filesystem::path();
 }
 
-/// Whether a file says that it is written for Cordis, or cannot be read, which the reader tells.
+/// True if a file says that it is written for Cordis, or cannot be read, which the reader tells.
 /// What is wrong in another file would tell what stands in it.
 bool is_of_cordis(const std::filesystem::path& file) {
   const config::FileBytes read = config::read_regular_file(file.string(), kMaxSceneBytes);

@@ -20,7 +20,7 @@ class CommandRelay {
 
   void send(const PageCommand& command) noexcept;
 
-  /// Whether a reply answers one of these commands.
+  /// True if a reply answers one of these commands.
   bool is_mine(const msg::ControlReply& reply) const { return reply.sender() == sender_; }
 
  private:

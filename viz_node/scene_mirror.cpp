@@ -18,7 +18,7 @@ constexpr std::size_t kMaxNodes = 64;
 constexpr std::uint64_t kMaxOlder = 64;      // versions of a scene that may come late
 constexpr std::uint64_t kMaxLost = 100'000;  // frames between two that came: an hour of 25 Hz
 
-/// Whether a message belongs to the scene that sim_node played before, or to one whose description
+/// True if a message belongs to the scene that sim_node played before, or to one whose description
 /// has not come yet: for a moment around a change of scene or a restart, both come.
 template <class Message>
 bool is_of_another_scene(const Message& message, const msg::SceneDescription& description) {

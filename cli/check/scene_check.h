@@ -55,7 +55,7 @@ struct SceneCheck {
     CORDIS_ASSERT(scene.accuracy && choice);
     return scene.accuracy->tolerance * choice->needed_hz / rate_hz;
   }
-  /// Whether the scene keeps its `accuracy`, or has none.
+  /// True if the scene keeps its `accuracy`, or has none.
   bool keeps_accuracy() const noexcept {
     return !choice || scene.step_rate_hz >= choice->needed_hz;
   }
@@ -68,7 +68,7 @@ SceneCheck check_scene(const CheckOptions& options);
 
 /// Lines for a person.
 std::string text_of(const SceneCheck& check);
-/// The same for a program; keys carry their unit.
+/// The check as JSON for a program; keys carry their unit.
 std::string json_of(const SceneCheck& check);
 
 }  // namespace cordis::cli

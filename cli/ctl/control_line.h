@@ -27,7 +27,7 @@ class ControlLine {
 
   /// The nodes that are alive: they have said something lately, and not that they stop.
   std::vector<std::string> present() const;
-  /// Whether a command has been sent.
+  /// True if a command has been sent.
   bool has_sent() const noexcept { return sent_; }
   /// How many of them a target addresses.
   std::size_t addressed_count(const std::string& target) const;

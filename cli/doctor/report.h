@@ -15,7 +15,7 @@ bool force_loop_works(const std::vector<Finding>& findings);
 /// longer than 100 columns. Ends with a newline.
 std::string report_text(const std::vector<Finding>& findings, bool coloured);
 
-/// The same as one JSON object; its keys are explained in `cordis doctor --help`.
+/// The findings as one JSON object; its keys are explained in `cordis doctor --help`.
 std::string report_json(const std::vector<Finding>& findings);
 
 }  // namespace cordis::cli

@@ -48,7 +48,7 @@ void take(std::ifstream& file, std::vector<Value>& values) {
             static_cast<std::streamsize>(count * sizeof(Value)));
 }
 
-/// The same for reading and writing: `Step` is put or take.
+/// Writes or reads every field: `Step` is put or take.
 template <class File, class Of, class Step>
 void each_field(File& file, Of& reference, Step step) {
   step(file, reference.sampling.period);

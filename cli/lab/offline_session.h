@@ -36,7 +36,7 @@ class OfflineSession {
   const scene::Scene& scene() const noexcept { return simulation_->scene(); }
   double time_s() const noexcept { return simulation_->simulated_s(); }
 
-  /// Whether a device plays this port; its driver.
+  /// True if a device plays this port; its driver.
   bool plays(const scene::Port& port) const noexcept;
   std::string driver_of(const scene::Port& port) const;
   /// What the port was given in the last tick: its position [m], or the force on it [N].

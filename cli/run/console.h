@@ -28,7 +28,7 @@ class Console {
   std::array<node::LineOutput, 2> outputs_;
 };
 
-/// Whether output to this stream is to be coloured: it is a terminal, NO_COLOR is not set, and
+/// True if output to this stream is to be coloured: it is a terminal, NO_COLOR is not set, and
 /// `refused` is false.
 bool wants_colours(Stream stream, bool refused);
 

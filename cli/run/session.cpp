@@ -143,7 +143,7 @@ class Session : public Watcher {
     output_.say("page of " + status.node() + ": " + shown);
   }
 
-  /// Whether nothing more is to be waited for: a device that the scene does not play stays unused,
+  /// True if nothing more is to be waited for: a device that the scene does not play stays unused,
   /// and a scene without any other waits for nobody of this launch.
   bool all_run() const {
     bool sim_waits = false;

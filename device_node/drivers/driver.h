@@ -28,7 +28,7 @@ class Driver {
   Driver& operator=(const Driver&) = delete;
   virtual ~Driver() = default;
 
-  /// Whether the device, as it is set up, can play the role at all.
+  /// True if the device, as it is set up, can play the role at all.
   virtual bool can_play(Role role) const noexcept = 0;
 
   /// Begins a life in a role: motors off, a simulated device back at its beginning.
@@ -45,13 +45,13 @@ class Driver {
   /// here, and no other clock moves it. False when the device does not answer.
   virtual bool write(const AxisValues& commanded) noexcept = 0;
 
-  /// Whether it drives motors of this world. For a simulated device no time passes while a scene in
+  /// True if it drives motors of this world. For a simulated device no time passes while a scene in
   /// lockstep is silent or over; a hand at a real one lives on.
   virtual bool has_motors() const noexcept { return false; }
 
   virtual BoardWatchdog board_watchdog() const noexcept { return BoardWatchdog::kLetsGo; }
 
-  /// Whether write() returns false because the motors have been let go of outside this loop: by the
+  /// True if write() returns false because the motors have been let go of outside this loop: by the
   /// board, in an emergency stop for instance, or by the guardian.
   virtual bool is_let_go() const noexcept { return false; }
 

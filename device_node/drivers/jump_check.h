@@ -14,7 +14,7 @@ class JumpCheck {
 
   void forget() noexcept;  ///< the next place is the first one, and believed
 
-  /// Whether the place is believed [m].
+  /// True if the place is believed [m].
   bool believes(const AxisValues& place_m) noexcept;
 
  private:

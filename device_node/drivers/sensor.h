@@ -6,7 +6,7 @@
 
 namespace cordis::device {
 
-/// Of one kind of sensor. The unit is that of the reading: [m] or [N].
+/// Errors of one kind of sensor, in the unit of the reading: [m] or [N].
 struct SensorSettings {
   double noise = 0.0;    ///< standard deviation, >= 0
   double quantum = 0.0;  ///< distance of two readings, >= 0; 0: none

@@ -57,8 +57,8 @@ double leverage_of(const Map& map) {
   return largest > 0.0 ? largest : 1.0;
 }
 
-/// Of q = A x: the axes, each within its travel, carry a coordinate by the sum of |A| of its row;
-/// of f = A^T F: a force along it alone reaches the limit first at the axis of the largest |A|.
+/// By q = A x the axes, each within its travel, carry a coordinate by the sum of |A| of its row;
+/// by f = A^T F a force along it alone reaches the limit first at the axis of the largest |A|.
 void set_reach(DeviceLimits& limits, const Map& map) {
   const std::vector<double> one{1.0};
   for (std::size_t c = 0; c < limits.coordinate_travel_m.size(); ++c) {

@@ -20,7 +20,7 @@ struct DeviceLimits {
   double highest_m = 0.0;
   double key_pitch_m = 0.0;  ///< of a key, which stands side by side with the next; 0: no keyboard
   double force_limit_n = 20.0;
-  /// Of each coordinate, from stop to stop while the others are free; 0: unknown.
+  /// Travel of each coordinate, from stop to stop while the others are free; 0: unknown.
   std::array<double, 16> coordinate_travel_m{};
   /// From its rest to its stops, likewise; both 0: unknown.
   std::array<double, 16> coordinate_lowest_m{};

@@ -39,7 +39,7 @@ bool is_file_of(FileKind wanted, const Value& root, Problems& problems) {
   const auto is_wanted = [&](const KindWords& words) { return words.kind == wanted; };
   const KindWords& right = *std::ranges::find_if(kKinds, is_wanted);
   if (root.find(right.mark).exists()) return true;
-  // Of a scene without matter one still says so.
+  // A scene without matter still has its space.
   if (wanted == FileKind::kScene && root.find("space").exists()) return true;
   for (const KindWords& words : kKinds) {
     const auto telling = std::ranges::find(root.entries(), words.mark, &Value::Entry::key);

@@ -43,7 +43,7 @@ struct Launch {
   Clock clock = Clock::kRealtime;
   std::vector<LaunchNode> nodes;  ///< in the order of the file
 
-  /// Whether a node plays the device of another (`standby_for` in its section).
+  /// True if a node plays the device of another (`standby_for` in its section).
   bool has_stand_ins() const noexcept;
 
   /// nullptr when there is none.
@@ -65,7 +65,7 @@ struct Launch {
 Launch load_launch(const std::string& path, const std::vector<std::string>& overrides,
                    Problems& problems);
 
-/// The same for a file in memory; `name` stands for its path.
+/// Reads the text of a launch file in memory; `name` stands for its path.
 Launch load_launch_text(const std::string& text, const std::string& name,
                         const std::vector<std::string>& overrides, Problems& problems);
 

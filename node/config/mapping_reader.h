@@ -33,7 +33,7 @@ class MappingReader {
   MappingReader(Value value, std::string what, Problems& problems);
 
   bool has(const std::string& key) const;
-  /// Of the key's value; the mapping's own place when absent.
+  /// Place of the key's value; the mapping's own place when absent.
   Place place_of(const std::string& key) const;
   /// In the order of the file.
   std::vector<std::string> present_keys() const;
@@ -72,7 +72,7 @@ class MappingReader {
   /// last.
   void finish();
 
-  /// Whether this reader has found no problem: what it returned is what the file says.
+  /// True if this reader has found no problem: what it returned is what the file says.
   bool ok() const noexcept { return ok_; }
 
   const std::string& what() const noexcept { return what_; }

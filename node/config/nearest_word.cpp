@@ -29,7 +29,7 @@ std::string_view without_unit(std::string_view word) {
   return word;
 }
 
-/// Whether the two differ at most in the unit behind the same name: mass_g, mass and mass_kg.
+/// True if the two differ at most in the unit behind the same name: mass_g, mass and mass_kg.
 bool same_but_for_unit(std::string_view word, std::string_view candidate) {
   const std::string_view stem = without_unit(candidate);
   if (stem.size() == candidate.size() || !word.starts_with(stem)) return false;

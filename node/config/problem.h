@@ -55,7 +55,7 @@ class Problems {
   void remember_source(const std::string& file, const std::string& text);
 
   bool has_errors() const noexcept { return error_count_ > 0; }
-  /// Whether no more of them will be shown: then a hint is not worth the time of finding it.
+  /// True if no more of them will be shown: then a hint is not worth the time of finding it.
   bool is_full() const noexcept { return problems_.size() >= kMaxProblems; }
   /// Calls of error() so far. A reader compares it before and after a part to know whether the part
   /// is sound.

@@ -150,7 +150,7 @@ void TreeBuilder::check_tag(const YAML::Mark& mark, const std::string& tag) {
   problems_.error(place_at(source_, mark), "tags have no meaning here, got '" + tag + "'");
 }
 
-/// Whether the text stands at the mark letter by letter.
+/// True if the text stands at the mark letter by letter.
 bool TreeBuilder::is_verbatim(const YAML::Mark& mark, const std::string& text, bool quoted) const {
   if (mark.is_null()) return false;
   const std::string_view line = source_.line(static_cast<std::size_t>(mark.line));

@@ -32,15 +32,15 @@ class Value {
   Place place_in_text(std::size_t byte) const;
   bool exists() const noexcept { return data_ != nullptr; }
 
-  /// Of a scalar, else empty.
+  /// Text of a scalar, else empty.
   const std::string& text() const noexcept;
-  /// Whether a scalar stood in quotes or is a block of text: never a number.
+  /// True if a scalar stood in quotes or is a block of text: never a number.
   bool quoted() const noexcept;
-  /// Of a sequence, else empty.
+  /// Items of a sequence, else empty.
   const std::vector<Value>& items() const noexcept;
-  /// Of a mapping, in the order of the file; else empty.
+  /// Entries of a mapping, in the order of the file; else empty.
   const std::vector<Entry>& entries() const noexcept;
-  /// Of a mapping; a Value that does not exist when absent.
+  /// Value of a key of a mapping; a Value that does not exist when absent.
   Value find(std::string_view key) const noexcept;
   /// Values in it with itself, where one that several aliases repeat counts several times.
   std::size_t value_count() const noexcept;

@@ -28,8 +28,8 @@ struct TopicQos {
   int history_depth;     ///< keep last
   bool asynchronous;     ///< written by a thread of the middleware: for large frames
   int heartbeat_msec;    ///< of a reliable writer
-  /// Of several writers of a key the strongest is heard, until it has been silent for so long;
-  /// 0: all are heard.
+  /// The strongest of several writers of a key is read, until it has been silent for so long;
+  /// 0: all are read.
   int exclusive_for_msec = 0;
 };
 

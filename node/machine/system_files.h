@@ -20,7 +20,7 @@ class SystemFiles {
   /// The whole text without white space at its end; nothing when it cannot be read.
   std::optional<std::string> text(const std::string& path) const;
 
-  /// The same of a file compressed by gzip.
+  /// Whole text of a file compressed by gzip; nothing when it cannot be read.
   std::optional<std::string> gzip_text(const std::string& path) const;
 
   /// Names in `folder` that begin with `beginning`, in order; none when there is no such folder.

@@ -26,7 +26,7 @@ struct PortDemand {
   scene::PortNeeds needs;  ///< along each of them
 };
 
-/// Of all ports. O(liaisons).
+/// Demands of all ports. O(liaisons).
 std::vector<PortDemand> demands_of(const scene::Scene& scene);
 
 /// What is to be said about a device at a port; all empty when nothing is.

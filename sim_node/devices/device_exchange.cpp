@@ -59,8 +59,8 @@ double DeviceExchange::force_share() const noexcept {
   return 1.0 - static_cast<double>(rejoin_left_) / static_cast<double>(rejoin_ticks_);
 }
 
-/// Whether a sample of the run that is heard follows the newest one; notes what was missed between
-/// them, and whether the numbers begin anew.
+/// True if a sample of the current epoch follows the newest one; counts what was missed between
+/// them, and sees when the numbers restart.
 template <class Sample>
 bool DeviceExchange::goes_on(const Sample& sample) noexcept {
   const bool later = sample.sample() > received_sample_;

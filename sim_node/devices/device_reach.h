@@ -20,7 +20,7 @@ struct DeviceReach {
   static constexpr double kTravelShare = 1.25;
   static constexpr double kForceShare = 2.0;
 
-  /// Of a device that has not told what it is.
+  /// Reach of a device without a description.
   DeviceReach() noexcept {
     travel_m.fill(kFarthest);
     force_n.fill(kStrongest);
@@ -41,7 +41,7 @@ class ReachTable {
   /// What is told first of a run is believed. The last kRows are kept.
   void put(std::uint32_t device_id, std::uint64_t run, const DeviceReach& reach) noexcept;
 
-  /// That of an unknown device when nothing was told. Real time: no lock.
+  /// Reach of a device; that of an unknown one before its description. Real time: no lock.
   DeviceReach find(std::uint32_t device_id, std::uint64_t run) const noexcept;
 
  private:

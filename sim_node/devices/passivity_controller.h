@@ -60,7 +60,7 @@ class PassivityController {
     engine::Vec3 before = engine::Vec3::Zero();      // x(n-2)
     engine::Vec3 force = engine::Vec3::Zero();       // of the hand in the last step [N]
     engine::Vec3 braking = engine::Vec3::Zero();     // ours [N]
-    // Of the last ticks:
+    // State after the last ticks:
     engine::Vec3 place = engine::Vec3::Zero();         // [m]
     engine::Vec3 force_before = engine::Vec3::Zero();  // [N]
     engine::Vec3 change = engine::Vec3::Zero();        // of the force [N]

@@ -33,7 +33,7 @@ class RefusedDevices {
   /// Tells what has repeated itself. To be called at least now and then.
   void report_repeats();
 
-  /// Whether the process of this run is refused. Real time.
+  /// True if the process of this run is refused. Real time.
   bool refuses(std::uint64_t run) const noexcept;
 
   /// Why, a sentence per port of the devices that are refused; empty when none is.

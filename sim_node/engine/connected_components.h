@@ -27,7 +27,7 @@ class ConnectedComponents {
   /// @throws std::invalid_argument when the network has no such set.
   ConnectedComponents(const Network& network, std::size_t set);
   ConnectedComponents(const NetworkDescription& network, std::size_t set);
-  /// Of MATs that no set liaison need join: all pairs within `mats` count.
+  /// Takes MATs that no set liaison need join: all pairs within `mats` count.
   /// @throws std::invalid_argument when the network has no such MAT, or one stands there twice.
   ConnectedComponents(const NetworkDescription& network, const std::vector<std::uint32_t>& mats);
 
@@ -42,7 +42,7 @@ class ConnectedComponents {
   /// Finds the pieces of members in bound pairs, such as World::bound_pairs. Real time: O(members +
   /// pairs), no allocation. @return how many
   std::size_t find_bound(std::span<const BoundPair> pairs) noexcept;
-  /// The same of the bound pairs of a set of a world. Precondition: the set exists.
+  /// Finds the pieces by the bound pairs of a set of a world. Precondition: the set exists.
   std::size_t find_bound(const World& world, std::size_t set) noexcept;
 
   /// Finds the pieces of members joined by those of these links with states that are not idle in

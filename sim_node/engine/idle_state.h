@@ -8,13 +8,13 @@
 
 namespace cordis::engine {
 
-/// Whether a liaison neither pulls nor pushes in a state, whatever its ends do: apart, broken.
+/// True if a liaison neither pulls nor pushes in a state, whatever its ends do: apart, broken.
 inline bool is_idle(const LinkState& state) noexcept {
   return state.stiffness == 0.0 && state.viscosity == 0.0 &&
          state.elasticity.kind == Law::Kind::kNone && state.dissipation.kind == Law::Kind::kNone;
 }
 
-/// Whether a link with states does so in its present state. Precondition: the link exists.
+/// True if a link with states is idle in its present state. Precondition: the link exists.
 inline bool is_idle(const World& world, std::uint32_t state_link) noexcept {
   const NetworkDescription& network = world.network().description();
   CORDIS_ASSERT(state_link < network.state_links.size());

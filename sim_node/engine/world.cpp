@@ -223,7 +223,7 @@ bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   StepEnergy change;
   change.switching = state_->stored_energy() - stored_before;
   state_->account.add(change);
-  // Of linear links in 1 dimension, whose energy stands in no account.
+  // The rest belongs to linear links in 1 dimension, whose energy stands in no account.
   StepEnergy rest;
   rest.switching = energy().total() - energy_before.total() - change.switching;
   rest.elastic = -rest.switching;

@@ -68,8 +68,8 @@ class World {
   Vec3 link_force(std::uint32_t mat) const noexcept;
   const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N; to be asked for in each step
 
-  /// Of a network with a freeze_tolerance: masses that rest and are left out until something wakes
-  /// them, see Freezing.
+  /// True if a mass rests and is left out until something wakes it, which happens in a network
+  /// with a freeze_tolerance; see Freezing.
   bool is_asleep(std::uint32_t mat) const noexcept;
   std::uint32_t asleep_count() const noexcept;
 

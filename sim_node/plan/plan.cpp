@@ -33,7 +33,7 @@ double limit_of_one_contact(const engine::NetworkDescription& network, const Lia
   return limit;
 }
 
-/// Of the tangent at the start, or of one contact.
+/// Step beyond which the tangent at the start, or one contact, diverges [s].
 double diverging_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   const auto limit_at = [&graph](const engine::NetworkDescription& at) {
     return std::min(StartTangent(at).diverging_step(), limit_of_one_contact(at, graph));
@@ -84,7 +84,7 @@ Stability stability_of_modes(const engine::NetworkDescription& network, const Li
   return stability;
 }
 
-/// Whether a liaison of this state machine is there at some times and not at others.
+/// True if a liaison of this state machine is there at some times and not at others.
 bool switches(const engine::StateMachine& state_machine) {
   for (const engine::LinkState& state : state_machine.states) {
     if (!state.pulls || !state.pushes) return true;

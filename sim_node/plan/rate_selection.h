@@ -18,7 +18,7 @@ struct RateSelection {
   std::string doubt;       ///< why the positions are not promised; empty when they are
 };
 
-/// Of a step of an integrator, in evaluations of all forces of `cordis`: about, for comparisons. A
+/// Cost of a step of an integrator, in evaluations of all forces of `cordis`: about. A
 /// step of `implicit` factorises and solves (docs/integrators.md).
 double cost_of_a_step(const std::string& integrator);
 

@@ -56,7 +56,7 @@ class Films {
     return spent_ + rate * period_ * samples_ * work_of_a_step(network_, integrator_) < kMaxWork;
   }
 
-  /// Of the first from the second, over the amplitude of the second.
+  /// Distance of the first from the second, over the amplitude of the second.
   double difference(double rate, double finer) {
     const std::vector<double>& first = film(rate);
     const std::vector<double>& second = film(finer);

@@ -69,7 +69,7 @@ class FrameStore {
 
   /// Where the changes of state of the present tick go.
   EventRoom& events() noexcept { return buffers_[filling_].events; }
-  /// Whether there is something that no frame has told yet.
+  /// True if there is something that no frame has published yet.
   bool has_news() const noexcept;
 
   /// Puts the present positions and states into the buffer being filled, which then is published(),

@@ -60,7 +60,7 @@ class RequestMailbox {
   void report_steps_left(std::uint64_t count) noexcept {
     steps_left_.store(count, std::memory_order_release);
   }
-  /// Whether close() was called; any thread.
+  /// True if close() was called; any thread.
   bool is_closed() const noexcept { return closed_.load(std::memory_order_acquire); }
   /// Loop: no order will be obeyed any more.
   void close() noexcept { closed_.store(true, std::memory_order_release); }

@@ -26,7 +26,7 @@ class Runner {
   /// Precondition of kRestart and kExchange: nobody uses the frames of the present stage.
   void obey(Request& order) noexcept;
 
-  /// Whether this turn of the loop has something to do.
+  /// True if this turn of the loop has something to do.
   bool moves() const noexcept { return !paused_ || steps_left_ > 0; }
 
   /// One turn: the rest of the tick, or the single steps still wanted of it; nothing while the

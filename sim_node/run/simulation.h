@@ -37,10 +37,10 @@ class Simulation {
   /// The exchange of a device, nullptr when no port of the scene is its.
   DeviceExchange* find(std::uint32_t device_id) noexcept;
   std::vector<DeviceExchange>& devices() noexcept { return devices_; }
-  /// Of the newest sample of all devices that are there; 0 when none is [ns].
+  /// Time of the newest sample of all devices that are there; 0 when none is [ns].
   std::int64_t action_time_nsec() const noexcept;
 
-  /// Whether a device has fallen silent that was there: DeviceExchange::is_missed().
+  /// True if a device has fallen silent that was there: DeviceExchange::is_missed().
   bool misses_a_device() const noexcept;
 
   const scene::Scene& scene() const noexcept { return *scene_; }

@@ -16,9 +16,9 @@ struct Called {
   config::Place place;
 };
 
-/// Of a MAT that no name stands for: "MAT 7", without a place. O(names).
+/// Name and place of a MAT; one that no name stands for is "MAT 7", without a place. O(names).
 Called call_mat(const Scene& scene, std::uint32_t mat);
-/// The same of a liaison; without one it is the viscosity of the medium. O(names).
+/// Name and place of a liaison; without one it is the viscosity of the medium. O(names).
 Called call_liaison(const Scene& scene, std::optional<engine::LiaisonId> liaison);
 
 /// How large it is: "3 MATs, 1 link, 0 sets, 2-D".

@@ -28,7 +28,7 @@ struct Change {
   std::optional<double> viscosity;     ///< of links [N s/m]; as it is when there is none
 };
 
-/// Whether a change can be made without a new Network.
+/// True if a change can be made without a new Network.
 inline bool is_live(const Change& change) noexcept {
   return change.kind == Change::Kind::kStateMachine;
 }

@@ -149,7 +149,7 @@ struct Scene {
 /// Gives a scene its step rate, an integer multiple of the gesture rate, and its integrator.
 void set_step(Scene& scene, double rate_hz, engine::IntegratorKind integrator);
 
-/// Whether the engine can simulate it; if not, a problem at one of the places: of the integrator,
+/// True if the engine can simulate it; if not, a problem at one of the places: of the integrator,
 /// or of what there is.
 void check_network(const Scene& scene, const config::Place& integrator, const config::Place& matter,
                    config::Problems& problems);
@@ -165,8 +165,8 @@ void number_links(Scene& scene);
 Scene load_scene(const std::string& path, config::Problems& problems,
                  const config::Place& referrer = {});
 
-/// The same for a scene in memory; `name` stands for its path, and its folder is where includes
-/// start.
+/// Reads the text of a scene in memory; `name` stands for its path, and includes start in its
+/// folder.
 Scene load_scene_text(const std::string& text, const std::string& name, config::Problems& problems);
 
 }  // namespace cordis::scene

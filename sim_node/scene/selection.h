@@ -82,10 +82,10 @@ class Names {
   const NameEntry* find(const std::string& name) const noexcept;
   /// What stands directly in the entry of this name, in the order of the indices; links do not.
   std::vector<const NameEntry*> children(const std::string& name) const;
-  /// Whether nothing has this name, but links have names that go on from it: those of a parallel
+  /// True if nothing has this name, but links have names that go on from it: those of a parallel
   /// liaison.
   bool is_before_links(const std::string& name) const noexcept;
-  /// Whether the name belongs to a part whose description has a problem.
+  /// True if the name belongs to a part whose description has a problem.
   bool is_in_unsound(const std::string& name) const noexcept;
   std::vector<std::string> words(bool with_links) const;  ///< for "did you mean"
 
@@ -116,7 +116,7 @@ std::optional<IndexRange> read_index_range(std::string_view text);
 std::optional<Selection> select(const config::Value& value, const std::string& what,
                                 bool with_links, const Names& names, config::Problems& problems);
 
-/// Whether a name may be given to something in a scene: letters, digits, '_' and '-', first a
+/// True if a name may be given to something in a scene: letters, digits, '_' and '-', first a
 /// letter or '_'. If not, a problem of the place.
 bool check_name(const std::string& name, const config::Place& place, config::Problems& problems);
 

@@ -45,7 +45,7 @@ enum class Quantity : std::uint8_t {
   kSwitchingEnergy    ///< brought in by changes of state since step 0 [J]
 };
 
-/// Of a MAT along a direction.
+/// True for a quantity of a MAT along a direction.
 constexpr bool has_direction(Quantity quantity) noexcept {
   return quantity <= Quantity::kForce;
 }

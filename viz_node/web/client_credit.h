@@ -12,7 +12,7 @@ namespace cordis::viz {
 /// The flow-control credit of one client: at most two frames are on their way to it, then it must
 /// acknowledge one.
 ///
-/// Whether its socket can be written says nothing: kernel and browser would hold seconds of frames.
+/// A writable socket says nothing about the browser: kernel and browser hold seconds of frames.
 /// Newest wins: while a client has no credit the frames pass it by, and count as dropped.
 ///
 /// No client can lose its credit for good. What is on its way is computed from the newest

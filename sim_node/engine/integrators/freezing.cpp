@@ -103,7 +103,7 @@ std::vector<OfMat> measure(const NetworkDescription& network,
   return of_mats;
 }
 
-/// Whether a condition of a state machine may come true while nothing moves.
+/// True if a condition of a state machine may come true while nothing moves.
 bool asks_for_age(const StateMachine& state_machine) {
   return std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
                      [](const Transition& exit) { return asks_for(exit.when, Quantity::kAge); });

@@ -50,7 +50,7 @@ class Freezing {
 
   void wake(std::uint32_t mat) noexcept;
   void wake_all() noexcept;
-  /// Whether a force from outside is held on a mass: it does not sleep then.
+  /// True if a force from outside is held on a mass: it does not sleep then.
   void hold(std::uint32_t mat, bool is_held) noexcept { held_[mat] = is_held; }
 
   bool is_asleep(std::uint32_t mat) const noexcept { return rest_[mat] >= kStepsToSleep; }

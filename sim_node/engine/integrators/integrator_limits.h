@@ -39,7 +39,7 @@ inline constexpr double kMaxExtrapolatedViscosity = 0.3;
 /// kMaxExtrapolatedViscosity. Infinite without dampers.
 double largest_extrapolated_step(const NetworkDescription& network);
 
-/// Whether `leapfrog` damps the linear links and the medium of this network in sweeps of their own,
+/// True if `leapfrog` damps the linear links and the medium of this network in sweeps of their own,
 /// each pair exactly: beyond largest_extrapolated_step. The step is then limited by their stiffness
 /// alone.
 bool damps_in_sweeps(const NetworkDescription& network);

@@ -21,7 +21,7 @@ struct WorldState;
 /// is taken at 1 m/s, a free expression at its steepest between -1 and 1 m/s.
 std::vector<double> largest_extrapolated_steps(const NetworkDescription& network);
 
-/// Whether `leapfrog` solves state links of this network at its step.
+/// True if `leapfrog` solves state links of this network at its step.
 bool solves_stiff_friction(const NetworkDescription& network);
 
 /// What `leapfrog` does to the state links beyond those steps: each is solved by itself for the

@@ -85,7 +85,7 @@ void Symplectic4::find_forces(WorldState& world) noexcept {
   add_forces(world);
 }
 
-/// Without viscosity only where the MATs are matters.
+/// Adds the forces without viscosity, which depend on positions alone.
 void Symplectic4::add_forces(WorldState& world) noexcept {
   ForceColumns at_rest = world.mats.force_columns();
   at_rest.delayed = at_rest.position;

@@ -25,7 +25,7 @@ VectorWidth require(VectorWidth width) {
   return width;
 }
 
-/// Without those that `modal` takes as modes.
+/// Linear links, less the ones that `modal` takes as modes.
 SpringDamperArray stepped_links(const NetworkDescription& network) {
   constexpr auto kAlong = SpringDamperArray::Kind::kAlong;
   if (network.integrator != IntegratorKind::kModal) return {network, kAlong};
@@ -156,7 +156,7 @@ double WorldState::add_forces_at_full_step(const double* felt_positions,
   StepEnergy of_links = links.add_forces_at_full_step(kernel, felt);
   of_links += ties.add_forces_at_full_step(kernel, felt);
   of_links.dissipated *= 0.5;
-  // Without the viscous forces of the last step, half the work of those of this one is returned.
+  // Half the work of the viscous forces of this step is returned: those of the last are forgotten.
   if (!state_links.empty()) {
     state_links.forget_viscous_forces();
     of_links += state_links.add_forces(state_machines, table, felt, step_count, log);

@@ -47,10 +47,10 @@ struct WorldState {
   /// Begins the account of ports and liaisons of `cordis` with the links as they were one period
   /// ago, when nothing is known to have moved.
   void start_one_period_ago() noexcept;
-  /// Of all links where the last forces were computed, in closed form; without linear ones in 1
+  /// Energy of all links where the last forces were computed, in closed form; no linear ones in 1
   /// dimension [J].
   double stored_energy() noexcept;
-  /// The same, with linear links in every dimension.
+  /// Energy of all links, with the linear ones in every dimension [J].
   double potential_energy() noexcept;
   StepEnergy work_since_last_call() const noexcept;
 

@@ -34,7 +34,7 @@ class SpringDamperArray {
   /// Real time: O(links), no allocation.
   StepEnergy add_forces(const StepKernel& kernel, const ForceColumns& columns) noexcept;
 
-  /// The same for an account that is kept at moments: only the energy [J] that the viscous forces
+  /// Adds the forces for an account at full steps: only the energy [J] that the viscous forces
   /// take in a period at the velocity (x - delayed) / dt is returned, and nothing remembered.
   StepEnergy add_forces_at_full_step(const StepKernel& kernel,
                                      const ForceColumns& columns) noexcept;
@@ -51,7 +51,7 @@ class SpringDamperArray {
   /// Energy of the springs where the forces of the last call were computed [J].
   /// Real time: O(links), no allocation.
   double potential_energy(const MatArray& mats) const noexcept;
-  /// The same, but 0 in line, where the account keeps K e(n) e(n-1) / 2.
+  /// potential_energy(), but 0 in 1-D, where the account keeps K e(n) e(n-1) / 2.
   double stored_energy(const MatArray& mats) const noexcept {
     return in_line_ ? 0.0 : potential_energy(mats);
   }

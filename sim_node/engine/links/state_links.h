@@ -60,7 +60,7 @@ class StateLinkArray {
   double rest_length(std::uint32_t link) const noexcept { return rest_length_[link]; }
   double pull(std::uint32_t link) const noexcept { return pull_[link]; }
   StateIndex state_index(std::uint32_t link) const noexcept { return state_[link]; }
-  /// Whether a change of state has happened in this step, which is not the first.
+  /// True if a change of state has happened in this step, which is not the first.
   bool is_new(std::uint32_t link, std::uint64_t step) const noexcept {
     return step > 0 && entered_[link] == static_cast<double>(step);
   }

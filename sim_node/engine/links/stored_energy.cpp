@@ -7,7 +7,7 @@
 namespace cordis::engine {
 namespace {
 
-/// Of a function that is linear between its points: sum of trapezia from 0 to the argument.
+/// Integral from 0 to the argument of a function that is linear between its points.
 double area_up_to(const Table& table, double argument) noexcept {
   const auto value_at = [&](std::size_t i, double x) {
     const double slope = (table.value[i] - table.value[i - 1]) / (table.at[i] - table.at[i - 1]);

@@ -16,7 +16,7 @@ double kinetic_energy(const NetworkDescription& network, const MatArray& mats) n
   return 0.5 * sum / (network.step * network.step);
 }
 
-/// Of linear springs in 1 dimension, and of ties.
+/// Elastic energy of linear springs in 1 dimension, and of vector springs [J].
 double elastic_energy(const NetworkDescription& network, const MatArray& mats) noexcept {
   double sum = 0.0;
   for (const Link& link : network.links) {

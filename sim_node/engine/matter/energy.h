@@ -17,7 +17,7 @@ namespace cordis::engine {
 /// keeps its account: a force f(n) changes the kinetic energy of the half-step velocities by
 /// exactly f(n) . (x(n+1) - x(n-1)) / 2, and dissipated and port_work are these exact works.
 ///
-/// Of linear links in 1 dimension, elastic is the product that the scheme keeps,
+/// For linear links in 1 dimension, elastic is the product that the scheme keeps,
 /// K e(n) e(n-1) / 2, which changes by exactly the work of the springs. Of all other links, elastic
 /// is what they stored at first, and the exact works of their elastic forces and the energies of
 /// their changes of state since. So no residual is left but rounding, for every law and every step
@@ -96,10 +96,10 @@ class EnergyAccount {
   Energy energy(const NetworkDescription& network, const MatArray& mats, const StepEnergy& since,
                 double stored) const noexcept;
 
-  /// The same with the energies of a moment x(n), all of them in closed form [J].
+  /// The account with the energies at a full step x(n), all of them in closed form [J].
   Energy at_moment(double kinetic, double elastic, double gravity) const noexcept;
 
-  /// The same as the first, with the energies of masses and linear links given [J].
+  /// Energies of masses and linear links, from which energy() makes the account [J].
   struct OfMatter {
     double kinetic;
     double elastic;

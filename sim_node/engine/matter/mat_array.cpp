@@ -71,7 +71,7 @@ void MatArray::move_only(std::span<const Range> rows) noexcept {
   list_by_weight(rows, moving_);
 }
 
-/// The same rows, each of masses of one weight. The list has room.
+/// Splits rows into rows of masses of one weight. The list has room.
 void MatArray::list_by_weight(std::span<const Range> rows,
                               std::vector<Range>& listed) const noexcept {
   listed.assign(rows.begin(), rows.end());
@@ -101,7 +101,7 @@ AdvanceReport MatArray::extrapolate(const StepKernel& kernel,
                       1.0);
 }
 
-/// Of no masses yet.
+/// Columns of all MATs, with no range of masses yet.
 MassColumns MatArray::columns(double* felt) noexcept {
   return {0,
           0,

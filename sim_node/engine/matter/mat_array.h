@@ -59,13 +59,13 @@ class MatArray {
   /// Moves every mass by one step. Real time: O(N), no allocation.
   AdvanceReport advance(const StepKernel& kernel) noexcept;
 
-  /// The same as `leapfrog` does it; see StepKernel::extrapolate.
+  /// Moves every mass by one step of `leapfrog`; see StepKernel::extrapolate.
   /// @param felt  4 x N, x(n) - dt v(n), then that of the next step
   AdvanceReport extrapolate(const StepKernel& kernel, AlignedVector<double>& felt) noexcept;
 
   /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
   void kick(const StepKernel& kernel, double part, AlignedVector<double>& velocity) noexcept;
-  /// The same; then moves them by a part of a period at these velocities, where the delayed
+  /// Kicks the masses; then moves them by a part of a period at these velocities, where the delayed
   /// positions stay, and clears all forces.
   void kick_and_drift(const StepKernel& kernel, double kick, double drift,
                       AlignedVector<double>& velocity) noexcept;
@@ -117,7 +117,7 @@ class MatArray {
   Vec3 position_of_forces(std::uint32_t mat) const noexcept {
     return forces_are_present_ ? position(mat) : delayed_at_rest(mat);
   }
-  /// Whether the last forces were computed at x(n), or at x(n-1) as by moving since.
+  /// Says that the last forces were computed at x(n), not at x(n-1) as by moving since.
   void set_forces_are_present(bool present) noexcept { forces_are_present_ = present; }
   bool forces_are_present() const noexcept { return forces_are_present_; }
   void set_force(std::uint32_t mat, const Vec3& force) noexcept;

@@ -53,7 +53,7 @@ class PortInputs {
   void append_state(std::vector<double>& state) const;
   /// Values of the longest such row.
   std::size_t max_values() const noexcept { return 6 * ports_.size() + 2 + 4 * slot_.size(); }
-  /// Whether the values from `first` on are such a row, of a network with the same ports.
+  /// True if the values from `first` on are such a row, of a network with the same ports.
   bool is_end_of_state(const std::vector<double>& state, std::size_t first) const noexcept;
   /// Takes it back. @return one past the last value taken.
   const double* take_state(const double* state) noexcept;

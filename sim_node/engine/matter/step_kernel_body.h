@@ -29,7 +29,7 @@ struct WorkRows {
   typename Lanes::Row dissipated;
 };
 
-/// Whether the account takes half of the work of the last forces and half of that of these, or the
+/// The account takes half of the work of the last forces and half of that of these, or the
 /// viscous work of these alone; see LinkWork and StepKernel.
 enum class Works { kOfPeriod, kOfMoment };
 

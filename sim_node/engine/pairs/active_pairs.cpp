@@ -57,7 +57,7 @@ void ActivePairs::pass_on(const PairsOfSet& pairs, const WakePropagation& pass,
       give(role_[a], pass.to);
     }
   }
-  // Those that are bound beyond their range.
+  // Pairs that are bound beyond their range.
   pairs.state_machines.visit_bound([&](std::size_t a, const PairState& pair) {
     const std::size_t b = pair.column / 4;
     if (passes_on(a)) give(role_[b], pass.to);
@@ -97,7 +97,7 @@ void ActivePairs::choose(const PairsOfSet& pairs, MatRoles& roles) noexcept {
   }
 }
 
-/// Of pairs with states all those of a row are computed, or none.
+/// Pairs with states are computed by whole rows: all of a row, or none.
 bool ActivePairs::is_row_whole(const PairsOfSet& pairs, std::size_t a) const noexcept {
   if (!pairs.state_machines.has_states()) return false;
   const auto is_whole = [this](std::uint32_t column) {

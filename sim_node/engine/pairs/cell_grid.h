@@ -12,7 +12,7 @@
 
 namespace cordis::engine {
 
-/// Whether the three coordinates are.
+/// True if x, y and z are finite.
 bool is_finite_point(const double* point) noexcept;
 
 /// Sorts points of unbounded space into cells.
@@ -35,7 +35,7 @@ class CellGrid {
     std::size_t begin = 0;
     std::size_t end = 0;
   };
-  /// Those of the cells around a point: 9 rows, each in 2 parts where the table repeats itself.
+  /// Members of the cells around a point: 9 rows, each in 2 parts where the table repeats itself.
   struct Surroundings {
     std::array<Run, 18> runs;
     std::size_t count = 0;
@@ -51,7 +51,7 @@ class CellGrid {
   /// Where everything within reach of a point is, as far as its number is below `last`; much that
   /// is not may be there too. Precondition: the point is finite.
   Surroundings around(const double* point, std::size_t last) const noexcept;
-  /// The same for all points in a place.
+  /// Members of the cells around any point of a cell.
   Surroundings around_place(std::size_t place, std::size_t last) const noexcept;
 
   /// Places are numbered from 0; in each the points stand by their numbers, ascending.

@@ -24,7 +24,7 @@ class PairBlock {
   void begin(std::size_t first_row) noexcept;
   /// Where the pairs of the next row go, as many as there are members.
   PairRow next_row() noexcept { return row_at(count_); }
-  /// That it has so many.
+  /// Closes the current row with `pairs` entries.
   void end_row(std::size_t pairs) noexcept;
   bool is_full() const noexcept { return count_ >= kEnough; }
   /// Fills the last batch up. To be called after the last row.

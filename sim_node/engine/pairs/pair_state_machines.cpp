@@ -111,7 +111,7 @@ void PairStateMachines::find_plain_pulls(const PairStep& step, PairBlock& block)
   step.state_machines.pulls(step.table.terms()[start_], plain);
 }
 
-/// Of each pair of the block what it remembers, or what a new one begins with.
+/// Loads what each pair of the block remembers, or what a new one begins with.
 void PairStateMachines::recall(const PairStep& step, PairBlock& block) noexcept {
   const std::size_t slots = states_.slot_count();
   const std::uint32_t* column = block.rows().pairs.column;

@@ -55,7 +55,7 @@ class PairStates {
   const PairState& state(std::size_t index) const noexcept { return written_.states[index]; }
   std::size_t count() const noexcept { return written_.count; }
   std::size_t row_count() const noexcept { return written_.start.size() - 1; }
-  /// Whether a step has been written.
+  /// True if a step has been written.
   bool has_rows() const noexcept { return has_rows_; }
 
   /// Keeps the states, forgets what the slots remember, and makes room for others. Allocates.

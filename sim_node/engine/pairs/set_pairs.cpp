@@ -151,7 +151,7 @@ void SetPairs::step_active_rows(const PairStep& step) noexcept {
   state_machines_.keep_rows(step, next, active_.row_count());
 }
 
-/// Of members.
+/// Visits the members that are computed.
 template <class Visit>
 void SetPairs::visit_active(Visit visit) const noexcept {
   if (active_.are_all()) {
@@ -178,14 +178,14 @@ void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexce
   }
 }
 
-/// To the next row of the block.
+/// Gathers the pairs in range of a member into the next row of the block.
 std::size_t SetPairs::gather(const NeighbourRows& rows, std::size_t a) noexcept {
   return kernel_.gather_pairs(members(), a, rows.neighbour + (rows.start[a] - rows.origin),
                               rows.start[a + 1] - rows.start[a], range_ * range_,
                               block_.next_row());
 }
 
-/// Those that new pairs have.
+/// Finds the rest lengths that new pairs have.
 void SetPairs::find_rest_lengths() noexcept {
   const PairRows rows = block_.rows();
   double* rest_length = block_.rest_length();

@@ -42,7 +42,7 @@ class SetPairs {
   /// Real time: O(members + pairs), no allocation.
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
 
-  /// The same in two halves, with a choice of the pairs that are computed between them:
+  /// add_forces() in parts, with a choice of the pairs that are computed between them:
   /// takes the positions of the members and the works of the last forces up to now ...
   StepEnergy take_positions(const ForceColumns& columns) noexcept;
   /// ... fits the neighbour list to them; @return whether other pairs may be in range now ...
@@ -71,7 +71,7 @@ class SetPairs {
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
   void start() noexcept;
 
-  /// Whether the pairs found no room in the neighbour list in the last step, or to be remembered.
+  /// True if the pairs found no room in the neighbour list in the last step, or to be remembered.
   bool is_overflowed() const noexcept;
   NeighbourList& neighbours() noexcept { return neighbours_; }
 

@@ -131,11 +131,11 @@ struct Avx512Lanes {
   static Row two_columns(const double* low, const double* high) noexcept {
     return _mm512_insertf64x4(_mm512_castpd256_pd512(load_column(low)), load_column(high), 1);
   }
-  /// Of each half, lanes 0 1 of u and then of v.
+  /// Lanes 0 1 of u and then of v, in each half.
   static Row first_pairs(Row u, Row v) noexcept {
     return _mm512_permutex2var_pd(u, _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13), v);
   }
-  /// Of each half, lanes 2 3 of u and then of v.
+  /// Lanes 2 3 of u and then of v, in each half.
   static Row second_pairs(Row u, Row v) noexcept {
     return _mm512_permutex2var_pd(u, _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15), v);
   }

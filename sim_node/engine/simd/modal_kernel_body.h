@@ -6,7 +6,7 @@
 
 namespace cordis::engine {
 
-/// Of step_driven_modes: as many as there are.
+/// Argument of step_driven_modes: as many drives as there are.
 inline constexpr std::size_t kAnyDrives = ~std::size_t{0};
 
 template <class Lanes>

@@ -6,7 +6,7 @@
 namespace cordis::engine {
 namespace {
 
-/// Of each set of chosen lanes their 32-bit halves in order, the rest filled up with lane 0.
+/// The 32-bit halves of each set of chosen lanes in order, the rest filled up with lane 0.
 // NOLINTNEXTLINE(misc-definitions-in-headers): of an unnamed namespace on purpose, see lanes_sse2.h
 alignas(32) constexpr std::int32_t kPackHalves[16][8] = {
     {0, 1, 0, 1, 0, 1, 0, 1}, {0, 1, 0, 1, 0, 1, 0, 1}, {2, 3, 0, 1, 0, 1, 0, 1},

@@ -8,7 +8,7 @@ namespace {
 
 using engine::Vec3;
 
-/// Whether nothing in the scene is, moves or acts along an axis but at one place.
+/// True if nothing in the scene is, moves or acts along an axis but at one place.
 bool is_confined(const scene::Scene& scene, int axis) {
   const engine::NetworkDescription& network = scene.network;
   if (network.gravity[axis] != 0.0) return false;
@@ -42,7 +42,7 @@ bool asks_for_an_axis(const engine::NetworkDescription& network) {
   return false;
 }
 
-/// Whether the sign of the links of a line makes no difference.
+/// True if the sign of the links of a line makes no difference.
 bool fits_a_line(const scene::Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
   if (!network.state_links.empty()) return false;

@@ -32,7 +32,7 @@ void merge(const Link& link, int dimension, Link& into) {
   into.viscosity += link.viscosity;
 }
 
-/// Whether the energy at rest is that of both links.
+/// True if the energy at rest is that of both links.
 bool keeps_energy(const Link& first, const Link& link, int dimension) {
   return first.stiffness == 0.0 || link.stiffness == 0.0 ||
          rest_seen_from(first, link, dimension) == first.rest_length;

@@ -25,7 +25,7 @@ bool is_damper(const Link& link) noexcept {
   return link.stiffness == 0.0 && link.viscosity > 0.0;
 }
 
-/// Whether the viscosity of both is in the same proportion to the stiffness.
+/// True if the viscosity of both is in the same proportion to the stiffness.
 bool are_alike(const Link& a, const Link& b) noexcept {
   constexpr double kRounding = 1e-9;
   const double left = a.viscosity * b.stiffness;

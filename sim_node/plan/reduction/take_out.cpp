@@ -16,7 +16,7 @@ class Renumbering {
   void apply(std::vector<std::uint32_t>& indices) const {
     for (std::uint32_t& index : indices) apply(index);
   }
-  /// Of a NamedRange or a LinkGroup.
+  /// Applies to a NamedRange or a LinkGroup.
   template <class Range>
   void apply_to_range(Range& range) const {
     const std::uint32_t end = before_[range.first + range.count];

@@ -18,17 +18,17 @@ struct Channel {
   std::vector<engine::Vec3> value;
 };
 
-/// The same gesture for every step: a function of time alone.
+/// A gesture as a function of time alone, equal for every step.
 struct InputTrajectory {
   double period = 1e-3;  ///< [s]
   std::vector<Channel> tracks;
 };
 
-/// Of a track at a time >= 0.
+/// Value of a channel at a time >= 0.
 engine::Vec3 value_at(const InputTrajectory& course, const Channel& track, double time);
-/// With which a position moves in one period [m/s]; 0 for a force.
+/// Velocity of a position in one period [m/s]; 0 for a force.
 engine::Vec3 velocity_in(const InputTrajectory& course, const Channel& track, std::size_t period);
-/// Whether a track goes on from one period to the next as it did.
+/// True if every channel goes on from one period to the next as it did.
 bool goes_on(const InputTrajectory& course, std::size_t period);
 
 }  // namespace cordis::plan

@@ -44,7 +44,7 @@ class ReferenceIntegrator {
 
   /// One step of this length from the present values.
   Trial try_step(double step, Values& after);
-  /// Of two values after a step, over the tolerance.
+  /// Difference of two values after a step, over the tolerance.
   double difference(const Values& after, const Values& lower) const;
   void midpoint(double step, int parts, Values& after);
   void locate_change(double step, Values& after);

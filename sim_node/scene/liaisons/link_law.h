@@ -118,7 +118,7 @@ struct LinkLists {
   ///         1-D has.
   bool join(const LinkLaw& law, std::uint32_t a, std::uint32_t b, const engine::Vec3& position_a,
             const engine::Vec3& position_b, int space, double radii = 0.0);
-  /// The same without what stands beside the law.
+  /// Adds the links of the law alone, without what stands beside it.
   bool join_alone(const LinkLaw& law, std::uint32_t a, std::uint32_t b,
                   const engine::Vec3& position_a, const engine::Vec3& position_b, int space,
                   double radii = 0.0);

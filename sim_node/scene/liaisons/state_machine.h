@@ -26,7 +26,7 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
                                         const ParameterValues& parameters,
                                         StateMachinePlaces& places, config::Problems& problems);
 
-/// Whether the keys of a liaison without `kind` can only be those of a state machine.
+/// True if the keys of a liaison without `kind` can only be those of a state machine.
 bool looks_like_state_machine(const config::Value& liaison);
 
 }  // namespace cordis::scene

@@ -39,7 +39,7 @@ const MatterKind* kind_named(const std::string& word) {
   return nullptr;
 }
 
-/// Whether the kind fits into the space; if not, a problem.
+/// True if the kind fits into the space; if not, a problem.
 bool check_space(config::MappingReader& reader, const MatterKind& kind, int space) {
   if (kind.lowest_space <= space && space <= kind.highest_space) return true;
   std::string spaces = std::to_string(kind.lowest_space);

@@ -68,7 +68,7 @@ std::optional<Vec3> read_direction(const Value& value, const std::string& what, 
   return std::nullopt;
 }
 
-/// Whether a sequence lists several points or directions, instead of being the numbers of one.
+/// True if a sequence lists several points or directions, instead of being the numbers of one.
 bool is_list(const Value& value, int space) {
   if (value.kind() != Value::Kind::kSequence) return false;
   return space == 1 ||
@@ -76,7 +76,7 @@ bool is_list(const Value& value, int space) {
                      [](const Value& item) { return item.kind() == Value::Kind::kSequence; });
 }
 
-/// The same for directions, which may be words.
+/// True if a sequence lists several directions, which may be words.
 bool is_list_of_directions(const Value& value, int space) {
   return is_list(value, space) ||
          std::any_of(value.items().begin(), value.items().end(),

@@ -46,7 +46,7 @@ std::vector<Vec3> in_a_row(std::size_t count) {
   return row;
 }
 
-/// That masses and radii are possible.
+/// Checks that masses and radii are possible.
 void check_points(Source& source, const Piece& piece) {
   config::MappingReader& reader = source.reader;
   for (const engine::Mat& mat : piece.mats) {

@@ -16,13 +16,13 @@ struct Region {
   double radius() const { return 0.5 * (highest.x() - lowest.x()); }  ///< of a round one [m]
   double measure() const;  ///< area [m^2] in 2-D, volume [m^3] in 3-D
 
-  /// Whether a point lies in the region or nearer to it than `tolerance` [m].
+  /// True if a point lies in the region or nearer to it than `tolerance` [m].
   bool holds(const engine::Vec3& point, double tolerance) const;
   /// The point of the region nearest to `point`.
   engine::Vec3 nearest(const engine::Vec3& point) const;
   /// The region less a margin along its border [m]: where the centres of balls may be.
   Region without_margin(double margin) const;
-  /// Whether there is any point in it.
+  /// True if there is any point in it.
   bool is_possible() const { return (highest - lowest).minCoeff() >= 0.0; }
 };
 

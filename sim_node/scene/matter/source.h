@@ -51,7 +51,7 @@ void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vecto
 
 /// The law of the links between neighbours; nothing after a problem.
 std::optional<LinkLaw> read_neighbour_law(Source& source);
-/// The same for a kind whose MATs need not be joined: nothing, too, when no law is written.
+/// The law of a kind whose MATs need not be joined: nothing, too, when no law is written.
 std::optional<LinkLaw> optional_neighbour_law(Source& source);
 /// `shear_stiffness_n_per_m` and `shear_viscosity_n_s_per_m`: the links between second neighbours.
 /// Nothing when neither is written.

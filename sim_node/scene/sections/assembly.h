@@ -48,13 +48,13 @@ class Assembly {
         parts_(problems) {}
 
   void read_parts(const config::Value& section);
-  /// Those of the scene and of files of parts.
+  /// Reads the liaisons of the scene and of files of parts.
   void read_liaisons(const config::Value& section);
   void read_matter(const config::Value& section);
   void read_ports(const config::Value& section);
   void read_links(const config::Value& section);
   void read_signals(const config::Value& section);
-  /// To be called last: numbers the links of all kinds in one row.
+  /// Numbers the links of all kinds in one row; the last call.
   void finish();
 
  private:
@@ -80,7 +80,7 @@ class Assembly {
   std::optional<PartUse> read_use(const config::Value::Entry& entry);
   /// Adds the matter and links of a part. @return whether all of it was sound.
   bool add_copy(const PartUse& use, const std::string& name, const Placement& placement);
-  /// Whether the part is none of those that are being added; if it is, a problem.
+  /// True if the part is none of those that are being added; if it is, a problem.
   bool check_cycle(const Part& part, const config::Place& place);
   /// What matter is called in messages.
   std::string matter_called(const std::string& name) const;

@@ -23,7 +23,7 @@ const char* word_of(Role role) {
   return role == Role::kMass ? "mass" : "liaison";
 }
 
-/// Whether no direction lies in the span of those before it.
+/// True if no direction lies in the span of those before it.
 bool are_independent(const std::vector<Vec3>& directions) {
   constexpr double kSmallestSine = 1.0e-6;
   std::vector<Vec3> base;

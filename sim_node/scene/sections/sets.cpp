@@ -21,7 +21,7 @@ bool depends_on_rest(const engine::Program& program) {
   });
 }
 
-/// Whether anything in a state machine asks for the rest length of a pair.
+/// True if anything in a state machine asks for the rest length of a pair.
 bool depends_on_rest(const engine::StateMachine& state_machine) {
   const auto asks = [](const engine::LinkState& state) {
     const Law::Kind kind = state.elasticity.kind;

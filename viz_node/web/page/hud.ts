@@ -108,7 +108,7 @@ export class Hud {
 
   private writeForceLoop(): void {
     const devices = this.nodes.filter((n) => n.kind === 'device_node' && !GONE.includes(n.state) && n.latency_count > 0);
-    // Of several devices the slowest is shown.
+    // The slowest of several devices is shown.
     const worst = devices.sort((a, b) => (b.latency_p99_s ?? 0) - (a.latency_p99_s ?? 0))[0];
     set('latency', worst ? joined(withUnit(worst.latency_p50_s, 's')) : NONE);
     set('latency-p99', worst ? joined(withUnit(worst.latency_p99_s, 's')) : NONE);

@@ -45,7 +45,7 @@ const MAT_VERTEX = /* glsl */ `
     gl_PointSize = 2.0 * size * pixels * (shape == 2 ? 1.9 : 1.0) * MARGIN;
     colour = k == 0 ? vec3(0.42, 0.72, 0.98) : (k == 2 || k == 4 ? vec3(1.0, 0.68, 0.26) : vec3(0.60, 0.65, 0.72));
   #ifndef SPHERES
-    // Without shading neighbours would run together: each gets a brightness of its own.
+    // Each gets a brightness of its own: neighbours would run together without shading.
     colour *= 0.7 + 0.3 * float((gl_VertexID * 40503) & 255) / 255.0;
   #endif
     // The halo of a port is seen through everything.
