@@ -27,7 +27,7 @@ constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
 constexpr auto kLongSilence = std::chrono::seconds(2);  // after which its cause is looked for
 
-/// CLOCK_BOOTTIME [ns]: CLOCK_MONOTONIC stands still while the machine sleeps.
+/// CLOCK_BOOTTIME [ns]: CLOCK_MONOTONIC stops while the machine sleeps.
 std::int64_t since_boot_nsec() noexcept {
   timespec now{};
   clock_gettime(CLOCK_BOOTTIME, &now);
@@ -42,20 +42,20 @@ void watch_guardian() noexcept {
 }  // namespace
 
 Device::Device(LoadedDevice device, dds::Participant& participant, dds::Participant& for_loop,
-               config::Clock clock, std::uint64_t run)
+               config::Clock clock, std::uint64_t epoch)
     : config_(std::move(device.config)),
       driver_(traced(std::move(device.driver), config_.trace, config_.layout)),
       for_loop_(for_loop),
       clock_(clock),
       description_(participant, dds::Topic::kDevice),
       roster_(participant),
-      series_{run, 0},
+      series_{epoch, 0},
       phases_(config_.name, config_.driver,
               clock == config::Clock::kLockstep
                   ? std::chrono::duration<double>(kLockstepPatience).count()
                   : config_.force_guard.watchdog_s),
       scenes_(participant, config_, *driver_),
-      status_(participant, "device_node", run, [this](msg::NodeStatus& status) {
+      status_(participant, "device_node", epoch, [this](msg::NodeStatus& status) {
         meter_.fill(status);
         const std::string refusal = scenes_.refusal();
         if (!refusal.empty()) status.text("refused " + refusal);
@@ -82,35 +82,35 @@ void Device::live() {
   meter_.set_phase(Phase::kStopped);
 }
 
-/// Tells everyone what the device is and what it can bear.
+/// Tells everyone what the device is and what it supports.
 void Device::describe() {
-  msg::DeviceDescription told;
+  msg::DeviceDescription description;
   const config::DeviceLimits& limits = config_.limits;
-  told.device_id(config_.device_id);
-  told.device(config_.name);
-  told.driver(config_.driver);
-  told.run(series_.run);
-  told.coordinate_count(static_cast<std::uint32_t>(limits.coordinate_count));
-  told.rate_hz(limits.rate_hz);
-  told.lowest_m(limits.lowest_m);
-  told.highest_m(limits.highest_m);
-  told.key_pitch_m(limits.key_pitch_m);
-  told.force_limit_n(limits.force_limit_n);
-  told.moving_mass_kg(limits.coordinate_mass_kg());
-  told.viscosity_n_s_per_m(limits.coordinate_viscosity_n_s_per_m());
-  told.stiffness_limit_n_per_m(limits.stiffness_limit_n_per_m);
-  told.damping_limit_n_s_per_m(limits.damping_limit_n_s_per_m);
-  told.delay_periods(static_cast<std::uint32_t>(limits.delay_periods));
-  told.travel_m(limits.coordinate_travel_m);
-  told.force_n(limits.coordinate_force_n);
-  told.plays_mass(driver_->can_play(Role::kMass));
-  told.plays_liaison(driver_->can_play(Role::kLiaison));
-  description_.write(told);
+  description.device_id(config_.device_id);
+  description.device(config_.name);
+  description.driver(config_.driver);
+  description.epoch(series_.epoch);
+  description.coordinate_count(static_cast<std::uint32_t>(limits.coordinate_count));
+  description.rate_hz(limits.rate_hz);
+  description.lowest_m(limits.lowest_m);
+  description.highest_m(limits.highest_m);
+  description.key_pitch_m(limits.key_pitch_m);
+  description.force_limit_n(limits.force_limit_n);
+  description.moving_mass_kg(limits.coordinate_mass_kg());
+  description.viscosity_n_s_per_m(limits.coordinate_viscosity_n_s_per_m());
+  description.stiffness_limit_n_per_m(limits.stiffness_limit_n_per_m);
+  description.damping_limit_n_s_per_m(limits.damping_limit_n_s_per_m);
+  description.delay_periods(static_cast<std::uint32_t>(limits.delay_periods));
+  description.travel_m(limits.coordinate_travel_m);
+  description.force_n(limits.coordinate_force_n);
+  description.plays_mass(driver_->can_play(Role::kMass));
+  description.plays_liaison(driver_->can_play(Role::kLiaison));
+  description_.write(description);
 }
 
 /// Tells once that the scene, if there is one, does not play the device.
 void Device::record_unused() {
-  if (!part_.heard || meter_.phase() == Phase::kUnused) return;
+  if (!part_.is_present || meter_.phase() == Phase::kUnused) return;
   meter_.set_phase(Phase::kUnused);
   status_.publish_now();
 }
@@ -192,7 +192,7 @@ bool Device::keep_asking(Exchange& exchange) {
   return true;
 }
 
-/// Lets the forces fade. A simulated device in lockstep stays as it is: time stands still.
+/// Lets the forces fade. A simulated device in lockstep stays as it is: time stops.
 void Device::leave(Exchange& exchange) {
   if (clock_ == config::Clock::kLockstep && !exchange.has_motors()) return;
   node::PacedLoop pace(config_.layout.rate_hz);

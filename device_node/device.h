@@ -19,15 +19,15 @@
 namespace cordis::device {
 
 /// Waits for a scene that names the device, plays the role that the scene gives it, and goes on
-/// with the next scene when the scene changes or sim_node starts anew; until a stop is requested.
+/// with the next scene when the scene changes or sim_node restarts; until a stop is requested.
 class Device {
  public:
   /// @param participant  for all but the force loop
   /// @param for_loop     for the force loop alone
-  /// @param run          identifies this process on the wire
+  /// @param epoch        identifies this process on the wire
   /// @throws std::runtime_error when DDS refuses.
   Device(LoadedDevice device, dds::Participant& participant, dds::Participant& for_loop,
-         config::Clock clock, std::uint64_t run);
+         config::Clock clock, std::uint64_t epoch);
 
   /// Returns after a stop. The calling thread becomes the loop thread. @throws as the constructor.
   void live();

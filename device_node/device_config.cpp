@@ -150,10 +150,11 @@ void read_guards(config::MappingReader& reader, DeviceConfig& config, config::Pr
   layout.watchdog_s = force.watchdog_s;
 }
 
-/// A node that plays another's device is heard as soon as that falls silent, which takes wall time,
-/// and is refused where it would be heard between two samples of a device that is not silent.
-void check_stand_in(const DeviceConfig& config, const config::LaunchNode& node, config::Clock clock,
-                    config::Problems& problems) {
+/// A node that plays another's device is received as soon as that falls silent, which takes wall
+/// time, and is refused where it would be received between two samples of a device that is not
+/// silent.
+void check_standby(const DeviceConfig& config, const config::LaunchNode& node, config::Clock clock,
+                   config::Problems& problems) {
   constexpr double kLowestRate = 100.0;  // two samples within the deadline of the topic, 20 ms
   if (config.name == node.name) return;
   if (!node.section.find("standby_for").exists()) {
@@ -242,7 +243,7 @@ LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode&
         "clock: lockstep for simulated hands, clock: realtime for real ones");
   }
   LoadedDevice device = read_device(mapping, node.name, problems);
-  check_stand_in(device.config, node, launch.clock, problems);
+  check_standby(device.config, node, launch.clock, problems);
   problems.throw_if_any();
   return device;
 }

@@ -30,7 +30,7 @@ Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lo
       first_sample_(series.last_sample + 1),
       begun_nsec_(clock()),
       lived_nsec_(since_boot_()) {
-  sample_.run = series.run;
+  sample_.epoch = series.epoch;
   sample_.sample = series.last_sample;
   sample_.axis_count = static_cast<std::uint32_t>(config.end_piece.coordinate_count());
   meter_.set_phase(Phase::kWaiting);
@@ -47,9 +47,9 @@ Exchange::~Exchange() {
 void Exchange::send_sample() noexcept {
   if (!present_ && !lockstep_) return;
   ++sample_.sample;
-  sample_.answered_run = felt_.run;
-  sample_.answered_sample = felt_.sample;
-  sample_.answered_time_nsec = felt_.time_nsec;
+  sample_.answered_epoch = applied_.epoch;
+  sample_.answered_sample = applied_.sample;
+  sample_.answered_time_nsec = applied_.time_nsec;
   sample_.value = role_ == Role::kMass ? config_.end_piece.coordinates_of(sensed_)
                                        : config_.end_piece.coordinate_forces_of(sensed_);
   sample_.time_nsec = clock_();
@@ -85,10 +85,10 @@ void Exchange::leave() noexcept {
 }
 
 /// True if an answer is well formed, answers this process, and is newer than the one in use.
-/// A new run of the scene is recognised by what it answers alone.
+/// A new epoch of the scene is recognised by what it answers alone.
 bool Exchange::consider(const GestureMessage& answer) noexcept {
-  if (answer.answered_run == 0) return false;  // the scene has not heard this device yet
-  if (answer.answered_run != sample_.run) {
+  if (answer.answered_epoch == 0) return false;  // the scene has not received this device yet
+  if (answer.answered_epoch != sample_.epoch) {
     other_answered_ = true;
     other_answered_nsec_ = clock_();
     return false;
@@ -99,7 +99,7 @@ bool Exchange::consider(const GestureMessage& answer) noexcept {
   const bool answers_us =
       answer.answered_sample >= first_sample_ && answer.answered_sample <= sample_.sample;
   // Between two samples of this device the scene may answer twice: the later answer counts.
-  const bool later = answer.run != used_.run || answer.sample > used_.sample;
+  const bool later = answer.epoch != used_.epoch || answer.sample > used_.sample;
   const bool newer = !any_answer_ || answer.answered_sample > used_.answered_sample ||
                      (answer.answered_sample == used_.answered_sample && later && !lockstep_);
   if (!well_formed || !answers_us || !newer) {
@@ -112,17 +112,17 @@ bool Exchange::consider(const GestureMessage& answer) noexcept {
 
 void Exchange::accept(const GestureMessage& answer) noexcept {
   if (!any_answer_ || answer.answered_sample > used_.answered_sample) {
-    unfelt_ = true;
+    unapplied_ = true;
     unanswered_periods_ = 0;
   }
   any_answer_ = true;
   used_ = answer;
   late_[answer.answered_sample % late_.size()] = answer;
   // The ring holds the delay and one more: the next to be replaced is the oldest.
-  felt_ = lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer;
+  applied_ = lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer;
   const bool finite = role_ == Role::kMass
-                          ? force_guard_.accept(config_.end_piece.axis_forces_of(felt_.value))
-                          : position_guard_.accept(config_.end_piece.axes_of(felt_.value));
+                          ? force_guard_.accept(config_.end_piece.axis_forces_of(applied_.value))
+                          : position_guard_.accept(config_.end_piece.axes_of(applied_.value));
   if (!finite) meter_.count_dropped();
 }
 
@@ -165,7 +165,7 @@ void Exchange::live() noexcept {
       role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
   driver_.record_age(age);
   const bool written = driver_.write(commanded);
-  if (std::exchange(unfelt_, false)) meter_.record_latency(clock_() - used_.answered_time_nsec);
+  if (std::exchange(unapplied_, false)) meter_.record_latency(clock_() - used_.answered_time_nsec);
   const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);
   if (!sensed) sensed_ = last_sensed_;  // a hand does not jump
   if (role_ == Role::kLiaison) add_work(last_sensed_, commanded);
@@ -173,10 +173,10 @@ void Exchange::live() noexcept {
   meter_.count_tick();
   const PassivityObserver& monitor = force_guard_.energy();
   meter_.record_energy(role_ == Role::kMass ? monitor.given_j() : -sample_.work_j,
-                       role_ == Role::kMass && monitor.braking());
+                       role_ == Role::kMass && monitor.is_damping());
 
   present_ = written && sensed;
-  if (!present_) force_guard_.let_go();  // a device that comes back is ramped up anew
+  if (!present_) force_guard_.let_go();  // a device that comes back is ramped up again
   if (!leaving) record_phase(any_answer_ && age < config_.force_guard.watchdog_s);
 }
 

@@ -21,17 +21,17 @@ namespace cordis::device {
 /// the motors. In lockstep `delay_periods` of the device lets every answer be felt so much later,
 /// as over a slow wire, and samples echo what is felt; the age of what goes to the guard is counted
 /// in samples, and nothing depends on wall time. Otherwise the age counts from the moment the
-/// answered sample was sent, so that a scene that no longer hears this device counts as silent. A
-/// loop that has itself stood still for 18 ms, or nearly two periods, begins anew whatever the
-/// watchdog, and so after a sleep of the machine, in which nothing ages: by then a device may have
-/// let go on its own (docs/kfb1.md).
+/// answered sample was sent, so that a scene that no longer receives this device counts as silent.
+/// A loop that has itself stalled for 18 ms, or nearly two periods, restarts whatever the watchdog,
+/// and so after a sleep of the machine, in which nothing ages: by then a device may have let go on
+/// its own (docs/kfb1.md).
 class Exchange {
  public:
   using ClockFunction = std::int64_t (*)() noexcept;  ///< CLOCK_MONOTONIC [ns]
 
   /// What identifies the samples of this process.
   struct Series {
-    std::uint64_t run = 0;          ///< of this process
+    std::uint64_t epoch = 0;        ///< of this process
     std::uint64_t last_sample = 0;  ///< number of the last sample sent before
   };
 
@@ -73,7 +73,7 @@ class Exchange {
   bool has_device() const noexcept { return present_; }  ///< whether the driver has one
   /// True if the scene has fallen silent: it answered this exchange, for longer than the watchdog
   /// it has answered no new sample, and no other node gets the answers. Counted in periods: one in
-  /// which this loop stood still is not the scene's.
+  /// which this loop stalled is not the scene's.
   bool misses_the_scene() const noexcept { return misses_scene_; }
   bool has_motors() const noexcept { return driver_.has_motors(); }
 
@@ -109,7 +109,7 @@ class Exchange {
   PositionGuard position_guard_;
   GestureMessage sample_;                 // the sample sent last
   GestureMessage used_;                   // the newest good answer
-  GestureMessage felt_;                   // that which goes to the motors: older with a delay
+  GestureMessage applied_;                // that which goes to the motors: older with a delay
   AxisValues sensed_{};                   // for the next sample
   AxisValues last_sensed_{};              // all finite
   std::vector<GestureMessage> late_;      // the last answers, by the sample they answer
@@ -126,7 +126,7 @@ class Exchange {
   bool any_answer_ = false;
   bool misses_scene_ = false;
   std::int64_t unanswered_periods_ = 0;  // since an answer to a new sample
-  bool unfelt_ = false;                  // the newest answer has not been handed to the driver yet
+  bool unapplied_ = false;               // the newest answer has not been handed to the driver yet
 };
 
 }  // namespace cordis::device

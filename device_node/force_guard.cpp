@@ -70,9 +70,9 @@ const AxisValues& ForceGuard::tick(double age_s, const AxisValues& position_m) n
 
   for (std::size_t a = 0; a < output_.size(); ++a) {
     const double speed = energy_.speed_m_per_s(a);
-    const double braked = share * wanted_[a] - energy_.brake_n(a);
+    const double damped = share * wanted_[a] - energy_.damping_n(a);
     const double wanted =
-        within_power(std::clamp(braked, -settings_.limit_n, settings_.limit_n), speed);
+        within_power(std::clamp(damped, -settings_.limit_n, settings_.limit_n), speed);
     const double change = std::clamp(wanted - output_[a], -largest_change_n_, largest_change_n_);
     output_[a] = std::clamp(output_[a] + change, -limit_n, limit_n);
   }

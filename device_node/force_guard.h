@@ -27,7 +27,7 @@ struct ForceGuardSettings {
 ///   come;
 /// - grows over ramp_s at the start and after each time the watchdog has bitten;
 /// - drives an axis with no more than power_w / speed, as soon as the slew limit allows;
-/// - is braked by the energy monitor when the loop makes energy.
+/// - is damped by the passivity controller when the loop makes energy.
 /// Should the ticks themselves stop for longer than the watchdog, the next one is 0 at once.
 /// Time is counted in ticks and in the ages it is told; it knows no clock.
 class ForceGuard {

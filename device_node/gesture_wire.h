@@ -31,9 +31,9 @@ inline void put_work(double work_j, msg::GestureForces& message) noexcept {
 template <class Message>
 void put(const GestureMessage& from, std::uint32_t device_id, Message& to) noexcept {
   to.device_id(device_id);
-  to.run(from.run);
+  to.epoch(from.epoch);
   to.sample(from.sample);
-  to.answered_run(from.answered_run);
+  to.answered_epoch(from.answered_epoch);
   to.answered_sample(from.answered_sample);
   to.answered_time_nsec(from.answered_time_nsec);
   to.time_nsec(from.time_nsec);
@@ -45,9 +45,9 @@ void put(const GestureMessage& from, std::uint32_t device_id, Message& to) noexc
 /// Entries past the axis count become 0. @param from  msg::GesturePositions or msg::GestureForces
 template <class Message>
 void take(const Message& from, GestureMessage& to) noexcept {
-  to.run = from.run();
+  to.epoch = from.epoch();
   to.sample = from.sample();
-  to.answered_run = from.answered_run();
+  to.answered_epoch = from.answered_epoch();
   to.answered_sample = from.answered_sample();
   to.answered_time_nsec = from.answered_time_nsec();
   to.time_nsec = from.time_nsec();

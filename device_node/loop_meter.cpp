@@ -38,9 +38,9 @@ void LoopMeter::count_tick() noexcept {
   if (ticks % kTicksPerPublication == 0) publish_latency();
 }
 
-void LoopMeter::record_energy(double given_j, bool braking) noexcept {
+void LoopMeter::record_energy(double given_j, bool damping) noexcept {
   given_j_.store(given_j, std::memory_order_relaxed);
-  if (braking) passivity_ticks_.fetch_add(1, std::memory_order_relaxed);
+  if (damping) passivity_ticks_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void LoopMeter::publish_latency() noexcept {

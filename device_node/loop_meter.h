@@ -31,8 +31,8 @@ class LoopMeter {
   void count_dropped() noexcept { dropped_.fetch_add(1, std::memory_order_relaxed); }
   node::LateTicks& late_ticks() noexcept { return late_ticks_; }
 
-  /// After a tick: the energy given to the hand, and whether the motors braked it.
-  void record_energy(double given_j, bool braking) noexcept;
+  /// After a tick: the energy given to the hand, and whether the motors damped it.
+  void record_energy(double given_j, bool damping) noexcept;
 
   /// From the sending of a sample to the arrival of its answer.
   void record_latency(std::int64_t nsec) noexcept { latency_.record(nsec); }

@@ -67,19 +67,19 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
       "cordis/" + std::to_string(start.domain) + "/" + start.launch.session + "/";
   const std::string where = "' already runs in session '" + start.launch.session + "' of domain " +
                             std::to_string(start.domain);
-  cordis::node::claim(session + name, "a node named '" + name + where);
+  cordis::node::lock_instance(session + name, "a node named '" + name + where);
   const std::string strength = std::to_string(device.config.strength);
-  cordis::node::claim(
+  cordis::node::lock_instance(
       session + std::to_string(device.config.device_id) + "/" + strength,
       "a node that plays '" + device.config.name + "' with strength " + strength + where.substr(1));
-  cordis::dds::Participant participant(start.membership());
+  cordis::dds::Participant participant(start.config());
   cordis::dds::Participant for_loop = start.join_for_force_loop();
   cordis::node::CommandListener commands(
       participant, "device_node", [](const cordis::msg::ControlCommand& command) {
         return cordis::node::nothing_to_do(command, "device_node");
       });
   commands.start();
-  cordis::device::Device(std::move(device), participant, for_loop, start.launch.clock, start.run)
+  cordis::device::Device(std::move(device), participant, for_loop, start.launch.clock, start.epoch)
       .live();
   return 0;
 }

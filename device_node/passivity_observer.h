@@ -1,5 +1,5 @@
-// device_node/passivity_observer.h -- the energy that passes from the motors to the hand, and a brake
-// for a loop that makes energy.
+// device_node/passivity_observer.h -- the energy that passes from the motors to the hand, and a
+// brake for a loop that makes energy.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +26,9 @@ struct PassivitySettings {
 ///     W = sum of f dx - b dx^2 / T  over all axes,
 /// never rises above 0 when scene and delay together are passive for every hand, that is, in the
 /// linear case, up to K = b / (T/2 + d T). A loop whose W has exceeded the budget makes energy, and
-/// from then on, until the forces begin anew, it is held to a stricter account: C = sum of f dx
+/// from then on, until the forces restart, it is held to a stricter account: C = sum of f dx
 /// alone, so that the viscosity of the device is left to calm the motion. While C is above 0 the
-/// motors brake as a damper a = C T / sum of dx^2, but not beyond a = m / (2 T): an uncapped one
+/// motors act as a damper a = C T / sum of dx^2, but not beyond a = m / (2 T): an uncapped one
 /// shakes the hand itself. Source: Hannaford and Ryu 2002; cap and second account by experiment.
 ///
 /// Two things would be taken for energy made from nothing, and are not. While forces are ramped up,
@@ -50,11 +50,11 @@ class PassivityObserver {
 
   /// What to take from the force of an axis for the next period: a force against its last motion,
   /// 0 while the account is in order [N].
-  double brake_n(std::size_t axis) const noexcept { return damping_ * speed_[axis]; }
+  double damping_n(std::size_t axis) const noexcept { return damping_ * speed_[axis]; }
 
   /// Sum of f dx since start(): given to the hand, less what it gave [J].
   double given_j() const noexcept { return given_; }
-  bool braking() const noexcept { return damping_ > 0.0; }
+  bool is_damping() const noexcept { return damping_ > 0.0; }
 
   /// Speed over the last period [m/s].
   double speed_m_per_s(std::size_t axis) const noexcept { return speed_[axis]; }

@@ -1,3 +1,4 @@
+// device_node/phase_log.cpp
 #include "device_node/phase_log.h"
 
 #include <utility>

@@ -12,19 +12,19 @@ namespace {
 constexpr auto kLongestWait = std::chrono::seconds(1);
 constexpr auto kLook = std::chrono::milliseconds(5);
 
-constexpr std::uint64_t kHeard = 1;
+constexpr std::uint64_t kPresent = 1;
 constexpr std::uint64_t kWanted = 2;
 constexpr std::uint64_t kLiaison = 4;
 constexpr int kVersionShift = 32;
 
 std::uint64_t packed(const SceneWatch::Part& part) noexcept {
-  return (part.heard ? kHeard : 0) | (part.wanted ? kWanted : 0) |
+  return (part.is_present ? kPresent : 0) | (part.wanted ? kWanted : 0) |
          (part.role == Role::kLiaison ? kLiaison : 0) |
          (std::uint64_t{part.version} << kVersionShift);
 }
 
 SceneWatch::Part unpacked(std::uint64_t word) noexcept {
-  return {(word & kHeard) != 0, (word & kWanted) != 0,
+  return {(word & kPresent) != 0, (word & kWanted) != 0,
           (word & kLiaison) != 0 ? Role::kLiaison : Role::kMass,
           static_cast<std::uint32_t>(word >> kVersionShift)};
 }
@@ -72,7 +72,7 @@ void SceneWatch::loop() {
 }
 
 void SceneWatch::take(const msg::SceneDescription& scene) {
-  if (scene.run() == 0) return refuse("a scene description without a run");
+  if (scene.epoch() == 0) return refuse("a scene description without an epoch");
   const PortAssignment wanted = part_of(scene, device_, driver_);
   if (!wanted.impossible.empty()) return refuse(wanted.impossible);
   refuse({});
@@ -85,7 +85,7 @@ void SceneWatch::take(const msg::SceneDescription& scene) {
   Part now{true, wanted.wanted, wanted.role, before.version};
   if (now == before) return;
   ++now.version;
-  tell(now, scene);
+  record_part(now, scene);
   part_.store(packed(now), std::memory_order_release);
 }
 
@@ -98,7 +98,7 @@ void SceneWatch::refuse(const std::string& why) {
   if (!why.empty() && refusals_.record(node::monotonic_nsec())) spdlog::error("{}: refused", why);
 }
 
-void SceneWatch::tell(const Part& part, const msg::SceneDescription& scene) {
+void SceneWatch::record_part(const Part& part, const msg::SceneDescription& scene) {
   if (!changes_.record(node::monotonic_nsec())) return;
   if (part.wanted) {
     spdlog::info("role {} in scene '{}'", name_of(part.role), scene.name());

@@ -23,7 +23,7 @@ class SceneWatch {
  public:
   /// What the newest scene wants of the device.
   struct Part {
-    bool heard = false;         ///< there is a scene
+    bool is_present = false;    ///< there is a scene
     bool wanted = false;        ///< and it has a port for the device
     Role role = Role::kMass;    ///< in all its ports
     std::uint32_t version = 0;  ///< +1 with every change of the above
@@ -50,7 +50,7 @@ class SceneWatch {
   void loop();
   void take(const msg::SceneDescription& scene);
   void refuse(const std::string& why);
-  void tell(const Part& part, const msg::SceneDescription& scene);
+  void record_part(const Part& part, const msg::SceneDescription& scene);
 
   const DeviceConfig& device_;
   const Driver& driver_;

@@ -12,10 +12,11 @@ constexpr auto kLastReply = std::chrono::milliseconds(200);
 
 }  // namespace
 
-CommandListener::CommandListener(dds::Participant& participant, const std::string& kind, Obey obey)
+CommandListener::CommandListener(dds::Participant& participant, const std::string& kind,
+                                 Execute execute)
     : reader_(participant, dds::Topic::kCommand),
       writer_(participant, dds::Topic::kReply),
-      desk_(participant.membership().node, kind, std::move(obey)) {}
+      server_(participant.config().node, kind, std::move(execute)) {}
 
 CommandListener::~CommandListener() {
   ending_ = true;
@@ -33,7 +34,7 @@ void CommandListener::loop() {
   msg::ControlCommand command;
   while (!ending_) {
     while (!ending_ && reader_.take(command)) {
-      if (auto reply = desk_.take(command)) writer_.write(*reply);
+      if (auto reply = server_.take(command)) writer_.write(*reply);
     }
     if (!ending_) reader_.wait(kLongestWait);
   }

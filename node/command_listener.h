@@ -17,13 +17,13 @@ namespace cordis::node {
 class CommandListener {
  public:
   /// @param kind  "sim_node", "device_node" or "viz_node"
-  CommandListener(dds::Participant& participant, const std::string& kind, Obey obey);
-  /// Waits until the command being obeyed, if any, is done.
+  CommandListener(dds::Participant& participant, const std::string& kind, Execute execute);
+  /// Waits until the command being executed, if any, is done.
   ~CommandListener();
   CommandListener(const CommandListener&) = delete;
   CommandListener& operator=(const CommandListener&) = delete;
 
-  /// From now on commands are obeyed. Those that came before wait for it. Once.
+  /// From now on commands are executed. Those that came before wait for it. Once.
   void start();
 
  private:
@@ -31,12 +31,12 @@ class CommandListener {
 
   dds::Reader<msg::ControlCommand> reader_;
   dds::Writer<msg::ControlReply> writer_;
-  CommandServer desk_;
+  CommandServer server_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };
 
-/// For nodes that have nothing to obey: says so, as a refusal unless all nodes were addressed.
+/// For nodes that have nothing to execute: says so, as a refusal unless all nodes were addressed.
 Answer nothing_to_do(const msg::ControlCommand& command, const std::string& kind);
 
 }  // namespace cordis::node

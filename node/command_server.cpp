@@ -7,8 +7,8 @@
 
 namespace cordis::node {
 
-CommandServer::CommandServer(std::string node, std::string kind, Obey obey)
-    : node_(std::move(node)), kind_(std::move(kind)), obey_(std::move(obey)) {}
+CommandServer::CommandServer(std::string node, std::string kind, Execute execute)
+    : node_(std::move(node)), kind_(std::move(kind)), execute_(std::move(execute)) {}
 
 std::optional<msg::ControlReply> CommandServer::take(const msg::ControlCommand& command) {
   const std::string& target = command.target();
@@ -21,7 +21,7 @@ std::optional<msg::ControlReply> CommandServer::take(const msg::ControlCommand& 
 
   Answer answer;
   try {
-    answer = obey_(command);
+    answer = execute_(command);
   } catch (const std::exception& failure) {
     answer = {false, failure.what()};
   }

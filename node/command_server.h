@@ -1,4 +1,4 @@
-// node/command_server.h -- which commands are meant for a node, and that each is obeyed once.
+// node/command_server.h -- which commands are meant for a node, and that each is executed once.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ struct Answer {
 };
 
 /// Obeys a command. Called from one thread; may take its time.
-using Obey = std::function<Answer(const msg::ControlCommand&)>;
+using Execute = std::function<Answer(const msg::ControlCommand&)>;
 
-/// Picks the commands for one node, and answers each. A sender that hears no reply sends the same
-/// command again: it is answered again, and not obeyed again.
+/// Picks the commands for one node, and answers each. A sender that receives no reply sends the
+/// same command again: it is answered again, and not executed again.
 class CommandServer {
  public:
   static constexpr std::size_t kRemembered = 64;
 
-  CommandServer(std::string node, std::string kind, Obey obey);
+  CommandServer(std::string node, std::string kind, Execute execute);
 
   /// The reply to a command; nothing when it is for others.
   std::optional<msg::ControlReply> take(const msg::ControlCommand& command);
@@ -34,7 +34,7 @@ class CommandServer {
  private:
   std::string node_;
   std::string kind_;
-  Obey obey_;
+  Execute execute_;
   std::deque<msg::ControlReply> given_;  // the newest replies, oldest first
 };
 

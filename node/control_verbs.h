@@ -1,4 +1,4 @@
-// node/control_verbs.h -- the verbs of control/command that a sim_node obeys.
+// node/control_verbs.h -- the verbs of control/command that a sim_node executes.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ struct ControlVerb {
 
 inline const std::vector<ControlVerb>& control_verbs() {
   static const std::vector<ControlVerb> kVerbs{
-      {"pause", "", "Let the scene stand still"},
+      {"pause", "", "Pause the scene"},
       {"resume", "", "Let it go on"},
       {"step", "[N]", "Pause, then do one step, or N"},
-      {"reset", "", "Begin the scene anew, with its present parameters"},
+      {"reset", "", "Restart the scene, with its present parameters"},
       {"load", "SCENE", "Play another scene from its beginning"},
       {"set", "NAME.PARAMETER=VALUE ...", "Change parameters of liaisons or named links"},
       {"state", "LINKS STATE", "Put links into a state"},

@@ -12,7 +12,7 @@
 
 namespace cordis::node {
 
-int try_to_claim(const char* name) noexcept {
+int try_to_lock(const char* name) noexcept {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   // The leading zero makes the name abstract: it lives as long as the socket, and leaves no file.
@@ -26,8 +26,8 @@ int try_to_claim(const char* name) noexcept {
   return -1;
 }
 
-void claim(const std::string& name, const std::string& refusal) {
-  if (try_to_claim(name.c_str()) < 0) throw std::runtime_error(refusal);
+void lock_instance(const std::string& name, const std::string& refusal) {
+  if (try_to_lock(name.c_str()) < 0) throw std::runtime_error(refusal);
 }
 
 }  // namespace cordis::node

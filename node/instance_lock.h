@@ -8,10 +8,10 @@ namespace cordis::node {
 /// Claims a name: an abstract socket, so that it is free again when the process ends, whichever
 /// way, and leaves nothing behind. Neither allocates nor throws.
 /// @return the socket, which holds the name until it is closed; -1 when another one does
-int try_to_claim(const char* name) noexcept;
+int try_to_lock(const char* name) noexcept;
 
 /// Claims a name until the process ends.
 /// @throws std::runtime_error with `refusal` when another process holds it.
-void claim(const std::string& name, const std::string& refusal);
+void lock_instance(const std::string& name, const std::string& refusal);
 
 }  // namespace cordis::node

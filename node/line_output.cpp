@@ -1,3 +1,4 @@
+// node/line_output.cpp
 #include "node/line_output.h"
 
 #include <algorithm>

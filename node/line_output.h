@@ -9,11 +9,11 @@
 namespace cordis::node {
 
 /// A file that takes whole lines. A terminal that is stopped or a pipe that nobody reads must not
-/// stop who writes: what cannot be written waits, and past `most_waiting` lines are dropped and
+/// stop who writes: what cannot be written waits, and past `max_waiting` lines are dropped and
 /// counted.
 class LineOutput {
  public:
-  /// @param most_waiting  [bytes]; up to 64 KiB of them are set aside at once
+  /// @param max_waiting  [bytes]; up to 64 KiB of them are set aside at once
   LineOutput(int file, std::size_t max_waiting);
   /// Writes what waits, but gives up on a reader that takes nothing for a second.
   ~LineOutput();

@@ -113,13 +113,13 @@ void print_problems(const std::vector<config::Problem>& problems) {
 
 }  // namespace
 
-dds::ParticipantConfig NodeStart::membership() const {
+dds::ParticipantConfig NodeStart::config() const {
   return {domain, launch.session, node->name, launch.clock == config::Clock::kLockstep,
-          launch.has_stand_ins()};
+          launch.has_standbys()};
 }
 
 dds::Participant NodeStart::join_for_force_loop() const {
-  dds::ParticipantConfig of_the_loop = membership();
+  dds::ParticipantConfig of_the_loop = config();
   of_the_loop.node += "/loop";
   if (launch.clock != config::Clock::kRealtime) return dds::Participant(of_the_loop);
   const InheritedPriority priority(kDdsPriority);
@@ -140,7 +140,7 @@ int node_main(int argc, char** argv, const std::string& kind,
     problems.throw_if_any();
     start.node = choose(start.launch, kind, arguments.name);
     start.check_only = arguments.check_only;
-    start.run = static_cast<std::uint64_t>(monotonic_nsec());
+    start.epoch = static_cast<std::uint64_t>(monotonic_nsec());
     install_log(start.node->name);
     install_stop_signals();
     std::optional<SessionRegistration> registration;

@@ -15,9 +15,9 @@ struct NodeStart {
   const config::LaunchNode* node = nullptr;  ///< its own entry in launch.nodes
   bool check_only = false;                   ///< --check: read and check everything, then end
   int domain = 0;                            ///< DDS domain of the session
-  std::uint64_t run = 0;  ///< identifies this life of the process: its start time [ns]
+  std::uint64_t epoch = 0;  ///< identifies this life of the process: its start time [ns]
 
-  dds::ParticipantConfig membership() const;
+  dds::ParticipantConfig config() const;
 
   /// Joins the session once more, for the force loop alone. A participant has locks that all its
   /// writers and readers share: here only the loop and the threads of DDS take them, so that the
@@ -28,7 +28,7 @@ struct NodeStart {
 };
 
 /// Reads `LAUNCH.yaml --name NAME [--check] [name.key=value ...]`, installs log and stop signals,
-/// joins the running session of that name or claims a domain for it (SessionRegistration), calls
+/// joins the running session of that name or locks a domain for it (SessionRegistration), calls
 /// `run` and turns whatever it throws into one clear message: exit code 2 for a bad file or
 /// usage, 1 for a failure at run time.
 /// @param kind  name of the program

@@ -1,3 +1,4 @@
+// node/repeated_event.cpp
 #include "node/repeated_event.h"
 
 #include <algorithm>

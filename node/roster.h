@@ -13,7 +13,7 @@
 namespace cordis::node {
 
 /// Listens to node/status. A node is alive that has said something lately and has not said that it
-/// ends: that DDS knows a process says nothing, for it may stand still.
+/// ends: that DDS knows a process says nothing, for it may be stopped.
 class Roster {
  public:
   /// @param lately  so long ago at most; nodes speak twice a second

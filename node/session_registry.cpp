@@ -13,7 +13,7 @@
 
 #include "node/config/launch.h"
 #include "node/dds/process_identity.h"
-#include "node/domain_claim.h"
+#include "node/domain_lock.h"
 #include "node/runtime_folder.h"
 
 namespace cordis::node {
@@ -95,19 +95,19 @@ std::vector<SessionRecord> read_records(const fs::path& folder) {
   return records;
 }
 
-struct Claim {
+struct HeldDomain {
   int domain;
   int file;  // holds it
 };
 
 /// Domain 0 comes last: other DDS programs use it unless they are told otherwise.
-Claim claim_free_domain(const std::vector<SessionRecord>& records) {
+HeldDomain lock_free_domain(const std::vector<SessionRecord>& records) {
   std::set<int> taken;
   for (const SessionRecord& record : records) taken.insert(record.domain);
   for (int i = 1; i <= config::kHighestDomain + 1; ++i) {
     const int domain = i % (config::kHighestDomain + 1);
     if (taken.contains(domain)) continue;
-    const int file = claim_domain(domain);
+    const int file = lock_domain(domain);
     if (file >= 0) return {domain, file};
   }
   throw std::runtime_error(
@@ -126,7 +126,7 @@ bool is_alive_still(const SessionRecord& record) {
   return std::any_of(record.members.begin(), record.members.end(), is_alive);
 }
 
-Claim domain_for(const SessionRequest& request, const std::vector<SessionRecord>& records) {
+HeldDomain domain_for(const SessionRequest& request, const std::vector<SessionRecord>& records) {
   if (request.domain) return {*request.domain, join_domain(*request.domain, [] { return true; })};
   const std::vector<SessionRecord> same = of_name(records, request.session);
   if (same.size() > 1)
@@ -137,7 +137,7 @@ Claim domain_for(const SessionRequest& request, const std::vector<SessionRecord>
     const int file = join_domain(same[0].domain, [&] { return is_alive_still(same[0]); });
     if (file >= 0) return {same[0].domain, file};
   }
-  return claim_free_domain(records);
+  return lock_free_domain(records);
 }
 
 void refuse_same_nodes(const SessionRecord& record, const std::vector<std::string>& nodes) {
@@ -172,9 +172,9 @@ SessionRegistration::SessionRegistration(fs::path folder, const SessionRequest& 
     : folder_(std::move(folder)), session_(request.session) {
   const FolderLock lock(folder_);
   const std::vector<SessionRecord> records = read_records(folder_);
-  const auto [domain, claim] = domain_for(request, records);
+  const auto [domain, held] = domain_for(request, records);
   domain_ = domain;
-  claim_ = claim;
+  lock_ = held;
   SessionRecord record{session_, domain_, request.launch_file, {}};
   for (const SessionRecord& other : records) {
     if (other.session == session_ && other.domain == domain_) record = other;
@@ -184,14 +184,14 @@ SessionRegistration::SessionRegistration(fs::path folder, const SessionRequest& 
     record.members.push_back({getpid(), dds::process_identity(), request.nodes});
     write_record(folder_, record);
   } catch (...) {
-    if (claim_ >= 0) close(claim_);
+    if (lock_ >= 0) close(lock_);
     throw;
   }
 }
 
 SessionRegistration::~SessionRegistration() {
   change_own_member([](SessionMember& member) { member.process = 0; });
-  if (claim_ >= 0) close(claim_);
+  if (lock_ >= 0) close(lock_);
 }
 
 void SessionRegistration::remove_node(const std::string& node) noexcept {

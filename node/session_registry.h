@@ -67,7 +67,7 @@ class SessionRegistration {
   std::filesystem::path folder_;
   std::string session_;
   int domain_ = 0;
-  int claim_ = -1;  // holds the domain
+  int lock_ = -1;  // holds the domain
 };
 
 }  // namespace cordis::node

@@ -33,17 +33,17 @@ double resident_bytes() {
 }  // namespace
 
 StatusPublisher::StatusPublisher(dds::Participant& participant, const std::string& kind,
-                                 std::uint64_t run, Fill fill)
+                                 std::uint64_t epoch, Fill fill)
     : participant_(participant),
       writer_(participant, dds::Topic::kStatus),
       fill_(std::move(fill)),
       begun_(std::chrono::steady_clock::now()),
       rate_(monotonic_nsec()) {
-  const std::string& name = participant.membership().node;
+  const std::string& name = participant.config().node;
   status_.node_id(config::name_hash(name));
   status_.node(name);
   status_.kind(kind);
-  status_.run(run);
+  status_.epoch(epoch);
   thread_ = std::thread([this] { loop(); });
 }
 
@@ -85,7 +85,7 @@ void StatusPublisher::report_rejoin() {
   const std::uint64_t count = participant_.rejoin_count();
   if (count == std::exchange(rejoin_count_, count)) return;
   if (rejoins_.record(monotonic_nsec()))
-    spdlog::warn("a process that DDS had dropped is there again; this node has joined anew");
+    spdlog::warn("a process that DDS had dropped is there again; this node has joined again");
 }
 
 void StatusPublisher::publish() {

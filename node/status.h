@@ -21,12 +21,12 @@ namespace cordis::node {
 class StatusPublisher {
  public:
   /// Fills in phase, text, rates, counters, latency, energy and hash. Called from the publisher's
-  /// thread twice a second; must not block. Name, kind, run, time, memory and the reached and
+  /// thread twice a second; must not block. Name, kind, epoch, time, memory and the reached and
   /// the mean rate (from `ticks`) are filled in already.
   using Fill = std::function<void(msg::NodeStatus&)>;
 
   /// @param kind  "sim_node", "device_node" or "viz_node"
-  StatusPublisher(dds::Participant& participant, const std::string& kind, std::uint64_t run,
+  StatusPublisher(dds::Participant& participant, const std::string& kind, std::uint64_t epoch,
                   Fill fill);
 
   /// Publishes the last status, not before others can have found this node, and waits a moment

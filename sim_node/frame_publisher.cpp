@@ -3,13 +3,13 @@
 
 namespace cordis::sim {
 
-FramePublisher::FramePublisher(dds::Participant& participant, std::uint64_t run)
+FramePublisher::FramePublisher(dds::Participant& participant, std::uint64_t epoch)
     : frame_writer_(participant, dds::Topic::kFrame),
       signal_writer_(participant, dds::Topic::kSignals),
       event_writer_(participant, dds::Topic::kEvents) {
-  frame_.run(run);
-  events_.run(run);
-  signals_.run(run);
+  frame_.epoch(epoch);
+  events_.epoch(epoch);
+  signals_.epoch(epoch);
   thread_ = std::thread([this] { loop(); });
 }
 
@@ -78,22 +78,22 @@ void FramePublisher::publish_signals(const FrameShape& shape, const FrameBuffer&
 
 void FramePublisher::publish_events(const FrameShape& shape, const EventRoom& room) {
   if (room.is_empty()) return;
-  std::vector<msg::LinkEvent>& told = events_.event();
-  told.resize(room.events().size());
-  for (std::size_t i = 0; i < told.size(); ++i) {
+  std::vector<msg::LinkEvent>& message = events_.event();
+  message.resize(room.events().size());
+  for (std::size_t i = 0; i < message.size(); ++i) {
     const engine::LinkEvent& event = room.events()[i];
     const bool of_a_link = event.link != engine::kNoLink;
     const auto first = static_cast<std::uint32_t>(of_a_link ? shape.first_state_link : 0);
-    told[i].step(event.step);
-    told[i].link(event.link + first);
-    told[i].mat_a(event.mat_a);
-    told[i].mat_b(event.mat_b);
-    told[i].state_machine(event.state_machine);
-    told[i].from_state(event.from);
-    told[i].to_state(event.to);
-    told[i].quantity(static_cast<std::uint32_t>(event.quantity));
-    told[i].value(event.value);
-    told[i].energy_j(event.energy);
+    message[i].step(event.step);
+    message[i].link(event.link + first);
+    message[i].mat_a(event.mat_a);
+    message[i].mat_b(event.mat_b);
+    message[i].state_machine(event.state_machine);
+    message[i].from_state(event.from);
+    message[i].to_state(event.to);
+    message[i].quantity(static_cast<std::uint32_t>(event.quantity));
+    message[i].value(event.value);
+    message[i].energy_j(event.energy);
   }
   lost_events_.fetch_add(room.lost(), std::memory_order_relaxed);
   events_.version(shape.version);

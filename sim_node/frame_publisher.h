@@ -21,7 +21,7 @@ namespace cordis::sim {
 /// O(MATs) per frame, takes no lock and allocates nothing.
 class FramePublisher {
  public:
-  FramePublisher(dds::Participant& participant, std::uint64_t run);
+  FramePublisher(dds::Participant& participant, std::uint64_t epoch);
   ~FramePublisher();
   FramePublisher(const FramePublisher&) = delete;
   FramePublisher& operator=(const FramePublisher&) = delete;

@@ -12,10 +12,10 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
   if (start.check_only) return 0;
 
   const std::string session = std::to_string(start.domain) + "/" + start.launch.session;
-  cordis::node::claim("cordis/" + session + "/sim_node",
-                      "another sim_node already runs the session '" + start.launch.session +
-                          "' in domain " + std::to_string(start.domain) +
-                          "; stop it, or give this one session=NAME");
+  cordis::node::lock_instance("cordis/" + session + "/sim_node",
+                              "another sim_node already runs the session '" + start.launch.session +
+                                  "' in domain " + std::to_string(start.domain) +
+                                  "; stop it, or give this one session=NAME");
   return cordis::sim::Session(start, std::move(config)).run();
 }
 

@@ -27,7 +27,7 @@ constexpr int kLoopPriority = 80;
 constexpr double kPhase = 0.5;
 constexpr auto kLockstepPatience =
     50ms;                    // how long a wait for a sample may keep the loop from seeing a stop
-constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene stands still
+constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene is paused
 constexpr std::uint64_t kRestsPerFrame = 8;
 constexpr auto kLongestWait = 1s;                  // for a device that joins
 constexpr std::int64_t kLongWait = 2'000'000'000;  // of a scene in lockstep for a sample [ns]
@@ -37,35 +37,37 @@ constexpr std::int64_t kLongWait = 2'000'000'000;  // of a scene in lockstep for
 Session::Session(const node::NodeStart& start, SimConfig config)
     : start_(start),
       duration_s_(config.duration_s),
-      participant_(start.membership()),
+      participant_(start.config()),
       loop_participant_(start.join_for_force_loop()),
-      player_(std::make_unique<LoadedScene>(
-                  std::make_shared<const scene::Scene>(std::move(config.scene)), start.run, 1),
+      runner_(std::make_unique<LoadedScene>(
+                  std::make_shared<const scene::Scene>(std::move(config.scene)), start.epoch, 1),
               start.launch.clock == config::Clock::kLockstep),
       position_reader_(loop_participant_, dds::Topic::kPositions),
       force_reader_(loop_participant_, dds::Topic::kForces),
       position_writer_(loop_participant_, dds::Topic::kPositions),
       force_writer_(loop_participant_, dds::Topic::kForces),
       description_writer_(participant_, dds::Topic::kDescription),
-      frames_(participant_, start.run),
+      frames_(participant_, start.epoch),
       refused_(delay_periods_of(start.launch.clock)),
       device_reader_(participant_, dds::Topic::kDevice),
       roster_(participant_),
-      status_(participant_, "sim_node", start.run,
+      status_(participant_, "sim_node", start.epoch,
               [this](msg::NodeStatus& status) { fill(status); }),
-      director_(
-          orders_, player_.simulation().shared_scene(), start.run,
+      executor_(
+          mailbox_, runner_.simulation().shared_scene(), start.epoch,
           [this, force = config.force](const std::string& path, config::Problems& problems) {
             return load_next_scene(start_.launch, path, force, problems);
           },
           [force = config.force](const scene::Scene& scene, config::Problems& problems) {
             check_stability(scene, force, problems);
           },
-          [this](const scene::Scene& scene, std::uint64_t version) { tell(scene, version); }),
+          [this](const scene::Scene& scene, std::uint64_t version) {
+            publish_scene(scene, version);
+          }),
       commands_(participant_, "sim_node", [this](const msg::ControlCommand& command) {
-        const auto before = director_.scene();
-        node::Answer answer = director_.obey(command);
-        if (director_.scene() != before) refused_.play(*director_.scene());
+        const auto before = executor_.scene();
+        node::Answer answer = executor_.execute(command);
+        if (executor_.scene() != before) refused_.play(*executor_.scene());
         return answer;
       }) {}
 
@@ -75,12 +77,13 @@ Session::~Session() {
   if (device_listener_.joinable()) device_listener_.join();
 }
 
-/// The thread in which devices are heard that join the session, whenever they do.
+/// The thread in which devices are received that join the session, whenever they do.
 void Session::listen_to_devices() {
-  msg::DeviceDescription told;
+  msg::DeviceDescription description;
   while (!ending_) {
-    while (device_reader_.take(told)) {
-      if (refused_.hear(told)) reaches_.put(told.device_id(), told.run(), reach_of(told));
+    while (device_reader_.take(description)) {
+      if (refused_.receive(description))
+        reaches_.put(description.device_id(), description.epoch(), reach_of(description));
     }
     refused_.report_repeats();
     if (!ending_) device_reader_.wait(kLongestWait);
@@ -88,9 +91,9 @@ void Session::listen_to_devices() {
 }
 
 int Session::run() {
-  tell(player_.simulation().scene(), 1);
+  publish_scene(runner_.simulation().scene(), 1);
   record_state();
-  refused_.play(player_.simulation().scene());
+  refused_.play(runner_.simulation().scene());
   device_listener_ = std::thread([this] { listen_to_devices(); });
   commands_.start();
 
@@ -105,11 +108,11 @@ int Session::run() {
       run_asap();
       break;
   }
-  orders_.close();
+  mailbox_.close();
   record_state();
-  const Simulation& simulation = player_.simulation();
+  const Simulation& simulation = runner_.simulation();
   if (simulation.failed()) {
-    for (DeviceExchange& device : player_.simulation().devices()) answer(device);  // no force
+    for (DeviceExchange& device : runner_.simulation().devices()) answer(device);  // no force
     const std::string failure = simulation.failure();
     {
       const std::lock_guard lock(shown_mutex_);
@@ -130,60 +133,60 @@ void Session::run_realtime() {
   spdlog::info("real-time priority {}, memory {}",
                grant.fifo ? "granted" : "not permitted, going on without",
                grant.memory_locked ? "locked" : "not locked");
-  node::PacedLoop loop(player_.simulation().scene().gesture_rate_hz, kPhase);
+  node::PacedLoop loop(runner_.simulation().scene().gesture_rate_hz, kPhase);
   while (!finished()) {
     loop.wait();
     late_ticks_.count(loop.late_cause());
-    const bool plays = obey();
-    if (loop.rate_hz() != player_.simulation().scene().gesture_rate_hz)
-      loop = node::PacedLoop(player_.simulation().scene().gesture_rate_hz, kPhase);
+    const bool plays = execute();
+    if (loop.rate_hz() != runner_.simulation().scene().gesture_rate_hz)
+      loop = node::PacedLoop(runner_.simulation().scene().gesture_rate_hz, kPhase);
     receive();
     if (plays) advance();
-    if (player_.simulation().misses_a_device()) late_ticks_.count_silent();
+    if (runner_.simulation().misses_a_device()) late_ticks_.count_silent();
     answer_all();
   }
 }
 
 void Session::run_lockstep() {
   while (!finished()) {
-    if (!obey_or_rest()) {
+    if (!execute_or_wait()) {
       waits_since_nsec_ = 0;
       continue;
     }
-    if (player_.simulation().is_between_ticks() && !receive_lockstep()) continue;
+    if (runner_.simulation().is_between_ticks() && !receive_lockstep()) continue;
     if (!advance()) continue;
-    for (DeviceExchange& device : player_.simulation().devices()) answer(device);
+    for (DeviceExchange& device : runner_.simulation().devices()) answer(device);
   }
 }
 
 /// Runs without devices: a scene whose time is not that of a hand has no force for it.
 void Session::run_asap() {
   while (!finished()) {
-    if (obey_or_rest()) advance();
+    if (execute_or_wait()) advance();
   }
 }
 
-bool Session::obey() {
-  Request* order = orders_.waiting();
-  if (order == nullptr) return true;
-  const bool new_stage = order->changes_stage();
+bool Session::execute() {
+  Request* request = mailbox_.waiting();
+  if (request == nullptr) return true;
+  const bool new_stage = request->changes_stage();
   if (new_stage && frames_.is_busy()) return false;
-  if (new_stage && player_.stage().frames.has_news()) {
+  if (new_stage && runner_.stage().frames.has_news()) {
     offer_frame();
     return false;
   }
-  player_.obey(*order);
-  orders_.report_steps_left(player_.steps_left());
-  orders_.obeyed();
+  runner_.execute(*request);
+  mailbox_.report_steps_left(runner_.steps_left());
+  mailbox_.executed();
   if (new_stage) offer_frame();
   record_state();
   return true;
 }
 
-bool Session::obey_or_rest() {
-  if (!obey()) return false;
-  if (player_.moves()) return true;
-  orders_.wait(kRest);
+bool Session::execute_or_wait() {
+  if (!execute()) return false;
+  if (runner_.moves()) return true;
+  mailbox_.wait(kRest);
   if (++turns_ % kRestsPerFrame == 0) offer_frame();
   return false;
 }
@@ -191,16 +194,16 @@ bool Session::obey_or_rest() {
 void Session::receive() {
   const auto take = [this](auto& reader, auto& sample, Role role) {
     while (reader.take(sample)) {
-      DeviceExchange* device = player_.simulation().find(sample.device_id());
+      DeviceExchange* device = runner_.simulation().find(sample.device_id());
       // The other direction of the same topic is our own, or that of a device the scene has no port
       // for.
-      if (device == nullptr || device->role() != role || sample.run() == start_.run) continue;
-      const bool borne = !refused_.refuses(sample.run());
-      const DeviceReach reach = reaches_.find(sample.device_id(), sample.run());
+      if (device == nullptr || device->role() != role || sample.epoch() == start_.epoch) continue;
+      const bool is_supported = !refused_.refuses(sample.epoch());
+      const DeviceReach reach = reaches_.find(sample.device_id(), sample.epoch());
       const bool repeated =
-          device->receive(sample, borne, reach) == DeviceExchange::Reception::kRepeated;
+          device->receive(sample, is_supported, reach) == DeviceExchange::Reception::kRepeated;
       // What is still to be played has no answer yet.
-      const bool played = !device->has_new_sample() && player_.simulation().is_between_ticks();
+      const bool played = !device->has_new_sample() && runner_.simulation().is_between_ticks();
       if (repeated && played) answer(*device);
     }
   };
@@ -210,7 +213,7 @@ void Session::receive() {
 
 bool Session::receive_lockstep() {
   receive();
-  for (const DeviceExchange& device : player_.simulation().devices()) {
+  for (const DeviceExchange& device : runner_.simulation().devices()) {
     if (device.has_new_sample()) continue;
     report_wait(device);
     if (device.role() == Role::kMass) {
@@ -241,16 +244,16 @@ void Session::report_wait(const DeviceExchange& device) {
 }
 
 bool Session::advance() {
-  const bool complete = player_.advance();
-  orders_.report_steps_left(player_.steps_left());
-  const Simulation& simulation = player_.simulation();
-  LoadedScene& stage = player_.stage();
+  const bool complete = runner_.advance();
+  mailbox_.report_steps_left(runner_.steps_left());
+  const Simulation& simulation = runner_.simulation();
+  LoadedScene& stage = runner_.stage();
   if (complete) {
     simulation.read_signals(stage.frames.next_row(simulation.world().step_count()));
     ticks_.store(++tick_count_, std::memory_order_relaxed);
   }
   const std::uint64_t turns = complete ? simulation.tick_count() : ++turns_;
-  const bool due = (complete || player_.is_paused()) && turns % stage.ticks_per_frame == 0;
+  const bool due = (complete || runner_.is_paused()) && turns % stage.ticks_per_frame == 0;
   const bool waits = start_.launch.clock != config::Clock::kRealtime;
   const bool many_events = stage.frames.events().is_half_full() && (waits || !frames_.is_busy());
   if (due || many_events) offer_frame();
@@ -259,44 +262,44 @@ bool Session::advance() {
 
 void Session::offer_frame() {
   if (start_.launch.clock != config::Clock::kRealtime) frames_.wait_until_free();
-  const Simulation& simulation = player_.simulation();
+  const Simulation& simulation = runner_.simulation();
   const std::int64_t now = node::monotonic_nsec();
   const std::int64_t action = simulation.action_time_nsec();  // as a device wrote it
-  frames_.offer(player_.stage().frames, simulation.world(), simulation.simulated_s(), now,
+  frames_.offer(runner_.stage().frames, simulation.world(), simulation.simulated_s(), now,
                 action <= now ? action : 0);
   record_state();
 }
 
 void Session::answer_all() {
-  for (DeviceExchange& device : player_.simulation().devices()) {
-    if (device.was_heard()) answer(device);
+  for (DeviceExchange& device : runner_.simulation().devices()) {
+    if (device.has_received()) answer(device);
   }
 }
 
 void Session::answer(DeviceExchange& device) {
-  const bool safe = !player_.simulation().failed();
+  const bool safe = !runner_.simulation().failed();
   const std::int64_t now = node::monotonic_nsec();
   if (device.role() == Role::kMass) {
-    force_writer_.write(device.answer_forces(player_.simulation().world(), safe, now));
+    force_writer_.write(device.answer_forces(runner_.simulation().world(), safe, now));
   } else {
-    position_writer_.write(device.answer_positions(player_.simulation().world(), safe, now));
+    position_writer_.write(device.answer_positions(runner_.simulation().world(), safe, now));
   }
 }
 
 void Session::record_state() {
   std::uint64_t dropped = frames_.frames_left_out();
-  Simulation& simulation = player_.simulation();
-  std::uint64_t braked = 0;
+  Simulation& simulation = runner_.simulation();
+  std::uint64_t passivity_ticks = 0;
   const config::Clock clock = start_.launch.clock;
-  bool heard = simulation.devices().empty() || clock == config::Clock::kAsap;
+  bool has_sample = simulation.devices().empty() || clock == config::Clock::kAsap;
   for (const DeviceExchange& device : simulation.devices()) {
     dropped += device.refused_count() + device.missed_count();
-    heard = heard || !device.is_lost();
-    braked += device.passivity_ticks();
+    has_sample = has_sample || !device.is_lost();
+    passivity_ticks += device.passivity_ticks();
   }
   dropped_.store(dropped, std::memory_order_relaxed);
-  passivity_ticks_.store(braked, std::memory_order_relaxed);
-  set_phase(player_.is_paused() ? "paused" : heard ? "running" : "waiting");
+  passivity_ticks_.store(passivity_ticks, std::memory_order_relaxed);
+  set_phase(runner_.is_paused() ? "paused" : has_sample ? "running" : "waiting");
   const bool realtime = clock == config::Clock::kRealtime;
   target_rate_hz_.store(realtime ? simulation.scene().gesture_rate_hz : 0.0,
                         std::memory_order_relaxed);
@@ -304,19 +307,19 @@ void Session::record_state() {
   // The status thread holds the lock for a copy at most; the loop never waits for it.
   const std::unique_lock lock(shown_mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
-  player_.stage().limits.look(simulation.world());
+  runner_.stage().limits.look(simulation.world());
   shown_.energy = simulation.world().energy();
-  shown_.limit_number = player_.stage().limits.largest();
+  shown_.limit_number = runner_.stage().limits.largest();
   shown_.step = simulation.world().step_count();
   shown_.state_hash = simulation.world().state_hash();
-  shown_.version = player_.stage().frames.shape().version;
-  shown_.changes = player_.stage().changes.count(simulation.world());
+  shown_.version = runner_.stage().frames.shape().version;
+  shown_.changes = runner_.stage().changes.count(simulation.world());
 }
 
 bool Session::finished() const noexcept {
   // Half a step of tolerance: the sum of steps is not exactly the duration.
-  const Simulation& simulation = player_.simulation();
-  const double reached = player_.played_s() + 0.5 * simulation.world().network().step();
+  const Simulation& simulation = runner_.simulation();
+  const double reached = runner_.played_s() + 0.5 * simulation.world().network().step();
   return node::stop_requested() || simulation.failed() ||
          (duration_s_ > 0.0 && reached >= duration_s_);
 }
@@ -333,7 +336,7 @@ void Session::fill(msg::NodeStatus& status) {
     spdlog::warn(
         "the forces of a hand in role liaison bring in more energy than it gives, for it is too "
         "stiff "
-        "for the viscosity of its port or its samples are late: the port is braked");
+        "for the viscosity of its port or its samples are late: the port is damped");
   }
 
   const std::lock_guard lock(shown_mutex_);
@@ -357,13 +360,13 @@ void Session::fill(msg::NodeStatus& status) {
   }
 }
 
-void Session::tell(const scene::Scene& scene, std::uint64_t version) {
+void Session::publish_scene(const scene::Scene& scene, std::uint64_t version) {
   {
     const std::lock_guard lock(shown_mutex_);
     liaisons_ = ChangeCounter(scene.network.state_machines).names();
     liaisons_version_ = version;
   }
-  msg::SceneDescription description = describe(scene, start_.run, version);
+  msg::SceneDescription description = describe(scene, start_.epoch, version);
   description_writer_.write(description);
   spdlog::info("scene '{}': {}, {} steps per second, {} per gesture", scene.name,
                scene::size_text(scene), scene.step_rate_hz,

@@ -29,7 +29,7 @@
 namespace cordis::sim {
 
 /// Runs a scene under the clock of its session until a stop is asked for, its duration is over or
-/// it diverges; obeys commands meanwhile.
+/// it diverges; executes commands meanwhile.
 class Session {
  public:
   Session(const node::NodeStart& start, SimConfig config);
@@ -46,11 +46,11 @@ class Session {
   void run_asap();
 
   /// Obeys the order that waits, if any. @return false when the order is another stage, and the
-  /// scene has to stand still until all that happened in it is told
-  bool obey();
+  /// scene has to stay paused until all that happened in it is told
+  bool execute();
   /// Executes requests without real time, and waits a while when the scene is paused.
   /// @return whether it moves
-  bool obey_or_rest();
+  bool execute_or_wait();
   /// Takes what the devices have sent, and answers again what was asked again.
   void receive();
   bool receive_lockstep();  ///< false when a sample is still missing
@@ -63,7 +63,7 @@ class Session {
   void record_state();
   bool finished() const noexcept;
   void fill(msg::NodeStatus& status);
-  void tell(const scene::Scene& scene, std::uint64_t version);
+  void publish_scene(const scene::Scene& scene, std::uint64_t version);
   void set_phase(const char* phase) noexcept;
   void listen_to_devices();
 
@@ -71,8 +71,8 @@ class Session {
   double duration_s_;
   dds::Participant participant_;       // for all but the force loop
   dds::Participant loop_participant_;  // for the force loop, which waits for no other thread
-  Runner player_;
-  RequestMailbox orders_;
+  Runner runner_;
+  RequestMailbox mailbox_;
   dds::Reader<msg::GesturePositions> position_reader_;
   dds::Reader<msg::GestureForces> force_reader_;
   dds::Writer<msg::GesturePositions> position_writer_;
@@ -81,12 +81,12 @@ class Session {
   msg::GesturePositions position_sample_;
   msg::GestureForces force_sample_;
   FramePublisher frames_;
-  std::uint64_t turns_ = 0;  // of the loop, for the pace of frames while the scene stands still
-  std::uint64_t tick_count_ = 0;       // over all stages
+  std::uint64_t turns_ = 0;       // of the loop, for the pace of frames while the scene is paused
+  std::uint64_t tick_count_ = 0;  // over all stages
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
   bool wait_reported_ = false;
 
-  // What the loop tells the status thread.
+  // What the loop reports to the status thread.
   struct StatusSnapshot {
     engine::Energy energy;
     double limit_number = 0.0;
@@ -112,7 +112,7 @@ class Session {
   dds::Reader<msg::DeviceDescription> device_reader_;
   node::Roster roster_;  // looked at while the loop waits for a sample
   node::StatusPublisher status_;
-  CommandExecutor director_;
+  CommandExecutor executor_;
   node::CommandListener commands_;  // its thread uses what stands above
   std::atomic<bool> ending_{false};
   std::thread device_listener_;  // likewise

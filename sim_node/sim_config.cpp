@@ -92,8 +92,8 @@ void check_demand(const PortDemand& demand, const config::DeviceLimits& limits, 
   }
   if (!verdict.refusal.empty()) problems.error(demand.place, verdict.refusal, kHowToSoften);
   const bool is_mass = demand.role == scene::Role::kMass;
-  if (!verdict.doubt.empty()) {
-    problems.warning(demand.place, verdict.doubt, is_mass ? kHowToSoften : kHowToCalm);
+  if (!verdict.uncertainty.empty()) {
+    problems.warning(demand.place, verdict.uncertainty, is_mass ? kHowToSoften : kHowToCalm);
   }
 }
 

@@ -3,8 +3,8 @@
 
 namespace cordis::viz {
 
-CommandRelay::CommandRelay(dds::Participant& participant, std::uint64_t run)
-    : sender_(participant.membership().node + " " + std::to_string(run)),
+CommandRelay::CommandRelay(dds::Participant& participant, std::uint64_t epoch)
+    : sender_(participant.config().node + " " + std::to_string(epoch)),
       writer_(participant, dds::Topic::kCommand) {}
 
 void CommandRelay::send(const PageCommand& wanted) noexcept {

@@ -16,7 +16,7 @@ namespace cordis::viz {
 class CommandRelay {
  public:
   /// @throws std::runtime_error when DDS refuses
-  CommandRelay(dds::Participant& participant, std::uint64_t run);
+  CommandRelay(dds::Participant& participant, std::uint64_t epoch);
 
   void send(const PageCommand& command) noexcept;
 

@@ -53,23 +53,23 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   node::report(problems);
   if (start.check_only) return 0;
 
-  const dds::ParticipantConfig membership = start.membership();
-  node::claim("cordis/" + std::to_string(membership.domain) + "/" + membership.session + "/" +
-                  membership.node,
-              "session '" + membership.session + "' already has a node named '" + membership.node +
-                  "' in domain " + std::to_string(membership.domain));
-  dds::Participant participant(membership);
+  const dds::ParticipantConfig joined = start.config();
+  node::lock_instance(
+      "cordis/" + std::to_string(joined.domain) + "/" + joined.session + "/" + joined.node,
+      "session '" + joined.session + "' already has a node named '" + joined.node + "' in domain " +
+          std::to_string(joined.domain));
+  dds::Participant participant(joined);
   viz::SceneMirror mirror(config.rate_hz);
-  viz::CommandRelay relay(participant, start.run);
-  viz::WebServer server({.node = membership.node,
-                         .session = membership.session,
+  viz::CommandRelay relay(participant, start.epoch);
+  viz::WebServer server({.node = joined.node,
+                         .session = joined.session,
                          .address = config.address,
                          .port = config.port,
                          .folder = viz::page_folder()},
                         mirror, [&relay](const viz::PageCommand& command) { relay.send(command); });
   const viz::SceneListener listener(participant, mirror, relay);
   const node::StatusPublisher publisher(
-      participant, "viz_node", start.run,
+      participant, "viz_node", start.epoch,
       [&](msg::NodeStatus& status) { fill(status, mirror, server, config.rate_hz); });
   node::CommandListener commands(participant, "viz_node", [](const msg::ControlCommand& command) {
     return node::nothing_to_do(command, "viz_node");

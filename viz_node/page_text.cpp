@@ -80,20 +80,20 @@ Json changes(const std::vector<msg::LiaisonChanges>& counted) {
   return list;
 }
 
-std::string state_of(const HeardNode& node, std::int64_t now_nsec) {
+std::string state_of(const ReportedNode& node, std::int64_t now_nsec) {
   const std::string& phase = node.status.phase();
   if (phase == "stopped" || phase == "failed") return phase;
-  return now_nsec - node.heard_nsec > kLostAfterNsec ? "lost" : clipped(phase);
+  return now_nsec - node.received_nsec > kLostAfterNsec ? "lost" : clipped(phase);
 }
 
-Json node_json(const HeardNode& node, std::int64_t now_nsec) {
+Json node_json(const ReportedNode& node, std::int64_t now_nsec) {
   const msg::NodeStatus& s = node.status;
   return {{"name", clipped(s.node())},
           {"kind", clipped(s.kind())},
-          {"run", std::to_string(s.run())},
+          {"epoch", std::to_string(s.epoch())},
           {"state", state_of(node, now_nsec)},
           {"text", clipped(s.text())},
-          {"heard_s", static_cast<double>(now_nsec - node.heard_nsec) * 1e-9},
+          {"received_s", static_cast<double>(now_nsec - node.received_nsec) * 1e-9},
           {"target_rate_hz", s.target_rate_hz()},
           {"reached_rate_hz", s.reached_rate_hz()},
           {"mean_rate_hz", s.mean_rate_hz()},
@@ -162,7 +162,7 @@ std::string description_text(const msg::SceneDescription& description, std::uint
   }
   return written({{"type", "description"},
                   {"scene", scene},
-                  {"run", std::to_string(description.run())},
+                  {"epoch", std::to_string(description.epoch())},
                   {"version", description.version()},
                   {"name", clipped(description.name())},
                   {"scene_file", clipped(description.scene_file())},
@@ -179,11 +179,11 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"signals", std::move(signals)}});
 }
 
-std::string status_text(const std::vector<HeardNode>& nodes, const HeardEvents& events,
+std::string status_text(const std::vector<ReportedNode>& nodes, const HeardEvents& events,
                         const HeardReplies& replies, const MirrorFigures& figures,
                         std::uint32_t scene, std::int64_t now_nsec) {
   Json list = Json::array();
-  for (const HeardNode& node : nodes) list.push_back(node_json(node, now_nsec));
+  for (const ReportedNode& node : nodes) list.push_back(node_json(node, now_nsec));
   return written(
       {{"type", "status"},
        {"scene", scene},

@@ -14,9 +14,9 @@
 namespace cordis::viz {
 
 /// What viz_node knows of one node.
-struct HeardNode {
+struct ReportedNode {
   msg::NodeStatus status;
-  std::int64_t heard_nsec = 0;  ///< CLOCK_MONOTONIC when its last status came
+  std::int64_t received_nsec = 0;  ///< CLOCK_MONOTONIC when its last status came
 };
 
 /// Changes of link states, as far as a page shows them.
@@ -40,12 +40,12 @@ struct MirrorFigures {
   std::int64_t last_frame_nsec = 0;  ///< CLOCK_MONOTONIC when the newest came; 0: none yet
 };
 
-/// A node that was not heard for so long is lost, unless it said that it stops.
+/// A node that was silent for so long is lost, unless it said that it stops.
 inline constexpr std::int64_t kLostAfterNsec = 1'600'000'000;
 
 std::string hello_text(const std::string& session, const std::string& node);
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene);
-std::string status_text(const std::vector<HeardNode>& nodes, const HeardEvents& events,
+std::string status_text(const std::vector<ReportedNode>& nodes, const HeardEvents& events,
                         const HeardReplies& replies, const MirrorFigures& figures,
                         std::uint32_t scene, std::int64_t now_nsec);
 

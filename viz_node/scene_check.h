@@ -15,7 +15,7 @@ inline constexpr std::size_t kMaxSignals = 256;
 inline constexpr std::size_t kMaxBatchValues = 1'000'000;
 
 /// Each returns what is wrong, one sentence for a person, or an empty string when nothing is. What
-/// is held against a description has its run and version.
+/// is held against a description has its epoch and version.
 /// A description is sound when its lengths agree, its indices exist and its rates are positive and
 /// finite.
 std::string fault_of(const msg::SceneDescription& description);

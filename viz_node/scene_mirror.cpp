@@ -22,7 +22,7 @@ constexpr std::uint64_t kMaxLost = 100'000;  // frames between two that came: an
 /// has not come yet: for a moment around a change of scene or a restart, both come.
 template <class Message>
 bool is_of_another_scene(const Message& message, const msg::SceneDescription& description) {
-  return message.run() != description.run() || message.version() != description.version();
+  return message.epoch() != description.epoch() || message.version() != description.version();
 }
 
 }  // namespace
@@ -42,9 +42,9 @@ std::string SceneMirror::take(msg::SceneDescription&& description) {
   shown->topology = encode_topology(description, shown->scene);
   {
     const std::lock_guard lock(mutex_);
-    const bool same_run = description_ != nullptr && description_->run() == description.run();
+    const bool same_epoch = description_ != nullptr && description_->epoch() == description.epoch();
     // Late, and not one of a number that nobody could have reached.
-    const std::uint64_t older = same_run ? description_->version() - description.version() : 0;
+    const std::uint64_t older = same_epoch ? description_->version() - description.version() : 0;
     if (older > 0 && older <= kMaxOlder) return {};
     last_frame_number_ = 0;  // frames before a description are passed over, not lost
     figures_.frame_rate_hz = description.frame_rate_hz();
@@ -82,7 +82,7 @@ std::string SceneMirror::take(msg::SceneFrame&& frame, std::int64_t now_nsec) {
   auto shown = std::make_shared<ShownFrame>();
   {
     const std::lock_guard lock(mutex_);
-    if (description != description_) return {};  // described anew meanwhile
+    if (description != description_) return {};  // described again meanwhile
     count_gap(frame);
     figures_.last_frame_nsec = now_nsec;
     if (!pace_.lets_through(now_nsec)) return {};
@@ -152,7 +152,7 @@ void SceneMirror::take(msg::NodeStatus&& status, std::int64_t now_nsec) {
   const std::uint32_t node_id = status.node_id();
   if (nodes_.size() >= kMaxNodes && !nodes_.contains(node_id)) {
     nodes_.erase(std::ranges::min_element(
-        nodes_, {}, [](const auto& entry) { return entry.second.heard_nsec; }));
+        nodes_, {}, [](const auto& entry) { return entry.second.received_nsec; }));
   }
   nodes_[node_id] = {std::move(status), now_nsec};
 }
@@ -181,7 +181,7 @@ std::shared_ptr<const ShownSignals> SceneMirror::signals_after(std::uint64_t aft
 }
 
 std::string SceneMirror::status(std::int64_t now_nsec) const {
-  std::vector<HeardNode> nodes;
+  std::vector<ReportedNode> nodes;
   HeardEvents events;
   HeardReplies replies;
   MirrorFigures figures;

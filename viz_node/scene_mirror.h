@@ -80,11 +80,11 @@ class SceneMirror {
   std::shared_ptr<const ShownFrame> frame_;
   std::deque<std::shared_ptr<const ShownSignals>> signals_;
   std::size_t signals_bytes_ = 0;
-  std::map<std::uint32_t, HeardNode> nodes_;  // by node_id
+  std::map<std::uint32_t, ReportedNode> nodes_;  // by node_id
   HeardEvents events_;
   HeardReplies replies_;
   MirrorFigures figures_;
-  std::uint64_t last_frame_number_ = 0;  // of sim_node, within the present run
+  std::uint64_t last_frame_number_ = 0;  // of sim_node, within the present epoch
   std::uint32_t scene_count_ = 0;
   std::uint32_t frame_count_ = 0;
   std::uint64_t batch_count_ = 0;

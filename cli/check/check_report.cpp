@@ -1,4 +1,4 @@
-// The report of `cordis check`, for a person and for a program.
+// cli/check/check_report.cpp -- the report of `cordis check`, for a person and for a program.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -96,7 +96,7 @@ std::string choice_text(const SceneCheck& check) {
         choice.needed_hz, choice.because, check.scene.step_rate_hz);
   }
   if (choice.error >= 0.0) text += fmt::format("; tried out: {:.2g}", choice.error);
-  if (!choice.doubt.empty()) text += "\n            " + choice.doubt;
+  if (!choice.uncertainty.empty()) text += "\n            " + choice.uncertainty;
   return text + "\n";
 }
 
@@ -142,7 +142,7 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
                 port.load.stiffness, port.load.viscosity, port.min_device_viscosity, rate, delay);
   if (check.options.device_viscosity > 0.0) {
     text += fmt::format(
-        "            a device of {:.3g} N s/m bears {:.4g} N/m: {}\n",
+        "            a device of {:.3g} N s/m supports {:.4g} N/m: {}\n",
         check.options.device_viscosity, port.largest_stiffness,
         port.load.stiffness <= port.largest_stiffness ? "safe with any hand" : "TOO STIFF");
   }
@@ -217,7 +217,7 @@ nlohmann::json ports_json(const SceneCheck& check) {
                         {"delay_periods", check.options.delay_periods}};
     if (port.port->role == scene::Role::kMass) {
       json["role"] = "mass";
-      json["least_device_viscosity_n_s_per_m"] = port.min_device_viscosity;
+      json["min_device_viscosity_n_s_per_m"] = port.min_device_viscosity;
       if (check.options.device_viscosity > 0.0) {
         json["device_viscosity_n_s_per_m"] = check.options.device_viscosity;
         json["largest_stiffness_n_per_m"] = port.largest_stiffness;
@@ -313,10 +313,11 @@ std::string json_of(const SceneCheck& check) {
   }
   if (check.choice) {
     const scene::Accuracy& asked = *check.scene.accuracy;
-    json["asked"] = {{"tolerance", asked.tolerance},           {"band_hz", asked.band_hz},
-                     {"contact_energy", asked.contact_energy}, {"over_s", asked.over_s},
-                     {"needed_hz", check.choice->needed_hz},   {"because", check.choice->because},
-                     {"kept", check.keeps_accuracy()},         {"doubt", check.choice->doubt}};
+    json["asked"] = {
+        {"tolerance", asked.tolerance},           {"band_hz", asked.band_hz},
+        {"contact_energy", asked.contact_energy}, {"over_s", asked.over_s},
+        {"needed_hz", check.choice->needed_hz},   {"because", check.choice->because},
+        {"kept", check.keeps_accuracy()},         {"uncertainty", check.choice->uncertainty}};
     if (check.choice->error >= 0.0) json["asked"]["tried_out_error"] = check.choice->error;
   }
   if (check.load() >= 1.0) json["load"]["alternatives"] = alternatives_json(check);

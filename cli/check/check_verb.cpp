@@ -1,5 +1,5 @@
-// cli/check/check_verb.cpp -- cordis check: says before the run what it promises, and where it would
-// fail.
+// cli/check/check_verb.cpp -- cordis check: says before the run what it promises, and where it
+// would fail.
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -52,7 +52,7 @@ void add_check_verb(CommandLine& line) {
   verb.required_word("SCENE", options.scene_file, "The scene file");
   verb.option("--json", "FILE", options.json_file, "Also write it for a program; - for stdout");
   verb.option("--band", "HZ", words->band,
-              "Where pitch and decay are judged [that of the scene, or 100]");
+              "Where pitch and decay are evaluated [that of the scene, or 100]");
   verb.option("--delay", "PERIODS", words->delay,
               "Of the loop through a device: from a sample to its answer [1]");
   verb.option("--device-viscosity", "N_S_PER_M", words->device_viscosity,

@@ -66,9 +66,9 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const
     const bool all_known = target != "*" || now > began + kUsualDiscovery;
     if (addressed > 0 && replies.size() >= addressed && all_known) break;
   }
-  std::vector<msg::ControlReply> heard;
-  for (auto& [node, reply] : replies) heard.push_back(std::move(reply));
-  return heard;
+  std::vector<msg::ControlReply> replies_received;
+  for (auto& [node, reply] : replies) replies_received.push_back(std::move(reply));
+  return replies_received;
 }
 
 std::vector<std::string> ControlLine::present() const {

@@ -1,4 +1,4 @@
-// cli/ctl/control_line.h -- speaks to the nodes of a running session and hears their replies.
+// cli/ctl/control_line.h -- speaks to the nodes of a running session and receives their replies.
 #pragma once
 
 #include <chrono>

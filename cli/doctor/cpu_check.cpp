@@ -1,3 +1,4 @@
+// cli/doctor/cpu_check.cpp
 #include <map>
 
 #include <fmt/format.h>

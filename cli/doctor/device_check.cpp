@@ -1,3 +1,4 @@
+// cli/doctor/device_check.cpp
 #include <filesystem>
 
 #include <grp.h>

@@ -1,3 +1,4 @@
+// cli/doctor/diagnosis.cpp
 #include "cli/doctor/diagnosis.h"
 
 #include <ctime>

@@ -1,3 +1,4 @@
+// cli/doctor/kernel_check.cpp
 #include <sstream>
 
 #include "cli/doctor/checks.h"

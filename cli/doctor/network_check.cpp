@@ -1,3 +1,4 @@
+// cli/doctor/network_check.cpp
 #include <algorithm>
 
 #include <arpa/inet.h>

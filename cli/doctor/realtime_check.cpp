@@ -1,3 +1,4 @@
+// cli/doctor/realtime_check.cpp
 #include <thread>
 
 #include <pthread.h>

@@ -1,3 +1,4 @@
+// cli/doctor/report.cpp
 #include "cli/doctor/report.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// cli/doctor/timer_check.cpp
 #include <algorithm>
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// cli/doctor/version_check.cpp
 #include "cli/doctor/checks.h"
 #include "node/dds/library_version.h"
 

@@ -57,12 +57,12 @@ std::string shorten(plan::RateSweep& ladder, double step_nsec, double integrator
 /// The time of a short run is that of the quickest of three.
 TrialResult measure(const LabScene& lab, const Attempt& attempt, const plan::Reference& reference) {
   constexpr double kShort = 5e7;  // [ns]
-  TrialResult best =
-      plan::try_out(lab.scene.network, attempt.integrator, attempt.rate_hz, lab.course, reference);
+  TrialResult best = plan::try_out(lab.scene.network, attempt.integrator, attempt.rate_hz,
+                                   lab.trajectory, reference);
   if (best.nsec_per_s * reference.sampling.duration() > kShort) return best;
   for (int again = 0; again < 2; ++again) {
     const TrialResult next = plan::try_out(lab.scene.network, attempt.integrator, attempt.rate_hz,
-                                           lab.course, reference);
+                                           lab.trajectory, reference);
     best.nsec_per_s = std::min(best.nsec_per_s, next.nsec_per_s);
   }
   return best;
@@ -102,7 +102,7 @@ void run_all(const LabScene& lab, const plan::Reference& reference,
 /// its ports do.
 plan::Reference reference_of(const LabScene& lab, const plan::ReferenceOptions& wish) {
   try {
-    return plan::make_reference(lab.scene.network, lab.course, wish);
+    return plan::make_reference(lab.scene.network, lab.trajectory, wish);
   } catch (const plan::NothingMoves& still) {
     std::string text = still.what();
     for (const std::string& port : lab.ports) text += "; " + port;
@@ -164,7 +164,7 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
   report.lab = load_lab_scene(options.file, options.duration_s);
   const engine::NetworkDescription& network = report.lab.scene.network;
   std::vector<std::string> integrators;
-  double limit = 0.0;  // the longest step that any of them bears
+  double limit = 0.0;  // the longest step that keeps all of them stable
   for (const std::string& integrator : plan::integrator_names()) {
     const std::string refusal = plan::refusal_of(network, integrator);
     if (!refusal.empty()) {
@@ -187,7 +187,7 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
   if (!left_out.empty()) report.notes.push_back(left_out);
 
   LabStore store(options.folder,
-                 plan::key_of(network, report.lab.course, ladder.sampling, effort.tolerance),
+                 plan::key_of(network, report.lab.trajectory, ladder.sampling, effort.tolerance),
                  options.again);
   if (!store.reference()) {
     plan::ReferenceOptions wish{

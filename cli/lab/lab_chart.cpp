@@ -79,11 +79,11 @@ std::string panel(const LabReport& report, int column, const std::string& label,
       "table using (column(8) == 1 ? column({}) : NaN):6 with points pointtype 6 pointsize 1 "
       "linecolor rgb '#000000' title 'Pareto front'",
       column);
-  if (report.reference.doubt > min_error(report)) {
+  if (report.reference.uncertainty > min_error(report)) {
     text += fmt::format(
-        ", \\\n     {:.3g} with lines dashtype 3 linecolor rgb '#888888' title 'doubt of the "
+        ", \\\n     {:.3g} with lines dashtype 3 linecolor rgb '#888888' title 'uncertainty of the "
         "reference'",
-        report.reference.doubt);
+        report.reference.uncertainty);
   }
   return text + "\n";
 }

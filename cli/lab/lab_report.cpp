@@ -1,4 +1,4 @@
-// The table of `cordis lab`.
+// cli/lab/lab_report.cpp -- the table of `cordis lab`.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ std::string reference_text(const plan::Reference& reference) {
   std::string text = fmt::format(
       "reference   {}: {} evaluations of all forces for {:.4g} s; amplitude {:.3g} m (rms)\n",
       reference.made_by, reference.evaluations, reference.sampling.duration(), reference.amplitude);
-  text += fmt::format("            trusted to {:.1e} of the amplitude\n", reference.doubt);
+  text += fmt::format("            trusted to {:.1e} of the amplitude\n", reference.uncertainty);
   if (reference.compared == reference.sampling.count) return text;
   const double until = reference.sampling.time(reference.compared - 1);
   return text + fmt::format(

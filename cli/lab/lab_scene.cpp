@@ -20,7 +20,7 @@ double duration_of(const scene::Scene& scene, double asked_s) {
 /// Plays the launch file once, and keeps what its devices did.
 void record(OfflineSession& stage, LabScene& lab) {
   lab.scene = scene::Scene(stage.scene());
-  lab.course.period = 1.0 / lab.scene.gesture_rate_hz;
+  lab.trajectory.period = 1.0 / lab.scene.gesture_rate_hz;
   std::vector<const scene::Port*> played;
   for (const scene::Port& port : lab.scene.ports) {
     if (!stage.plays(port)) {
@@ -31,13 +31,13 @@ void record(OfflineSession& stage, LabScene& lab) {
     lab.ports.push_back(port.name + " is played by '" + port.device + "' (" +
                         stage.driver_of(port) + "), as in one run at the scene's own rate");
     played.push_back(&port);
-    lab.course.tracks.push_back({port.mat, is_force, {}});
-    if (!is_force) lab.course.tracks.back().value.push_back(port.rest);
+    lab.trajectory.channels.push_back({port.mat, is_force, {}});
+    if (!is_force) lab.trajectory.channels.back().value.push_back(port.rest);
   }
   if (played.empty()) return;
   stage.play_until(lab.duration_s, [&] {
     for (std::size_t p = 0; p < played.size(); ++p) {
-      lab.course.tracks[p].value.push_back(stage.given(*played[p]));
+      lab.trajectory.channels[p].value.push_back(stage.given(*played[p]));
     }
   });
 }

@@ -12,7 +12,7 @@ namespace cordis::cli {
 struct LabScene {
   scene::Scene scene;
   double duration_s = 0.0;  ///< of a run
-  plan::InputTrajectory course;
+  plan::InputTrajectory trajectory;
   std::vector<std::string> ports;  ///< what each port does, for a person
 };
 

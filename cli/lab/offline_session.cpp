@@ -87,7 +87,7 @@ class OfflineSession::Runner {
   const device::DeviceConfig& config() const noexcept { return device_.config; }
   const device::AxisValues& given() const noexcept { return channel_.given(); }
   void speak() noexcept { exchange_.send_sample(); }
-  void hear(const engine::World& world) {
+  void read_forces(const engine::World& world) {
     channel_.take_answer(world);
     if (!exchange_.await_answer(std::chrono::nanoseconds(0))) {
       throw std::runtime_error("'" + device_.config.name + "' refused the answer of the scene");
@@ -162,7 +162,7 @@ void OfflineSession::play_until(double time_s, const std::function<void()>& afte
     simulation_->advance(simulation_->steps_per_tick(), events_);
     simulation_->read_signals(row_.data());
     if (simulation_->failed()) throw std::runtime_error(simulation_->failure());
-    for (const auto& player : players_) player->hear(world());
+    for (const auto& player : players_) player->read_forces(world());
     if (after_tick) after_tick();
   }
 }

@@ -1,5 +1,5 @@
-// cli/lab/offline_session.h -- a launch file played in one process: its scene and its devices, without
-// DDS and without clocks.
+// cli/lab/offline_session.h -- a launch file played in one process: its scene and its devices,
+// without DDS and without clocks.
 #pragma once
 
 #include <functional>

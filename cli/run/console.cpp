@@ -1,3 +1,4 @@
+// cli/run/console.cpp
 #include "cli/run/console.h"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// cli/run/machine_watch.cpp
 #include "cli/run/machine_watch.h"
 
 #include <utility>
@@ -27,10 +28,10 @@ std::string MachineWatch::sentence(const LateTickSum& late) const {
 }
 
 std::string MachineWatch::sentence_when_repeated(const LateTickSum& late) {
-  if (is_told_ || late.by_machine < kRepeated) return "";
+  if (is_reported_ || late.by_machine < kRepeated) return "";
   if (figures_().watched_s < machine::TimerWatch::kFirstLookS) return "";
   const std::string text = sentence(late);
-  is_told_ = !text.empty();
+  is_reported_ = !text.empty();
   return text;
 }
 

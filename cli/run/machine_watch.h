@@ -30,7 +30,7 @@ class MachineWatch {
 
  private:
   std::function<machine::TimerFigures()> figures_;
-  bool is_told_ = false;
+  bool is_reported_ = false;
 };
 
 }  // namespace cordis::cli

@@ -100,10 +100,10 @@ class Session : public Watcher {
   int finish() {
     take_statuses();
     const std::vector<std::string> names = names_of(plan_);
-    const bool heard = std::any_of(names.begin(), names.end(), [this](const auto& name) {
+    const bool is_reporting = std::any_of(names.begin(), names.end(), [this](const auto& name) {
       return board_.find(name) != nullptr;
     });
-    if (heard) {
+    if (is_reporting) {
       output_.print("");
       output_.print(status_table(names, board_));
       const std::string reason = machine_.sentence(board_.late_ticks());

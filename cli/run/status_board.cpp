@@ -59,7 +59,7 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   }
   if (status.kind() == "device_node" &&
       (status.port_energy_j() != 0.0 || status.passivity_ticks() > 0)) {
-    text += fmt::format("{} gave the hand {:.3g} J, braked in {}\n", node, status.port_energy_j(),
+    text += fmt::format("{} gave the hand {:.3g} J, damped in {}\n", node, status.port_energy_j(),
                         config::count_text(status.passivity_ticks(), "tick"));
   }
   if (status.kind() == "sim_node") {
@@ -95,8 +95,8 @@ std::string aligned(const std::vector<Row>& rows) {
 }  // namespace
 
 bool StatusBoard::put(const msg::NodeStatus& status) {
-  const auto life = first_run_of_.find(status.node());
-  if (status.run() < (life == first_run_of_.end() ? first_run_ : life->second)) return false;
+  const auto life = first_epoch_of_.find(status.node());
+  if (status.epoch() < (life == first_epoch_of_.end() ? first_epoch_ : life->second)) return false;
   msg::NodeStatus& newest = newest_[status.node()];
   const std::uint64_t silent_ticks = newest.silent_ticks();
   newest = status;
@@ -104,8 +104,8 @@ bool StatusBoard::put(const msg::NodeStatus& status) {
   return true;
 }
 
-void StatusBoard::begin_life(const std::string& node, std::uint64_t first_run) {
-  first_run_of_[node] = first_run;
+void StatusBoard::begin_life(const std::string& node, std::uint64_t first_epoch) {
+  first_epoch_of_[node] = first_epoch;
   newest_.erase(node);
 }
 

@@ -19,17 +19,16 @@ struct LateTickSum {
 /// Keeps the newest status of each node by name.
 class StatusBoard {
  public:
-  /// @param first_run  statuses of an older life of a node, or of another process of the same name,
-  /// are not of this
-  ///                   session: a run is identified by its start on CLOCK_MONOTONIC [ns]
-  explicit StatusBoard(std::uint64_t first_run) : first_run_(first_run) {}
+  /// @param first_epoch  statuses of an older life of a node, or of another process of the same
+  /// name, are not of this session: an epoch is identified by its start on CLOCK_MONOTONIC [ns]
+  explicit StatusBoard(std::uint64_t first_epoch) : first_epoch_(first_epoch) {}
 
   /// @return whether it was taken.
   bool put(const msg::NodeStatus& status);
 
   /// A node has been started again: what an older life of it said no longer counts.
-  /// @param first_run  as above
-  void begin_life(const std::string& node, std::uint64_t first_run);
+  /// @param first_epoch  as above
+  void begin_life(const std::string& node, std::uint64_t first_epoch);
 
   /// The session is being stopped: from now on no node answers for the silence of another, which
   /// is stopped before it.
@@ -42,9 +41,9 @@ class StatusBoard {
       const std::string& node) const;  ///< nullptr when this life of it never spoke
 
  private:
-  std::uint64_t first_run_;
+  std::uint64_t first_epoch_;
   bool stopping_ = false;
-  std::map<std::string, std::uint64_t> first_run_of_;  // of those that were started again
+  std::map<std::string, std::uint64_t> first_epoch_of_;  // of those that were started again
   std::map<std::string, msg::NodeStatus> newest_;
 };
 

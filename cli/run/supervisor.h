@@ -1,4 +1,5 @@
-// cli/run/supervisor.h -- runs a group of processes: starts them, listens to them, stops them in order.
+// cli/run/supervisor.h -- runs a group of processes: starts them, listens to them, stops them in
+// order.
 #pragma once
 
 #include <chrono>

@@ -55,7 +55,7 @@ class Driver {
   /// board, in an emergency stop for instance, or by the guardian.
   virtual bool is_let_go() const noexcept { return false; }
 
-  /// A scene in lockstep is silent: motors off until the next write(), for then forces grow anew.
+  /// A scene in lockstep is silent: motors off until the next write(), for then forces grow again.
   virtual void let_go() noexcept {}
 
   /// Motors off, at once. start() may follow.

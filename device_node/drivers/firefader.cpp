@@ -28,7 +28,7 @@ void FireFader::begin() noexcept {
   jumps_.forget();
 }
 
-/// The mark begins a request anew wherever the board is.
+/// The mark restarts a request wherever the board is.
 std::size_t FireFader::release(Message& message) const noexcept {
   message[0] = kRequestMark;
   std::fill_n(message.begin() + 1, kFaders, std::uint8_t{0});
@@ -45,23 +45,23 @@ std::size_t FireFader::request(const AxisValues& force_n, Message& message) noex
   return 1 + kFaders;
 }
 
-Hardware::Heard FireFader::hear(std::uint8_t byte) noexcept {
+Hardware::Received FireFader::receive(std::uint8_t byte) noexcept {
   if (byte == kAnswerMark) {
     const bool cut_short = length_ < kAnswer;
     length_ = 0;
-    return cut_short ? Heard::kBad : Heard::kNothing;
+    return cut_short ? Received::kBad : Received::kNothing;
   }
-  if (length_ >= kAnswer) return Heard::kNothing;
+  if (length_ >= kAnswer) return Received::kNothing;
   answer_[length_++] = byte;
-  if (length_ < kAnswer) return Heard::kNothing;
+  if (length_ < kAnswer) return Received::kNothing;
   AxisValues place{};
   for (std::size_t a = 0; a < static_cast<std::size_t>(layout().count); ++a) {
     const double share = answer_[a] / kLargestPosition;
     place[a] = layout().lowest_m + share * (layout().highest_m - layout().lowest_m);
   }
-  if (!jumps_.believes(place)) return Heard::kBad;
+  if (!jumps_.believes(place)) return Received::kBad;
   newest_ = place;
-  return Heard::kSample;
+  return Received::kSample;
 }
 
 std::unique_ptr<Driver> make_firefader(const config::Value& section, const AxisLayout& layout,

@@ -22,7 +22,7 @@ class FireFader final : public Hardware {
   std::size_t greet(Message&) noexcept override { return 0; }
   std::size_t release(Message& message) const noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
-  Heard hear(std::uint8_t byte) noexcept override;
+  Received receive(std::uint8_t byte) noexcept override;
   void position(AxisValues& position_m) const noexcept override { position_m = newest_; }
 
  public:

@@ -96,15 +96,15 @@ std::size_t Haply::request(const AxisValues& force_n, Message& message) noexcept
   return count;
 }
 
-Hardware::Heard Haply::hear(std::uint8_t byte) noexcept {
-  if (length_ == 0 && byte != haply_.device_id) return Heard::kBad;
+Hardware::Received Haply::receive(std::uint8_t byte) noexcept {
+  if (length_ == 0 && byte != haply_.device_id) return Received::kBad;
   answer_[length_++] = byte;
-  if (length_ < kAnswer) return Heard::kNothing;
+  if (length_ < kAnswer) return Received::kNothing;
   length_ = 0;
   return take_angles();
 }
 
-Hardware::Heard Haply::take_angles() noexcept {
+Hardware::Received Haply::take_angles() noexcept {
   Pantograph::Pair angle{};
   const auto order = by_port();
   for (std::size_t i = 0; i < 2; ++i) {
@@ -112,9 +112,9 @@ Hardware::Heard Haply::take_angles() noexcept {
   }
   const bool sane = std::abs(angle[0]) < kFarthestTurn && std::abs(angle[1]) < kFarthestTurn;
   const Pantograph::Pose pose = sane ? haply_.arms.forward(angle) : Pantograph::Pose{};
-  if (!pose.exists || !jumps_.believes({pose.pen_m[0], pose.pen_m[1]})) return Heard::kBad;
+  if (!pose.exists || !jumps_.believes({pose.pen_m[0], pose.pen_m[1]})) return Received::kBad;
   pose_ = pose;
-  return Heard::kSample;
+  return Received::kSample;
 }
 
 void Haply::position(AxisValues& position_m) const noexcept {

@@ -39,7 +39,7 @@ class Haply final : public Hardware {
   std::size_t greet(Message& message) noexcept override;
   std::size_t release(Message& message) const noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
-  Heard hear(std::uint8_t byte) noexcept override;
+  Received receive(std::uint8_t byte) noexcept override;
   void fall_silent() noexcept override { length_ = 0; }  // of an answer that lost a byte
   void position(AxisValues& position_m) const noexcept override;
 
@@ -48,7 +48,7 @@ class Haply final : public Hardware {
 
  private:
   static constexpr std::size_t kAnswer = 9;  // id and two floats
-  Heard take_angles() noexcept;
+  Received take_angles() noexcept;
   std::array<std::size_t, 2> by_port() const noexcept;  // arms in the order of their ports
 
   HaplySettings haply_;

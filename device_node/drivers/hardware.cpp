@@ -121,7 +121,7 @@ void Hardware::greet_now(std::int64_t now) noexcept {
   if (greets_) wire_->send({message.data(), count});
 }
 
-/// The board has started anew behind an open wire.
+/// The board has restarted behind an open wire.
 void Hardware::restart() noexcept {
   hold_motors(0);
   contact_ = Contact::kGreeting;
@@ -176,21 +176,21 @@ bool Hardware::listen(std::int64_t until) noexcept {
 bool Hardware::take(std::span<const std::uint8_t> bytes) noexcept {
   bool found = false;
   for (const std::uint8_t byte : bytes) {
-    const Heard heard = hear(byte);
-    if (heard == Heard::kWrong) {
+    const Received received = receive(byte);
+    if (received == Received::kWrong) {
       lose();
       return false;
     }
-    if (heard == Heard::kLetGo) hold_motors(node::monotonic_nsec() + kLetGoFor);
-    if (heard == Heard::kLetGoOnce) hold_motors(0);
-    if (heard == Heard::kRestarted) restart();
-    const bool sampled = heard == Heard::kSample || heard == Heard::kOldSample;
-    if (heard == Heard::kGreeted && greets_) welcome();
+    if (received == Received::kLetGo) hold_motors(node::monotonic_nsec() + kLetGoFor);
+    if (received == Received::kLetGoOnce) hold_motors(0);
+    if (received == Received::kRestarted) restart();
+    const bool sampled = received == Received::kSample || received == Received::kOldSample;
+    if (received == Received::kGreeted && greets_) welcome();
     if (sampled) position(position_);
     if (sampled && contact_ == Contact::kGreeting && !greets_) contact_ = Contact::kPresent;
-    if (sampled || heard == Heard::kGreeted) last_sample_nsec_ = node::monotonic_nsec();
-    bad_ += heard == Heard::kBad;
-    found = found || heard == Heard::kSample;
+    if (sampled || received == Received::kGreeted) last_sample_nsec_ = node::monotonic_nsec();
+    bad_ += received == Received::kBad;
+    found = found || received == Received::kSample;
   }
   return found;
 }

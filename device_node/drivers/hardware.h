@@ -67,7 +67,7 @@ class Hardware : public Driver {
   using Message = std::array<std::uint8_t, kLargestMessage>;
 
   /// What a byte brought about.
-  enum class Heard : std::uint8_t {
+  enum class Received : std::uint8_t {
     kNothing,
     kGreeted,    ///< the device is the right one
     kWrong,      ///< it is not: the wire is closed
@@ -75,7 +75,7 @@ class Hardware : public Driver {
     kOldSample,  ///< one that answers an earlier request
     kLetGo,      ///< the board has let go of its motors, and may go on to
     kLetGoOnce,  ///< it has, and takes forces again
-    kRestarted,  ///< the board has started anew, and knows nothing of what it was told
+    kRestarted,  ///< the board has restarted, and knows nothing of what it was told
     kBad         ///< damaged
   };
 
@@ -91,7 +91,7 @@ class Hardware : public Driver {
   virtual std::size_t release(Message& message) const noexcept = 0;
   /// Writes the request that carries forces [N].
   virtual std::size_t request(const AxisValues& force_n, Message& message) noexcept = 0;
-  virtual Heard hear(std::uint8_t byte) noexcept = 0;
+  virtual Received receive(std::uint8_t byte) noexcept = 0;
   /// In every period: tells what has repeated itself. @param now_nsec  CLOCK_MONOTONIC
   virtual void report_repeats(std::int64_t /*now_nsec*/) noexcept {}
   /// It has listened, and nothing has come at all.

@@ -7,7 +7,7 @@ namespace cordis::device {
 
 void JumpCheck::forget() noexcept {
   known_ = false;
-  doubted_ = false;
+  has_candidate_ = false;
 }
 
 bool JumpCheck::is_near(const AxisValues& a, const AxisValues& b) const noexcept {
@@ -18,10 +18,11 @@ bool JumpCheck::is_near(const AxisValues& a, const AxisValues& b) const noexcept
 }
 
 bool JumpCheck::believes(const AxisValues& place_m) noexcept {
-  const bool near = !known_ || is_near(place_m, last_) || (doubted_ && is_near(place_m, doubt_));
-  (near ? last_ : doubt_) = place_m;
+  const bool near =
+      !known_ || is_near(place_m, last_) || (has_candidate_ && is_near(place_m, candidate_));
+  (near ? last_ : candidate_) = place_m;
   known_ = true;
-  doubted_ = !near;
+  has_candidate_ = !near;
   return near;
 }
 

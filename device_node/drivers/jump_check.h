@@ -23,9 +23,9 @@ class JumpCheck {
 
   double largest_step_m_;
   bool known_ = false;
-  bool doubted_ = false;
-  AxisValues last_{};   // believed
-  AxisValues doubt_{};  // not believed, if doubted_
+  bool has_candidate_ = false;
+  AxisValues last_{};       // believed
+  AxisValues candidate_{};  // not believed, if has_candidate_
 };
 
 }  // namespace cordis::device

@@ -105,13 +105,13 @@ std::size_t Kfb1::greet(Message& message) noexcept {
 }
 
 std::size_t Kfb1::configure(Message& message) noexcept {
-  constexpr double kMost = 4e9;
+  constexpr double kMaxForceMn = 4e9;
   compare_with_file();
   Message payload{};
   payload[0] = kConfig;
   put16(payload.data() + 1, static_cast<unsigned>(std::min(layout().rate_hz, 65535.0)));
   put32(payload.data() + 3,
-        static_cast<std::uint32_t>(std::min(layout().force_limit_n * 1e3, kMost)));
+        static_cast<std::uint32_t>(std::min(layout().force_limit_n * 1e3, kMaxForceMn)));
   return seal(payload, 7, message);
 }
 
@@ -143,60 +143,60 @@ std::size_t Kfb1::request(const AxisValues& force_n, Message& message) noexcept 
   return seal(payload, 4 + 2 * count, message);
 }
 
-Hardware::Heard Kfb1::hear(std::uint8_t byte) noexcept {
+Hardware::Received Kfb1::receive(std::uint8_t byte) noexcept {
   if (byte != 0) {
     if (length_ < frame_.size()) frame_[length_] = byte;
     length_ = std::min(length_ + 1, frame_.size() + 1);  // one more: too long
-    return Heard::kNothing;
+    return Received::kNothing;
   }
-  const Heard heard = length_ == 0 ? Heard::kNothing : take_frame();
+  const Received received = length_ == 0 ? Received::kNothing : take_frame();
   length_ = 0;
-  return heard;
+  return received;
 }
 
-Hardware::Heard Kfb1::take_frame() noexcept {
-  if (length_ > frame_.size()) return Heard::kBad;
+Hardware::Received Kfb1::take_frame() noexcept {
+  if (length_ > frame_.size()) return Received::kBad;
   const std::size_t count = unseal(frame_, length_);
-  if (count == 0) return Heard::kBad;
+  if (count == 0) return Received::kBad;
   const Bytes payload(frame_.data(), count);
   if (payload[0] == kInfo) return take_info(payload);
   if (payload[0] == kState) return take_state(payload);
   if (payload[0] == kEvent && payload.size() > 1) return take_event(payload[1]);
-  return Heard::kNothing;  // or of a later version
+  return Received::kNothing;  // or of a later version
 }
 
 /// While the board repeats an event because it lasts, that is one event.
-Hardware::Heard Kfb1::take_event(std::uint8_t code) noexcept {
+Hardware::Received Kfb1::take_event(std::uint8_t code) noexcept {
   constexpr std::uint8_t kSaturated = 3;
   constexpr std::uint8_t kWatchdogFired = 4;
   constexpr std::int64_t kOver = 500'000'000;  // not repeated for so long [ns]
   constexpr std::array<const char*, 5> kWords = {"", "it is too hot", "emergency stop",
                                                  "a motor is saturated",
                                                  "its watchdog has fired: no FORCE for 20 ms"};
-  if (code == 0 || code >= kWords.size()) return Heard::kNothing;
+  if (code == 0 || code >= kWords.size()) return Received::kNothing;
   const std::int64_t now = node::monotonic_nsec();
-  const bool goes_on = code == told_ && now - event_nsec_ < kOver;
-  told_ = code;
+  const bool goes_on = code == logged_ && now - event_nsec_ < kOver;
+  logged_ = code;
   event_nsec_ = now;
   if (!goes_on && events_[code].record(now))
     spdlog::warn("kfb1: the board reports: {}", kWords[code]);
-  if (code == kSaturated) return Heard::kNothing;
-  return code == kWatchdogFired ? Heard::kLetGoOnce : Heard::kLetGo;
+  if (code == kSaturated) return Received::kNothing;
+  return code == kWatchdogFired ? Received::kLetGoOnce : Received::kLetGo;
 }
 
-Hardware::Heard Kfb1::take_info(Bytes payload) noexcept {
-  if (payload.size() < 17) return Heard::kBad;
+Hardware::Received Kfb1::take_info(Bytes payload) noexcept {
+  if (payload.size() < 17) return Received::kBad;
   const int keys = payload[2];
   if (payload[1] != kVersion || keys != layout().count || get32(payload, 7) == 0) {
-    if (!wrong_boards_.record(node::monotonic_nsec())) return Heard::kWrong;
+    if (!wrong_boards_.record(node::monotonic_nsec())) return Received::kWrong;
     spdlog::error("kfb1: the device has {} and speaks version {}; the device file says {}",
                   config::count_text(payload[2], "key"), payload[1],
                   config::count_text(static_cast<std::size_t>(layout().count), "axis", "axes"));
-    return Heard::kWrong;
+    return Received::kWrong;
   }
   travel_m_ = get32(payload, 3) * 1e-6;
   force_n_ = get32(payload, 7) * 1e-3;
-  return Heard::kGreeted;
+  return Received::kGreeted;
 }
 
 /// Tells where the device is not what its file promises to scenes. A device that is stronger than
@@ -222,24 +222,24 @@ void Kfb1::compare_with_file() noexcept {
   }
 }
 
-Hardware::Heard Kfb1::take_state(Bytes payload) noexcept {
+Hardware::Received Kfb1::take_state(Bytes payload) noexcept {
   const auto count = static_cast<std::size_t>(layout().count);
-  if (payload.size() < 10 + 2 * count || payload[2] != count) return Heard::kBad;
+  if (payload.size() < 10 + 2 * count || payload[2] != count) return Received::kBad;
   for (std::size_t a = 0; a < count; ++a) {
     const double share = static_cast<std::int16_t>(get16(payload, 8 + 2 * a)) / kFullScale;
     newest_[a] = layout().lowest_m + 0.5 * (share + 1.0) * travel_m_;
   }
   const bool newest = payload[1] == sequence_;
-  if (has_restarted(get32(payload, 4))) return Heard::kRestarted;
+  if (has_restarted(get32(payload, 4))) return Received::kRestarted;
   if (newest) {
     board_usec_ = get32(payload, 4);
     board_asked_nsec_ = asked_nsec_;
   }
-  return newest ? Heard::kSample : Heard::kOldSample;
+  return newest ? Received::kSample : Received::kOldSample;
 }
 
 /// The time of a board goes on by no more than has passed since its last STATE was asked for. That
-/// of a board that has started anew is earlier, which looks like up to 71 minutes later.
+/// of a board that has restarted is earlier, which looks like up to 71 minutes later.
 bool Kfb1::has_restarted(std::uint32_t board_usec) noexcept {
   constexpr std::int64_t kClockError = 1'000'000;  // [us]
   constexpr std::int64_t kReordered = 10'000;      // an older datagram [us]

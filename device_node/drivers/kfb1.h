@@ -23,7 +23,7 @@ class Kfb1 final : public Hardware {
   std::size_t configure(Message& message) noexcept override;
   std::size_t release(Message& message) const noexcept override;
   std::size_t request(const AxisValues& force_n, Message& message) noexcept override;
-  Heard hear(std::uint8_t byte) noexcept override;
+  Received receive(std::uint8_t byte) noexcept override;
   void report_repeats(std::int64_t now_nsec) noexcept override;
   void position(AxisValues& position_m) const noexcept override { position_m = newest_; }
 
@@ -31,10 +31,10 @@ class Kfb1 final : public Hardware {
   BoardWatchdog board_watchdog() const noexcept override { return BoardWatchdog::kLetsGo; }
 
  private:
-  Heard take_frame() noexcept;
-  Heard take_info(std::span<const std::uint8_t> payload) noexcept;
-  Heard take_state(std::span<const std::uint8_t> payload) noexcept;
-  Heard take_event(std::uint8_t code) noexcept;
+  Received take_frame() noexcept;
+  Received take_info(std::span<const std::uint8_t> payload) noexcept;
+  Received take_state(std::span<const std::uint8_t> payload) noexcept;
+  Received take_event(std::uint8_t code) noexcept;
   bool has_restarted(std::uint32_t board_usec) noexcept;
   void compare_with_file() noexcept;
 
@@ -43,7 +43,7 @@ class Kfb1 final : public Hardware {
   std::uint8_t sequence_ = 0;          // of the newest FORCE
   double travel_m_ = 0.04;             // as the device says
   double force_n_ = 20.0;              // likewise: of the largest value
-  std::uint8_t told_ = 0;              // code of the EVENT that was logged last, while it goes on
+  std::uint8_t logged_ = 0;            // code of the EVENT that was logged last, while it goes on
   std::int64_t event_nsec_ = 0;        // when it came last
   std::int64_t asked_nsec_ = 0;        // when the newest FORCE was sent
   std::uint32_t board_usec_ = 0;       // time of the board in a STATE

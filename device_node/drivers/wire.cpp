@@ -45,7 +45,7 @@ class SerialLine final : public Wire {
     file_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     termios line{};
     const bool opened = file_ >= 0 && tcgetattr(file_, &line) == 0;  // writes to nothing but a line
-    tell(opened ? 0 : errno);
+    log_reason(opened ? 0 : errno);
     if (!opened) return false;
     if (!record_mine(flock(file_, LOCK_EX | LOCK_NB) == 0, path_.c_str())) return false;
     cfmakeraw(&line);
@@ -59,15 +59,15 @@ class SerialLine final : public Wire {
 
  private:
   /// Says why the line cannot be opened, once until the reason changes.
-  void tell(int reason) noexcept {
-    if (std::exchange(told_, reason) == reason || reason == 0) return;
+  void log_reason(int reason) noexcept {
+    if (std::exchange(logged_, reason) == reason || reason == 0) return;
     spdlog::warn("{} cannot be opened: {}{}", path_, std::strerror(reason),
                  reason == EACCES ? "; is this user in the group 'dialout'?" : "");
   }
 
   std::string path_;
   speed_t baud_;
-  int told_ = 0;  // errno
+  int logged_ = 0;  // errno
 };
 
 class Datagrams final : public Wire {
@@ -77,31 +77,31 @@ class Datagrams final : public Wire {
     is_stream_ = false;
   }
   ~Datagrams() override {
-    if (claim_ >= 0) ::close(claim_);
+    if (lock_ >= 0) ::close(lock_);
   }
 
  protected:
   bool connect() noexcept override {
-    if (!record_mine(claim(), name_.c_str())) return false;
+    if (!record_mine(lock(), name_.c_str())) return false;
     file_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     return file_ >= 0 &&
            ::connect(file_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_) == 0;
   }
 
  private:
-  /// For good, for the wire is opened anew again and again.
-  bool claim() noexcept {
-    if (claim_ >= 0) return true;
+  /// For good, for the wire is opened again and again.
+  bool lock() noexcept {
+    if (lock_ >= 0) return true;
     char mine[32];
     std::snprintf(mine, sizeof mine, "cordis/udp/%08x:%04x", address_.sin_addr.s_addr,
                   static_cast<unsigned>(address_.sin_port));
-    claim_ = node::try_to_claim(mine);
-    return claim_ >= 0;
+    lock_ = node::try_to_lock(mine);
+    return lock_ >= 0;
   }
 
   sockaddr_in address_;
   std::string name_;
-  int claim_ = -1;
+  int lock_ = -1;
 };
 
 }  // namespace

@@ -12,14 +12,14 @@
 
 enum { PWM_TOP = 511, ROOM = 128 /* bytes, a power of 2 */ };
 
-static volatile uint8_t heard[ROOM]; /* bytes of the host not yet taken */
-static volatile uint8_t heard_end;
-static uint8_t heard_begin;
+static volatile uint8_t received[ROOM]; /* bytes of the host not yet taken */
+static volatile uint8_t received_end;
+static uint8_t received_begin;
 static volatile uint32_t turns; /* of timer 0, 256 ticks of 4 us each */
 
 ISR(USART_RX_vect) {
-  heard[heard_end % ROOM] = UDR0;
-  ++heard_end;
+  received[received_end % ROOM] = UDR0;
+  ++received_end;
 }
 
 ISR(TIMER0_OVF_vect) {
@@ -109,7 +109,7 @@ int main(void) {
   kfb1_start(&keyboard, &board);
   sei();
   for (;;) {
-    while (heard_begin != heard_end) kfb1_byte(&keyboard, heard[heard_begin++ % ROOM]);
+    while (received_begin != received_end) kfb1_byte(&keyboard, received[received_begin++ % ROOM]);
     kfb1_tick(&keyboard);
   }
 }

@@ -28,7 +28,7 @@ enum kfb1_type {
   KFB1_EVENT = 0x06
 };
 
-/* Codes of EVENT. At all but KFB1_SATURATED the host takes its forces back, and ramps them up anew. */
+/* Codes of EVENT. At all but KFB1_SATURATED the host takes its forces back, and ramps them up again. */
 enum kfb1_event_code {
   KFB1_TOO_HOT = 1,
   KFB1_EMERGENCY_STOP = 2,

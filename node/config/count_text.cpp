@@ -1,3 +1,4 @@
+// node/config/count_text.cpp
 #include "node/config/count_text.h"
 
 namespace cordis::config {

@@ -31,19 +31,19 @@ using Map = std::vector<std::vector<double>>;
 
 /// One row per coordinate; none without an end-piece. Faults in it are told by the device itself.
 Map read_map(MappingReader& reader) {
-  Problems told_elsewhere;
+  Problems reported_elsewhere;
   Map map;
   for (const Value& row : reader.optional_mapping("end_piece").find("map").items()) {
     std::vector<double>& numbers = map.emplace_back();
     for (const Value& entry : row.items()) {
-      numbers.push_back(read_number(entry, "an entry", 0.0, {}, told_elsewhere));
+      numbers.push_back(read_number(entry, "an entry", 0.0, {}, reported_elsewhere));
     }
   }
   return map;
 }
 
 /// The largest sum of a row of |A A^T|, which no eigenvalue exceeds.
-double leverage_of(const Map& map) {
+double inertia_ratio_of(const Map& map) {
   double largest = 0.0;
   for (const std::vector<double>& a : map) {
     double sum = 0.0;
@@ -89,7 +89,7 @@ DeviceLimits read_device_limits(MappingReader& reader) {
   const Map map = read_map(reader);
   if (!map.empty()) {
     limits.coordinate_count = static_cast<int>(map.size());
-    limits.leverage = leverage_of(map);
+    limits.inertia_ratio = inertia_ratio_of(map);
   }
   const double travel_m = reader.optional_number("travel_m", 0.04, Range::between(0.001, 1.0));
   const std::string rest = reader.optional_choice("rest", "top", {"top", "middle", "bottom"});

@@ -14,7 +14,7 @@ struct DeviceLimits {
   int coordinate_count = 1;  ///< of the handle: the axes, or what an end-piece makes of them
   /// At least the largest eigenvalue of A A^T, A being the map of the end-piece: by so much a
   /// coordinate of the handle may be lighter than an axis, and have less viscosity.
-  double leverage = 1.0;
+  double inertia_ratio = 1.0;
   double rate_hz = 1000.0;
   double lowest_m = -0.04;  ///< workspace of an axis; rest is 0, up is positive
   double highest_m = 0.0;
@@ -33,8 +33,10 @@ struct DeviceLimits {
   int delay_periods = 0;                 ///< that the device adds on purpose
 
   /// What a hand that moves the handle along any of its coordinates has for certain.
-  double coordinate_mass_kg() const noexcept { return moving_mass_kg / leverage; }
-  double coordinate_viscosity_n_s_per_m() const noexcept { return viscosity_n_s_per_m / leverage; }
+  double coordinate_mass_kg() const noexcept { return moving_mass_kg / inertia_ratio; }
+  double coordinate_viscosity_n_s_per_m() const noexcept {
+    return viscosity_n_s_per_m / inertia_ratio;
+  }
 };
 
 /// The mapping of a device_node: the file that its section names (`device: FILE`), with the other
@@ -44,7 +46,8 @@ Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& pro
 /// Reads these keys, and marks them as known; the reader's owner reads the others.
 DeviceLimits read_device_limits(MappingReader& reader);
 
-/// Which device a node plays. Of several nodes that play one, the strongest that is there is heard.
+/// Which device a node plays. Of several nodes that play one, the strongest that is there is
+/// received.
 struct PlayedDevice {
   std::string name;   ///< `standby_for`: the name of the node itself when it is not given
   int strength = 10;  ///< `strength`: 5 for a node that plays another's device; 1..1000

@@ -1,3 +1,4 @@
+// node/config/file_kind.cpp
 #include "node/config/file_kind.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// node/config/launch.cpp
 #include "node/config/launch.h"
 
 #include <algorithm>
@@ -180,7 +181,7 @@ const std::vector<std::string>& launcher_keys() {
   return kKeys;
 }
 
-bool Launch::has_stand_ins() const noexcept {
+bool Launch::has_standbys() const noexcept {
   return std::any_of(nodes.begin(), nodes.end(), [](const LaunchNode& node) {
     return node.section.find("standby_for").exists();
   });

@@ -44,7 +44,7 @@ struct Launch {
   std::vector<LaunchNode> nodes;  ///< in the order of the file
 
   /// True if a node plays the device of another (`standby_for` in its section).
-  bool has_stand_ins() const noexcept;
+  bool has_standbys() const noexcept;
 
   /// nullptr when there is none.
   const LaunchNode* find(const std::string& name) const noexcept;

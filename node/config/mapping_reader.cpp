@@ -1,3 +1,4 @@
+// node/config/mapping_reader.cpp
 #include "node/config/mapping_reader.h"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ std::string renamed_hint(const std::string& word, const std::vector<std::string>
 
 /// What a required number is taken for after a problem: in range, so that no second problem follows
 /// from it.
-double stand_in(const Range& range) {
+double placeholder(const Range& range) {
   const Range& r = range;
   const auto fits = [&](double number) {
     return (r.lowest_excluded ? number > r.lowest : number >= r.lowest) && number <= r.highest;
@@ -82,7 +83,7 @@ std::vector<std::string> MappingReader::present_keys() const {
 
 double MappingReader::required_number(const std::string& key, Range range) {
   const Value value = take_required(key);
-  return value.exists() ? number_of(value, key, stand_in(range), range) : stand_in(range);
+  return value.exists() ? number_of(value, key, placeholder(range), range) : placeholder(range);
 }
 
 double MappingReader::optional_number(const std::string& key, double fallback, Range range) {

@@ -1,3 +1,4 @@
+// node/config/nearest_word.cpp
 #include <algorithm>
 #include <array>
 #include <cctype>

@@ -1,3 +1,4 @@
+// node/config/number.cpp
 #include <array>
 #include <cctype>
 #include <charconv>

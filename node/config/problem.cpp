@@ -1,3 +1,4 @@
+// node/config/problem.cpp
 #include "node/config/problem.h"
 
 #include <algorithm>

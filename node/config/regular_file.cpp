@@ -1,3 +1,4 @@
+// node/config/regular_file.cpp
 #include "node/config/regular_file.h"
 
 #include <cerrno>

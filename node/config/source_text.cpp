@@ -1,3 +1,4 @@
+// node/config/source_text.cpp
 #include "node/config/source_text.h"
 
 #include <algorithm>

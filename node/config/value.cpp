@@ -1,3 +1,4 @@
+// node/config/value.cpp
 #include "node/config/value.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Reads YAML by the events of yaml-cpp, which (unlike its nodes) tell quoted from plain scalars,
-// and builds Values.
+// node/config/yaml_reader.cpp -- reads YAML by the events of yaml-cpp, which (unlike its nodes)
+// tell quoted from plain scalars, and builds Values.
 #include <algorithm>
 #include <array>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// node/dds/library_version.cpp
 #include "node/dds/library_version.h"
 
 #include <fastrtps/config.h>

@@ -14,17 +14,17 @@ constexpr auto kLookForEndedProcesses = std::chrono::seconds(1);
 
 }  // namespace
 
-Participant::Participant(const ParticipantConfig& membership) {
-  if (membership.domain < 0 || membership.domain > 101) {
-    throw std::runtime_error("DDS domain must be 0..101, got " + std::to_string(membership.domain));
+Participant::Participant(const ParticipantConfig& config) {
+  if (config.domain < 0 || config.domain > 101) {
+    throw std::runtime_error("DDS domain must be 0..101, got " + std::to_string(config.domain));
   }
-  impl_ = std::make_unique<Impl>(membership);
+  impl_ = std::make_unique<Impl>(config);
 }
 
 Participant::~Participant() = default;
 
-const ParticipantConfig& Participant::membership() const noexcept {
-  return impl_->membership();
+const ParticipantConfig& Participant::config() const noexcept {
+  return impl_->config();
 }
 
 std::vector<Peer> Participant::peers() const {
@@ -43,8 +43,8 @@ std::uint64_t Participant::rejoin_count() const noexcept {
   return impl_->rejoin_count();
 }
 
-Participant::Impl::Impl(const ParticipantConfig& membership)
-    : membership_(membership), presence_(make_presence()), watch_([this] { watch(); }) {}
+Participant::Impl::Impl(const ParticipantConfig& config)
+    : config_(config), presence_(make_presence()), watch_([this] { watch(); }) {}
 
 Participant::Impl::~Impl() {
   {
@@ -79,7 +79,7 @@ void Participant::Impl::add(Endpoint& endpoint) {
 }
 
 std::unique_ptr<Presence> Participant::Impl::make_presence() {
-  return std::make_unique<Presence>(membership_, [this] {
+  return std::make_unique<Presence>(config_, [this] {
     {
       const std::lock_guard lock(watch_mutex_);
       somebody_returned_ = true;

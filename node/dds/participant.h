@@ -11,11 +11,11 @@ namespace cordis::dds {
 
 /// Where a process takes part, and as what.
 struct ParticipantConfig {
-  int domain = 0;          ///< DDS domain, 0..101
-  std::string session;     ///< partition: processes of other sessions hear nothing of this one
-  std::string node;        ///< name of the node, shown by DDS tools
-  bool lockstep = false;   ///< quality of service of the gesture topics
-  bool stand_ins = false;  ///< likewise; the same for all processes of a session
+  int domain = 0;         ///< DDS domain, 0..101
+  std::string session;    ///< partition: processes of other sessions receive nothing of this one
+  std::string node;       ///< name of the node, shown by DDS tools
+  bool lockstep = false;  ///< quality of service of the gesture topics
+  bool standbys = false;  ///< likewise; the same for all processes of a session
 };
 
 /// What all that a participant owns begins with, in DDS.
@@ -36,7 +36,7 @@ struct Peer {
 /// of samples. It drops those that leave, and within about a second those whose process has ended
 /// without leaving.
 /// When one that was dropped is there again, as the same, the two would stay deaf to each other:
-/// the participant then joins anew as another one. Readers and writers stay as they are; samples
+/// the participant then joins again as another one. Readers and writers stay as they are; samples
 /// under way are lost.
 ///
 /// Its threads inherit the priority of the thread that makes it.
@@ -44,13 +44,13 @@ class Participant {
  public:
   /// @throws std::runtime_error when DDS refuses (domain out of range or full, no loopback
   /// interface, ...).
-  explicit Participant(const ParticipantConfig& membership);
+  explicit Participant(const ParticipantConfig& config);
   /// Its readers and writers are gone before.
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  const ParticipantConfig& membership() const noexcept;
+  const ParticipantConfig& config() const noexcept;
 
   /// The participants that it knows of: of all sessions of the domain, and of those that have ended
   /// some until they are dropped.
@@ -59,11 +59,11 @@ class Participant {
   /// Drops a participant at once, for a caller that knows that its process has ended.
   void drop(const Peer& peer) noexcept;
 
-  /// How often it has joined anew.
+  /// How often it has joined again.
   std::uint64_t rejoin_count() const noexcept;
 
-  /// Says in a sentence which process of the session cannot be heard, or cannot hear, because it
-  /// was started with another launch file; empty while there is none.
+  /// Says in a sentence which process of the session cannot be received, or cannot receive, because
+  /// it was started with another launch file; empty while there is none.
   std::string mismatch() const;
 
   struct Impl;

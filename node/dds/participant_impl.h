@@ -19,7 +19,7 @@ namespace cordis::dds {
 /// A reader or a writer, which follows its participant from one presence to the next.
 class Endpoint {
  public:
-  /// Makes its entity of DDS anew. @throws std::runtime_error when DDS refuses; all is as before
+  /// Makes its entity of DDS again. @throws std::runtime_error when DDS refuses; all is as before
   virtual void prepare(Presence& presence) = 0;
   /// From now on the entity prepared is the one in use. That before is not used any more, and
   /// deleted with its presence.
@@ -32,10 +32,10 @@ class Endpoint {
 struct Participant::Impl {
  public:
   /// @throws std::runtime_error when DDS refuses.
-  explicit Impl(const ParticipantConfig& membership);
+  explicit Impl(const ParticipantConfig& config);
   ~Impl();
 
-  const ParticipantConfig& membership() const noexcept { return membership_; }
+  const ParticipantConfig& config() const noexcept { return config_; }
   std::vector<Peer> peers() const;
   std::string mismatch() const;
   std::uint64_t rejoin_count() const noexcept { return rejoin_count_; }
@@ -56,7 +56,7 @@ struct Participant::Impl {
   void watch() noexcept;
   bool rejoin() noexcept;
 
-  const ParticipantConfig membership_;
+  const ParticipantConfig config_;
 
   std::mutex watch_mutex_;  // of the next two
   bool somebody_returned_ = false;

@@ -57,10 +57,10 @@ bool is_free(std::uint16_t port) noexcept {
 ParticipantPorts::ParticipantPorts(int domain) {
   for (int index = 0; index < kMaxParticipants; ++index) {
     discovery_ = discovery_port(domain, index);
-    claim_ = try_to_hold(discovery_);
-    if (claim_ < 0) continue;
+    lock_ = try_to_hold(discovery_);
+    if (lock_ < 0) continue;
     if (is_free(discovery_) && is_free(samples())) return;
-    close(claim_);
+    close(lock_);
   }
   throw std::runtime_error("DDS domain " + std::to_string(domain) + " of this host is full: all " +
                            std::to_string(kMaxParticipants) + " pairs of UDP ports, 127.0.0.1:" +
@@ -70,7 +70,7 @@ ParticipantPorts::ParticipantPorts(int domain) {
 }
 
 ParticipantPorts::~ParticipantPorts() {
-  close(claim_);
+  close(lock_);
 }
 
 }  // namespace cordis::dds

@@ -31,7 +31,7 @@ class ParticipantPorts {
   std::uint16_t samples() const noexcept { return static_cast<std::uint16_t>(discovery_ + 1); }
 
  private:
-  int claim_ = -1;  // a socket
+  int lock_ = -1;  // a socket
   std::uint16_t discovery_ = 0;
 };
 

@@ -30,11 +30,11 @@ rtps::Locator_t loopback(std::uint16_t port) {
   return locator;
 }
 
-fast::DomainParticipantQos participant_qos(const ParticipantConfig& membership,
+fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
                                            const ParticipantPorts& ports) {
   using eprosima::fastrtps::Duration_t;
   fast::DomainParticipantQos qos;
-  qos.name(membership.session + "/" + membership.node);
+  qos.name(config.session + "/" + config.node);
   const std::string identity = process_identity();
   qos.user_data().setValue({identity.begin(), identity.end()});
 
@@ -53,10 +53,10 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& membership,
   builtin.metatrafficUnicastLocatorList.push_back(loopback(ports.discovery()));
   qos.wire_protocol().default_unicast_locator_list.push_back(loopback(ports.samples()));
   for (int index = 0; index < kMaxParticipants; ++index) {
-    builtin.initialPeersList.push_back(loopback(discovery_port(membership.domain, index)));
+    builtin.initialPeersList.push_back(loopback(discovery_port(config.domain, index)));
   }
 
-  // A participant that does not answer for a while may be a process that stands still. When one of
+  // A participant that does not answer for a while may be a process that is stopped. When one of
   // two drops the other and not the other way round, they may stay deaf to each other for good, and
   // the timer of a lease that ends while its participant leaves aborts the process
   // (PDP::check_remote_participant_liveliness). So no lease ends, and no such timer fires;
@@ -90,27 +90,27 @@ bool has_ended(const Peer& peer) noexcept {
 
 }  // namespace
 
-Presence::Presence(const ParticipantConfig& membership, std::function<void()> on_return)
-    : membership_(membership), on_return_(std::move(on_return)), ports_(membership.domain) {
+Presence::Presence(const ParticipantConfig& config, std::function<void()> on_return)
+    : config_(config), on_return_(std::move(on_return)), ports_(config.domain) {
   fast::Log::SetVerbosity(fast::Log::Kind::Error);
   // A deadline that a device has missed when it went is no error.
   fast::Log::SetErrorStringFilter(std::regex("^(?!Could not set next deadline)"));
   participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(membership.domain), participant_qos(membership, ports_), this,
+      static_cast<std::uint32_t>(config.domain), participant_qos(config, ports_), this,
       fast::StatusMask::none());
   if (participant_ == nullptr) {
-    throw std::runtime_error("DDS could not join domain " + std::to_string(membership.domain) +
+    throw std::runtime_error("DDS could not join domain " + std::to_string(config.domain) +
                              " on 127.0.0.1 (is the loopback interface up?)");
   }
   fast::PublisherQos publisher_qos;
-  publisher_qos.partition().push_back(membership.session.c_str());
+  publisher_qos.partition().push_back(config.session.c_str());
   publisher_ = participant_->create_publisher(publisher_qos);
   fast::SubscriberQos subscriber_qos;
-  subscriber_qos.partition().push_back(membership.session.c_str());
+  subscriber_qos.partition().push_back(config.session.c_str());
   subscriber_ = participant_->create_subscriber(subscriber_qos);
   if (publisher_ == nullptr || subscriber_ == nullptr) {
     fast::DomainParticipantFactory::get_instance()->delete_participant(participant_);
-    throw std::runtime_error("DDS refused the session '" + membership.session + "'");
+    throw std::runtime_error("DDS refused the session '" + config.session + "'");
   }
 }
 
@@ -194,9 +194,9 @@ void Presence::compare(const Endpoint& endpoint, bool writes, bool gone) {
   const std::lock_guard lock(mutex_);
   mismatches_.erase(endpoint.guid());
   const std::vector<std::string> partitions = endpoint.m_qos.m_partition.names();
-  if (gone || std::ranges::find(partitions, membership_.session) == partitions.end()) return;
+  if (gone || std::ranges::find(partitions, config_.session) == partitions.end()) return;
   for (const Topic topic : kGestureTopics) {
-    const TopicQos row = qos_of(topic, membership_.lockstep, membership_.stand_ins);
+    const TopicQos row = qos_of(topic, config_.lockstep, config_.standbys);
     if (endpoint.topicName() != row.name) continue;
     const bool exclusive = endpoint.m_qos.m_ownership.kind == fast::EXCLUSIVE_OWNERSHIP_QOS;
     const bool reliable = endpoint.m_qos.m_reliability.kind == fast::RELIABLE_RELIABILITY_QOS;
@@ -208,7 +208,7 @@ void Presence::compare(const Endpoint& endpoint, bool writes, bool gone) {
       what = "has another clock than that of this node";
     }
     if (what == nullptr) continue;
-    mismatches_[endpoint.guid()] = std::string("a process of session '") + membership_.session +
+    mismatches_[endpoint.guid()] = std::string("a process of session '") + config_.session +
                                    "' does not share " + row.name +
                                    " with this node: its launch file " + what +
                                    "; start all nodes of a session with the same launch file";

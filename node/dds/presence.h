@@ -28,9 +28,9 @@ namespace fast = eprosima::fastdds::dds;
 class Presence final : public fast::DomainParticipantListener {
  public:
   /// @param on_return  called from a thread of DDS when a participant that was dropped is there
-  /// again. The two do not hear each other then: see Participant.
+  /// again. The two do not receive each other then: see Participant.
   /// @throws std::runtime_error when DDS refuses.
-  Presence(const ParticipantConfig& membership, std::function<void()> on_return);
+  Presence(const ParticipantConfig& config, std::function<void()> on_return);
   /// Deletes all readers and writers too.
   ~Presence() override;
   Presence(const Presence&) = delete;
@@ -64,7 +64,7 @@ class Presence final : public fast::DomainParticipantListener {
   template <class Endpoint>
   void compare(const Endpoint& endpoint, bool writes, bool gone);
 
-  ParticipantConfig membership_;
+  ParticipantConfig config_;
   std::function<void()> on_return_;
   ParticipantPorts ports_;
   fast::DomainParticipant* participant_ = nullptr;

@@ -20,7 +20,7 @@ template <class Message>
 struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
   Impl(Participant::Impl& joined, Topic topic)
       : participant(joined),
-        row(qos_of(topic, joined.membership().lockstep, joined.membership().stand_ins)) {}
+        row(qos_of(topic, joined.config().lockstep, joined.config().standbys)) {}
 
   Participant::Impl& participant;
   const TopicQos row;

@@ -3,8 +3,8 @@
 
 namespace cordis::dds {
 
-TopicQos qos_of(Topic topic, bool lockstep, bool stand_ins) noexcept {
-  const int exclusive_for_msec = stand_ins ? 20 : 0;
+TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept {
+  const int exclusive_for_msec = standbys ? 20 : 0;
   // name, reliable, kept, depth, asynchronous, heartbeat [ms], exclusive for [ms]
   switch (topic) {
     case Topic::kPositions:

@@ -35,9 +35,9 @@ struct TopicQos {
 
 /// @param lockstep   the two gesture topics are reliable in a lockstep session, and best effort
 ///                   otherwise
-/// @param stand_ins  they are exclusive in a session where several nodes may play a device. The
+/// @param standbys  they are exclusive in a session where several nodes may play a device. The
 ///                   deadline that this needs costs 40 us of CPU a message on either side.
-TopicQos qos_of(Topic topic, bool lockstep, bool stand_ins) noexcept;
+TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept;
 
 /// The topics whose quality of service depends on the launch file.
 inline constexpr std::array kGestureTopics{Topic::kPositions, Topic::kForces};

@@ -17,7 +17,7 @@ template <class Message>
 struct Writer<Message>::Impl final : Endpoint {
   Impl(Participant::Impl& joined, Topic topic, int strength_among_writers)
       : participant(joined),
-        row(qos_of(topic, joined.membership().lockstep, joined.membership().stand_ins)),
+        row(qos_of(topic, joined.config().lockstep, joined.config().standbys)),
         strength(strength_among_writers) {}
 
   Participant::Impl& participant;

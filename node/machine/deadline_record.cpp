@@ -1,3 +1,4 @@
+// node/machine/deadline_record.cpp
 #include "node/machine/deadline_record.h"
 
 namespace cordis::machine {

@@ -1,3 +1,4 @@
+// node/machine/processor_time.cpp
 #include "node/machine/processor_time.h"
 
 #include <sstream>

@@ -1,3 +1,4 @@
+// node/machine/system_files.cpp
 #include "node/machine/system_files.h"
 
 #include <algorithm>

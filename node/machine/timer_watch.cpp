@@ -1,3 +1,4 @@
+// node/machine/timer_watch.cpp
 #include "node/machine/timer_watch.h"
 
 #include <algorithm>

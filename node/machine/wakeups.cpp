@@ -1,3 +1,4 @@
+// node/machine/wakeups.cpp
 #include "node/machine/wakeups.h"
 
 #include <thread>

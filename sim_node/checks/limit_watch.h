@@ -1,4 +1,5 @@
-// sim_node/checks/limit_watch.h -- how near a scene comes to the limit of its step while it is played.
+// sim_node/checks/limit_watch.h -- how near a scene comes to the limit of its step while it is
+// played.
 #pragma once
 
 #include <cstdint>

@@ -14,8 +14,8 @@ using config::number_text;
 
 constexpr double kFingertip = 2000.0;  // stiffness of one that presses [N/m]
 
-/// What a device bears at a port, and why.
-struct Bearable {
+/// What a device supports at a port, and why.
+struct ImpedanceLimit {
   double most = 0.0;  // [N/m] or [N s/m]; 0: nothing is known
   std::string reason;
 };
@@ -26,22 +26,22 @@ double rounded_down(double number) {
   return std::floor(number * scale) / scale;
 }
 
-/// The wall that a device bears because of its mass and viscosity. Nothing is known of a device
+/// The wall that a device supports because of its mass and viscosity. Nothing is known of a device
 /// without viscosity.
-class Borne {
+class ImpedanceLimits {
  public:
-  Borne(const config::DeviceLimits& limits, int delay_periods)
+  ImpedanceLimits(const config::DeviceLimits& limits, int delay_periods)
       : limits_(limits),
         loop_{1.0 / limits.rate_hz, delay_periods + limits.delay_periods},
         device_{limits.coordinate_mass_kg(), limits.coordinate_viscosity_n_s_per_m()} {}
 
-  Bearable stiffness(double port_viscosity) const {
+  ImpedanceLimit stiffness(double port_viscosity) const {
     if (limits_.stiffness_limit_n_per_m > 0.0) return declared(limits_.stiffness_limit_n_per_m);
     if (limits_.viscosity_n_s_per_m <= 0.0) return {};
     const double most = plan::stable_port_stiffness(device_, port_viscosity, loop_);
     return {std::max(most, 1e-9), reason()};
   }
-  Bearable viscosity() const {
+  ImpedanceLimit viscosity() const {
     if (limits_.damping_limit_n_s_per_m > 0.0) return declared(limits_.damping_limit_n_s_per_m);
     if (limits_.viscosity_n_s_per_m <= 0.0) return {};
     const double most = plan::stable_port_viscosity(device_, loop_);
@@ -50,7 +50,7 @@ class Borne {
   }
 
  private:
-  static Bearable declared(double limit) { return {limit, "declares it"}; }
+  static ImpedanceLimit declared(double limit) { return {limit, "declares it"}; }
   std::string reason() const {
     return "with " + number_text(device_.mass) + " kg, " + number_text(device_.viscosity) +
            " N s/m and a delay of " + count_text(static_cast<std::size_t>(loop_.delay), "period") +
@@ -62,19 +62,19 @@ class Borne {
   plan::PortDevice device_;
 };
 
-/// Empty when the device bears the load.
+/// Empty when the device supports the load.
 std::string trouble(const PortDemand& demand, const plan::PortLoad& load, const std::string& is,
                     const config::DeviceLimits& limits, int delay_periods) {
   const std::string port = "port '" + demand.port + "' " + is;
-  const std::string device = ", and the device '" + demand.device + "' can bear ";
-  const Borne borne(limits, delay_periods);
+  const std::string device = ", and the device '" + demand.device + "' supports ";
+  const ImpedanceLimits supported(limits, delay_periods);
   // First: where the viscosity alone is too much, no stiffness is little enough.
-  const Bearable viscosity = borne.viscosity();
+  const ImpedanceLimit viscosity = supported.viscosity();
   if (viscosity.most > 0.0 && load.viscosity > viscosity.most) {
     return port + " as viscous as " + number_text(load.viscosity) + " N s/m" + device +
            number_text(viscosity.most) + " N s/m (" + viscosity.reason + ")";
   }
-  const Bearable stiffness = borne.stiffness(load.viscosity);
+  const ImpedanceLimit stiffness = supported.stiffness(load.viscosity);
   if (stiffness.most > 0.0 && load.stiffness > stiffness.most) {
     return port + " as stiff as " + number_text(std::ceil(load.stiffness)) + " N/m" + device +
            number_text(std::floor(stiffness.most)) + " N/m (" + stiffness.reason + ")";
@@ -148,12 +148,12 @@ PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& lim
   PortVerdict verdict;
   verdict.lacks = lacks_of(demand, limits);
   if (demand.role == scene::Role::kLiaison) {
-    verdict.doubt = trouble_with_a_hand(demand, limits, delay_periods);
+    verdict.uncertainty = trouble_with_a_hand(demand, limits, delay_periods);
     return verdict;
   }
   verdict.refusal = trouble(demand, demand.least, "is", limits, delay_periods);
   if (verdict.refusal.empty()) {
-    verdict.doubt = trouble(demand, demand.most, "may become", limits, delay_periods);
+    verdict.uncertainty = trouble(demand, demand.most, "may become", limits, delay_periods);
   }
   return verdict;
 }

@@ -1,4 +1,4 @@
-// sim_node/checks/port_check.h -- whether a device can bear a scene at its ports.
+// sim_node/checks/port_check.h -- whether a device supports a scene at its ports.
 #pragma once
 
 #include <cstdint>
@@ -32,14 +32,14 @@ std::vector<PortDemand> demands_of(const scene::Scene& scene);
 /// What is to be said about a device at a port; all empty when nothing is.
 struct PortVerdict {
   std::vector<std::string> lacks;  ///< of what the port needs, with what the device has
-  std::string refusal;  ///< why it must not be given the port, with the number it may have
-  std::string doubt;    ///< when it may become too stiff for it
+  std::string refusal;      ///< why it must not be given the port, with the number it may have
+  std::string uncertainty;  ///< when it may become too stiff for it
 };
 
 /// Either role: the device has to have what the port needs. Role mass: the device alone has to stay
 /// still before the port. Nothing is said of a device whose viscosity and limits are unknown. Role
-/// liaison: every device bears every scene, but where the age of its forces makes a fingertip too
-/// stiff for the port there is doubt. Cost: about 1 ms.
+/// liaison: every device supports every scene, but where the age of its forces makes a fingertip
+/// too stiff for the port the verdict is uncertain. Cost: about 1 ms.
 /// @param delay_periods  of the wire: 1 in real time, 0 in lockstep
 PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
                        int delay_periods);

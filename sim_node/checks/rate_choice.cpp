@@ -18,7 +18,7 @@ void select_rate(scene::Scene& scene, config::Problems& problems) {
       scene.integrator_is_open ? plan::integrators_for(scene.network)
                                : std::vector<std::string>{to_string(scene.network.integrator)},
       !scene.ports.empty());
-  if (!choice.doubt.empty()) problems.warning(asked.place, choice.doubt);
+  if (!choice.uncertainty.empty()) problems.warning(asked.place, choice.uncertainty);
   if (scene.rate_is_open) {
     scene::set_step(scene, choice.rate_hz, engine::integrator_named(choice.integrator));
   } else if (scene.step_rate_hz < choice.needed_hz) {

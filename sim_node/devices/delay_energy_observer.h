@@ -1,4 +1,5 @@
-// sim_node/devices/delay_energy_observer.h -- whether forces that are late make more energy than a scene takes.
+// sim_node/devices/delay_energy_observer.h -- whether forces that are late make more energy than a
+// scene takes.
 #pragma once
 
 #include "sim_node/devices/recent_peak.h"
@@ -35,10 +36,10 @@ class DelayEnergyObserver {
 
   /// Once a tick for every device.
   /// @param made_j   by how much its M has grown
-  /// @param doubt_j  by how much it may have grown more, >= 0
+  /// @param uncertainty_j  by how much it may have grown more, >= 0
   /// @param taken_j  D
   /// @param moved_j  |f . dx| over its delay
-  void enter(double made_j, double doubt_j, double taken_j, double moved_j) noexcept;
+  void enter(double made_j, double uncertainty_j, double taken_j, double moved_j) noexcept;
 
   bool makes_energy() const noexcept { return makes_energy_; }
   double excess_j() const noexcept { return account_; }  ///< A [J]

@@ -10,12 +10,12 @@
 namespace cordis::sim {
 
 DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role role,
-                               std::vector<scene::Port> ports, double rate_hz, std::uint64_t run)
+                               std::vector<scene::Port> ports, double rate_hz, std::uint64_t epoch)
     : device_(std::move(device)),
       device_id_(device_id),
       role_(role),
       ports_(std::move(ports)),
-      run_(run),
+      epoch_(epoch),
       lost_after_ticks_(std::max(3, static_cast<int>(std::lround(kLostAfter * rate_hz)))),
       lost_after_nsec_(std::llround(lost_after_ticks_ * 1e9 / rate_hz)),
       rejoin_ticks_(std::max(1, static_cast<int>(std::lround(kRejoin * rate_hz)))),
@@ -28,7 +28,7 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
 }
 
 void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexcept {
-  received_run_ = before.received_run_;
+  received_epoch_ = before.received_epoch_;
   received_sample_ = before.received_sample_;
   received_time_nsec_ = before.received_time_nsec_;
   answers_ = before.answers_;
@@ -37,8 +37,8 @@ void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexc
   if (role_ != before.role_) return;
   newest_ = before.newest_;
   has_new_ = before.has_new_;
-  new_run_ = before.new_run_;
-  borne_ = before.borne_;
+  restarted_ = before.restarted_;
+  is_supported_ = before.is_supported_;
   if (!at_once) return;
   from_ = before.from_;
   to_ = before.to_;
@@ -67,7 +67,7 @@ bool DeviceExchange::goes_on(const Sample& sample) noexcept {
   const std::uint64_t jump =
       later ? sample.sample() - received_sample_ : received_sample_ - sample.sample();
   if (!later && jump <= max_jump_ && ++older_in_a_row_ < lost_after_ticks_) return false;
-  new_run_ = new_run_ || !later || jump > max_jump_;
+  restarted_ = restarted_ || !later || jump > max_jump_;
   if (!later || jump == 1) return true;
   missed_count_ += std::min(jump - 1, max_jump_);
   std::int64_t gap_nsec = 0;  // times are as hostile as numbers
@@ -78,21 +78,21 @@ bool DeviceExchange::goes_on(const Sample& sample) noexcept {
 
 template <class Sample, class Values>
 DeviceExchange::Reception DeviceExchange::receive(
-    const Sample& sample, const Values& values, bool borne,
+    const Sample& sample, const Values& values, bool is_supported,
     const std::array<double, kMaxAxes>& most) noexcept {
   const auto count = static_cast<std::size_t>(sample.axis_count());
-  bool usable = sample.run() != 0 && count >= axis_count_ && count <= kMaxAxes;
+  bool usable = sample.epoch() != 0 && count >= axis_count_ && count <= kMaxAxes;
   for (std::size_t axis = 0; usable && axis < count; ++axis) usable = std::isfinite(values[axis]);
-  const bool same_run = sample.run() == received_run_;
-  if (usable && same_run && sample.sample() == received_sample_) return Reception::kRepeated;
-  if (!usable || (same_run && !goes_on(sample))) {
+  const bool same_epoch = sample.epoch() == received_epoch_;
+  if (usable && same_epoch && sample.sample() == received_sample_) return Reception::kRepeated;
+  if (!usable || (same_epoch && !goes_on(sample))) {
     ++refused_count_;
     return Reception::kRefused;
   }
   older_in_a_row_ = 0;
-  new_run_ = new_run_ || !same_run;
-  borne_ = borne;
-  received_run_ = sample.run();
+  restarted_ = restarted_ || !same_epoch;
+  is_supported_ = is_supported;
+  received_epoch_ = sample.epoch();
   received_sample_ = sample.sample();
   received_time_nsec_ = sample.time_nsec();
   for (std::size_t axis = 0; axis < count; ++axis)
@@ -101,23 +101,25 @@ DeviceExchange::Reception DeviceExchange::receive(
   return Reception::kNew;
 }
 
-DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample, bool borne,
+DeviceExchange::Reception DeviceExchange::receive(const msg::GesturePositions& sample,
+                                                  bool is_supported,
                                                   const DeviceReach& reach) noexcept {
   CORDIS_ASSERT(role_ == Role::kMass);
-  return receive(sample, sample.position_m(), borne, reach.travel_m);
+  return receive(sample, sample.position_m(), is_supported, reach.travel_m);
 }
 
-DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample, bool borne,
+DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& sample,
+                                                  bool is_supported,
                                                   const DeviceReach& reach) noexcept {
   CORDIS_ASSERT(role_ == Role::kLiaison);
   const std::uint64_t before = missed_count_;
-  const Reception reception = receive(sample, sample.force_n(), borne, reach.force_n);
+  const Reception reception = receive(sample, sample.force_n(), is_supported, reach.force_n);
   if (reception == Reception::kNew) take_work(sample, reach, missed_count_ - before + 1);
   return reception;
 }
 
 /// No hand gives more than its largest force along the way of the fastest one; when a sample tells
-/// so, the account of the brake begins anew. @param periods  since the sample before
+/// so, the account of the passivity controller restarts. @param periods  since the sample before
 void DeviceExchange::take_work(const msg::GestureForces& sample, const DeviceReach& reach,
                                std::uint64_t periods) noexcept {
   double max_n = 0.0;
@@ -125,7 +127,7 @@ void DeviceExchange::take_work(const msg::GestureForces& sample, const DeviceRea
   const double max_j = max_n * kFastest * static_cast<double>(periods) / rate_hz_;
   const double given_j = sample.work_j() - hand_work_;
   new_work_ = new_work_ || !(std::abs(given_j) <= max_j);  // also what is no number
-  felt_answer_ = sample.answered_run() == run_ ? sample.answered_sample() : 0;
+  echoed_answer_ = sample.answered_epoch() == epoch_ ? sample.answered_sample() : 0;
   hand_work_ = sample.work_j();
 }
 
@@ -134,15 +136,15 @@ void DeviceExchange::begin_tick() noexcept {
   const bool gap = std::exchange(after_gap_, false);
   const bool stood_still = gap && even_ticks_ == rejoin_ticks_;
   even_ticks_ = gap ? 0 : std::min(even_ticks_ + 1, rejoin_ticks_);
-  if (!borne_) {
+  if (!is_supported_) {
     is_expected_ = false;
     silent_ticks_ = lost_after_ticks_ + 1;
   } else if (has_new_) {
-    if (is_lost() || new_run_ || stood_still) {
+    if (is_lost() || restarted_ || stood_still) {
       rejoin_left_ = rejoin_ticks_;
-      if (brake_) brake_->start();
+      if (passivity_controller_) passivity_controller_->start();
     }
-    new_run_ = false;
+    restarted_ = false;
     is_expected_ = true;
     silent_ticks_ = 0;
   } else if (!is_lost()) {
@@ -153,7 +155,7 @@ void DeviceExchange::begin_tick() noexcept {
   if (is_lost()) {
     // Positions are held where they are; the force of a hand that is gone is none.
     if (role_ == Role::kLiaison) to_.fill(0.0);
-    if (brake_) brake_->start();
+    if (passivity_controller_) passivity_controller_->start();
     return;
   }
   const double share = 1.0 / static_cast<double>(std::max(rejoin_left_, 1));
@@ -180,20 +182,20 @@ void DeviceExchange::play(engine::World& world, int number, int count) noexcept 
       world.impose_position(port.mat, value);
       continue;
     }
-    if (brake_) value += brake_->brake(p, world, value);
+    if (passivity_controller_) value += passivity_controller_->damping_force(p, world, value);
     world.set_external_force(port.mat, value);
   }
-  if (!brake_ || number != 1) return;
-  if (std::exchange(new_work_, false)) brake_->start();
-  brake_->hear(hand_work_, felt_answer_, world.dissipated());
+  if (!passivity_controller_ || number != 1) return;
+  if (std::exchange(new_work_, false)) passivity_controller_->start();
+  passivity_controller_->receive(hand_work_, echoed_answer_, world.dissipated());
 }
 
 template <class Answer>
 void DeviceExchange::fill_header(Answer& answer, std::int64_t now_nsec) noexcept {
   answer.device_id(device_id_);
-  answer.run(run_);
+  answer.epoch(epoch_);
   answer.sample(++answers_);
-  answer.answered_run(received_run_);
+  answer.answered_epoch(received_epoch_);
   answer.answered_sample(received_sample_);
   answer.answered_time_nsec(received_time_nsec_);
   answer.time_nsec(now_nsec);
@@ -218,7 +220,7 @@ msg::GestureForces& DeviceExchange::answer_forces(const engine::World& world, bo
 msg::GesturePositions& DeviceExchange::answer_positions(const engine::World& world, bool safe,
                                                         std::int64_t now_nsec) noexcept {
   fill_header(positions_, now_nsec);
-  if (brake_) brake_->record_answer(answers_);
+  if (passivity_controller_) passivity_controller_->record_answer(answers_);
   if (!safe) return positions_;
   for (const scene::Port& port : ports_) {
     const engine::Vec3 moved = world.position(port.mat) - port.rest;

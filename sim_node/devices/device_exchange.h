@@ -1,4 +1,5 @@
-// sim_node/devices/device_exchange.h -- what sim_node exchanges with one device in a gesture period.
+// sim_node/devices/device_exchange.h -- what sim_node exchanges with one device in a gesture
+// period.
 #pragma once
 
 #include <array>
@@ -25,16 +26,16 @@ constexpr std::size_t kMaxAxes = 16;
 ///
 /// A new position is reached in a ramp over the sub-steps of one period, and the answer holds the
 /// forces of the last sub-step, computed at the position of the sample itself: no virtual damping
-/// is lost, and no delay added. A device that was not heard for kLostAfter is lost: its MATs hold
-/// still, its forces count as 0, and it is given none. When it is heard again, or another process
-/// is heard in its place, that takes over gradually, within kRejoin, and so do the forces it is
-/// given: neither side jumps. Both are counted in ticks. Likewise after a gap as long in its
-/// samples, when the scene itself stood still; one that is always late plays what comes. Real time:
-/// every function but the constructor is O(axes), allocates nothing and does not throw.
+/// is lost, and no delay added. A device that was silent for kLostAfter is lost: its MATs hold
+/// still, its forces count as 0, and it is given none. When it is received again, or another
+/// process is received in its place, that takes over gradually, within kRejoin, and so do the
+/// forces it is given: neither side jumps. Both are counted in ticks. Likewise after a gap as long
+/// in its samples, when the scene itself stalled; one that is always late plays what comes. Real
+/// time: every function but the constructor is O(axes), allocates nothing and does not throw.
 ///
 /// Whoever takes part in the session may write a sample, so no number of it is trusted. Positions
 /// and forces stay within the reach of the device. Numbers of samples that jump by more than
-/// kMaxJump, or go on for kLostAfter below the highest known one, begin anew:
+/// kMaxJump, or go on for kLostAfter below the highest known one, restart:
 /// whatever came before, the samples of the device are taken again, and it takes over gradually.
 class DeviceExchange {
  public:
@@ -44,12 +45,12 @@ class DeviceExchange {
   static constexpr double kFastest = 10.0;    ///< of a hand that gives work [m/s]
 
   /// @param rate_hz  ticks per second
-  /// @param run      of this sim_node; its messages carry it
+  /// @param epoch    of this sim_node; its messages carry it
   DeviceExchange(std::string device, std::uint32_t device_id, Role role,
-                 std::vector<scene::Port> ports, double rate_hz, std::uint64_t run);
+                 std::vector<scene::Port> ports, double rate_hz, std::uint64_t epoch);
 
-  /// Role liaison: from now on its ports are braked when they make energy.
-  void brake_with(PassivityController brake) { brake_ = std::move(brake); }
+  /// Role liaison: from now on its ports are damped when they make energy.
+  void damp_with(PassivityController controller) { passivity_controller_ = std::move(controller); }
 
   /// Goes on where the exchange of the same device was in the scene before, so that neither side
   /// takes a message twice or for one of another. The device takes over gradually as after a
@@ -65,12 +66,12 @@ class DeviceExchange {
     kRepeated,  ///< the message answered last, sent again: the last answer is wanted again
     kRefused    ///< malformed, not finite, or older than what is known
   };
-  /// Precondition: role mass. @param borne  false: the device cannot bear the scene; it counts as
-  /// lost, though its samples are answered. @param reach  of the device
-  Reception receive(const msg::GesturePositions& sample, bool borne = true,
+  /// Precondition: role mass. @param is_supported  false: the scene is beyond the limits of the
+  /// device; it counts as lost, though its samples are answered. @param reach  of the device
+  Reception receive(const msg::GesturePositions& sample, bool is_supported = true,
                     const DeviceReach& reach = {}) noexcept;
   /// Precondition: role liaison.
-  Reception receive(const msg::GestureForces& sample, bool borne = true,
+  Reception receive(const msg::GestureForces& sample, bool is_supported = true,
                     const DeviceReach& reach = {}) noexcept;
 
   /// Begins a tick: takes over the newest sample.
@@ -94,19 +95,21 @@ class DeviceExchange {
   bool is_lost() const noexcept { return silent_ticks_ > lost_after_ticks_; }
   /// True if a device was there, fell silent, and was not let go of.
   bool is_missed() const noexcept { return is_expected_ && is_lost(); }
-  bool was_heard() const noexcept { return received_run_ != 0; }
+  bool has_received() const noexcept { return received_epoch_ != 0; }
   /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
-  std::int64_t heard_time_nsec() const noexcept { return received_time_nsec_; }
+  std::int64_t received_time_nsec() const noexcept { return received_time_nsec_; }
   std::uint64_t refused_count() const noexcept { return refused_count_; }
   /// Samples of the device never seen; of a jump of their numbers those of kMaxJump.
   std::uint64_t missed_count() const noexcept { return missed_count_; }
-  /// Ticks in which a port of role liaison was braked.
-  std::uint64_t passivity_ticks() const noexcept { return brake_ ? brake_->passivity_ticks() : 0; }
+  /// Ticks in which a port of role liaison was damped.
+  std::uint64_t passivity_ticks() const noexcept {
+    return passivity_controller_ ? passivity_controller_->passivity_ticks() : 0;
+  }
 
  private:
   double force_share() const noexcept;
   template <class Sample, class Values>
-  Reception receive(const Sample& sample, const Values& values, bool borne,
+  Reception receive(const Sample& sample, const Values& values, bool is_supported,
                     const std::array<double, kMaxAxes>& most) noexcept;
   template <class Sample>
   bool goes_on(const Sample& sample) noexcept;
@@ -119,21 +122,21 @@ class DeviceExchange {
   std::uint32_t device_id_;
   Role role_;
   std::vector<scene::Port> ports_;
-  std::uint64_t run_;
-  std::optional<PassivityController> brake_;
+  std::uint64_t epoch_;
+  std::optional<PassivityController> passivity_controller_;
 
   // The newest sample, and the numbers of the one that the last answer took into account.
   std::array<double, kMaxAxes> newest_{};
-  std::uint64_t received_run_ = 0;
+  std::uint64_t received_epoch_ = 0;
   std::uint64_t received_sample_ = 0;
   std::int64_t received_time_nsec_ = 0;
-  std::uint64_t felt_answer_ = 0;  // role liaison: that the newest sample speaks of
-  double hand_work_ = 0.0;         // what the hand had given there [J]
+  std::uint64_t echoed_answer_ = 0;  // role liaison: that the newest sample speaks of
+  double hand_work_ = 0.0;           // what the hand had given there [J]
   bool has_new_ = false;
-  bool new_run_ = false;    // it is the first of another process, or its numbers begin anew
+  bool restarted_ = false;  // it is the first of another process, or its numbers restart
   bool new_work_ = false;   // what it tells of its work does not follow from what it told before
   bool after_gap_ = false;  // it is the first after a gap of kLostAfter
-  bool borne_ = true;
+  bool is_supported_ = true;
   bool is_expected_ = false;  // it was there in a tick, and nobody has let go of it since
 
   std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick

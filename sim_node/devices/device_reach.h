@@ -16,7 +16,8 @@ struct DeviceReach {
   static constexpr std::size_t kCoordinates = 16;
   static constexpr double kFarthest = 2.0;      ///< no hand reaches farther [m]
   static constexpr double kStrongest = 1000.0;  ///< and none is stronger [N]
-  /// Stops give, sensors err, and a coordinate of an end-piece bears more together with the others.
+  /// Stops give, sensors err, and a coordinate of an end-piece supports more together with the
+  /// others.
   static constexpr double kTravelShare = 1.25;
   static constexpr double kForceShare = 2.0;
 
@@ -32,23 +33,23 @@ struct DeviceReach {
 
 /// What a device tells of its travel and its forces; a number of it that makes no sense, or says
 /// more than a hand is capable of, leaves the bound of an unknown device.
-DeviceReach reach_of(const msg::DeviceDescription& told) noexcept;
+DeviceReach reach_of(const msg::DeviceDescription& description) noexcept;
 
-/// The reaches of the devices of a session, by device and run of its process. One thread writes,
+/// The reaches of the devices of a session, by device and epoch of its process. One thread writes,
 /// any number reads, and neither waits for the other.
 class ReachTable {
  public:
-  /// What is told first of a run is believed. The last kRows are kept.
-  void put(std::uint32_t device_id, std::uint64_t run, const DeviceReach& reach) noexcept;
+  /// The first description of an epoch is believed. The last kRows are kept.
+  void put(std::uint32_t device_id, std::uint64_t epoch, const DeviceReach& reach) noexcept;
 
   /// Reach of a device; that of an unknown one before its description. Real time: no lock.
-  DeviceReach find(std::uint32_t device_id, std::uint64_t run) const noexcept;
+  DeviceReach find(std::uint32_t device_id, std::uint64_t epoch) const noexcept;
 
  private:
   static constexpr std::size_t kRows = 64;
 
   struct Row {
-    std::atomic<std::uint64_t> run{0};  ///< 0 while the row is empty or being written
+    std::atomic<std::uint64_t> epoch{0};  ///< 0 while the row is empty or being written
     std::atomic<std::uint32_t> device_id{0};
     std::array<std::atomic<double>, DeviceReach::kCoordinates> travel_m{};
     std::array<std::atomic<double>, DeviceReach::kCoordinates> force_n{};

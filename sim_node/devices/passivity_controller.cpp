@@ -22,8 +22,8 @@ Matrix3d projection_on(const std::vector<Vec3>& directions) {
   return projection;
 }
 
-/// What a step bears beside the links of the port: with K' + 2 Z' of both ends of every link, and
-/// twice its own, it stays below 4, and no braking turns the motion round.
+/// What keeps a step stable beside the links of the port: with K' + 2 Z' of both ends of every
+/// link, and twice its own, it stays below 4, and no damping turns the motion round.
 double max_damping(const plan::PortLoad& load, double mass, double dt) {
   const double share = 2.0 - load.stiffness * dt * dt / mass - 2.0 * load.viscosity * dt / mass;
   return std::clamp(share, 0.0, 1.0) * mass / dt;
@@ -40,24 +40,24 @@ PassivityController::PassivityController(const scene::Scene& scene,
       settled_ticks_(settled_ticks(scene)) {
   const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
   for (const scene::Port& port : ports) {
-    Braked braked;
-    braked.mat = port.mat;
-    braked.axes = projection_on(port.directions);
-    braked.most =
+    DampedPort damped;
+    damped.mat = port.mat;
+    damped.axes = projection_on(port.directions);
+    damped.most =
         max_damping(plan::port_load(graph, port.mat), scene.network.mats[port.mat].mass, dt_);
-    ports_.push_back(braked);
+    ports_.push_back(damped);
   }
 }
 
 void PassivityController::start() noexcept {
   ticks_ = 0;
-  told_ = false;
+  reports_work_ = false;
   strict_ = 0.0;
 }
 
-Vec3 PassivityController::brake(std::size_t port, const engine::World& world,
-                                const Vec3& hand_force) noexcept {
-  Braked& at = ports_[port];
+Vec3 PassivityController::damping_force(std::size_t port, const engine::World& world,
+                                        const Vec3& hand_force) noexcept {
+  DampedPort& at = ports_[port];
   const Vec3 position = world.position(at.mat);
   if (!std::exchange(at.moves, true)) at.now = at.before = position;
   const Vec3 way = position - at.now;
@@ -65,24 +65,24 @@ Vec3 PassivityController::brake(std::size_t port, const engine::World& world,
   // f . (x(n+1) - x(n-1)) / 2, summed by ways instead of forces.
   brought_ += 0.5 * (hand_force + at.force).dot(way);
   moved_ = std::max(moved_, std::abs(hand_force.dot(way)) * steps_per_tick_);
-  strict_ += 0.5 * at.braking.dot(way + way_before);
+  strict_ += 0.5 * at.damping_force.dot(way + way_before);
   at.before = at.now;
   at.now = position;
   at.force = hand_force;
-  at.braking = Vec3::Zero();
+  at.damping_force = Vec3::Zero();
   const Vec3 moved = at.axes * way;
-  if (strict_ <= 0.0 || moved.squaredNorm() == 0.0) return at.braking;
+  if (strict_ <= 0.0 || moved.squaredNorm() == 0.0) return at.damping_force;
   const double damping = std::min(at.most, strict_ * dt_ / moved.squaredNorm());
-  at.braking = -damping / dt_ * moved;
-  braked_ = true;
-  return at.braking;
+  at.damping_force = -damping / dt_ * moved;
+  is_damping_ = true;
+  return at.damping_force;
 }
 
 /// Once a tick: what the work of hands whose force bends between two samples may be less than
 /// their samples say [J].
-double PassivityController::doubt() noexcept {
+double PassivityController::uncertainty() noexcept {
   double sum = 0.0;
-  for (Braked& at : ports_) {
+  for (DampedPort& at : ports_) {
     const double way = (at.now - std::exchange(at.place, at.now)).norm();
     const Vec3 change = at.force - std::exchange(at.force_before, at.force);
     const double bend = (change - std::exchange(at.change, change)).norm();
@@ -91,33 +91,33 @@ double PassivityController::doubt() noexcept {
   return sum;
 }
 
-void PassivityController::hear(double work_j, std::uint64_t answered_sample,
-                               double dissipated_j) noexcept {
+void PassivityController::receive(double work_j, std::uint64_t answered_sample,
+                                  double dissipated_j) noexcept {
   // After a reset the scene has answers long before those that samples still speak of.
   if (newest_answer_ > kRoom) last_entered_ = std::max(last_entered_, newest_answer_ - kRoom);
   while (last_entered_ < newest_answer_) brought_at_answer_[++last_entered_ % kRoom] = brought_;
   ++ticks_;
-  if (std::exchange(braked_, false)) ++passivity_ticks_;
+  if (std::exchange(is_damping_, false)) ++passivity_ticks_;
   const double moved = std::exchange(moved_, 0.0);
-  const double doubt_j = doubt();
-  // A device that has not heard for so long is led on gradually when it hears again.
-  const bool later = answered_sample > last_entered_;  // than any answer: no device heard that
+  const double uncertainty_j = uncertainty();
+  // A device that has received nothing for so long is led on gradually when it receives again.
+  const bool later = answered_sample > last_entered_;  // than any answer: no device received that
   if (!later && last_entered_ - answered_sample >= kRoom) start();
   const bool known = answered_sample != 0 && !later && last_entered_ - answered_sample < kRoom;
   if (!known || !std::isfinite(work_j)) return;
-  told_ = told_ || work_j != 0.0;
+  reports_work_ = reports_work_ || work_j != 0.0;
   const auto ticks_late = static_cast<double>(last_entered_ - answered_sample);
   const double made = brought_at_answer_[answered_sample % kRoom] - work_j;
-  if (told_ && static_cast<double>(ticks_) > settled_ticks_) {
-    judge(made - made_before_, doubt_j, dissipated_j, moved * std::max(ticks_late, 1.0));
+  if (reports_work_ && static_cast<double>(ticks_) > settled_ticks_) {
+    evaluate(made - made_before_, uncertainty_j, dissipated_j, moved * std::max(ticks_late, 1.0));
   }
   made_before_ = made;
 }
 
-void PassivityController::judge(double made_j, double doubt_j, double taken_j,
-                                double moved_j) noexcept {
+void PassivityController::evaluate(double made_j, double uncertainty_j, double taken_j,
+                                   double moved_j) noexcept {
   const bool made_energy = account_->makes_energy();
-  account_->enter(made_j, doubt_j, taken_j, moved_j);
+  account_->enter(made_j, uncertainty_j, taken_j, moved_j);
   if (!account_->makes_energy()) {
     strict_ = 0.0;
   } else {

@@ -14,28 +14,28 @@ namespace {
 
 constexpr std::size_t kLongestDriver = 64;
 
-bool makes_sense(const msg::DeviceDescription& told) {
+bool makes_sense(const msg::DeviceDescription& description) {
   const auto at_least_zero = [](double value) { return std::isfinite(value) && value >= 0.0; };
-  return std::isfinite(told.rate_hz()) && told.rate_hz() > 0.0 &&
-         std::isfinite(told.moving_mass_kg()) && told.moving_mass_kg() > 0.0 &&
-         at_least_zero(told.viscosity_n_s_per_m()) &&
-         at_least_zero(told.stiffness_limit_n_per_m()) &&
-         at_least_zero(told.damping_limit_n_s_per_m()) &&
-         std::all_of(told.travel_m().begin(), told.travel_m().end(), at_least_zero) &&
-         std::all_of(told.force_n().begin(), told.force_n().end(), at_least_zero) &&
-         told.delay_periods() < 1000 && told.run() != 0;
+  return std::isfinite(description.rate_hz()) && description.rate_hz() > 0.0 &&
+         std::isfinite(description.moving_mass_kg()) && description.moving_mass_kg() > 0.0 &&
+         at_least_zero(description.viscosity_n_s_per_m()) &&
+         at_least_zero(description.stiffness_limit_n_per_m()) &&
+         at_least_zero(description.damping_limit_n_s_per_m()) &&
+         std::all_of(description.travel_m().begin(), description.travel_m().end(), at_least_zero) &&
+         std::all_of(description.force_n().begin(), description.force_n().end(), at_least_zero) &&
+         description.delay_periods() < 1000 && description.epoch() != 0;
 }
 
-config::DeviceLimits limits_of(const msg::DeviceDescription& told) {
+config::DeviceLimits limits_of(const msg::DeviceDescription& description) {
   config::DeviceLimits limits;
-  limits.rate_hz = told.rate_hz();
-  limits.moving_mass_kg = told.moving_mass_kg();
-  limits.viscosity_n_s_per_m = told.viscosity_n_s_per_m();
-  limits.stiffness_limit_n_per_m = told.stiffness_limit_n_per_m();
-  limits.damping_limit_n_s_per_m = told.damping_limit_n_s_per_m();
-  limits.coordinate_travel_m = told.travel_m();
-  limits.coordinate_force_n = told.force_n();
-  limits.delay_periods = static_cast<int>(told.delay_periods());
+  limits.rate_hz = description.rate_hz();
+  limits.moving_mass_kg = description.moving_mass_kg();
+  limits.viscosity_n_s_per_m = description.viscosity_n_s_per_m();
+  limits.stiffness_limit_n_per_m = description.stiffness_limit_n_per_m();
+  limits.damping_limit_n_s_per_m = description.damping_limit_n_s_per_m();
+  limits.coordinate_travel_m = description.travel_m();
+  limits.coordinate_force_n = description.force_n();
+  limits.delay_periods = static_cast<int>(description.delay_periods());
   return limits;
 }
 
@@ -45,25 +45,25 @@ void RefusedDevices::play(const scene::Scene& scene) {
   std::vector<PortDemand> demands = demands_of(scene);
   const std::lock_guard lock(mutex_);
   demands_ = std::move(demands);
-  judge();
+  evaluate();
 }
 
-bool RefusedDevices::hear(const msg::DeviceDescription& told) {
-  if (!makes_sense(told)) return false;
+bool RefusedDevices::receive(const msg::DeviceDescription& description) {
+  if (!makes_sense(description)) return false;
   const std::lock_guard lock(mutex_);
-  const auto is_same = [&told](const Known& device) {
-    return device.device_id == told.device_id() && device.run == told.run();
+  const auto is_same = [&description](const Known& device) {
+    return device.device_id == description.device_id() && device.epoch == description.epoch();
   };
   if (std::ranges::any_of(known_, is_same)) return false;
   if (known_.size() >= kMaxKnown) known_.pop_front();
-  known_.push_back(
-      {told.device_id(), told.run(), told.driver().substr(0, kLongestDriver), limits_of(told)});
-  judge();
+  known_.push_back({description.device_id(), description.epoch(),
+                    description.driver().substr(0, kLongestDriver), limits_of(description)});
+  evaluate();
   return true;
 }
 
-/// All known devices anew.
-void RefusedDevices::judge() {
+/// All known devices again.
+void RefusedDevices::evaluate() {
   std::string text;
   std::size_t count = 0;
   for (const Known& device : known_) {
@@ -75,15 +75,15 @@ void RefusedDevices::judge() {
       if (!verdict.refusal.empty()) reasons.push_back(verdict.refusal);
       for (const std::string& reason : reasons) why += (why.empty() ? "" : "; ") + reason;
     }
-    if (why.empty() || count == kMost) continue;
-    refused_[count++].store(device.run, std::memory_order_relaxed);
+    if (why.empty() || count == kMaxRefused) continue;
+    refused_[count++].store(device.epoch, std::memory_order_relaxed);
     text += (text.empty() ? "" : "; ") + why + ": driver " + device.driver + " is given no force";
   }
-  for (; count < kMost; ++count) refused_[count].store(0, std::memory_order_relaxed);
+  for (; count < kMaxRefused; ++count) refused_[count].store(0, std::memory_order_relaxed);
   const std::int64_t now = node::monotonic_nsec();
   if (text != text_ && !text.empty() && refusals_.record(now)) spdlog::error("{}", text);
   if (text != text_ && text.empty() && returns_.record(now))
-    spdlog::info("every device can bear the scene again");
+    spdlog::info("every device supports the scene again");
   text_ = std::move(text);
 }
 
@@ -94,10 +94,10 @@ void RefusedDevices::report_repeats() {
   returns_.report(now);
 }
 
-bool RefusedDevices::refuses(std::uint64_t run) const noexcept {
+bool RefusedDevices::refuses(std::uint64_t epoch) const noexcept {
   for (const auto& refused : refused_) {
     const std::uint64_t candidate = refused.load(std::memory_order_relaxed);
-    if (candidate == run) return true;
+    if (candidate == epoch) return true;
     if (candidate == 0) return false;
   }
   return false;

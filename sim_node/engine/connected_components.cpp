@@ -101,18 +101,17 @@ void ConnectedComponents::join_kept(double distance) noexcept {
 
 void ConnectedComponents::join_found(double distance) noexcept {
   grid_.fill(position_.data(), count_p_, distance);
-  const CellPlaces places = grid_.places();
+  const CellTable table = grid_.table();
   for (std::size_t b = across_ ? count_p_ : 0; b < mat_.size(); ++b) {
     const double* point = position_.data() + 4 * b;
     if (!std::isfinite(point[0] + point[1] + point[2])) continue;
     const std::size_t last = std::min(b, count_p_);
     const NearQuery query{
         point[0], point[1], point[2], distance * distance, 0.0, static_cast<double>(last)};
-    const CellGrid::Surroundings around = grid_.around(point, last);
+    const CellGrid::NeighbourCells around = grid_.around(point, last);
     for (std::size_t r = 0; r < around.count; ++r) {
       const CellGrid::Run run = around.runs[r];
-      const std::size_t count =
-          kernel_->find_near(places, run.begin, run.end, query, found_.data());
+      const std::size_t count = kernel_->find_near(table, run.begin, run.end, query, found_.data());
       for (std::size_t i = 0; i < count; ++i) join(found_[i], static_cast<std::uint32_t>(b));
     }
   }

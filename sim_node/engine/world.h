@@ -49,11 +49,11 @@ class World {
   /// rest length kept. Precondition: the link and the state exist. Real time: O(1).
   void force_state(std::uint32_t state_link, std::uint32_t state) noexcept;
 
-  /// Gives the liaisons of a state machine other parameters between two steps; each link stays in its
-  /// state. What their energy changes by counts as switching. If only the new one asks for the
+  /// Gives the liaisons of a state machine other parameters between two steps; each link stays in
+  /// its state. What their energy changes by counts as switching. If only the new one asks for the
   /// impulse, that counts from here on. Not in real time: allocates.
-  /// @throws std::invalid_argument when the network has no such state machine, when the new one is not
-  ///         well-formed, or has not the same number of states.
+  /// @throws std::invalid_argument when the network has no such state machine, when the new one is
+  ///         not well-formed, or has not the same number of states.
   void replace_state_machine(std::uint32_t index, const StateMachine& state_machine);
 
   /// One step. Real time: O(MATs + links), no allocation, never throws.
@@ -81,7 +81,8 @@ class World {
   double rest_length_of(std::uint32_t state_link) const noexcept;  ///< [m]
   /// Pull of the link in the last step [N], positive pulls the ends together; 0 before the first.
   double pull_of(std::uint32_t state_link) const noexcept;
-  /// How often links of a state machine went from one state to another since step 0, over all of them.
+  /// How often links of a state machine went from one state to another since step 0, over all of
+  /// them.
   std::uint64_t change_count(std::uint32_t state_machine, std::uint32_t from,
                              std::uint32_t to) const noexcept;
 
@@ -94,7 +95,7 @@ class World {
   /// Goes on where another world is, of a network that differs in the parameters of links alone:
   /// motion, states, ports, account and counts are taken over, and what the energy of the links
   /// changes by counts as switching. Real time: O(MATs + links + pairs), no allocation.
-  /// @param room  its capacity is at least most_values_of_state(); what is in it is overwritten
+  /// @param room  its capacity is at least max_values_of_state(); what is in it is overwritten
   /// @return false when the networks do not fit; then this world is as it was.
   bool take_over(const World& before, std::vector<double>& room) noexcept;
   /// How many values the state of a world may have.

@@ -42,7 +42,7 @@ double diverging_step_of(const engine::NetworkDescription& network, const Liaiso
 }
 
 /// What is fastened to a block of modes: by how much the stiffnesses together, at most, and one of
-/// them alone, at least, exceed what the block bears at the step of the network.
+/// them alone, at least, exceed what the block supports at the step of the network.
 struct ModalLoad {
   double together = 0.0;
   double alone = 0.0;

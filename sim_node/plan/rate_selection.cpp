@@ -18,7 +18,7 @@ RateSelection choose_for(engine::NetworkDescription network, const AccuracyTarge
       integrator, formula.rate_hz, formula.needed_hz, to_string(formula.reason), -1.0, {}};
   if (wish.over_s == 0.0) return choice;
   if (has_ports) {
-    choice.doubt = "positions are promised for free vibrations alone: its ports are played";
+    choice.uncertainty = "positions are promised for free vibrations alone: its ports are played";
     return choice;
   }
   AccuracyTarget only_limits = wish;
@@ -27,7 +27,7 @@ RateSelection choose_for(engine::NetworkDescription network, const AccuracyTarge
   const RateTrial trial =
       find_rate(network, integrator, {wish.tolerance, wish.over_s, floor.rate_hz, gesture_rate_hz});
   if (trial.rate_hz == 0.0) {
-    choice.doubt = "positions are not promised: " + trial.refusal;
+    choice.uncertainty = "positions are not promised: " + trial.refusal;
     return choice;
   }
   choice.rate_hz = choice.needed_hz = trial.rate_hz;
@@ -54,8 +54,8 @@ RateSelection choose(const engine::NetworkDescription& network, const AccuracyTa
   };
   for (const std::string& integrator : integrators) {
     const RateSelection next = choose_for(network, wish, gesture_rate_hz, integrator, has_ports);
-    const bool keeps_more = best && next.doubt.empty() && !best->doubt.empty();
-    const bool keeps_less = best && !next.doubt.empty() && best->doubt.empty();
+    const bool keeps_more = best && next.uncertainty.empty() && !best->uncertainty.empty();
+    const bool keeps_less = best && !next.uncertainty.empty() && best->uncertainty.empty();
     if (!best || keeps_more || (!keeps_less && cost(next) < cost(*best))) best = next;
   }
   return *best;

@@ -11,11 +11,11 @@ namespace cordis::plan {
 
 struct RateSelection {
   std::string integrator;
-  double rate_hz = 0.0;    ///< a multiple of the gesture rate
-  double needed_hz = 0.0;  ///< the least that serves
-  std::string because;     ///< for a person: what asks for so much
-  double error = -1.0;     ///< of positions after over_s, as tried out; < 0: not tried
-  std::string doubt;       ///< why the positions are not promised; empty when they are
+  double rate_hz = 0.0;     ///< a multiple of the gesture rate
+  double needed_hz = 0.0;   ///< the least that serves
+  std::string because;      ///< for a person: what asks for so much
+  double error = -1.0;      ///< of positions after over_s, as tried out; < 0: not tried
+  std::string uncertainty;  ///< why the positions are not promised; empty when they are
 };
 
 /// Cost of a step of an integrator, in evaluations of all forces of `cordis`: about. A

@@ -36,10 +36,10 @@ double work_of_a_step(const engine::NetworkDescription& network, const std::stri
 }
 
 /// Positions at the same moments for all rates; none where the run blew up.
-class Films {
+class SampledRuns {
  public:
-  Films(const engine::NetworkDescription& network, const std::string& integrator,
-        const RateTrialOptions& wish)
+  SampledRuns(const engine::NetworkDescription& network, const std::string& integrator,
+              const RateTrialOptions& wish)
       : network_(network), integrator_(integrator) {
     constexpr double kMaxSamples = 100.0;
     const double periods = std::max(1.0, std::round(wish.over_s * wish.unit_hz));
@@ -52,14 +52,14 @@ class Films {
   }
 
   bool can_afford(double rate) const {
-    if (films_.contains(rate)) return true;
+    if (runs_.contains(rate)) return true;
     return spent_ + rate * period_ * samples_ * work_of_a_step(network_, integrator_) < kMaxWork;
   }
 
   /// Distance of the first from the second, over the amplitude of the second.
   double difference(double rate, double finer) {
-    const std::vector<double>& first = film(rate);
-    const std::vector<double>& second = film(finer);
+    const std::vector<double>& first = samples_at(rate);
+    const std::vector<double>& second = samples_at(finer);
     if (first.empty() || second.empty()) return kInfinity;
     double square = 0.0;
     for (std::size_t i = 0; i < first.size(); ++i) {
@@ -69,37 +69,37 @@ class Films {
   }
 
  private:
-  double square_about_mean(const std::vector<double>& film) const {
+  double square_about_mean(const std::vector<double>& samples) const {
     const std::size_t width = 3 * masses_.size();
     double square = 0.0;
     for (std::size_t i = 0; i < width; ++i) {
       double mean = 0.0;
-      for (std::size_t at = i; at < film.size(); at += width) mean += film[at] / samples_;
-      for (std::size_t at = i; at < film.size(); at += width) {
-        square += (film[at] - mean) * (film[at] - mean);
+      for (std::size_t at = i; at < samples.size(); at += width) mean += samples[at] / samples_;
+      for (std::size_t at = i; at < samples.size(); at += width) {
+        square += (samples[at] - mean) * (samples[at] - mean);
       }
     }
     return square;
   }
 
-  const std::vector<double>& film(double rate) {
-    const auto [place, is_new] = films_.try_emplace(rate);
+  const std::vector<double>& samples_at(double rate) {
+    const auto [place, is_new] = runs_.try_emplace(rate);
     if (!is_new) return place->second;
-    std::vector<double>& film = place->second;
-    CourseRun run(network_, integrator_, rate, nothing_);
+    std::vector<double>& samples = place->second;
+    TrajectoryRun run(network_, integrator_, rate, nothing_);
     const auto steps = static_cast<std::uint64_t>(std::llround(period_ * rate));
     spent_ += rate * period_ * samples_ * work_of_a_step(network_, integrator_);
     for (int sample = 0; sample < samples_; ++sample) {
       if (!run.advance(steps)) {
-        film.clear();
+        samples.clear();
         break;
       }
       for (const std::uint32_t mat : masses_) {
         const engine::Vec3 x = run.world().position(mat);
-        film.insert(film.end(), {x.x(), x.y(), x.z()});
+        samples.insert(samples.end(), {x.x(), x.y(), x.z()});
       }
     }
-    return film;
+    return samples;
   }
 
   const engine::NetworkDescription& network_;
@@ -108,7 +108,7 @@ class Films {
   double period_ = 0.0;
   int samples_ = 0;
   std::vector<std::uint32_t> masses_;
-  std::map<double, std::vector<double>> films_;
+  std::map<double, std::vector<double>> runs_;
   double spent_ = 0.0;
 };
 
@@ -118,15 +118,15 @@ RateTrial find_rate(const engine::NetworkDescription& network, const std::string
                     const RateTrialOptions& wish) {
   constexpr double kOfFirstOrder = 4.0 / 3.0;  // e(h) - e(h/4) is 3/4 of e(h), or more
   RateTrial trial;
-  Films films(network, integrator, wish);
+  SampledRuns runs(network, integrator, wish);
   double rate = wish.lowest_hz;
   double before = kInfinity;
   for (int doubling = 0; doubling < kMaxDoublings; ++doubling, rate *= 2.0) {
-    if (!films.can_afford(rate) || !films.can_afford(4.0 * rate)) {
+    if (!runs.can_afford(rate) || !runs.can_afford(4.0 * rate)) {
       trial.refusal = "it takes too long to try it out";
       return trial;
     }
-    const double error = kOfFirstOrder * films.difference(rate, 4.0 * rate);
+    const double error = kOfFirstOrder * runs.difference(rate, 4.0 * rate);
     if (std::isnan(error)) {
       trial.refusal = "nothing moves by itself";
       return trial;
@@ -139,7 +139,7 @@ RateTrial find_rate(const engine::NetworkDescription& network, const std::string
         const double share = std::pow(before / (kMargin * wish.tolerance), 1.0 / order);
         const double between = std::ceil(0.5 * rate * share / wish.unit_hz - 1e-9) * wish.unit_hz;
         const double there =
-            between < rate ? kOfFirstOrder * films.difference(between, 4.0 * rate) : kInfinity;
+            between < rate ? kOfFirstOrder * runs.difference(between, 4.0 * rate) : kInfinity;
         if (there <= wish.tolerance) {
           trial.rate_hz = between;
           trial.error = there;

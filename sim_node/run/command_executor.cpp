@@ -15,8 +15,8 @@ namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(1);  // for the end of single steps
 
-std::string at_step(const Request& order) {
-  return " at step " + std::to_string(order.step);
+std::string at_step(const Request& request) {
+  return " at step " + std::to_string(request.step);
 }
 
 /// A scene as its file says it: liaisons have their links there, merged or not.
@@ -44,34 +44,34 @@ std::string refusal_of(const std::string& path, const config::Problems& problems
 }  // namespace
 
 CommandExecutor::CommandExecutor(RequestMailbox& orders, std::shared_ptr<const scene::Scene> scene,
-                                 std::uint64_t run, Load load, Check check, Tell tell)
-    : orders_(orders),
+                                 std::uint64_t epoch, Load load, Check check, Publish publish)
+    : mailbox_(orders),
       scene_(std::move(scene)),
       parameters_(whole_of(scene_)),
-      run_(run),
+      epoch_(epoch),
       load_(std::move(load)),
       check_(std::move(check)),
-      tell_(std::move(tell)) {}
+      publish_(std::move(publish)) {}
 
-node::Answer CommandExecutor::obey(const msg::ControlCommand& message) {
+node::Answer CommandExecutor::execute(const msg::ControlCommand& message) {
   Command command;
   try {
     command = read_command(message.verb(), message.argument());
   } catch (const std::invalid_argument& refusal) {
     return {false, refusal.what()};
   }
-  Request order;
+  Request request;
   switch (command.verb) {
     case Verb::kPause:
-      order.kind = Request::Kind::kPause;
-      return give(order, "paused");
+      request.kind = Request::Kind::kPause;
+      return give(request, "paused");
     case Verb::kResume:
-      order.kind = Request::Kind::kResume;
-      return give(order, "goes on");
+      request.kind = Request::Kind::kResume;
+      return give(request, "goes on");
     case Verb::kStep:
       return step(command.steps);
     case Verb::kReset:
-      return restart(scene_, "'" + scene_->name + "' begins anew");
+      return restart(scene_, "'" + scene_->name + "' restarts");
     case Verb::kLoad:
       return load(command.scene_file);
     case Verb::kSet:
@@ -82,39 +82,39 @@ node::Answer CommandExecutor::obey(const msg::ControlCommand& message) {
   return {};
 }
 
-node::Answer CommandExecutor::give(Request& order, const std::string& done) {
-  if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
-  if (order.kind == Request::Kind::kPause && order.was_paused)
-    return {true, "was paused already" + at_step(order)};
-  if (order.kind == Request::Kind::kResume && !order.was_paused)
-    return {true, "was running already" + at_step(order)};
-  return {true, done + at_step(order)};
+node::Answer CommandExecutor::give(Request& request, const std::string& done) {
+  if (!mailbox_.give(request)) return {false, "too late, the simulation is ending"};
+  if (request.kind == Request::Kind::kPause && request.was_paused)
+    return {true, "was paused already" + at_step(request)};
+  if (request.kind == Request::Kind::kResume && !request.was_paused)
+    return {true, "was running already" + at_step(request)};
+  return {true, done + at_step(request)};
 }
 
 node::Answer CommandExecutor::step(std::uint64_t count) {
-  Request order;
-  order.kind = Request::Kind::kStep;
-  order.steps = count;
-  if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
+  Request request;
+  request.kind = Request::Kind::kStep;
+  request.steps = count;
+  if (!mailbox_.give(request)) return {false, "too late, the simulation is ending"};
   const auto limit = std::chrono::steady_clock::now() + kPatience;
-  while (orders_.steps_left() > 0 && !orders_.is_closed()) {
+  while (mailbox_.steps_left() > 0 && !mailbox_.is_closed()) {
     if (std::chrono::steady_clock::now() > limit)
-      return {true, config::count_text(count, "step") + " begun" + at_step(order)};
+      return {true, config::count_text(count, "step") + " begun" + at_step(request)};
     std::this_thread::sleep_for(kLook);
   }
-  return {true, "paused at step " + std::to_string(order.step + count - orders_.steps_left())};
+  return {true, "paused at step " + std::to_string(request.step + count - mailbox_.steps_left())};
 }
 
 node::Answer CommandExecutor::restart(std::shared_ptr<const scene::Scene> scene,
                                       const std::string& done) {
-  Request order;
-  order.kind = Request::Kind::kRestart;
-  order.stage = std::make_unique<LoadedScene>(scene, run_, version_ + 1);
-  if (!orders_.give(order)) return {false, "too late, the simulation is ending"};
+  Request request;
+  request.kind = Request::Kind::kRestart;
+  request.stage = std::make_unique<LoadedScene>(scene, epoch_, version_ + 1);
+  if (!mailbox_.give(request)) return {false, "too late, the simulation is ending"};
   scene_ = std::move(scene);
-  tell_(*scene_, ++version_);
-  const std::string paused = order.was_paused ? ", paused" : "";
-  return {true, done + paused + "; the scene before ended" + at_step(order)};
+  publish_(*scene_, ++version_);
+  const std::string paused = request.was_paused ? ", paused" : "";
+  return {true, done + paused + "; the scene before ended" + at_step(request)};
 }
 
 node::Answer CommandExecutor::load(const std::string& path) {
@@ -149,16 +149,16 @@ node::Answer CommandExecutor::set(const std::vector<NewValue>& values) {
   check_(*scene, problems);
   if (problems.has_errors())
     return {false, "the values stay as they are\n" + text_without_lines(problems)};
-  Request order;
-  order.kind = Request::Kind::kExchange;
+  Request request;
+  request.kind = Request::Kind::kExchange;
   try {
-    order.stage = std::make_unique<LoadedScene>(scene, run_, version_);
+    request.stage = std::make_unique<LoadedScene>(scene, epoch_, version_);
   } catch (const std::invalid_argument& refusal) {
     return {false, std::string("this cannot be simulated: ") + refusal.what()};
   }
-  order.room.reserve(order.stage->simulation.world().max_values_of_state());
-  node::Answer answer = give(order, done);
-  if (!order.done) return {false, "this changes more than parameters; load the scene anew"};
+  request.room.reserve(request.stage->simulation.world().max_values_of_state());
+  node::Answer answer = give(request, done);
+  if (!request.done) return {false, "this changes more than parameters; load the scene again"};
   if (!answer.accepted) return answer;
   scene_ = std::move(scene);
   parameters_ = std::move(parameters);
@@ -167,14 +167,15 @@ node::Answer CommandExecutor::set(const std::vector<NewValue>& values) {
 }
 
 node::Answer CommandExecutor::force(const std::string& links, const std::string& state) {
-  Request order;
-  order.kind = Request::Kind::kForceStates;
+  Request request;
+  request.kind = Request::Kind::kForceStates;
   try {
-    order.forced = find_states(*scene_, links, state);
+    request.forced = find_states(*scene_, links, state);
   } catch (const std::invalid_argument& refusal) {
     return {false, refusal.what()};
   }
-  return give(order, config::count_text(order.forced.size(), "link") + " put into '" + state + "'");
+  return give(request,
+              config::count_text(request.forced.size(), "link") + " put into '" + state + "'");
 }
 
 }  // namespace cordis::sim

@@ -1,4 +1,5 @@
-// sim_node/run/command_executor.h -- obeys commands: prepares what they want and hands it to the loop.
+// sim_node/run/command_executor.h -- executes commands: prepares what they want and hands it to the
+// loop.
 #pragma once
 
 #include <chrono>
@@ -27,16 +28,16 @@ class CommandExecutor {
   /// Holds a scene that differs in parameters from the one that is played against its limits.
   using Check = std::function<void(const scene::Scene& scene, config::Problems& problems)>;
   /// Tells the other processes of a scene that is played now.
-  using Tell = std::function<void(const scene::Scene& scene, std::uint64_t version)>;
+  using Publish = std::function<void(const scene::Scene& scene, std::uint64_t version)>;
 
   /// @param scene  the one that is played at first, version 1
-  /// @param run    of this sim_node
+  /// @param epoch  of this sim_node
   CommandExecutor(RequestMailbox& orders, std::shared_ptr<const scene::Scene> scene,
-                  std::uint64_t run, Load load, Check check, Tell tell);
+                  std::uint64_t epoch, Load load, Check check, Publish publish);
 
   /// Returns when the loop has done what was wanted; of single steps that take longer than
   /// kPatience, when they have begun.
-  node::Answer obey(const msg::ControlCommand& command);
+  node::Answer execute(const msg::ControlCommand& command);
 
   /// The scene that is played, with the parameters as they have been set.
   const std::shared_ptr<const scene::Scene>& scene() const noexcept { return scene_; }
@@ -47,16 +48,16 @@ class CommandExecutor {
   node::Answer load(const std::string& path);
   node::Answer set(const std::vector<NewValue>& values);
   node::Answer force(const std::string& links, const std::string& state);
-  node::Answer give(Request& order, const std::string& done);
+  node::Answer give(Request& request, const std::string& done);
 
-  RequestMailbox& orders_;
+  RequestMailbox& mailbox_;
   std::shared_ptr<const scene::Scene> scene_;  // with the parameters as they have been set
   scene::Parameters parameters_;
-  std::uint64_t run_;
+  std::uint64_t epoch_;
   std::uint64_t version_ = 1;
   Load load_;
   Check check_;
-  Tell tell_;
+  Publish publish_;
 };
 
 }  // namespace cordis::sim

@@ -10,24 +10,24 @@ namespace {
 constexpr std::uint32_t kNoStateMachine = std::numeric_limits<std::uint32_t>::max();
 
 std::vector<msg::NamedRange> ranges_of(const std::vector<scene::NamedRange>& ranges) {
-  std::vector<msg::NamedRange> told(ranges.size());
+  std::vector<msg::NamedRange> message(ranges.size());
   for (std::size_t i = 0; i < ranges.size(); ++i) {
-    told[i].name(ranges[i].name);
-    told[i].first(ranges[i].first);
-    told[i].count(ranges[i].count);
+    message[i].name(ranges[i].name);
+    message[i].first(ranges[i].first);
+    message[i].count(ranges[i].count);
   }
-  return told;
+  return message;
 }
 
 msg::PortDescription port_of(const scene::Port& port) {
-  msg::PortDescription told;
-  told.name(port.name);
-  told.device(port.device);
-  told.device_id(port.device_id);
-  told.role(static_cast<std::uint32_t>(port.role));
-  told.mat(port.mat);
-  told.axes(port.axes);
-  return told;
+  msg::PortDescription message;
+  message.name(port.name);
+  message.device(port.device);
+  message.device_id(port.device_id);
+  message.role(static_cast<std::uint32_t>(port.role));
+  message.mat(port.mat);
+  message.axes(port.axes);
+  return message;
 }
 
 void report_network(const scene::Scene& scene, msg::SceneDescription& description) {
@@ -51,10 +51,11 @@ void report_network(const scene::Scene& scene, msg::SceneDescription& descriptio
 
 void report_states(const engine::NetworkDescription& network, msg::SceneDescription& description) {
   for (const engine::StateMachine& state_machine : network.state_machines) {
-    msg::StateMachineDescription told;
-    told.name(state_machine.name);
-    for (const engine::LinkState& state : state_machine.states) told.states().push_back(state.name);
-    description.state_machines().push_back(told);
+    msg::StateMachineDescription message;
+    message.name(state_machine.name);
+    for (const engine::LinkState& state : state_machine.states)
+      message.states().push_back(state.name);
+    description.state_machines().push_back(message);
   }
   if (network.state_links.empty()) return;
   std::vector<std::uint32_t>& state_machine = description.link_state_machine();
@@ -66,10 +67,10 @@ void report_states(const engine::NetworkDescription& network, msg::SceneDescript
 
 }  // namespace
 
-msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
                                std::uint64_t version) {
   msg::SceneDescription description;
-  description.run(run);
+  description.epoch(epoch);
   description.version(version);
   description.name(scene.name);
   const int space = scene.confinement ? scene.confinement->space : scene.space();
@@ -84,10 +85,10 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run,
   report_states(scene.network, description);
   for (const scene::Port& port : scene.ports) description.ports().push_back(port_of(port));
   for (const scene::Signal& signal : scene.signals.signals()) {
-    msg::SignalDescription told;
-    told.name(signal.name);
-    told.unit(signal.unit);
-    description.signals().push_back(told);
+    msg::SignalDescription message;
+    message.name(signal.name);
+    message.unit(signal.unit);
+    description.signals().push_back(message);
   }
   return description;
 }

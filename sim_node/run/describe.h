@@ -7,8 +7,9 @@
 
 namespace cordis::sim {
 
-/// The scene/description of a scene. @param version  tells one scene of the run from the next
-msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t run, std::uint64_t version);
+/// The scene/description of a scene. @param version  tells one scene of the epoch from the next
+msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
+                               std::uint64_t version);
 
 /// Links of all kinds, as a description numbers them: linear ones, those with states, Maxwell
 /// elements.

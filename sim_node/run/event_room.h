@@ -14,13 +14,13 @@ namespace cordis::sim {
 /// everything but the constructor allocates nothing and does not throw.
 class EventRoom {
  public:
-  static constexpr std::size_t kLeast = 4096;
-  static constexpr std::size_t kMost = 65536;
+  static constexpr std::size_t kMinEvents = 4096;
+  static constexpr std::size_t kMaxEvents = 65536;
 
   EventRoom() = default;
-  /// Room for two changes of every link, within kLeast and kMost.
+  /// Room for two changes of every link, within kMinEvents and kMaxEvents.
   explicit EventRoom(std::size_t state_link_count)
-      : events_(std::clamp(2 * state_link_count, kLeast, kMost)) {}
+      : events_(std::clamp(2 * state_link_count, kMinEvents, kMaxEvents)) {}
 
   void clear() noexcept {
     count_ = 0;

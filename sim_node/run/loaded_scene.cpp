@@ -30,9 +30,9 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
 
 }  // namespace
 
-LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t run,
+LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch,
                          std::uint64_t version)
-    : simulation(std::move(scene), run),
+    : simulation(std::move(scene), epoch),
       frames(shape_of(simulation, version)),
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),

@@ -13,9 +13,10 @@ namespace cordis::sim {
 
 /// A simulation and the room for its frames: all that changes hands when another scene is played.
 struct LoadedScene {
-  /// @param run      of this sim_node
+  /// @param epoch    of this sim_node
   /// @param version  of the description that its frames belong to
-  LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t run, std::uint64_t version);
+  LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch,
+              std::uint64_t version);
 
   Simulation simulation;
   FrameStore frames;

@@ -8,20 +8,20 @@ constexpr auto kLookForTheEnd = std::chrono::milliseconds(20);
 
 }  // namespace
 
-bool RequestMailbox::give(Request& order) noexcept {
-  slot_.store(&order, std::memory_order_release);
+bool RequestMailbox::give(Request& request) noexcept {
+  slot_.store(&request, std::memory_order_release);
   given_.release();
   while (!done_.try_acquire_for(kLookForTheEnd)) {
     if (!is_closed()) continue;
-    // The loop closes the box after its last order, so whatever was obeyed shows by now.
-    const bool was_obeyed = done_.try_acquire();
+    // The loop closes the mailbox after its last request, so whatever was executed shows by now.
+    const bool was_executed = done_.try_acquire();
     slot_.store(nullptr, std::memory_order_release);
-    return was_obeyed;
+    return was_executed;
   }
   return true;
 }
 
-void RequestMailbox::obeyed() noexcept {
+void RequestMailbox::executed() noexcept {
   slot_.store(nullptr, std::memory_order_release);
   // May fail now and then, which costs one empty wait().
   static_cast<void>(given_.try_acquire());

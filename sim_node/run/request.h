@@ -30,28 +30,28 @@ struct Request {
   Kind kind = Kind::kPause;
   std::uint64_t steps = 0;
   std::unique_ptr<LoadedScene> stage;  ///< the new one; afterwards the one played before
-  std::vector<double> room;            ///< of kExchange: most_values_of_state() of its world
+  std::vector<double> room;            ///< of kExchange: max_values_of_state() of its world
   std::vector<ForcedState> forced;
 
   bool changes_stage() const noexcept { return kind == Kind::kRestart || kind == Kind::kExchange; }
 
   // What the loop has to say about it.
-  std::uint64_t step = 0;   ///< steps done when it was obeyed, in the scene played then
+  std::uint64_t step = 0;   ///< steps done when it was executed, in the scene played then
   bool was_paused = false;  ///< before
   bool done = true;         ///< false: kExchange found that the stage does not fit
 };
 
-/// Room for one order on its way from one thread to the loop.
+/// Room for one request on its way from one thread to the loop.
 class RequestMailbox {
  public:
-  /// Gives an order and waits until it was obeyed. One thread at a time.
-  /// @return false when the loop has ended, and the order was not obeyed
-  bool give(Request& order) noexcept;
+  /// Submits a request and waits until it was executed. One thread at a time.
+  /// @return false when the loop has ended, and the request was not executed
+  bool give(Request& request) noexcept;
 
   /// Loop: the order that waits, or nullptr. Real time: takes no lock.
   Request* waiting() const noexcept { return slot_.load(std::memory_order_acquire); }
-  /// Loop: the waiting order was obeyed. Real time: wakes the other thread, waits for nothing.
-  void obeyed() noexcept;
+  /// Loop: the waiting request was executed. Real time: wakes the other thread, waits for nothing.
+  void executed() noexcept;
   /// Loop without real time: waits until there is an order, at most so long.
   void wait(std::chrono::milliseconds at_most) noexcept;
   /// Single steps still to be done after the last kStep; any thread.
@@ -62,7 +62,7 @@ class RequestMailbox {
   }
   /// True if close() was called; any thread.
   bool is_closed() const noexcept { return closed_.load(std::memory_order_acquire); }
-  /// Loop: no order will be obeyed any more.
+  /// Loop: no request will be executed any more.
   void close() noexcept { closed_.store(true, std::memory_order_release); }
 
  private:

@@ -9,10 +9,10 @@ namespace cordis::sim {
 Runner::Runner(std::unique_ptr<LoadedScene> stage, bool devices_wait) noexcept
     : stage_(std::move(stage)), devices_wait_(devices_wait) {}
 
-void Runner::obey(Request& order) noexcept {
-  order.step = simulation().world().step_count();
-  order.was_paused = paused_;
-  switch (order.kind) {
+void Runner::execute(Request& request) noexcept {
+  request.step = simulation().world().step_count();
+  request.was_paused = paused_;
+  switch (request.kind) {
     case Request::Kind::kPause:
       paused_ = true;
       steps_left_ = 0;
@@ -23,17 +23,17 @@ void Runner::obey(Request& order) noexcept {
       break;
     case Request::Kind::kStep:
       paused_ = true;
-      steps_left_ = order.steps;
+      steps_left_ = request.steps;
       break;
     case Request::Kind::kRestart:
       steps_left_ = 0;
-      restart(order.stage);
+      restart(request.stage);
       break;
     case Request::Kind::kExchange:
-      exchange(order);
+      exchange(request);
       break;
     case Request::Kind::kForceStates:
-      for (const Request::ForcedState& forced : order.forced)
+      for (const Request::ForcedState& forced : request.forced)
         simulation().world().force_state(forced.state_link, forced.state);
       break;
   }
@@ -48,9 +48,9 @@ void Runner::restart(std::unique_ptr<LoadedScene>& stage) noexcept {
   stage_.swap(stage);
 }
 
-void Runner::exchange(Request& order) noexcept {
-  order.done = order.stage->simulation.go_on_from(simulation(), order.room);
-  if (order.done) stage_.swap(order.stage);
+void Runner::exchange(Request& request) noexcept {
+  request.done = request.stage->simulation.go_on_from(simulation(), request.room);
+  if (request.done) stage_.swap(request.stage);
 }
 
 bool Runner::advance() noexcept {

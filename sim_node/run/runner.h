@@ -1,5 +1,5 @@
-// sim_node/run/runner.h -- the loop's side of live change: plays a stage, and obeys orders between two
-// steps.
+// sim_node/run/runner.h -- the loop's side of live change: plays a stage, and executes orders
+// between two steps.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace cordis::sim {
 
 /// Plays a stage turn by turn, pauses, does single steps and changes over to another stage.
 ///
-/// Time stands still in a paused scene. Where the devices are the clock (lockstep) it stands still
+/// Time stops in a paused scene. Where the devices are the clock (lockstep) it stops
 /// for them too, and the pause leaves no trace in the result. Elsewhere the devices live on: they
 /// are let go of, so that their MATs hold still and their forces are 0, and they take over
 /// gradually when the scene goes on. Real time: everything but the constructor allocates and frees
@@ -24,13 +24,13 @@ class Runner {
 
   /// Does what the order wants; the step in progress, if any, is complete.
   /// Precondition of kRestart and kExchange: nobody uses the frames of the present stage.
-  void obey(Request& order) noexcept;
+  void execute(Request& request) noexcept;
 
   /// True if this turn of the loop has something to do.
   bool moves() const noexcept { return !paused_ || steps_left_ > 0; }
 
   /// One turn: the rest of the tick, or the single steps still wanted of it; nothing while the
-  /// scene stands still. @return whether a tick is complete, and its answers are due.
+  /// scene is paused. @return whether a tick is complete, and its answers are due.
   bool advance() noexcept;
 
   LoadedScene& stage() noexcept { return *stage_; }
@@ -42,7 +42,7 @@ class Runner {
 
  private:
   void restart(std::unique_ptr<LoadedScene>& stage) noexcept;
-  void exchange(Request& order) noexcept;
+  void exchange(Request& request) noexcept;
 
   std::unique_ptr<LoadedScene> stage_;
   bool devices_wait_;

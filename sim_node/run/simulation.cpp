@@ -11,7 +11,7 @@
 namespace cordis::sim {
 namespace {
 
-std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_t run) {
+std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_t epoch) {
   std::vector<std::string> order;  // devices in the order of their first port
   for (const scene::Port& port : scene.ports) {
     bool known = false;
@@ -31,19 +31,19 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
       role = port.role;
       id = port.device_id;
     }
-    exchanges.emplace_back(device, id, role, ports, scene.gesture_rate_hz, run);
+    exchanges.emplace_back(device, id, role, ports, scene.gesture_rate_hz, epoch);
     if (role == scene::Role::kLiaison)
-      exchanges.back().brake_with(PassivityController(scene, ports, account));
+      exchanges.back().damp_with(PassivityController(scene, ports, account));
   }
   return exchanges;
 }
 
 }  // namespace
 
-Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t run)
+Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch)
     : scene_(std::move(scene)),
       world_(std::make_shared<const engine::Network>(scene_->network)),
-      devices_(exchanges_of(*scene_, run)),
+      devices_(exchanges_of(*scene_, epoch)),
       steps_per_tick_(
           static_cast<int>(std::lround(scene_->step_rate_hz / scene_->gesture_rate_hz))) {}
 
@@ -90,7 +90,7 @@ DeviceExchange* Simulation::find(std::uint32_t device_id) noexcept {
 std::int64_t Simulation::action_time_nsec() const noexcept {
   std::int64_t newest = 0;
   for (const DeviceExchange& device : devices_) {
-    if (!device.is_lost()) newest = std::max(newest, device.heard_time_nsec());
+    if (!device.is_lost()) newest = std::max(newest, device.received_time_nsec());
   }
   return newest;
 }

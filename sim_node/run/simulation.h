@@ -18,8 +18,8 @@ namespace cordis::sim {
 /// V.1 Force feedback gestual transducers] Nothing here knows of DDS, threads or clocks.
 class Simulation {
  public:
-  /// @param run  of this sim_node
-  Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t run);
+  /// @param epoch  of this sim_node
+  Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch);
 
   /// Goes on where a simulation of the same scene with other parameters is.
   /// @param room  as World::take_over() wants it

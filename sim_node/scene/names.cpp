@@ -1,4 +1,4 @@
-// The names of a scene: what a selection is looked up in.
+// sim_node/scene/names.cpp -- the names of a scene: what a selection is looked up in.
 #include <algorithm>
 #include <utility>
 

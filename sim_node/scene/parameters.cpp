@@ -1,3 +1,4 @@
+// sim_node/scene/parameters.cpp
 #include "sim_node/scene/parameters.h"
 
 #include <algorithm>

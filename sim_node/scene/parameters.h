@@ -51,9 +51,9 @@ class Parameters {
   };
 
   /// Sets a parameter of a liaison, for all its links that give it no value of their own; or of the
-  /// links of a name (a `name` of the scene, or string.links), which must not share their state machine
-  /// with others. Parameters are those that a link may give. What follows from the parameter by a
-  /// formula follows. Nothing is set after a problem. Not in real time.
+  /// links of a name (a `name` of the scene, or string.links), which must not share their state
+  /// machine with others. Parameters are those that a link may give. What follows from the
+  /// parameter by a formula follows. Nothing is set after a problem. Not in real time.
   Outcome set(const std::string& name, const std::string& parameter, double value);
 
  private:

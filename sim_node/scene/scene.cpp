@@ -1,3 +1,4 @@
+// sim_node/scene/scene.cpp
 #include "sim_node/scene/scene.h"
 
 #include <algorithm>

@@ -154,7 +154,7 @@ void set_step(Scene& scene, double rate_hz, engine::IntegratorKind integrator);
 void check_network(const Scene& scene, const config::Place& integrator, const config::Place& matter,
                    config::Problems& problems);
 
-/// Makes `links` anew, from `link_groups`.
+/// Makes `links` again, from `link_groups`.
 void number_links(Scene& scene);
 
 /// Reads a scene file and all it includes. Whatever is wrong becomes a problem of its place, all in

@@ -1,3 +1,4 @@
+// sim_node/scene/selection.cpp
 #include "sim_node/scene/selection.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// sim_node/scene/signal.cpp
 #include "sim_node/scene/signal.h"
 
 #include <algorithm>
@@ -12,10 +13,10 @@ namespace {
 
 using engine::Vec3;
 
-/// Distance of the ends of a link and its growth per second, by the law of engine::Link.
+/// Distance of the ends of a link and its elongation rate, by the law of engine::Link.
 struct Stretch {
   double distance = 0.0;
-  double growth = 0.0;
+  double elongation_rate = 0.0;
 };
 
 Stretch stretch_of(std::uint32_t a, std::uint32_t b, const engine::World& world) noexcept {
@@ -34,8 +35,8 @@ double value_of_state_link(const Signal& signal, const engine::World& world) noe
       return stretch.distance;
     case Quantity::kElongation:
       return stretch.distance - world.rest_length_of(signal.index);
-    case Quantity::kGrowth:
-      return stretch.growth;
+    case Quantity::kElongationRate:
+      return stretch.elongation_rate;
     case Quantity::kState:
       return world.state_of(signal.index);
     case Quantity::kRestLength:
@@ -48,7 +49,7 @@ double value_of_state_link(const Signal& signal, const engine::World& world) noe
 double value_of_maxwell_link(const Signal& signal, const engine::World& world) noexcept {
   const engine::MaxwellLink& link = world.network().description().maxwell_links[signal.index];
   const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
-  return signal.quantity == Quantity::kDistance ? stretch.distance : stretch.growth;
+  return signal.quantity == Quantity::kDistance ? stretch.distance : stretch.elongation_rate;
 }
 
 double value_of_link(const Signal& signal, const engine::World& world) noexcept {
@@ -62,13 +63,14 @@ double value_of_link(const Signal& signal, const engine::World& world) noexcept 
       return stretch.distance;
     case Quantity::kElongation:
       return elongation;
-    case Quantity::kGrowth:
-      return stretch.growth;
+    case Quantity::kElongationRate:
+      return stretch.elongation_rate;
     default:
       break;
   }
   const bool without_direction = world.network().dimension() > 1 && stretch.distance == 0.0;
-  return without_direction ? 0.0 : link.stiffness * elongation + link.viscosity * stretch.growth;
+  return without_direction ? 0.0
+                           : link.stiffness * elongation + link.viscosity * stretch.elongation_rate;
 }
 
 double changes_in(const engine::World& world) noexcept {
@@ -143,7 +145,7 @@ double value_of_signal(const Signal& signal, const engine::World& world,
       return world.velocity(signal.index).norm();
     case Quantity::kDistance:
     case Quantity::kElongation:
-    case Quantity::kGrowth:
+    case Quantity::kElongationRate:
     case Quantity::kPull:
     case Quantity::kState:
     case Quantity::kRestLength:

@@ -21,11 +21,11 @@ enum class Quantity : std::uint8_t {
   kForce,     ///< of all links on a MAT along a direction, in the last step [N]
   kSpeed,     ///< length of the velocity of a MAT [m/s]
 
-  kDistance,    ///< of the ends of a link [m]; signed in 1-D
-  kElongation,  ///< distance less rest length [m]
-  kGrowth,      ///< growth of the distance per second, over the last step [m/s]
-  kPull,   ///< of a linear link K elongation + Z growth, of the present positions; of a link with
-           ///< states its pull in the last step; positive pulls the ends together [N]
+  kDistance,        ///< of the ends of a link [m]; signed in 1-D
+  kElongation,      ///< distance less rest length [m]
+  kElongationRate,  ///< rate of the distance, over the last step [m/s]
+  kPull,   ///< of a linear link K elongation + Z elongation rate, of the present positions; of a
+           ///< link with states its pull in the last step; positive pulls the ends together [N]
   kState,  ///< number of the state of a link, in the order of the file
   kRestLength,  ///< present rest length of a link with states [m]
 

@@ -26,8 +26,8 @@ class Echo final : public GestureChannel {
  public:
   bool send(const GestureMessage& sample) noexcept override {
     answer_ = sample;
-    answer_.run = 9;
-    answer_.answered_run = sample.run;
+    answer_.epoch = 9;
+    answer_.answered_epoch = sample.epoch;
     answer_.answered_sample = sample.sample;
     answer_.answered_time_nsec = sample.time_nsec;
     for (double& value : answer_.value) value *= -200.0;

@@ -51,9 +51,11 @@ bool lockstep() {
   cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
   if (sim.wait(120s) != 0) return false;
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  const bool heard = status.wait_for("keyboard", [](const NodeStatus& told) {
-    return told.phase() == "lost";
-  }) && status.wait_for("sim", [](const NodeStatus& told) { return told.phase() == "stopped"; });
+  const bool is_seen = status.wait_for("keyboard", [](const NodeStatus& status_now) {
+    return status_now.phase() == "lost";
+  }) && status.wait_for("sim", [](const NodeStatus& status_now) {
+    return status_now.phase() == "stopped";
+  });
   const NodeStatus& simulated = status.of("sim");
   std::printf("lockstep, 40 masses, 4 steps per exchange, %d s simulated\n", kSimulatedSeconds);
   std::printf("  %.0f exchanges per second (with start and discovery)\n",
@@ -61,7 +63,7 @@ bool lockstep() {
   print_round_trip(status.of("keyboard"));
   print_memory(simulated);
   print_memory(status.of("keyboard"));
-  return heard;
+  return is_seen;
 }
 
 /// The page of viz_node in a browser without a window, drawn by the processor.
@@ -87,21 +89,22 @@ bool realtime(std::chrono::seconds duration) {
   cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
   if (sim.wait(std::chrono::duration_cast<std::chrono::milliseconds>(duration) + 60s) != 0)
     return false;
-  const bool heard =
-      status.wait_for("sim", [](const NodeStatus& told) { return told.phase() == "stopped"; });
+  const bool is_seen = status.wait_for(
+      "sim", [](const NodeStatus& status_now) { return status_now.phase() == "stopped"; });
   std::printf("realtime, 1 kHz, %lld s, with viz_node and %llu frames drawn by a page\n",
               static_cast<long long>(duration.count()),
               static_cast<unsigned long long>(status.of("view").latency_count()));
   for (const char* name : {"sim", "keyboard"}) {
-    const NodeStatus& told = status.of(name);
-    std::printf("  %-12s %llu of %llu ticks began a period late (%.3f %%)\n", told.kind().c_str(),
-                static_cast<unsigned long long>(told.overruns()),
-                static_cast<unsigned long long>(told.ticks()),
-                100.0 * static_cast<double>(told.overruns()) / static_cast<double>(told.ticks()));
+    const NodeStatus& status_now = status.of(name);
+    std::printf("  %-12s %llu of %llu ticks began a period late (%.3f %%)\n",
+                status_now.kind().c_str(), static_cast<unsigned long long>(status_now.overruns()),
+                static_cast<unsigned long long>(status_now.ticks()),
+                100.0 * static_cast<double>(status_now.overruns()) /
+                    static_cast<double>(status_now.ticks()));
   }
   print_round_trip(status.of("keyboard"));
   for (const char* name : {"sim", "keyboard", "view"}) print_memory(status.of(name));
-  return heard;
+  return is_seen;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// tests/campaigns/lockstep_campaign.cpp -- both processes of a lockstep session stand still at
+// tests/campaigns/lockstep_campaign.cpp -- both processes of a lockstep session stall at
 // random, and it plays to its end all the same.
 #include <algorithm>
 #include <csignal>
@@ -34,7 +34,7 @@ class Draw {
   std::mt19937 engine_;
 };
 
-/// One line for each time that a process stood still.
+/// One line for each time that a process stalled.
 struct Stop {
   double from_s;
   double to_s;
@@ -63,7 +63,7 @@ std::vector<Stop> stall(const ChildProcess& process, Draw draw, const CampaignOp
 }
 
 std::string log_of(const char* name, const ChildProcess& process, const std::vector<Stop>& stops) {
-  std::string log = std::string(name) + " stood still";
+  std::string log = std::string(name) + " stalled";
   for (const Stop& stop : stops) {
     char text[64];
     std::snprintf(text, sizeof text, " %.3f-%.3f", stop.from_s, stop.to_s);

@@ -1,4 +1,4 @@
-// tests/campaigns/main.cpp -- plays many sessions whose processes stand still now and then, and
+// tests/campaigns/main.cpp -- plays many sessions whose processes stall now and then, and
 // counts those that hang, abort or do not recover.
 //
 //   build/release/bin/stall_campaign lockstep --sessions 400 --parallel 8 --longest 14 --seed 2

@@ -1,5 +1,5 @@
 // tests/campaigns/realtime_campaign.cpp -- each node of a realtime session, with launcher and page,
-// stands still once for a long time, and all go on afterwards.
+// stalls once for a long time, and all go on afterwards.
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 
 constexpr const char* kNodes[] = {"sim", "keyboard", "view"};
 
-/// A key on a spring, at a tenth of the usual rate: what is looked at is who hears whom.
+/// A key on a spring, at a tenth of the usual rate: what is looked at is who receives whom.
 constexpr const char* kLaunch =
     "cordis: 1\n"
     "clock: realtime\n"
@@ -100,7 +100,7 @@ pid_t process_of(const ChildProcess& launcher, const std::string& name) {
   return 0;
 }
 
-/// What the nodes say of themselves, as another process of the session hears it.
+/// What the nodes say of themselves, as another process of the session receives it.
 class Statuses {
  public:
   Statuses(const std::string& session)

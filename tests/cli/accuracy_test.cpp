@@ -1,4 +1,5 @@
-// tests/cli/accuracy_test.cpp -- what the plan promises for `accuracy`, held against the reference integrator.
+// tests/cli/accuracy_test.cpp -- what the plan promises for `accuracy`, held against the reference
+// integrator.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -18,13 +19,13 @@ class Accuracy : public testing::TestWithParam<const char*> {
     ASSERT_TRUE(scene_.accuracy);
     ASSERT_TRUE(reference_.by_reference);
     ASSERT_EQ(reference_.compared, reference_.sampling.count);
-    ASSERT_LT(reference_.doubt, 0.02 * scene_.accuracy->tolerance);
+    ASSERT_LT(reference_.uncertainty, 0.02 * scene_.accuracy->tolerance);
   }
 
   /// The error of a run; more than any tolerance when it blows up.
   double error(const std::string& integrator, double rate_hz) const {
     const plan::TrialResult run =
-        plan::try_out(scene_.network, integrator, rate_hz, lab_.course, reference_);
+        plan::try_out(scene_.network, integrator, rate_hz, lab_.trajectory, reference_);
     return run.blown_up ? 1e9 : run.error;
   }
 
@@ -36,7 +37,7 @@ class Accuracy : public testing::TestWithParam<const char*> {
   plan::Reference make_reference() const {
     const double period = 1.0 / scene_.gesture_rate_hz;
     return plan::make_reference(
-        scene_.network, lab_.course,
+        scene_.network, lab_.trajectory,
         {{period, static_cast<int>(std::lround(lab_.duration_s / period))}, 1e-10, 60.0, 0.0, {}});
   }
 

@@ -66,7 +66,7 @@ class FakeStatus {
  public:
   FakeStatus(const Self& self, const std::string& phase, const std::string& text,
              std::uint64_t late = 0)
-      : participant_(membership(self)) {
+      : participant_(config(self)) {
     const auto run = static_cast<std::uint64_t>(node::monotonic_nsec());
     publisher_ = std::make_unique<node::StatusPublisher>(
         participant_, self.kind, run, [phase, text, late](msg::NodeStatus& status) {
@@ -82,7 +82,7 @@ class FakeStatus {
   }
 
  private:
-  static dds::ParticipantConfig membership(const Self& self) {
+  static dds::ParticipantConfig config(const Self& self) {
     config::Problems problems;
     const config::Launch launch = config::load_launch(self.launch_file, self.overrides, problems);
     return {launch.domain.value(), launch.session, self.name, false};
@@ -130,7 +130,7 @@ std::string list_of_this_start(const std::string& all, const Self& self) {
   return lists[std::min(starts, lists.size() - 1)];
 }
 
-void obey(const std::string& command, const Self& self, std::unique_ptr<FakeStatus>& status) {
+void execute(const std::string& command, const Self& self, std::unique_ptr<FakeStatus>& status) {
   std::istringstream words(command);
   std::string verb;
   std::string rest;
@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
   const char* commands = std::getenv(variable.c_str());
   std::unique_ptr<FakeStatus> status;
   std::istringstream script(commands != nullptr ? list_of_this_start(commands, self) : "");
-  for (std::string command; std::getline(script, command, ';');) obey(command, self, status);
+  for (std::string command; std::getline(script, command, ';');) execute(command, self, status);
   if (self.check) return 0;
 
   wait_for({SIGINT, SIGTERM});

@@ -50,7 +50,7 @@ TEST_F(Lab, TheErrorIsThatOfThePhase) {
   // x = 0.1 cos(w t); the scheme has exactly 0.1 cos(W t) with W = (2 / h) asin(w h / 2).
   const LabReport report = run();
   EXPECT_TRUE(report.reference.by_reference);
-  EXPECT_LT(report.reference.doubt, 1e-7);
+  EXPECT_LT(report.reference.uncertainty, 1e-7);
   const plan::Sampling& sampling = report.reference.sampling;
   double mean = 0.0;
   double square = 0.0;

@@ -1,3 +1,4 @@
+// tests/cli/machine_watch_test.cpp
 #include "cli/run/machine_watch.h"
 
 #include <gtest/gtest.h>

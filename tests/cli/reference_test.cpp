@@ -1,4 +1,4 @@
-// docs/cli.md is the help of the program.
+// tests/cli/reference_test.cpp -- docs/cli.md is the help of the program.
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -16,7 +16,7 @@ constexpr const char* kBeginning =
     "# The command line\n\n"
     "This file is made from the help texts of the program; `cordis VERB --help` prints the same. "
     "A\n"
-    "test keeps both equal. To write it anew, run\n"
+    "test keeps both equal. To write it again, run\n"
     "`CORDIS_WRITE_DOCS=1 build/release/bin/cli_test --gtest_filter=Reference.*`.\n\n";
 
 std::string document() {
@@ -33,7 +33,7 @@ TEST(Reference, IsTheDocument) {
   std::ifstream file(kFile);
   const std::string written(std::istreambuf_iterator<char>(file), {});
   EXPECT_EQ(written, expected)
-      << "docs/cli.md is not the help of the program: write it anew with\n"
+      << "docs/cli.md is not the help of the program: write it again with\n"
       << "  CORDIS_WRITE_DOCS=1 build/release/bin/cli_test --gtest_filter=Reference.*";
 }
 

@@ -1,3 +1,4 @@
+// tests/cli/respawn_policy_test.cpp
 #include "cli/run/respawn_policy.h"
 
 #include <algorithm>

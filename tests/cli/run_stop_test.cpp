@@ -60,7 +60,7 @@ TEST(RunStop, KillsAllAtTheSecondSignal) {
   EXPECT_EQ(run->output().find("sim    | stopped\n"), std::string::npos);
 }
 
-TEST(RunStop, TakesTheDoubleSignalOfTimeoutForOneWish) {
+TEST(RunStop, TakesTheDoubleSignalOfTimeoutForOneRequest) {
   FakeSession session;
   session.announce();
   const auto run = session.start();

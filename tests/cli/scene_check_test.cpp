@@ -208,7 +208,7 @@ TEST_F(Checked, TooSlowForRealTimeIsToldWithBothAlternatives) {
   EXPECT_EQ(other["realtime"]["stable"], true);
 
   check.scene.ports
-      .emplace_back();  // no device plays it as fast as can be, and simulated ones wait
+      .emplace_back();  // no device plays it as fast as possible, and simulated ones wait
   EXPECT_NE(text_of(check).find("run it with clock lockstep, 1.25 times"), std::string::npos);
   check.scene.ports.clear();
 

@@ -120,7 +120,7 @@ expect 'what failed a moment ago is not tried again' "$calls" ""
 rm "$PLACE/offline"
 rm "$tree"/build/.failed-*
 call run
-expect 'with network it installs, fetches the page and configures anew' "$output" "cordis: installing Debian packages: g++ *
+expect 'with network it installs, fetches the page and configures again' "$output" "cordis: installing Debian packages: g++ *
 cordis: installing Debian packages: *npm*
 cordis: fetching the packages of the page with npm
 cordis: configuring (release)
@@ -231,7 +231,7 @@ fi
 mv "$tree" "$PLACE/moved tree"
 tree="$PLACE/moved tree"
 call run
-expect 'a tree that was moved is configured anew' "$output" "cordis: configuring (release)
+expect 'a tree that was moved is configured again' "$output" "cordis: configuring (release)
 program: \[run\]"
 
 rm "$tree"/build/release/built*

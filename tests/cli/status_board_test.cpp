@@ -6,11 +6,11 @@
 namespace cordis::cli {
 namespace {
 
-msg::NodeStatus status_of(const std::string& node, const std::string& kind, std::uint64_t run) {
+msg::NodeStatus status_of(const std::string& node, const std::string& kind, std::uint64_t epoch) {
   msg::NodeStatus status;
   status.node(node);
   status.kind(kind);
-  status.run(run);
+  status.epoch(epoch);
   return status;
 }
 
@@ -20,7 +20,7 @@ bool ends_with_dash(const std::string& table, const std::string& node) {
 }
 
 TEST(StatusBoard, KeepsTheNewestOfEachNode) {
-  StatusBoard board(/*first_run=*/100);
+  StatusBoard board(/*first_epoch=*/100);
   msg::NodeStatus status = status_of("sim", "sim_node", 150);
   status.step(1);
   EXPECT_TRUE(board.put(status));
@@ -33,7 +33,7 @@ TEST(StatusBoard, KeepsTheNewestOfEachNode) {
 }
 
 TEST(StatusBoard, ForgetsTheLifeBeforeTheRestartOfANode) {
-  StatusBoard board(/*first_run=*/100);
+  StatusBoard board(/*first_epoch=*/100);
   board.put(status_of("sim", "sim_node", 101));
   board.put(status_of("key", "device_node", 102));
 
@@ -48,13 +48,13 @@ TEST(StatusBoard, ForgetsTheLifeBeforeTheRestartOfANode) {
 }
 
 TEST(StatusBoard, RefusesProcessesOlderThanTheRun) {
-  StatusBoard board(/*first_run=*/100);
+  StatusBoard board(/*first_epoch=*/100);
   EXPECT_FALSE(board.put(status_of("sim", "sim_node", 99)));
   EXPECT_EQ(board.find("sim"), nullptr);
 }
 
 TEST(StatusBoard, AddsUpTheLateTicksOfAllNodes) {
-  StatusBoard board(/*first_run=*/0);
+  StatusBoard board(/*first_epoch=*/0);
   for (const char* node : {"sim", "key"}) {
     msg::NodeStatus status = status_of(node, "device_node", 1);
     status.late_by_machine(3);
@@ -107,7 +107,7 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
       "energy 0.0125 J: 0.03 J through the ports, -0.0005 J by changes of state, 0.017 J taken by "
       "viscosity; largest K' + 2 Z' 1.75 of 4\n"
       "state hash 0123456789abcdef after 10000 steps\n"
-      "keyboard gave the hand -0.002 J, braked in 7 ticks\n");
+      "keyboard gave the hand -0.002 J, damped in 7 ticks\n");
 }
 
 TEST(StatusTable, TellsCausesInTheWordsOfTheNode) {

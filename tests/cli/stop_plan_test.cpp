@@ -26,13 +26,13 @@ class Rehearsal {
 
   /// What the plan does at this moment, as "ask 1, kill 2"; processes end as they do.
   std::string act() {
-    std::string told;
+    std::string report;
     for (const auto& [process, kill] : plan_.due(now_, running_)) {
-      told += (told.empty() ? "" : ", ") + std::string(kill ? "kill " : "ask ") +
-              std::to_string(process);
+      report += (report.empty() ? "" : ", ") + std::string(kill ? "kill " : "ask ") +
+                std::to_string(process);
       if (kill || manners_[process] == kStops) running_[process] = false;
     }
-    return told;
+    return report;
   }
 
   void pass(milliseconds time) { now_ += time; }

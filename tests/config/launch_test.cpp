@@ -1,3 +1,4 @@
+// tests/config/launch_test.cpp
 #include "node/config/launch.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +64,7 @@ TEST(Launch, HasDefaults) {
 
   EXPECT_EQ(problems.text(), "");
   EXPECT_EQ(launch.session, "first_try");
-  EXPECT_FALSE(launch.domain) << "a free one is claimed";
+  EXPECT_FALSE(launch.domain) << "a free one is locked";
   EXPECT_EQ(launch.clock, Clock::kRealtime);
   EXPECT_EQ(launch.resolve("x.yaml").string(), "x.yaml");
 }

@@ -1,3 +1,4 @@
+// tests/config/mapping_reader_test.cpp
 #include "node/config/mapping_reader.h"
 
 #include <functional>

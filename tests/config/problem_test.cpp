@@ -1,3 +1,4 @@
+// tests/config/problem_test.cpp
 #include "node/config/problem.h"
 
 #include <gtest/gtest.h>

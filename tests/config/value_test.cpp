@@ -1,3 +1,4 @@
+// tests/config/value_test.cpp
 #include "node/config/value.h"
 
 #include <gtest/gtest.h>

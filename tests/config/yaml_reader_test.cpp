@@ -1,3 +1,4 @@
+// tests/config/yaml_reader_test.cpp
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-// A program of its own: it replaces operator new.
+// tests/device/allocation_test.cpp -- a program of its own: it replaces operator new.
 #include <gtest/gtest.h>
 
 #include "device_node/drivers/mock.h"

@@ -1,3 +1,4 @@
+// tests/device/device_config_test.cpp
 #include "device_node/device_config.h"
 
 #include <filesystem>
@@ -75,10 +76,10 @@ TEST(DeviceConfig, IsRefusedWhereTimeIsNotThatOfAHand) {
 TEST(DeviceConfig, MayPlayTheDeviceOfAnotherNode) {
   const DeviceConfig own = launched("keyboard.yaml", {}).config;
   EXPECT_EQ(own.strength, 10);
-  const DeviceConfig stand_in = launched("keyboard.yaml", {"keyboard.standby_for=organ"}).config;
-  EXPECT_EQ(stand_in.name, "organ");
-  EXPECT_EQ(stand_in.device_id, config::name_hash("organ"));
-  EXPECT_EQ(stand_in.strength, 5);
+  const DeviceConfig standby = launched("keyboard.yaml", {"keyboard.standby_for=organ"}).config;
+  EXPECT_EQ(standby.name, "organ");
+  EXPECT_EQ(standby.device_id, config::name_hash("organ"));
+  EXPECT_EQ(standby.strength, 5);
   EXPECT_EQ(launched("keyboard.yaml", {"keyboard.standby_for=organ", "keyboard.strength=7"})
                 .config.strength,
             7);
@@ -127,7 +128,7 @@ TEST(DeviceConfig, KnowsHowWideItsKeysAre) {
   EXPECT_EQ(what_it_is(plane), "2 axes, driver mock");
 }
 
-TEST(DeviceConfig, BrakesOnlyADeviceWhoseViscosityIsKnown) {
+TEST(DeviceConfig, DampsOnlyADeviceWhoseViscosityIsKnown) {
   EXPECT_FALSE(device_of("axes: 1").config.force_guard.passivity.active);
   EXPECT_EQ(device_of("axes: 1").config.force_guard.power_w, 40.0);
   const ForceGuardSettings guard =

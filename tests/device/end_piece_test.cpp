@@ -1,3 +1,4 @@
+// tests/device/end_piece_test.cpp
 #include "device_node/end_piece.h"
 
 #include <random>

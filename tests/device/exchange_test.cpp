@@ -1,3 +1,4 @@
+// tests/device/exchange_test.cpp
 #include "device_node/exchange.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 using std::chrono::nanoseconds;
 
 constexpr std::uint64_t kRun = 77;
-constexpr std::uint64_t kSceneRun = 5;
+constexpr std::uint64_t kSceneEpoch = 5;
 constexpr std::int64_t kPeriodNsec = 1'000'000;  // [ns]
 
 std::int64_t now_nsec = 0;
@@ -96,9 +97,9 @@ struct Rig {
   GestureMessage answer(double value) {
     const GestureMessage& sample = channel.sent.back();
     GestureMessage message;
-    message.run = kSceneRun;
+    message.epoch = kSceneEpoch;
     message.sample = ++scene_sample;
-    message.answered_run = sample.run;
+    message.answered_epoch = sample.epoch;
     message.answered_sample = sample.sample;
     message.answered_time_nsec = sample.time_nsec;
     message.time_nsec = now_nsec + 500;
@@ -136,16 +137,16 @@ TEST(Exchange, NumbersItsSamplesAndEchoesTheAnswerInUse) {
 
   ASSERT_EQ(rig.channel.sent.size(), 3u);
   const GestureMessage& first = rig.channel.sent[0];
-  EXPECT_EQ(first.run, kRun);
+  EXPECT_EQ(first.epoch, kRun);
   EXPECT_EQ(first.sample, 1u);
-  EXPECT_EQ(first.answered_run, 0u);
+  EXPECT_EQ(first.answered_epoch, 0u);
   EXPECT_EQ(first.answered_sample, 0u);
   EXPECT_EQ(first.time_nsec, 1000);
   EXPECT_EQ(first.axis_count, 2u);
   EXPECT_EQ(first.value[0], 0.0);
   const GestureMessage& third = rig.channel.sent[2];
   EXPECT_EQ(third.sample, 3u);
-  EXPECT_EQ(third.answered_run, kSceneRun);
+  EXPECT_EQ(third.answered_epoch, kSceneEpoch);
   EXPECT_EQ(third.answered_sample, 101u);
   EXPECT_EQ(third.answered_time_nsec, 1500);
   EXPECT_EQ(third.value[0], -0.002);
@@ -280,9 +281,9 @@ TEST(Exchange, DropsWhatIsNotAnAnswerToIt) {
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_sample -= 1; }), 1u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_time_nsec = now_nsec + 1; }), 1u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.sample = 101; }), 1u);
-  // A scene that has not heard this device yet, or that answers another node, is no fault.
-  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_run = kRun - 1; }), 0u);
-  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_run = m.answered_sample = 0; }), 0u);
+  // A scene that has not received this device yet, or that answers another node, is no fault.
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_epoch = kRun - 1; }), 0u);
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_epoch = m.answered_sample = 0; }), 0u);
 }
 
 TEST(Exchange, DoesNotTakeAnswersToAnEarlierRole) {
@@ -305,7 +306,7 @@ TEST(Exchange, ANewRunOfTheSceneIsKnownByWhatItAnswers) {
     rig.period(true, 1.0);
     rig.exchange.send_sample();
     GestureMessage fresh = rig.answer(2.0);
-    fresh.run = kSceneRun - 1;  // the number of a run says nothing about its age
+    fresh.epoch = kSceneEpoch - 1;  // the number of a run says nothing about its age
     fresh.sample = 1;
 
     rig.channel.waiting.push_back(fresh);
@@ -321,7 +322,7 @@ TEST(Exchange, ANewRunOfTheSceneMayAnswerWhatAnEarlierOneHasAnswered) {
   Rig rig(false);
   rig.period(true, 1.0);
   GestureMessage fresh = rig.answer(2.0);
-  fresh.run = kSceneRun + 1;
+  fresh.epoch = kSceneEpoch + 1;
   fresh.sample = 1;
 
   rig.channel.waiting.push_back(fresh);
@@ -344,7 +345,7 @@ TEST(Exchange, MissesASceneThatAnswersNoNewSampleForLongerThanTheWatchdog) {
   rig.period(false);
   EXPECT_TRUE(rig.exchange.misses_the_scene());
 
-  GestureMessage again = last;  // the scene goes on, and hears nothing of this device
+  GestureMessage again = last;  // the scene goes on, and receives nothing of this device
   again.sample = ++rig.scene_sample;
   rig.channel.waiting.push_back(again);
   rig.period(false);
@@ -458,10 +459,10 @@ TEST(Exchange, FeelsEveryAnswerSoManyPeriodsLaterInLockstep) {
     for (int n = 1; n <= 8; ++n) {
       exchange.send_sample();
       GestureMessage answer;
-      answer.run = kSceneRun;
+      answer.epoch = kSceneEpoch;
       answer.sample = answer.answered_sample = channel.sent.back().sample;
       answer.answered_time_nsec = channel.sent.back().time_nsec;
-      answer.answered_run = kRun;
+      answer.answered_epoch = kRun;
       answer.axis_count = 2;
       answer.value[0] = 0.5 * n;
       channel.waiting.push_back(answer);
@@ -482,10 +483,10 @@ TEST(Exchange, PutsTheEndPieceBetweenWireAndMotors) {
   Exchange exchange(config, Role::kMass, {kRun, 0}, true, driver, channel, meter, &now);
   exchange.send_sample();
   GestureMessage answer;
-  answer.run = kSceneRun;
+  answer.epoch = kSceneEpoch;
   answer.sample = answer.answered_sample = 1;
   answer.answered_time_nsec = channel.sent.back().time_nsec;
-  answer.answered_run = kRun;
+  answer.answered_epoch = kRun;
   answer.axis_count = 1;
   answer.value[0] = 3.0;
   channel.waiting.push_back(answer);
@@ -536,7 +537,7 @@ TEST(Exchange, StandsByWhileAnotherNodeIsAnswered) {
   const auto period_of_another = [&rig] {
     rig.exchange.send_sample();
     GestureMessage message = rig.answer(9.0);
-    message.answered_run = kRun + 1;
+    message.answered_epoch = kRun + 1;
     rig.channel.waiting.push_back(message);
     now_nsec += kPeriodNsec;
     rig.exchange.receive();
@@ -575,7 +576,7 @@ TEST(Exchange, BeginsAnewAfterItStoodStillWhateverTheWatchdog) {
   now_nsec += 22 * kPeriodNsec;  // the board has let go, and the answers are not old yet
 
   EXPECT_EQ(rig.period(true, 3.0), 0.0);
-  EXPECT_EQ(rig.driver.age, 0.05) << "a driver with a guard of its own begins anew as well";
+  EXPECT_EQ(rig.driver.age, 0.05) << "a driver with a guard of its own restarts as well";
   EXPECT_EQ(rig.period(true, 3.0), 3.0);
 }
 

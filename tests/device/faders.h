@@ -15,14 +15,14 @@ namespace cordis::test {
 /// Answers each request as the firmware of the faders does, and keeps its last force for good.
 class Faders {
  public:
-  Faders() : plug([this](std::uint8_t byte) { hear(byte); }, [] {}) {}
+  Faders() : plug([this](std::uint8_t byte) { receive(byte); }, [] {}) {}
 
   std::array<std::atomic<int>, 2> forces{};              // -126..126
   std::array<std::atomic<std::uint8_t>, 2> positions{};  // 0..254
   ForceLog log;
 
  private:
-  void hear(std::uint8_t byte) {
+  void receive(std::uint8_t byte) {
     if (byte == 127) {
       count_ = 0;
       return;

@@ -61,11 +61,11 @@ class Chip {
     avr_raise_irq(avr_io_getirq(avr_, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + key),
                   static_cast<std::uint32_t>(share * 5000.0));
   }
-  void hear(std::uint8_t byte) {
+  void receive(std::uint8_t byte) {
     avr_raise_irq(avr_io_getirq(avr_, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT), byte);
   }
-  void hear(std::span<const std::uint8_t> bytes) {
-    for (const std::uint8_t byte : bytes) hear(byte);
+  void receive(std::span<const std::uint8_t> bytes) {
+    for (const std::uint8_t byte : bytes) receive(byte);
   }
   void run(double msec) {
     const avr_cycle_count_t end =
@@ -116,7 +116,7 @@ TEST(Firmware, AnswersEveryForceWithinAPeriod) {
   double slowest = 0.0;
   for (std::uint8_t n = 1; n <= 20; ++n) {
     chip.said.clear();
-    chip.hear(force_frame(n, 32767, -16384));
+    chip.receive(force_frame(n, 32767, -16384));
     const double begin = chip.msec();
     while (chip.msec() < begin + 5.0 && (chip.said.empty() || chip.said.back() != 0)) {
       chip.run(0.01);
@@ -140,7 +140,7 @@ TEST(Firmware, AnswersEveryForceWithinAPeriod) {
 
 TEST(Firmware, LetsGoTwentyMillisecondsAfterTheLastForce) {
   Chip chip;
-  chip.hear(force_frame(1, 20000, 20000));
+  chip.receive(force_frame(1, 20000, 20000));
   chip.run(15.0);
   EXPECT_GT(chip.duty(0), 0);
   chip.run(4.0);
@@ -167,14 +167,14 @@ TEST(Firmware, BelievesNoDamagedFrame) {
     std::vector<std::uint8_t> bad = good;
     bad[at] ^= 0x14;
     chip.said.clear();
-    chip.hear(bad);
-    chip.hear(0);
+    chip.receive(bad);
+    chip.receive(0);
     chip.run(0.6);
     EXPECT_EQ(chip.duty(0), 0) << at;
     EXPECT_TRUE(chip.said.empty()) << at;
   }
 
-  chip.hear(good);
+  chip.receive(good);
   chip.run(0.6);
   EXPECT_GT(chip.duty(0), 0) << "and goes on with the next good one";
 }
@@ -186,7 +186,7 @@ TEST_F(FirmwareTest, PlaysWithTheDriver) {
   std::array<std::atomic<int>, 2> duty{};
   std::atomic<double> pressed{0.75};
   test::Plug* said_through = nullptr;
-  test::Plug plug([&](std::uint8_t byte) { chip.hear(byte); },
+  test::Plug plug([&](std::uint8_t byte) { chip.receive(byte); },
                   [&] {
                     chip.press(0, pressed);
                     chip.run(1.0);

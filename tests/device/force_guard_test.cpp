@@ -1,3 +1,4 @@
+// tests/device/force_guard_test.cpp
 #include "device_node/force_guard.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// tests/device/gestures_test.cpp
 #include "device_node/drivers/gestures.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// tests/device/hand_test.cpp
 #include "device_node/drivers/hand.h"
 
 #include <cmath>
@@ -25,8 +26,8 @@ Trajectory resting_at(double target) {
 }
 
 TEST(Hand, FollowsAMinimumJerkMoveAsItsEquationSays) {
-  // The lag e = x - target obeys m e'' + Z e' + K e = -m a(t), with a(t) the cubic acceleration of
-  // the move. Its solution is a cubic, found power by power, and a damped swing from rest.
+  // The lag e = x - target follows m e'' + Z e' + K e = -m a(t), with a(t) the cubic acceleration
+  // of the move. Its solution is a cubic, found power by power, and a damped swing from rest.
   const HandSettings steady = hand_settings();
   const double m = steady.mass_kg;
   const double z = steady.viscosity_n_s_per_m;

@@ -16,7 +16,7 @@ namespace {
 using test::Hostile;
 
 constexpr std::uint64_t kRun = 77;
-constexpr std::uint64_t kSceneRun = 5;
+constexpr std::uint64_t kSceneEpoch = 5;
 constexpr std::int64_t kPeriodNsec = 1'000'000;
 
 std::int64_t fake_nsec = 0;
@@ -76,9 +76,9 @@ struct Rig {
 
   GestureMessage true_answer(double value) {
     GestureMessage answer;
-    answer.run = kSceneRun;
+    answer.epoch = kSceneEpoch;
     answer.sample = ++answers;
-    answer.answered_run = line.newest.run;
+    answer.answered_epoch = line.newest.epoch;
     answer.answered_sample = line.newest.sample;
     answer.answered_time_nsec = line.newest.time_nsec;
     answer.time_nsec = fake_nsec;
@@ -108,9 +108,9 @@ struct Rig {
 GestureMessage spoilt(GestureMessage answer, Hostile& hostile) {
   const auto whole = [&] { return hostile.whole(); };
   const auto time = [&] { return hostile.time(); };
-  answer.run = hostile.or_true(answer.run, whole);
+  answer.epoch = hostile.or_true(answer.epoch, whole);
   answer.sample = hostile.or_true(answer.sample, whole);
-  answer.answered_run = hostile.or_true(answer.answered_run, whole);
+  answer.answered_epoch = hostile.or_true(answer.answered_epoch, whole);
   answer.answered_sample = hostile.or_true(answer.answered_sample, whole);
   answer.answered_time_nsec = hostile.or_true(answer.answered_time_nsec, time);
   answer.time_nsec = hostile.or_true(answer.time_nsec, time);

@@ -1,3 +1,4 @@
+// tests/device/jump_check_test.cpp
 #include "device_node/drivers/jump_check.h"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ namespace cordis::test {
 class Kfb1Board {
  public:
   explicit Kfb1Board(int keys = 2)
-      : plug([this](std::uint8_t byte) { hear(byte); }, [this] { idle(); }) {
+      : plug([this](std::uint8_t byte) { receive(byte); }, [this] { idle(); }) {
     board_ = this;
     kfb1_board& what = what_;
     what.keys = static_cast<std::uint8_t>(keys);
@@ -56,7 +56,7 @@ class Kfb1Board {
   std::function<void(int key, int force)> on_force;
 
  private:
-  void hear(std::uint8_t byte) {
+  void receive(std::uint8_t byte) {
     const std::int64_t now = node::monotonic_nsec();
     if (first_byte_nsec_ == 0) first_byte_nsec_ = now;
     if (static_cast<double>(now - first_byte_nsec_) * 1e-9 >= deaf_for_s) {

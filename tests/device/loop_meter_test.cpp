@@ -1,3 +1,4 @@
+// tests/device/loop_meter_test.cpp
 #include "device_node/loop_meter.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// tests/device/mock_key_test.cpp
 #include "device_node/drivers/mock_key.h"
 
 #include <cmath>

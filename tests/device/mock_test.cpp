@@ -1,3 +1,4 @@
+// tests/device/mock_test.cpp
 #include "device_node/drivers/mock.h"
 
 #include <array>

@@ -22,7 +22,7 @@ namespace cordis::test {
 /// the published firmware, type 0 makes it forget its motors, but not the torques they have.
 class PantographBoard {
  public:
-  PantographBoard() : plug([this](std::uint8_t byte) { hear(byte); }, [] {}) {}
+  PantographBoard() : plug([this](std::uint8_t byte) { receive(byte); }, [] {}) {}
 
   /// In the order of the ports: the right motor first.
   std::array<std::atomic<float>, 2> degrees{};
@@ -43,7 +43,7 @@ class PantographBoard {
   static constexpr std::size_t kConfiguration = 2 + 3 + 3 + 2 + 16;
   static constexpr std::size_t kTorques = 2 + 8;
 
-  void hear(std::uint8_t byte) {
+  void receive(std::uint8_t byte) {
     bytes_.push_back(byte);
     if (bytes_[0] == 1 && bytes_.size() == kConfiguration) {
       EXPECT_EQ(bytes_[1], 5);

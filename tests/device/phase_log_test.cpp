@@ -1,3 +1,4 @@
+// tests/device/phase_log_test.cpp
 #include "device_node/phase_log.h"
 
 #include <gtest/gtest.h>

@@ -73,7 +73,7 @@ void Plug::live() {
           udp_ ? recvfrom(wire_, bytes, sizeof bytes, 0, reinterpret_cast<sockaddr*>(&from), &size)
                : ::read(wire_, bytes, sizeof bytes);
       if (udp_ && count > 0) peer_ = from;
-      for (ssize_t i = 0; i < count; ++i) hear_(bytes[i]);
+      for (ssize_t i = 0; i < count; ++i) receive_(bytes[i]);
       idle_();
     }
   });

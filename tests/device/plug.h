@@ -13,12 +13,13 @@
 
 namespace cordis::test {
 
-/// An emulated device's end. What arrives is handed to `hear`, on a thread of its own, which also
-/// calls `idle` about every millisecond; `say` answers from there, and harms what it is told to.
+/// An emulated device's end. What arrives is handed to `receive`, on a thread of its own, which
+/// also calls `idle` about every millisecond; `say` answers from there, and harms what it is told
+/// to.
 class Plug {
  public:
-  Plug(std::function<void(std::uint8_t)> hear, std::function<void()> idle)
-      : hear_(std::move(hear)), idle_(std::move(idle)) {}
+  Plug(std::function<void(std::uint8_t)> receive, std::function<void()> idle)
+      : receive_(std::move(receive)), idle_(std::move(idle)) {}
   ~Plug() { pull(); }
   Plug(const Plug&) = delete;
   Plug& operator=(const Plug&) = delete;
@@ -48,7 +49,7 @@ class Plug {
  private:
   void live();
 
-  std::function<void(std::uint8_t)> hear_;
+  std::function<void(std::uint8_t)> receive_;
   std::function<void()> idle_;
   std::thread thread_;
   std::atomic<bool> lives_{false};

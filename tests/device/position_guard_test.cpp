@@ -1,3 +1,4 @@
+// tests/device/position_guard_test.cpp
 #include "device_node/position_guard.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// tests/device/script_test.cpp
 #include "device_node/drivers/script.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// tests/device/trajectory_test.cpp
 #include "device_node/drivers/trajectory.h"
 
 #include <cmath>

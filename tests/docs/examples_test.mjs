@@ -1,4 +1,5 @@
-// Every example of the documents and of the help texts (docs/cli.md) works: commands run, scenes, launch files and devices load.
+// tests/docs/examples_test.mjs -- every example of the documents and of the help texts
+// (docs/cli.md) works: commands run, scenes, launch files and devices load.
 //
 // The first words after ``` say what a block is:
 //   sh             commands of `cordis`, one per line; they run in a copy of launch_configs

@@ -1,4 +1,5 @@
-// docs/launch.md lists exactly the keys that the readers of launch files and device files accept.
+// tests/docs/launch_document_test.cpp -- docs/launch.md lists exactly the keys that the readers of
+// launch files and device files accept.
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -56,7 +56,7 @@ TEST_P(Restitution, IsThatOfTheExactSolution) {
   for (const auto& row : data["rows"]) {
     const double zeta = number(row[0]);
     const double expected = number(row[clamped ? 3 : 1]);
-    if (expected == 0.0) continue;  // held back for ever
+    if (expected == 0.0) continue;  // held back forever
     const auto error = [&](double step) {
       World world = make_world(approach(contact(1.0, 2.0 * zeta, clamped), 1.0, step));
       return std::abs(speed_after(world) - expected);

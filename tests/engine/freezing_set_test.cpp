@@ -141,7 +141,7 @@ TEST(FreezingSet, IsOffByLessThanTenTolerances) {
   }
 }
 
-/// A swarm that moves for ever, and a patch far off, at rest without any force.
+/// A swarm that moves forever, and a patch far off, at rest without any force.
 NetworkDescription swarm_and_patch(const StateMachine& state_machine, int dimension) {
   NetworkDescription scene = cloud(60, 0.06, 0.3, dimension);
   scene.radius.clear();

@@ -31,7 +31,7 @@ constexpr double kUntouched = 1234.5;
 /// 8 rows with values for every quantity.
 struct Rows {
   alignas(64) std::array<std::array<double, kStateBatch>, kQuantityCount> quantity{};
-  alignas(64) std::array<double, kStateBatch> growth{};
+  alignas(64) std::array<double, kStateBatch> elongation_increment{};
   alignas(64) std::array<double, kStateBatch> entered{};
   alignas(64) std::array<double, kStateBatch> elastic{};
   alignas(64) std::array<double, kStateBatch> elastic_before{};
@@ -42,7 +42,7 @@ struct Rows {
   Rows() {
     memory.fill(kNan);
     for (std::size_t k = 0; k < kQuantityCount; ++k) rows.quantity[k] = quantity[k].data();
-    rows.growth = growth.data();
+    rows.elongation_increment = elongation_increment.data();
     rows.dt = 0.5;
     rows.rate = 2.0;
     rows.state = state.data();

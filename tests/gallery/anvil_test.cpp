@@ -1,3 +1,4 @@
+// tests/gallery/anvil_test.cpp
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -40,12 +41,12 @@ TEST(Anvil, IsTooStiffForADeviceInRoleMass) {
   config::DeviceLimits key;  // of launch_configs/devices/keyboard.yaml
   key.moving_mass_kg = 0.05;
   key.viscosity_n_s_per_m = 1.0;
-  const auto doubt_about = [&key](const Stage& stage) {
-    return sim::verdict_on(sim::demands_of(stage.scene()).at(0), key, 1).doubt;
+  const auto uncertainty_of = [&key](const Stage& stage) {
+    return sim::verdict_on(sim::demands_of(stage.scene()).at(0), key, 1).uncertainty;
   };
-  EXPECT_EQ(doubt_about(Stage("anvil.yaml")), "");
+  EXPECT_EQ(uncertainty_of(Stage("anvil.yaml")), "");
   const ChangedScene changed = in_role_mass(", coupling: direct");
-  EXPECT_NE(doubt_about(Stage("anvil.yaml", changed.overrides())), "");
+  EXPECT_NE(uncertainty_of(Stage("anvil.yaml", changed.overrides())), "");
 }
 
 TEST(Anvil, IsStruckByTheLawOfHertz) {

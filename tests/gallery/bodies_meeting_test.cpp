@@ -1,3 +1,4 @@
+// tests/gallery/bodies_meeting_test.cpp
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -1,3 +1,4 @@
+// tests/gallery/bouncing_ball_test.cpp
 #include <algorithm>
 #include <array>
 #include <cmath>

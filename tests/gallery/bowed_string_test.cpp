@@ -1,3 +1,4 @@
+// tests/gallery/bowed_string_test.cpp
 #include <cmath>
 #include <numbers>
 

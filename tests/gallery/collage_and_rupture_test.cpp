@@ -1,3 +1,4 @@
+// tests/gallery/collage_and_rupture_test.cpp
 #include <numeric>
 #include <vector>
 

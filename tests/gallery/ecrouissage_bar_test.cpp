@@ -1,3 +1,4 @@
+// tests/gallery/ecrouissage_bar_test.cpp
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// tests/gallery/elementary_solid_test.cpp
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// tests/gallery/grasp_and_carry_test.cpp
 #include <algorithm>
 #include <cmath>
 

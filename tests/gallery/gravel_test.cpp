@@ -1,3 +1,4 @@
+// tests/gallery/gravel_test.cpp
 #include <cmath>
 
 #include <gtest/gtest.h>

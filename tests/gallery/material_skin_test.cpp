@@ -1,3 +1,4 @@
+// tests/gallery/material_skin_test.cpp
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -1,3 +1,4 @@
+// tests/gallery/mechanisms_test.cpp
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -47,7 +48,7 @@ TEST(Mechanisms, AClockGoesOnForItIsPushedOnOneWayAlone) {
 
 struct Break {
   double after_s = 0.0;      ///< since the touch
-  double impulse_n_s = 0.0;  ///< borne since then
+  double impulse_n_s = 0.0;  ///< taken since then
 };
 
 Break break_of_the_seal(Stage& stage) {

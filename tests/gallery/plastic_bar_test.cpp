@@ -1,3 +1,4 @@
+// tests/gallery/plastic_bar_test.cpp
 #include <algorithm>
 #include <cmath>
 

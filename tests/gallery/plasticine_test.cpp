@@ -1,3 +1,4 @@
+// tests/gallery/plasticine_test.cpp
 #include <algorithm>
 #include <utility>
 #include <vector>

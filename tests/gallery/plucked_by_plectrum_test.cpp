@@ -1,3 +1,4 @@
+// tests/gallery/plucked_by_plectrum_test.cpp
 #include <cmath>
 #include <numbers>
 #include <vector>

@@ -1,3 +1,4 @@
+// tests/gallery/plucked_string_test.cpp
 #include <algorithm>
 #include <cmath>
 

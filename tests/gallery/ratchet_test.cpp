@@ -1,3 +1,4 @@
+// tests/gallery/ratchet_test.cpp
 #include <algorithm>
 #include <cmath>
 

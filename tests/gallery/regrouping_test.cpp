@@ -1,3 +1,4 @@
+// tests/gallery/regrouping_test.cpp
 #include <algorithm>
 #include <vector>
 

@@ -1,3 +1,4 @@
+// tests/gallery/slinky_test.cpp
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// tests/gallery/stacks_shattering_test.cpp
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// tests/gallery/sticking_balls_test.cpp
 #include <cmath>
 
 #include <gtest/gtest.h>

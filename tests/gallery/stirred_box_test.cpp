@@ -1,3 +1,4 @@
+// tests/gallery/stirred_box_test.cpp
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,4 +1,5 @@
-// A parser of another house reads every file of idl/ and finds in it the messages and fields that the generated classes have.
+// tests/idl/idl_test.mjs -- a parser of another house reads every file of idl/ and finds in it the
+// messages and fields that the generated classes have.
 //
 // usage: node idl_test.mjs IDL_FOLDER GENERATED_FOLDER FOLDER_WITH_NODE_MODULES
 import assert from 'node:assert/strict';

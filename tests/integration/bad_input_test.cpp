@@ -116,7 +116,8 @@ TEST(BadInput, ASecondSimOfASessionEndsAndTheFirstGoesOn) {
   session.add_file("key.yaml", steady_key(0, 0));
   StatusWatch status(session.participant());
   session.start("sim_node", "sim");
-  ASSERT_TRUE(status.wait_for("sim", [](const auto& told) { return told.ticks() > 0; }));
+  ASSERT_TRUE(status.wait_for(
+      "sim", [](const auto& status_message) { return status_message.ticks() > 0; }));
 
   ChildProcess second({program_path("sim_node"), session.launch_file()});
   EXPECT_EQ(second.wait(kPatience), 1);
@@ -133,16 +134,18 @@ TEST(BadInput, ADeviceThatJoinsLateAndCannotBearTheSceneIsGivenNoForce) {
   StatusWatch status(session.participant());
   dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
   session.start("sim_node", "sim");
-  ASSERT_TRUE(status.wait_for("sim", [](const auto& told) { return told.ticks() > 0; }));
+  ASSERT_TRUE(status.wait_for(
+      "sim", [](const auto& status_message) { return status_message.ticks() > 0; }));
   session.add_file("key.yaml", with(steady_key(-0.01, 0.0), "travel_m: 0.04", "travel_m: 0.03") +
                                    "force_limit_n: 15\nstiffness_limit_n_per_m: 150\n");
   session.start("device_node", "keyboard");
 
   const auto says = [&](const std::string& reason) {
-    return status.wait_for(
-        "sim", [&](const auto& told) { return told.text().find(reason) != std::string::npos; });
+    return status.wait_for("sim", [&](const auto& status_message) {
+      return status_message.text().find(reason) != std::string::npos;
+    });
   };
-  ASSERT_TRUE(says("as stiff as 200 N/m, and the device 'keyboard' can bear 150 N/m"));
+  ASSERT_TRUE(says("as stiff as 200 N/m, and the device 'keyboard' supports 150 N/m"));
   EXPECT_TRUE(says("needs a travel of 0.04 m, and axis 0 of the device 'keyboard' has 0.03 m"));
   EXPECT_TRUE(says("needs a force of 20 N, and axis 0 of the device 'keyboard' has 15 N"));
   msg::GestureForces force;

@@ -129,7 +129,7 @@ TEST_P(Control, ResetBeginsTheSceneAnewUnderANewVersion) {
   ASSERT_TRUE(
       status_.wait_for("sim", [](const msg::NodeStatus& status) { return status.step() > 2000; }));
   expect_done({"pause"}, "paused");
-  expect_done({"reset"}, "'wall' begins anew, paused");
+  expect_done({"reset"}, "'wall' restarts, paused");
 
   ASSERT_TRUE(eventually([&] { return descriptions.take(description); }));
   EXPECT_EQ(description.version(), 2u);
@@ -235,7 +235,7 @@ TEST_F(ControlWithoutDevices, AScenePlayedAsFastAsCanBeObeysJustTheSame) {
   session_.start("sim_node", "sim");
   ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
   expect_done({"pause"}, "sim: paused at step ");
-  expect_done({"reset"}, "'free' begins anew, paused");
+  expect_done({"reset"}, "'free' restarts, paused");
   EXPECT_EQ(step_shown(), 0u);
   expect_steps({"step", "100000"}, 100000);
   expect_done({"load", "scene.yaml"}, "'free' begins, paused");
@@ -332,7 +332,7 @@ TEST_F(ControlInRealtime, EveryNodeAnswersACommandForAllJustOnce) {
   ASSERT_TRUE(asking.ask(command));
   EXPECT_EQ(asking.answers().size(), 2u);
 
-  // Sent again, it is answered again and not obeyed again.
+  // Sent again, it is answered again and not executed again.
   command.verb("resume");
   ASSERT_TRUE(asking.ask(command));
   EXPECT_EQ(asking.text_of("sim").find("goes on"), std::string::npos);

@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kStiffness = 200.0;    // of the wall [N/m]
 constexpr double kHardwareForce = 2.0;  // the key on the table is pressed to -10 mm [N]
-constexpr double kStandInForce = 1.0;   // the simulated one to -5 mm [N]
+constexpr double kStandbyForce = 1.0;   // the simulated one to -5 mm [N]
 constexpr double kSlew = 0.3;           // slew limit of both: 300 N/s in 1 ms [N]
 constexpr double kSceneGrowth = 0.05;   // of forces that the scene gives, in 1 ms [N]
 constexpr double kFullScale = 10.0;     // of the board [N]
@@ -58,7 +58,7 @@ class Failover : public ::testing::Test {
       : session_("realtime",
                  "  sim: {node: sim_node, scene: scene.yaml}\n"
                  "  keyboard: {node: device_node, device: key.yaml, required: false}\n"
-                 "  stand_in: {node: device_node, device: mock.yaml, standby_for: keyboard}\n"),
+                 "  standby_node: {node: device_node, device: mock.yaml, standby_for: keyboard}\n"),
         board_(1),
         status_(session_.participant(), dds::Topic::kStatus),
         forces_(session_.participant(), dds::Topic::kForces) {
@@ -71,7 +71,7 @@ class Failover : public ::testing::Test {
     session_.add_file("mock.yaml", std::string(kLimits) +
                                        "driver: script\nscript: {positions: [{at_s: 0, m: -0.005}]}"
                                        "\ntrace: {file: " +
-                                       trace("stand_in") + ", last_s: 60}\n");
+                                       trace("standby_node") + ", last_s: 60}\n");
     board_.positions[0] = 16384;  // three quarters up: -0.01 m
     board_.on_force = [this](int, int force) { board_force_ = force * kFullScale / 32767.0; };
     board_.plug.into_serial_line(session_.folder() / "tty");
@@ -95,11 +95,11 @@ class Failover : public ::testing::Test {
     }
   }
 
-  bool in_phases(const std::string& hardware, const std::string& stand_in, double force) {
+  bool in_phases(const std::string& hardware, const std::string& standby, double force) {
     return eventually([&] {
       listen();
       return (hardware.empty() || newest_["keyboard"].phase() == hardware) &&
-             newest_["stand_in"].phase() == stand_in && newest_["sim"].phase() == "running" &&
+             newest_["standby_node"].phase() == standby && newest_["sim"].phase() == "running" &&
              std::abs(answer_.force_n()[0] - force) < 2e-3;
     });
   }
@@ -153,25 +153,25 @@ TEST_F(Failover, AStandInTakesOverWhenTheHardwareProcessDiesAndHandsBack) {
     listen();
     return newest_["keyboard"].phase() == "running";
   }));
-  session_.start("device_node", "stand_in");
+  session_.start("device_node", "standby_node");
   ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
   ASSERT_TRUE(eventually([&] { return std::abs(board_force_ - kHardwareForce) < 2e-3; }));
-  const std::uint64_t sim_run = newest_["sim"].run();
+  const std::uint64_t sim_epoch = newest_["sim"].epoch();
   const std::uint64_t ticks = newest_["sim"].ticks();
 
   session_.node("keyboard").signal(SIGKILL);
   ASSERT_EQ(session_.node("keyboard").wait(kPatience), 128 + SIGKILL);
-  ASSERT_TRUE(in_phases("", "running", kStandInForce));
+  ASSERT_TRUE(in_phases("", "running", kStandbyForce));
   EXPECT_TRUE(eventually([&] { return board_.forces[0] == 0; })) << "its own watchdog has let go";
 
   session_.start("device_node", "keyboard");
   ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
   ASSERT_TRUE(eventually([&] { return std::abs(board_force_ - kHardwareForce) < 2e-3; }));
 
-  end_and_check("stand_in", kStandInForce);
+  end_and_check("standby_node", kStandbyForce);
   end_and_check("keyboard", kHardwareForce);
   EXPECT_LE(largest_scene_growth_, kSceneGrowth);
-  EXPECT_EQ(newest_["sim"].run(), sim_run);
+  EXPECT_EQ(newest_["sim"].epoch(), sim_epoch);
   EXPECT_TRUE(eventually([&] {
     listen();
     return newest_["sim"].ticks() > ticks;
@@ -181,11 +181,11 @@ TEST_F(Failover, AStandInTakesOverWhenTheHardwareProcessDiesAndHandsBack) {
 TEST_F(Failover, AStandInPlaysWhileTheHardwareIsUnplugged) {
   session_.start("sim_node", "sim");
   session_.start("device_node", "keyboard");
-  session_.start("device_node", "stand_in");
+  session_.start("device_node", "standby_node");
   ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
 
   board_.plug.pull();
-  ASSERT_TRUE(in_phases("lost", "running", kStandInForce));
+  ASSERT_TRUE(in_phases("lost", "running", kStandbyForce));
 
   board_.plug.into_serial_line(session_.folder() / "tty");
   ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));

@@ -160,7 +160,7 @@ TEST(ForceLoop, SamplesThatAreNotFiniteAreRefusedAndTheLoopGoesOn) {
 
   msg::GesturePositions bad;
   bad.device_id(force.device_id());
-  bad.run(12345);
+  bad.epoch(12345);
   bad.axis_count(1);
   bad.position_m().fill(std::nan(""));
   ASSERT_TRUE(eventually([&] {
@@ -192,14 +192,14 @@ TEST(ForceLoop, ForcesThatAreNotFiniteNeverReachTheMotor) {
 
   msg::GestureForces bad;
   bad.device_id(position.device_id());
-  bad.run(12345);
+  bad.epoch(12345);
   bad.axis_count(1);
   bad.force_n().fill(std::nan(""));
   ASSERT_TRUE(eventually([&] {
     while (positions.take(position)) {
     }
     bad.sample(bad.sample() + 1);
-    bad.answered_run(position.run());
+    bad.answered_epoch(position.epoch());
     bad.answered_sample(position.sample());
     rogue.write(bad);
     return status.wait_for("keyboard", [](const msg::NodeStatus&) { return true; }) &&

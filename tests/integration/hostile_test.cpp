@@ -52,7 +52,7 @@ TEST_F(Hostile, ASampleOfTheHighestNumberSilencesNoDevice) {
   ASSERT_TRUE(eventually([&] { return positions.matched_count() > 0; }));
   msg::GesturePositions sample;
   sample.device_id(config::name_hash("keyboard"));
-  sample.run(force_.answered_run());
+  sample.epoch(force_.answered_epoch());
   sample.axis_count(1);
   for (const double place : {1e300, -1e300, 0.5, std::nan("")}) {
     SCOPED_TRACE("at " + std::to_string(place) + " m");
@@ -93,7 +93,7 @@ TEST_F(Hostile, ADescriptionOfAnUnknownRoleIsRefusedAndTheDevicePlaysOn) {
     port.role(role);
     port.axes({4'000'000'000u});
     msg::SceneDescription scene;
-    scene.run(1);
+    scene.epoch(1);
     scene.name("hostile");
     scene.ports({port});
     EXPECT_TRUE(descriptions.write(scene));

@@ -1,5 +1,7 @@
-// The picture goes on, whatever a person presses: every button of the page and scenes loaded from a shell while frames are on
-// their way. Real sim_node, device_node, viz_node, launcher and Chromium. What is asked next is drawn by lot; the seed is printed.
+// tests/integration/picture_test.mjs -- the picture goes on, whatever a person presses: every
+// button of the page and scenes loaded from a shell while frames are on their way. Real sim_node,
+// device_node, viz_node, launcher and Chromium. What is asked next is drawn by lot; the seed is
+// printed.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { drawn, openPage, textOf, viz } from '../viz/browser.mjs';
@@ -23,7 +25,7 @@ function lot(seed) {
 /** Presses a button at once, wherever the page is in drawing. */
 const press = (page, selector) => page.evaluate((one) => document.querySelector(one).click(), selector);
 
-/** Does something that describes the scene anew, and waits until the page has the new description. */
+/** Does something that describes the scene again, and waits until the page has the new description. */
 async function describeAnew(page, what, action) {
   const before = (await viz(page, 'scene')).number;
   await action();

@@ -60,7 +60,7 @@ std::string bare_key(int delay, const std::string& hand, double force_limit = 1e
 struct Swing {
   double third = 0.0;
   double last = 0.0;
-  std::uint64_t passivity_ticks = 0;  // of the node that brakes in this role
+  std::uint64_t passivity_ticks = 0;  // of the node that damps in this role
 
   /// It grows, or has grown already from almost nothing to more than 1 m or 1 N.
   bool lasts() const { return last > third || last > 1.0; }
@@ -79,19 +79,19 @@ Swing swing_of(const std::string& scene, const std::string& key, dds::Topic topi
   session.start("device_node", "keyboard");
   ChildProcess& sim = session.start("sim_node", "sim");
   Swing swing;
-  std::uint64_t heard = 0;
+  std::uint64_t last_sample = 0;
   Message message;
   EXPECT_TRUE(eventually([&] {
     while (reader.take(message)) {
-      if (message.sample() <= heard) continue;
-      heard = message.sample();
-      if (heard < kTicks / 2) continue;
-      double& largest = heard < kTicks * 3 / 4 ? swing.third : swing.last;
+      if (message.sample() <= last_sample) continue;
+      last_sample = message.sample();
+      if (last_sample < kTicks / 2) continue;
+      double& largest = last_sample < kTicks * 3 / 4 ? swing.third : swing.last;
       largest = std::max(largest, std::abs(values(message)[0] - rest));
     }
     return sim.wait(std::chrono::milliseconds(0)) == 0;
   }));
-  EXPECT_GT(heard, static_cast<std::uint64_t>(kTicks) * 9 / 10);
+  EXPECT_GT(last_sample, static_cast<std::uint64_t>(kTicks) * 9 / 10);
   const bool is_mass = topic == dds::Topic::kPositions;
   if (is_mass) session.node("keyboard").signal(SIGTERM);
   EXPECT_TRUE(status.wait_for_phase(is_mass ? "keyboard" : "sim", "stopped"));
@@ -183,20 +183,20 @@ TEST(PassivityController, EndsTheSwingOfAWallTenTimesTooStiff) {
   };
 
   const Swing free = swing("false");
-  const Swing braked = swing("true");
+  const Swing damped = swing("true");
 
   EXPECT_GT(free.last, 0.001);
-  EXPECT_LT(braked.last, 0.02 * free.last);
-  EXPECT_GT(braked.passivity_ticks, 0u);
+  EXPECT_LT(damped.last, 0.02 * free.last);
+  EXPECT_GT(damped.passivity_ticks, 0u);
 }
 
 TEST(PassivityController, EndsTheSwingOfAHandTenTimesTooStiff) {
   const std::string key = bare_key(1, holding(kTimesTooStiff * 0.1, 0.005), 50.0);
 
-  const Swing braked = swing_in_role_liaison(key);
+  const Swing damped = swing_in_role_liaison(key);
 
-  EXPECT_GT(braked.passivity_ticks, 0u) << "it swung up until it was seen to";
-  EXPECT_LT(braked.last, 0.1) << "[N]";
+  EXPECT_GT(damped.passivity_ticks, 0u) << "it swung up until it was seen to";
+  EXPECT_LT(damped.last, 0.1) << "[N]";
 }
 
 }  // namespace

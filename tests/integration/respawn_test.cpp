@@ -74,16 +74,16 @@ class Respawn : public testing::Test {
     msg::GestureForces force;
     while (forces_.take(force)) {
     }
-    const std::uint64_t run = status_.of("sim").run();
+    const std::uint64_t epoch = status_.of("sim").epoch();
     return eventually([&] {
-      return forces_.take(force) && force.run() == run && std::abs(force.force_n()[0]) > 1e-3;
+      return forces_.take(force) && force.epoch() == epoch && std::abs(force.force_n()[0]) > 1e-3;
     });
   }
 
   bool page_answers() { return get(status_.of("view").text()).starts_with("HTTP/1.1 200"); }
 
   void kill_and_wait_for_the_next_life(const std::string& node) {
-    const std::uint64_t old_run = status_.of(node).run();
+    const std::uint64_t old_epoch = status_.of(node).epoch();
     const pid_t process = process_of(launcher_, node);
     ASSERT_GT(process, 0) << node;
     ASSERT_EQ(kill(process, SIGKILL), 0);
@@ -91,7 +91,8 @@ class Respawn : public testing::Test {
                                           kPatience));
     ASSERT_TRUE(status_.wait_for(node,
                                  [&](const msg::NodeStatus& status) {
-                                   return status.run() != old_run && status.phase() == "running";
+                                   return status.epoch() != old_epoch &&
+                                          status.phase() == "running";
                                  }))
         << node << " does not run again";
   }
@@ -107,7 +108,7 @@ TEST_F(Respawn, OfEachNodeInTurnLeavesTheSessionWhole) {
   ASSERT_TRUE(is_felt());
   for (const std::string node : {"sim", "keyboard", "view"}) {
     std::map<std::string, std::uint64_t> runs;
-    for (const char* name : {"sim", "keyboard", "view"}) runs[name] = status_.of(name).run();
+    for (const char* name : {"sim", "keyboard", "view"}) runs[name] = status_.of(name).epoch();
 
     ASSERT_NO_FATAL_FAILURE(kill_and_wait_for_the_next_life(node));
 
@@ -116,7 +117,7 @@ TEST_F(Respawn, OfEachNodeInTurnLeavesTheSessionWhole) {
     EXPECT_TRUE(page_answers()) << "after " << node;
     for (const char* name : {"sim", "keyboard", "view"}) {
       if (name == node) continue;
-      EXPECT_EQ(status_.of(name).run(), runs[name]) << name << " was disturbed by " << node;
+      EXPECT_EQ(status_.of(name).epoch(), runs[name]) << name << " was disturbed by " << node;
     }
     EXPECT_TRUE(launcher_runs());
   }

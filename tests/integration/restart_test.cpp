@@ -53,9 +53,9 @@ class Restart : public ::testing::TestWithParam<const char*> {
                             [&](const auto& status) { return status.ticks() > ticks + more; });
   }
 
-  bool runs_anew(const std::string& name, std::uint64_t old_run) {
+  bool restarts(const std::string& name, std::uint64_t old_epoch) {
     return status_.wait_for(name, [&](const auto& status) {
-      return status.run() != old_run && status.phase() == "running";
+      return status.epoch() != old_epoch && status.phase() == "running";
     });
   }
 
@@ -64,21 +64,21 @@ class Restart : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(Restart, OfSimLeavesTheDeviceWithoutForceUntilItIsBack) {
-  const std::uint64_t old_run = status_.of("sim").run();
+  const std::uint64_t old_epoch = status_.of("sim").epoch();
   kill_now("sim");
 
   ASSERT_TRUE(status_.wait_for_phase("keyboard", "lost"));
 
   session_.start("sim_node", "sim");
-  ASSERT_TRUE(runs_anew("sim", old_run));
+  ASSERT_TRUE(restarts("sim", old_epoch));
   ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
   EXPECT_TRUE(goes_on("sim", 100));
   EXPECT_TRUE(goes_on("keyboard", 100));
 }
 
 TEST_P(Restart, OfTheDeviceFindsTheSceneStillThere) {
-  const std::uint64_t old_run = status_.of("keyboard").run();
-  const std::uint64_t sim_run = status_.of("sim").run();
+  const std::uint64_t old_epoch = status_.of("keyboard").epoch();
+  const std::uint64_t sim_epoch = status_.of("sim").epoch();
   kill_now("keyboard");
   if (GetParam() == std::string("realtime")) {
     ASSERT_TRUE(status_.wait_for_phase("sim", "waiting"));
@@ -87,14 +87,14 @@ TEST_P(Restart, OfTheDeviceFindsTheSceneStillThere) {
 
   session_.start("device_node", "keyboard");
 
-  ASSERT_TRUE(runs_anew("keyboard", old_run));
+  ASSERT_TRUE(restarts("keyboard", old_epoch));
   ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
   EXPECT_TRUE(goes_on("sim", 100));
-  EXPECT_EQ(status_.of("sim").run(), sim_run);
+  EXPECT_EQ(status_.of("sim").epoch(), sim_epoch);
 }
 
 TEST_P(Restart, OfTheDisplayDisturbsNobody) {
-  const std::uint64_t old_run = status_.of("view").run();
+  const std::uint64_t old_epoch = status_.of("view").epoch();
   kill_now("view");
   EXPECT_TRUE(goes_on("sim", 100));
   EXPECT_TRUE(goes_on("keyboard", 100));
@@ -102,7 +102,7 @@ TEST_P(Restart, OfTheDisplayDisturbsNobody) {
   session_.start("viz_node", "view");
 
   ASSERT_TRUE(status_.wait_for("view", [&](const auto& status) {
-    return status.run() != old_run && serves_a_page(status);
+    return status.epoch() != old_epoch && serves_a_page(status);
   }));
   EXPECT_TRUE(status_.wait_for_phase("sim", "running"));
 }
@@ -120,7 +120,7 @@ TEST(Lockstep, WhoWaitsLongSaysForWhomAndWhetherAnybodyIsThereAndForgetsNobody) 
   sceneless.add_file("key.yaml", steady_key(-0.01, 0.0));
   dds::Writer<msg::SceneDescription> scenes(sceneless.participant(), dds::Topic::kDescription);
   msg::SceneDescription scene;
-  scene.run(1);
+  scene.epoch(1);
   scene.version(1);
   scene.ports().emplace_back();
   scene.ports().back().device_id(config::name_hash("keyboard"));
@@ -150,7 +150,7 @@ TEST(Lockstep, WhoWaitsLongSaysForWhomAndWhetherAnybodyIsThereAndForgetsNobody) 
     elsewhere.write(other);
     return sim.output().find("2 s: device_node 'other' is alive, and sends no sample") !=
            std::string::npos;
-  })) << "the one that stands still is not";
+  })) << "the one that is stopped is not";
   device.signal(SIGCONT);
 
   const std::uint64_t ticks = status.of("keyboard").ticks();

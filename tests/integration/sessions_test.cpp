@@ -33,8 +33,8 @@ TEST(Sessions, OfOneDomainDoNotHearEachOther) {
   const auto watch = [&force](auto& reader, double settled, std::uint64_t& run) {
     bool reached = false;
     while (reader.take(force)) {
-      if (run == 0) run = force.run();
-      EXPECT_EQ(force.run(), run) << "a force of the other session";
+      if (run == 0) run = force.epoch();
+      EXPECT_EQ(force.epoch(), run) << "a force of the other session";
       EXPECT_LE(force.force_n()[0], settled + 1e-9);
       reached = reached || std::abs(force.force_n()[0] - settled) < 1e-9;
     }

@@ -1,5 +1,7 @@
-// The first thing a person does: ./cordis run launch_configs/plucked_string.yaml with the page open. Real sim_node, device_node,
-// viz_node and Chromium; the simulated hand presses the key, the drawn string follows it, and swings on when it is let go.
+// tests/integration/whole_test.mjs -- the first thing a person does: ./cordis run
+// launch_configs/plucked_string.yaml with the page open. Real sim_node, device_node, viz_node and
+// Chromium; the simulated hand presses the key, the drawn string follows it, and swings on when it
+// is let go.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { banner, drawn, isDark, openPage, replied, textOf, viz } from '../viz/browser.mjs';
@@ -84,7 +86,7 @@ const cases = {
     await page.screenshot({ path: join(out, 'whole_swinging.png') });
   },
 
-  'the buttons of the page pause the scene, do a step, begin it anew and let it go on': async ({ page }) => {
+  'the buttons of the page pause the scene, do a step, restart it and let it go on': async ({ page }) => {
     const click = (verb) => page.click(`#control button[data-verb="${verb}"]`);
     await click('pause');
     const step = Number((await replied(page, /^paused at step (\d+)$/))[1]);
@@ -93,7 +95,7 @@ const cases = {
     await replied(page, new RegExp(`^paused at step ${step + 1}$`));
     await until('the step is shown', async () => (await viz(page, 'lastFrame')).step === step + 1);
     await click('reset');
-    await replied(page, /^'plucked_string' begins anew, paused/);
+    await replied(page, /^'plucked_string' restarts, paused/);
     await until('the beginning is shown', async () => (await viz(page, 'lastFrame')).step === 0);
     await click('pause');
     await replied(page, /^goes on at step 0$/);

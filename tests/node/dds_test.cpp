@@ -209,7 +209,7 @@ TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
   ASSERT_TRUE(receive(reader, status));
   EXPECT_EQ(status.node(), "sim");
   EXPECT_EQ(status.kind(), "sim_node");
-  EXPECT_EQ(status.run(), 77u);
+  EXPECT_EQ(status.epoch(), 77u);
   EXPECT_EQ(status.phase(), "running");
   EXPECT_GT(status.memory_bytes(), 1e6);
   const std::uint64_t first = status.sequence_number();
@@ -224,9 +224,9 @@ TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
 }
 
 TEST(Dds, SaysThatAProcessWasStartedWithAnotherLaunchFile) {
-  ParticipantConfig with_stand_ins = member("mismatch", "sim");
-  with_stand_ins.stand_ins = true;
-  Participant sim(with_stand_ins);
+  ParticipantConfig with_standbys = member("mismatch", "sim");
+  with_standbys.standbys = true;
+  Participant sim(with_standbys);
   Participant device(member("mismatch", "keyboard"));
   Participant neighbour(member("another session", "keyboard"));
   Reader<msg::GesturePositions> reader(sim, Topic::kPositions);

@@ -64,13 +64,13 @@ TEST(NodeMain, FindsItsNodeOfTheLaunchFile) {
 
   EXPECT_EQ(run_main({file.path(), "--name", "right", "right.driver=script"}, "device_node"), 0);
 
-  const dds::ParticipantConfig membership = last_start.membership();
-  EXPECT_EQ(membership.node, "right");
-  EXPECT_EQ(membership.session, "test");
-  EXPECT_EQ(membership.domain, 7);
-  EXPECT_TRUE(membership.lockstep);
+  const dds::ParticipantConfig config = last_start.config();
+  EXPECT_EQ(config.node, "right");
+  EXPECT_EQ(config.session, "test");
+  EXPECT_EQ(config.domain, 7);
+  EXPECT_TRUE(config.lockstep);
   EXPECT_FALSE(last_start.check_only);
-  EXPECT_GT(last_start.run, 0u);
+  EXPECT_GT(last_start.epoch, 0u);
 }
 
 TEST(NodeMain, NeedsNoNameWhenThereIsOneOfItsKind) {
@@ -124,11 +124,11 @@ TEST(NodeMain, JoinsTheRunningSessionOfItsNameOrClaimsADomain) {
 }
 
 TEST(InstanceLock, IsHeldByOneProcessAtATimeAndLeavesNothing) {
-  const std::string name = "cordis/test/claim/" + std::to_string(getpid());
-  claim(name, "taken");
+  const std::string name = "cordis/test/lock/" + std::to_string(getpid());
+  lock_instance(name, "taken");
 
-  EXPECT_THROW(claim(name, "taken"), std::runtime_error);
-  EXPECT_NO_THROW(claim(name + "/other", "taken"));
+  EXPECT_THROW(lock_instance(name, "taken"), std::runtime_error);
+  EXPECT_NO_THROW(lock_instance(name + "/other", "taken"));
 }
 
 }  // namespace

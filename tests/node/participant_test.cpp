@@ -55,7 +55,7 @@ Peer peer_named(const Participant& participant, const std::string& name) {
 }
 
 /// Whether a status with a number above `number` comes, which then is the newest.
-bool hears_more(Reader<msg::NodeStatus>& statuses, std::uint64_t& number) {
+bool receives_more(Reader<msg::NodeStatus>& statuses, std::uint64_t& number) {
   return eventually([&] {
     msg::NodeStatus status;
     while (statuses.take(status)) {
@@ -110,14 +110,14 @@ TEST(Participant, HearsAndIsHeardByAProcessThatItHasDropped) {
   ASSERT_TRUE(eventually([&] { return scenes_there.take(description); }));
   const auto other = speaker("returns", "other");
   std::uint64_t number = 0;
-  ASSERT_TRUE(hears_more(statuses, number));
+  ASSERT_TRUE(receives_more(statuses, number));
 
   here.drop(peer_named(here, "returns/other"));
 
   ASSERT_TRUE(eventually([&] { return here.rejoin_count() > 0; }));
-  EXPECT_TRUE(hears_more(statuses, number));
-  EXPECT_TRUE(hears_more(statuses, number));
-  // Its last message is there for those who have found it anew, as it was for those before.
+  EXPECT_TRUE(receives_more(statuses, number));
+  EXPECT_TRUE(receives_more(statuses, number));
+  // Its last message is there for those who have found it again, as it was for those before.
   description.name("");
   EXPECT_TRUE(eventually([&] { return scenes_there.take(description); }));
   EXPECT_EQ(description.name(), "said once");
@@ -130,8 +130,8 @@ TEST(Participant, WritesAndReadsWhileItJoinsAnew) {
   Writer<msg::GesturePositions> writer(here, Topic::kPositions);
   Reader<msg::GesturePositions> reader(there, Topic::kPositions);
   Writer<msg::GestureForces> answers(there, Topic::kForces);
-  Reader<msg::GestureForces> heard(here, Topic::kForces);
-  ASSERT_TRUE(eventually([&] { return heard.matched_count() == 1; }));
+  Reader<msg::GestureForces> forces(here, Topic::kForces);
+  ASSERT_TRUE(eventually([&] { return forces.matched_count() == 1; }));
   std::atomic<bool> ending{false};
   std::atomic<std::uint64_t> exchanges{0};
   std::thread echo([&] {
@@ -152,8 +152,8 @@ TEST(Participant, WritesAndReadsWhileItJoinsAnew) {
     while (!ending) {
       sample.sample(sample.sample() + 1);
       writer.write(sample);
-      heard.wait(1ms);
-      while (heard.take(answer)) ++exchanges;
+      forces.wait(1ms);
+      while (forces.take(answer)) ++exchanges;
     }
   });
 

@@ -1,3 +1,4 @@
+// tests/node/repeated_event_test.cpp
 #include "node/repeated_event.h"
 
 #include <memory>
@@ -41,11 +42,11 @@ TEST(RepeatedEvent, TellsTheWorstOfThem) {
 TEST(RepeatedEvent, HasALinePerWindowWhileItGoesOn) {
   const test::CapturedLog log;
   RepeatedEvent event("it was late");
-  int told_by_the_caller = 0;
+  int reported_by_the_caller = 0;
   for (std::int64_t now = 0; now <= 20 * kSecond; now += kSecond / 10)
-    told_by_the_caller += event.record(now);
+    reported_by_the_caller += event.record(now);
 
-  EXPECT_EQ(told_by_the_caller, 1);
+  EXPECT_EQ(reported_by_the_caller, 1);
   const std::string line = "it was late: 50 more times in 5 s\n";
   EXPECT_EQ(log.lines(""), "it was late: 49 more times in 5 s\n" + line + line + line);
 }

@@ -169,8 +169,8 @@ TEST(SessionRegistry, RefusesASecondNodeOfOneNameAndSaysWhatToDo) {
 
 TEST(SessionRegistry, LetsADomainThatIsNamedWin) {
   const Folder folder;
-  const SessionRegistration claimed(folder, request_of("string", "sim"));
-  const int other_domain = claimed.domain() == 50 ? 51 : 50;
+  const SessionRegistration locked(folder, request_of("string", "sim"));
+  const int other_domain = locked.domain() == 50 ? 51 : 50;
   SessionRequest named = request_of("string", "sim");
   named.domain = other_domain;
   const SessionRegistration elsewhere(folder, named);
@@ -178,8 +178,8 @@ TEST(SessionRegistry, LetsADomainThatIsNamedWin) {
   EXPECT_EQ(elsewhere.domain(), other_domain);
   const std::string refusal = refusal_of(folder, request_of("string", "view"));
   EXPECT_NE(
-      refusal.find("runs in domains " + std::to_string(std::min(claimed.domain(), other_domain)) +
-                   " and " + std::to_string(std::max(claimed.domain(), other_domain))),
+      refusal.find("runs in domains " + std::to_string(std::min(locked.domain(), other_domain)) +
+                   " and " + std::to_string(std::max(locked.domain(), other_domain))),
       std::string::npos)
       << refusal;
   EXPECT_NE(refusal.find("domain=N"), std::string::npos) << refusal;
@@ -261,7 +261,7 @@ TEST(SessionRegistry, DoesNotWaitForEverForAProcessThatStandsStillWithTheLock) {
   EXPECT_THROW(FolderLock(folder, std::chrono::milliseconds(20)), std::runtime_error);
 }
 
-/// Sessions of two users start, die at any moment (in the middle of a claim too), end, and start
+/// Sessions of two users start, die at any moment (in the middle of a lock too), end, and start
 /// again, several at once. At no time do two that live have one domain, and the nodes of one
 /// session always share theirs.
 TEST(SessionRegistry, NeverGivesOneDomainToTwoSessionsWhateverHappens) {

@@ -1,3 +1,4 @@
+// tests/node/tick_rate_test.cpp
 #include "node/tick_rate.h"
 
 #include <gtest/gtest.h>

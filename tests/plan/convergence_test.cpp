@@ -40,7 +40,7 @@ TEST(Convergence, OfEveryMethodOnEveryProblem) {
   std::printf("\n");
   for (const ReferenceProblem& problem : reference_problems()) {
     constexpr int kSamples = 25;
-    constexpr double kFloor = 3e-10;  // below it the reference itself is in doubt
+    constexpr double kFloor = 3e-10;  // below it the reference itself is uncertain
     const double steps = 4.0 * std::ceil(0.25 * problem.rate_hz * problem.duration / kSamples);
     const plan::Sampling sampling{problem.duration / kSamples, kSamples};
     const double rate = steps / sampling.period;

@@ -1,3 +1,4 @@
+// tests/plan/oscillator_error_test.cpp
 #include "sim_node/plan/stability/oscillator_error.h"
 
 #include <cmath>

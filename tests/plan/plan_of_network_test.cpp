@@ -1,3 +1,4 @@
+// tests/plan/plan_of_network_test.cpp
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// tests/plan/port_limit_test.cpp
 #include "sim_node/plan/stability/port_limit.h"
 
 #include <cmath>

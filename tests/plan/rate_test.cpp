@@ -143,10 +143,10 @@ TEST(RateSelection, TriesOutWhatMovesByItselfAndNotWhatIsPlayed) {
   wish.over_s = 1.0;
   const plan::RateSelection free = plan::choose(scene, wish, 100.0, {"cordis"}, false);
   EXPECT_GE(free.rate_hz, 1552.0);
-  EXPECT_EQ(free.doubt, "");
+  EXPECT_EQ(free.uncertainty, "");
   const plan::RateSelection played = plan::choose(scene, wish, 100.0, {"cordis"}, true);
   EXPECT_EQ(played.rate_hz, choose_rate(scene, wish, 100.0).rate_hz);
-  EXPECT_NE(played.doubt, "");
+  EXPECT_NE(played.uncertainty, "");
 }
 
 TEST(RateSelection, TakesAFactorisationOnlyWhereItSavesFiftySteps) {

@@ -1,3 +1,4 @@
+// tests/plan/slope_test.cpp
 #include "sim_node/plan/stability/slope.h"
 
 #include <cmath>

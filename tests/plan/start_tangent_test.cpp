@@ -1,3 +1,4 @@
+// tests/plan/start_tangent_test.cpp
 #include "sim_node/plan/stability/start_tangent.h"
 
 #include <cmath>

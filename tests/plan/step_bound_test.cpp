@@ -1,3 +1,4 @@
+// tests/plan/step_bound_test.cpp
 #include "sim_node/plan/stability/step_bound.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// tests/reduction/dimension_test.cpp
 #include <cmath>
 
 #include "tests/reduction/scenes.h"

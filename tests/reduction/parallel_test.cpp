@@ -1,3 +1,4 @@
+// tests/reduction/parallel_test.cpp
 #include "tests/reduction/scenes.h"
 
 namespace cordis::plan {

@@ -1,3 +1,4 @@
+// tests/reduction/series_test.cpp
 #include "tests/reduction/scenes.h"
 
 namespace cordis::plan {
@@ -117,9 +118,9 @@ TEST(Series, AMatInAMediumOrOnALoopIsAnError) {
 }
 
 TEST(Series, AMatOfASignalIsAnError) {
-  const std::string told = refusal_of(
+  const std::string report = refusal_of(
       row_text("0", kSprings + "signals:\n  at: {of: \"joint[0]\", quantity: position}\n", 1000));
-  EXPECT_NE(told.find("for a port, a signal, a set"), std::string::npos) << told;
+  EXPECT_NE(report.find("for a port, a signal, a set"), std::string::npos) << report;
 }
 
 /// A row of springs without rest length along the x axis of a plane, with gravity across it or not.

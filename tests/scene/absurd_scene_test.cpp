@@ -20,7 +20,7 @@ std::string repeated(
 }
 
 /// The first problem of a scene of two masses with these sections besides.
-std::string told_of(const std::string& sections) {
+std::string problems_in(const std::string& sections) {
   config::Problems problems;
   load_scene_text(scene_head(2) + sections, "t", problems);
   if (problems.all().empty()) return "";
@@ -33,7 +33,7 @@ const std::string kBob = "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], 
 const std::string kSpring = "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1}\n";
 
 TEST(AbsurdScene, OfAnEndlessNameIsRefused) {
-  EXPECT_EQ(told_of("name: " + std::string(1'000'000, 'x') + "\n" + kBob),
+  EXPECT_EQ(problems_in("name: " + std::string(1'000'000, 'x') + "\n" + kBob),
             "'name' in scene is longer than 1000 characters");
 }
 
@@ -44,14 +44,15 @@ TEST(AbsurdScene, OfParametersInAnEndlessRowIsRefused) {
                     [](auto i, auto next) { return "      p" + i + ": 2 * p" + next + "\n"; }) +
            "      p" + std::to_string(count) + ": 1\n" + kBob;
   };
-  EXPECT_EQ(told_of(scene(64)), "");
-  EXPECT_EQ(told_of(scene(65)),
+  EXPECT_EQ(problems_in(scene(64)), "");
+  EXPECT_EQ(problems_in(scene(65)),
             "more than 64 parameters of liaison 'l' each depend on the next, down to 'p64'");
-  EXPECT_EQ(told_of(scene(20'000)), "'parameters' in liaison 'l' has more than 1000 parameters");
+  EXPECT_EQ(problems_in(scene(20'000)),
+            "'parameters' in liaison 'l' has more than 1000 parameters");
 }
 
 TEST(AbsurdScene, OfLiaisonsInParallelWithinEachOtherWithoutEndIsRefused) {
-  const std::string first = told_of(
+  const std::string first = problems_in(
       "liaisons:\n" +
       repeated(1000,
                [](auto i, auto next) { return "  l" + i + ": {parallel: [l" + next + "]}\n"; }) +
@@ -60,34 +61,34 @@ TEST(AbsurdScene, OfLiaisonsInParallelWithinEachOtherWithoutEndIsRefused) {
 }
 
 TEST(AbsurdScene, OfTooManyExitsIsRefused) {
-  EXPECT_EQ(told_of("liaisons:\n  l:\n    states:\n      x:\n        exits:\n" +
-                    repeated(1001,
-                             [](auto i, auto) {
-                               return "          - {to: x, when: age_s > " + i + "}\n";
-                             }) +
-                    kBob),
+  EXPECT_EQ(problems_in("liaisons:\n  l:\n    states:\n      x:\n        exits:\n" +
+                        repeated(1001,
+                                 [](auto i, auto) {
+                                   return "          - {to: x, when: age_s > " + i + "}\n";
+                                 }) +
+                        kBob),
             "liaison 'l' has more than 1000 exits");
 }
 
 TEST(AbsurdScene, OfManyWrongNamesIsToldUpToAHundredOfThem) {
   const std::string matter =
       repeated(3000, [](auto i, auto) { return "  b" + i + ": {kind: fixed, at_m: [0, 1]}\n"; });
-  EXPECT_EQ(told_of(kSpring + kBob + matter + "links:\n" +
-                    repeated(3000,
-                             [](auto i, auto) {
-                               return "  - {liaison: s, between: [c" + i + ", \"a[0]\"]}\n";
-                             })),
+  EXPECT_EQ(problems_in(kSpring + kBob + matter + "links:\n" +
+                        repeated(3000,
+                                 [](auto i, auto) {
+                                   return "  - {liaison: s, between: [c" + i + ", \"a[0]\"]}\n";
+                                 })),
             "no matter or port is named 'c0'");
   EXPECT_EQ(
-      told_of("liaisons:\n" +
-              repeated(3000, [](auto i, auto) { return "  l" + i + ": {like: k" + i + "}\n"; }) +
-              kBob),
+      problems_in(
+          "liaisons:\n" +
+          repeated(3000, [](auto i, auto) { return "  l" + i + ": {like: k" + i + "}\n"; }) + kBob),
       "no liaison is named 'k0'");
 }
 
 TEST(AbsurdScene, OfPartsThatDoubleWithoutEndIsRefused) {
   EXPECT_EQ(
-      told_of(
+      problems_in(
           "parts:\n  p0: {matter: {m: {kind: lattice, structure: square, corner_m: [0, 0], counts: "
           "[100, 100], mass_kg: 1, spacing_m: 1}}}\n" +
           repeated(40,

@@ -1,3 +1,4 @@
+// tests/scene/bad_liaison_test.cpp
 #include "tests/scene/bad_scene.h"
 
 namespace cordis::scene {

@@ -1,3 +1,4 @@
+// tests/scene/bad_matter_test.cpp
 #include "tests/scene/bad_scene.h"
 
 namespace cordis::scene {

@@ -1,3 +1,4 @@
+// tests/scene/bad_scene_test.cpp
 #include "tests/scene/bad_scene.h"
 
 namespace cordis::scene {
@@ -205,7 +206,7 @@ TEST(BadScene, OfEverySectionIsToldInOneGo) {
       "  - {liaison: shut, between: [\"m[0]\", \"m[7]\"]}\n",
       "t", problems);
 
-  const std::string told = problems.text();
+  const std::string report = problems.text();
   for (const char* line :
        {"t:6:31: error: part 'wheel' contains itself: wheel > axle > wheel\n",
         "t:8:49: error: 'when' in exit of state 'one' of liaison 'asks' names 'tension_n', which "
@@ -218,9 +219,9 @@ TEST(BadScene, OfEverySectionIsToldInOneGo) {
         "t:13:46: error: 'at_m' in elasticity of liaison 'bent' must ascend, got 0 after 1\n",
         "t:18:29: error: 'within' in a link must not be an empty list\n",
         "t:19:39: error: 'm' has the MATs 0 to 1, got 7\n"}) {
-    EXPECT_NE(told.find(line), std::string::npos) << line << "\nin\n" << told;
+    EXPECT_NE(report.find(line), std::string::npos) << line << "\nin\n" << report;
   }
-  EXPECT_EQ(problems.all().size(), 8u) << told;
+  EXPECT_EQ(problems.all().size(), 8u) << report;
 }
 
 TEST(BadScene, IsPrintedWithItsLineAndACaret) {

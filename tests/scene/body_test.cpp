@@ -1,4 +1,4 @@
-// Discs, balls, skins and beams.
+// tests/scene/body_test.cpp -- discs, balls, skins and beams.
 #include <algorithm>
 #include <cmath>
 #include <set>

@@ -1,3 +1,4 @@
+// tests/scene/damaged_liaison_test.cpp
 #include <filesystem>
 #include <fstream>
 #include <memory>

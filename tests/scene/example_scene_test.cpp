@@ -1,3 +1,4 @@
+// tests/scene/example_scene_test.cpp
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// tests/scene/lattice_test.cpp
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,3 +1,4 @@
+// tests/scene/liaison_test.cpp
 #include "sim_node/scene/liaisons/liaison.h"
 
 #include <filesystem>

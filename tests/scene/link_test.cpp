@@ -1,3 +1,4 @@
+// tests/scene/link_test.cpp
 #include <utility>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// tests/scene/matter_test.cpp
 #include "sim_node/scene/matter/matter.h"
 
 #include <cmath>

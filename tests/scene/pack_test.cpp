@@ -1,3 +1,4 @@
+// tests/scene/pack_test.cpp
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -1,3 +1,4 @@
+// tests/scene/parameters_test.cpp
 #include "sim_node/scene/parameters.h"
 
 #include <limits>

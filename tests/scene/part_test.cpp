@@ -1,3 +1,4 @@
+// tests/scene/part_test.cpp
 #include "sim_node/scene/sections/part.h"
 
 #include <cmath>
@@ -209,12 +210,13 @@ TEST_F(PartFiles, TellWhatIsWrongAtTheirOwnPlace) {
       "parts/b.yaml",
       "cordis: 1\nparts:\n  include: a.yaml\n  p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}\n");
 
-  const std::string told = problems_of("parts/a.yaml", "  a: {part: p}\n");
+  const std::string report = problems_of("parts/a.yaml", "  a: {part: p}\n");
 
-  EXPECT_NE(told.find("b.yaml:3:12: error: 'a.yaml' includes itself"), std::string::npos) << told;
-  EXPECT_NE(told.find("b.yaml:4:39: error: 'at_m' in matter 'm' of part 'p' must be 2 numbers"),
+  EXPECT_NE(report.find("b.yaml:3:12: error: 'a.yaml' includes itself"), std::string::npos)
+      << report;
+  EXPECT_NE(report.find("b.yaml:4:39: error: 'at_m' in matter 'm' of part 'p' must be 2 numbers"),
             std::string::npos)
-      << told;
+      << report;
 }
 
 class BadPart : public BadScenes {};

@@ -1,3 +1,4 @@
+// tests/scene/port_test.cpp
 #include <memory>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// tests/scene/selection_test.cpp
 #include "sim_node/scene/selection.h"
 
 #include <gtest/gtest.h>
@@ -40,10 +41,10 @@ class Selections : public testing::Test {
     const config::Value value = config::load_text(yaml, "t", problems);
     const std::optional<Selection> selection = select(value, "it", with_links, names_, problems);
     if (!selection) {
-      std::string told;
+      std::string report;
       for (const config::Problem& problem : problems.all())
-        told += problem.message + (problem.hint.empty() ? "" : "; " + problem.hint) + "\n";
-      return told;
+        report += problem.message + (problem.hint.empty() ? "" : "; " + problem.hint) + "\n";
+      return report;
     }
     std::string indices;
     for (const std::uint32_t index : selection->indices) indices += std::to_string(index) + " ";

@@ -1,3 +1,4 @@
+// tests/scene/signal_test.cpp
 #include "sim_node/scene/signal.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// The liaisons of launch_configs/liaisons/standard.yaml, each in a tiny scene of one dimension.
+// tests/scene/standard_liaison_test.cpp -- the liaisons of launch_configs/liaisons/standard.yaml,
+// each in a tiny scene of one dimension.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -1,4 +1,5 @@
-// The scenes of docs/tutorial.md load, and do what it says of them.
+// tests/scene/tutorial_test.cpp -- the scenes of docs/tutorial.md load, and do what it says of
+// them.
 #include <cmath>
 #include <fstream>
 #include <map>

@@ -51,7 +51,7 @@ DeviceExchange mass_exchange() {
 msg::GesturePositions sample_at(std::uint64_t number, double position) {
   msg::GesturePositions sample;
   sample.device_id(kDevice);
-  sample.run(kRun);
+  sample.epoch(kRun);
   sample.sample(number);
   sample.time_nsec(static_cast<std::int64_t>(number) * 1'000'000);
   sample.axis_count(2);
@@ -87,8 +87,8 @@ TEST(DeviceExchange, AnswersAPositionWithTheForceOfTheLinksAtThatPosition) {
   EXPECT_NEAR(answer.force_n()[1], -kStiffness * 0.02, 1e-12);
   EXPECT_EQ(answer.force_n()[0], 0.0);
   EXPECT_EQ(answer.device_id(), kDevice);
-  EXPECT_EQ(answer.run(), 77u);
-  EXPECT_EQ(answer.answered_run(), kRun);
+  EXPECT_EQ(answer.epoch(), 77u);
+  EXPECT_EQ(answer.answered_epoch(), kRun);
   EXPECT_EQ(answer.answered_sample(), number);
   EXPECT_EQ(answer.answered_time_nsec(), static_cast<std::int64_t>(number) * 1'000'000);
   EXPECT_EQ(answer.axis_count(), 2u);
@@ -171,7 +171,7 @@ TEST(DeviceExchange, AnotherProcessOfTheDeviceTakesOverGradually) {
   double largest_rise = 0.0;
   for (std::uint64_t number = 1; number <= 100; ++number) {
     msg::GesturePositions sample = sample_at(number, 0.04);
-    sample.run(kRun + 1);
+    sample.epoch(kRun + 1);
     exchange.receive(sample);
     exchange.begin_tick();
     exchange.play(world, 1, 1);
@@ -233,7 +233,7 @@ TEST(DeviceExchange, GivesNoForceToADeviceThatCannotBearTheScene) {
   std::uint64_t number = settle(exchange, world, 0.02);
 
   for (int tick = 0; tick < 5; ++tick) {
-    exchange.receive(sample_at(++number, 0.03), /*borne=*/false);
+    exchange.receive(sample_at(++number, 0.03), /*is_supported=*/false);
     exchange.begin_tick();
     exchange.play(world, 1, 1);
     world.step();
@@ -343,7 +343,7 @@ TEST(DeviceExchange, DoesNotMissADeviceThatItHasLetGoOfOrThatIsRefused) {
 
   exchange.receive(sample_at(number + 100, 0.0));
   exchange.begin_tick();
-  exchange.receive(sample_at(number + 101, 0.0), /*borne=*/false);
+  exchange.receive(sample_at(number + 101, 0.0), /*is_supported=*/false);
   for (int tick = 0; tick < 100; ++tick) exchange.begin_tick();
   EXPECT_FALSE(exchange.is_missed()) << "the scene refuses it";
 }
@@ -354,7 +354,7 @@ TEST(DeviceExchange, LetsGoOfAMassWhenTheForceFallsSilent) {
                           {port_at(2, Vec3(0.0, 1.0, 0.0), 0, Vec3::UnitY())}, kRate, 77);
   msg::GestureForces push;
   push.device_id(kDevice);
-  push.run(kRun);
+  push.epoch(kRun);
   push.axis_count(1);
   push.force_n().fill(0.0);
   push.force_n()[0] = 3.0;
@@ -394,7 +394,7 @@ TEST(DeviceExchange, RefusesWhatIsMalformedOrNotFinite) {
     EXPECT_EQ(exchange.receive(sample), Reception::kRefused) << count;
   }
   EXPECT_EQ(exchange.refused_count(), 6u);
-  EXPECT_FALSE(exchange.was_heard());
+  EXPECT_FALSE(exchange.has_received());
 }
 
 TEST(DeviceExchange, TellsNewFromRepeatedAndOldSamples) {
@@ -405,9 +405,9 @@ TEST(DeviceExchange, TellsNewFromRepeatedAndOldSamples) {
   EXPECT_EQ(exchange.receive(sample_at(4, 0.0)), Reception::kRefused);
   EXPECT_EQ(exchange.receive(sample_at(9, 0.0)), Reception::kNew);
   EXPECT_EQ(exchange.missed_count(), 3u);
-  msg::GesturePositions of_a_new_run = sample_at(1, 0.0);
-  of_a_new_run.run(kRun + 1);
-  EXPECT_EQ(exchange.receive(of_a_new_run), Reception::kNew) << "the device was restarted";
+  msg::GesturePositions of_a_new_epoch = sample_at(1, 0.0);
+  of_a_new_epoch.epoch(kRun + 1);
+  EXPECT_EQ(exchange.receive(of_a_new_epoch), Reception::kNew) << "the device was restarted";
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "sim_node/run/event_room.h"
 #include "sim_node/run/link_states.h"
 #include "sim_node/run/runner.h"
-#include "tests/sim/stages.h"
+#include "tests/sim/loaded_scenes.h"
 #include "tests/support/allocation_guard.h"
 
 namespace cordis::sim {
@@ -60,17 +60,17 @@ std::shared_ptr<const scene::Scene> breaking_scene(std::size_t count) {
 
 TEST(EventRoom, KeepsEventsInOrderAndCountsThoseBeyondItsRoom) {
   EventRoom room(0);
-  std::vector<engine::LinkEvent> events(EventRoom::kLeast - 10);
+  std::vector<engine::LinkEvent> events(EventRoom::kMinEvents - 10);
   for (std::size_t i = 0; i < events.size(); ++i) events[i].step = i;
   EXPECT_TRUE(room.is_empty());
   room.add(events, 0);
   EXPECT_TRUE(room.is_half_full());
   room.add(events, 5);
 
-  ASSERT_EQ(room.events().size(), EventRoom::kLeast);
-  EXPECT_EQ(room.events()[EventRoom::kLeast - 11].step, EventRoom::kLeast - 11);
-  EXPECT_EQ(room.events()[EventRoom::kLeast - 10].step, 0u);
-  EXPECT_EQ(room.lost(), EventRoom::kLeast - 20 + 5u);
+  ASSERT_EQ(room.events().size(), EventRoom::kMinEvents);
+  EXPECT_EQ(room.events()[EventRoom::kMinEvents - 11].step, EventRoom::kMinEvents - 11);
+  EXPECT_EQ(room.events()[EventRoom::kMinEvents - 10].step, 0u);
+  EXPECT_EQ(room.lost(), EventRoom::kMinEvents - 20 + 5u);
   room.clear();
   EXPECT_TRUE(room.is_empty());
 }
@@ -99,28 +99,29 @@ TEST(ChangeCounter, PutsWhatIsTooMuchTogether) {
 TEST(Description, NumbersTheLinksOfAllKindsInOneRow) {
   auto scene = std::make_shared<scene::Scene>(*breaking_scene(3));
   scene->network.maxwell_links.push_back({1, 2, 10.0, 1.0});
-  const msg::SceneDescription told = describe(*scene, 1, 2);
+  const msg::SceneDescription message = describe(*scene, 1, 2);
 
-  EXPECT_EQ(told.version(), 2u);
-  ASSERT_EQ(told.link_ends().size(), 2u * 6u);
-  EXPECT_EQ(told.link_ends()[4], 0u);  // the first one with states
-  EXPECT_EQ(told.link_ends()[5], 1u);
-  EXPECT_EQ(told.link_ends()[11], 2u);  // the Maxwell element
+  EXPECT_EQ(message.version(), 2u);
+  ASSERT_EQ(message.link_ends().size(), 2u * 6u);
+  EXPECT_EQ(message.link_ends()[4], 0u);  // the first one with states
+  EXPECT_EQ(message.link_ends()[5], 1u);
+  EXPECT_EQ(message.link_ends()[11], 2u);  // the Maxwell element
   constexpr std::uint32_t kNone = 0xffffffff;
-  EXPECT_EQ(told.link_state_machine(), (std::vector<std::uint32_t>{kNone, kNone, 0, 1, 2, kNone}));
-  ASSERT_EQ(told.state_machines().size(), 3u);
-  EXPECT_EQ(told.state_machines()[1].name(), "thick");
-  EXPECT_EQ(told.state_machines()[1].states(), (std::vector<std::string>{"whole", "broken"}));
+  EXPECT_EQ(message.link_state_machine(),
+            (std::vector<std::uint32_t>{kNone, kNone, 0, 1, 2, kNone}));
+  ASSERT_EQ(message.state_machines().size(), 3u);
+  EXPECT_EQ(message.state_machines()[1].name(), "thick");
+  EXPECT_EQ(message.state_machines()[1].states(), (std::vector<std::string>{"whole", "broken"}));
 }
 
 TEST(Description, SaysNothingOfStatesWhenThereAreNone) {
-  const msg::SceneDescription told = describe(*scene_of(swing_text()), 1, 1);
-  EXPECT_TRUE(told.state_machines().empty());
-  EXPECT_TRUE(told.link_state_machine().empty());
+  const msg::SceneDescription message = describe(*scene_of(swing_text()), 1, 1);
+  EXPECT_TRUE(message.state_machines().empty());
+  EXPECT_TRUE(message.link_state_machine().empty());
 }
 
 TEST(Runner, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
-  Runner player(std::make_unique<LoadedScene>(breaking_scene(6), kRunOfSim, 1), false);
+  Runner player(std::make_unique<LoadedScene>(breaking_scene(6), kEpochOfSim, 1), false);
   FrameStore& frames = player.stage().frames;
   frames.turn(player.simulation().world(), 0.0, 0);
   EXPECT_EQ(frames.published().link_state, std::vector<std::uint8_t>(8, 0));
@@ -190,11 +191,11 @@ TEST(LinkStates, ThatDoNotExistAreRefusedInOneSentence) {
 }
 
 TEST(Runner, PutsLinksIntoStates) {
-  Runner player(std::make_unique<LoadedScene>(breaking_scene(6), kRunOfSim, 1), false);
-  Request order;
-  order.kind = Request::Kind::kForceStates;
-  order.forced = find_states(player.simulation().scene(), "fuse[1]", "broken");
-  player.obey(order);
+  Runner player(std::make_unique<LoadedScene>(breaking_scene(6), kEpochOfSim, 1), false);
+  Request request;
+  request.kind = Request::Kind::kForceStates;
+  request.forced = find_states(player.simulation().scene(), "fuse[1]", "broken");
+  player.execute(request);
   player.advance();
   EXPECT_EQ(player.simulation().world().state_of(1), 1u);
   const auto events = player.stage().frames.events().events();
@@ -204,7 +205,7 @@ TEST(Runner, PutsLinksIntoStates) {
 }
 
 TEST(Runner, GathersEventsWithoutAllocating) {
-  Runner player(std::make_unique<LoadedScene>(breaking_scene(60), kRunOfSim, 1), false);
+  Runner player(std::make_unique<LoadedScene>(breaking_scene(60), kEpochOfSim, 1), false);
   const test::AllocationGuard guard;
   for (int tick = 0; tick < 10; ++tick) {
     player.advance();

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim_node/run/simulation.h"
-#include "tests/sim/stages.h"
+#include "tests/sim/loaded_scenes.h"
 
 namespace cordis::sim {
 
@@ -27,7 +27,7 @@ struct Hold {
   int delay = 1;           // d [periods]
   double stiffness = 0.0;  // k of the hand [N/m]
   int sub_steps = 1;
-  bool tells_work = true;  // else it is not braked
+  bool reports_work = true;  // else it is not damped
 };
 
 inline engine::Mat mass_at(const Vec3& position, double mass = kPortMass) {
@@ -75,9 +75,9 @@ class Loop {
   explicit Loop(const Hold& hold) : Loop(hold, scene_of(hold)) {}
 
   Loop(const Hold& hold, const scene::Scene& scene)
-      : tells_work_(hold.tells_work),
+      : reports_work_(hold.reports_work),
         stiffness_(Vec3::Constant(hold.stiffness)),
-        simulation_(std::make_unique<Simulation>(finished(scene), kRunOfSim)) {
+        simulation_(std::make_unique<Simulation>(finished(scene), kEpochOfSim)) {
     for (std::size_t i = 0; i < scene.ports.size(); ++i) {
       hands_.emplace_back();
       hands_.back().answers.resize(static_cast<std::size_t>(hold.delay) + 1);
@@ -87,21 +87,21 @@ class Loop {
   void hold_with(const Vec3& stiffness) { stiffness_ = stiffness; }
 
   /// @param target  where every hand wants to be, from the start of its port [m]
-  /// @param hears  false: the answer is lost, and the hand stays where it is
-  void tick(const Vec3& target, bool hears = true) {
+  /// @param receives  false: the answer is lost, and the hand stays where it is
+  void tick(const Vec3& target, bool receives = true) {
     ++samples_;
     for (std::size_t i = 0; i < hands_.size(); ++i) {
       DeviceExchange& device = simulation_->devices()[i];
-      msg::GestureForces sample = hands_[i].sample(stiffness_, target, hears, samples_);
+      msg::GestureForces sample = hands_[i].sample(stiffness_, target, receives, samples_);
       sample.device_id(device.device_id());
-      if (!tells_work_) sample.work_j(0.0);
+      if (!reports_work_) sample.work_j(0.0);
       if (lie_) sample.work_j(*lie_);
       device.receive(sample);
     }
     lie_.reset();
     live();
   }
-  void tick(double target, bool hears = true) { tick(Vec3(target, 0.0, 0.0), hears); }
+  void tick(double target, bool receives = true) { tick(Vec3(target, 0.0, 0.0), receives); }
 
   /// The next samples tell this work [J].
   void lie_about_work(double work_j) { lie_ = work_j; }
@@ -128,14 +128,14 @@ class Loop {
     Vec3 force = Vec3::Zero();
     double work = 0.0;
 
-    msg::GestureForces sample(const Vec3& stiffness, const Vec3& target, bool hears,
+    msg::GestureForces sample(const Vec3& stiffness, const Vec3& target, bool receives,
                               std::uint64_t number) {
-      if (hears) felt = answers.front();
+      if (receives) felt = answers.front();
       answers.pop_front();
       msg::GestureForces sample;
-      sample.run(5);
+      sample.epoch(5);
       sample.sample(number);
-      sample.answered_run(felt.run());
+      sample.answered_epoch(felt.epoch());
       sample.answered_sample(felt.sample());
       sample.axis_count(3);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -158,7 +158,7 @@ class Loop {
   }
   std::vector<DeviceExchange>& devices() { return simulation_->devices(); }
 
-  bool tells_work_;
+  bool reports_work_;
   std::optional<double> lie_;
   Vec3 stiffness_;
   std::unique_ptr<Simulation> simulation_;

@@ -10,7 +10,7 @@
 #include "sim_node/devices/device_exchange.h"
 #include "sim_node/run/simulation.h"
 #include "tests/sim/hand_loop.h"
-#include "tests/sim/stages.h"
+#include "tests/sim/loaded_scenes.h"
 #include "tests/support/hostile.h"
 #include "tests/support/rounds.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 using test::Hostile;
 
-constexpr std::uint64_t kRunOfKey = 5;
+constexpr std::uint64_t kEpochOfKey = 5;
 constexpr double kTravel = 0.04;  // [m]
 constexpr double kForce = 20.0;   // [N]
 
@@ -36,11 +36,11 @@ std::string key_scene(const std::string& role) {
          "  - {liaison: spring, between: [key, bob], rest_m: 0}\n";
 }
 
-DeviceReach told_reach() {
-  msg::DeviceDescription told;
-  told.travel_m().fill(kTravel);
-  told.force_n().fill(kForce);
-  return reach_of(told);
+DeviceReach described_reach() {
+  msg::DeviceDescription description;
+  description.travel_m().fill(kTravel);
+  description.force_n().fill(kForce);
+  return reach_of(description);
 }
 
 /// The device as it is, whoever else writes in its name.
@@ -58,7 +58,7 @@ template <>
 msg::GestureForces true_sample(std::uint64_t number, const DeviceExchange&) {
   msg::GestureForces sample;
   sample.device_id(config::name_hash("keyboard"));
-  sample.run(kRunOfKey);
+  sample.epoch(kEpochOfKey);
   sample.sample(number);
   sample.time_nsec(static_cast<std::int64_t>(number * 1'000'000));
   sample.axis_count(1);
@@ -82,9 +82,9 @@ template <class Sample>
 Sample spoilt(Sample sample, Hostile& hostile) {
   const auto whole = [&] { return hostile.whole(); };
   const auto time = [&] { return hostile.time(); };
-  sample.run(hostile.or_true(sample.run(), whole));
+  sample.epoch(hostile.or_true(sample.epoch(), whole));
   sample.sample(hostile.or_true(sample.sample(), whole));
-  sample.answered_run(hostile.or_true(kRunOfSim, whole));
+  sample.answered_epoch(hostile.or_true(kEpochOfSim, whole));
   sample.answered_sample(hostile.or_true(sample.sample(), whole));
   sample.answered_time_nsec(hostile.or_true(sample.time_nsec(), time));
   sample.time_nsec(hostile.or_true(sample.time_nsec(), time));
@@ -97,11 +97,11 @@ Sample spoilt(Sample sample, Hostile& hostile) {
 template <class Sample>
 class Rig {
  public:
-  explicit Rig(const std::string& role) : simulation_(scene_of(key_scene(role)), kRunOfSim) {}
+  explicit Rig(const std::string& role) : simulation_(scene_of(key_scene(role)), kEpochOfSim) {}
 
   DeviceExchange& key() { return simulation_.devices().front(); }
   DeviceExchange::Reception send(const Sample& sample) {
-    return key().receive(sample, /*borne=*/true, told_reach());
+    return key().receive(sample, /*is_supported=*/true, described_reach());
   }
   DeviceExchange::Reception send_true() { return send(true_sample<Sample>(++number_, key())); }
   Sample next_true() { return true_sample<Sample>(++number_, key()); }
@@ -211,7 +211,7 @@ TYPED_TEST(HostileSample, FarBeyondTheTravelIsTakenForItsEnd) {
   EXPECT_GT(std::abs(rig.place()), 0.5 * farthest) << "it is taken all the same";
 }
 
-TEST(HostileSampleOfWork, DoesNotBrakeAnHonestHandForEver) {
+TEST(HostileSampleOfWork, DoesNotDampAnHonestHandForEver) {
   for (const double lie : {1e300, -1e300, 1e6, -1e6, std::nan("")}) {
     Hold hold;
     hold.stiffness = 100.0;
@@ -229,10 +229,10 @@ TEST(HostileSampleOfWork, DoesNotBrakeAnHonestHandForEver) {
 TEST(DeviceReach, OfAHostileDescriptionIsThatOfAnUnknownDevice) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Hostile hostile(seed);
-    msg::DeviceDescription told;
-    for (double& travel : told.travel_m()) travel = hostile.real();
-    for (double& force : told.force_n()) force = hostile.real();
-    const DeviceReach reach = reach_of(told);
+    msg::DeviceDescription description;
+    for (double& travel : description.travel_m()) travel = hostile.real();
+    for (double& force : description.force_n()) force = hostile.real();
+    const DeviceReach reach = reach_of(description);
     for (std::size_t c = 0; c < DeviceReach::kCoordinates; ++c) {
       EXPECT_TRUE(reach.travel_m[c] > 0.0 && reach.travel_m[c] <= DeviceReach::kFarthest) << seed;
       EXPECT_TRUE(reach.force_n[c] > 0.0 && reach.force_n[c] <= DeviceReach::kStrongest) << seed;
@@ -242,17 +242,17 @@ TEST(DeviceReach, OfAHostileDescriptionIsThatOfAnUnknownDevice) {
 
 TEST(ReachTable, BelievesWhatIsToldFirstOfARunAndKeepsTheLast) {
   ReachTable table;
-  const DeviceReach told = told_reach();
+  const DeviceReach description = described_reach();
   EXPECT_EQ(table.find(1, 1).travel_m[0], DeviceReach::kFarthest);
-  table.put(1, 1, told);
+  table.put(1, 1, description);
   table.put(1, 1, DeviceReach());
   table.put(2, 1, DeviceReach());
-  EXPECT_EQ(table.find(1, 1).travel_m[0], told.travel_m[0]);
+  EXPECT_EQ(table.find(1, 1).travel_m[0], description.travel_m[0]);
   EXPECT_EQ(table.find(2, 1).travel_m[0], DeviceReach::kFarthest);
 
-  for (std::uint64_t run = 2; run < 100; ++run) table.put(1, run, told);
+  for (std::uint64_t epoch = 2; epoch < 100; ++epoch) table.put(1, epoch, description);
   EXPECT_EQ(table.find(1, 1).travel_m[0], DeviceReach::kFarthest) << "forgotten";
-  EXPECT_EQ(table.find(1, 99).travel_m[0], told.travel_m[0]);
+  EXPECT_EQ(table.find(1, 99).travel_m[0], description.travel_m[0]);
 }
 
 }  // namespace

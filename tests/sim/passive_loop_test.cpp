@@ -1,5 +1,5 @@
 // tests/sim/passive_loop_test.cpp -- hands on scenes of every kind: loops that come to rest feel no
-// brake, and loops that swing are ended.
+// damp, and loops that swing are ended.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -90,7 +90,7 @@ bool comes_to_rest(const scene::Scene& scene, const Hold& hold) {
   return true;
 }
 
-TEST(PassiveLoop, IsNotBrakedAndASwingIsEnded) {
+TEST(PassiveLoop, IsNotDampedAndASwingIsEnded) {
   Chance chance(33);
   int at_rest = 0;
   int swinging = 0;
@@ -108,10 +108,10 @@ TEST(PassiveLoop, IsNotBrakedAndASwingIsEnded) {
       }
       ++at_rest;
     } else if (late == -kFast) {
-      Loop braked(hold, scene);
-      hold.tells_work = false;
-      Loop unbraked(hold, scene);
-      EXPECT_LT(swing(braked), 0.2 * swing(unbraked)) << "scene " << i;
+      Loop damped(hold, scene);
+      hold.reports_work = false;
+      Loop undamped(hold, scene);
+      EXPECT_LT(swing(damped), 0.2 * swing(undamped)) << "scene " << i;
       ++swinging;
     }
   }

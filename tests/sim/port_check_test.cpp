@@ -1,4 +1,4 @@
-// tests/sim/port_check_test.cpp -- devices that cannot bear a scene, in the launch and joining
+// tests/sim/port_check_test.cpp -- devices that do not support a scene, in the launch and joining
 // late.
 #include "sim_node/checks/port_check.h"
 
@@ -51,7 +51,7 @@ TEST(PortCheck, RefusesASceneStifferThanItsPortWithTheNumberItMayHave) {
   EXPECT_EQ(verdict(soft, key_limits(), 1).refusal, "");
   const std::string refusal = verdict(stiff, key_limits(), 1).refusal;
   EXPECT_NE(refusal.find("as stiff as 1002 N/m"), std::string::npos) << refusal;
-  EXPECT_NE(refusal.find("can bear 1001 N/m"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("supports 1001 N/m"), std::string::npos) << refusal;
   EXPECT_EQ(verdict(stiff, key_limits(), 0).refusal, "") << "3003 N/m without delay";
 }
 
@@ -128,14 +128,14 @@ TEST(PortCheck, RefusesASceneMoreViscousThanItsPortWithTheNumberItMayHave) {
   // c = B T / 2 m = sqrt(2) - 1: B = 248.5 N s/m, and 1.5 N s/m of its own add about as much.
   const std::string refusal = verdict_on(demand, key_limits(), 1).refusal;
   EXPECT_NE(refusal.find("as viscous as 251 N s/m"), std::string::npos) << refusal;
-  EXPECT_NE(refusal.find("can bear 249 N s/m (with 0.3 kg"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("supports 249 N s/m (with 0.3 kg"), std::string::npos) << refusal;
   demand.least.viscosity = 248.0;
   EXPECT_EQ(verdict_on(demand, key_limits(), 1).refusal, "");
 
   config::DeviceLimits declared = key_limits();
   declared.damping_limit_n_s_per_m = 2.0;
   declared.stiffness_limit_n_per_m = 1e6;
-  EXPECT_NE(verdict_on(demand, declared, 1).refusal.find("can bear 2 N s/m (declares it)"),
+  EXPECT_NE(verdict_on(demand, declared, 1).refusal.find("supports 2 N s/m (declares it)"),
             std::string::npos);
 }
 
@@ -145,10 +145,10 @@ TEST(PortCheck, AHandleIsAsLightAsItsLeversMakeIt) {
       "0.5]]}");
 
   // q = 2 (x0 - x1): a mass of 2.4 kg behind a ratio of 2 at either end weighs 1/8 of it.
-  EXPECT_EQ(limits.leverage, 8.0);
+  EXPECT_EQ(limits.inertia_ratio, 8.0);
   EXPECT_DOUBLE_EQ(limits.coordinate_mass_kg(), 0.3);
   const std::string refusal = verdict(walls_of("501"), limits, 1).refusal;
-  EXPECT_NE(refusal.find("can bear 1001 N/m"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("supports 1001 N/m"), std::string::npos) << refusal;
 }
 
 TEST(PortCheck, KnowsNothingOfADeviceThatDeclaresNothing) {
@@ -159,7 +159,7 @@ TEST(PortCheck, TakesADeclaredLimitAtItsWord) {
   config::DeviceLimits limits = key_limits();
   limits.stiffness_limit_n_per_m = 150.0;
 
-  EXPECT_NE(verdict(walls_of("100"), limits, 0).refusal.find("can bear 150 N/m"),
+  EXPECT_NE(verdict(walls_of("100"), limits, 0).refusal.find("supports 150 N/m"),
             std::string::npos);
 }
 
@@ -173,8 +173,8 @@ TEST(PortCheck, DoubtsASetThatMayMeetTheDeviceManyTimesAtOnce) {
   const PortVerdict verdict = verdict_on(demand, key_limits(), 1);
 
   EXPECT_EQ(verdict.refusal, "");
-  EXPECT_NE(verdict.doubt.find("may become as stiff as 1800 N/m"), std::string::npos)
-      << verdict.doubt;
+  EXPECT_NE(verdict.uncertainty.find("may become as stiff as 1800 N/m"), std::string::npos)
+      << verdict.uncertainty;
 }
 
 TEST(PortCheck, DoubtsAPortOfRoleLiaisonWhoseViscosityIsLittleForAFingertip) {
@@ -185,41 +185,41 @@ TEST(PortCheck, DoubtsAPortOfRoleLiaisonWhoseViscosityIsLittleForAFingertip) {
   demand.mass = 0.1;
   demand.least = {0.0, 1.5};  // 1.5 N s/m over 1 ms: 1500 N/m
 
-  EXPECT_NE(verdict_on(demand, key_limits(), 1).doubt.find("is stiffer than 1500 N/m"),
+  EXPECT_NE(verdict_on(demand, key_limits(), 1).uncertainty.find("is stiffer than 1500 N/m"),
             std::string::npos);
   EXPECT_EQ(verdict_on(demand, key_limits(), 1).refusal, "");
   demand.least.viscosity = 2.0;
-  EXPECT_EQ(verdict_on(demand, key_limits(), 1).doubt, "");
+  EXPECT_EQ(verdict_on(demand, key_limits(), 1).uncertainty, "");
   demand.least.viscosity = 0.0;
-  EXPECT_EQ(verdict_on(demand, key_limits(), 0).doubt, "") << "4 m / T^2 without delay";
+  EXPECT_EQ(verdict_on(demand, key_limits(), 0).uncertainty, "") << "4 m / T^2 without delay";
 }
 
-msg::DeviceDescription description(std::uint64_t run, double viscosity) {
-  msg::DeviceDescription told;
-  told.device_id(config::name_hash("keyboard"));
-  told.device("keyboard");
-  told.driver("kfb1");
-  told.run(run);
-  told.rate_hz(1000.0);
-  told.moving_mass_kg(0.3);
-  told.viscosity_n_s_per_m(viscosity);
-  told.stiffness_limit_n_per_m(0.0);
-  told.damping_limit_n_s_per_m(0.0);
-  told.delay_periods(0);
-  return told;
+msg::DeviceDescription description_of(std::uint64_t epoch, double viscosity) {
+  msg::DeviceDescription description;
+  description.device_id(config::name_hash("keyboard"));
+  description.device("keyboard");
+  description.driver("kfb1");
+  description.epoch(epoch);
+  description.rate_hz(1000.0);
+  description.moving_mass_kg(0.3);
+  description.viscosity_n_s_per_m(viscosity);
+  description.stiffness_limit_n_per_m(0.0);
+  description.damping_limit_n_s_per_m(0.0);
+  description.delay_periods(0);
+  return description;
 }
 
 TEST(RefusedDevices, AreThoseThatCannotBearTheSceneWhicheverComesFirst) {
   RefusedDevices devices(1);
-  devices.hear(description(1, 1.5));
+  devices.receive(description_of(1, 1.5));
   devices.play(walls_of("501"));
-  devices.hear(description(2, 3.0));  // bears 2001 N/m
+  devices.receive(description_of(2, 3.0));  // supports 2001 N/m
 
   EXPECT_TRUE(devices.refuses(1));
   EXPECT_FALSE(devices.refuses(2));
-  EXPECT_NE(devices.text().find("can bear 1001 N/m"), std::string::npos) << devices.text();
+  EXPECT_NE(devices.text().find("supports 1001 N/m"), std::string::npos) << devices.text();
 
-  devices.hear(description(3, 1.0));
+  devices.receive(description_of(3, 1.0));
   EXPECT_TRUE(devices.refuses(3));
 
   devices.play(walls_of("100"));
@@ -231,16 +231,16 @@ TEST(RefusedDevices, AreThoseThatCannotBearTheSceneWhicheverComesFirst) {
 TEST(RefusedDevices, AreThoseWithoutWhatAPortNeeds) {
   RefusedDevices devices(1);
   devices.play(walls_of("1", ", needs: {travel_m: 0.05, force_n: 5}"));
-  msg::DeviceDescription told = description(1, 1.5);
-  told.travel_m()[0] = 0.05;
-  told.force_n()[0] = 5.0;
-  devices.hear(told);
+  msg::DeviceDescription description = description_of(1, 1.5);
+  description.travel_m()[0] = 0.05;
+  description.force_n()[0] = 5.0;
+  devices.receive(description);
   EXPECT_EQ(devices.text(), "");
 
-  told.run(2);
-  told.travel_m()[0] = 0.04;
-  told.force_n()[0] = 4.0;
-  devices.hear(told);
+  description.epoch(2);
+  description.travel_m()[0] = 0.04;
+  description.force_n()[0] = 4.0;
+  devices.receive(description);
   EXPECT_FALSE(devices.refuses(1));
   EXPECT_TRUE(devices.refuses(2));
   EXPECT_EQ(devices.text(),
@@ -248,9 +248,9 @@ TEST(RefusedDevices, AreThoseWithoutWhatAPortNeeds) {
             "port 'key' needs a force of 5 N, and axis 0 of the device 'keyboard' has 4 N: driver "
             "kfb1 is given no force");
 
-  told.travel_m()[1] = std::nan("");
-  told.run(3);
-  devices.hear(told);
+  description.travel_m()[1] = std::nan("");
+  description.epoch(3);
+  devices.receive(description);
   EXPECT_FALSE(devices.refuses(3)) << "a number that makes no sense";
 }
 
@@ -258,13 +258,13 @@ TEST(RefusedDevices, DoNotBelieveNumbersThatMakeNoSense) {
   RefusedDevices devices(1);
   devices.play(walls_of("501"));
   for (const double bad : {std::nan(""), -1.0, HUGE_VAL}) {
-    devices.hear(description(1, bad));
-    msg::DeviceDescription told = description(1, 1.0);
-    told.rate_hz(bad);
-    devices.hear(told);
-    told = description(1, 1.0);
-    told.moving_mass_kg(bad);
-    devices.hear(told);
+    devices.receive(description_of(1, bad));
+    msg::DeviceDescription description = description_of(1, 1.0);
+    description.rate_hz(bad);
+    devices.receive(description);
+    description = description_of(1, 1.0);
+    description.moving_mass_kg(bad);
+    devices.receive(description);
   }
   EXPECT_FALSE(devices.refuses(1));
 }

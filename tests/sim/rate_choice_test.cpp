@@ -1,7 +1,7 @@
 // tests/sim/rate_choice_test.cpp -- what a scene is told that has a rate and an accuracy.
 #include "sim_node/checks/rate_choice.h"
 
-#include "tests/sim/stages.h"
+#include "tests/sim/loaded_scenes.h"
 
 namespace cordis::sim {
 namespace {

@@ -1,8 +1,9 @@
+// tests/sim/reduced_scene_test.cpp
 #include <array>
 
 #include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/run/describe.h"
-#include "tests/sim/stages.h"
+#include "tests/sim/loaded_scenes.h"
 
 namespace cordis::sim {
 namespace {

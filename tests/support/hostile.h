@@ -16,20 +16,20 @@ class Hostile {
   bool chance(double share) { return std::uniform_real_distribution(0.0, 1.0)(random_) < share; }
 
   double real() {
-    constexpr double kMost = std::numeric_limits<double>::max();
+    constexpr double kMax = std::numeric_limits<double>::max();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    constexpr double kLeast = std::numeric_limits<double>::denorm_min();
-    constexpr std::array kEdges{0.0,  -0.0,  1e300,      -1e300, kMost, -kMost, kInfinity,
-                                kNan, -kNan, -kInfinity, kLeast, 1e3,   -1e6,   1e-300};
+    constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
+    constexpr std::array kEdges{0.0,  -0.0,  1e300,      -1e300,    kMax, -kMax, kInfinity,
+                                kNan, -kNan, -kInfinity, kSmallest, 1e3,  -1e6,  1e-300};
     if (chance(0.5)) return kEdges.at(random_() % kEdges.size());
     return std::uniform_real_distribution(-0.1, 0.1)(random_);
   }
 
   std::uint64_t whole() {
-    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+    constexpr std::uint64_t kMax = std::numeric_limits<std::uint64_t>::max();
     constexpr std::array kEdges{
-        std::uint64_t{0},       std::uint64_t{1}, kMost, kMost - 1, kMost / 2, kMost / 2 + 1,
+        std::uint64_t{0},       std::uint64_t{1}, kMax, kMax - 1, kMax / 2, kMax / 2 + 1,
         std::uint64_t{1} << 32, std::uint64_t{17}};
     if (chance(0.6)) return kEdges.at(random_() % kEdges.size());
     return chance(0.5) ? random_() : random_() % 3000;

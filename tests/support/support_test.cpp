@@ -94,7 +94,7 @@ TEST(HangWatch, EndsATestThatHangsWithTheOutputOfItsProcesses) {
       << said;
 }
 
-/// How late a timer was in a process that stood still for `pause`.
+/// How late a timer was in a process that stalled for `pause`.
 std::chrono::nanoseconds worst_after_a_pause_of(std::chrono::milliseconds pause) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);

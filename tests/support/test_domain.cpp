@@ -7,7 +7,7 @@
 
 #include <unistd.h>
 
-#include "node/domain_claim.h"
+#include "node/domain_lock.h"
 
 namespace cordis::test {
 namespace {
@@ -19,7 +19,7 @@ int find_free_domain() {
   const int start = static_cast<int>(getpid()) % kDomainCount;
   for (int i = 0; i < kDomainCount; ++i) {
     const int domain = kFirstDomain + (start + i) % kDomainCount;
-    if (node::claim_domain(domain) >= 0) return domain;  // closed by the end of the process
+    if (node::lock_domain(domain) >= 0) return domain;  // closed by the end of the process
   }
   std::fputs("no DDS domain is free for this test\n", stderr);
   std::abort();

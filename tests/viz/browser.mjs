@@ -1,4 +1,5 @@
-// The real page in headless Chromium, and what it shows. Skipped with a reason where the browser or its driver is absent.
+// tests/viz/browser.mjs -- the real page in headless Chromium, and what it shows. Skipped with a
+// reason where the browser or its driver is absent.
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';

@@ -1,4 +1,5 @@
-// Every npm package that the page or its tests take runs on the Node.js of Debian 12.
+// tests/viz/packages_test.mjs -- every npm package that the page or its tests take runs on the
+// Node.js of Debian 12.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { web } from './session.mjs';

@@ -1,5 +1,6 @@
-// The real page in headless Chromium, before a real viz_node: what it draws, what it says, and that it comes back by itself.
-// Never how fast it is: that depends on the machine.
+// tests/viz/page_test.mjs -- the real page in headless Chromium, before a real viz_node: what it
+// draws, what it says, and that it comes back by itself. Never how fast it is: that depends on the
+// machine.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { banner, drawn, isDark, look, openPage, textOf, viz } from './browser.mjs';

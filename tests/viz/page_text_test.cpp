@@ -16,29 +16,29 @@ using Json = nlohmann::json;
 
 constexpr std::int64_t kNow = 50'000'000'000;
 
-HeardNode heard(const std::string& phase, std::int64_t seconds_ago) {
-  HeardNode node;
+ReportedNode node_in(const std::string& phase, std::int64_t seconds_ago) {
+  ReportedNode node;
   node.status.node("sim");
   node.status.kind("sim_node");
   node.status.phase(phase);
-  node.heard_nsec = kNow - seconds_ago * 1'000'000'000;
+  node.received_nsec = kNow - seconds_ago * 1'000'000'000;
   return node;
 }
 
-std::string state_of(const HeardNode& node) {
+std::string state_of(const ReportedNode& node) {
   return Json::parse(status_text({node}, {}, {}, {}, 0, kNow))["nodes"][0]["state"];
 }
 
 TEST(PageText, CallsANodeLostThatIsNoLongerHeardUnlessItSaidThatItStops) {
-  EXPECT_EQ(state_of(heard("running", 0)), "running");
-  EXPECT_EQ(state_of(heard("waiting", 1)), "waiting");
-  EXPECT_EQ(state_of(heard("running", 2)), "lost");
-  EXPECT_EQ(state_of(heard("stopped", 100)), "stopped");
-  EXPECT_EQ(state_of(heard("failed", 100)), "failed");
+  EXPECT_EQ(state_of(node_in("running", 0)), "running");
+  EXPECT_EQ(state_of(node_in("waiting", 1)), "waiting");
+  EXPECT_EQ(state_of(node_in("running", 2)), "lost");
+  EXPECT_EQ(state_of(node_in("stopped", 100)), "stopped");
+  EXPECT_EQ(state_of(node_in("failed", 100)), "failed");
 }
 
 TEST(PageText, SurvivesTextsThatAreNoUtf8AndNumbersThatAreNone) {
-  HeardNode node = heard("running", 0);
+  ReportedNode node = node_in("running", 0);
   node.status.node("a\xff\"b" + std::string(10'000, 'x'));
   node.status.energy_j(std::numeric_limits<double>::quiet_NaN());
 
@@ -50,7 +50,7 @@ TEST(PageText, SurvivesTextsThatAreNoUtf8AndNumbersThatAreNone) {
 
 TEST(PageText, KeepsARunOf64BitsWhole) {
   const Json json = Json::parse(description_text(row_of_three(), 3));
-  EXPECT_EQ(json["run"], "1234567890123456789");
+  EXPECT_EQ(json["epoch"], "1234567890123456789");
   EXPECT_EQ(json["scene"], 3);
   EXPECT_EQ(json["link_count"], 2);
   EXPECT_EQ(json["signals"][1]["unit"], "N");
@@ -96,7 +96,7 @@ TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
   event.value(0.002);
   event.energy_j(std::nan(""));
   events.newest.push_back(event);
-  HeardNode node;
+  ReportedNode node;
   msg::LiaisonChanges counted;
   counted.liaison("rosin");
   counted.changes(9);

@@ -1,4 +1,5 @@
-// The page's TypeScript has no type errors: esbuild, which bundles it, does not look.
+// tests/viz/page_types_test.mjs -- the page's TypeScript has no type errors: esbuild, which bundles
+// it, does not look.
 import { spawnSync } from 'node:child_process';
 import { join } from 'node:path';
 import { need, web } from './session.mjs';

@@ -1,4 +1,5 @@
-// A client that draws nothing speaks with a real viz_node: what it sends, to whom, and what a stalled client costs the others.
+// tests/viz/protocol_test.mjs -- a client that draws nothing speaks with a real viz_node: what it
+// sends, to whom, and what a stalled client costs the others.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { request } from 'node:http';

@@ -91,22 +91,22 @@ TEST_F(SceneMirrorTest, CountsFramesThatNeverCame) {
 TEST_F(SceneMirrorTest, StartsAnewWithAnotherRun) {
   take_frame(900);
   msg::SceneFrame early = frame_of_three(1);
-  early.run(kRun + 1);
+  early.epoch(kRun + 1);
   EXPECT_EQ(mirror.take(std::move(early), arrival(900)), "") << "its description is on its way";
   EXPECT_EQ(mirror.frame()->frame.frame(), 900u);
   msg::SceneDescription next = row_of_three();
-  next.run(kRun + 1);
+  next.epoch(kRun + 1);
   mirror.take(std::move(next));
   EXPECT_EQ(mirror.frame(), nullptr) << "a frame of the run before";
 
   msg::SceneFrame frame = frame_of_three(1);
-  frame.run(kRun + 1);
+  frame.epoch(kRun + 1);
   EXPECT_EQ(mirror.take(std::move(frame), arrival(901)), "");
   EXPECT_EQ(mirror.frame()->sequence, 2u) << "the sequence goes on: clients count by it";
   EXPECT_EQ(mirror.frame()->scene, 2u);
   EXPECT_EQ(mirror.figures().lost, 0u);
   EXPECT_EQ(take_frame(902), "");
-  EXPECT_EQ(mirror.frame()->frame.run(), kRun + 1) << "not a frame of the run before, late";
+  EXPECT_EQ(mirror.frame()->frame.epoch(), kRun + 1) << "not a frame of the run before, late";
   EXPECT_EQ(mirror.figures().refused, 0u);
 }
 
@@ -218,7 +218,7 @@ TEST_F(SceneMirrorTest, KeepsTheNewestStatusOfEachNodeAndAtMost64Nodes) {
 
 TEST_F(SceneMirrorTest, CountsEventsAndKeepsTheLast) {
   msg::SceneEvents events;
-  events.run(kRun);
+  events.epoch(kRun);
   events.version(1);
   events.lost(2);
   for (std::uint64_t step = 0; step < 100; ++step) {

@@ -145,7 +145,7 @@ MovingScene grid_scene(std::size_t count) {
   return scene;
 }
 
-void name_parts(MovingScene& scene, const std::string& name, std::uint64_t run) {
+void name_parts(MovingScene& scene, const std::string& name, std::uint64_t epoch) {
   msg::SceneDescription& description = scene.description;
   msg::NamedRange matter;
   matter.name(name);
@@ -169,7 +169,7 @@ void name_parts(MovingScene& scene, const std::string& name, std::uint64_t run) 
     described.unit(unit);
     description.signals().push_back(described);
   }
-  description.run(run);
+  description.epoch(epoch);
   description.version(1);
   description.name(name);
   description.scene_file("scenes/" + name + ".yaml");
@@ -189,7 +189,7 @@ class Publisher {
 
   void publish_frame(std::uint64_t number, std::uint64_t step) {
     const double t = static_cast<double>(step) / kStepRateHz;
-    frame_.run(scene_.description.run());
+    frame_.epoch(scene_.description.epoch());
     frame_.version(scene_.description.version());
     frame_.frame(number);
     frame_.step(step);
@@ -215,7 +215,7 @@ class Publisher {
   }
 
   void publish_signals(std::uint64_t batch, std::uint64_t first_step) {
-    signals_.run(scene_.description.run());
+    signals_.epoch(scene_.description.epoch());
     signals_.version(scene_.description.version());
     signals_.batch(batch);
     signals_.first_step(first_step);
@@ -241,21 +241,21 @@ class Publisher {
 };
 
 int publish(const Options& options) {
-  const auto run = static_cast<std::uint64_t>(node::monotonic_nsec());
+  const auto epoch = static_cast<std::uint64_t>(node::monotonic_nsec());
   dds::Participant sim({options.domain, options.session, "sim", false});
   dds::Participant keyboard({options.domain, options.session, "keyboard", false});
   MovingScene scene =
       options.scene == "grid" ? grid_scene(options.mats) : string_scene(options.mats);
   if (options.amplitude_m > 0.0) scene.amplitude_m = options.amplitude_m;
-  name_parts(scene, options.scene, run);
+  name_parts(scene, options.scene, epoch);
   dds::Writer<msg::SceneDescription> description_writer(sim, dds::Topic::kDescription);
   description_writer.write(scene.description);
 
   std::atomic<std::uint64_t> step{0};
-  const auto speak = [&step, run](msg::NodeStatus& status) {
+  const auto speak = [&step, epoch](msg::NodeStatus& status) {
     status.phase(node::stop_requested() ? "stopped" : "running");
     status.target_rate_hz(kStepRateHz);
-    status.ticks((static_cast<std::uint64_t>(node::monotonic_nsec()) - run) / 1000000);
+    status.ticks((static_cast<std::uint64_t>(node::monotonic_nsec()) - epoch) / 1000000);
     status.step(step);
     status.overruns(3);
     status.dropped(7);
@@ -266,8 +266,8 @@ int publish(const Options& options) {
     status.dissipated_j(1.2e-3);
     status.largest_limit_number(1.75);
   };
-  const node::StatusPublisher sim_status(sim, "sim_node", run, speak);
-  const node::StatusPublisher keyboard_status(keyboard, "device_node", run,
+  const node::StatusPublisher sim_status(sim, "sim_node", epoch, speak);
+  const node::StatusPublisher keyboard_status(keyboard, "device_node", epoch,
                                               [&](msg::NodeStatus& status) {
                                                 speak(status);
                                                 status.latency_count(step);

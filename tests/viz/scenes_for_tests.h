@@ -12,7 +12,7 @@ inline constexpr std::uint64_t kRun = 1234567890123456789u;
 /// Three MATs in a row (fixed, mass, port), two links, two signals.
 inline msg::SceneDescription row_of_three() {
   msg::SceneDescription description;
-  description.run(kRun);
+  description.epoch(kRun);
   description.version(1);
   description.name("row");
   description.space(2);
@@ -34,7 +34,7 @@ inline msg::SceneDescription row_of_three() {
 
 inline msg::SceneFrame frame_of_three(std::uint64_t number) {
   msg::SceneFrame frame;
-  frame.run(kRun);
+  frame.epoch(kRun);
   frame.version(1);
   frame.frame(number);
   frame.step(80 * number);
@@ -47,7 +47,7 @@ inline msg::SceneFrame frame_of_three(std::uint64_t number) {
 /// Rows of (row, -row), every second step.
 inline msg::SceneSignals signals_of_three(std::uint64_t first_step, std::size_t rows) {
   msg::SceneSignals signals;
-  signals.run(kRun);
+  signals.epoch(kRun);
   signals.version(1);
   signals.first_step(first_step);
   signals.stride_steps(2);

@@ -1,4 +1,5 @@
-// What the page and protocol tests share: programs started and ended by id, their logs, checks, and the reason to skip.
+// tests/viz/session.mjs -- what the page and protocol tests share: programs started and ended by
+// id, their logs, checks, and the reason to skip.
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';

@@ -1,4 +1,5 @@
-// Bundles the page into the folder given: node build_page.mjs OUT_FOLDER
+// viz_node/web/build_page.mjs -- bundles the page into the folder given: node build_page.mjs
+// OUT_FOLDER
 import { build } from 'esbuild';
 import { copyFile, mkdir } from 'node:fs/promises';
 import { dirname, join } from 'node:path';

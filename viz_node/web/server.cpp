@@ -84,8 +84,8 @@ std::string url_of(const tcp::endpoint& endpoint) {
 
 struct WebServer::Impl {
   Impl(const ServerConfig& config, SceneMirror& mirror,
-       std::function<void(const PageCommand&)> obey)
-      : pages(config.folder), hub(mirror, std::move(obey)) {
+       std::function<void(const PageCommand&)> execute)
+      : pages(config.folder), hub(mirror, std::move(execute)) {
     listen(acceptor, config);
     const tcp::endpoint endpoint = acceptor.local_endpoint();
     url = url_of(endpoint);
@@ -158,8 +158,8 @@ struct WebServer::Impl {
 };
 
 WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror,
-                     std::function<void(const PageCommand&)> obey)
-    : impl_(std::make_unique<Impl>(config, mirror, std::move(obey))) {
+                     std::function<void(const PageCommand&)> execute)
+    : impl_(std::make_unique<Impl>(config, mirror, std::move(execute))) {
   mirror.on_change([impl = impl_.get()] { impl->wake(); });
   impl_->accept();
   impl_->report_status();

@@ -37,11 +37,11 @@ class WebServer {
   /// Begins to listen. An occupied port is no error: the server takes the next free one, and logs
   /// a warning.
   /// @param mirror  outlives the server; its on_change() is taken over
-  /// @param obey    called from the server's thread with what a page wants of the simulation; must
-  ///                not wait
+  /// @param execute    called from the server's thread with what a page wants of the simulation;
+  ///                must not wait
   /// @throws std::runtime_error when the address is not one of this machine
   WebServer(const ServerConfig& config, SceneMirror& mirror,
-            std::function<void(const PageCommand&)> obey);
+            std::function<void(const PageCommand&)> execute);
 
   /// Closes all connections and joins the thread.
   ~WebServer();

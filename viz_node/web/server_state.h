@@ -38,10 +38,10 @@ class WebSocketSession;
 /// What all connections share. Lives in the server's thread, but for the latency.
 struct ServerState {
   ServerState(SceneMirror& of, std::function<void(const PageCommand&)> call)
-      : mirror(of), obey(std::move(call)) {}
+      : mirror(of), execute(std::move(call)) {}
 
   SceneMirror& mirror;
-  std::function<void(const PageCommand&)> obey;
+  std::function<void(const PageCommand&)> execute;
   std::string hello;
   std::shared_ptr<const std::string> status;  // newest text
   std::uint64_t status_number = 0;

@@ -84,7 +84,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     incoming_.consume(incoming_.size());
     const auto word = read_acknowledgement(text);
     if (!word) {
-      if (const auto command = read_page_command(text)) hub_.obey(*command);
+      if (const auto command = read_page_command(text)) hub_.execute(*command);
       return;
     }
     const auto taken_nsec = feed_.credit().acknowledge(word->sequence);

@@ -1,4 +1,5 @@
-// sim_node/engine/description/integrator_kind.h -- the ways a world may go from one step to the next.
+// sim_node/engine/description/integrator_kind.h -- the ways a world may go from one step to the
+// next.
 #pragma once
 
 #include <array>

@@ -30,13 +30,14 @@ struct Mat {
 ///
 ///     pull = K (d - rest) + Z (d(n) - d(n-1)) / dt
 ///
-/// where the growth is the relative displacement projected on that line; no force while d is 0. In 1 dimension d is signed, d = x_b - x_a, and so is the rest
-/// length: ends may cross.
+/// where the elongation increment is the relative displacement projected on that line; no force
+/// while d is 0. In 1 dimension d is signed, d = x_b - x_a, and so is the rest length: ends may
+/// cross.
 ///
-/// An isotropic one is a tie: K (x_b - x_a) + Z (its growth in the last period, as a vector) / dt,
-/// the same in every direction and at distance 0, without a rest length. The damper of another link
-/// lets one end circle the other for ever; a tie calms it, and so keeps no angular momentum. In 1
-/// dimension there is no difference.
+/// An isotropic one is a tie: K (x_b - x_a) + Z (its elongation increment in the last period, as a
+/// vector) / dt, the same in every direction and at distance 0, without a rest length. The damper
+/// of another link lets one end circle the other forever; a tie calms it, and so keeps no angular
+/// momentum. In 1 dimension there is no difference.
 struct Link {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
@@ -46,8 +47,9 @@ struct Link {
   bool isotropic = false;    ///< then the rest length is 0
 };
 
-/// One LIA with states: between the two MATs, as its state machine says. Distance, direction and growth
-/// are those of Link. Any number of LIAs may stand in parallel between the same two MATs.
+/// One LIA with states: between the two MATs, as its state machine says. Distance, direction and
+/// elongation rate are those of Link. Any number of LIAs may stand in parallel between the same two
+/// MATs.
 struct StateLink {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
@@ -57,10 +59,11 @@ struct StateLink {
 
 /// One Maxwell element, a spring and a damper in series: one internal force F and no rest length.
 ///
-///     F(n) = a F(n-1) + Z (1 - a) (growth of the link in the last period) / dt,  a = e^(-K dt / Z)
+///     F(n) = a F(n-1) + Z (1 - a) (elongation increment in the last period) / dt,  a = e^(-K dt /
+///     Z)
 ///
-/// exact while the growth is steady; F is 0 before step 0. A Maxwell element and a Link in parallel
-/// are a standard linear solid.
+/// exact while the elongation rate is steady; F is 0 before step 0. A Maxwell element and a Link in
+/// parallel are a standard linear solid.
 struct MaxwellLink {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
@@ -69,11 +72,11 @@ struct MaxwellLink {
 };
 
 /// One liaison between the sets P and Q, or within the set P: between each two of their MATs nearer
-/// than `range`, as its state machine says. Members of a set are alike: the distance of a pair has no
-/// sign in 1 dimension either, and there is no force while it is 0. With states, each pair has one
-/// of its own: it begins in that of the start, keeps its state while it is in range, and beyond it
-/// as long as it is bound, that is in another state than that of the start.
-/// [Luc90 III.2.3 a formalism for inter-connection]
+/// than `range`, as its state machine says. Members of a set are alike: the distance of a pair has
+/// no sign in 1 dimension either, and there is no force while it is 0. With states, each pair has
+/// one of its own: it begins in that of the start, keeps its state while it is in range, and beyond
+/// it as long as it is bound, that is in another state than that of the start. [Luc90 III.2.3 a
+/// formalism for inter-connection]
 struct SetLiaison {
   std::uint32_t state_machine = 0;   ///< index in NetworkDescription::state_machines
   std::vector<std::uint32_t> set_p;  ///< MATs, each once

@@ -29,7 +29,7 @@ void check_exit(const StateMachine& state_machine, const Transition& exit,
   check_program(exit.when, name + ": condition");
   require(exit.target < state_machine.states.size(), name + ": target",
           "a state of the state machine");
-  require(static_cast<std::size_t>(exit.triggered) < kQuantityCount, name + ": fired",
+  require(static_cast<std::size_t>(exit.triggered) < kQuantityCount, name + ": trigger",
           "a known quantity");
   if (exit.rest == RestRule::kExpression) {
     check_program(exit.rest_length, name + ": rest length");

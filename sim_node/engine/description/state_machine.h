@@ -15,7 +15,7 @@ namespace cordis::engine {
 ///
 ///     pull = K e + elasticity + Z v + dissipation
 ///
-/// with e the elongation and v the growth of the link per second, positive pulling the ends
+/// with e the elongation and v its elongation rate, positive pulling the ends
 /// together; then without its positive part unless `pulls`, without its negative part unless
 /// `pushes`, then within +- force_limit. In the step in which the state is entered the delayed
 /// distance is the present one: v is 0, and no viscosity answers to what happened before.

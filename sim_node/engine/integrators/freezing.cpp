@@ -10,7 +10,7 @@
 namespace cordis::engine {
 namespace {
 
-// While some only fall asleep, the choice of liaisons is made anew every so many steps.
+// While some only fall asleep, the choice of liaisons is made again every so many steps.
 constexpr std::uint64_t kStepsBetweenChoices = 16;
 constexpr double kMinCarried = 0.9;  // of the weight
 constexpr double kShare = 0.25;      // of the tolerance, for one mass in one step
@@ -170,7 +170,7 @@ void Freezing::wake(std::uint32_t mat) noexcept {
     --asleep_count_;
     movers_changed_ = true;
     // those beside it may need their whole forces in the next step
-    (roles_.has(mat, kMayStir) ? changed_ : roused_) = true;
+    (roles_.has(mat, kMayStir) ? changed_ : woken_) = true;
   }
   rest_[mat] = 0;
 }
@@ -178,17 +178,17 @@ void Freezing::wake(std::uint32_t mat) noexcept {
 void Freezing::wake_all() noexcept {
   std::fill(rest_.begin(), rest_.end(), std::uint8_t{0});
   asleep_count_ = 0;
-  roused_ = true;
+  woken_ = true;
   movers_changed_ = true;
 }
 
 void Freezing::choose_liaisons(WorldState& world, bool sets_changed) noexcept {
   const bool due = changed_ && world.step_count % kStepsBetweenChoices == 0;
-  if (roused_ || due || sets_changed) {
+  if (woken_ || due || sets_changed) {
     choose_roles(world);
     list_mats(world.mats);
     list_movers(world.mats);
-    roused_ = false;
+    woken_ = false;
     changed_ = false;
   }
   world.mats.clear_forces(computed_);
@@ -318,7 +318,7 @@ void Freezing::take_state(const PortInputs& outside, const double* state) noexce
     if (is_asleep(i)) ++asleep_count_;
     held_[i] = !outside.external_force(i).isZero(0.0);
   }
-  roused_ = true;
+  woken_ = true;
 }
 
 }  // namespace cordis::engine

@@ -105,7 +105,7 @@ class Freezing {
   std::vector<MatArray::Range> movers_;
   std::vector<std::uint32_t> stopped_;
   std::uint32_t asleep_count_ = 0;
-  bool roused_ = true;   // other liaisons must be computed in the next step
+  bool woken_ = true;    // other liaisons must be computed in the next step
   bool changed_ = true;  // others may be left out
   bool movers_changed_ = true;
 };

@@ -13,9 +13,9 @@ void FullStepIntegrator::begin_step(WorldState& world, StepEnergy& energy) noexc
   energy.port_work += world.outside.move_ports(world.mats);
 }
 
-void FullStepIntegrator::find_forces(WorldState& world, const double* felt,
+void FullStepIntegrator::find_forces(WorldState& world, const double* extrapolated,
                                      StepEnergy& energy) noexcept {
-  const double half = world.add_forces_at_full_step(felt, energy);
+  const double half = world.add_forces_at_full_step(extrapolated, energy);
   take_half(half + correct_forces(world), energy);
   energy.port_work += world.outside.work_at_ports(world.mats);
   energy.port_work += world.outside.kick(world.mats);

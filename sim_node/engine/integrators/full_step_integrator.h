@@ -1,4 +1,5 @@
-// sim_node/engine/integrators/full_step_integrator.h -- what integrators share whose account belongs to a moment.
+// sim_node/engine/integrators/full_step_integrator.h -- what integrators share whose account
+// belongs to a moment.
 #pragma once
 
 #include <vector>
@@ -8,9 +9,9 @@
 
 namespace cordis::engine {
 
-/// A Integrator whose account belongs to the moment of the last forces: half of the works of a step come
-/// before that moment, the others are entered with the next step. It remembers one vector for each
-/// MAT.
+/// A Integrator whose account belongs to the moment of the last forces: half of the works of a step
+/// come before that moment, the others are entered with the next step. It remembers one vector for
+/// each MAT.
 class FullStepIntegrator : public Integrator {
  public:
   std::size_t state_size() const noexcept final { return memory_.size() + 3; }
@@ -22,8 +23,9 @@ class FullStepIntegrator : public Integrator {
 
   /// Enters the works that were pending, and moves the ports.
   void begin_step(WorldState& world, StepEnergy& energy) noexcept;
-  /// The forces of all liaisons, where dampers see (position - felt) / dt, and those from outside.
-  void find_forces(WorldState& world, const double* felt, StepEnergy& energy) noexcept;
+  /// The forces of all liaisons, where dampers see (position - extrapolated) / dt, and those from
+  /// outside.
+  void find_forces(WorldState& world, const double* extrapolated, StepEnergy& energy) noexcept;
   /// Puts other forces in the place of some of them. @return half of what that changes in what
   /// viscosity takes in a period [J]
   virtual double correct_forces(WorldState&) noexcept { return 0.0; }

@@ -1,4 +1,5 @@
-// sim_node/engine/integrators/integrator_limits.h -- what each integrator takes, and at which steps.
+// sim_node/engine/integrators/integrator_limits.h -- what each integrator takes, and at which
+// steps.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// sim_node/engine/integrators/modal_block.h -- a linear network in 1 dimension as a row of oscillators.
+// sim_node/engine/integrators/modal_block.h -- a linear network in 1 dimension as a row of
+// oscillators.
 #pragma once
 
 #include <cstdint>
@@ -45,8 +46,8 @@ class ModalBlock {
   /// two MATs makes the scheme diverge when K times that of the two against each other is above 1.
   /// Infinite when a mode diverges by itself.
   double alternating_compliance(std::uint32_t a, std::uint32_t b) const noexcept;
-  /// How much of a stiffness between the MAT and the rest of the world every step bears, at most
-  /// [N/m]: that with which an eigenvalue of the scheme reaches -1.
+  /// How much of a stiffness between the MAT and the rest of the world keeps every step stable, at
+  /// most [N/m]: that with which an eigenvalue of the scheme reaches -1.
   double max_stiffness(std::uint32_t mat) const noexcept;
 
  private:

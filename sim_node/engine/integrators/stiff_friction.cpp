@@ -102,8 +102,8 @@ class PullOverSpeed {
   }
 
   void find(const std::array<double, kCount>& speeds) noexcept {
-    for (std::size_t i = 0; i < kCount; ++i) growth_[i] = speeds[i] * dt_;
-    find_pulls_(state_, {kCount, distance_, one_, growth_, rest_length_, mass_a_, mass_b_,
+    for (std::size_t i = 0; i < kCount; ++i) increments_[i] = speeds[i] * dt_;
+    find_pulls_(state_, {kCount, distance_, one_, increments_, rest_length_, mass_a_, mass_b_,
                          1.0 / dt_, pull_, viscous_});
   }
   double pull(std::size_t i) const noexcept { return pull_[i]; }
@@ -117,7 +117,7 @@ class PullOverSpeed {
   double dt_;
   alignas(64) double distance_[kCount];
   alignas(64) double one_[kCount];
-  alignas(64) double growth_[kCount];
+  alignas(64) double increments_[kCount];
   alignas(64) double rest_length_[kCount];
   alignas(64) double mass_a_[kCount];
   alignas(64) double mass_b_[kCount];
@@ -225,7 +225,7 @@ bool solves_stiff_friction(const NetworkDescription& network) {
 
 StiffFriction::StiffFriction(const NetworkDescription& network)
     : dt_(network.step),
-      in_line_(network.dimension == 1),
+      is_1d_(network.dimension == 1),
       steps_(network.state_links.size()),
       viscosity_(network.mats.size()),
       slope_(network.state_machines.size()),
@@ -276,13 +276,14 @@ void StiffFriction::prepare(WorldState& world, const Around& around, Solved& sol
   const double length =
       std::sqrt(along.x() * along.x() + along.y() * along.y() + along.z() * along.z());
   solved.rests =
-      world.state_links.is_new(solved.link, world.step_count) || (!in_line_ && length == 0.0);
+      world.state_links.is_new(solved.link, world.step_count) || (!is_1d_ && length == 0.0);
   if (solved.rests) return;
-  solved.axis = in_line_ ? Vec3(Vec3::UnitX()) : Vec3(along / length);
-  const auto felt = [&](std::uint32_t mat) {
-    return Vec3(world.mats.position(mat) - Vec3::Map(around.felt.data() + 4 * std::size_t{mat}));
+  solved.axis = is_1d_ ? Vec3(Vec3::UnitX()) : Vec3(along / length);
+  const auto extrapolated = [&](std::uint32_t mat) {
+    return Vec3(world.mats.position(mat) -
+                Vec3::Map(around.extrapolated.data() + 4 * std::size_t{mat}));
   };
-  solved.speed = solved.axis.dot(felt(ends.mat_b) - felt(ends.mat_a)) / dt_;
+  solved.speed = solved.axis.dot(extrapolated(ends.mat_b) - extrapolated(ends.mat_a)) / dt_;
   PullOverSpeed of(world, solved.link);
   of.find({solved.speed});
   solved.elastic = of.pull(0) - of.viscous(0);
@@ -305,8 +306,8 @@ double StiffFriction::free_speed(const WorldState& world, const Around& around,
     if (around.sweeps != nullptr) {
       force += Vec3::Map(around.sweeps->force().data() + 4 * std::size_t{mat});
     } else {
-      force +=
-          world.mats.force_of_medium(mat, Vec3::Map(around.felt.data() + 4 * std::size_t{mat}));
+      force += world.mats.force_of_medium(
+          mat, Vec3::Map(around.extrapolated.data() + 4 * std::size_t{mat}));
     }
     moving += part * world.mats.pushed_by(mat, force);
     return moving;
@@ -334,9 +335,9 @@ double StiffFriction::solve_one(const WorldState& world, const Solved& solved, d
   return speed;
 }
 
-double StiffFriction::solve(WorldState& world, const AlignedVector<double>& felt,
+double StiffFriction::solve(WorldState& world, const AlignedVector<double>& extrapolated,
                             const DampingSweeps* sweeps, bool started) noexcept {
-  const Around around{felt, sweeps, started};
+  const Around around{extrapolated, sweeps, started};
   for (Solved& solved : solved_) prepare(world, around, solved);
   constexpr double kSettled = 1e-10;  // of the largest pull
   for (int round = 0; round < (share_masses_ ? kMaxRounds : 1); ++round) {

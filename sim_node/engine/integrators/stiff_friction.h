@@ -1,5 +1,5 @@
-// sim_node/engine/integrators/stiff_friction.h -- state links whose viscosity is too steep for a velocity that is
-// known beforehand.
+// sim_node/engine/integrators/stiff_friction.h -- state links whose viscosity is too steep for a
+// velocity that is known beforehand.
 #pragma once
 
 #include <cstdint>
@@ -50,13 +50,13 @@ class StiffFriction {
   /// Notes the pulls of the last step. Before the forces of a step are computed.
   void begin_step(const WorldState& world) noexcept;
   /// Replaces the pulls of these links, computed with the extrapolated speed, by the solved ones.
-  /// @param felt     x(n) - dt v(n), extrapolated, 4 x N [m]
+  /// @param extrapolated     x(n) - dt v(n), extrapolated, 4 x N [m]
   /// @param sweeps   what damps the linear links; null when they are among the forces
   /// @param started  a step has been done
   /// @return half of what that changes in the energy that viscosity takes in a period [J]
   /// Real time: O(links to be solved * kMaxRounds), no allocation.
-  double solve(WorldState& world, const AlignedVector<double>& felt, const DampingSweeps* sweeps,
-               bool started) noexcept;
+  double solve(WorldState& world, const AlignedVector<double>& extrapolated,
+               const DampingSweeps* sweeps, bool started) noexcept;
 
  private:
   struct Solved {
@@ -70,7 +70,7 @@ class StiffFriction {
     bool rests = false;  // nothing to solve in this step
   };
   struct Around {
-    const AlignedVector<double>& felt;
+    const AlignedVector<double>& extrapolated;
     const DampingSweeps* sweeps;
     bool started;
   };
@@ -83,7 +83,7 @@ class StiffFriction {
                    double& pull) noexcept;
 
   double dt_;
-  bool in_line_;
+  bool is_1d_;
   std::vector<double> steps_;      // of all state links: largest_extrapolated_steps
   std::vector<double> viscosity_;  // room: of each MAT over its mass [1/s]
   std::vector<double> slope_;      // room: of each state machine [N s/m]

@@ -145,25 +145,25 @@ void WorldState::add_forces_at_half_step(StepEnergy& energy) noexcept {
   if (freezing) freezing->restore_forces(mats);
 }
 
-double WorldState::add_forces_at_full_step(const double* felt_positions,
+double WorldState::add_forces_at_full_step(const double* extrapolated_positions,
                                            StepEnergy& energy) noexcept {
   const ForceColumns as_it_moved = mats.force_columns();
-  ForceColumns felt = as_it_moved;
-  felt.delayed = felt_positions;
+  ForceColumns extrapolated = as_it_moved;
+  extrapolated.delayed = extrapolated_positions;
   sets.start();
-  const StepEnergy of_last_sets = begin_forces(felt);
+  const StepEnergy of_last_sets = begin_forces(extrapolated);
 
-  StepEnergy of_links = links.add_forces_at_full_step(kernel, felt);
-  of_links += ties.add_forces_at_full_step(kernel, felt);
+  StepEnergy of_links = links.add_forces_at_full_step(kernel, extrapolated);
+  of_links += ties.add_forces_at_full_step(kernel, extrapolated);
   of_links.dissipated *= 0.5;
   // Half the work of the viscous forces of this step is returned: those of the last are forgotten.
   if (!state_links.empty()) {
     state_links.forget_viscous_forces();
-    of_links += state_links.add_forces(state_machines, table, felt, step_count, log);
+    of_links += state_links.add_forces(state_machines, table, extrapolated, step_count, log);
   }
   energy.dissipated += maxwell_links.add_forces(state_machines, as_it_moved).dissipated;
   of_links += of_last_sets;
-  of_links += add_set_forces(felt);
+  of_links += add_set_forces(extrapolated);
   if (freezing) freezing->restore_forces(mats);
   energy.switching += of_links.switching;
   return of_links.dissipated;

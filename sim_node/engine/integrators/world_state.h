@@ -1,4 +1,5 @@
-// sim_node/engine/integrators/world_state.h -- what a world is made of, as those that move it see it.
+// sim_node/engine/integrators/world_state.h -- what a world is made of, as those that move it see
+// it.
 #pragma once
 
 #include <cstdint>
@@ -62,10 +63,10 @@ struct WorldState {
   /// Adds the forces of all liaisons as `cordis` does; enters what they take.
   void add_forces_at_half_step(StepEnergy& energy) noexcept;
   /// Clears the forces and adds those of all liaisons for an account that is kept at moments:
-  /// dampers and conditions see the velocity (position - felt) / dt, Maxwell elements how the MATs
-  /// have moved. Enters changes of state and what Maxwell elements have taken.
+  /// dampers and conditions see the velocity (position - extrapolated) / dt, Maxwell elements how
+  /// the MATs have moved. Enters changes of state and what Maxwell elements have taken.
   /// @return half of what viscosity takes in a period at this moment [J]
-  double add_forces_at_full_step(const double* felt, StepEnergy& energy) noexcept;
+  double add_forces_at_full_step(const double* extrapolated, StepEnergy& energy) noexcept;
   /// The account at the moment of the last forces. @param velocity_of  of a MAT at that moment
   template <class VelocityOf>
   Energy energy_at_full_step(VelocityOf velocity_of) noexcept {

@@ -10,10 +10,10 @@ template <class Lanes>
 constexpr StateKernel make_state_kernel() noexcept {
   return StateKernel{StateMachineLoop<Lanes>::step,
                      StateMachineLoop<Lanes>::find_pulls,
-                     StateLinkLoop<Lanes, MotionInLine>::add_forces,
-                     StateLinkLoop<Lanes, MotionInSpace>::add_forces,
-                     add_maxwell_forces<Lanes, GrowthInLine>,
-                     add_maxwell_forces<Lanes, GrowthInSpace>};
+                     StateLinkLoop<Lanes, Motion1d>::add_forces,
+                     StateLinkLoop<Lanes, MotionNd>::add_forces,
+                     add_maxwell_forces<Lanes, Increment1d>,
+                     add_maxwell_forces<Lanes, IncrementNd>};
 }
 
 }  // namespace cordis::engine

@@ -6,15 +6,15 @@
 
 namespace cordis::engine {
 
-/// The growth of some elements in the last period, and how their forces are added.
+/// The elongation increment of some elements in the last period, and how their forces are added.
 template <class Lanes>
-struct GrowthInLine {
+struct Increment1d {
   using Row = typename Lanes::Row;
 
-  GrowthInLine(const ForceColumns& columns, const std::uint32_t* a, const std::uint32_t* b) noexcept
-      : growth(Lanes::difference_1d(columns.position, a, b) -
-               Lanes::difference_1d(columns.delayed, a, b)),
-        before_moved(growth) {}
+  Increment1d(const ForceColumns& columns, const std::uint32_t* a, const std::uint32_t* b) noexcept
+      : elongation_increment(Lanes::difference_1d(columns.position, a, b) -
+                             Lanes::difference_1d(columns.delayed, a, b)),
+        before_moved(elongation_increment) {}
 
   Row factor(Row pull) const noexcept { return pull; }
   void add(double* force, const std::uint32_t* a, const std::uint32_t* b,
@@ -22,23 +22,23 @@ struct GrowthInLine {
     Lanes::add_pairs_1d(force, a, b, factor);
   }
 
-  Row growth;        // [m]
-  Row before_moved;  // [m]
+  Row elongation_increment;  // [m]
+  Row before_moved;          // [m]
 };
 
 template <class Lanes>
-struct GrowthInSpace {
+struct IncrementNd {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
 
-  GrowthInSpace(const ForceColumns& columns, const std::uint32_t* a,
-                const std::uint32_t* b) noexcept {
+  IncrementNd(const ForceColumns& columns, const std::uint32_t* a,
+              const std::uint32_t* b) noexcept {
     Row3 before;
     Lanes::differences(columns.position, columns.delayed, a, b, along, before);
     const Row square = along.x * along.x + along.y * along.y + along.z * along.z;
     const Row3 moved{along.x - before.x, along.y - before.y, along.z - before.z};
     inverse = Lanes::inverse_or_zero(square, Lanes::sqrt(square));
-    growth = (along.x * moved.x + along.y * moved.y + along.z * moved.z) * inverse;
+    elongation_increment = (along.x * moved.x + along.y * moved.y + along.z * moved.z) * inverse;
     before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
   }
 
@@ -48,14 +48,14 @@ struct GrowthInSpace {
     Lanes::add_pairs(force, a, b, Row3{along.x * factor, along.y * factor, along.z * factor});
   }
 
-  Row3 along;        // [m]
-  Row inverse;       // 1 / distance, 0 where that is 0
-  Row growth;        // [m]
-  Row before_moved;  // former vector * its change [m^2]
+  Row3 along;                // [m]
+  Row inverse;               // 1 / distance, 0 where that is 0
+  Row elongation_increment;  // [m]
+  Row before_moved;          // former vector * its change [m^2]
 };
 
-/// F(n) = a F(n-1) + gain * growth. What the element stores is F^2 / 2K; it has taken the rest of
-/// the work of F.
+/// F(n) = a F(n-1) + gain * elongation increment. What the element stores is F^2 / 2K; it has taken
+/// the rest of the work of F.
 template <class Lanes, template <class> class Growth>
 void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
                         LinkWork& work_of_all) noexcept {
@@ -77,9 +77,10 @@ void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
       const Growth<Lanes> link(columns, a, b);
       const Row before = Lanes::load(links.pull + i);
       const Row pull = Lanes::load(links.velocity_retention + i) * before +
-                       Lanes::load(links.gain + i) * link.growth;
+                       Lanes::load(links.gain + i) * link.elongation_increment;
       const Row factor = link.factor(pull);
-      const Row work = pull * link.growth + Lanes::load(links.factor + i) * link.before_moved;
+      const Row work =
+          pull * link.elongation_increment + Lanes::load(links.factor + i) * link.before_moved;
       const Row more = (pull * pull - before * before) * Lanes::load(links.compliance + i);
       stored[part] = stored[part] + more;
       taken[part] = taken[part] + (work - more);

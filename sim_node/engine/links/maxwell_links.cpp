@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "sim_node/engine/links/link_growth.h"
+#include "sim_node/engine/links/elongation_increment.h"
 
 namespace cordis::engine {
 double share_of_decay(double x) noexcept {
@@ -18,7 +18,7 @@ double share_of_decay(double x) noexcept {
 }
 
 MaxwellArray::MaxwellArray(const NetworkDescription& description)
-    : in_line_(description.dimension == 1),
+    : is_1d_(description.dimension == 1),
       link_count_(description.maxwell_links.size()),
       column_a_(padded(link_count_, kStateBatch), 0U),
       column_b_(column_a_.size(), 0U),
@@ -48,7 +48,7 @@ StepEnergy MaxwellArray::add_forces(const StateKernel& kernel,
       column_a_.size(), column_a_.data(),   column_b_.data(), velocity_retention_.data(),
       gain_.data(),     compliance_.data(), pull_.data(),     factor_.data()};
   LinkWork work;
-  (in_line_ ? kernel.maxwell_1d : kernel.maxwell_3d)(rows, columns, work);
+  (is_1d_ ? kernel.maxwell_1d : kernel.maxwell_3d)(rows, columns, work);
   return half_of(work);
 }
 
@@ -64,7 +64,8 @@ void MaxwellArray::mark_neighbours(const WakePropagation& pass, MatRoles& roles)
 StepEnergy MaxwellArray::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
   for (std::size_t l = 0; l < link_count_; ++l) {
-    work.elastic += factor_[l] * half_growth(mats, column_a_[l], column_b_[l], in_line_);
+    work.elastic +=
+        factor_[l] * half_elongation_increment(mats, column_a_[l], column_b_[l], is_1d_);
   }
   return work;
 }

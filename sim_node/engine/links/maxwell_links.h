@@ -46,7 +46,7 @@ class MaxwellArray {
   const double* take_state(const double* state) noexcept;
 
  private:
-  bool in_line_;  // 1 dimension
+  bool is_1d_;  // 1 dimension
   std::size_t link_count_;
   AlignedVector<std::uint32_t> column_a_;     // 4 * MAT index
   AlignedVector<std::uint32_t> column_b_;     // all arrays: padded to a multiple of kStateBatch

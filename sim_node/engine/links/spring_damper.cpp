@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "sim_node/engine/links/link_growth.h"
+#include "sim_node/engine/links/elongation_increment.h"
 
 namespace cordis::engine {
 namespace {
@@ -29,14 +29,14 @@ std::size_t row_count(Kind kind, const NetworkDescription& description) {
 
 // A row of padding joins a MAT to itself without stiffness or viscosity: its force is 0.
 SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind)
-    : in_line_(description.dimension == 1 || kind == Kind::kTie),
+    : is_1d_(description.dimension == 1 || kind == Kind::kTie),
       column_a_(padded(row_count(kind, description), kLinkBatch), 0U),
       column_b_(column_a_.size(), 0U),
       stiffness_(column_a_.size(), 0.0),
       viscosity_over_dt_(column_a_.size(), 0.0),
       rest_length_(column_a_.size(), 0.0),
       viscous_factor_(column_a_.size(), 0.0),
-      elastic_factor_(in_line_ ? 0 : column_a_.size(), 0.0),
+      elastic_factor_(is_1d_ ? 0 : column_a_.size(), 0.0),
       active_(column_a_.size(), kLinkBatch) {
   std::size_t l = 0;
   for (const Link& link : description.links) {
@@ -64,7 +64,7 @@ LinkRows SpringDamperArray::rows(const ActiveLinks::Run& run) noexcept {
           viscosity_over_dt_.data() + first,
           rest_length_.data() + first,
           viscous_factor_.data() + first,
-          in_line_ ? nullptr : elastic_factor_.data() + first};
+          is_1d_ ? nullptr : elastic_factor_.data() + first};
 }
 
 StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces,
@@ -77,17 +77,17 @@ StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces,
 
 StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel,
                                          const ForceColumns& columns) noexcept {
-  const AddLinkForces in_line = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
-  const AddLinkForces in_space = viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
-  return add(in_line_ ? in_line : in_space, columns);
+  const AddLinkForces forces_1d = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
+  const AddLinkForces forces_nd = viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
+  return add(is_1d_ ? forces_1d : forces_nd, columns);
 }
 
 StepEnergy SpringDamperArray::add_forces_at_full_step(const StepKernel& kernel,
                                                       const ForceColumns& columns) noexcept {
-  const AddLinkForces in_line = viscous_ ? kernel.moment_spring_dampers_1d : kernel.springs_1d;
-  const AddLinkForces in_space =
+  const AddLinkForces forces_1d = viscous_ ? kernel.moment_spring_dampers_1d : kernel.springs_1d;
+  const AddLinkForces forces_nd =
       viscous_ ? kernel.moment_spring_dampers_3d : kernel.moment_springs_3d;
-  return {0.0, 2.0 * add(in_line_ ? in_line : in_space, columns).dissipated, 0.0, 0.0};
+  return {0.0, 2.0 * add(is_1d_ ? forces_1d : forces_nd, columns).dissipated, 0.0, 0.0};
 }
 
 void SpringDamperArray::mark_neighbours(const WakePropagation& pass,
@@ -103,11 +103,12 @@ void SpringDamperArray::choose_active(MatRoles& roles) noexcept {
 
 StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
-  if (in_line_ && !viscous_) return work;
+  if (is_1d_ && !viscous_) return work;
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
-    const double grown = half_growth(mats, column_a_[l], column_b_[l], in_line_);
-    work.dissipated += viscous_factor_[l] * grown;
-    if (!in_line_) work.elastic += elastic_factor_[l] * grown;
+    const double elongation_increment =
+        half_elongation_increment(mats, column_a_[l], column_b_[l], is_1d_);
+    work.dissipated += viscous_factor_[l] * elongation_increment;
+    if (!is_1d_) work.elastic += elastic_factor_[l] * elongation_increment;
   }
   return work;
 }
@@ -117,7 +118,7 @@ double SpringDamperArray::potential_energy(const MatArray& mats) const noexcept 
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
     const Vec3 along =
         mats.position_of_forces(column_b_[l] / 4) - mats.position_of_forces(column_a_[l] / 4);
-    const double distance = in_line_ ? along[column_a_[l] % 4] : along.norm();
+    const double distance = is_1d_ ? along[column_a_[l] % 4] : along.norm();
     const double elongation = distance - rest_length_[l];
     sum += stiffness_[l] * elongation * elongation;
   }

@@ -15,7 +15,7 @@ namespace cordis::engine {
 
 /// Linear springs, dampers and spring-dampers: two positions in, two opposite forces out.
 ///
-/// pull = K (d - rest) + Z (growth of the link along its axis during the last period) / dt; see
+/// pull = K (d - rest) + Z (elongation increment along its axis in the last period) / dt; see
 /// Link for d. Ties are taken apart into one such link along each axis, as in 1 dimension.
 /// Source: [Luc90 III.2.2 Modelisation of the material in its continuous behaviour].
 class SpringDamperArray {
@@ -53,7 +53,7 @@ class SpringDamperArray {
   double potential_energy(const MatArray& mats) const noexcept;
   /// potential_energy(), but 0 in 1-D, where the account keeps K e(n) e(n-1) / 2.
   double stored_energy(const MatArray& mats) const noexcept {
-    return in_line_ ? 0.0 : potential_energy(mats);
+    return is_1d_ ? 0.0 : potential_energy(mats);
   }
 
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
@@ -73,7 +73,7 @@ class SpringDamperArray {
   LinkRows rows(const ActiveLinks::Run& run) noexcept;
   StepEnergy add(AddLinkForces add_link_forces, const ForceColumns& columns) noexcept;
 
-  bool in_line_;                           // 1 dimension, or ties
+  bool is_1d_;                             // 1 dimension, or ties
   bool viscous_ = false;                   // a link has viscosity
   AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index, + axis of a tie
   AlignedVector<std::uint32_t>

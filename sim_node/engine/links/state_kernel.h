@@ -1,5 +1,5 @@
-// sim_node/engine/links/state_kernel.h -- state machines for 8 rows at a time, compiled for each vector
-// width.
+// sim_node/engine/links/state_kernel.h -- state machines for 8 rows at a time, compiled for each
+// vector width.
 //
 // A row is a state link, or a pair of a set. Whoever owns the rows finds their kinematics, calls
 // StepStateMachines, and puts the pulls on the MATs. As in step_kernel.h, nothing here has a member
@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kNotForced = 0xffffffffU;
 /// What a change of state does with the rest length: RestRule as the kernels see it.
 enum class RestCode : std::uint8_t { kKeep, kHere, kExpression };
 
-struct ExitTerm {
+struct TransitionTerm {
   ProgramTerm when;
   ProgramTerm rest_length;
   RestCode rest = RestCode::kKeep;
@@ -44,7 +44,7 @@ struct StateTerm {
   bool limited = false;            // one of the pulls above is finite
   LawTerm elasticity;
   LawTerm dissipation;
-  const ExitTerm* exits = nullptr;
+  const TransitionTerm* exits = nullptr;
   std::size_t exit_count = 0;
 };
 
@@ -54,12 +54,13 @@ struct StateMachineRows {
   // for (StateTable::needs); what nobody asks for may be null. quantity[kElongation], [kForce],
   // [kImpulse] and [kRestLength] are the arrays below.
   const double* quantity[kQuantityCount] = {};
-  const double* growth = nullptr;  // of the row along its line of centres in this period [m]
-  double dt = 0.0;                 // [s]
-  double rate = 0.0;               // 1 / dt [1/s]
-  double now = 0.0;                // step count
-  std::uint32_t still = 0;         // bit i: row i has no direction, hence no pull
-  bool frozen = false;             // no exit is tested: before step 0
+  const double* elongation_increment =
+      nullptr;              // of the row along its line of centres in this period [m]
+  double dt = 0.0;          // [s]
+  double rate = 0.0;        // 1 / dt [1/s]
+  double now = 0.0;         // step count
+  std::uint32_t still = 0;  // bit i: row i has no direction, hence no pull
+  bool frozen = false;      // no exit is tested: before step 0
   // given, and changed
   StateIndex* state = nullptr;
   double* rest_length = nullptr;  // [m]
@@ -76,23 +77,23 @@ struct StateMachineRows {
   std::uint32_t changed = 0;         // bit i: row i has changed
   StateIndex from[kStateBatch];      // valid where changed:
   std::uint32_t exit[kStateBatch];   // number among the exits of `from`, or kNotForced
-  double fired_value[kStateBatch];   // of the quantity that triggered
-  double rest_before[kStateBatch];   // [m]
+  double trigger_value[kStateBatch];  // of the quantity that triggered
+  double rest_before[kStateBatch];    // [m]
 };
 
-/// One step of the state machines of 8 rows: exits of the present state in order, at most one change a
-/// row, pull of the state it is in then. Updates impulse, entered and memory. In a row that has
-/// changed, the dampers see no growth.
+/// One step of the state machines of 8 rows: exits of the present state in order, at most one
+/// change a row, pull of the state it is in then. Updates impulse, entered and memory. In a row
+/// that has changed, the dampers see no elongation increment.
 using StepStateMachines = void (*)(const StateTerm* states, StateMachineRows& rows) noexcept;
 
 /// Rows in one state without exits; arrays 64-byte aligned, padded to a multiple of 8.
 struct PlainRows {
-  std::size_t count = 0;                // rows
-  const double* distance = nullptr;     // [m]
-  const double* inverse = nullptr;      // of the distance, 0 while it is 0 [1/m]
-  const double* growth = nullptr;       // [m]
-  const double* rest_length = nullptr;  // [m]
-  const double* mass_a = nullptr;       // [kg]; may be null unless its law is a function
+  std::size_t count = 0;                         // rows
+  const double* distance = nullptr;              // [m]
+  const double* inverse = nullptr;               // of the distance, 0 while it is 0 [1/m]
+  const double* elongation_increment = nullptr;  // [m]
+  const double* rest_length = nullptr;           // [m]
+  const double* mass_a = nullptr;                // [kg]; may be null unless its law is a function
   const double* mass_b = nullptr;
   double rate = 0.0;                 // 1 / dt [1/s]
   double* factor = nullptr;          // pull / distance [N/m]

@@ -1,5 +1,5 @@
-// sim_node/engine/links/state_kernel_avx512.cpp -- eight rows in a register. Compiled with -mavx512f,
-// without contraction.
+// sim_node/engine/links/state_kernel_avx512.cpp -- eight rows in a register. Compiled with
+// -mavx512f, without contraction.
 #include "sim_node/engine/links/link_kernels_body.h"
 #include "sim_node/engine/simd/lanes_avx512.h"
 

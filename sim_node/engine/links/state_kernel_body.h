@@ -43,7 +43,7 @@ class StateMachineLoop {
         batch.quantity[quantity(Quantity::kMassA)] = rows.mass_a + i;
         batch.quantity[quantity(Quantity::kMassB)] = rows.mass_b + i;
       }
-      loop.find_pull(state, Batch::kAll, rows.growth + i);
+      loop.find_pull(state, Batch::kAll, rows.elongation_increment + i);
       Batch::each(rows.factor + i, per_distance, loop.pull_, rows.inverse + i);
       Batch::each(
           rows.viscous_factor + i,
@@ -62,7 +62,7 @@ class StateMachineLoop {
       const StateIndex state = rows_.state[__builtin_ctz(left)];
       const std::uint32_t group = rows_in(state);
       if (!rows_.frozen) test_exits(states_[state], group);
-      find_pull(states_[state], group, rows_.growth);
+      find_pull(states_[state], group, rows_.elongation_increment);
       left &= ~group;
     }
     if (rows_.changed != 0) enter();
@@ -99,7 +99,7 @@ class StateMachineLoop {
     for (std::uint32_t i = 0; i < Batch::kRows; ++i) {
       if ((group >> i & 1U) == 0 || rows_.forced[i] == kNotForced) continue;
       rows_.exit[i] = kNotForced;
-      rows_.fired_value[i] = 0.0;
+      rows_.trigger_value[i] = 0.0;
       target_[i] = rows_.forced[i];
       rows_.forced[i] = kNotForced;
       rows_.changed |= 1U << i;
@@ -107,19 +107,20 @@ class StateMachineLoop {
   }
 
   void note(const StateTerm& state, std::uint32_t exit, std::uint32_t leaving) noexcept {
-    const ExitTerm& term = state.exits[exit];
+    const TransitionTerm& term = state.exits[exit];
     const double* triggered = rows_.quantity[static_cast<std::size_t>(term.triggered)];
     for (std::uint32_t i = 0; i < Batch::kRows; ++i) {
       if ((leaving >> i & 1U) == 0) continue;
       rows_.exit[i] = exit;
-      rows_.fired_value[i] = triggered[i];
+      rows_.trigger_value[i] = triggered[i];
       target_[i] = term.target;
     }
     rows_.changed |= leaving;
   }
 
   /// The pull of the rows of a group, all in one state.
-  void find_pull(const StateTerm& state, std::uint32_t group, const double* growth) noexcept {
+  void find_pull(const StateTerm& state, std::uint32_t group,
+                 const double* elongation_increment) noexcept {
     alignas(64) double pull[Batch::kRows];
     alignas(64) double elastic[Batch::kRows];
     alignas(64) double speed[Batch::kRows];
@@ -132,13 +133,13 @@ class StateMachineLoop {
     };
 
     Batch::each(
-        speed, [&](Row g) { return g * rate; }, growth);
+        speed, [&](Row g) { return g * rate; }, elongation_increment);
     stretch(rows_.elongation, elastic);
     LawArguments of = arguments(rows_.elongation, speed);
     if (!with_function) LawLoop<Lanes>::add(state.elasticity, of, elastic);
     const Row viscosity = Lanes::every(state.viscosity_over_dt);
     Batch::each(
-        pull, [&](Row e, Row g) { return e + viscosity * g; }, elastic, growth);
+        pull, [&](Row e, Row g) { return e + viscosity * g; }, elastic, elongation_increment);
     if (with_function) LawLoop<Lanes>::add(state.elasticity, of, pull);
     of.argument = speed;
     LawLoop<Lanes>::add(state.dissipation, of, pull);
@@ -207,12 +208,12 @@ class StateMachineLoop {
         rows_.memory[Batch::kRows * s + i] = __builtin_nan("");
       }
     }
-    alignas(64) double no_growth[Batch::kRows];
-    Batch::fill(no_growth, 0.0);
+    alignas(64) double no_increment[Batch::kRows];
+    Batch::fill(no_increment, 0.0);
     for (std::uint32_t left = rows_.changed; left != 0;) {
       const StateIndex state = rows_.state[__builtin_ctz(left)];
       const std::uint32_t group = rows_in(state) & rows_.changed;
-      find_pull(states_[state], group, no_growth);
+      find_pull(states_[state], group, no_increment);
       left &= ~group;
     }
   }
@@ -221,7 +222,7 @@ class StateMachineLoop {
   double rest_length_after(std::uint32_t row) noexcept {
     const double before = rows_.rest_length[row];
     if (rows_.exit[row] == kNotForced) return before;
-    const ExitTerm& exit = states_[rows_.state[row]].exits[rows_.exit[row]];
+    const TransitionTerm& exit = states_[rows_.state[row]].exits[rows_.exit[row]];
     switch (exit.rest) {
       case RestCode::kKeep:
         return before;

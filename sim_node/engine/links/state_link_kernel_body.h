@@ -1,5 +1,5 @@
-// sim_node/engine/links/state_link_kernel_body.h -- the loops of state links: kinematics, state machines,
-// forces, 8 links at a time.
+// sim_node/engine/links/state_link_kernel_body.h -- the loops of state links: kinematics, state
+// machines, forces, 8 links at a time.
 #pragma once
 
 #include "sim_node/engine/links/state_kernel_body.h"
@@ -10,10 +10,10 @@ namespace cordis::engine {
 /// How 8 links stand and move; values of the batch that its programs may ask for.
 struct LinkMotion {
   alignas(64) double distance[kStateBatch];
-  alignas(64) double growth[kStateBatch];        // [m]
-  alignas(64) double before_moved[kStateBatch];  // former vector * its change [m^2]
-  alignas(64) double along[3][kStateBatch];      // vector from a to b [m]
-  alignas(64) double inverse[kStateBatch];       // 1 / distance, 0 where that is 0
+  alignas(64) double elongation_increment[kStateBatch];  // [m]
+  alignas(64) double before_moved[kStateBatch];          // former vector * its change [m^2]
+  alignas(64) double along[3][kStateBatch];              // vector from a to b [m]
+  alignas(64) double inverse[kStateBatch];               // 1 / distance, 0 where that is 0
   alignas(64) double speed[kStateBatch];
   alignas(64) double velocity[3][kStateBatch];
   alignas(64) double slip[kStateBatch];
@@ -22,7 +22,7 @@ struct LinkMotion {
 
 /// Distances are signed, and there is always a direction.
 template <class Lanes>
-struct MotionInLine {
+struct Motion1d {
   using Row = typename Lanes::Row;
 
   static void find(const StateLinkRows& links, const ForceColumns& columns, std::size_t l,
@@ -30,13 +30,13 @@ struct MotionInLine {
     const std::uint32_t* a = links.column_a + l + i;
     const std::uint32_t* b = links.column_b + l + i;
     const Row distance = Lanes::difference_1d(columns.position, a, b);
-    const Row growth = distance - Lanes::difference_1d(columns.delayed, a, b);
+    const Row elongation_increment = distance - Lanes::difference_1d(columns.delayed, a, b);
     Lanes::store(motion.distance + i, distance);
-    Lanes::store(motion.growth + i, growth);
-    Lanes::store(motion.before_moved + i, growth);
-    Lanes::store(motion.speed + i, growth * Lanes::every(links.rate));
+    Lanes::store(motion.elongation_increment + i, elongation_increment);
+    Lanes::store(motion.before_moved + i, elongation_increment);
+    Lanes::store(motion.speed + i, elongation_increment * Lanes::every(links.rate));
     if (!links.needs_velocity) return;
-    Lanes::store(motion.velocity[0] + i, growth * Lanes::every(links.rate));
+    Lanes::store(motion.velocity[0] + i, elongation_increment * Lanes::every(links.rate));
     for (double* none : {motion.velocity[1], motion.velocity[2], motion.slip}) {
       Lanes::store(none + i, Lanes::zero());
     }
@@ -52,7 +52,7 @@ struct MotionInLine {
 };
 
 template <class Lanes>
-struct MotionInSpace {
+struct MotionNd {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
 
@@ -66,9 +66,10 @@ struct MotionInSpace {
     const Row distance = Lanes::sqrt(square);
     const Row inverse = Lanes::inverse_or_zero(square, distance);
     const Row3 moved{along.x - before.x, along.y - before.y, along.z - before.z};
-    const Row growth = (along.x * moved.x + along.y * moved.y + along.z * moved.z) * inverse;
+    const Row elongation_increment =
+        (along.x * moved.x + along.y * moved.y + along.z * moved.z) * inverse;
     Lanes::store(motion.distance + i, distance);
-    Lanes::store(motion.growth + i, growth);
+    Lanes::store(motion.elongation_increment + i, elongation_increment);
     Lanes::store(motion.before_moved + i,
                  before.x * moved.x + before.y * moved.y + before.z * moved.z);
     Lanes::store(motion.along[0] + i, along.x);
@@ -76,7 +77,7 @@ struct MotionInSpace {
     Lanes::store(motion.along[2] + i, along.z);
     Lanes::store(motion.inverse + i, inverse);
     motion.still |= Lanes::bits(Lanes::equal(square, Lanes::zero())) << i;
-    const Row speed = growth * Lanes::every(links.rate);
+    const Row speed = elongation_increment * Lanes::every(links.rate);
     Lanes::store(motion.speed + i, speed);
     if (links.needs_velocity) find_velocity(links.rate, i, moved, speed, motion);
   }
@@ -157,7 +158,7 @@ class StateLinkLoop {
     set(Quantity::kSpeedZ, motion_.velocity[2]);
     set(Quantity::kSlip, motion_.slip);
     set(Quantity::kAge, age_);
-    rows_.growth = motion_.growth;
+    rows_.elongation_increment = motion_.elongation_increment;
     rows_.dt = links_.dt;
     rows_.rate = links_.rate;
     rows_.now = links_.now;
@@ -202,7 +203,7 @@ class StateLinkLoop {
 
   void add_part(std::size_t l, std::size_t part) noexcept {
     const std::size_t i = part * Lanes::kWidth;
-    const Row growth = Lanes::load(motion_.growth + i);
+    const Row elongation_increment = Lanes::load(motion_.elongation_increment + i);
     const Row before_moved = Lanes::load(motion_.before_moved + i);
     const Row pull = Lanes::load(rows_.pull + i);
     const Row elastic = Lanes::load(elastic_ + i);
@@ -210,10 +211,10 @@ class StateLinkLoop {
     double* elastic_factor = links_.elastic_factor + l + i;
     double* viscous_factor = links_.viscous_factor + l + i;
 
-    elastic_work_[part] =
-        elastic_work_[part] + (elastic * growth + Lanes::load(elastic_factor) * before_moved);
-    viscous_work_[part] =
-        viscous_work_[part] + (viscous * growth + Lanes::load(viscous_factor) * before_moved);
+    elastic_work_[part] = elastic_work_[part] + (elastic * elongation_increment +
+                                                 Lanes::load(elastic_factor) * before_moved);
+    viscous_work_[part] = viscous_work_[part] + (viscous * elongation_increment +
+                                                 Lanes::load(viscous_factor) * before_moved);
     Lanes::store(elastic_factor, Motion<Lanes>::factor(motion_, i, elastic));
     Lanes::store(viscous_factor, Motion<Lanes>::factor(motion_, i, viscous));
     Motion<Lanes>::add(links_, columns_, l, i, motion_, Motion<Lanes>::factor(motion_, i, pull));

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sim_node/engine/core/assert.h"
-#include "sim_node/engine/links/link_growth.h"
+#include "sim_node/engine/links/elongation_increment.h"
 
 namespace cordis::engine {
 namespace {
@@ -24,7 +24,7 @@ const double* take(const double* from, Values& values) noexcept {
 }  // namespace
 
 StateLinkArray::StateLinkArray(const NetworkDescription& description, const StateTable& table)
-    : in_line_(description.dimension == 1),
+    : is_1d_(description.dimension == 1),
       dt_(description.step),
       rate_(1.0 / description.step),
       link_count_(description.state_links.size()),
@@ -91,7 +91,7 @@ void StateLinkArray::add_forces_before_start(const StateKernel& kernel, const St
     StateLinkRows links = rows(table, run);
     links.frozen = true;
     links.impulse = nullptr;
-    (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, none);
+    (is_1d_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, none);
   }
 }
 
@@ -127,7 +127,7 @@ StepEnergy StateLinkArray::add_forces(const StateKernel& kernel, const StateTabl
       to.log->add({to.step, static_cast<std::uint32_t>(l), to.links->column_a_[l] / 4,
                    to.links->column_b_[l] / 4, to.links->state_machine_[l],
                    rows.from[i] - first_state, rows.state[i] - first_state,
-                   to.table->triggered(rows.from[i], rows.exit[i]), rows.fired_value[i], energy});
+                   to.table->triggered(rows.from[i], rows.exit[i]), rows.trigger_value[i], energy});
     }
   };
   LinkWork work;
@@ -137,7 +137,7 @@ StepEnergy StateLinkArray::add_forces(const StateKernel& kernel, const StateTabl
     links.now = static_cast<double>(step);
     links.owner = &entry;
     links.on_change = on_change;
-    (in_line_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, work);
+    (is_1d_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, work);
   }
   any_forced_ = false;
   StepEnergy energy = half_of(work);
@@ -167,9 +167,10 @@ void StateLinkArray::choose_active(MatRoles& roles) noexcept {
 StepEnergy StateLinkArray::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
   for (std::size_t l = 0; l < link_count_; ++l) {
-    const double grown = half_growth(mats, column_a_[l], column_b_[l], in_line_);
-    work.elastic += elastic_factor_[l] * grown;
-    work.dissipated += viscous_factor_[l] * grown;
+    const double elongation_increment =
+        half_elongation_increment(mats, column_a_[l], column_b_[l], is_1d_);
+    work.elastic += elastic_factor_[l] * elongation_increment;
+    work.dissipated += viscous_factor_[l] * elongation_increment;
   }
   return work;
 }
@@ -178,7 +179,7 @@ double StateLinkArray::distance_at_last_call(const MatArray& mats,
                                              std::size_t link) const noexcept {
   const Vec3 along =
       mats.position_of_forces(column_b_[link] / 4) - mats.position_of_forces(column_a_[link] / 4);
-  return in_line_ ? along.x() : along.norm();
+  return is_1d_ ? along.x() : along.norm();
 }
 
 double StateLinkArray::stored_energy(const StateTable& table, const MatArray& mats) const noexcept {

@@ -39,8 +39,8 @@ class StateLinkArray {
   StepEnergy add_forces(const StateKernel& kernel, const StateTable& table,
                         const ForceColumns& columns, std::uint64_t step, EventLog& log) noexcept;
 
-  /// As those of SpringDamperArray. Links of a state machine whose conditions may come true while both
-  /// ends rest are always computed: their masses get kWholeForce.
+  /// As those of SpringDamperArray. Links of a state machine whose conditions may come true while
+  /// both ends rest are always computed: their masses get kWholeForce.
   /// @param never_rests  by state machine
   void mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                        MatRoles& roles) const noexcept;
@@ -81,9 +81,9 @@ class StateLinkArray {
   StateLinkRows rows(const StateTable& table, const ActiveLinks::Run& run) noexcept;
   double distance_at_last_call(const MatArray& mats, std::size_t link) const noexcept;
 
-  bool in_line_;  // 1 dimension
-  double dt_;     // [s]
-  double rate_;   // 1 / dt [1/s]
+  bool is_1d_;   // 1 dimension
+  double dt_;    // [s]
+  double rate_;  // 1 / dt [1/s]
   std::size_t link_count_;
   AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
   AlignedVector<std::uint32_t> column_b_;  // all arrays: padded to a multiple of kStateBatch

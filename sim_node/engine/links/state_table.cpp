@@ -88,7 +88,7 @@ struct StateTable::Content {
   double dt = 0.0;
   double part_of_work = 0.5;  // that the account has not entered yet
   std::vector<StateTerm> terms;
-  std::vector<std::vector<ExitTerm>> exits;     // by state machine
+  std::vector<std::vector<TransitionTerm>> exits;  // by state machine
   std::vector<ReadyLaw> laws;                   // of all terms, in order: elasticity, dissipation
   std::vector<StateIndex> first_state;          // by state machine
   std::vector<std::uint32_t> state_machine_of;  // by state
@@ -97,7 +97,7 @@ struct StateTable::Content {
 
   void build();
   void add_state_machine(const StateMachine& state_machine);
-  void add_state(const LinkState& state, const std::vector<ExitTerm>& exits_of_state_machine);
+  void add_state(const LinkState& state, const std::vector<TransitionTerm>& exits_of_state_machine);
   void record_needs(const Program& program);
   void record_needs(const Law& law);
 };
@@ -116,7 +116,7 @@ void StateTable::Content::build() {
 
 void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
   const auto first = static_cast<StateIndex>(terms.size());
-  std::vector<ExitTerm> exits_of_state_machine;
+  std::vector<TransitionTerm> exits_of_state_machine;
   for (const Transition& exit : state_machine.exits) {
     record_needs(exit.when);
     record_needs(exit.rest_length);
@@ -136,7 +136,7 @@ void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
 }
 
 void StateTable::Content::add_state(const LinkState& state,
-                                    const std::vector<ExitTerm>& exits_of_state_machine) {
+                                    const std::vector<TransitionTerm>& exits_of_state_machine) {
   StateTerm term;
   term.stiffness = state.stiffness;
   term.viscosity_over_dt = state.viscosity / dt;
@@ -240,9 +240,9 @@ double StateTable::change_energy(const StateMachineRows& rows, std::size_t row) 
   const double part = content_->part_of_work;
   const double distance = rows.quantity[static_cast<std::size_t>(Quantity::kDistance)][row];
   const double after = stored_energy(rows.state[row], distance, rows.rest_length[row]) -
-                       part * rows.elastic[row] * rows.growth[row];
+                       part * rows.elastic[row] * rows.elongation_increment[row];
   const double before = stored_energy(rows.from[row], distance, rows.rest_before[row]) -
-                        part * rows.elastic_before[row] * rows.growth[row];
+                        part * rows.elastic_before[row] * rows.elongation_increment[row];
   return after - before;
 }
 

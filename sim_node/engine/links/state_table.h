@@ -11,8 +11,8 @@
 
 namespace cordis::engine {
 
-/// All states of all state machines in one row, in order: StateIndex of state s of state machine b is
-/// first_state(b) + s. After the last stands a state of no force and no exit, for padding.
+/// All states of all state machines in one row, in order: StateIndex of state s of state machine b
+/// is first_state(b) + s. After the last stands a state of no force and no exit, for padding.
 class StateTable {
  public:
   /// Precondition: check_state_machine has passed all of them.

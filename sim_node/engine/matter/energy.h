@@ -1,4 +1,5 @@
-// sim_node/engine/matter/energy.h -- where the energy of a world is, and where it came from and went.
+// sim_node/engine/matter/energy.h -- where the energy of a world is, and where it came from and
+// went.
 #pragma once
 
 #include <cstddef>

@@ -95,14 +95,14 @@ AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
 }
 
 AdvanceReport MatArray::extrapolate(const StepKernel& kernel,
-                                    AlignedVector<double>& felt) noexcept {
+                                    AlignedVector<double>& extrapolated) noexcept {
   const bool in_medium = medium_viscosity_over_dt_ > 0.0;
-  return advance_rows(in_medium ? kernel.extrapolate_in_medium : kernel.extrapolate, felt.data(),
-                      1.0);
+  return advance_rows(in_medium ? kernel.extrapolate_in_medium : kernel.extrapolate,
+                      extrapolated.data(), 1.0);
 }
 
 /// Columns of all MATs, with no range of masses yet.
-MassColumns MatArray::columns(double* felt) noexcept {
+MassColumns MatArray::columns(double* extrapolated) noexcept {
   return {0,
           0,
           position_.data(),
@@ -110,7 +110,7 @@ MassColumns MatArray::columns(double* felt) noexcept {
           force_.data(),
           dt2_over_mass_.data(),
           velocity_retention_.data(),
-          felt};
+          extrapolated};
 }
 
 /// @param range  of one weight
@@ -121,8 +121,9 @@ void MatArray::choose_rows(MassColumns& columns, const Range& range) const noexc
 }
 
 /// @param share  of moved_product in the square of a displacement
-AdvanceReport MatArray::advance_rows(Advance advance_row, double* felt, double share) noexcept {
-  MassColumns row = columns(felt);
+AdvanceReport MatArray::advance_rows(Advance advance_row, double* extrapolated,
+                                     double share) noexcept {
+  MassColumns row = columns(extrapolated);
   AdvanceReport report;
   bool all_finite = true;
 

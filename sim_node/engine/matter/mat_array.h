@@ -60,8 +60,8 @@ class MatArray {
   AdvanceReport advance(const StepKernel& kernel) noexcept;
 
   /// Moves every mass by one step of `leapfrog`; see StepKernel::extrapolate.
-  /// @param felt  4 x N, x(n) - dt v(n), then that of the next step
-  AdvanceReport extrapolate(const StepKernel& kernel, AlignedVector<double>& felt) noexcept;
+  /// @param extrapolated  4 x N, x(n) - dt v(n), then that of the next step
+  AdvanceReport extrapolate(const StepKernel& kernel, AlignedVector<double>& extrapolated) noexcept;
 
   /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
   void kick(const StepKernel& kernel, double part, AlignedVector<double>& velocity) noexcept;
@@ -91,8 +91,8 @@ class MatArray {
     return dt2_over_mass_[mat] * force + weight_step(mat);
   }
   /// What the medium does to a mass at x(n) - dt v(n) [N].
-  Vec3 force_of_medium(std::uint32_t mat, const Vec3& felt) const noexcept {
-    return medium_viscosity_over_dt_ * (felt - position(mat));
+  Vec3 force_of_medium(std::uint32_t mat, const Vec3& extrapolated) const noexcept {
+    return medium_viscosity_over_dt_ * (extrapolated - position(mat));
   }
   /// Adds to the forces on all MATs, 4 x N.
   void add_forces(const AlignedVector<double>& more) noexcept;
@@ -132,13 +132,13 @@ class MatArray {
   const double* take_state(const double* state) noexcept;
 
  private:
-  MassColumns columns(double* felt) noexcept;
+  MassColumns columns(double* extrapolated) noexcept;
   void choose_rows(MassColumns& columns, const Range& range) const noexcept;
   void list_by_weight(std::span<const Range> rows, std::vector<Range>& listed) const noexcept;
   Vec3 weight_step(std::size_t mat) const noexcept {
     return !weightless_.empty() && weightless_[mat] != 0 ? Vec3(Vec3::Zero()) : weight_step_;
   }
-  AdvanceReport advance_rows(Advance advance_row, double* felt, double share) noexcept;
+  AdvanceReport advance_rows(Advance advance_row, double* extrapolated, double share) noexcept;
   Columns view(const AlignedVector<double>& columns) const noexcept;
   static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;
   std::uint32_t count_non_finite() const noexcept;

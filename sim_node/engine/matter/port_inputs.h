@@ -1,5 +1,5 @@
-// sim_node/engine/matter/port_inputs.h -- what a world takes from outside: positions of its ports, forces on
-// its masses.
+// sim_node/engine/matter/port_inputs.h -- what a world takes from outside: positions of its ports,
+// forces on its masses.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// sim_node/engine/matter/step_kernel.h -- the two phases of a step as plain loops, one set for each vector
-// width.
+// sim_node/engine/matter/step_kernel.h -- the two phases of a step as plain loops, one set for each
+// vector width.
 //
 // The loops are compiled several times, each time for other vector instructions. So that the linker
 // can never merge a function compiled for a newer processor into code for an older one, nothing
@@ -60,7 +60,7 @@ struct MassColumns {
   const double* force = nullptr;               // f(n) [N]
   const double* dt2_over_mass = nullptr;       // dt^2 / m [s^2/kg], one per MAT
   const double* velocity_retention = nullptr;  // 1 - dt Z / m, with Z of the medium; one per MAT
-  double* felt = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
+  double* extrapolated = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
   alignas(32) double weight_step[4] = {};  // gravity * dt^2 [m]
 };
 
@@ -89,8 +89,9 @@ using Delay = AdvanceResult (*)(const MassColumns& masses, const double* velocit
                                 double dt) noexcept;
 
 /// The loops of one width. Those of a moment remember nothing for an account: `elastic` is 0 and
-/// `dissipated` the viscous power of these forces times dt, once. The last two keep in `felt` the
-/// velocity that dampers and medium see, v(n) = 1.5 v(n-1/2) - 0.5 v(n-3/2): x(n+1) = x(n) + (x(n)
+/// `dissipated` the viscous power of these forces times dt, once. The last two keep in
+/// `extrapolated` the velocity that dampers and medium see, v(n) = 1.5 v(n-1/2) - 0.5 v(n-3/2):
+/// x(n+1) = x(n) + (x(n)
 /// - x(n-1)) + (dt^2 / m) f(n)
 /// + gravity dt^2 - (1 - velocity retention) dt v(n).
 struct StepKernel {

@@ -1,5 +1,5 @@
-// sim_node/engine/matter/step_kernel_body.h -- the loops of a step, written once over the vector registers
-// of each width.
+// sim_node/engine/matter/step_kernel_body.h -- the loops of a step, written once over the vector
+// registers of each width.
 //
 // `Lanes` is a type of an unnamed namespace, one for each width, and gives
 //   kWidth                             links in one register: 2, 4 or 8
@@ -31,12 +31,12 @@ struct WorkRows {
 
 /// The account takes half of the work of the last forces and half of that of these, or the
 /// viscous work of these alone; see LinkWork and StepKernel.
-enum class Works { kOfPeriod, kOfMoment };
+enum class Works { kHalfStep, kFullStep };
 
-/// pull = K (b - a - rest) + Z (growth of b - a) / dt, signed; kViscous = false leaves the second
-/// term out.
+/// pull = K (b - a - rest) + Z (elongation increment of b - a) / dt, signed; kViscous = false
+/// leaves the second term out.
 template <class Lanes, bool kViscous, Works kWorks>
-struct LinksInLine {
+struct Links1d {
   using Row = typename Lanes::Row;
 
   static void add_forces(const LinkRows& links, const ForceColumns& columns, std::size_t l,
@@ -47,14 +47,14 @@ struct LinksInLine {
     const Row distance = Lanes::difference_1d(columns.position, a, b);
     Row pull = Lanes::load(links.stiffness + l) * (distance - Lanes::load(links.rest_length + l));
     if constexpr (kViscous) {
-      const Row grown = distance - Lanes::difference_1d(columns.delayed, a, b);
-      const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
-      if constexpr (kWorks == Works::kOfPeriod) {
-        work.dissipated =
-            work.dissipated + (viscous_pull + Lanes::load(links.viscous_factor + l)) * grown;
+      const Row elongation_increment = distance - Lanes::difference_1d(columns.delayed, a, b);
+      const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * elongation_increment;
+      if constexpr (kWorks == Works::kHalfStep) {
+        work.dissipated = work.dissipated + (viscous_pull + Lanes::load(links.viscous_factor + l)) *
+                                                elongation_increment;
         Lanes::store(links.viscous_factor + l, viscous_pull);
       } else {
-        work.dissipated = work.dissipated + viscous_pull * grown;
+        work.dissipated = work.dissipated + viscous_pull * elongation_increment;
       }
       pull = pull + viscous_pull;
     }
@@ -62,10 +62,10 @@ struct LinksInLine {
   }
 };
 
-/// pull = K (d - rest) + Z (growth of the link along its axis) / dt; none while d is 0, for lack of
-/// a direction.
+/// pull = K (d - rest) + Z (elongation increment of the link along its axis) / dt; none while d is
+/// 0, for lack of a direction.
 template <class Lanes, bool kViscous, Works kWorks>
-struct LinksInSpace {
+struct LinksNd {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
 
@@ -74,7 +74,7 @@ struct LinksInSpace {
     const std::uint32_t* a = links.column_a + l;
     const std::uint32_t* b = links.column_b + l;
 
-    constexpr bool kMoves = kViscous || kWorks == Works::kOfPeriod;
+    constexpr bool kMoves = kViscous || kWorks == Works::kHalfStep;
     Row3 along;
     Row3 before;
     if constexpr (kMoves) {
@@ -91,7 +91,7 @@ struct LinksInSpace {
     const Row elastic_factor =
         Lanes::load(links.stiffness + l) * (length - Lanes::load(links.rest_length + l)) * inverse;
     Row before_moved = Lanes::zero();
-    if constexpr (kWorks == Works::kOfPeriod) {
+    if constexpr (kWorks == Works::kHalfStep) {
       before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
       work.elastic = work.elastic + (elastic_factor * along_moved +
                                      Lanes::load(links.elastic_factor + l) * before_moved);
@@ -99,15 +99,15 @@ struct LinksInSpace {
     }
     Row factor = elastic_factor;
     if constexpr (kViscous) {
-      const Row grown = along_moved * inverse;
-      const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * grown;
+      const Row elongation_increment = along_moved * inverse;
+      const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * elongation_increment;
       const Row viscous_factor = viscous_pull * inverse;
-      if constexpr (kWorks == Works::kOfPeriod) {
-        work.dissipated = work.dissipated + (viscous_pull * grown +
+      if constexpr (kWorks == Works::kHalfStep) {
+        work.dissipated = work.dissipated + (viscous_pull * elongation_increment +
                                              Lanes::load(links.viscous_factor + l) * before_moved);
         Lanes::store(links.viscous_factor + l, viscous_factor);
       } else {
-        work.dissipated = work.dissipated + viscous_pull * grown;
+        work.dissipated = work.dissipated + viscous_pull * elongation_increment;
       }
       factor = factor + viscous_factor;
     }
@@ -183,7 +183,7 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
         Lanes::load_column(masses.force + 4 * i) * Lanes::broadcast(masses.dt2_over_mass[i]) +
         weight_step;
     if constexpr (kMedium) {
-      const Column seen = position - Lanes::load_column(masses.felt + 4 * i);
+      const Column seen = position - Lanes::load_column(masses.extrapolated + 4 * i);
       pushed = pushed - seen * (one - Lanes::broadcast(masses.velocity_retention[i]));
       product = product + seen * seen;
     }
@@ -192,7 +192,7 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
 
     Lanes::store_column(masses.delayed + 4 * i, position);
     Lanes::store_column(masses.position + 4 * i, next);
-    Lanes::store_column(masses.felt + 4 * i, position - half * pushed);
+    Lanes::store_column(masses.extrapolated + 4 * i, position - half * pushed);
     // 0 for finite values, else NaN
     nonfinite = Lanes::unite(nonfinite, next - next);  // NOLINT(misc-redundant-expression)
   }
@@ -239,15 +239,15 @@ AdvanceResult delay_masses(const MassColumns& masses, const double* velocity, do
 
 template <class Lanes>
 constexpr StepKernel make_step_kernel() noexcept {
-  constexpr Works kPeriod = Works::kOfPeriod;
-  constexpr Works kMoment = Works::kOfMoment;
-  return StepKernel{add_link_forces<Lanes, LinksInLine<Lanes, false, kPeriod>>,
-                    add_link_forces<Lanes, LinksInLine<Lanes, true, kPeriod>>,
-                    add_link_forces<Lanes, LinksInSpace<Lanes, false, kPeriod>>,
-                    add_link_forces<Lanes, LinksInSpace<Lanes, true, kPeriod>>,
-                    add_link_forces<Lanes, LinksInLine<Lanes, true, kMoment>>,
-                    add_link_forces<Lanes, LinksInSpace<Lanes, false, kMoment>>,
-                    add_link_forces<Lanes, LinksInSpace<Lanes, true, kMoment>>,
+  constexpr Works kHalf = Works::kHalfStep;
+  constexpr Works kFull = Works::kFullStep;
+  return StepKernel{add_link_forces<Lanes, Links1d<Lanes, false, kHalf>>,
+                    add_link_forces<Lanes, Links1d<Lanes, true, kHalf>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, false, kHalf>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, true, kHalf>>,
+                    add_link_forces<Lanes, Links1d<Lanes, true, kFull>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, false, kFull>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, true, kFull>>,
                     advance_masses<Lanes, false>,
                     advance_masses<Lanes, true>,
                     extrapolate_masses<Lanes, false>,

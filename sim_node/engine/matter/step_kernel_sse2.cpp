@@ -1,4 +1,5 @@
-// sim_node/engine/matter/step_kernel_sse2.cpp -- two links in a register: runs on every x86-64 processor.
+// sim_node/engine/matter/step_kernel_sse2.cpp -- two links in a register: runs on every x86-64
+// processor.
 #include "sim_node/engine/matter/step_kernel_body.h"
 #include "sim_node/engine/simd/lanes_sse2.h"
 #include "sim_node/engine/simd/modal_kernel_body.h"

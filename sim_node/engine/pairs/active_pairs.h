@@ -26,7 +26,7 @@ struct PairsOfSet {
 /// nothing.
 class ActivePairs {
  public:
-  /// All for ever.
+  /// All forever.
   ActivePairs() = default;
   /// @param capacity  of the neighbour list
   ActivePairs(std::size_t member_count, std::size_t row_count, std::size_t capacity);

@@ -10,7 +10,7 @@
 namespace cordis::engine {
 namespace {
 
-constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
 constexpr double kFarthestCell = 1099511627776.0;  // 2^40
 constexpr double kCellMargin = 1.0 + 1.0 / 256.0;
 constexpr std::size_t kMinExtent = 4;  // so that 3 cells in a row have 3 places
@@ -33,7 +33,7 @@ CellGrid::CellGrid(std::size_t capacity, int dimension)
     : dimension_(dimension),
       max_cells_(std::max<std::size_t>(64, power_of_two_above(2 * capacity))),
       begin_(max_cells_ + 1, 0),
-      place_(capacity, kNowhere),
+      cell_(capacity, kNoCell),
       x_(capacity + kPairBatch, 0.0),
       y_(x_.size(), 0.0),
       z_(x_.size(), 0.0),
@@ -48,15 +48,15 @@ void CellGrid::fill(const double* position, std::size_t count, double reach) noe
   std::fill_n(begin_.begin(), cells + 1, std::size_t{0});
   for (std::size_t i = 0; i < count; ++i) {
     const double* point = position + 4 * i;
-    place_[i] = is_finite_point(point) ? static_cast<std::uint32_t>(place_of(point)) : kNowhere;
-    if (place_[i] != kNowhere) ++begin_[place_[i] + 1];
+    cell_[i] = is_finite_point(point) ? static_cast<std::uint32_t>(cell_of(point)) : kNoCell;
+    if (cell_[i] != kNoCell) ++begin_[cell_[i] + 1];
   }
   for (std::size_t c = 0; c < cells; ++c) begin_[c + 1] += begin_[c];
 
   // begin_[c] runs to the end of cell c and so becomes the beginning of cell c + 1 ...
   for (std::size_t i = 0; i < count; ++i) {
-    if (place_[i] == kNowhere) continue;
-    const std::size_t at = begin_[place_[i]]++;
+    if (cell_[i] == kNoCell) continue;
+    const std::size_t at = begin_[cell_[i]]++;
     x_[at] = position[4 * i];
     y_[at] = position[4 * i + 1];
     z_[at] = position[4 * i + 2];
@@ -115,18 +115,18 @@ std::int64_t CellGrid::cell_along(double coordinate) const noexcept {
   return whole - (static_cast<double>(whole) > cell ? 1 : 0);
 }
 
-std::size_t CellGrid::place_of(const double* point) const noexcept {
-  std::size_t place = 0;
+std::size_t CellGrid::cell_of(const double* point) const noexcept {
+  std::size_t cell = 0;
   for (std::size_t axis = kAxes; axis-- > 0;) {
-    const auto cell = static_cast<std::size_t>(cell_along(point[axis]));
-    place = place * extent_[axis] + (cell & (extent_[axis] - 1));
+    const auto along = static_cast<std::size_t>(cell_along(point[axis]));
+    cell = cell * extent_[axis] + (along & (extent_[axis] - 1));
   }
-  return place;
+  return cell;
 }
 
 /// Leaves out cells at both ends of the row in which all numbers are too large: in each cell they
 /// ascend.
-void CellGrid::add_run(Surroundings& found, std::size_t first, std::size_t end,
+void CellGrid::add_run(NeighbourCells& found, std::size_t first, std::size_t end,
                        double last) const noexcept {
   const auto is_of_no_use = [this, last](std::size_t cell) {
     return begin_[cell] == begin_[cell + 1] || !(number_[begin_[cell]] < last);
@@ -136,24 +136,24 @@ void CellGrid::add_run(Surroundings& found, std::size_t first, std::size_t end,
   if (first < end) found.runs[found.count++] = {begin_[first], begin_[end]};
 }
 
-CellGrid::Surroundings CellGrid::around(const double* point, std::size_t last) const noexcept {
+CellGrid::NeighbourCells CellGrid::around(const double* point, std::size_t last) const noexcept {
   CORDIS_ASSERT(std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]));
-  return around_place(place_of(point), last);
+  return around_cell(cell_of(point), last);
 }
 
-CellGrid::Surroundings CellGrid::around_place(std::size_t place, std::size_t last) const noexcept {
-  Surroundings found;
+CellGrid::NeighbourCells CellGrid::around_cell(std::size_t cell, std::size_t last) const noexcept {
+  NeighbourCells found;
   const auto bound = static_cast<double>(last);
-  const std::array<std::size_t, kAxes> cell{place % extent_[0], place / extent_[0] % extent_[1],
-                                            place / extent_[0] / extent_[1]};
+  const std::array<std::size_t, kAxes> index{cell % extent_[0], cell / extent_[0] % extent_[1],
+                                             cell / extent_[0] / extent_[1]};
   const std::size_t wide_y = dimension_ > 1 ? 1 : 0;
   const std::size_t wide_z = dimension_ > 2 ? 1 : 0;
-  const std::size_t x_first = (cell[0] - 1) & (extent_[0] - 1);
+  const std::size_t x_first = (index[0] - 1) & (extent_[0] - 1);
   const std::size_t x_parts_end = std::min(x_first + 3, extent_[0]);
   for (std::size_t dz = 0; dz <= 2 * wide_z; ++dz) {
-    const std::size_t z = (cell[2] + dz - wide_z) & (extent_[2] - 1);
+    const std::size_t z = (index[2] + dz - wide_z) & (extent_[2] - 1);
     for (std::size_t dy = 0; dy <= 2 * wide_y; ++dy) {
-      const std::size_t y = (cell[1] + dy - wide_y) & (extent_[1] - 1);
+      const std::size_t y = (index[1] + dy - wide_y) & (extent_[1] - 1);
       const std::size_t row = (z * extent_[1] + y) * extent_[0];
       add_run(found, row + x_first, row + x_parts_end, bound);
       if (x_parts_end < x_first + 3) add_run(found, row, row + x_first + 3 - extent_[0], bound);
@@ -162,7 +162,7 @@ CellGrid::Surroundings CellGrid::around_place(std::size_t place, std::size_t las
   return found;
 }
 
-CellPlaces CellGrid::places() const noexcept {
+CellTable CellGrid::table() const noexcept {
   return {x_.data(), y_.data(), z_.data(), number_.data(), member_.data()};
 }
 

@@ -98,12 +98,12 @@ std::size_t NeighbourList::find_before(std::size_t b, const double* position, st
                         reach_square(),
                         static_cast<double>(first),
                         static_cast<double>(std::min(last, b))};
-  const CellPlaces places = grid_.places();
-  const CellGrid::Surroundings around = grid_.around(point, std::min(last, b));
+  const CellTable table = grid_.table();
+  const CellGrid::NeighbourCells around = grid_.around(point, std::min(last, b));
   std::size_t count = 0;
   for (std::size_t r = 0; r < around.count; ++r) {
     const CellGrid::Run run = around.runs[r];
-    count += kernel_->find_near(places, run.begin, run.end, query, found + count);
+    count += kernel_->find_near(table, run.begin, run.end, query, found + count);
   }
   return count;
 }
@@ -126,24 +126,24 @@ std::size_t NeighbourList::find_all(const double* position) noexcept {
   return total;
 }
 
-/// Place by place, since what is around it is the same for all of its members.
+/// Goes cell by cell, since what is around a cell is the same for all of its members.
 std::size_t NeighbourList::find_all_within(std::size_t total) noexcept {
   std::fill(found_count_.begin(), found_count_.end(), 0U);
-  const CellPlaces places = grid_.places();
-  for (std::size_t place = 0; place < grid_.place_count(); ++place) {
-    const std::size_t end = grid_.end_of(place);
-    if (grid_.begin_of(place) == end) continue;
-    const CellGrid::Surroundings around = grid_.around_place(place, places.member[end - 1]);
-    for (std::size_t at = grid_.begin_of(place); at < end; ++at) {
-      const NearQuery query{places.x[at],   places.y[at], places.z[at],
-                            reach_square(), 0.0,          places.number[at]};
+  const CellTable table = grid_.table();
+  for (std::size_t cell = 0; cell < grid_.cell_count(); ++cell) {
+    const std::size_t end = grid_.end_of(cell);
+    if (grid_.begin_of(cell) == end) continue;
+    const CellGrid::NeighbourCells around = grid_.around_cell(cell, table.member[end - 1]);
+    for (std::size_t at = grid_.begin_of(cell); at < end; ++at) {
+      const NearQuery query{table.x[at],    table.y[at], table.z[at],
+                            reach_square(), 0.0,         table.number[at]};
       std::uint32_t* found = found_.data() + std::min(total, capacity_);
       std::size_t count = 0;
       for (std::size_t r = 0; r < around.count; ++r) {
         const CellGrid::Run run = around.runs[r];
-        count += kernel_->find_near(places, run.begin, run.end, query, found + count);
+        count += kernel_->find_near(table, run.begin, run.end, query, found + count);
       }
-      total = record_found(places.member[at], count, total);
+      total = record_found(table.member[at], count, total);
     }
   }
   return total;

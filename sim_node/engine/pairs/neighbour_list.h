@@ -15,7 +15,7 @@ namespace cordis::engine {
 /// be nearer than the range, each once: row a holds the later members b, in ascending order. That
 /// order does not depend on when and with which skin the list was made.
 ///
-/// The list holds all pairs that were nearer than range + skin when it was made, and is made anew
+/// The list holds all pairs that were nearer than range + skin when it was made, and is made again
 /// when a member has moved by more than skin / 2 since. Until then two members have come nearer by
 /// at most twice that, the skin: so no pair in range is missing. (Differences of coordinates,
 /// squares and sums are each within 2^-53 of exact, and the comparisons leave a margin of 1e-9.)
@@ -37,7 +37,7 @@ class NeighbourList {
   void forget() noexcept { valid_ = false; }
 
   /// Makes the list fit for the present positions, 4 x (P + Q) values with a multiple of 8 columns.
-  /// Real time: O(members) while it still is; O(members + entries) when it is made anew; no
+  /// Real time: O(members) while it still is; O(members + entries) when it is made again; no
   /// allocation. Positions that are not finite are in no pair.
   void refresh(const double* position) noexcept;
 

@@ -47,14 +47,8 @@ PairRows PairBlock::rows() noexcept {
 
 PairRow PairBlock::row_at(std::size_t pair) noexcept {
   const auto at = [this, pair](Array which) { return array(which) + pair; };
-  return {column_b_.data() + pair,
-          at(kX),
-          at(kY),
-          at(kZ),
-          at(kSquare),
-          at(kLength),
-          at(kInverse),
-          at(kGrowth)};
+  return {column_b_.data() + pair, at(kX), at(kY), at(kZ), at(kSquare), at(kLength), at(kInverse),
+          at(kElongationIncrement)};
 }
 
 }  // namespace cordis::engine

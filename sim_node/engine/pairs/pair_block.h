@@ -52,7 +52,7 @@ class PairBlock {
     kSquare,
     kLength,
     kInverse,
-    kGrowth,
+    kElongationIncrement,
     kRestLength,
     kFactor,
     kViscousFactor,

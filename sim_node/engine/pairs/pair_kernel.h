@@ -1,5 +1,5 @@
-// sim_node/engine/pairs/pair_kernel.h -- the loops over the pairs of a set, one set of them for each
-// vector width.
+// sim_node/engine/pairs/pair_kernel.h -- the loops over the pairs of a set, one set of them for
+// each vector width.
 //
 // As in step_kernel.h, nothing here has a member function, so that the linker never mixes up code
 // of two widths.
@@ -17,7 +17,7 @@ namespace cordis::engine {
 inline constexpr std::size_t kPairBatch = 8;
 
 /// Members of a set sorted by the cell they are in.
-struct CellPlaces {
+struct CellTable {
   const double* x = nullptr;  // [m]
   const double* y = nullptr;
   const double* z = nullptr;
@@ -36,7 +36,7 @@ struct NearQuery {
 };
 
 /// Writes what it finds among places[begin, end) in their order. @return how many
-using FindNear = std::size_t (*)(const CellPlaces& places, std::size_t begin, std::size_t end,
+using FindNear = std::size_t (*)(const CellTable& table, std::size_t begin, std::size_t end,
                                  const NearQuery& query, std::uint32_t* found) noexcept;
 
 /// @return the largest square of the displacement of a column since it was at `from` [m^2]; columns
@@ -54,7 +54,8 @@ struct PairRow {
   double* square = nullptr;   // of the distance [m^2]
   double* length = nullptr;   // distance [m]
   double* inverse = nullptr;  // 1 / length, 0 while it is 0 [1/m]
-  double* growth = nullptr;   // of the pair along its line of centres in the last period [m]
+  double* elongation_increment =
+      nullptr;  // of the pair along its line of centres in the last period [m]
 };
 
 /// Pairs of several rows, those of one row after those of the other: the arrays of a PairRow, and
@@ -91,13 +92,13 @@ using GatherPairs = std::size_t (*)(const MemberColumns& members, std::size_t a,
                                     const std::uint32_t* neighbour, std::size_t count,
                                     double range_square, const PairRow& row) noexcept;
 
-/// Finds length, inverse and growth of all pairs.
+/// Finds length, inverse and elongation increment of all pairs.
 using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows) noexcept;
 
 /// Adds factor * (vector from a to b) to member a and takes it from member b, for each pair.
 using SpreadRows = void (*)(const PairRows& rows, const double* factor, double* force) noexcept;
 
-/// A contact: pull = K e + Z / dt * growth, within least_pull and most_pull.
+/// A contact: pull = K e + Z / dt * elongation increment, within min_pull and max_pull.
 struct LinearPair {
   double stiffness = 0.0;          // [N/m]
   double viscosity_over_dt = 0.0;  // [N/m]

@@ -1,5 +1,5 @@
-// sim_node/engine/pairs/pair_kernel_avx512.cpp -- eight pairs in a register. Compiled with -mavx512f,
-// without contraction.
+// sim_node/engine/pairs/pair_kernel_avx512.cpp -- eight pairs in a register. Compiled with
+// -mavx512f, without contraction.
 #include "sim_node/engine/pairs/pair_kernel_body.h"
 #include "sim_node/engine/simd/pair_lanes_avx512.h"
 

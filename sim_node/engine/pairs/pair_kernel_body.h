@@ -20,10 +20,10 @@ unsigned first_lanes(std::size_t count) noexcept {
 }
 
 template <class Lanes>
-std::size_t find_near(const CellPlaces& places, std::size_t begin, std::size_t end,
+std::size_t find_near(const CellTable& table, std::size_t begin, std::size_t end,
                       const NearQuery& query, std::uint32_t* found) noexcept {
   using Row = typename Lanes::Row;
-  const CellPlaces all = places;
+  const CellTable all = table;
   const Row at_x = Lanes::every(query.x);
   const Row at_y = Lanes::every(query.y);
   const Row at_z = Lanes::every(query.z);
@@ -137,7 +137,7 @@ void measure_pairs(const MemberColumns& members, const PairRows& rows) noexcept 
                       Lanes::load(row.z + i) * (b.z - a.z);
     Lanes::store(row.length + i, length);
     Lanes::store(row.inverse + i, inverse);
-    Lanes::store(row.growth + i, along * inverse);
+    Lanes::store(row.elongation_increment + i, along * inverse);
   }
 }
 
@@ -246,7 +246,7 @@ void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count,
   for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
     const Row inverse = Lanes::load(row.inverse + i);
     const Row elongation = Lanes::load(row.length + i) - Lanes::load(rest + i);
-    const Row pull = stiffness * elongation + viscosity * Lanes::load(row.growth + i);
+    const Row pull = stiffness * elongation + viscosity * Lanes::load(row.elongation_increment + i);
     const Row limited = Lanes::minimum(max_pull, Lanes::maximum(min_pull, pull));
     const Row stored =
         stiffness * Lanes::minimum(max_elongation, Lanes::maximum(min_elongation, elongation));

@@ -101,7 +101,7 @@ void PairStateMachines::find_plain_pulls(const PairStep& step, PairBlock& block)
   plain.count = block.padded_count();
   plain.distance = pairs.length;
   plain.inverse = pairs.inverse;
-  plain.growth = pairs.growth;
+  plain.elongation_increment = pairs.elongation_increment;
   plain.rest_length = block.rest_length();
   plain.mass_a = array(kMassA);
   plain.mass_b = array(kMassB);
@@ -162,7 +162,7 @@ void PairStateMachines::find_velocities(const MemberColumns& members,
     const double* moved_a = members.moved + rows.column_a[i];
     const double* moved_b = members.moved + pairs.column[i];
     const double along[3] = {pairs.x[i], pairs.y[i], pairs.z[i]};
-    const double speed = pairs.growth[i] * rate;
+    const double speed = pairs.elongation_increment[i] * rate;
     double slip_square = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double velocity = (moved_b[axis] - moved_a[axis]) * rate;
@@ -185,7 +185,7 @@ void PairStateMachines::find_quantities(const PairStep& step, PairBlock& block) 
   const auto now = static_cast<double>(step.step);
   for (std::size_t i = 0; i < block.padded_count(); ++i) {
     elongation[i] = pairs.length[i] - rest_length[i];
-    speed[i] = pairs.growth[i] * rate;
+    speed[i] = pairs.elongation_increment[i] * rate;
     age[i] = (now - entered[i]) * dt_;
   }
 }
@@ -204,7 +204,7 @@ void PairStateMachines::step_batches(const PairStep& step, PairBlock& block) noe
     const auto set = [&rows](Quantity quantity, const double* values) {
       rows.quantity[static_cast<std::size_t>(quantity)] = values;
     };
-    rows.growth = pairs.pairs.growth + i;
+    rows.elongation_increment = pairs.pairs.elongation_increment + i;
     rows.still = 0;
     for (std::uint32_t j = 0; j < kStateBatch; ++j) {
       rows.still |= static_cast<std::uint32_t>(pairs.pairs.square[i + j] == 0.0) << j;
@@ -245,7 +245,7 @@ void PairStateMachines::record_changes(const PairStep& step, std::size_t i, cons
     step.log.add({step.step, kNoLink, mat_[pairs.column_a[i + j] / 4],
                   mat_[pairs.pairs.column[i + j] / 4], state_machine_, rows.from[j] - first,
                   rows.state[j] - first, step.table.triggered(rows.from[j], rows.exit[j]),
-                  rows.fired_value[j], energy});
+                  rows.trigger_value[j], energy});
   }
 }
 

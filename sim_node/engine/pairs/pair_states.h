@@ -28,7 +28,7 @@ class PairStates {
  public:
   PairStates(std::size_t row_count, std::size_t capacity, std::uint32_t slot_count);
 
-  /// What was written is read from now on, and written anew, row by row.
+  /// What was written is read from now on, and written again, row by row.
   void begin_step() noexcept;
   /// Pairs of a row in the last step: indices for old_state and old_memory.
   std::size_t old_begin(std::size_t row) const noexcept { return read_.start[row]; }

@@ -1,5 +1,5 @@
-// sim_node/engine/simd/lanes_avx2.h -- four links in a register: for files compiled with -mavx2, without
-// FMA.
+// sim_node/engine/simd/lanes_avx2.h -- four links in a register: for files compiled with -mavx2,
+// without FMA.
 //
 // What a type of lanes must give is written in step_kernel_body.h. It stands in an unnamed
 // namespace so that every file that includes it has its own, which the linker cannot mix up with

@@ -1,5 +1,5 @@
-// sim_node/engine/simd/modal_kernel.h -- the loops over the modes of a block, one set for each vector
-// width.
+// sim_node/engine/simd/modal_kernel.h -- the loops over the modes of a block, one set for each
+// vector width.
 //
 // As in step_kernel.h, nothing here has a member function, so that the linker never mixes up code
 // of two widths. The instances stand in the files of step_kernel.

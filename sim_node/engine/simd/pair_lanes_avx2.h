@@ -1,4 +1,5 @@
-// sim_node/engine/simd/pair_lanes_avx2.h -- what pairs need beyond lanes_avx2.h; see pair_kernel_body.h.
+// sim_node/engine/simd/pair_lanes_avx2.h -- what pairs need beyond lanes_avx2.h; see
+// pair_kernel_body.h.
 #pragma once
 
 #include "sim_node/engine/simd/lanes_avx2.h"

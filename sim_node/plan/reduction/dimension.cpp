@@ -1,3 +1,4 @@
+// sim_node/plan/reduction/dimension.cpp
 #include "sim_node/plan/reduction/dimension.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// sim_node/plan/reduction/held.cpp
 #include "sim_node/plan/reduction/held.h"
 
 namespace cordis::plan {

@@ -1,3 +1,4 @@
+// sim_node/plan/reduction/parallel.cpp
 #include "sim_node/plan/reduction/parallel.h"
 
 #include <algorithm>

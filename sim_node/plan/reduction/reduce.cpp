@@ -1,3 +1,4 @@
+// sim_node/plan/reduction/reduce.cpp
 #include "sim_node/plan/reduction/reduce.h"
 
 #include <memory>

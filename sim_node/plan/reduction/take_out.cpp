@@ -1,3 +1,4 @@
+// sim_node/plan/reduction/take_out.cpp
 #include "sim_node/plan/reduction/take_out.h"
 
 #include <utility>

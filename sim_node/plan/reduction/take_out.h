@@ -7,8 +7,8 @@
 
 namespace cordis::plan {
 
-/// Takes MATs and linear links out; all that counts MATs or links is counted anew. Precondition: no
-/// link that stays, no port, set or signal asks for them.
+/// Takes MATs and linear links out; all that counts MATs or links is counted again. Precondition:
+/// no link that stays, no port, set or signal asks for them.
 /// @param mats, links  per MAT and per linear link: whether it goes
 void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, scene::Scene& scene);
 

@@ -1,4 +1,5 @@
-// sim_node/plan/reference/input_trajectory.h -- what the ports of a scene are given while it is tried out.
+// sim_node/plan/reference/input_trajectory.h -- what the ports of a scene are given while it is
+// tried out.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +22,15 @@ struct Channel {
 /// A gesture as a function of time alone, equal for every step.
 struct InputTrajectory {
   double period = 1e-3;  ///< [s]
-  std::vector<Channel> tracks;
+  std::vector<Channel> channels;
 };
 
 /// Value of a channel at a time >= 0.
-engine::Vec3 value_at(const InputTrajectory& course, const Channel& track, double time);
+engine::Vec3 value_at(const InputTrajectory& trajectory, const Channel& channel, double time);
 /// Velocity of a position in one period [m/s]; 0 for a force.
-engine::Vec3 velocity_in(const InputTrajectory& course, const Channel& track, std::size_t period);
+engine::Vec3 velocity_in(const InputTrajectory& trajectory, const Channel& channel,
+                         std::size_t period);
 /// True if every channel goes on from one period to the next as it did.
-bool goes_on(const InputTrajectory& course, std::size_t period);
+bool goes_on(const InputTrajectory& trajectory, std::size_t period);
 
 }  // namespace cordis::plan

@@ -1,4 +1,5 @@
-// sim_node/plan/reference/instruction_counter.h -- how many instructions the calling thread executes.
+// sim_node/plan/reference/instruction_counter.h -- how many instructions the calling thread
+// executes.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// sim_node/plan/reference/ode_system.h -- the equations of motion that the steps of a network approach.
+// sim_node/plan/reference/ode_system.h -- the equations of motion that the steps of a network
+// approach.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@ namespace cordis::plan {
 ///
 /// Its values are a row: positions, velocities (3 per MAT each), the internal forces of the Maxwell
 /// elements. Ports go on with the velocity they have. A liaison changes its state at the very
-/// moment a condition becomes true; whoever moves the values has to find that moment (see Reference integrator).
-/// `rising` and `falling` ask for the slope of their value in time.
+/// moment a condition becomes true; whoever moves the values has to find that moment (see Reference
+/// integrator). `rising` and `falling` ask for the slope of their value in time.
 class OdeSystem {
  public:
   using Values = std::vector<double>;

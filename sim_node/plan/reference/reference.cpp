@@ -51,12 +51,12 @@ class Sampler {
     double kinetic = 0.0;
     for (const std::uint32_t mat : masses_) {
       const Vec3 x = motion.position(mat);
-      film.position.insert(film.position.end(), {x.x(), x.y(), x.z()});
+      sampled.position.insert(sampled.position.end(), {x.x(), x.y(), x.z()});
       kinetic += 0.5 * network_.mats[mat].mass * motion.velocity(mat).squaredNorm();
     }
-    film.kinetic.push_back(kinetic);
+    sampled.kinetic.push_back(kinetic);
     if (wish_.progress) {
-      const double done = static_cast<double>(film.kinetic.size()) / wish_.sampling.count;
+      const double done = static_cast<double>(sampled.kinetic.size()) / wish_.sampling.count;
       wish_.progress(share_before_ + 0.5 * done);
     }
   }
@@ -64,7 +64,7 @@ class Sampler {
     return std::chrono::duration<double>(Clock::now() - begin_).count() > wish_.longest_s;
   }
 
-  SampledTrajectory film;
+  SampledTrajectory sampled;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -76,32 +76,32 @@ class Sampler {
 };
 
 /// Ends before the last sample where the reference integrator finds no way on, or not in time.
-SampledTrajectory film_of_reference(const engine::NetworkDescription& network,
-                                    const InputTrajectory& course, const ReferenceOptions& wish,
-                                    double tolerance, double share_before) {
+SampledTrajectory sample_reference(const engine::NetworkDescription& network,
+                                   const InputTrajectory& trajectory, const ReferenceOptions& wish,
+                                   double tolerance, double share_before) {
   ReferenceIntegrator reference_integrator(network, tolerance);
   Sampler camera(network, wish, share_before);
   std::size_t period = 0;
   const auto begin_period = [&] {
-    if (goes_on(course, period)) return;
-    for (const Channel& track : course.tracks) {
-      const double begin = static_cast<double>(period) * course.period;
-      if (track.is_force) {
-        reference_integrator.hold_force(track.mat, value_at(course, track, begin));
+    if (goes_on(trajectory, period)) return;
+    for (const Channel& channel : trajectory.channels) {
+      const double begin = static_cast<double>(period) * trajectory.period;
+      if (channel.is_force) {
+        reference_integrator.hold_force(channel.mat, value_at(trajectory, channel, begin));
       } else {
-        reference_integrator.set_velocity(track.mat, velocity_in(course, track, period));
+        reference_integrator.set_velocity(channel.mat, velocity_in(trajectory, channel, period));
       }
     }
   };
   try {
-    if (!course.tracks.empty()) begin_period();
+    if (!trajectory.channels.empty()) begin_period();
     for (int sample = 0; sample < wish.sampling.count; ++sample) {
       const double until = wish.sampling.time(sample);
-      while (!course.tracks.empty() &&
-             static_cast<double>(period + 1) * course.period <= until * (1.0 + 1e-12)) {
+      while (!trajectory.channels.empty() &&
+             static_cast<double>(period + 1) * trajectory.period <= until * (1.0 + 1e-12)) {
         ++period;
-        if (goes_on(course, period)) continue;
-        reference_integrator.advance_to(static_cast<double>(period) * course.period);
+        if (goes_on(trajectory, period)) continue;
+        reference_integrator.advance_to(static_cast<double>(period) * trajectory.period);
         begin_period();
         if (camera.is_late()) break;
       }
@@ -112,23 +112,24 @@ SampledTrajectory film_of_reference(const engine::NetworkDescription& network,
   } catch (const std::runtime_error&) {
     // what has been reached is what there is
   }
-  camera.film.evaluations = reference_integrator.force_evaluations();
-  return std::move(camera.film);
+  camera.sampled.evaluations = reference_integrator.force_evaluations();
+  return std::move(camera.sampled);
 }
 
-SampledTrajectory film_of_scheme(const engine::NetworkDescription& network,
-                                 const InputTrajectory& course, const ReferenceOptions& wish,
-                                 double rate_hz, double share_before) {
+SampledTrajectory sample_scheme(const engine::NetworkDescription& network,
+                                const InputTrajectory& trajectory, const ReferenceOptions& wish,
+                                double rate_hz, double share_before) {
   const auto steps =
       static_cast<std::uint64_t>(std::max(1.0, std::round(rate_hz * wish.sampling.period)));
-  CourseRun run(network, "cordis", static_cast<double>(steps) / wish.sampling.period, course);
+  TrajectoryRun run(network, "cordis", static_cast<double>(steps) / wish.sampling.period,
+                    trajectory);
   Sampler camera(network, wish, share_before);
   for (int sample = 0; sample < wish.sampling.count && !camera.is_late(); ++sample) {
     if (!run.advance(steps)) break;
     camera.take(run.world());
   }
-  camera.film.evaluations = run.world().step_count();
-  return std::move(camera.film);
+  camera.sampled.evaluations = run.world().step_count();
+  return std::move(camera.sampled);
 }
 
 double amplitude_of(const Reference& reference) {
@@ -147,7 +148,7 @@ double amplitude_of(const Reference& reference) {
   return std::sqrt(sum / static_cast<double>(rows * reference.masses.size()));
 }
 
-/// Compares with the second film, and ends the comparison where they part.
+/// Compares with the second trajectory, and ends the comparison where they part.
 void hold_against(const SampledTrajectory& second, Reference& reference) {
   double sum = 0.0;
   const auto samples = static_cast<int>(second.kinetic.size());
@@ -160,7 +161,7 @@ void hold_against(const SampledTrajectory& second, Reference& reference) {
     sum += apart * apart;
     reference.compared = sample + 1;
   }
-  if (reference.compared > 0) reference.doubt = std::sqrt(sum / reference.compared);
+  if (reference.compared > 0) reference.uncertainty = std::sqrt(sum / reference.compared);
 }
 
 }  // namespace
@@ -174,22 +175,22 @@ double Reference::distance(int sample, const double* positions) const noexcept {
   return std::sqrt(sum / static_cast<double>(masses.size())) / amplitude;
 }
 
-Reference make_reference(const engine::NetworkDescription& network, const InputTrajectory& course,
-                         const ReferenceOptions& wish) {
+Reference make_reference(const engine::NetworkDescription& network,
+                         const InputTrajectory& trajectory, const ReferenceOptions& wish) {
   Reference reference;
   reference.masses = masses_of(network);
   SampledTrajectory first;
   SampledTrajectory second;
   try {
-    first = film_of_reference(network, course, wish, wish.tolerance, 0.0);
+    first = sample_reference(network, trajectory, wish, wish.tolerance, 0.0);
     engine::NetworkDescription other = network;
     other.step *= kShorter;
-    second = film_of_reference(other, course, wish, kLooser * wish.tolerance, 0.5);
+    second = sample_reference(other, trajectory, wish, kLooser * wish.tolerance, 0.5);
     reference.made_by = "reference integrator";
   } catch (const std::invalid_argument& refusal) {
     const double rate = kFiner * wish.finest_hz;
-    first = film_of_scheme(network, course, wish, rate, 0.0);
-    second = film_of_scheme(network, course, wish, 0.5 * rate, 0.5);
+    first = sample_scheme(network, trajectory, wish, rate, 0.0);
+    second = sample_scheme(network, trajectory, wish, 0.5 * rate, 0.5);
     reference.by_reference = false;
     reference.made_by = std::string("the scheme itself at ") + std::to_string(std::lround(rate)) +
                         " Hz, because " + refusal.what();
@@ -210,15 +211,15 @@ Reference make_reference(const engine::NetworkDescription& network, const InputT
   return reference;
 }
 
-std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& course,
+std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& trajectory,
                      const Sampling& sampling, double tolerance) {
   engine::StateHash hash;
   hash.add(engine::Network(network).fingerprint());
-  for (const double value : {course.period, sampling.period, tolerance}) hash.add(value);
+  for (const double value : {trajectory.period, sampling.period, tolerance}) hash.add(value);
   hash.add(static_cast<std::uint64_t>(sampling.count));
-  for (const Channel& track : course.tracks) {
-    hash.add(static_cast<std::uint64_t>(track.mat));
-    for (const Vec3& value : track.value) {
+  for (const Channel& channel : trajectory.channels) {
+    hash.add(static_cast<std::uint64_t>(channel.mat));
+    for (const Vec3& value : channel.value) {
       for (int axis = 0; axis < 3; ++axis) hash.add(value[axis]);
     }
   }

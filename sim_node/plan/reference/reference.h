@@ -22,8 +22,8 @@ struct Sampling {
 
 /// The motion of the masses of a network, and how far it can be trusted.
 ///
-/// Made twice, by an Reference integrator of one tolerance and by one of a hundred times that. Where the two
-/// part, the motion is chaotic: no step will follow it any further.
+/// Made twice, by an Reference integrator of one tolerance and by one of a hundred times that.
+/// Where the two part, the motion is chaotic: no step will follow it any further.
 struct Reference {
   Sampling sampling;
   std::vector<std::uint32_t> masses;  ///< the MATs whose motion this is
@@ -33,7 +33,7 @@ struct Reference {
   double amplitude = 0.0;
   int compared = 0;       ///< samples at which positions mean something
   bool diverged = false;  ///< why they mean nothing any more: the two have diverged
-  double doubt =
+  double uncertainty =
       0.0;  ///< root of the mean square by which the two differ there, over the amplitude
   bool by_reference = true;       ///< false: by the scheme itself at a very high rate
   std::string made_by;            ///< for a person
@@ -60,11 +60,11 @@ struct ReferenceOptions {
 };
 
 /// @throws NothingMoves; std::runtime_error when not even the first sample can be reached.
-Reference make_reference(const engine::NetworkDescription& network, const InputTrajectory& course,
-                         const ReferenceOptions& wish);
+Reference make_reference(const engine::NetworkDescription& network,
+                         const InputTrajectory& trajectory, const ReferenceOptions& wish);
 
 /// 64-bit hash of all that a reference depends on.
-std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& course,
+std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& trajectory,
                      const Sampling& sampling, double tolerance);
 
 }  // namespace cordis::plan

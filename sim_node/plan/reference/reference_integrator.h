@@ -1,4 +1,5 @@
-// sim_node/plan/reference/reference_integrator.h -- what a network really does, as nearly as double numbers tell.
+// sim_node/plan/reference/reference_integrator.h -- what a network really does, as nearly as double
+// numbers tell.
 #pragma once
 
 #include <cstdint>

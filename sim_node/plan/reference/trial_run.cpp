@@ -103,20 +103,20 @@ std::string refusal_of(engine::NetworkDescription network, const std::string& in
   return refusal ? refusal->what : std::string();
 }
 
-CourseRun::CourseRun(engine::NetworkDescription network, const std::string& integrator,
-                     double rate_hz, const InputTrajectory& course)
-    : course_(course), world_(world_at(std::move(network), integrator, rate_hz)) {}
+TrajectoryRun::TrajectoryRun(engine::NetworkDescription network, const std::string& integrator,
+                             double rate_hz, const InputTrajectory& trajectory)
+    : trajectory_(trajectory), world_(world_at(std::move(network), integrator, rate_hz)) {}
 
-bool CourseRun::advance(std::uint64_t steps) {
+bool TrajectoryRun::advance(std::uint64_t steps) {
   const double step = world_.network().step();
   for (std::uint64_t n = 0; n < steps; ++n) {
     const double time = static_cast<double>(world_.step_count()) * step;
-    for (const Channel& track : course_.tracks) {
-      const engine::Vec3 value = value_at(course_, track, time);
-      if (track.is_force) {
-        world_.set_external_force(track.mat, value);
+    for (const Channel& channel : trajectory_.channels) {
+      const engine::Vec3 value = value_at(trajectory_, channel, time);
+      if (channel.is_force) {
+        world_.set_external_force(channel.mat, value);
       } else {
-        world_.impose_position(track.mat, value);
+        world_.impose_position(channel.mat, value);
       }
     }
     if (world_.step().non_finite_mats > 0) return false;
@@ -125,11 +125,11 @@ bool CourseRun::advance(std::uint64_t steps) {
 }
 
 TrialResult try_out(const engine::NetworkDescription& network, const std::string& integrator,
-                    double rate_hz, const InputTrajectory& course, const Reference& reference) {
+                    double rate_hz, const InputTrajectory& trajectory, const Reference& reference) {
   TrialResult result;
   result.integrator = integrator;
   result.rate_hz = rate_hz;
-  CourseRun run(network, integrator, rate_hz, course);
+  TrajectoryRun run(network, integrator, rate_hz, trajectory);
   Comparison comparison(network, reference);
   InstructionCounter instructions;
   double nsec = 0.0;

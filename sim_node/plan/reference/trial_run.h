@@ -1,4 +1,5 @@
-// sim_node/plan/reference/trial_run.h -- one run of a network: what it costs, and how far it is off.
+// sim_node/plan/reference/trial_run.h -- one run of a network: what it costs, and how far it is
+// off.
 #pragma once
 
 #include <cstdint>
@@ -22,20 +23,20 @@ std::vector<std::string> integrator_names();
 /// Why an integrator does not take a network; empty when it does.
 std::string refusal_of(engine::NetworkDescription network, const std::string& integrator);
 
-/// A network at a rate under a course.
-class CourseRun {
+/// A network at a rate under an input trajectory.
+class TrajectoryRun {
  public:
   /// @throws std::invalid_argument when the engine does not take the network, or the integrator
   ///         not this network
-  CourseRun(engine::NetworkDescription network, const std::string& integrator, double rate_hz,
-            const InputTrajectory& course);
+  TrajectoryRun(engine::NetworkDescription network, const std::string& integrator, double rate_hz,
+                const InputTrajectory& trajectory);
 
   /// So many steps, or until a position is not finite. @return whether all still are
   bool advance(std::uint64_t steps);
   const engine::World& world() const noexcept { return world_; }
 
  private:
-  const InputTrajectory& course_;
+  const InputTrajectory& trajectory_;
   engine::World world_;
 };
 
@@ -53,8 +54,8 @@ struct TrialResult {
 };
 
 /// Runs it to the end of the reference.
-/// @throws as CourseRun
+/// @throws as TrajectoryRun
 TrialResult try_out(const engine::NetworkDescription& network, const std::string& integrator,
-                    double rate_hz, const InputTrajectory& course, const Reference& reference);
+                    double rate_hz, const InputTrajectory& trajectory, const Reference& reference);
 
 }  // namespace cordis::plan

@@ -1,3 +1,4 @@
+// sim_node/scene/liaisons/include.cpp
 #include "sim_node/scene/liaisons/include.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// sim_node/scene/liaisons/law.cpp
 #include "sim_node/scene/liaisons/law.h"
 
 #include <algorithm>

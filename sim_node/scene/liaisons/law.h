@@ -1,4 +1,5 @@
-// sim_node/scene/liaisons/law.h -- elasticity and dissipation that are not linear, as a scene writes them.
+// sim_node/scene/liaisons/law.h -- elasticity and dissipation that are not linear, as a scene
+// writes them.
 #pragma once
 
 #include "sim_node/engine/laws/law.h"

@@ -1,3 +1,4 @@
+// sim_node/scene/liaisons/liaison.cpp
 #include "sim_node/scene/liaisons/liaison.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// sim_node/scene/liaisons/liaison.h -- the liaisons of a scene: named state machines that links are made of.
+// sim_node/scene/liaisons/liaison.h -- the liaisons of a scene: named state machines that links are
+// made of.
 #pragma once
 
 #include <map>
@@ -17,7 +18,7 @@ struct Liaison {
   LinkLaw law;               ///< what it is when a link gives no parameter
   config::Place place;
   bool complete = false;  ///< whether the definition is
-  bool sound = true;      ///< false: it has a problem, which has been told
+  bool sound = true;      ///< false: it has a problem, which has been reported
 };
 
 /// A `liaisons:` section, and the file it stands in: its includes are relative to the folder of

@@ -1,4 +1,5 @@
-// What a liaison is: its kind, its parameters, and what one link of it consists of.
+// sim_node/scene/liaisons/liaison_reader.cpp -- what a liaison is: its kind, its parameters, and
+// what one link of it consists of.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -56,12 +57,12 @@ Value with_given(const Value& definition, const GivenParameters& given) {
 class LiaisonReader {
  public:
   /// @param open  the liaisons of which this one is a part, the outermost first, and itself
-  LiaisonReader(const Liaisons& liaisons, std::vector<std::string> open, int space, bool told,
-                Problems& problems)
+  LiaisonReader(const Liaisons& liaisons, std::vector<std::string> open, int space,
+                bool with_diagnostics, Problems& problems)
       : liaisons_(liaisons),
         open_(std::move(open)),
         space_(space),
-        told_(told),
+        with_diagnostics_(with_diagnostics),
         problems_(problems) {}
 
   LinkLaw read(const Value& written, const std::string& what, const GivenParameters& given,
@@ -90,7 +91,7 @@ class LiaisonReader {
       law = read_linear(reader, kind, parameters);
     }
     reader.finish();
-    if (!told_ || problems_.error_count() != errors_before) return law;
+    if (!with_diagnostics_ || problems_.error_count() != errors_before) return law;
     for (const std::string& name : parameters.unused()) {
       problems_.warning(definition.find("parameters").find(name).place(),
                         "parameter '" + name + "' of " + what + " is used nowhere");
@@ -159,7 +160,7 @@ class LiaisonReader {
       problems_.error(reader.place(), refusal.what());
       return law;
     }
-    if (told_) lint(state_machine, places, reader.what(), problems_);
+    if (with_diagnostics_) lint(state_machine, places, reader.what(), problems_);
     law.state_machine = std::make_shared<const engine::StateMachine>(std::move(state_machine));
     return law;
   }
@@ -251,7 +252,7 @@ class LiaisonReader {
   const Liaisons& liaisons_;
   std::vector<std::string> open_;
   int space_;
-  bool told_;
+  bool with_diagnostics_;
   Problems& problems_;
 };
 
@@ -259,9 +260,9 @@ class LiaisonReader {
 
 std::optional<LinkLaw> read_liaison(const Value& definition, const std::string& name,
                                     const GivenParameters& given, const Liaisons& liaisons,
-                                    int space, bool told, Problems& problems) {
+                                    int space, bool with_diagnostics, Problems& problems) {
   const std::size_t errors_before = problems.error_count();
-  LiaisonReader reader(liaisons, {name}, space, told, problems);
+  LiaisonReader reader(liaisons, {name}, space, with_diagnostics, problems);
   LinkLaw law = reader.read(definition, "liaison '" + name + "'", given, nullptr);
   if (problems.error_count() != errors_before) return std::nullopt;
   return law;

@@ -1,3 +1,4 @@
+// sim_node/scene/liaisons/link_law.cpp
 #include "sim_node/scene/liaisons/link_law.h"
 
 #include <algorithm>

@@ -87,10 +87,10 @@ class StateMachinePool {
 /// @param given       values that replace those of the definition: of `parameters`, and of the
 ///                    plain keys that parameters_of() lists
 /// @param space       of the scene
-/// @param told        whether things that may be meant so are warned of
+/// @param with_diagnostics  whether things that may be meant so are warned of
 std::optional<LinkLaw> read_liaison(const config::Value& definition, const std::string& name,
                                     const GivenParameters& given, const Liaisons& liaisons,
-                                    int space, bool told, config::Problems& problems);
+                                    int space, bool with_diagnostics, config::Problems& problems);
 
 /// The words that a link may give values to: the parameters of the liaison, and those of its plain
 /// keys that its kind has.

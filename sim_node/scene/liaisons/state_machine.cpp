@@ -1,3 +1,4 @@
+// sim_node/scene/liaisons/state_machine.cpp
 #include "sim_node/scene/liaisons/state_machine.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A ball: a solid sphere of MATs in the order of a crystal.
+// sim_node/scene/matter/ball.cpp -- a ball: a solid sphere of MATs in the order of a crystal.
 #include "sim_node/scene/matter/crystal_piece.h"
 #include "sim_node/scene/matter/generators.h"
 

@@ -1,4 +1,4 @@
-// A beam: a truss of cells, each braced crosswise.
+// sim_node/scene/matter/beam.cpp -- a beam: a truss of cells, each braced crosswise.
 #include "sim_node/scene/matter/generators.h"
 
 namespace cordis::scene {

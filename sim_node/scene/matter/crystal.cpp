@@ -1,3 +1,4 @@
+// sim_node/scene/matter/crystal.cpp
 #include "sim_node/scene/matter/crystal.h"
 
 #include <cmath>

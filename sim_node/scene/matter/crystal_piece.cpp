@@ -1,3 +1,4 @@
+// sim_node/scene/matter/crystal_piece.cpp
 #include "sim_node/scene/matter/crystal_piece.h"
 
 namespace cordis::scene {

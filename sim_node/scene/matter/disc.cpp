@@ -1,4 +1,5 @@
-// A disc: a full circle, in the order of a triangular lattice or of rings.
+// sim_node/scene/matter/disc.cpp -- a disc: a full circle, in the order of a triangular lattice or
+// of rings.
 #include <cmath>
 #include <numbers>
 

@@ -1,4 +1,4 @@
-// A grid: rows and columns in a plane.
+// sim_node/scene/matter/grid.cpp -- a grid: rows and columns in a plane.
 #include <algorithm>
 
 #include "sim_node/scene/matter/generators.h"

@@ -1,3 +1,4 @@
+// sim_node/scene/matter/icosphere.cpp
 #include "sim_node/scene/matter/icosphere.h"
 
 #include <array>

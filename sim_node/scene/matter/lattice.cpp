@@ -1,4 +1,4 @@
-// A lattice: MATs in the order of a crystal.
+// sim_node/scene/matter/lattice.cpp -- a lattice: MATs in the order of a crystal.
 #include "sim_node/scene/matter/crystal_piece.h"
 #include "sim_node/scene/matter/generators.h"
 

@@ -1,4 +1,4 @@
-// Single masses and fixed points.
+// sim_node/scene/matter/mass.cpp -- single masses and fixed points.
 #include "sim_node/scene/matter/generators.h"
 
 namespace cordis::scene {

@@ -1,3 +1,4 @@
+// sim_node/scene/matter/matter.cpp
 #include "sim_node/scene/matter/matter.h"
 
 #include <algorithm>

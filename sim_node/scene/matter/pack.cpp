@@ -1,4 +1,5 @@
-// A pack: equal balls that fill a region without order and without overlap.
+// sim_node/scene/matter/pack.cpp -- a pack: equal balls that fill a region without order and
+// without overlap.
 #include <cmath>
 #include <numbers>
 

@@ -1,3 +1,4 @@
+// sim_node/scene/matter/packing.cpp
 #include "sim_node/scene/matter/packing.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// sim_node/scene/matter/placement.cpp
 #include "sim_node/scene/matter/placement.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// sim_node/scene/matter/point.cpp
 #include "sim_node/scene/matter/point.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// MATs one by one: each with its own place, mass and velocity.
+// sim_node/scene/matter/points.cpp -- MATs one by one: each with its own place, mass and velocity.
 #include "sim_node/scene/matter/generators.h"
 
 namespace cordis::scene {

@@ -1,3 +1,4 @@
+// sim_node/scene/matter/region.cpp
 #include "sim_node/scene/matter/region.h"
 
 #include <numbers>

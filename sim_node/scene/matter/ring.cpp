@@ -1,4 +1,4 @@
-// A ring: a string that closes in a circle.
+// sim_node/scene/matter/ring.cpp -- a ring: a string that closes in a circle.
 #include <cmath>
 #include <numbers>
 

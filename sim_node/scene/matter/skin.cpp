@@ -1,4 +1,4 @@
-// A skin: a closed surface, with or without a core.
+// sim_node/scene/matter/skin.cpp -- a skin: a closed surface, with or without a core.
 #include <cmath>
 #include <numbers>
 

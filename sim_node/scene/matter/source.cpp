@@ -1,3 +1,4 @@
+// sim_node/scene/matter/source.cpp
 #include "sim_node/scene/matter/source.h"
 
 #include <algorithm>

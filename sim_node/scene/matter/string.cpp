@@ -1,4 +1,4 @@
-// A string: MATs in a row, each joined to the next.
+// sim_node/scene/matter/string.cpp -- a string: MATs in a row, each joined to the next.
 #include "sim_node/scene/matter/generators.h"
 
 namespace cordis::scene {

@@ -1,3 +1,4 @@
+// sim_node/scene/sections/assembly.cpp
 #include "sim_node/scene/sections/assembly.h"
 
 #include <utility>

@@ -1,5 +1,5 @@
-// sim_node/scene/sections/assembly.h -- a scene while its file is read, section by section. [Luc90 IV
-// Assembly]
+// sim_node/scene/sections/assembly.h -- a scene while its file is read, section by section. [Luc90
+// IV Assembly]
 #pragma once
 
 #include <array>
@@ -140,7 +140,7 @@ class Assembly {
   Parts parts_;
   Placement placement_;                              // of the part that is being added
   std::vector<const Part*> open_parts_;              // from the outermost to it
-  std::set<const Part*> faulty_parts_;               // whose faults have been told
+  std::set<const Part*> faulty_parts_;               // whose faults have been reported
   std::vector<std::uint32_t> ports_without_layout_;  // MATs of a 1-D scene
 };
 

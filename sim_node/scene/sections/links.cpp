@@ -1,4 +1,5 @@
-// The `links:` section: liaisons between the MATs that selections pick.
+// sim_node/scene/sections/links.cpp -- the `links:` section: liaisons between the MATs that
+// selections pick.
 #include <algorithm>
 #include <optional>
 

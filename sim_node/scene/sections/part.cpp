@@ -1,3 +1,4 @@
+// sim_node/scene/sections/part.cpp
 #include "sim_node/scene/sections/part.h"
 
 #include <utility>

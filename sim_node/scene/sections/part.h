@@ -1,5 +1,5 @@
-// sim_node/scene/sections/part.h -- the parts of a scene: named matter and links that are used again and
-// again.
+// sim_node/scene/sections/part.h -- the parts of a scene: named matter and links that are used
+// again and again.
 #pragma once
 
 #include <map>
@@ -19,7 +19,7 @@ struct Part {
   config::Value parameters;  ///< their values where a use gives none
   config::Value matter;
   config::Value links;
-  bool sound = true;  ///< false: it has a problem, which has been told
+  bool sound = true;  ///< false: it has a problem, which has been reported
 };
 
 /// What a use of a part puts into the scene, without parameters.

@@ -1,4 +1,5 @@
-// Matter that is a part: its body is added once, or once per copy, where it is put.
+// sim_node/scene/sections/part_use.cpp -- matter that is a part: its body is added once, or once
+// per copy, where it is put.
 #include <algorithm>
 
 #include "sim_node/scene/matter/matter.h"

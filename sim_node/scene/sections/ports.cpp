@@ -1,5 +1,5 @@
-// The `ports:` section: MATs played by the axes of devices. [Luc90 V.1 Force feedback gestual
-// transducers]
+// sim_node/scene/sections/ports.cpp -- the `ports:` section: MATs played by the axes of devices.
+// [Luc90 V.1 Force feedback gestual transducers]
 #include <map>
 #include <optional>
 #include <utility>

@@ -1,3 +1,4 @@
+// sim_node/scene/sections/reduction_options.cpp
 #include "sim_node/scene/sections/reduction_options.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Liaisons of the `links:` section within a set of MATs, or between two sets. [Luc90 III.2.3 a
-// formalism for inter-connection]
+// sim_node/scene/sections/sets.cpp -- liaisons of the `links:` section within a set of MATs, or
+// between two sets. [Luc90 III.2.3 a formalism for inter-connection]
 #include <algorithm>
 #include <utility>
 
@@ -102,7 +102,8 @@ void Assembly::read_two_sets(LinkEntry& entry) {
   if (shared != sets[1].end())
     reader.error_at("between_sets", "the two sets have a MAT in common",
                     "write within: for one set");
-  if (sets[0].empty() || sets[1].empty()) sets = {{}, {}};  // what is wrong with one has been told
+  if (sets[0].empty() || sets[1].empty())
+    sets = {{}, {}};  // what is wrong with one has been reported
   add_set(entry, sets[0], sets[1]);
 }
 

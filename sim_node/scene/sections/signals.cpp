@@ -1,4 +1,5 @@
-// The `signals:` section: named scalars of MATs, ports, links and the scene.
+// sim_node/scene/sections/signals.cpp -- the `signals:` section: named scalars of MATs, ports,
+// links and the scene.
 #include <array>
 #include <optional>
 #include <utility>
@@ -30,18 +31,18 @@ constexpr std::array<QuantityWord, 30> kWords{{
     {"speed", Owner::kMat, Quantity::kSpeed, "m/s", false},
     {"distance", Owner::kLink, Quantity::kDistance, "m", false},
     {"elongation", Owner::kLink, Quantity::kElongation, "m", false},
-    {"speed", Owner::kLink, Quantity::kGrowth, "m/s", false},
+    {"speed", Owner::kLink, Quantity::kElongationRate, "m/s", false},
     {"force", Owner::kLink, Quantity::kPull, "N", false},
     {"distance", Owner::kStateLink, Quantity::kDistance, "m", false},
     {"elongation", Owner::kStateLink, Quantity::kElongation, "m", false},
-    {"speed", Owner::kStateLink, Quantity::kGrowth, "m/s", false},
+    {"speed", Owner::kStateLink, Quantity::kElongationRate, "m/s", false},
     {"force", Owner::kStateLink, Quantity::kPull, "N", false},
     {"state", Owner::kStateLink, Quantity::kState, "", false},
     {"rest_length", Owner::kStateLink, Quantity::kRestLength, "m", false},
     {"pieces", Owner::kStateLink, Quantity::kPieces, "", false},
     {"bonds", Owner::kStateLink, Quantity::kBonds, "", false},
     {"distance", Owner::kMaxwellLink, Quantity::kDistance, "m", false},
-    {"speed", Owner::kMaxwellLink, Quantity::kGrowth, "m/s", false},
+    {"speed", Owner::kMaxwellLink, Quantity::kElongationRate, "m/s", false},
     {"pieces", Owner::kMat, Quantity::kPieces, "", false},
     {"pieces", Owner::kSet, Quantity::kPieces, "", false},
     {"bonds", Owner::kSet, Quantity::kBonds, "", false},

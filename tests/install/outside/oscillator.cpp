@@ -1,4 +1,5 @@
-// A mass on a spring, stepped by the installed engine against the exact solution of the recurrence.
+// tests/install/outside/oscillator.cpp -- a mass on a spring, stepped by the installed engine
+// against the exact solution of the recurrence.
 #include <cmath>
 #include <cstdio>
 #include <memory>

@@ -1,4 +1,5 @@
-// The WebSocket to viz_node: opens again by itself, and acknowledges frames.
+// viz_node/web/page/connection.ts -- the WebSocket to viz_node: opens again by itself, and
+// acknowledges frames.
 import { decodeBinary, type Message } from './protocol.ts';
 
 const FIRST_PAUSE_MS = 250;
@@ -73,7 +74,7 @@ export class Connection {
     }
   }
 
-  /** A connection that falls silent (a laptop that slept, a tunnel that broke) is given up and opened anew. */
+  /** A connection that falls silent (a laptop that slept, a tunnel that broke) is given up and opened again. */
   private watch(socket: WebSocket): void {
     clearTimeout(this.watchdog);
     this.watchdog = window.setTimeout(() => {

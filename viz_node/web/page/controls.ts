@@ -1,4 +1,4 @@
-// Buttons that command the simulation, and what it says to them.
+// viz_node/web/page/controls.ts -- buttons that command the simulation, and what it says to them.
 import type { Connection } from './connection.ts';
 import type { NodeState, Reply } from './protocol.ts';
 
@@ -34,7 +34,7 @@ export class Controls {
       }
     }
     const newest = replies[replies.length - 1];
-    if (newest === undefined) this.shownNumber = 0; // a viz_node that was started anew counts from 1
+    if (newest === undefined) this.shownNumber = 0; // a viz_node that was restarted counts from 1
     if (newest !== undefined && newest.number !== this.shownNumber) {
       // What was answered before this page came is of no interest; a late answer is.
       if (this.asked) this.say(newest.text.split('\n')[0]!, !newest.accepted);

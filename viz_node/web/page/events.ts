@@ -1,4 +1,5 @@
-// The changes of state: how many, of which liaison, and the last of them, newest first.
+// viz_node/web/page/events.ts -- the changes of state: how many, of which liaison, and the last of
+// them, newest first.
 import { count, joined, withUnit } from './format.ts';
 import type { Description, LinkEvent, LiaisonChanges } from './protocol.ts';
 

@@ -1,4 +1,4 @@
-// Numbers as a person reads them.
+// viz_node/web/page/format.ts -- numbers as a person reads them.
 
 export const NONE = '–';
 

@@ -1,4 +1,5 @@
-// A grid of round lengths under or behind the scene, so that the eye has something to hold on to.
+// viz_node/web/page/ground.ts -- a grid of round lengths under or behind the scene, so that the eye
+// has something to hold on to.
 import * as THREE from 'three';
 
 const FINE = [0.078, 0.1, 0.133];
@@ -16,7 +17,7 @@ export function roundLength(length: number): number {
 export class Ground {
   readonly group = new THREE.Group();
 
-  /** Lays the grid anew: upright through the scene when it is flat, on the floor when it is not. */
+  /** Lays the grid again: upright through the scene when it is flat, on the floor when it is not. */
   lay(box: THREE.Box3, space: number): void {
     this.dispose();
     const size = box.getSize(new THREE.Vector3());

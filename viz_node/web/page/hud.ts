@@ -1,4 +1,5 @@
-// The figures that are always on screen, the state of every node, and the banner when something is amiss.
+// viz_node/web/page/hud.ts -- the figures that are always on screen, the state of every node, and
+// the banner when something is amiss.
 import { count, duration, joined, NONE, plain, rate, threeDigits, withUnit } from './format.ts';
 import { countsLine, eventLine } from './events.ts';
 import { VERSION, type Description, type Hello, type NodeState, type Reply, type Status } from './protocol.ts';
@@ -63,7 +64,7 @@ export class Hud {
     return this.status?.replies ?? [];
   }
 
-  /** Writes all figures anew; a few times a second. */
+  /** Writes all figures again; a few times a second. */
   refresh(measured: Measured): void {
     const sim = this.alive('sim_node');
     this.writeLoop(sim);
@@ -164,7 +165,7 @@ export class Hud {
     if (this.otherVersion) return ['reload this page', 'It is older or newer than the viz_node that it shows.', 'bad'];
     const sims = this.nodes.filter((node) => node.kind === 'sim_node');
     if (!sims.some((node) => !GONE.includes(node.state))) {
-      const last = sims.sort((a, b) => a.heard_s - b.heard_s)[0];
+      const last = sims.sort((a, b) => a.received_s - b.received_s)[0];
       return ['waiting for sim_node', last ? fate(last) : 'No simulation has been heard in this session yet.', 'bad'];
     }
     if (this.description === null) return ['waiting for the scene', 'sim_node has not described its scene yet.', 'warn'];
@@ -177,7 +178,7 @@ export class Hud {
       const device = amiss.some((node) => node.kind === 'device_node');
       return [amiss.map((n) => `${n.name} is ${n.state}`).join(', '), amiss.map(fate).join(' ') + (device ? ' Its forces are zero meanwhile.' : ''), 'warn'];
     }
-    if (this.alive('sim_node')?.state === 'paused') return ['paused', 'The scene stands still, and the devices are let go of.', 'warn'];
+    if (this.alive('sim_node')?.state === 'paused') return ['paused', 'The scene is paused, and the devices are let go of.', 'warn'];
     if (measured.held) return ['picture held', 'The simulation goes on. Space lets the picture go on too.', 'warn'];
     return ['', '', ''];
   }
@@ -189,7 +190,7 @@ function plainRate(value: number): string {
 }
 
 function fate(node: NodeState): string {
-  const since = `${duration(node.heard_s)} ago`;
+  const since = `${duration(node.received_s)} ago`;
   const reason = node.text !== '' ? `: ${node.text}` : '';
   if (node.state === 'lost') return `${node.name} was last heard ${since}.`;
   return `${node.name} ${node.state} ${since}${reason}.`;

@@ -1,4 +1,4 @@
-// The page: takes messages, draws the newest frame, and says so.
+// viz_node/web/page/main.ts -- the page: takes messages, draws the newest frame, and says so.
 import { ClockOffset, RealTimeFactor } from './clock.ts';
 import type { Pose } from './camera_rig.ts';
 import { Connection } from './connection.ts';
@@ -118,10 +118,10 @@ class Page {
     this.askToDraw();
   }
 
-  /** A scene that is told again, by a viz_node that was started anew, goes on where it was. */
+  /** A scene that is told again, by a viz_node that was restarted, goes on where it was. */
   private describe(description: Description): void {
     const last = this.description;
-    const isSame = last !== null && last.run === description.run && last.version === description.version;
+    const isSame = last !== null && last.epoch === description.epoch && last.version === description.version;
     const looksAlike = last !== null && last.name === description.name && last.space === description.space;
     this.description = description;
     this.pending = null;

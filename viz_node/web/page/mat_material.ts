@@ -1,4 +1,5 @@
-// The matter: one vertex per MAT, drawn as a sphere by intersecting it with the ray of each pixel.
+// viz_node/web/page/mat_material.ts -- the matter: one vertex per MAT, drawn as a sphere by
+// intersecting it with the ray of each pixel.
 import * as THREE from 'three';
 import { KIND_FIXED } from './protocol.ts';
 
@@ -25,7 +26,7 @@ const MAT_VERTEX = /* glsl */ `
   uniform mat4 modelViewMatrix;
   uniform mat4 projectionMatrix;
   uniform float pixels_per_unit;   // of the plane at clip w = 1
-  uniform vec4 least_pixels;       // smallest radius on the screen, by kind
+  uniform vec4 min_pixels;       // smallest radius on the screen, by kind
   uniform float speed_scale;       // 1 / full scale, per metre moved; 0: colour by kind
   out vec3 centre;
   out float size;
@@ -38,7 +39,7 @@ const MAT_VERTEX = /* glsl */ `
     vec4 eye = modelViewMatrix * vec4(position, 1.0);
     gl_Position = projectionMatrix * eye;
     float pixels = pixels_per_unit / gl_Position.w;
-    size = max(radius, least_pixels[k == 4 ? 0 : k] / pixels);
+    size = max(radius, min_pixels[k == 4 ? 0 : k] / pixels);
     // A square where a punctual MAT is fixed; a sphere with a halo where a hand is.
     shape = k == 3 ? 1 : (k == 2 ? 2 : 0);
     centre = eye.xyz;
@@ -157,7 +158,7 @@ export const materialOfState = (state: number): number => state % LINK_COLOURS.l
 export interface SceneUniforms {
   [name: string]: THREE.IUniform;
   pixels_per_unit: { value: number };
-  least_pixels: { value: THREE.Vector4 };
+  min_pixels: { value: THREE.Vector4 };
   speed_scale: { value: number };
   orthographic: { value: boolean };
 }
@@ -165,7 +166,7 @@ export interface SceneUniforms {
 export function sceneUniforms(): SceneUniforms {
   return {
     pixels_per_unit: { value: 1 },
-    least_pixels: { value: new THREE.Vector4(3, 3, 6, 5) },
+    min_pixels: { value: new THREE.Vector4(3, 3, 6, 5) },
     speed_scale: { value: 0 },
     orthographic: { value: false },
   };

@@ -1,4 +1,5 @@
-// Live plots of the signals: one per unit, the newest at the right edge.
+// viz_node/web/page/plots.ts -- live plots of the signals: one per unit, the newest at the right
+// edge.
 import uPlot from 'uplot';
 import { joined, prefixOf, threeDigits, withUnit } from './format.ts';
 import type { Description } from './protocol.ts';

@@ -1,4 +1,5 @@
-// Messages between viz_node and the page; ../README.md says what each field is.
+// viz_node/web/page/protocol.ts -- messages between viz_node and the page; ../README.md says what
+// each field is.
 
 export const MAGIC = 0x31534443; // the bytes "CDS1"
 export const VERSION = 1;
@@ -75,7 +76,7 @@ export interface Hello {
 export interface Description {
   type: 'description';
   scene: number;
-  run: string;
+  epoch: string;
   version: number;
   name: string;
   scene_file: string;
@@ -105,10 +106,10 @@ type Figure = number | null;
 export interface NodeState {
   name: string;
   kind: string;
-  run: string;
+  epoch: string;
   state: string; // starting, waiting, running, paused, lost, stopped, failed
   text: string;
-  heard_s: number;
+  received_s: number;
   target_rate_hz: Figure;
   reached_rate_hz: Figure;
   mean_rate_hz: Figure;

@@ -1,4 +1,5 @@
-// How much the picture may cost: a machine without a graphics card draws with its CPU.
+// viz_node/web/page/quality.ts -- how much the picture may cost: a machine without a graphics card
+// draws with its CPU.
 
 export interface Quality {
   readonly software: boolean; // WebGL is computed by the CPU

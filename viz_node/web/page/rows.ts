@@ -1,4 +1,5 @@
-// Lists on the page whose rows stay and are written in place: what is selected, pointed at or measured is not taken away.
+// viz_node/web/page/rows.ts -- lists on the page whose rows stay and are written in place: what is
+// selected, pointed at or measured is not taken away.
 
 /** Gives `parent` one child per item, made by `make` when there are too few; `write` brings each up to date. */
 export function fillRows<T>(parent: HTMLElement, items: T[], make: () => HTMLElement, write: (row: HTMLElement, item: T) => void): void {

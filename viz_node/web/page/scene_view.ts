@@ -1,4 +1,5 @@
-// The picture of the scene. Positions go from the message straight into a GPU buffer that matter and links share.
+// viz_node/web/page/scene_view.ts -- the picture of the scene. Positions go from the message
+// straight into a GPU buffer that matter and links share.
 import * as THREE from 'three';
 import { Ground } from './ground.ts';
 import { linkMaterials, matMaterial, materialOfState, sceneUniforms, shownKinds } from './mat_material.ts';
@@ -69,7 +70,7 @@ export class SceneView {
     const kinds = shownKinds(this.topology.kinds, this.topology.radii, this.tools);
     this.geometry.setAttribute('kind', new THREE.BufferAttribute(kinds, 1));
     const few = this.topology.matCount <= 3000;
-    const least = this.uniforms.least_pixels.value.set(few ? 3.2 : 1.2, few ? 3.2 : 1.2, few ? 6 : 5, few ? 5 : 2);
+    const least = this.uniforms.min_pixels.value.set(few ? 3.2 : 1.2, few ? 3.2 : 1.2, few ? 6 : 5, few ? 5 : 2);
     least.multiplyScalar(this.quality.pixelRatio);
     const points = new THREE.Points(this.geometry, matMaterial(this.uniforms, this.quality.spheres));
     points.frustumCulled = false;
@@ -209,10 +210,10 @@ export class SceneView {
   }
 
   /** What holds the MATs with their radii, but for this share of them at either end of each axis. */
-  private bounds(astray = 0): THREE.Box3 {
+  private bounds(outliers = 0): THREE.Box3 {
     const stride = Math.max(1, Math.floor(this.topology.matCount / SAMPLE));
     const count = Math.ceil(this.topology.matCount / stride);
-    const left = Math.floor(astray * count);
+    const left = Math.floor(outliers * count);
     const radii = this.geometry.getAttribute('radius').array;
     const low = new Float32Array(count);
     const high = new Float32Array(count);

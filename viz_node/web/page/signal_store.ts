@@ -1,4 +1,5 @@
-// The last seconds of every signal, at full rate, in a ring of fixed size.
+// viz_node/web/page/signal_store.ts -- the last seconds of every signal, at full rate, in a ring of
+// fixed size.
 import type { Signals } from './protocol.ts';
 
 const MOST_VALUES = 4_000_000; // 16 MB, whatever the scene

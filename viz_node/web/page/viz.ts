@@ -1,4 +1,4 @@
-// window.viz: what the page knows, for tests and for the curious.
+// viz_node/web/page/viz.ts -- window.viz: what the page knows, for tests and for the curious.
 import type { Page } from './main.ts';
 import type { NodeState, Reply } from './protocol.ts';
 

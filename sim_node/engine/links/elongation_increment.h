@@ -1,4 +1,5 @@
-// sim_node/engine/links/link_growth.h -- how far the ends of a link have moved apart in a period.
+// sim_node/engine/links/elongation_increment.h -- how far the ends of a link have moved apart in a
+// period.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +11,13 @@ namespace cordis::engine {
 /// Half of what the ends of a link, with their columns, have moved apart since the last forces:
 /// times its length then, which the force on a unit of it takes in work [m^2]; in line along the
 /// axis of the columns alone [m].
-inline double half_growth(const MatArray& mats, std::uint32_t column_a, std::uint32_t column_b,
-                          bool in_line) noexcept {
+inline double half_elongation_increment(const MatArray& mats, std::uint32_t column_a,
+                                        std::uint32_t column_b, bool is_1d) noexcept {
   const std::uint32_t a = column_a / 4;
   const std::uint32_t b = column_b / 4;
   const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
   const Vec3 moved = mats.position(b) - mats.position(a) - before;
-  return 0.5 * (in_line ? moved[column_a % 4] : before.dot(moved));
+  return 0.5 * (is_1d ? moved[column_a % 4] : before.dot(moved));
 }
 
 }  // namespace cordis::engine

@@ -1,7 +1,9 @@
+// tests/device/port_assignment_test.cpp
+#include "device_node/port_assignment.h"
+
 #include <gtest/gtest.h>
 
 #include "device_node/drivers/script.h"
-#include "device_node/port_assignment.h"
 
 namespace cordis::device {
 namespace {

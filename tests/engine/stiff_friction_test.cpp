@@ -1,4 +1,6 @@
-// tests/engine/steep_links_test.cpp -- friction that `leapfrog` solves for its speed.
+// tests/engine/stiff_friction_test.cpp -- friction that `leapfrog` solves for its speed.
+#include "sim_node/engine/integrators/stiff_friction.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -6,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/integrators/integrator_limits.h"
-#include "sim_node/engine/integrators/stiff_friction.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
 #include "tests/support/allocation_guard.h"

@@ -1,4 +1,4 @@
-// tests/engine/tie_test.cpp -- links whose damper acts on the whole relative velocity.
+// tests/engine/vector_spring_test.cpp -- links whose damper acts on the whole relative velocity.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryIntegrator,
                                          Tie{IntegratorKind::kSymplectic4, 0.0},
                                          Tie{IntegratorKind::kImplicit, 1.5}));
 
-TEST(Tie, CalmsAToolThatCirclesItsHandle) {
+TEST(VectorSpring, CalmsAToolThatCirclesItsHandle) {
   // x, y(n+1) = (2 - K' - Z') x(n) - (1 - Z') x(n-1): a radius that shrinks by sqrt(1 - Z') a step.
   // Another link of rest length 0 keeps the circle.
   constexpr double kMass = 0.05;
@@ -110,7 +110,7 @@ TEST(Tie, CalmsAToolThatCirclesItsHandle) {
   }
 }
 
-TEST(Tie, KeepsMomentumStateAndAccount) {
+TEST(VectorSpring, KeepsMomentumStateAndAccount) {
   NetworkDescription scene = tied_tools(IntegratorKind::kCordis, 1.5);
   scene.mats[0] = mass(0.1, Vec3::Zero());
   World world = make_world(scene);
@@ -133,7 +133,7 @@ TEST(Tie, KeepsMomentumStateAndAccount) {
   EXPECT_EQ(world.energy().dissipated, other.energy().dissipated);
 }
 
-TEST(Tie, HasNoRestLength) {
+TEST(VectorSpring, HasNoRestLength) {
   NetworkDescription scene = tied_tools(IntegratorKind::kCordis, 1.5);
   scene.links[1].rest_length = 0.1;
 

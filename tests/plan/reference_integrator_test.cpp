@@ -1,9 +1,11 @@
+// tests/plan/reference_integrator_test.cpp
+#include "sim_node/plan/reference/reference_integrator.h"
+
 #include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "sim_node/plan/reference/reference_integrator.h"
 #include "tests/engine/programs.h"
 #include "tests/plan/networks.h"
 #include "tests/support/reference_data.h"

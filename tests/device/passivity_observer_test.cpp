@@ -1,3 +1,6 @@
+// tests/device/passivity_observer_test.cpp
+#include "device_node/passivity_observer.h"
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -7,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "device_node/force_guard.h"
-#include "device_node/passivity_observer.h"
 
 namespace cordis::device {
 namespace {
@@ -63,7 +65,7 @@ struct Loop {
     AxisValues position{};
     position[0] = key.position;
     key.live(guard.tick(0.0, position)[0] + hand_n);
-    braked += guard.energy().braking();
+    damped += guard.energy().is_damping();
   }
 
  private:
@@ -72,7 +74,7 @@ struct Loop {
  public:
   Key key;
   ForceGuard guard;
-  int braked = 0;
+  int damped = 0;
 
  private:
   std::deque<double> past_;
@@ -80,7 +82,7 @@ struct Loop {
 
 class Delays : public ::testing::TestWithParam<int> {};
 
-TEST_P(Delays, APassiveWallIsNeverBraked) {
+TEST_P(Delays, APassiveWallIsNeverDamped) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> force(-0.4, 1.5);
   Loop loop(0.99 * passive_stiffness(GetParam()), GetParam(), true);
@@ -93,7 +95,7 @@ TEST_P(Delays, APassiveWallIsNeverBraked) {
     deepest = std::min(deepest, loop.key.position);
   }
 
-  EXPECT_EQ(loop.braked, 0);
+  EXPECT_EQ(loop.damped, 0);
   EXPECT_LT(deepest, -0.002) << "the hand has pressed the wall";
 }
 
@@ -120,7 +122,7 @@ TEST_P(Delays, TheControllerEndsALimitCycleUpToTenTimesTheLimit) {
 
     EXPECT_GT(before, 0.5e-3) << times << ": without it the key shakes";
     EXPECT_LT(after, 0.04e-3) << times << ", before " << before;
-    EXPECT_GT(guarded.braked, 0) << times;
+    EXPECT_GT(guarded.damped, 0) << times;
   }
 }
 
@@ -138,7 +140,7 @@ TEST(PassivityObserver, SumsForceTimesTheWayThatFollowedIt) {
   EXPECT_EQ(monitor.given_j(), 0.0);
 }
 
-TEST(PassivityObserver, BrakesAgainstTheMotionAndNeverBeyondItsCap) {
+TEST(PassivityObserver, DampsAgainstTheMotionAndNeverBeyondItsCap) {
   PassivitySettings settings;
   settings.active = true;
   settings.budget_j = 0.0;
@@ -148,9 +150,9 @@ TEST(PassivityObserver, BrakesAgainstTheMotionAndNeverBeyondItsCap) {
 
   monitor.observe({100.0}, {0.001});  // 0.1 J from nothing at 1 m/s
 
-  ASSERT_TRUE(monitor.braking());
-  EXPECT_DOUBLE_EQ(monitor.brake_n(0), 0.5 * 0.1 / 0.001 * 1.0);  // m/(2T) v
-  EXPECT_EQ(monitor.brake_n(1), 0.0);
+  ASSERT_TRUE(monitor.is_damping());
+  EXPECT_DOUBLE_EQ(monitor.damping_n(0), 0.5 * 0.1 / 0.001 * 1.0);  // m/(2T) v
+  EXPECT_EQ(monitor.damping_n(1), 0.0);
 }
 
 TEST(PassivityObserver, TakesBackWhatTheLoopHasMadeAndThenLeavesTheHandFree) {
@@ -171,12 +173,12 @@ TEST(PassivityObserver, TakesBackWhatTheLoopHasMadeAndThenLeavesTheHandFree) {
 
   wanted[0] = 0.0;  // as from a scene that is paused
   for (int n = 0; n < 20; ++n) move_on();
-  EXPECT_TRUE(guard.energy().braking());
+  EXPECT_TRUE(guard.energy().is_damping());
   for (int n = 0; n < 80; ++n) move_on();
 
-  EXPECT_FALSE(guard.energy().braking());
+  EXPECT_FALSE(guard.energy().is_damping());
   EXPECT_EQ(guard.tick(0.0, position)[0], 0.0);
-  EXPECT_NEAR(taken, 0.0, 0.0003) << "what the largest braking takes in a period";
+  EXPECT_NEAR(taken, 0.0, 0.0003) << "what the largest is_damping takes in a period";
 }
 
 TEST(PassivityObserver, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
@@ -186,7 +188,7 @@ TEST(PassivityObserver, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
   ForceGuard guard(settings);
   const double stiffness = 500.0;
   double position = -0.02;
-  int braked = 0;
+  int damped = 0;
 
   // Held in the spring while the forces grow, then led out of it: the hand takes all that it holds.
   for (int n = 0; n < 1000; ++n) {
@@ -197,11 +199,11 @@ TEST(PassivityObserver, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
     AxisValues at{};
     at[0] = position;
     guard.tick(0.0, at);
-    braked += guard.energy().braking();
+    damped += guard.energy().is_damping();
   }
 
   EXPECT_GT(guard.energy().given_j(), 0.09);  // K x^2 / 2 = 0.1 J
-  EXPECT_EQ(braked, 0);
+  EXPECT_EQ(damped, 0);
 }
 
 TEST(PassivityObserver, DoesNotSaveMoreThanItsTank) {
@@ -214,9 +216,9 @@ TEST(PassivityObserver, DoesNotSaveMoreThanItsTank) {
 
   monitor.observe({-10.0}, {0.01});  // takes 100 mJ
   monitor.observe({1.0}, {0.014});   // gives 4 mJ
-  EXPECT_FALSE(monitor.braking());
+  EXPECT_FALSE(monitor.is_damping());
   monitor.observe({1.0}, {0.018});  // and 4 mJ more
-  EXPECT_TRUE(monitor.braking());
+  EXPECT_TRUE(monitor.is_damping());
 }
 
 TEST(PassivityObserver, RefusesSettingsOutOfRange) {

@@ -1,11 +1,11 @@
-// tests/node/command_desk_test.cpp
+// tests/node/command_server_test.cpp
+#include "node/command_server.h"
+
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "node/command_server.h"
 
 namespace cordis::node {
 namespace {
@@ -21,18 +21,18 @@ msg::ControlCommand command_for(const std::string& target, std::uint64_t id,
 }
 
 struct Desk {
-  std::vector<std::string> obeyed;
-  CommandServer desk{"sim", "sim_node", [this](const msg::ControlCommand& command) {
-                       obeyed.push_back(command.verb());
-                       return Answer{true, "answer " + std::to_string(obeyed.size())};
-                     }};
+  std::vector<std::string> executed;
+  CommandServer server{"sim", "sim_node", [this](const msg::ControlCommand& command) {
+                         executed.push_back(command.verb());
+                         return Answer{true, "answer " + std::to_string(executed.size())};
+                       }};
 };
 
 TEST(CommandServer, ObeysWhatIsForItByNameByKindOrForAll) {
-  Desk desk;
+  Desk server;
   std::uint64_t id = 0;
   for (const char* target : {"sim", "sim_node", "*"}) {
-    const auto reply = desk.desk.take(command_for(target, ++id));
+    const auto reply = server.server.take(command_for(target, ++id));
     ASSERT_TRUE(reply.has_value()) << target;
     EXPECT_EQ(reply->command_id(), id);
     EXPECT_EQ(reply->sender(), "me");
@@ -43,41 +43,42 @@ TEST(CommandServer, ObeysWhatIsForItByNameByKindOrForAll) {
 }
 
 TEST(CommandServer, IsSilentAboutWhatIsForOthers) {
-  Desk desk;
+  Desk server;
   for (const char* target : {"", "simulation", "keyboard", "device_node"})
-    EXPECT_FALSE(desk.desk.take(command_for(target, 1)).has_value()) << target;
-  EXPECT_TRUE(desk.obeyed.empty());
+    EXPECT_FALSE(server.server.take(command_for(target, 1)).has_value()) << target;
+  EXPECT_TRUE(server.executed.empty());
 }
 
 TEST(CommandServer, ObeysACommandOnceHoweverOftenItComes) {
-  Desk desk;
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(desk.desk.take(command_for("sim", 7))->text(), "answer 1");
-  EXPECT_EQ(desk.obeyed.size(), 1u);
+  Desk server;
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(server.server.take(command_for("sim", 7))->text(), "answer 1");
+  EXPECT_EQ(server.executed.size(), 1u);
 }
 
 TEST(CommandServer, TellsSendersApartThatUseTheSameNumber) {
-  Desk desk;
-  desk.desk.take(command_for("sim", 7, "one"));
-  EXPECT_EQ(desk.desk.take(command_for("sim", 7, "other"))->text(), "answer 2");
+  Desk server;
+  server.server.take(command_for("sim", 7, "one"));
+  EXPECT_EQ(server.server.take(command_for("sim", 7, "other"))->text(), "answer 2");
 }
 
 TEST(CommandServer, RemembersABoundedNumberOfCommands) {
-  Desk desk;
+  Desk server;
   for (std::uint64_t id = 0; id <= CommandServer::kRemembered; ++id)
-    desk.desk.take(command_for("sim", id));
-  const std::size_t before = desk.obeyed.size();
+    server.server.take(command_for("sim", id));
+  const std::size_t before = server.executed.size();
 
-  desk.desk.take(command_for("sim", 1));
-  EXPECT_EQ(desk.obeyed.size(), before) << "still known";
-  desk.desk.take(command_for("sim", 0));
-  EXPECT_EQ(desk.obeyed.size(), before + 1) << "forgotten, and obeyed as a new one";
+  server.server.take(command_for("sim", 1));
+  EXPECT_EQ(server.executed.size(), before) << "still known";
+  server.server.take(command_for("sim", 0));
+  EXPECT_EQ(server.executed.size(), before + 1) << "forgotten, and executed as a new one";
 }
 
 TEST(CommandServer, AnswersAFailureWithItsReason) {
-  CommandServer desk("sim", "sim_node", [](const msg::ControlCommand&) -> Answer {
+  CommandServer server("sim", "sim_node", [](const msg::ControlCommand&) -> Answer {
     throw std::runtime_error("no memory for it");
   });
-  const auto reply = desk.take(command_for("sim", 1));
+  const auto reply = server.take(command_for("sim", 1));
   ASSERT_TRUE(reply.has_value());
   EXPECT_FALSE(reply->accepted());
   EXPECT_EQ(reply->text(), "no memory for it");

@@ -1,3 +1,4 @@
+// tests/scene/state_machine_test.cpp
 #include <cmath>
 #include <string>
 #include <utility>

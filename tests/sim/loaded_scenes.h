@@ -1,4 +1,4 @@
-// tests/sim/stages.h -- small stages to play.
+// tests/sim/loaded_scenes.h -- small scenes, loaded, to play.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace cordis::sim {
 
-inline constexpr std::uint64_t kRunOfSim = 77;
+inline constexpr std::uint64_t kEpochOfSim = 77;
 
 /// A mass that swings between two walls, and a key pressed against it; 4 steps per tick.
 inline std::string swing_text(const std::string& name = "swing", double gesture_rate_hz = 1000.0) {
@@ -42,14 +42,14 @@ inline std::shared_ptr<const scene::Scene> scene_of(const std::string& text) {
 }
 
 inline std::unique_ptr<LoadedScene> stage_of(const std::string& text, std::uint64_t version = 1) {
-  return std::make_unique<LoadedScene>(scene_of(text), kRunOfSim, version);
+  return std::make_unique<LoadedScene>(scene_of(text), kEpochOfSim, version);
 }
 
 /// What the keyboard sends.
 inline msg::GesturePositions key_sample(std::uint64_t number, double position_m) {
   msg::GesturePositions sample;
   sample.device_id(config::name_hash("keyboard"));
-  sample.run(5);
+  sample.epoch(5);
   sample.sample(number);
   sample.axis_count(1);
   sample.position_m().fill(0.0);

@@ -1,4 +1,7 @@
-// tests/sim/port_brake_test.cpp -- a hand that holds a simulated mass over a wire that is late.
+// tests/sim/passivity_controller_test.cpp -- a hand that holds a simulated mass over a wire that is
+// late.
+#include "sim_node/devices/passivity_controller.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -6,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/devices/passivity_controller.h"
 #include "sim_node/devices/recent_peak.h"
 #include "tests/engine/programs.h"
 #include "tests/sim/hand_loop.h"
@@ -29,18 +31,18 @@ TEST_P(Late, AHandUpToTenTimesTooStiffNoLongerSwings) {
   for (const double viscosity : {0.5, 5.0}) {
     for (const double times : {1.5, 3.0, 10.0}) {
       Hold hold{viscosity, GetParam(), times * viscosity / (GetParam() * kTick)};
-      Loop braked(hold);
-      hold.tells_work = false;
-      Loop unbraked(hold);
+      Loop damped(hold);
+      hold.reports_work = false;
+      Loop undamped(hold);
 
-      EXPECT_GT(swing(unbraked), 0.01) << viscosity << " " << times;
-      EXPECT_LT(swing(braked), 1e-5) << viscosity << " " << times;
-      EXPECT_GT(braked.passivity_ticks(), 0u);
+      EXPECT_GT(swing(undamped), 0.01) << viscosity << " " << times;
+      EXPECT_LT(swing(damped), 1e-5) << viscosity << " " << times;
+      EXPECT_GT(damped.passivity_ticks(), 0u);
     }
   }
 }
 
-TEST_P(Late, AHandWithinTheLimitIsNeverBraked) {
+TEST_P(Late, AHandWithinTheLimitIsNeverDamped) {
   constexpr double kTwoPi = 2.0 * std::numbers::pi;
   const std::function<double(double)> gestures[] = {
       [](double s) { return s < 1.0 ? 0.0 : 0.005; },                          // a jerk
@@ -79,11 +81,11 @@ TEST(PassivityController, ForgetsWhatAMomentWithoutAnswersHasMade) {
     for (; n < 2000; ++n) loop.tick(hand(n));
     for (; n < 2000 + lost; ++n) loop.tick(hand(n), false);
     for (; n < 3000; ++n) loop.tick(hand(n));
-    const std::uint64_t braked = loop.passivity_ticks();
+    const std::uint64_t damped = loop.passivity_ticks();
 
     for (; n < 6000; ++n) loop.tick(hand(n));
 
-    EXPECT_EQ(loop.passivity_ticks(), braked) << lost;
+    EXPECT_EQ(loop.passivity_ticks(), damped) << lost;
     EXPECT_LT(std::abs(loop.position() - hand(n)), 0.001);
   }
 }
@@ -93,11 +95,11 @@ TEST(PassivityController, LetsGoOfAMassThatNobodyHolds) {
   for (int n = 0; n < 1000; ++n) loop.tick(0.005);
   ASSERT_GT(loop.passivity_ticks(), 0u);
   for (int n = 0; n < 25; ++n) loop.live();  // the device is lost
-  const std::uint64_t braked = loop.passivity_ticks();
+  const std::uint64_t damped = loop.passivity_ticks();
 
   for (int n = 0; n < 100; ++n) loop.live();
 
-  EXPECT_EQ(loop.passivity_ticks(), braked);
+  EXPECT_EQ(loop.passivity_ticks(), damped);
 }
 
 TEST(PassivityController, HoldsAMassOfManySmallStepsToo) {
@@ -131,13 +133,13 @@ TEST(PassivityController, AWallWithStatesTakesWhatItTakes) {
 }
 
 /// A mass on a damper of 0.1 m, which a hand has led to a quarter of a circle from its start.
-Loop turned_loop(const Vec3& stiffness, bool braked = true) {
+Loop turned_loop(const Vec3& stiffness, bool damped = true) {
   constexpr double kLength = 0.1;
   scene::Scene scene = bare_scene(2);
   scene.network.mats[1].position = Vec3(-kLength, 0.0, 0.0);
   scene.network.links = {{0, 1, 0.0, 5.0, 0.0}};
   scene.network.medium_viscosity = 0.2;
-  Loop loop({0.0, 1, 50.0, 1, braked}, scene);
+  Loop loop({0.0, 1, 50.0, 1, damped}, scene);
   for (int n = 0; n <= 3000; ++n) {
     const double angle = 0.5 * std::numbers::pi * std::min(1.0, n / 2000.0);
     loop.tick({kLength * (std::cos(angle) - 1.0), kLength * std::sin(angle), 0.0});
@@ -146,7 +148,7 @@ Loop turned_loop(const Vec3& stiffness, bool braked = true) {
   return loop;
 }
 
-TEST(PassivityController, AMassIsNotBrakedAlongADamperThatHasTurned) {
+TEST(PassivityController, AMassIsNotDampedAlongADamperThatHasTurned) {
   Loop loop = turned_loop(Vec3(50.0, 4000.0, 0.0));
   const std::uint64_t before = loop.passivity_ticks();
 
@@ -155,13 +157,13 @@ TEST(PassivityController, AMassIsNotBrakedAlongADamperThatHasTurned) {
   EXPECT_EQ(loop.passivity_ticks(), before);
 }
 
-TEST(PassivityController, AMassIsBrakedAcrossADamperThatHasTurned) {
+TEST(PassivityController, AMassIsDampedAcrossADamperThatHasTurned) {
   const Vec3 hand(-0.095, 0.1, 0.0);
-  for (const bool braked : {false, true}) {
-    Loop loop = turned_loop(Vec3(500.0, 50.0, 0.0), braked);
+  for (const bool damped : {false, true}) {
+    Loop loop = turned_loop(Vec3(500.0, 50.0, 0.0), damped);
     swing_along(loop, hand, 0, 3000);
     const double swing = swing_along(loop, hand, 0, 1000);
-    EXPECT_TRUE(braked ? swing < 0.001 : swing > 0.05) << swing;
+    EXPECT_TRUE(damped ? swing < 0.001 : swing > 0.05) << swing;
   }
 }
 
@@ -183,15 +185,15 @@ TEST(PassivityController, WhatIsTakenFarFromThePortCounts) {
 }
 
 TEST(PassivityController, ADamperWhoseEndsGoTogetherTakesNothing) {
-  for (const bool braked : {false, true}) {
-    Loop loop({0.0, 1, 200.0, 1, braked}, chain_scene(5000.0, 5.0, 0.0));
+  for (const bool damped : {false, true}) {
+    Loop loop({0.0, 1, 200.0, 1, damped}, chain_scene(5000.0, 5.0, 0.0));
     const double largest = swing(loop);
     // What the hand itself has given is left to it.
-    EXPECT_TRUE(braked ? largest > 0.004 && largest < 0.0055 : largest > 0.02) << largest;
+    EXPECT_TRUE(damped ? largest > 0.004 && largest < 0.0055 : largest > 0.02) << largest;
   }
 }
 
-TEST(PassivityController, AHandThatIsGivenEnergyByTheDelayIsBraked) {
+TEST(PassivityController, AHandThatIsGivenEnergyByTheDelayIsDamped) {
   // Driven at w, the port sends m w^2 d T v^2 more than it is given, and Z takes Z v^2.
   const Hold hold{0.5, 1, 400.0};
   const double limit = std::sqrt(hold.viscosity / (kPortMass * hold.delay * kTick));
@@ -205,13 +207,13 @@ TEST(PassivityController, AHandThatIsGivenEnergyByTheDelayIsBraked) {
     Loop free({hold.viscosity, hold.delay, hold.stiffness, 1, false});
     EXPECT_EQ(shake(free) > 0.0, share < 1.0) << share;
 
-    Loop braked(hold);
-    shake(braked);
-    EXPECT_EQ(braked.passivity_ticks() > 0, share > 1.0) << share;
+    Loop damped(hold);
+    shake(damped);
+    EXPECT_EQ(damped.passivity_ticks() > 0, share > 1.0) << share;
   }
 }
 
-TEST(PassivityController, SamplesLateInBurstsBrakeNothing) {
+TEST(PassivityController, SamplesLateInBurstsDampNothing) {
   Loop loop({5.0, 1, 0.8 * 5.0 / kTick});
 
   for (int n = 0; n < 4000; ++n) {
@@ -238,8 +240,8 @@ TEST(PassivityController, KnowsWhatEveryIntegratorTakes) {
   }
 }
 
-TEST(PassivityController, TwoHandsThatSwingAtOnceAreBothBraked) {
-  for (const bool braked : {false, true}) {
+TEST(PassivityController, TwoHandsThatSwingAtOnceAreBothDamped) {
+  for (const bool damped : {false, true}) {
     scene::Scene scene = bare_scene(1);
     scene.network.mats.push_back(mass_at(Vec3::Zero()));
     scene.network.links = {{0, 1, 0.0, 5.0, 0.0}, {2, 1, 0.0, 5.0, 0.0}};
@@ -247,13 +249,13 @@ TEST(PassivityController, TwoHandsThatSwingAtOnceAreBothBraked) {
     scene.ports.back().device = "other key";
     scene.ports.back().device_id = 10;
     scene.ports.back().mat = 2;
-    Loop loop({0.0, 1, 3.0 * 5.0 / kTick, 1, braked}, scene);
+    Loop loop({0.0, 1, 3.0 * 5.0 / kTick, 1, damped}, scene);
     const double largest = swing(loop);
-    EXPECT_TRUE(braked ? largest < 1e-5 : largest > 0.005) << largest;
+    EXPECT_TRUE(damped ? largest < 1e-5 : largest > 0.005) << largest;
   }
 }
 
-TEST(PassivityController, AHandThatGrowsStiffAfterLongPlayIsBrakedUntilItIsSoftAgain) {
+TEST(PassivityController, AHandThatGrowsStiffAfterLongPlayIsDampedUntilItIsSoftAgain) {
   Loop loop({2.0, 1, 500.0});
   for (int n = 0; n < 4000; ++n) loop.tick(0.3 * std::sin(0.01 * n));
   for (int n = 0; n < 3000; ++n) loop.tick(0.0);
@@ -280,7 +282,7 @@ class HiddenSpring : public engine::LinkFunction {
 };
 
 TEST(PassivityController, WhatALawTakesAndGivesBackCountsOnce) {
-  for (const bool braked : {false, true}) {
+  for (const bool damped : {false, true}) {
     scene::Scene scene = bare_scene(1);
     engine::StateMachine state_machine;
     state_machine.name = "hidden";
@@ -290,14 +292,14 @@ TEST(PassivityController, WhatALawTakesAndGivesBackCountsOnce) {
     scene.network.state_machines = {state_machine};
     scene.network.links = {{0, 1, 0.0, 0.5, 0.0}};
     scene.network.state_links = {{0, 1, 0, 0.0}};
-    Loop loop({0.0, 1, 1000.0, 1, braked}, scene);
+    Loop loop({0.0, 1, 1000.0, 1, damped}, scene);
     for (int n = 0; n < 4000; ++n) loop.tick(0.005);
     const double swing = swing_along(loop, Vec3(0.005, 0.0, 0.0), 0, 1000);
-    EXPECT_TRUE(braked ? swing < 0.001 : swing > 0.01) << swing;
+    EXPECT_TRUE(damped ? swing < 0.001 : swing > 0.01) << swing;
   }
 }
 
-TEST(PassivityController, BrakesAlongTheAxesOfTheDeviceAlone) {
+TEST(PassivityController, DampsAlongTheAxesOfTheDeviceAlone) {
   scene::Scene scene = bare_scene(2);
   scene.network.mats[0].velocity = Vec3(0.0, 0.2, 0.0);
   scene.network.mats[1].position = Vec3(-1000.0, 0.0, 0.0);  // the damper stays along x

@@ -1,24 +1,25 @@
-// tests/sim/player_test.cpp
+// tests/sim/runner_test.cpp
+#include "sim_node/run/runner.h"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "sim_node/run/runner.h"
-#include "tests/sim/stages.h"
+#include "tests/sim/loaded_scenes.h"
 #include "tests/support/allocation_guard.h"
 
 namespace cordis::sim {
 namespace {
 
-Request order_of(Request::Kind kind, std::uint64_t steps = 0) {
-  Request order;
-  order.kind = kind;
-  order.steps = steps;
-  return order;
+Request request_of(Request::Kind kind, std::uint64_t steps = 0) {
+  Request request;
+  request.kind = kind;
+  request.steps = steps;
+  return request;
 }
 
-void obey(Runner& player, Request order) {
-  player.obey(order);
+void execute(Runner& player, Request request) {
+  player.execute(request);
 }
 
 /// A turn in which the key sends a position.
@@ -49,10 +50,10 @@ TEST(Runner, StandsStillWhilePausedAndGoesOnWhereItWas) {
   for (std::uint64_t n = 1; n <= 50; ++n) turn(straight, n, 0.001);
   for (std::uint64_t n = 1; n <= 25; ++n) turn(paused, n, 0.001);
 
-  obey(paused, order_of(Request::Kind::kPause));
+  execute(paused, request_of(Request::Kind::kPause));
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(paused.advance());
   EXPECT_EQ(steps_of(paused), 100u);
-  obey(paused, order_of(Request::Kind::kResume));
+  execute(paused, request_of(Request::Kind::kResume));
   for (std::uint64_t n = 26; n <= 50; ++n) turn(paused, n, 0.001);
 
   EXPECT_EQ(paused.simulation().world().state_hash(), straight.simulation().world().state_hash())
@@ -62,7 +63,7 @@ TEST(Runner, StandsStillWhilePausedAndGoesOnWhereItWas) {
 TEST(Runner, DoesJustTheSingleStepsWanted) {
   Runner player(stage_of(swing_text()), true);
   turn(player, 1, 0.0);
-  obey(player, order_of(Request::Kind::kStep, 6));
+  execute(player, request_of(Request::Kind::kStep, 6));
 
   EXPECT_TRUE(turn(player, 2, 0.0));
   EXPECT_EQ(steps_of(player), 8u);
@@ -80,11 +81,11 @@ TEST(Runner, CompletesATickBegunInSingleStepsAsIfItHadNotBeenInterrupted) {
     turn(straight, n, 1e-4 * static_cast<double>(n));
     DeviceExchange& key = stepped.simulation().devices().front();
     key.receive(key_sample(n, 1e-4 * static_cast<double>(n)));
-    obey(stepped, order_of(Request::Kind::kStep, 1));
+    execute(stepped, request_of(Request::Kind::kStep, 1));
     EXPECT_FALSE(stepped.advance());
-    obey(stepped, order_of(Request::Kind::kStep, 2));
+    execute(stepped, request_of(Request::Kind::kStep, 2));
     EXPECT_FALSE(stepped.advance());
-    obey(stepped, order_of(Request::Kind::kResume));
+    execute(stepped, request_of(Request::Kind::kResume));
     EXPECT_TRUE(stepped.advance());
   }
   EXPECT_EQ(stepped.simulation().world().state_hash(), straight.simulation().world().state_hash());
@@ -96,13 +97,13 @@ TEST(Runner, GivesNoForceWhilePausedAndGivesItBackGradually) {
   for (int i = 0; i < 300; ++i) turn(player, ++number, -0.01);
   ASSERT_GT(std::abs(force_of_key(player)), 0.1);
 
-  obey(player, order_of(Request::Kind::kPause));
+  execute(player, request_of(Request::Kind::kPause));
   turn(player, ++number, -0.01);
   EXPECT_EQ(force_of_key(player), 0.0);
   for (int i = 0; i < 50; ++i) turn(player, ++number, -0.03);
   EXPECT_EQ(force_of_key(player), 0.0);
 
-  obey(player, order_of(Request::Kind::kResume));
+  execute(player, request_of(Request::Kind::kResume));
   turn(player, ++number, -0.03);
   EXPECT_LT(std::abs(force_of_key(player)), 100.0 * 0.03 / 20.0) << "a hundredth of the force";
   for (int i = 0; i < 300; ++i) turn(player, ++number, -0.03);
@@ -113,15 +114,15 @@ TEST(Runner, BeginsAnotherStageAndHandsTheOldOneBack) {
   Runner player(stage_of(swing_text()), false);
   for (std::uint64_t n = 1; n <= 200; ++n) turn(player, n, -0.01);
   const LoadedScene* before = &player.stage();
-  Request order = order_of(Request::Kind::kRestart);
-  order.stage = stage_of(swing_text("other", 500.0), 2);
-  const LoadedScene* next = order.stage.get();
+  Request request = request_of(Request::Kind::kRestart);
+  request.stage = stage_of(swing_text("other", 500.0), 2);
+  const LoadedScene* next = request.stage.get();
 
-  player.obey(order);
+  player.execute(request);
 
   EXPECT_EQ(&player.stage(), next);
-  EXPECT_EQ(order.stage.get(), before);
-  EXPECT_EQ(order.step, 800u);
+  EXPECT_EQ(request.stage.get(), before);
+  EXPECT_EQ(request.step, 800u);
   EXPECT_EQ(steps_of(player), 0u);
   EXPECT_NEAR(player.played_s(), 0.2, 1e-12) << "the time played goes on";
   EXPECT_EQ(force_of_key(player), 0.0);
@@ -131,11 +132,11 @@ TEST(Runner, BeginsAnotherStageAndHandsTheOldOneBack) {
 
 TEST(Runner, StaysPausedWithAnotherStage) {
   Runner player(stage_of(swing_text()), false);
-  obey(player, order_of(Request::Kind::kPause));
-  Request order = order_of(Request::Kind::kRestart);
-  order.stage = stage_of(swing_text(), 2);
-  player.obey(order);
-  EXPECT_TRUE(order.was_paused);
+  execute(player, request_of(Request::Kind::kPause));
+  Request request = request_of(Request::Kind::kRestart);
+  request.stage = stage_of(swing_text(), 2);
+  player.execute(request);
+  EXPECT_TRUE(request.was_paused);
   EXPECT_FALSE(player.advance());
   EXPECT_EQ(steps_of(player), 0u);
 }
@@ -144,14 +145,14 @@ TEST(Runner, StaysPausedWithAnotherStage) {
 std::unique_ptr<LoadedScene> stage_with_stiffness(double stiffness) {
   auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
   for (engine::Link& link : scene->network.links) link.stiffness = stiffness;
-  return std::make_unique<LoadedScene>(scene, kRunOfSim, 1);
+  return std::make_unique<LoadedScene>(scene, kEpochOfSim, 1);
 }
 
 Request exchange_for(std::unique_ptr<LoadedScene> stage) {
-  Request order = order_of(Request::Kind::kExchange);
-  order.room.reserve(stage->simulation.world().max_values_of_state());
-  order.stage = std::move(stage);
-  return order;
+  Request request = request_of(Request::Kind::kExchange);
+  request.room.reserve(stage->simulation.world().max_values_of_state());
+  request.stage = std::move(stage);
+  return request;
 }
 
 TEST(Runner, GoesOnBitForBitWhenTheNewParametersAreTheOldOnes) {
@@ -161,9 +162,9 @@ TEST(Runner, GoesOnBitForBitWhenTheNewParametersAreTheOldOnes) {
     turn(straight, n, -0.005);
     turn(exchanged, n, -0.005);
     if (n != 200) continue;
-    Request order = exchange_for(stage_of(swing_text()));
-    exchanged.obey(order);
-    ASSERT_TRUE(order.done);
+    Request request = exchange_for(stage_of(swing_text()));
+    exchanged.execute(request);
+    ASSERT_TRUE(request.done);
   }
   EXPECT_EQ(exchanged.simulation().world().state_hash(),
             straight.simulation().world().state_hash());
@@ -179,14 +180,14 @@ TEST(Runner, TakesOverMotionForceAndAccountWithNewParameters) {
   const engine::Vec3 position = player.simulation().world().position(1);
   const engine::Vec3 velocity = player.simulation().world().velocity(1);
   const std::uint64_t hash = player.simulation().world().state_hash();
-  Request order = exchange_for(stage_with_stiffness(300.0));
+  Request request = exchange_for(stage_with_stiffness(300.0));
 
   const test::AllocationGuard guard;
-  player.obey(order);
+  player.execute(request);
   EXPECT_EQ(guard.count(), 0u);
 
   const engine::World& world = player.simulation().world();
-  EXPECT_TRUE(order.done);
+  EXPECT_TRUE(request.done);
   EXPECT_EQ(world.state_hash(), hash);
   EXPECT_EQ(world.position(1), position);
   EXPECT_EQ(world.velocity(1), velocity);
@@ -208,23 +209,23 @@ TEST(Runner, RefusesAStageThatDoesNotFitAndGoesOn) {
   scene->network.mats.push_back(scene->network.mats.back());
   scene->radius_m.push_back(0.0);
   scene->layout.push_back({});
-  Request order = exchange_for(std::make_unique<LoadedScene>(scene, kRunOfSim, 1));
-  player.obey(order);
-  EXPECT_FALSE(order.done);
+  Request request = exchange_for(std::make_unique<LoadedScene>(scene, kEpochOfSim, 1));
+  player.execute(request);
+  EXPECT_FALSE(request.done);
   EXPECT_EQ(steps_of(player), 40u);
 }
 
 TEST(Runner, AllocatesNothingWhatever) {
   Runner player(stage_of(swing_text()), false);
-  Request restart = order_of(Request::Kind::kRestart);
+  Request restart = request_of(Request::Kind::kRestart);
   restart.stage = stage_of(swing_text("other"), 2);
-  Request pause = order_of(Request::Kind::kPause);
-  Request step = order_of(Request::Kind::kStep, 5);
-  Request resume = order_of(Request::Kind::kResume);
+  Request pause = request_of(Request::Kind::kPause);
+  Request step = request_of(Request::Kind::kStep, 5);
+  Request resume = request_of(Request::Kind::kResume);
 
   const test::AllocationGuard guard;
-  for (Request* order : {&pause, &step, &restart, &resume}) {
-    player.obey(*order);
+  for (Request* request : {&pause, &step, &restart, &resume}) {
+    player.execute(*request);
     player.advance();
     player.advance();
   }

@@ -1,5 +1,5 @@
-// node/domain_claim.cpp
-#include "node/domain_claim.h"
+// node/domain_lock.cpp
+#include "node/domain_lock.h"
 
 #include <chrono>
 #include <cstdint>
@@ -61,12 +61,12 @@ int hold(int domain) noexcept {
 int try_to_take_turn(int domain) noexcept {
   char name[32];
   std::snprintf(name, sizeof name, "cordis/domain/%d", domain);
-  return try_to_claim(name);
+  return try_to_lock(name);
 }
 
 }  // namespace
 
-int claim_domain(int domain) noexcept {
+int lock_domain(int domain) noexcept {
   const int turn = try_to_take_turn(domain);
   if (turn < 0) return -1;
   const int file = all_ports_are_free(domain) ? hold(domain) : -1;

@@ -1,4 +1,6 @@
-// tests/engine/connected_pieces_test.cpp
+// tests/engine/connected_components_test.cpp
+#include "sim_node/engine/connected_components.h"
+
 #include <limits>
 #include <numeric>
 #include <queue>
@@ -7,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/engine/connected_components.h"
 #include "tests/engine/balls.h"
 #include "tests/support/allocation_guard.h"
 

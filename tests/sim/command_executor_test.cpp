@@ -1,0 +1,215 @@
+// tests/sim/command_executor_test.cpp
+#include "sim_node/run/command_executor.h"
+
+#include <atomic>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/checks/stability_check.h"
+#include "sim_node/plan/reduction/reduce.h"
+#include "sim_node/run/runner.h"
+#include "tests/sim/loaded_scenes.h"
+
+namespace cordis::sim {
+namespace {
+
+/// The wall holds the bob by two springs that are merged.
+std::string merged_text() {
+  return "cordis: 1\nname: merged\nspace: 1\nstep: {rate_hz: 4000}\nreduce: [parallel]\n"
+         "liaisons:\n"
+         "  spring: {kind: spring, stiffness_n_per_m: 100}\n"
+         "  rubber: {kind: spring_damper, stiffness_n_per_m: 7, viscosity_n_s_per_m: 0.1}\n"
+         "matter:\n"
+         "  wall: {kind: fixed, at_m: 0}\n"
+         "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.01}\n"
+         "links:\n"
+         "  - {liaison: spring, between: [wall, bob], rest_m: 0}\n"
+         "  - {liaison: rubber, between: [wall, bob], rest_m: 0}\n";
+}
+
+/// A director and a loop in another thread that plays for it as fast as it can.
+class CommandExecutorTest : public ::testing::Test {
+ protected:
+  CommandExecutorTest()
+      : runner_(stage_of(swing_text()), false),
+        executor_(
+            mailbox_, runner_.simulation().shared_scene(), kEpochOfSim,
+            [](const std::string& path, config::Problems& problems) {
+              if (path == "merged.yaml") {
+                return plan::reduce(scene::load_scene_text(merged_text(), path, problems),
+                                    problems);
+              }
+              return scene::load_scene_text(
+                  path == "other.yaml" ? swing_text("other") : "cordis: 2", path, problems);
+            },
+            [](const scene::Scene& scene, config::Problems& problems) {
+              check_stability(scene, false, problems);
+            },
+            [this](const scene::Scene& scene, std::uint64_t version) {
+              published_.push_back(scene.name + " " + std::to_string(version));
+            }),
+        loop_([this] { play(); }) {}
+
+  ~CommandExecutorTest() override { end_loop(); }
+
+  void end_loop() {
+    ending_ = true;
+    if (loop_.joinable()) loop_.join();
+  }
+
+  node::Answer execute(const std::string& verb, const std::string& argument = "") {
+    msg::ControlCommand command;
+    command.verb(verb);
+    command.argument(argument);
+    return executor_.execute(command);
+  }
+
+  void play() {
+    while (!ending_) {
+      if (Request* request = mailbox_.waiting()) {
+        runner_.execute(*request);
+        mailbox_.report_steps_left(runner_.steps_left());
+        mailbox_.executed();
+      }
+      runner_.advance();
+      mailbox_.report_steps_left(runner_.steps_left());
+    }
+    mailbox_.close();
+  }
+
+  RequestMailbox mailbox_;
+  Runner runner_;
+  std::vector<std::string> published_;
+  CommandExecutor executor_;
+  std::atomic<bool> ending_{false};
+  std::thread loop_;
+};
+
+TEST_F(CommandExecutorTest, PausesAndResumes) {
+  const node::Answer paused = execute("pause");
+  EXPECT_TRUE(paused.accepted);
+  EXPECT_EQ(paused.text.find("paused at step "), 0u) << paused.text;
+  EXPECT_EQ(execute("pause").text.find("was paused already at step "), 0u);
+  EXPECT_EQ(execute("resume").text.find("goes on at step "), 0u);
+  EXPECT_EQ(execute("resume").text.find("was running already at step "), 0u);
+}
+
+TEST_F(CommandExecutorTest, AnswersWhenTheSingleStepsAreDone) {
+  execute("pause");
+  execute("reset");
+  EXPECT_EQ(execute("step").text, "paused at step 1");
+  EXPECT_EQ(execute("step", "9").text, "paused at step 10");
+  end_loop();
+  EXPECT_EQ(runner_.simulation().world().step_count(), 10u);
+}
+
+TEST_F(CommandExecutorTest, BeginsTheSceneAnew) {
+  execute("pause");
+  const node::Answer answer = execute("reset");
+  EXPECT_TRUE(answer.accepted);
+  EXPECT_EQ(answer.text.find("'swing' restarts, paused; the scene before ended at step "), 0u)
+      << answer.text;
+  end_loop();
+  EXPECT_EQ(runner_.simulation().world().step_count(), 0u);
+  EXPECT_EQ(published_, std::vector<std::string>{"swing 2"});
+}
+
+TEST_F(CommandExecutorTest, LoadsAnotherSceneAndTellsOfIt) {
+  const node::Answer answer = execute("load", "other.yaml");
+  EXPECT_TRUE(answer.accepted);
+  EXPECT_EQ(answer.text.find("'other' begins; the scene before ended at step "), 0u) << answer.text;
+  execute("reset");
+  end_loop();
+  EXPECT_EQ(runner_.simulation().scene().name, "other");
+  EXPECT_EQ(runner_.stage().frames.shape().version, 3u);
+  EXPECT_EQ(published_, (std::vector<std::string>{"other 2", "other 3"}));
+}
+
+TEST_F(CommandExecutorTest, SetsParametersOfALiaisonWhoseLinksAreMergedWithOthers) {
+  ASSERT_TRUE(execute("load", "merged.yaml").accepted);
+
+  const node::Answer answer = execute("set", "{rubber.stiffness_n_per_m: 11}");
+
+  EXPECT_TRUE(answer.accepted) << answer.text;
+  EXPECT_TRUE(execute("set", "{spring.stiffness_n_per_m: 90}").accepted);
+  end_loop();
+  const engine::NetworkDescription& network = runner_.simulation().scene().network;
+  ASSERT_EQ(network.links.size(), 1u);
+  EXPECT_EQ(network.links[0].stiffness, 101.0);
+  EXPECT_EQ(network.links[0].viscosity, 0.1);
+  EXPECT_GT(runner_.simulation().world().step_count(), 0u);
+}
+
+TEST_F(CommandExecutorTest, SetsParametersOfALiaisonInTheRunningScene) {
+  const node::Answer answer =
+      execute("set", "{spring.stiffness_n_per_m: 250, spring.viscosity_n_s_per_m: 0.5}");
+  EXPECT_TRUE(answer.accepted) << answer.text;
+  EXPECT_EQ(
+      answer.text.find("spring.stiffness_n_per_m = 250, spring.viscosity_n_s_per_m = 0.5 at step "),
+      0u)
+      << answer.text;
+  execute("set", "{spring.stiffness_n_per_m: 300}");
+  end_loop();
+  for (const engine::Link& link : runner_.simulation().world().network().description().links) {
+    EXPECT_EQ(link.stiffness, 300.0);
+    EXPECT_EQ(link.viscosity, 0.5) << "set before, and kept";
+  }
+  EXPECT_GT(runner_.simulation().world().step_count(), 0u);
+  EXPECT_EQ(runner_.stage().frames.shape().version, 1u) << "it is the same scene";
+  EXPECT_TRUE(published_.empty());
+}
+
+TEST_F(CommandExecutorTest, SetsAllOrNothing) {
+  const node::Answer answer = execute("set", "{spring.stiffness_n_per_m: 250, sprig.mass_kg: 1}");
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_NE(answer.text.find("did you mean 'spring'?"), std::string::npos) << answer.text;
+  EXPECT_FALSE(execute("set", "{spring.stifness_n_per_m: 250}").accepted);
+  EXPECT_FALSE(execute("set", "{spring.stiffness_n_per_m: -5}").accepted);
+  EXPECT_TRUE(execute("set", "{spring.viscosity_n_s_per_m: 0.2}").accepted);
+  end_loop();
+  EXPECT_EQ(runner_.simulation().world().network().description().links[0].stiffness, 100.0);
+}
+
+TEST_F(CommandExecutorTest, RefusesAValueWithWhichTheSceneDiverges) {
+  const node::Answer answer = execute("set", "{spring.stiffness_n_per_m: 1.0e+9}");
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_EQ(answer.text.find("the values stay as they are\n"), 0u) << answer.text;
+  EXPECT_NE(answer.text.find("at 4000 Hz the scene is unstable"), std::string::npos) << answer.text;
+  EXPECT_TRUE(execute("set", "{spring.viscosity_n_s_per_m: 0.2}").accepted);
+  end_loop();
+  EXPECT_EQ(runner_.simulation().world().network().description().links[0].stiffness, 100.0);
+}
+
+TEST_F(CommandExecutorTest, RefusesToForceWhatHasNoStates) {
+  EXPECT_EQ(execute("state", "[spring, broken]").text, "'spring' has no states");
+}
+
+TEST_F(CommandExecutorTest, RefusesASceneWithErrorsAndGoesOn) {
+  const node::Answer answer = execute("load", "bad.yaml");
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_EQ(answer.text.find("'bad.yaml' cannot be played ("), 0u) << answer.text;
+  EXPECT_NE(answer.text.find("bad.yaml:1:9: error"), std::string::npos) << answer.text;
+  end_loop();
+  EXPECT_EQ(runner_.simulation().scene().name, "swing");
+  EXPECT_TRUE(published_.empty());
+}
+
+TEST_F(CommandExecutorTest, RefusesWhatItDoesNotUnderstand) {
+  EXPECT_FALSE(execute("jump").accepted);
+  EXPECT_FALSE(execute("step", "-1").accepted);
+}
+
+TEST_F(CommandExecutorTest, SaysSoWhenTheLoopHasEnded) {
+  end_loop();
+  for (const char* verb : {"pause", "step", "reset"}) {
+    const node::Answer answer = execute(verb);
+    EXPECT_FALSE(answer.accepted) << verb;
+    EXPECT_EQ(answer.text, "too late, the simulation is ending") << verb;
+  }
+}
+
+}  // namespace
+}  // namespace cordis::sim
