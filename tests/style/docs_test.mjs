@@ -1,4 +1,5 @@
-// What the documents name exists: files they link to and their headings, paths, programs, benchmarks and tests.
+// tests/style/docs_test.mjs -- what the documents name exists: files they link to and their
+// headings, paths, programs, benchmarks and tests.
 //
 // usage: node docs_test.mjs SOURCE_FOLDER
 import assert from 'node:assert/strict';

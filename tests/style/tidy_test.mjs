@@ -1,6 +1,7 @@
-// clang-tidy has nothing to say about the programs and their libraries. Sources that are compiled alike are read together,
-// so that their headers are read once. What was found clean is looked at again when one of its sources was compiled again,
-// or when the rules have changed. Tests are left out: that would take as long again.
+// tests/style/tidy_test.mjs -- clang-tidy has nothing to say about the programs and their
+// libraries. Sources that are compiled alike are read together, so that their headers are read
+// once. What was found clean is looked at again when one of its sources was compiled again, or when
+// the rules have changed. Tests are left out: that would take as long again.
 //
 // usage: node tidy_test.mjs SOURCE_FOLDER BUILD_FOLDER [beginning of a path]
 import { execFile } from 'node:child_process';
