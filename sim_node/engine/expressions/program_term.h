@@ -1,4 +1,5 @@
-// sim_node/engine/expressions/program_term.h -- a program as the kernels of every vector width read it.
+// sim_node/engine/expressions/program_term.h -- a program as the kernels of every vector width read
+// it.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// sim_node/engine/integrators/damping_sweeps.h -- dampers taken apart from the rest, each pair exactly.
+// sim_node/engine/integrators/damping_sweeps.h -- dampers taken apart from the rest, each pair
+// exactly.
 #pragma once
 
 #include <cstdint>

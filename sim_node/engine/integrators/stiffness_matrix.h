@@ -1,4 +1,5 @@
-// sim_node/engine/integrators/stiffness_matrix.h -- M + dt Z + dt^2 K of the linear links, and its factors.
+// sim_node/engine/integrators/stiffness_matrix.h -- M + dt Z + dt^2 K of the linear links, and its
+// factors.
 #pragma once
 
 #include <cstdint>

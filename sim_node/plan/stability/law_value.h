@@ -1,4 +1,5 @@
-// sim_node/plan/stability/law_value.h -- laws evaluated one at a time, with any function of the library.
+// sim_node/plan/stability/law_value.h -- laws evaluated one at a time, with any function of the
+// library.
 #pragma once
 
 #include "sim_node/engine/laws/law.h"

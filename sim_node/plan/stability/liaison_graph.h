@@ -1,5 +1,5 @@
-// sim_node/plan/stability/liaison_graph.h -- a network as the stability of a step sees it: every liaison at
-// its stiffest.
+// sim_node/plan/stability/liaison_graph.h -- a network as the stability of a step sees it: every
+// liaison at its stiffest.
 #pragma once
 
 #include <cstdint>

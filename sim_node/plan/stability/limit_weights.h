@@ -1,5 +1,5 @@
-// sim_node/plan/stability/limit_weights.h -- what stiffness and viscosity count for in the limit of each
-// integrator.
+// sim_node/plan/stability/limit_weights.h -- what stiffness and viscosity count for in the limit of
+// each integrator.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// sim_node/plan/stability/start_tangent.h -- the step beyond which a scene surely diverges from its start.
+// sim_node/plan/stability/start_tangent.h -- the step beyond which a scene surely diverges from its
+// start.
 #pragma once
 
 #include <vector>

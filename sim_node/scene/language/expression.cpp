@@ -1,3 +1,4 @@
+// sim_node/scene/language/expression.cpp
 #include "sim_node/scene/language/expression.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// sim_node/scene/language/expression.h -- the conditions and formulas of the language, as they are written.
+// sim_node/scene/language/expression.h -- the conditions and formulas of the language, as they are
+// written.
 #pragma once
 
 #include <optional>

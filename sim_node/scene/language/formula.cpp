@@ -1,3 +1,4 @@
+// sim_node/scene/language/formula.cpp
 #include "sim_node/scene/language/formula.h"
 
 #include <algorithm>

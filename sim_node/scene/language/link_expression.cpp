@@ -1,3 +1,4 @@
+// sim_node/scene/language/link_expression.cpp
 #include "sim_node/scene/language/link_expression.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// sim_node/scene/language/quantity.h -- the quantities of a link by the names they have in expressions.
+// sim_node/scene/language/quantity.h -- the quantities of a link by the names they have in
+// expressions.
 #pragma once
 
 #include <string_view>

@@ -1,3 +1,4 @@
+// sim_node/scene/liaisons/diagnostics.cpp
 #include "sim_node/scene/liaisons/diagnostics.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// sim_node/scene/liaisons/diagnostics.h -- state machines that can be simulated, but hardly as they were meant.
+// sim_node/scene/liaisons/diagnostics.h -- state machines that can be simulated, but hardly as they
+// were meant.
 #pragma once
 
 #include "sim_node/scene/liaisons/state_machine.h"
