@@ -9,7 +9,6 @@ void add_verbs(CommandLine& line) {
   add_check_verb(line);
   add_doctor_verb(line);
   add_lab_verb(line);
-  add_simplify_verb(line);
   add_test_verb(line);
   line.examples(
       "`cordis VERB --help` explains a verb.\n\n"
@@ -18,7 +17,6 @@ void add_verbs(CommandLine& line) {
       "  cordis ctl launch_configs/plucked_string.yaml pause\n"
       "  cordis check launch_configs/scenes/plucked_string.yaml\n"
       "  cordis doctor\n"
-      "  cordis simplify launch_configs/scenes/plucked_string.yaml\n"
       "  cordis lab launch_configs/scenes/plucked_string.yaml --quick\n"
       "  cordis test\n");
 }

@@ -10,7 +10,6 @@ void add_check_verb(CommandLine& line);
 void add_doctor_verb(CommandLine& line);
 void add_lab_verb(CommandLine& line);
 void add_run_verb(CommandLine& line);
-void add_simplify_verb(CommandLine& line);
 void add_test_verb(CommandLine& line);
 
 /// Every verb, in the order of the help, and the examples of the program itself.

@@ -305,8 +305,6 @@ void Session::record_state() {
   const std::unique_lock lock(shown_mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
   player_.stage().limits.look(simulation.world());
-  player_.stage().struts.look(simulation.world());
-  shown_.pushed_strut = player_.stage().struts.worst();
   shown_.energy = simulation.world().energy();
   shown_.limit_number = player_.stage().limits.largest();
   shown_.step = simulation.world().step_count();
@@ -352,8 +350,6 @@ void Session::fill(msg::NodeStatus& status) {
   status.lost_events(frames_.lost_events());
   status.changes().clear();
   if (shown_.version != liaisons_version_) return;  // the scene was changed this very moment
-  const auto strut = static_cast<std::size_t>(shown_.pushed_strut);  // none is beyond all
-  if (strut < struts_.size() && status.text().empty()) status.text(struts_[strut]);
   for (std::size_t i = 0; i < liaisons_.size(); ++i) {
     status.changes().emplace_back();
     status.changes().back().liaison(liaisons_[i]);
@@ -365,7 +361,6 @@ void Session::tell(const scene::Scene& scene, std::uint64_t version) {
   {
     const std::lock_guard lock(shown_mutex_);
     liaisons_ = ChangeCounter(scene.network.state_machines).names();
-    struts_ = texts_of_struts(scene);
     liaisons_version_ = version;
   }
   msg::SceneDescription description = describe(scene, start_.run, version);

@@ -90,7 +90,6 @@ class Session {
   struct StatusSnapshot {
     engine::Energy energy;
     double limit_number = 0.0;
-    int pushed_strut = -1;  // as StrutWatch::worst()
     std::uint64_t step = 0;
     std::uint64_t state_hash = 0;
     std::uint64_t version = 0;  // of the scene
@@ -100,7 +99,6 @@ class Session {
   std::mutex shown_mutex_;
   StatusSnapshot shown_;
   std::vector<std::string> liaisons_;  // names of those whose changes are shown
-  std::vector<std::string> struts_;    // what is told of those when they are pushed
   std::uint64_t liaisons_version_ = 0;
   bool passivity_reported_ = false;  // of the status thread
   std::atomic<const char*> phase_{"starting"};

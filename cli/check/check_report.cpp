@@ -192,12 +192,8 @@ nlohmann::json finite(double value) {
 nlohmann::json reductions_json(const std::vector<scene::Reduction>& reductions) {
   nlohmann::json list = nlohmann::json::array();
   for (const scene::Reduction& reduction : reductions) {
-    list.push_back({{"name", reduction.name},
-                    {"count", reduction.count},
-                    {"what", reduction.what},
-                    {"error_budget", finite(reduction.budget)},
-                    {"bound", reduction.bound},
-                    {"doubts", reduction.doubts}});
+    list.push_back(
+        {{"name", reduction.name}, {"count", reduction.count}, {"what", reduction.what}});
   }
   return list;
 }
@@ -256,19 +252,16 @@ const char* verdict(const plan::Stability& stability) {
   return stability.diverges() ? "unstable" : "not_certain";
 }
 
-}  // namespace
-
+/// What was taken out of a scene, in lines for a person.
 std::string reductions_text(const std::vector<scene::Reduction>& reductions) {
   std::string text;
   for (const scene::Reduction& reduction : reductions) {
-    text += fmt::format("reduced     {}: {}; {}\n", reduction.name, reduction.what,
-                        reduction.budget > 0.0 ? fmt::format("error at most {:.2g}: {}",
-                                                             reduction.budget, reduction.bound)
-                                               : std::string("exact to rounding"));
-    for (const std::string& doubt : reduction.doubts) text += "            " + doubt + "\n";
+    text += fmt::format("reduced     {}: {}; exact to rounding\n", reduction.name, reduction.what);
   }
   return text.empty() ? "reduced     nothing\n" : text;
 }
+
+}  // namespace
 
 std::string text_of(const SceneCheck& check) {
   const scene::Scene& scene = check.scene;

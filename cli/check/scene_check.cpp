@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "sim_node/plan/reduction/modal_truncation.h"
 #include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/plan/reference/load.h"
 #include "sim_node/plan/reference/trial_run.h"
@@ -50,12 +49,14 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.scene = plan::reduce(std::move(check.scene), problems);
   problems.throw_if_any();
   if (check.scene.accuracy) {
-    check.choice =
-        plan::choose(check.scene.network, plan::wish_of(check.scene), check.scene.gesture_rate_hz,
-                     check.scene.integrator_is_open
-                         ? plan::integrators_for(check.scene.network)
-                         : std::vector<std::string>{to_string(check.scene.network.integrator)},
-                     !check.scene.ports.empty());
+    const scene::Accuracy& asked = *check.scene.accuracy;
+    check.choice = plan::choose(
+        check.scene.network, {asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s},
+        check.scene.gesture_rate_hz,
+        check.scene.integrator_is_open
+            ? plan::integrators_for(check.scene.network)
+            : std::vector<std::string>{to_string(check.scene.network.integrator)},
+        !check.scene.ports.empty());
     if (check.scene.rate_is_open) {
       scene::set_step(check.scene, check.choice->rate_hz,
                       engine::integrator_named(check.choice->integrator));
@@ -64,9 +65,6 @@ SceneCheck check_scene(const CheckOptions& options) {
   constexpr double kBand = 100.0;
   if (check.options.band_hz == 0.0) {
     check.options.band_hz = check.scene.accuracy ? check.scene.accuracy->band_hz : kBand;
-  }
-  if (auto modes = plan::modal_truncation(check.scene, check.options.band_hz)) {
-    check.scene.reductions.push_back(std::move(*modes));
   }
   const engine::NetworkDescription& network = check.scene.network;
   check.plan = plan::plan_of(network, check.options.band_hz);

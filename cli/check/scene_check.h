@@ -66,9 +66,6 @@ struct SceneCheck {
 /// @throws config::ConfigError when the scene has faults.
 SceneCheck check_scene(const CheckOptions& options);
 
-/// What was taken out of a scene, in lines for a person.
-std::string reductions_text(const std::vector<scene::Reduction>& reductions);
-
 /// Lines for a person.
 std::string text_of(const SceneCheck& check);
 /// The same for a program; keys carry their unit.

@@ -5,7 +5,6 @@
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/plan/rate_selection.h"
-#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::sim {
@@ -14,7 +13,8 @@ void select_rate(scene::Scene& scene, config::Problems& problems) {
   if (!scene.accuracy) return;
   const scene::Accuracy& asked = *scene.accuracy;
   const plan::RateSelection choice = plan::choose(
-      scene.network, plan::wish_of(scene), scene.gesture_rate_hz,
+      scene.network, {asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s},
+      scene.gesture_rate_hz,
       scene.integrator_is_open ? plan::integrators_for(scene.network)
                                : std::vector<std::string>{to_string(scene.network.integrator)},
       !scene.ports.empty());

@@ -36,7 +36,6 @@ LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_
       frames(shape_of(simulation, version)),
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
-      struts(simulation.scene()),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}
 
 }  // namespace cordis::sim

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "sim_node/checks/limit_watch.h"
-#include "sim_node/checks/strut_watch.h"
 #include "sim_node/run/change_counter.h"
 #include "sim_node/run/frame_store.h"
 #include "sim_node/run/simulation.h"
@@ -22,7 +21,6 @@ struct LoadedScene {
   FrameStore frames;
   ChangeCounter changes;
   LimitWatch limits;
-  StrutWatch struts;
   std::uint64_t ticks_per_frame;
 };
 

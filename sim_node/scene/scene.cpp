@@ -74,16 +74,6 @@ config::Place read_step(const Value& section, Scene& scene, config::Problems& pr
     integrators.emplace_back(to_string(integrator));
   scene.network.integrator =
       engine::integrator_named(reader.optional_choice("integrator", "cordis", integrators));
-  if (scene.network.integrator == engine::IntegratorKind::kModal) {
-    scene.network.max_mode_hz = reader.optional_number("modes_to_hz", 0.0, Range::positive());
-  } else if (reader.optional_value("modes_to_hz").exists() && reader.ok()) {
-    reader.error_at(
-        "modes_to_hz",
-        "'modes_to_hz' in step belongs to the integrator modal, and the scene " +
-            (reader.has("integrator") ? "has " + std::string(to_string(scene.network.integrator))
-                                      : std::string("names none")),
-        "write integrator: modal, or leave it out");
-  }
   read_freeze(reader.optional_mapping("freeze"), scene, problems);
   scene.rate_is_open = scene.accuracy && !reader.has("rate_hz");
   scene.integrator_is_open = scene.rate_is_open && !reader.has("integrator");

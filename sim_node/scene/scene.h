@@ -90,24 +90,15 @@ struct Accuracy {
 /// What a scene wants taken out of it: its `reduce`. See sim_node/plan/reduction.
 struct ReductionOptions {
   bool parallel = false;   ///< linear links between the same two MATs
-  bool series = false;     ///< MATs without mass between links of one kind
-  bool massless = false;   ///< those between a spring and a damper; MATs too light to matter
+  bool series = false;     ///< MATs without mass between links of one kind, in 1 dimension
   bool dimension = false;  ///< directions in which nothing can move
-  bool is_asked = false;   ///< the scene speaks of it
-
-  static ReductionOptions everything() noexcept { return {true, true, true, true, true}; }
-  /// Whether a MAT may have no mass: it is taken out.
-  bool takes_out_mats() const noexcept { return series || massless; }
 };
 
-/// Something that was taken out of a scene.
+/// Something that was taken out of a scene: exact to rounding.
 struct Reduction {
-  std::string name;                 ///< of the reduction
-  std::size_t count = 0;            ///< of what was taken out
-  std::string what;                 ///< for a person
-  double budget = 0.0;              ///< largest relative error it makes; 0: exact to rounding
-  std::string bound;                ///< of what that is the error, and what it follows from
-  std::vector<std::string> doubts;  ///< where it may be wrong all the same
+  std::string name;       ///< of the reduction
+  std::size_t count = 0;  ///< of what was taken out
+  std::string what;       ///< for a person
 };
 
 /// A plane or a line, along the axes, that a scene of more dimensions is computed in.
@@ -143,9 +134,7 @@ struct Scene {
   std::vector<LayoutPoint> layout;      ///< per MAT in a 1-D scene, else empty
   std::optional<Subspace> confinement;  ///< by a reduction; then there is no layout
   ReductionOptions reduce;
-  std::vector<Reduction> reductions;  ///< that were made
-  /// Linear links in 2-D and 3-D that stand for several in a row, which would buckle when pushed.
-  std::vector<std::uint32_t> struts;
+  std::vector<Reduction> reductions;   ///< that were made
   std::shared_ptr<const Scene> whole;  ///< before they were made; nullptr when none was
 
   int space() const noexcept { return network.dimension; }

@@ -126,6 +126,30 @@ TEST_F(Checked, AProgramReadsTheSame) {
   EXPECT_GT(json["load"]["step_nsec"].get<double>(), 0.0);
 }
 
+TEST_F(Checked, TellsTheReductionsInBothForms) {
+  std::ofstream(path_) << "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\nreduce: all\n"
+                          "liaisons: {s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0}}\n"
+                          "matter:\n"
+                          "  wall: {kind: fixed, at_m: [0, 0]}\n"
+                          "  joint: {kind: mass, mass_kg: 0, at_m: [0.1, 0]}\n"
+                          "  bob: {kind: mass, mass_kg: 0.1, at_m: [0.3, 0]}\n"
+                          "links:\n"
+                          "  - {liaison: s, between: [wall, joint]}\n"
+                          "  - {liaison: s, between: [joint, bob]}\n"
+                          "  - {liaison: s, between: [wall, bob]}\n";
+  EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("reduced     dimension: 2-D computed as 1-D"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("parallel: 1 link merged into another between the same MATs; exact"),
+            std::string::npos)
+      << out_;
+  EXPECT_NE(out_.find("series: 1 MAT without mass taken out"), std::string::npos) << out_;
+  EXPECT_EQ(run({"--json", "-"}), kSuccess) << error_;
+  const nlohmann::json reductions = nlohmann::json::parse(out_)["reductions"];
+  ASSERT_EQ(reductions.size(), 3u);
+  EXPECT_EQ(reductions[2]["name"], "series");
+  EXPECT_EQ(reductions[2]["count"], 1);
+}
+
 TEST_F(Checked, WhatIsStableAtAnyStepHasNoLimit) {
   write("100, integrator: implicit");
   ASSERT_EQ(run({}), kSuccess) << error_;

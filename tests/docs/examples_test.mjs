@@ -217,10 +217,10 @@ test('cordis ctl', async () => {
   assert.ok(sessions.size >= 2, 'sessions of examples');
 });
 
-test('cordis check and cordis simplify', async () => {
-  const lines = [...ofVerb('simplify'), ...ofVerb('check')]; // which reads what simplify has written
+test('cordis check', async () => {
+  const lines = ofVerb('check');
   for (const [line, origin] of lines) await runs(line, origin);
-  assert.ok(lines.length > 5);
+  assert.ok(lines.length >= 3);
 });
 
 test('cordis lab', async () => {
@@ -244,7 +244,7 @@ test('cordis test lists what it would run', async () => {
 });
 
 test('no verb has examples that nothing runs', () => {
-  const RUN = ['run', 'ctl', 'check', 'simplify', 'lab', 'doctor', 'test'];
+  const RUN = ['run', 'ctl', 'check', 'lab', 'doctor', 'test'];
   for (const [line, origin] of all) assert.ok(RUN.includes(line.split(' ')[1]), `${origin}: ${line}`);
   for (const verb of RUN) assert.ok(ofVerb(verb).length > 0, verb);
 });

@@ -37,7 +37,6 @@ TEST(Parallel, LinksBetweenTheSameTwoMatsBecomeOne) {
   ASSERT_EQ(scene.reductions.size(), 1u);
   EXPECT_EQ(scene.reductions[0].name, "parallel");
   EXPECT_EQ(scene.reductions[0].count, 2u);
-  EXPECT_EQ(scene.reductions[0].budget, 0.0);
   ASSERT_EQ(scene.links.size(), 1u);
   EXPECT_EQ(scene.links[0].name, "first");
 }
@@ -107,7 +106,10 @@ TEST(Reduce, AWordThatIsNoReductionIsAnError) {
   std::string text = on_three_links(1);
   text.replace(text.find("[parallel]"), 10, "[paralel]");
   EXPECT_NE(refusal_of(text).find("parallel"), std::string::npos);
-  text.replace(text.find("[paralel]"), 9, "nothing");
+  text.replace(text.find("[paralel]"), 9, "[massless]");
+  EXPECT_NE(refusal_of(text).find("a reduction is parallel, series or dimension"),
+            std::string::npos);
+  text.replace(text.find("[massless]"), 10, "nothing");
   EXPECT_NE(refusal_of(text).find("'reduce' must be all, none"), std::string::npos);
 }
 

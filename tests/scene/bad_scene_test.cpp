@@ -75,17 +75,6 @@ INSTANTIATE_TEST_SUITE_P(
                  "modal, got "
                  "'euler'",
                  ""},
-        BadScene{
-            kNothing,
-            "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: implicit, modes_to_hz: "
-            "^50}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
-            "'modes_to_hz' in step belongs to the integrator modal, and the scene has implicit",
-            "write integrator: modal, or leave it out"},
-        BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, modes_to_hz: ^50}\n"
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
-                 "'modes_to_hz' in step belongs to the integrator modal, and the scene names none",
-                 "write integrator: modal, or leave it out"},
         BadScene{kNothing,
                  "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^symplectic4}\nmatter: "
                  "{s: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, "

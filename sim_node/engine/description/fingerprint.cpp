@@ -131,7 +131,6 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   if (description.integrator != IntegratorKind::kCordis) {
     fingerprint.add(std::uint64_t{6});
     fingerprint.add(static_cast<std::uint64_t>(description.integrator));
-    fingerprint.add(description.max_mode_hz);
   }
   return fingerprint.value();
 }

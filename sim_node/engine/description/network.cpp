@@ -151,8 +151,6 @@ void check(const NetworkDescription& description) {
   for (const std::uint32_t mat : description.kept_awake) {
     require(mat < description.mats.size(), "each MAT that is kept awake", "one of the network");
   }
-  require(is_finite_and_at_least_zero(description.max_mode_hz), "highest frequency of modes",
-          "finite and >= 0");
 }
 
 }  // namespace

@@ -88,7 +88,6 @@ struct NetworkDescription {
   int dimension = 3;  ///< 1, 2 or 3
   double step = 0.0;  ///< dt [s], > 0
   IntegratorKind integrator = IntegratorKind::kCordis;
-  double max_mode_hz = 0.0;       ///< of `modal`: modes above it count as static; 0: none [Hz]
   Vec3 gravity = Vec3::Zero();    ///< [m/s^2]; components beyond the dimension must be 0
   double medium_viscosity = 0.0;  ///< Z of the medium on every mass [N s/m], >= 0
   double freeze_tolerance = 0.0;  ///< masses that rest within it are left out, see Freezing; 0:

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <Eigen/Eigenvalues>
 
@@ -116,30 +115,17 @@ void ModalBlock::find_modes(const NetworkDescription& network) {
     return square > 1e-12 * max_stiffness ? square : 0.0;
   };
 
-  std::vector<Eigen::Index> low;
-  std::vector<Eigen::Index> high;
-  const double most = 2.0 * std::numbers::pi * network.max_mode_hz;
-  for (Eigen::Index m = 0; m < count; ++m) {
-    const bool keep = network.max_mode_hz == 0.0 || square_of(m) <= most * most;
-    (keep ? low : high).push_back(m);
-  }
-  place_.assign(padded(low.size(), kModeBatch), 0.0);
+  place_.assign(padded(masses.size(), kModeBatch), 0.0);
   moved_.assign(place_.size(), 0.0);
   shape_.assign(network.mats.size() * place_.size(), 0.0);
-  left_out_count_ = high.size();
-  left_out_.assign(network.mats.size() * left_out_count_, 0.0);
-  for (const Eigen::Index m : low) {
+  for (Eigen::Index m = 0; m < count; ++m) {
     square_.push_back(square_of(m));
     viscosity_.push_back(of_medium + ratio * square_of(m));
   }
   for (const std::uint32_t mat : masses) {
     const double scale = 1.0 / std::sqrt(network.mats[mat].mass);
-    for (std::size_t m = 0; m < low.size(); ++m) {
-      shape_[mat * place_.size() + m] = scale * modes(row[mat], low[m]);
-    }
-    for (std::size_t m = 0; m < high.size(); ++m) {
-      left_out_[mat * left_out_count_ + m] =
-          scale * modes(row[mat], high[m]) / std::sqrt(square_of(high[m]));
+    for (Eigen::Index m = 0; m < count; ++m) {
+      shape_[mat * place_.size() + static_cast<std::size_t>(m)] = scale * modes(row[mat], m);
     }
   }
 }
@@ -216,14 +202,6 @@ ModeRows ModalBlock::rows() noexcept {
   return rows;
 }
 
-double ModalBlock::residual(std::uint32_t a, std::uint32_t b) const noexcept {
-  double sum = 0.0;
-  for (std::size_t m = 0; m < left_out_count_; ++m) {
-    sum += left_out_[a * left_out_count_ + m] * left_out_[b * left_out_count_ + m];
-  }
-  return sum;
-}
-
 double ModalBlock::kinetic_energy() const noexcept {
   double sum = 0.0;
   for (std::size_t m = 0; m < square_.size(); ++m) sum += moved_[m] * moved_[m] / gain_[m];
@@ -248,7 +226,7 @@ double ModalBlock::gravity_energy() const noexcept {
 }
 
 double ModalBlock::alternating_compliance(std::uint32_t a, std::uint32_t b) const noexcept {
-  double compliance = residual(a, b);
+  double compliance = 0.0;
   for (std::size_t m = 0; m < square_.size(); ++m) {
     const double left = (2.0 + 2.0 * velocity_retention_[m] - stiffness_[m]) / gain_[m];
     if (left <= 0.0) return std::numeric_limits<double>::infinity();

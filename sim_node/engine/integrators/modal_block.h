@@ -16,21 +16,16 @@ namespace cordis::engine {
 ///
 ///     Z' = 1 - e^(-2 s dt),   K' = 1 + e^(-2 s dt) - 2 e^(-s dt) cos(w_d dt)
 ///
-/// whatever its frequency, and a steady force moves it as far as it should: gain K' / w^2. Of the
-/// modes above NetworkDescription::most_mode_hz only their static share is kept: what a steady
-/// force on one MAT moves another by.
+/// whatever its frequency, and a steady force moves it as far as it should: gain K' / w^2.
 class ModalBlock {
  public:
   /// O(masses^3). Precondition: refusal_of has nothing against the network.
   explicit ModalBlock(const NetworkDescription& network);
 
-  std::size_t mode_count() const noexcept { return square_.size(); }
   /// Shapes of all modes at a MAT, padded to a multiple of 8 [1/sqrt(kg)]; 0 unless a mass.
   const double* shape(std::uint32_t mat) const noexcept {
     return shape_.data() + mat * place_.size();
   }
-  /// What a force of 1 N on MAT a adds to the place of MAT b by the modes that are left out [m/N].
-  double residual(std::uint32_t a, std::uint32_t b) const noexcept;
 
   /// Begins from rest at the start positions with the velocities of the network.
   /// @param forces  on MATs at step 0 besides those of the block, 4 x N [N]
@@ -58,9 +53,7 @@ class ModalBlock {
   void find_modes(const NetworkDescription& network);
   void set_mode(std::size_t mode, double dt) noexcept;
 
-  AlignedVector<double> shape_;   // of MAT i: as many values as place_ has
-  std::vector<double> left_out_;  // of MAT i: shapes / w of the modes left out
-  std::size_t left_out_count_ = 0;
+  AlignedVector<double> shape_;               // of MAT i: as many values as place_ has
   AlignedVector<double> place_;               // q(n) [m sqrt(kg)]
   AlignedVector<double> moved_;               // q(n) - q(n-1)
   AlignedVector<double> velocity_retention_;  // 1 - Z'

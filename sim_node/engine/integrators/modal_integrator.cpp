@@ -14,11 +14,7 @@ const ModalKernel& modal_kernel(VectorWidth width) noexcept {
 }
 
 ModalIntegrator::ModalIntegrator(const NetworkDescription& network)
-    : block_(network),
-      is_end_(network.mats.size(), 0),
-      is_driven_(network.mats.size(), 0),
-      force_(network.mats.size(), 0.0),
-      leaves_modes_out_(network.max_mode_hz > 0.0) {
+    : block_(network), is_end_(network.mats.size(), 0), is_driven_(network.mats.size(), 0) {
   for (const Mat& mat : network.mats) {
     start_.push_back(mat.position.x());
     is_mass_.push_back(mat.kind == MatKind::kMass ? 1 : 0);
@@ -95,7 +91,6 @@ Moved ModalIntegrator::step(WorldState& world) noexcept {
 
   for (std::size_t k = 0; k < driven_.size(); ++k) {
     drives_[k].force = mats.force(driven_[k]).x();
-    force_[driven_[k]] = drives_[k].force;
   }
   ModeRows rows = block_.rows();
   rows.drives = drives_.data();
@@ -103,7 +98,7 @@ Moved ModalIntegrator::step(WorldState& world) noexcept {
   energy.dissipated += kernel_->step(rows);
   for (std::size_t k = 0; k < driven_.size(); ++k) {
     const std::uint32_t mat = driven_[k];
-    const double next = start_[mat] + drives_[k].place + residual_at(mat);
+    const double next = start_[mat] + drives_[k].place;
     mats.move_port(mat, Vec3(next, 0.0, 0.0));
     if (!std::isfinite(next)) ++moved.non_finite_mats;
   }
@@ -111,19 +106,11 @@ Moved ModalIntegrator::step(WorldState& world) noexcept {
   return moved;
 }
 
-double ModalIntegrator::residual_at(std::uint32_t mat) const noexcept {
-  if (!leaves_modes_out_) return 0.0;
-  double sum = 0.0;
-  for (const std::uint32_t other : driven_) sum += block_.residual(mat, other) * force_[other];
-  return sum;
-}
-
 void ModalIntegrator::show(WorldState& world, std::uint32_t mat) const noexcept {
   if (is_mass_[mat] == 0 || is_driven_[mat] != 0) return;
   const double* shape = block_.shape(mat);
   const std::size_t count = block_.place().size();
-  const double now =
-      start_[mat] + kernel_->read(shape, block_.place().data(), count) + residual_at(mat);
+  const double now = start_[mat] + kernel_->read(shape, block_.place().data(), count);
   world.mats.set_motion(mat, now, now - kernel_->read(shape, block_.moved().data(), count));
 }
 
@@ -132,10 +119,8 @@ void ModalIntegrator::show_all(WorldState& world) const noexcept {
 }
 
 Energy ModalIntegrator::energy(WorldState& world) const noexcept {
-  double left_out = 0.0;
-  for (const std::uint32_t mat : driven_) left_out += 0.5 * force_[mat] * residual_at(mat);
   return world.account.at_half_step(
-      {block_.kinetic_energy(), block_.elastic_energy() + left_out, block_.gravity_energy()},
+      {block_.kinetic_energy(), block_.elastic_energy(), block_.gravity_energy()},
       world.work_since_last_call(), world.stored_energy());
 }
 
@@ -145,13 +130,12 @@ void ModalIntegrator::add_to(StateHash& hash) const noexcept {
 }
 
 std::size_t ModalIntegrator::state_size() const noexcept {
-  return 2 * block_.place().size() + force_.size() + is_driven_.size();
+  return 2 * block_.place().size() + is_driven_.size();
 }
 
 void ModalIntegrator::append_state(std::vector<double>& state) const {
   state.insert(state.end(), block_.place().begin(), block_.place().end());
   state.insert(state.end(), block_.moved().begin(), block_.moved().end());
-  state.insert(state.end(), force_.begin(), force_.end());
   state.insert(state.end(), is_driven_.begin(), is_driven_.end());
 }
 
@@ -160,8 +144,6 @@ const double* ModalIntegrator::take_state(WorldState&, const double* state) noex
     std::copy_n(state, values->size(), values->data());
     state += values->size();
   }
-  std::copy_n(state, force_.size(), force_.data());
-  state += force_.size();
   for (std::uint32_t mat = 0; mat < is_driven_.size(); ++mat) {
     if (*state++ != 0.0) drive(mat);
   }

@@ -15,7 +15,7 @@ namespace cordis::engine {
 /// stiffer than ModalBlock::most_stiffness.
 ///
 /// World::link_force knows nothing of the links in the block. The account is that of `cordis`, and
-/// closes to rounding; with modes left out, to their share.
+/// closes to rounding.
 class ModalIntegrator final : public Integrator {
  public:
   explicit ModalIntegrator(const NetworkDescription& network);
@@ -33,7 +33,6 @@ class ModalIntegrator final : public Integrator {
 
  private:
   void drive(std::uint32_t mat);
-  double residual_at(std::uint32_t mat) const noexcept;
 
   ModalBlock block_;
   const ModalKernel* kernel_ = nullptr;
@@ -44,8 +43,6 @@ class ModalIntegrator final : public Integrator {
   std::vector<std::uint8_t> is_driven_;  // by MAT
   std::vector<std::uint8_t> is_mass_;    // by MAT
   std::vector<ModeDrive> drives_;        // of driven_
-  std::vector<double> force_;            // of the last step, by MAT [N]
-  bool leaves_modes_out_;
 };
 
 }  // namespace cordis::engine

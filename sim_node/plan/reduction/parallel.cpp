@@ -44,13 +44,8 @@ std::size_t merge_parallel(scene::Scene& scene) {
   std::vector<Link>& links = scene.network.links;
   const int dimension = scene.network.dimension;
   const Held held = held_in(scene);
-  std::vector<bool> is_strut(links.size());
-  for (const std::uint32_t strut : scene.struts) is_strut[strut] = true;
   const auto may_merge = [&](std::uint32_t first, std::uint32_t link) {
-    // a strut is watched by its rest length
-    const bool spoils_strut = (is_strut[first] || is_strut[link]) && links[first].stiffness > 0.0 &&
-                              links[link].stiffness > 0.0;
-    return !spoils_strut && (!held.energy || keeps_energy(links[first], links[link], dimension));
+    return !held.energy || keeps_energy(links[first], links[link], dimension);
   };
   std::vector<std::uint32_t> order(links.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -68,7 +63,6 @@ std::size_t merge_parallel(scene::Scene& scene) {
       if (!first) {
         first = link;
       } else if (may_merge(*first, link)) {
-        is_strut[*first] = is_strut[*first] || is_strut[link];
         merge(links[link], dimension, links[*first]);
         gone[link] = true;
         ++merged;
@@ -77,10 +71,6 @@ std::size_t merge_parallel(scene::Scene& scene) {
     i = end;
   }
   if (merged == 0) return 0;
-  scene.struts.clear();
-  for (std::uint32_t l = 0; l < links.size(); ++l) {
-    if (is_strut[l] && !gone[l]) scene.struts.push_back(l);
-  }
   take_out(std::vector<bool>(scene.network.mats.size()), gone, scene);
   return merged;
 }

@@ -1,7 +1,6 @@
 // sim_node/plan/reduction/reduce.h -- the reductions a scene wants.
 #pragma once
 
-#include "sim_node/plan/rate.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::plan {
@@ -12,9 +11,5 @@ namespace cordis::plan {
 /// of a liaison, set it in the whole and reduce that again. Deterministic; O(MATs + links log
 /// links).
 scene::Scene reduce(scene::Scene scene, config::Problems& problems);
-
-/// What the `accuracy` of a scene leaves to its step: its tolerance less the budgets of its
-/// reductions. Precondition: it has one.
-AccuracyTarget wish_of(const scene::Scene& scene);
 
 }  // namespace cordis::plan

@@ -90,7 +90,6 @@ void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, sce
       of_links.apply(signal.index);
     }
   }
-  of_links.apply(scene.struts);
   scene.signals = scene::SignalReader(std::move(signals), network);
   number_links(scene);
 }

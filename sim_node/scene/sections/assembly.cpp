@@ -58,8 +58,7 @@ void Assembly::read_matter(const Value& section) {
 void Assembly::read_generated(const Value::Entry& entry) {
   const std::size_t errors_before = problems_.error_count();
   config::MappingReader reader(entry.value, matter_called(entry.key), problems_);
-  Piece piece =
-      read_piece(reader, *liaisons_, scene_.space(), scene_.reduce.takes_out_mats(), problems_);
+  Piece piece = read_piece(reader, *liaisons_, scene_.space(), scene_.reduce.series, problems_);
   const std::vector<NamedRange> inner_names = piece.names;
   const std::optional<LinkLaw> law = piece.law;
   const std::uint32_t first_mat = mat_count();

@@ -15,10 +15,9 @@ struct ReductionWord {
   const char* name;
   bool ReductionOptions::*wanted;
 };
-constexpr std::array<ReductionWord, 4> kReductionWords{{
+constexpr std::array<ReductionWord, 3> kReductionWords{{
     {"parallel", &ReductionOptions::parallel},
     {"series", &ReductionOptions::series},
-    {"massless", &ReductionOptions::massless},
     {"dimension", &ReductionOptions::dimension},
 }};
 
@@ -34,10 +33,9 @@ void read_names(const Value& list, ReductionOptions& wish, config::Problems& pro
       wish.*known->wanted = true;
       continue;
     }
-    problems.error(
-        item.place(),
-        "a reduction is parallel, series, massless or dimension, got " + item.described(),
-        config::did_you_mean(item.text(), words));
+    problems.error(item.place(),
+                   "a reduction is parallel, series or dimension, got " + item.described(),
+                   config::did_you_mean(item.text(), words));
   }
 }
 
@@ -45,7 +43,6 @@ void read_names(const Value& list, ReductionOptions& wish, config::Problems& pro
 
 ReductionOptions read_reduce(const Value& value, bool by_itself, config::Problems& problems) {
   ReductionOptions wish;
-  wish.is_asked = value.exists();
   if (value.kind() == Value::Kind::kSequence) {
     read_names(value, wish, problems);
     return wish;
