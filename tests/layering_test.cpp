@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kRoot = CORDIS_SOURCE_DIR;
-const std::vector<std::string> kFolders = {"node", "sim_node", "device_node", "viz_node", "cli",
-                                           "include"};
+const std::vector<std::string> kFolders = {"node",     "sim_node", "device_node",
+                                           "viz_node", "cli",      "include"};
 
 struct Include {
   std::string file;  // from the root
@@ -155,7 +155,7 @@ TEST(Layering, NoFileIncludesAFloorAboveItsOwn) {
 TEST(Layering, EveryQuotedIncludeIsSpelledFromTheRoot) {
   for (const Include& include : all_includes()) {
     if (!include.quoted || include.target.starts_with("idl/")) continue;  // idl/ is generated
-    if (include.target.starts_with("cordis/")) continue;  // of include/
+    if (include.target.starts_with("cordis/")) continue;                  // of include/
     EXPECT_TRUE(fs::exists(kRoot / include.target))
         << include.file << ":" << include.line << " includes \"" << include.target << "\"";
   }
