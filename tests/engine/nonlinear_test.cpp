@@ -127,7 +127,7 @@ TEST_P(Laws, OfRingsAddUp) {
 }
 
 TEST_P(Laws, OfAFunctionComeOnTopOfTheSpring) {
-  expect_pulls(with(function_law(), 7.0), [](double d) {
+  expect_pulls(with(cubic_law(), 7.0), [](double d) {
     const double e = d - 0.5;
     return 7.0 * e + 30.0 * e + 100.0 * e * e * e;
   });
@@ -226,18 +226,6 @@ TEST(StiffChain, OfHairerLubichWannerIsMetToSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.05);
 }
 
-/// F = e + alpha e^2
-class QuadraticFunction : public engine::LinkFunction {
- public:
-  explicit QuadraticFunction(double alpha) : alpha_(alpha) {}
-  double operator()(double, double elongation, double, double, double) const noexcept override {
-    return alpha_ * elongation * elongation;
-  }
-
- private:
-  double alpha_;
-};
-
 /// Energy of a mode of a chain of 32 masses, positions and speeds at the same time.
 double mode_energy(const std::vector<double>& x, const std::vector<double>& v, int mode) {
   double amplitude = 0.0;
@@ -253,9 +241,8 @@ double mode_energy(const std::vector<double>& x, const std::vector<double>& v, i
 
 TEST(FermiPastaUlam, SharesTheEnergyOfItsModesAsTheReference) {
   const nlohmann::json data = reference("R10_fpu_alpha");
-  Law law;
-  law.kind = Law::Kind::kFunction;
-  law.function = std::make_shared<const QuadraticFunction>(number(data["params"]["alpha"]));
+  const Term elongation = q(Quantity::kElongation);
+  const Law law = expression_law(number(data["params"]["alpha"]) * elongation * elongation);
   std::vector<double> start;
   for (int i = 1; i <= 32; ++i) start.push_back(std::sin(std::numbers::pi * i / 33.0));
   const double step = 0.01;
