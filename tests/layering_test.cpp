@@ -167,7 +167,6 @@ TEST(Layering, HeadersOfAForeignLibraryStandInOnePlace) {
       {"fastrtps/", {"node/dds/"}},
       {"fastcdr/", {"node/dds/"}},
       {"yaml-cpp/", {"node/config/"}},
-      {"muParser", {"sim_node/scene/language/link_expression.cpp"}},
       {"boost/",
        {"viz_node/web/server", "viz_node/web/http_session.", "viz_node/web/send_queue.",
         "viz_node/web/websocket_session."}},

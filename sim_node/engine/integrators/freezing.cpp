@@ -62,7 +62,7 @@ double min_slope(const Law& law, double tolerance) {
       }
       return least < kInfinity ? least : 0.0;
     case Law::Kind::kNone:
-    case Law::Kind::kFunction:
+    case Law::Kind::kExpression:
       break;
   }
   return 0.0;

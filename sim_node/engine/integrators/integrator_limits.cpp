@@ -16,7 +16,7 @@ const char* not_a_potential(const StateMachine& state_machine) {
   const LinkState& state = state_machine.states[0];
   if (state.viscosity > 0.0 || state.dissipation.kind != Law::Kind::kNone) return "viscosity";
   if (std::isfinite(state.force_limit)) return "a force limit";
-  if (state.elasticity.kind == Law::Kind::kFunction) return "a free expression";
+  if (state.elasticity.kind == Law::Kind::kExpression) return "a free expression";
   return nullptr;
 }
 

@@ -28,10 +28,12 @@ double steepest_of_table(const Table& table) noexcept {
   return most;
 }
 
-double steepest_of_function(const LinkFunction& law) noexcept {
+double steepest_of(const Program& expression) noexcept {
   constexpr int kParts = 64;
   constexpr double kStep = 2.0 * kMaxSpeed / kParts;
-  const auto pull = [&](int i) { return law(1.0, 0.0, kStep * i - kMaxSpeed, 1.0, 1.0); };
+  const auto pull = [&](int i) {
+    return expression_pull(expression, 1.0, 0.0, kStep * i - kMaxSpeed, 1.0, 1.0);
+  };
   double most = 0.0;
   for (int i = 1; i <= kParts; ++i) most = std::max(most, (pull(i) - pull(i - 1)) / kStep);
   return std::isfinite(most) ? most : kUnbounded;
@@ -45,8 +47,8 @@ double steepest(const Law& law) noexcept {
     case Law::Kind::kPower:
       if (law.coefficient <= 0.0) return 0.0;
       return law.exponent < 1.0 ? kUnbounded : law.coefficient * law.exponent;
-    case Law::Kind::kFunction:
-      return steepest_of_function(*law.function);
+    case Law::Kind::kExpression:
+      return steepest_of(law.expression);
     case Law::Kind::kNone:
     case Law::Kind::kLennardJones:
     case Law::Kind::kRings:
