@@ -46,7 +46,7 @@ double cost_of_a_step(const std::string& integrator) {
 }
 
 double cost_of_a_step(engine::NetworkDescription network, const RateSelection& choice) {
-  constexpr double kSolves = 4.0;  // in 1 dimension, where it factorises once
+  constexpr double kSolves = 15.0;  // in 1 dimension, where it factorises once
   network.integrator = engine::integrator_named(choice.integrator);
   network.step = 1.0 / choice.rate_hz;
   if (!engine::damps_implicitly(network)) return cost_of_a_step(choice.integrator);
