@@ -1,10 +1,11 @@
-// sim_node/engine/expressions/elementary_functions.h -- exp, log, sin, cos, tanh and powers, with the same bits
-// everywhere.
+// sim_node/engine/expressions/elementary_functions.h -- exp, log, sin, cos, tanh and powers, with
+// the same bits everywhere.
 //
-// They are made of + - * / and the bits of a number alone: the library of a machine rounds as it likes. The
-// parameter `Owner` is a type of an unnamed namespace, such as the lanes of one vector width. So each file that
-// includes them has its own, which the linker never mixes up with another's; see matter/step_kernel.h. The error
-// is below 1.5 units in the last place, that of a whole power grows with its exponent.
+// They are made of + - * / and the bits of a number alone: every library of a machine rounds in its
+// own way. The parameter `Owner` is a type of an unnamed namespace, such as the lanes of one vector
+// width. Each file that includes them has its own copy, which the linker never mixes up with
+// another's; see matter/step_kernel.h. The error is below 1.5 units in the last place. The error of
+// a whole power grows with its exponent.
 #pragma once
 
 #include <cstddef>

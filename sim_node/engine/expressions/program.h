@@ -32,7 +32,7 @@ double apply(const Instruction& instruction, const double* operands) noexcept;
 
 /// Whether the program asks for this quantity.
 bool asks_for(const Program& program, Quantity quantity) noexcept;
-/// Whether `rising` or `falling` stand in it.
+/// True when `rising` or `falling` stand in it.
 bool has_edge(const Program& program) noexcept;
 
 /// What a program may ask of a link, by Quantity.

@@ -53,7 +53,7 @@ void check_elasticity(const Law& law, const std::string& name);
 /// The same for its viscosity.
 void check_dissipation(const Law& law, const std::string& name);
 
-/// Whether an expression of a law may ask for the quantity.
+/// True when an expression of a law may ask for the quantity.
 bool is_known_to_laws(Quantity quantity) noexcept;
 
 /// The pull [N] of an expression for one link; 0 where it is not finite.

@@ -32,7 +32,7 @@ class StateTable {
   const std::vector<StateMachine>& state_machines() const noexcept;
   const LinkState& state(StateIndex state) const noexcept;
 
-  /// Whether a program of any state machine asks for the quantity.
+  /// True when a program of any state machine asks for the quantity.
   bool needs(Quantity quantity) const noexcept;
   std::uint32_t slot_count() const noexcept;  ///< one more than the largest slot used
 
