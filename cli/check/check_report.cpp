@@ -67,6 +67,11 @@ std::string stability_text(const SceneCheck& check) {
 
 std::string accuracy_text(const SceneCheck& check) {
   const plan::BandEdge& edge = check.plan.band_edge;
+  if (edge.error.creeps) {
+    return fmt::format(
+        "accuracy    at {:.4g} Hz the viscosity lets nothing swing: creep {} at most\n",
+        edge.frequency_hz, percent(edge.error.creep));
+  }
   if (!edge.error.oscillates) {
     return fmt::format("accuracy    at {:.4g} Hz nothing can swing at this rate and viscosity\n",
                        edge.frequency_hz);
@@ -295,6 +300,8 @@ std::string json_of(const SceneCheck& check) {
       {"accuracy",
        {{"band_hz", edge.frequency_hz},
         {"oscillates", edge.error.oscillates},
+        {"creeps", edge.error.creeps},
+        {"creep_error", edge.error.creep},
         {"pitch_error", edge.error.pitch},
         {"decay_error", edge.error.decay}}},
       {"ports", ports_json(check)},

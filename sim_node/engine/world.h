@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "sim_node/engine/core/vector_width.h"
+#include "sim_node/engine/description/energy.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/links/link_event.h"
-#include "sim_node/engine/matter/energy.h"
 
 namespace cordis::engine {
 

@@ -14,19 +14,23 @@ namespace {
 
 constexpr double kPartOfTheCertifiedStep = 0.9;
 
-/// The largest step at which a vibration is within the tolerance, by its exact roots; infinite for
-/// what creeps, which has no pitch.
+/// The largest step at which a vibration, or what creeps, is within the tolerance, by its exact
+/// roots; infinite for the other of the two.
 template <class Error>
 double largest_step(const BandEdge& edge, engine::IntegratorKind integrator, double tolerance,
-                    Error error) {
+                    Error error, bool OscillatorError::*applies) {
   const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
-  if (0.5 * edge.viscosity >= w) return std::numeric_limits<double>::infinity();
+  const bool creeps = 0.5 * edge.viscosity >= w;
+  if (creeps != (applies == &OscillatorError::creeps)) {
+    return std::numeric_limits<double>::infinity();
+  }
   double low = 0.0;
-  double high = limit_step(w * w, edge.viscosity);
+  // What creeps may have steps far beyond the limit of `cordis`.
+  double high = creeps ? 2.0 / w : limit_step(w * w, edge.viscosity);
   for (int n = 0; n < 60; ++n) {
     const double step = 0.5 * (low + high);
     const OscillatorError reached = oscillator_error(w, edge.viscosity, step, integrator);
-    const bool within = reached.oscillates && std::abs(error(reached)) <= tolerance;
+    const bool within = reached.*applies && std::abs(error(reached)) <= tolerance;
     (within ? low : high) = step;
   }
   return low;
@@ -40,12 +44,23 @@ double pitch_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
   return std::sqrt(3.0) * wish.tolerance / (w * wish.over_s);
 }
 
-/// A rate of decay s that is off by e puts e^(-s t) off by e s t e^(-s t), at most e / 2.718.
-double decay_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
+/// A rate s that is off by e puts e^(-s t) off by e s t e^(-s t), at most e / 2.718.
+double tolerance_of_rate(double rate, const AccuracyTarget& wish) {
   if (wish.over_s == 0.0) return wish.tolerance;
-  const double lost = std::min(1.0, 0.5 * edge.viscosity * wish.over_s);
+  const double lost = std::min(1.0, rate * wish.over_s);
   return lost > 0.0 ? wish.tolerance / (lost * std::exp(-lost))
                     : std::numeric_limits<double>::infinity();
+}
+
+double decay_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
+  return tolerance_of_rate(0.5 * edge.viscosity, wish);
+}
+
+double creep_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
+  const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
+  const double rate = 0.5 * edge.viscosity;
+  if (rate < w) return wish.tolerance;
+  return tolerance_of_rate(w * w / (rate + std::sqrt(rate * rate - w * w)), wish);
 }
 
 }  // namespace
@@ -71,12 +86,18 @@ RateChoice choose_rate(const engine::NetworkDescription& network, const Accuracy
   }
   const BandEdge edge = band_edge_of(per_gesture, graph, wish.band_hz);
   const engine::IntegratorKind integrator = network.integrator;
-  consider(largest_step(edge, integrator, pitch_tolerance(edge, wish),
-                        [](const OscillatorError& e) { return e.pitch; }),
+  consider(largest_step(
+               edge, integrator, pitch_tolerance(edge, wish),
+               [](const OscillatorError& e) { return e.pitch; }, &OscillatorError::oscillates),
            RateReason::kPitch);
-  consider(largest_step(edge, integrator, decay_tolerance(edge, wish),
-                        [](const OscillatorError& e) { return e.decay; }),
+  consider(largest_step(
+               edge, integrator, decay_tolerance(edge, wish),
+               [](const OscillatorError& e) { return e.decay; }, &OscillatorError::oscillates),
            RateReason::kDecay);
+  consider(largest_step(
+               edge, integrator, creep_tolerance(edge, wish),
+               [](const OscillatorError& e) { return e.creep; }, &OscillatorError::creeps),
+           RateReason::kCreep);
 
   constexpr double kRounding = 1e-9;
   choice.needed_hz = 1.0 / step;
@@ -96,6 +117,8 @@ const char* to_string(RateReason reason) noexcept {
       return "the pitch at the end of the band";
     case RateReason::kDecay:
       return "the decay at the end of the band";
+    case RateReason::kCreep:
+      return "the creep at the end of the band";
   }
   return "";
 }

@@ -9,7 +9,7 @@ namespace cordis::plan {
 
 /// What a scene asks for instead of a rate.
 struct AccuracyTarget {
-  double tolerance = 0.01;      ///< largest relative error of the pitch and of the rate of decay
+  double tolerance = 0.01;      ///< largest relative error of pitch, rate of decay and creep
   double band_hz = 100.0;       ///< of vibrations up to this frequency
   double contact_energy = 0.1;  ///< largest part of its energy that a collision may gain or lose
   double over_s = 0.0;          ///< [s]
@@ -21,7 +21,8 @@ enum class RateReason : std::uint8_t {
   kStability,    ///< 0.9 of the certified step
   kContact,      ///< K' <= 4 e / (1 + e) for the stiffest liaison that comes and goes
   kPitch,        ///< at the end of the band
-  kDecay
+  kDecay,
+  kCreep  ///< the slower mode there, where viscosity lets nothing swing
 };
 
 struct RateChoice {

@@ -45,12 +45,21 @@ double cost_of_a_step(const std::string& integrator) {
   return factorises ? kFactorisation : evaluations_per_step(integrator);
 }
 
+double cost_of_a_step(engine::NetworkDescription network, const RateSelection& choice) {
+  constexpr double kSolves = 15.0;  // in 1 dimension, where it factorises once
+  network.integrator = engine::integrator_named(choice.integrator);
+  network.step = 1.0 / choice.rate_hz;
+  if (!engine::damps_implicitly(network)) return cost_of_a_step(choice.integrator);
+  return network.dimension == 1 ? kSolves
+                                : cost_of_a_step(to_string(engine::IntegratorKind::kImplicit));
+}
+
 RateSelection choose(const engine::NetworkDescription& network, const AccuracyTarget& wish,
                      double gesture_rate_hz, const std::vector<std::string>& integrators,
                      bool has_ports) {
   std::optional<RateSelection> best;
-  const auto cost = [](const RateSelection& choice) {
-    return choice.rate_hz * cost_of_a_step(choice.integrator);
+  const auto cost = [&network](const RateSelection& choice) {
+    return choice.rate_hz * cost_of_a_step(network, choice);
   };
   for (const std::string& integrator : integrators) {
     const RateSelection next = choose_for(network, wish, gesture_rate_hz, integrator, has_ports);

@@ -1,6 +1,7 @@
 // tests/bench/state_link_bench.cpp -- time of a step of a million links: linear ones, and the same
 // links with states.
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 
 #include <benchmark/benchmark.h>
@@ -9,6 +10,7 @@
 
 namespace {
 
+using cordis::engine::Instruction;
 using cordis::engine::LinkState;
 using cordis::engine::Network;
 using cordis::engine::NetworkDescription;
@@ -26,6 +28,8 @@ enum Kind : int {
   kManyChange = 2,     // every link changes every tenth step or so
   kTableOfForces = 3,  // conditions, and an elasticity given as a table
   kMixed = 4,          // conditions; neighbouring links are in different states
+  kExpression = 5,     // one state, whose law is an expression of ten operations
+  kFunctions = 6,      // one state, whose law is an expression with exp and tanh
 };
 
 /// |quantity| against a threshold.
@@ -36,7 +40,44 @@ Program size_compared(Quantity quantity, Operation comparison, double threshold)
            {comparison, {}, 0.0, 0}}};
 }
 
+/// Appends operations to an expression.
+void append(Program& program, std::initializer_list<Operation> operations) {
+  for (const Operation operation : operations) program.code.push_back({operation, {}, 0.0, 0});
+}
+
+StateMachine with_expression(Kind kind) {
+  const Instruction e{Operation::kQuantity, Quantity::kElongation, 0.0, 0};
+  const Instruction v{Operation::kQuantity, Quantity::kSpeed, 0.0, 0};
+  const auto number = [](double value) { return Instruction{Operation::kConstant, {}, value, 0}; };
+  StateMachine state_machine;
+  state_machine.states.resize(1);
+  state_machine.states[0].elasticity.kind = cordis::engine::Law::Kind::kExpression;
+  Program& law = state_machine.states[0].elasticity.expression;
+  if (kind == kFunctions) {  // 100 * e * exp(-abs(e)) + 0.01 * tanh(v)
+    law.code = {number(100.0), e};
+    append(law, {Operation::kMultiply});
+    law.code.push_back(e);
+    append(law, {Operation::kAbs, Operation::kNegate, Operation::kExp, Operation::kMultiply});
+    law.code.insert(law.code.end(), {number(0.01), v});
+    append(law, {Operation::kTanh, Operation::kMultiply, Operation::kAdd});
+  } else {  // min(5, 100 * e + 2e3 * e * e + 0.01 * v / (1 + abs(v)))
+    law.code = {number(5.0), number(100.0), e};
+    append(law, {Operation::kMultiply});
+    law.code.insert(law.code.end(), {number(2e3), e});
+    append(law, {Operation::kMultiply});
+    law.code.push_back(e);
+    append(law, {Operation::kMultiply, Operation::kAdd});
+    law.code.insert(law.code.end(), {number(0.01), v});
+    append(law, {Operation::kMultiply});
+    law.code.insert(law.code.end(), {number(1.0), v});
+    append(law, {Operation::kAbs, Operation::kAdd, Operation::kDivide, Operation::kAdd,
+                 Operation::kMin});
+  }
+  return state_machine;
+}
+
 StateMachine collophane(Kind kind) {
+  if (kind == kExpression || kind == kFunctions) return with_expression(kind);
   StateMachine state_machine;
   LinkState hooked;
   hooked.stiffness = 100.0;
@@ -109,7 +150,9 @@ void step_of_a_million_links(benchmark::State& state) {
 }
 BENCHMARK(step_of_a_million_links)
     ->ArgNames({"dimension", "kind"})
-    ->ArgsProduct({{1, 3}, {kLinear, kConditions, kManyChange, kTableOfForces, kMixed}})
+    ->ArgsProduct({{1, 3},
+                   {kLinear, kConditions, kManyChange, kTableOfForces, kMixed, kExpression,
+                    kFunctions}})
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

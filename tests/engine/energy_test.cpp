@@ -235,7 +235,7 @@ TEST(Energy, OfALinearStateHasNoErrorInOneDimension) {
 
 TEST(Energy, TakenByLimitsClampsAndFunctionsCountsAsDissipated) {
   LinkState state;
-  state.elasticity = function_law();
+  state.elasticity = cubic_law();
   state.force_limit = 2.0;
   after_swinging(state, 1e-3);
   LinkState clamped;

@@ -338,9 +338,9 @@ TEST(Freezing, IsRefusedWhereItCannotBeKept) {
     EXPECT_NO_THROW(make_world(scene));
     EXPECT_THROW(make_world(frozen(scene, 1e-6)), std::invalid_argument) << to_string(integrator);
   }
-  NetworkDescription in_sweeps = oscillator(1.0, 1.0, 400.0, 0.1, 0.0, 1e-3);
-  in_sweeps.integrator = IntegratorKind::kLeapfrog;
-  EXPECT_THROW(make_world(frozen(in_sweeps, 1e-6)), std::invalid_argument);
+  NetworkDescription implicit = oscillator(1.0, 1.0, 400.0, 0.1, 0.0, 1e-3);
+  implicit.integrator = IntegratorKind::kLeapfrog;
+  EXPECT_THROW(make_world(frozen(implicit, 1e-6)), std::invalid_argument);
   EXPECT_THROW(make_world(frozen(bedded_chain(3), kNan)), std::invalid_argument);
   NetworkDescription kept = frozen(bedded_chain(3), 1e-6);
   kept.kept_awake = {99};

@@ -100,7 +100,7 @@ World pushed_net(VectorWidth width, IntegratorKind integrator = IntegratorKind::
   return world;
 }
 
-/// 3 dimensions: a net whose dampers need sweeps of their own.
+/// 3 dimensions: a net whose dampers are implicit.
 World heavily_damped_net(VectorWidth width) {
   NetworkDescription scene = free_cluster(40, 157, 20.0);
   scene.integrator = IntegratorKind::kLeapfrog;
@@ -145,8 +145,8 @@ TEST_P(GoldenHash, OfChangingLinksStays) {
 }
 
 TEST_P(GoldenHash, OfTheLeapfrogStays) {
-  // the damping of the net is extrapolated, that of the string too; that of a string with heavy
-  // dampers goes in sweeps
+  // the damping of the net is extrapolated, that of the string too; that of a net with heavy
+  // dampers is implicit
   expect(plucked_string(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_plucked_string");
   expect(pushed_net(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_pushed_net");
   expect(changing_links(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_changing_links");

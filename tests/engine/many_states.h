@@ -8,16 +8,6 @@
 
 namespace cordis::test {
 
-/// 30 e + 100 e^3 + (m_a + m_b) v.
-class CubicFunction : public engine::LinkFunction {
- public:
-  double operator()(double, double elongation, double speed, double mass_a,
-                    double mass_b) const noexcept override {
-    return 30.0 * elongation + 100.0 * elongation * elongation * elongation +
-           (mass_a + mass_b) * speed;
-  }
-};
-
 inline engine::Law table_law() {
   engine::Law law;
   law.kind = engine::Law::Kind::kTable;
@@ -49,11 +39,11 @@ inline engine::Law ring_law() {
   return law;
 }
 
-inline engine::Law function_law() {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kFunction;
-  law.function = std::make_shared<const CubicFunction>();
-  return law;
+/// 30 e + 100 e^3 + (m_a + m_b) v.
+inline engine::Law cubic_law() {
+  const Term e = q(Quantity::kElongation);
+  const Term masses = q(Quantity::kMassA) + q(Quantity::kMassB);
+  return expression_law(30.0 * e + 100.0 * e * e * e + masses * q(Quantity::kSpeed));
 }
 
 /// Six states, one law each, left for the next one after conditions of different kinds.
@@ -67,7 +57,7 @@ inline StateMachine state_machine_of_many_states() {
   };
   LinkState thread = with(power_law(200.0, 1.5), power_law(0.02, 2.0));
   thread.pushes = false;
-  LinkState limited = with(function_law());
+  LinkState limited = with(cubic_law());
   limited.force_limit = 4.0;
   return Behaving()
       .state(20.0, 0.1)

@@ -1,6 +1,7 @@
 // tests/engine/nonlinear_test.cpp -- laws that are not linear: closed forms, and chains of them.
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -126,8 +127,48 @@ TEST_P(Laws, OfRingsAddUp) {
   });
 }
 
-TEST_P(Laws, OfAFunctionComeOnTopOfTheSpring) {
-  expect_pulls(with(function_law(), 7.0), [](double d) {
+/// if(e < 0.4, tanh(3 e) exp(-|e|) + sin(9 d) cos(d) + log(d + 2) + d^1.7 - d^3, sign(-d)).
+Law law_of_every_function() {
+  const Term d = q(Quantity::kDistance);
+  const Term e = q(Quantity::kElongation);
+  Term cube = one(Operation::kWholePower, d);
+  cube.program.code.back().constant = 3.0;
+  const Term decay = one(Operation::kExp, one(Operation::kNegate, size(e)));
+  const Term sum = one(Operation::kTanh, 3.0 * e) * decay +
+                   one(Operation::kSin, 9.0 * d) * one(Operation::kCos, d) +
+                   one(Operation::kLog, d + 2.0) + two(Operation::kPower, d, 1.7) - cube;
+  return expression_law(
+      three(Operation::kSelect, e < 0.4, sum, one(Operation::kSign, one(Operation::kNegate, d))));
+}
+
+TEST_P(Laws, OfAnExpressionHaveTheBitsOfTheScalarEvaluator) {
+  const LinkState state = with(law_of_every_function());
+  std::vector<double> distances;
+  for (int i = 1; i < 60; ++i) distances.push_back(0.02 * i);
+  const std::vector<double> found = pulls(state, distances, GetParam());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double d = distances[i];
+    EXPECT_EQ(found[i],
+              engine::expression_pull(state.elasticity.expression, d, d - 0.5, 0.0, 1.0, 1.0));
+  }
+  expect_pulls(state, [](double d) {
+    const double e = d - 0.5;
+    if (e >= 0.4) return -1.0;
+    return std::tanh(3.0 * e) * std::exp(-std::abs(e)) + std::sin(9.0 * d) * std::cos(d) +
+           std::log(d + 2.0) + std::pow(d, 1.7) - d * d * d;
+  });
+}
+
+TEST_P(Laws, OfAnExpressionWithoutAFiniteValueArePullsOfZero) {
+  const Term below = q(Quantity::kDistance) - 1.0;
+  EXPECT_EQ(pulls(with(expression_law(one(Operation::kSqrt, below))), {0.75, 5.0}, GetParam()),
+            (std::vector<double>{0.0, 2.0}));
+  EXPECT_EQ(pulls(with(expression_law(1.0 / below)), {1.0, 1.5}, GetParam()),
+            (std::vector<double>{0.0, 2.0}));
+}
+
+TEST_P(Laws, OfAnExpressionComeOnTopOfTheSpring) {
+  expect_pulls(with(cubic_law(), 7.0), [](double d) {
     const double e = d - 0.5;
     return 7.0 * e + 30.0 * e + 100.0 * e * e * e;
   });
@@ -226,18 +267,6 @@ TEST(StiffChain, OfHairerLubichWannerIsMetToSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.05);
 }
 
-/// F = e + alpha e^2
-class QuadraticFunction : public engine::LinkFunction {
- public:
-  explicit QuadraticFunction(double alpha) : alpha_(alpha) {}
-  double operator()(double, double elongation, double, double, double) const noexcept override {
-    return alpha_ * elongation * elongation;
-  }
-
- private:
-  double alpha_;
-};
-
 /// Energy of a mode of a chain of 32 masses, positions and speeds at the same time.
 double mode_energy(const std::vector<double>& x, const std::vector<double>& v, int mode) {
   double amplitude = 0.0;
@@ -253,9 +282,8 @@ double mode_energy(const std::vector<double>& x, const std::vector<double>& v, i
 
 TEST(FermiPastaUlam, SharesTheEnergyOfItsModesAsTheReference) {
   const nlohmann::json data = reference("R10_fpu_alpha");
-  Law law;
-  law.kind = Law::Kind::kFunction;
-  law.function = std::make_shared<const QuadraticFunction>(number(data["params"]["alpha"]));
+  const Term elongation = q(Quantity::kElongation);
+  const Law law = expression_law(number(data["params"]["alpha"]) * elongation * elongation);
   std::vector<double> start;
   for (int i = 1; i <= 32; ++i) start.push_back(std::sin(std::numbers::pi * i / 33.0));
   const double step = 0.01;
@@ -277,6 +305,21 @@ TEST(FermiPastaUlam, SharesTheEnergyOfItsModesAsTheReference) {
     const double expected = data["mode_energies_1to5"]["t=1000"][mode - 1].get<double>();
     EXPECT_NEAR(mode_energy(now, speed, mode), expected, 2e-6) << "mode " << mode;
   }
+}
+
+TEST(ExpressionLaw, IsEvaluatedByManyThreadsAtOnce) {
+  const auto network = std::make_shared<const engine::Network>(
+      chain({0.1, -0.2, 0.3, 0.05}, std::vector<double>(4, 0.0), 0.01,
+            {Behaving().state(with(law_of_every_function(), 1.0)).state_machine}));
+  const auto hash_after_run = [&network] {
+    World world(network);
+    for (int n = 0; n < 20'000; ++n) world.step();
+    return world.state_hash();
+  };
+  const std::uint64_t alone = hash_after_run();
+  std::vector<std::future<std::uint64_t>> together;
+  for (int i = 0; i < 3; ++i) together.push_back(std::async(std::launch::async, hash_after_run));
+  for (std::future<std::uint64_t>& each : together) EXPECT_EQ(each.get(), alone);
 }
 
 }  // namespace

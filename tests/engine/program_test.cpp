@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/expressions/elementary_functions.h"
 #include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/links/state_table.h"
 #include "tests/engine/programs.h"
@@ -27,6 +28,9 @@ using engine::kQuantityCount;
 using engine::kStateBatch;
 
 constexpr double kUntouched = 1234.5;
+
+struct OfThisFile;
+using Functions = engine::ElementaryFunctions<OfThisFile>;
 
 /// 8 rows with values for every quantity.
 struct Rows {
@@ -97,10 +101,35 @@ double worth(const Program& program, const Rows& rows, std::size_t row) {
       case Operation::kNot:
         stack.push_back(v == 0.0 ? 1.0 : 0.0);
         continue;
+      case Operation::kSign:
+        stack.push_back(v > 0.0 || v < 0.0 ? std::copysign(1.0, v) : v);
+        continue;
+      case Operation::kExp:
+        stack.push_back(Functions::exp(v));
+        continue;
+      case Operation::kLog:
+        stack.push_back(Functions::log(v));
+        continue;
+      case Operation::kSin:
+        stack.push_back(Functions::sin(v));
+        continue;
+      case Operation::kCos:
+        stack.push_back(Functions::cos(v));
+        continue;
+      case Operation::kTanh:
+        stack.push_back(Functions::tanh(v));
+        continue;
+      case Operation::kWholePower:
+        stack.push_back(Functions::whole_power(v, instruction.constant));
+        continue;
       default:
         break;
     }
     const double u = pop();
+    if (operation == Operation::kSelect) {
+      stack.push_back(pop() != 0.0 ? u : v);
+      continue;
+    }
     const auto truth = [](bool holds) { return holds ? 1.0 : 0.0; };
     switch (operation) {
       case Operation::kMin:
@@ -120,6 +149,9 @@ double worth(const Program& program, const Rows& rows, std::size_t row) {
         break;
       case Operation::kDivide:
         stack.push_back(u / v);
+        break;
+      case Operation::kPower:
+        stack.push_back(Functions::power(u, v));
         break;
       case Operation::kLess:
         stack.push_back(truth(u < v));
@@ -307,17 +339,36 @@ Term random_term(std::mt19937& random, int depth) {
     if (random() % 3 == 0) return static_cast<double>(random() % 2001) / 250.0 - 4.0;
     return q(static_cast<Quantity>(random() % kQuantityCount));
   }
-  constexpr std::array<Operation, 4> kOne{Operation::kNegate, Operation::kAbs, Operation::kSqrt,
-                                          Operation::kNot};
-  constexpr std::array<Operation, 14> kTwo{Operation::kMin,      Operation::kMax,
-                                           Operation::kAdd,      Operation::kSubtract,
-                                           Operation::kMultiply, Operation::kDivide,
-                                           Operation::kLess,     Operation::kLessOrEqual,
-                                           Operation::kGreater,  Operation::kGreaterOrEqual,
-                                           Operation::kEqual,    Operation::kNotEqual,
-                                           Operation::kAnd,      Operation::kOr};
+  constexpr std::array<Operation, 10> kOne{
+      Operation::kNegate, Operation::kAbs, Operation::kSqrt, Operation::kNot, Operation::kSign,
+      Operation::kExp,    Operation::kLog, Operation::kSin,  Operation::kCos, Operation::kTanh};
+  constexpr std::array<Operation, 15> kTwo{Operation::kPower,
+                                           Operation::kMin,
+                                           Operation::kMax,
+                                           Operation::kAdd,
+                                           Operation::kSubtract,
+                                           Operation::kMultiply,
+                                           Operation::kDivide,
+                                           Operation::kLess,
+                                           Operation::kLessOrEqual,
+                                           Operation::kGreater,
+                                           Operation::kGreaterOrEqual,
+                                           Operation::kEqual,
+                                           Operation::kNotEqual,
+                                           Operation::kAnd,
+                                           Operation::kOr};
   if (random() % 4 == 0) return one(kOne[random() % kOne.size()], random_term(random, depth - 1));
-  const Term left = random_term(random, depth - 1);
+  Term left = random_term(random, depth - 1);
+  if (random() % 8 == 0) {
+    left = one(Operation::kWholePower, std::move(left));
+    left.program.code.back().constant = static_cast<double>(random() % 9) - 4.0;
+    return left;
+  }
+  if (random() % 8 == 0) {
+    const Term middle = random_term(random, depth - 1);
+    const Term right = random_term(random, depth - 1);
+    return three(Operation::kSelect, std::move(left), middle, right);
+  }
   return two(kTwo[random() % kTwo.size()], left, random_term(random, depth - 1));
 }
 
@@ -335,6 +386,9 @@ TEST_P(Programs, AgreeWithTheirMeaningForTenThousandRandomOnes) {
     for (std::size_t i = 0; i < kStateBatch; ++i) {
       const double value = worth(term.program, rows, i);
       finite += std::isfinite(value) ? 1 : 0;
+      engine::LinkQuantities link{};
+      for (std::size_t k = 0; k < kQuantityCount; ++k) link[k] = rows.quantity[k][i];
+      ASSERT_EQ(bits(engine::value_of(term.program, link)), bits(value)) << "program " << n;
       expected[i] = std::isfinite(value) ? value : rows.of(Quantity::kRestLength)[i];
     }
 

@@ -43,6 +43,12 @@ inline Term two(Operation operation, Term left, const Term& right) {
   return one(operation, std::move(left));
 }
 
+inline Term three(Operation operation, Term low, const Term& middle, const Term& high) {
+  low.program.code.insert(low.program.code.end(), middle.program.code.begin(),
+                          middle.program.code.end());
+  return two(operation, std::move(low), high);
+}
+
 inline Term operator+(Term u, const Term& v) {
   return two(Operation::kAdd, std::move(u), v);
 }
@@ -75,6 +81,14 @@ inline Term either(Term u, const Term& v) {
 }
 inline Term size(Term u) {
   return one(Operation::kAbs, std::move(u));
+}
+
+/// A law that is the value of an expression.
+inline engine::Law expression_law(Term pull) {
+  engine::Law law;
+  law.kind = engine::Law::Kind::kExpression;
+  law.expression = std::move(pull.program);
+  return law;
 }
 
 /// A state machine under construction.

@@ -35,14 +35,6 @@ struct LawCase {
   std::function<double(const Pair&)> pull;
 };
 
-class Adhesion : public engine::LinkFunction {
- public:
-  double operator()(double distance, double elongation, double speed, double mass_a,
-                    double mass_b) const noexcept override {
-    return 20.0 * elongation * (mass_a + mass_b) + 0.1 * speed - 0.01 * distance;
-  }
-};
-
 std::vector<LawCase> laws() {
   std::vector<LawCase> cases;
   cases.push_back({"contact", contact(400.0, 0.0), -1.0,
@@ -101,10 +93,11 @@ std::vector<LawCase> laws() {
   cases.push_back({"damped_lennard_jones", damped, 0.0,
                    [lj](const Pair& p) { return lj(p) + 0.02 * p.speed; }});
 
-  LinkState function;
-  function.elasticity.kind = Law::Kind::kFunction;
-  function.elasticity.function = std::make_shared<Adhesion>();
-  cases.push_back({"function", function, 0.06, [](const Pair& p) {
+  LinkState expression;
+  expression.elasticity =
+      expression_law(20.0 * q(Quantity::kElongation) * (q(Quantity::kMassA) + q(Quantity::kMassB)) +
+                     0.1 * q(Quantity::kSpeed) - 0.01 * q(Quantity::kDistance));
+  cases.push_back({"expression", expression, 0.06, [](const Pair& p) {
                      return 20.0 * p.elongation * (p.mass_a + p.mass_b) + 0.1 * p.speed -
                             0.01 * p.distance;
                    }});

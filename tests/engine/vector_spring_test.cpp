@@ -40,7 +40,7 @@ NetworkDescription along(int axis, NetworkDescription scene) {
 
 struct Tie {
   IntegratorKind integrator;
-  double viscosity;  // [N s/m]; 16: `leapfrog` damps in sweeps
+  double viscosity;  // [N s/m]; 16: `leapfrog` damps implicitly
 };
 
 class EveryIntegrator : public testing::TestWithParam<Tie> {};

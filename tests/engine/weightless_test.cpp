@@ -34,7 +34,7 @@ NetworkDescription tool_with_weight(IntegratorKind integrator, double viscosity)
 
 struct Hung {
   IntegratorKind integrator;
-  double viscosity;  // [N s/m]; 40: `leapfrog` damps in sweeps
+  double viscosity;  // [N s/m]; 40: `leapfrog` damps implicitly
   double freeze = 0.0;
 };
 

@@ -27,6 +27,13 @@ std::map<std::string, std::map<MotionKind, double>> min_orders() {
           {"implicit", {{kConservative, kCoarse}, {kDamped, kCoarse}, {kSwitching, kFalls}}}};
 }
 
+bool damps_implicitly(NetworkDescription network, const std::string& method, double rate) {
+  if (method != "leapfrog") return false;
+  network.integrator = engine::IntegratorKind::kLeapfrog;
+  network.step = 1.0 / rate;
+  return engine::damps_implicitly(network);
+}
+
 /// From an error to that at four times the rate.
 double order_of(double error, double finer) {
   return 0.5 * std::log2(error / finer);
@@ -70,6 +77,12 @@ TEST(Convergence, OfEveryMethodOnEveryProblem) {
       std::printf("      %5.2f  %8.2e", order, error);
       const auto known = least.find(method);
       if (known == least.end() || error < kFloor) continue;
+      // Between two treatments of dampers there is no order.
+      if (damps_implicitly(problem.network, method, rate) !=
+          damps_implicitly(problem.network, method, 4.0 * rate)) {
+        EXPECT_LT(error, 1e-4) << problem.name << " with " << method;
+        continue;
+      }
       EXPECT_GT(order, known->second.at(problem.kind) - 0.15) << problem.name << " with " << method;
     }
     std::printf("\n");

@@ -53,8 +53,42 @@ TEST(OscillatorError, IsWhatTheEngineDoes) {
   EXPECT_NEAR(reached / true_frequency - 1.0, error.pitch, 1e-4);
 }
 
-TEST(OscillatorError, DoesNotSpeakOfWhatCreepsOrDiverges) {
-  EXPECT_FALSE(oscillator_error(10.0, 30.0, 1e-3).oscillates);   // over-damped
+class CreepError : public testing::TestWithParam<engine::IntegratorKind> {};
+
+TEST_P(CreepError, IsWhatTheEngineDoes) {
+  // 10 1/s and viscosities of Z' up to 100 at 1 ms
+  for (const double viscosity : {30.0, 200.0, 900.0, 1e4, 1e5}) {
+    const bool explicit_limit = GetParam() == engine::IntegratorKind::kCordis;
+    if (explicit_limit && viscosity > 1900.0) continue;
+    NetworkDescription scene = oscillator(1.0, 100.0, viscosity, 1.0, 0.0, 1e-3);
+    scene.integrator = GetParam();
+    World world = make_world(scene);
+    const double slow = 0.5 * viscosity - std::sqrt(0.25 * viscosity * viscosity - 100.0);
+    // some steps until the faster mode is gone, then as many as lose a good part
+    run(world, 1500);
+    const double before = world.position(1).x();
+    const int steps = viscosity > 1e3 ? 50000 : 1000;
+    run(world, steps);
+    const double rate = std::log(before / world.position(1).x()) / (1e-3 * steps);
+
+    const plan::OscillatorError error = oscillator_error(10.0, viscosity, 1e-3, GetParam());
+
+    ASSERT_TRUE(error.creeps) << viscosity;
+    EXPECT_FALSE(error.oscillates);
+    EXPECT_NEAR(rate / slow - 1.0, error.creep, 1e-6 + 2e-3 * std::abs(error.creep)) << viscosity;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, CreepError,
+                         testing::Values(engine::IntegratorKind::kCordis,
+                                         engine::IntegratorKind::kLeapfrog,
+                                         engine::IntegratorKind::kImplicit));
+
+TEST(OscillatorError, TellsWhatSwingsFromWhatCreepsAndDiverges) {
+  EXPECT_FALSE(oscillator_error(10.0, 30.0, 1e-3).oscillates);  // over-damped
+  EXPECT_TRUE(oscillator_error(10.0, 30.0, 1e-3).creeps);
+  EXPECT_FALSE(oscillator_error(10.0, 3000.0, 1e-3).creeps);  // beyond the limit of `cordis`
+  EXPECT_FALSE(oscillator_error(100.0, 2.0, 1e-3).creeps);
   EXPECT_FALSE(oscillator_error(2500.0, 0.0, 1e-3).oscillates);  // beyond the limit
 }
 

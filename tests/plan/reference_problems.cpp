@@ -191,27 +191,14 @@ ReferenceProblem stiff_fpu() {
   return made;
 }
 
-/// d + alpha d^2
-class QuadraticSpring final : public engine::LinkFunction {
- public:
-  explicit QuadraticSpring(double alpha) : alpha_(alpha) {}
-  double operator()(double, double elongation, double, double, double) const noexcept override {
-    return elongation + alpha_ * elongation * elongation;
-  }
-
- private:
-  double alpha_;
-};
-
 /// The first 20 s: its reference is the energy of its modes much later, which nonlinear_test holds.
 ReferenceProblem quadratic_chain() {
   const nlohmann::json params = reference("R10_fpu_alpha")["params"];
   ReferenceProblem made{
       "R10 chain of 32, quadratic", MotionKind::kConservative, chain(32, 1.0, {}), 20.0, 20.0, {}};
   made.network.links.clear();
-  engine::Law law;
-  law.kind = engine::Law::Kind::kFunction;
-  law.function = std::make_shared<const QuadraticSpring>(value(params, "alpha"));
+  const Term d = q(Quantity::kElongation);
+  const engine::Law law = expression_law(d + value(params, "alpha") * d * d);
   made.network.state_machines = {state_machine(0.0, law)};
   for (std::uint32_t i = 0; i < 33; ++i) {
     made.network.state_links.push_back({i, i + 1, 0, 0.0});

@@ -45,9 +45,10 @@ INSTANTIATE_TEST_SUITE_P(
                    "'when' in exit of state 'x' of liaison 'l' names 'hold', which is no quantity "
                    "and no parameter",
                    "did you mean 'hold_m'?"},
-        BadLiaison{when("\"^absolute(elongation_m) > 1\""),
-                   "'when' in exit of state 'x' of liaison 'l' knows no function 'absolute'",
-                   "functions: abs, sqrt, min, max, rising, falling"},
+        BadLiaison{
+            when("\"^absolute(elongation_m) > 1\""),
+            "'when' in exit of state 'x' of liaison 'l' knows no function 'absolute'",
+            "functions: abs, sqrt, sign, exp, log, sin, cos, tanh, min, max, if, rising, falling"},
         BadLiaison{when("\"elongation_m > 1 ^&& age_s > 1\""),
                    "'when' in exit of state 'x' of liaison 'l' has a '&&'", "write 'and'"},
         BadLiaison{when("\"0 < elongation_m ^< 1\""),
@@ -198,13 +199,36 @@ INSTANTIATE_TEST_SUITE_P(
                    "'kind' in dissipation of liaison 'l' must be one of table, power, got 'rings'",
                    ""},
         BadLiaison{scene_of("  l: {elasticity: \"500 * ^elongation\"}\n"),
-                   "elasticity of liaison 'l' does not know 'elongation'",
+                   "elasticity of liaison 'l' names 'elongation', which is no quantity and no "
+                   "parameter",
                    "did you mean 'elongation_m'?"},
-        BadLiaison{scene_of("  l: {elasticity: \"500 * (elongation_m^\"}\n"),
-                   "elasticity of liaison 'l' has a bracket without its partner", ""},
+        BadLiaison{scene_of("  l: {elasticity: \"500 * ^(elongation_m\"}\n"),
+                   "elasticity of liaison 'l' has a '(' that is never closed", ""},
         BadLiaison{scene_of("  l: {elasticity: \"elongation_m ^= 3\"}\n"),
-                   "elasticity of liaison 'l' does not expect '=' here",
-                   "to compare, write '=='"}));
+                   "elasticity of liaison 'l' has a '='", "to compare, write '=='"},
+        BadLiaison{scene_of("  l: {elasticity: \"elongation_m ^** 3\"}\n"),
+                   "elasticity of liaison 'l' has a '**'", "write '^'"},
+        BadLiaison{scene_of("  l: {elasticity: \"distance_m > 2 ^? 1 : 0\"}\n"),
+                   "elasticity of liaison 'l' has a '?'",
+                   "write if(condition, value, other value)"},
+        BadLiaison{scene_of("  l: {elasticity: \"if(speed_m_per_s > 1 ^|| distance_m > 2, 1, "
+                            "0)\"}\n"),
+                   "elasticity of liaison 'l' has a '||'", "write 'or'"},
+        BadLiaison{scene_of("  l: {elasticity: \"^if(distance_m > 2, 1)\"}\n"),
+                   "elasticity of liaison 'l' gives 'if' a wrong number of values",
+                   "write if(condition, value, other value)"},
+        BadLiaison{scene_of("  l: {elasticity: \"if(^distance_m, 1, 2)\"}\n"),
+                   "elasticity of liaison 'l' gives 'if' a number, it wants a comparison", ""},
+        BadLiaison{scene_of("  l: {elasticity: ^distance_m > 2}\n"),
+                   "elasticity of liaison 'l' must be a number, got a comparison",
+                   "write if(..., 1, 0)"},
+        BadLiaison{scene_of("  l: {elasticity: 2 * ^force_n}\n"),
+                   "elasticity of liaison 'l' cannot ask for 'force_n'",
+                   "it may ask for distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg"},
+        BadLiaison{scene_of("  l: {dissipation: \"if(^rising(distance_m), 1, 0)\"}\n"),
+                   "dissipation of liaison 'l' cannot ask for 'rising' or 'falling'",
+                   "it may ask for distance_m, elongation_m, speed_m_per_s, mass_a_kg, "
+                   "mass_b_kg"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Circles, BadLiaisons,

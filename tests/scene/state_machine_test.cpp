@@ -196,15 +196,67 @@ TEST(Law, OfEveryKindIsRead) {
 TEST(Law, OfAFreeExpressionIsItsValue) {
   const engine::NetworkDescription network = network_of(
       "  l:\n    parameters: {k: 500}\n"
-      "    elasticity: \"k * elongation_m + 2e6 * elongation_m^3 - (distance_m > 2 ? 1 : 0)\"\n"
+      "    elasticity: \"k * elongation_m + 2e6 * elongation_m^3 - if(distance_m > 2, 1, 0)\"\n"
       "    dissipation: 3 * speed_m_per_s * mass_a_kg\n",
       "  - {liaison: l, between: [wall, bob]}\n");
   const engine::LinkState& state = network.state_machines.at(0).states[0];
-  ASSERT_EQ(state.elasticity.kind, engine::Law::Kind::kFunction);
-  const engine::LinkFunction& pull = *state.elasticity.function;
-  EXPECT_NEAR(pull(1.0, 0.1, 0.0, 0.0, 0.0), 500 * 0.1 + 2e6 * 0.001, 1e-9);
-  EXPECT_NEAR(pull(3.0, 0.1, 0.0, 0.0, 0.0), 500 * 0.1 + 2e6 * 0.001 - 1.0, 1e-9);
-  EXPECT_EQ((*state.dissipation.function)(1.0, 0.1, 2.0, 4.0, 0.0), 24.0);
+  ASSERT_EQ(state.elasticity.kind, engine::Law::Kind::kExpression);
+  const auto pull = [&](double distance, double elongation) {
+    return engine::expression_pull(state.elasticity.expression, distance, elongation, 0.0, 0.0,
+                                   0.0);
+  };
+  EXPECT_NEAR(pull(1.0, 0.1), 500 * 0.1 + 2e6 * 0.001, 1e-9);
+  EXPECT_NEAR(pull(3.0, 0.1), 500 * 0.1 + 2e6 * 0.001 - 1.0, 1e-9);
+  EXPECT_EQ(engine::expression_pull(state.dissipation.expression, 1.0, 0.1, 2.0, 4.0, 0.0), 24.0);
+}
+
+/// The pull of an expression at a distance of 2 m, an elongation of 0.5 m and a speed of -3 m/s.
+double pull_of_text(const std::string& text, const std::string& parameters = "{}") {
+  const engine::NetworkDescription network =
+      network_of("  l:\n    parameters: " + parameters + "\n    elasticity: \"" + text + "\"\n",
+                 "  - {liaison: l, between: [wall, bob]}\n");
+  return engine::expression_pull(network.state_machines.at(0).states[0].elasticity.expression, 2.0,
+                                 0.5, -3.0, 7.0, 0.0);
+}
+
+TEST(Law, KnowsPowersChoicesAndFunctions) {
+  const std::vector<std::pair<std::string, double>> expected{
+      {"-distance_m^2", -4.0},
+      {"distance_m^3^2", 512.0},
+      {"(distance_m^3)^2", 64.0},
+      {"distance_m^-2", 0.25},
+      {"2 * distance_m^-3 * 4", 1.0},
+      {"4^elongation_m", 2.0},
+      {"4^0.5 * distance_m", 4.0},
+      {"elongation_m^1.5", std::pow(0.5, 1.5)},
+      {"2^3 * mass_a_kg", 56.0},
+      {"if(speed_m_per_s > 0, 1, 2) * distance_m", 4.0},
+      {"if(speed_m_per_s < 0 and not distance_m > 5, 4, 3)", 4.0},
+      {"sign(speed_m_per_s) * 4", -4.0},
+      {"exp(elongation_m)", std::exp(0.5)},
+      {"log(distance_m)", std::log(2.0)},
+      {"sin(speed_m_per_s)", std::sin(-3.0)},
+      {"cos(speed_m_per_s)", std::cos(-3.0)},
+      {"tanh(elongation_m)", std::tanh(0.5)},
+      {"min(distance_m, 4, speed_m_per_s)", -3.0},
+      {"max(distance_m, 4) + abs(speed_m_per_s) + sqrt(4)", 9.0},
+      {"log(speed_m_per_s)", 0.0},
+      {"1 / (distance_m - 2)", 0.0},
+  };
+  for (const auto& [text, pull] : expected) EXPECT_DOUBLE_EQ(pull_of_text(text), pull) << text;
+  EXPECT_DOUBLE_EQ(pull_of_text("p^elongation_m * distance_m^n", "{p: 4, n: 3}"), 16.0);
+}
+
+TEST(Law, IsPartOfTheFingerprint) {
+  const auto fingerprint = [](const std::string& text) {
+    return engine::Network(network_of("  l: {elasticity: \"" + text + "\"}\n",
+                                      "  - {liaison: l, between: [wall, bob]}\n"))
+        .fingerprint();
+  };
+  EXPECT_EQ(fingerprint("3 * elongation_m"), fingerprint("3*elongation_m"));
+  EXPECT_NE(fingerprint("3 * elongation_m"), fingerprint("3.5 * elongation_m"));
+  EXPECT_NE(fingerprint("3 * elongation_m"), fingerprint("3 + elongation_m"));
+  EXPECT_NE(fingerprint("elongation_m^2"), fingerprint("elongation_m^3"));
 }
 
 TEST(Liaison, MayBeAMaxwellElement) {

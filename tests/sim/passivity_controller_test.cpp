@@ -273,22 +273,15 @@ TEST(PassivityController, AHandThatGrowsStiffAfterLongPlayIsDampedUntilItIsSoftA
   EXPECT_EQ(loop.passivity_ticks(), of_soft);
 }
 
-/// A spring that the engine does not know for one.
-class HiddenSpring : public engine::LinkFunction {
- public:
-  double operator()(double, double elongation, double, double, double) const noexcept override {
-    return 2000.0 * elongation;
-  }
-};
-
 TEST(PassivityController, WhatALawTakesAndGivesBackCountsOnce) {
   for (const bool damped : {false, true}) {
     scene::Scene scene = bare_scene(1);
     engine::StateMachine state_machine;
     state_machine.name = "hidden";
     state_machine.states.resize(1);
-    state_machine.states[0].elasticity.kind = engine::Law::Kind::kFunction;
-    state_machine.states[0].elasticity.function = std::make_shared<HiddenSpring>();
+    // a spring that the engine does not know for one
+    state_machine.states[0].elasticity =
+        test::expression_law(2000.0 * test::q(engine::Quantity::kElongation));
     scene.network.state_machines = {state_machine};
     scene.network.links = {{0, 1, 0.0, 0.5, 0.0}};
     scene.network.state_links = {{0, 1, 0, 0.0}};

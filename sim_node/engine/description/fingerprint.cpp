@@ -48,6 +48,7 @@ class Fingerprint {
     add_all(law.table.at);
     add_all(law.table.value);
     add_all(law.rings);
+    if (law.kind == Law::Kind::kExpression) add_all(law.expression.code);
   }
   void add(const LinkState& state) {
     add(state.stiffness);

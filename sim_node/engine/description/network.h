@@ -126,7 +126,7 @@ class Network {
   std::size_t link_count() const noexcept { return description_.links.size(); }
 
   /// 64-bit hash of the whole description: equal for networks assembled from the same values in the
-  /// same order. Of a LinkFunction it knows only that there is one.
+  /// same order.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
  private:

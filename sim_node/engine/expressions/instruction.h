@@ -55,14 +55,25 @@ enum class Operation : std::uint8_t {
   kNot,
   kRising,  ///< 1 when the value is greater than one step before, else 0; 0 in the first step in
             ///< which a state's exits are tested; remembers the value in Instruction::slot
-  kFalling
+  kFalling,
+  kSelect,  ///< of three values, the lowest on the stack a truth: the middle one when it is so,
+            ///< else the upper one
+  kSign,    ///< of one value: -1 or 1; zero and NaN stay what they are
+  kExp,     ///< of one value, as the rest but kPower, see elementary_functions.h
+  kLog,
+  kSin,
+  kCos,
+  kTanh,
+  kPower,      ///< of two values, the lower on the stack to the power of the upper
+  kWholePower  ///< to the power of Instruction::constant, a whole number of at most
+               ///< kMaxWholePower
 };
-inline constexpr std::size_t kOperationCount = 22;
+inline constexpr std::size_t kOperationCount = 31;
 
 struct Instruction {
   Operation operation = Operation::kConstant;
   Quantity quantity = Quantity::kDistance;
-  double constant = 0.0;
+  double constant = 0.0;   ///< of kConstant and kWholePower
   std::uint32_t slot = 0;  ///< of kRising and kFalling: where the link keeps the last value; not
                            ///< shared by two instructions of one state's exits
 };

@@ -1,6 +1,7 @@
 // sim_node/engine/expressions/program.h -- an expression over a link, compiled.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -25,11 +26,22 @@ void check_program(const Program& program, const std::string& name);
 std::size_t operand_count(Operation operation) noexcept;
 /// Whether it is kRising or kFalling, which compare with the step before.
 bool is_edge(Operation operation) noexcept;
-/// What an operation makes of one value or of two, the lower on the stack first; 0 for trends and
-/// for those that take none.
-double apply(Operation operation, double a, double b = 0.0) noexcept;
+/// What an instruction makes of its operands, the lowest on the stack first, with the bits that the
+/// kernels find. Precondition: it is neither an edge nor one without operands.
+double apply(const Instruction& instruction, const double* operands) noexcept;
 
 /// Whether the program asks for this quantity.
 bool asks_for(const Program& program, Quantity quantity) noexcept;
+/// True when `rising` or `falling` stand in it.
+bool has_edge(const Program& program) noexcept;
+
+/// What a program may ask of a link, by Quantity.
+using LinkQuantities = std::array<double, kQuantityCount>;
+
+/// The value of a program for one link. Precondition: well-formed.
+/// @param before  the same link a moment earlier, for `rising` and `falling`; may be null
+/// @param edge    what `rising` and `falling` are without it
+double value_of(const Program& program, const LinkQuantities& now,
+                const LinkQuantities* before = nullptr, double edge = 0.0) noexcept;
 
 }  // namespace cordis::engine

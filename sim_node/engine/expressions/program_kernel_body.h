@@ -1,6 +1,7 @@
 // sim_node/engine/expressions/program_kernel_body.h -- the value of a program for 8 rows at a time.
 #pragma once
 
+#include "sim_node/engine/expressions/elementary_functions.h"
 #include "sim_node/engine/expressions/program_term.h"
 #include "sim_node/engine/simd/lane_batch.h"
 
@@ -10,6 +11,7 @@ template <class Lanes>
 class ProgramLoop {
   using Row = typename Lanes::Row;
   using Batch = LaneBatch<Lanes>;
+  using Functions = ElementaryFunctions<Lanes>;
 
  public:
   /// One step per instruction, none of them depending on a value. Precondition: well-formed.
@@ -34,7 +36,20 @@ class ProgramLoop {
         case Operation::kAbs:
         case Operation::kSqrt:
         case Operation::kNot:
-          change_top(instruction.operation, depth - 1);
+        case Operation::kSign:
+        case Operation::kWholePower:
+          change_top(instruction, depth - 1);
+          break;
+        case Operation::kExp:
+        case Operation::kLog:
+        case Operation::kSin:
+        case Operation::kCos:
+        case Operation::kTanh:
+          call_function(instruction.operation, depth - 1);
+          break;
+        case Operation::kSelect:
+          depth -= 2;
+          choose(depth - 1);
           break;
         case Operation::kRising:
         case Operation::kFalling:
@@ -66,17 +81,72 @@ class ProgramLoop {
     value_[place] = own_[place];
   }
 
-  void change_top(Operation operation, std::size_t place) noexcept {
-    switch (operation) {
+  void change_top(const Instruction& instruction, std::size_t place) noexcept {
+    switch (instruction.operation) {
       case Operation::kNegate:
         return one(place, [](Row u) { return -u; });
       case Operation::kAbs:
         return one(place, [](Row u) { return Lanes::magnitude(u); });
       case Operation::kSqrt:
         return one(place, [](Row u) { return Lanes::sqrt(u); });
+      case Operation::kSign:
+        return one(place, [](Row u) {
+          const Row below = Lanes::select(Lanes::less(u, Lanes::zero()), Lanes::every(-1.0), u);
+          return Lanes::select(Lanes::less(Lanes::zero(), u), Lanes::every(1.0), below);
+        });
+      case Operation::kWholePower:
+        return raise(instruction.constant, place);
       default:
         return one(place, [](Row u) { return truth(Lanes::equal(u, Lanes::zero())); });
     }
+  }
+
+  /// The multiplications of Functions::whole_power.
+  void raise(double exponent, std::size_t place) noexcept {
+    const auto factors = static_cast<std::uint32_t>(exponent < 0.0 ? -exponent : exponent);
+    one(place, [=](Row base) {
+      Row power = Lanes::every(1.0);
+      for (std::uint32_t left = factors; left != 0; left >>= 1) {
+        if ((left & 1U) != 0) power = power * base;
+        base = base * base;
+      }
+      return exponent < 0.0 ? Lanes::every(1.0) / power : power;
+    });
+  }
+
+  template <class Function>
+  void each_value(std::size_t place, Function function) noexcept {
+    for (std::size_t i = 0; i < Batch::kRows; ++i) own_[place][i] = function(value_[place][i]);
+    value_[place] = own_[place];
+  }
+
+  void call_function(Operation operation, std::size_t place) noexcept {
+    switch (operation) {
+      case Operation::kExp:
+        return each_value(place, Functions::exp);
+      case Operation::kLog:
+        return each_value(place, Functions::log);
+      case Operation::kSin:
+        return each_value(place, Functions::sin);
+      case Operation::kCos:
+        return each_value(place, Functions::cos);
+      default:
+        return each_value(place, Functions::tanh);
+    }
+  }
+
+  void choose(std::size_t place) noexcept {
+    Batch::each(
+        own_[place], [](Row which, Row u, Row v) { return Lanes::select(is_true(which), u, v); },
+        value_[place], value_[place + 1], value_[place + 2]);
+    value_[place] = own_[place];
+  }
+
+  void power(std::size_t place) noexcept {
+    for (std::size_t i = 0; i < Batch::kRows; ++i) {
+      own_[place][i] = Functions::power(value_[place][i], value_[place + 1][i]);
+    }
+    value_[place] = own_[place];
   }
 
   void join(Operation operation, std::size_t place) noexcept {
@@ -93,6 +163,8 @@ class ProgramLoop {
         return two(place, [](Row u, Row v) { return u * v; });
       case Operation::kDivide:
         return two(place, [](Row u, Row v) { return u / v; });
+      case Operation::kPower:
+        return power(place);
       case Operation::kLess:
         return two(place, [](Row u, Row v) { return truth(Lanes::less(u, v)); });
       case Operation::kLessOrEqual:

@@ -16,10 +16,6 @@ constexpr double kMinCarried = 0.9;  // of the weight
 constexpr double kShare = 0.25;      // of the tolerance, for one mass in one step
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double dot(const Vec3& u, const Vec3& v) noexcept {
-  return u.x() * v.x() + u.y() * v.y() + u.z() * v.z();
-}
-
 double square_of(const Vec3& vector) noexcept {
   return dot(vector, vector);
 }
@@ -62,7 +58,7 @@ double min_slope(const Law& law, double tolerance) {
       }
       return least < kInfinity ? least : 0.0;
     case Law::Kind::kNone:
-    case Law::Kind::kFunction:
+    case Law::Kind::kExpression:
       break;
   }
   return 0.0;

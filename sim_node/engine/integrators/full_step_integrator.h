@@ -19,7 +19,9 @@ class FullStepIntegrator : public Integrator {
   const double* take_state(WorldState& world, const double* state) noexcept final;
 
  protected:
-  explicit FullStepIntegrator(std::size_t mat_count) : memory_(4 * mat_count, 0.0) {}
+  /// @param more  values to be remembered besides one vector for each MAT
+  explicit FullStepIntegrator(std::size_t mat_count, std::size_t more = 0)
+      : memory_(4 * mat_count + more, 0.0) {}
 
   /// Enters the works that were pending, and moves the ports.
   void begin_step(WorldState& world, StepEnergy& energy) noexcept;
@@ -34,7 +36,7 @@ class FullStepIntegrator : public Integrator {
   /// After the MATs have moved.
   void end_step(WorldState& world) noexcept;
 
-  AlignedVector<double> memory_;  // 4 x N
+  AlignedVector<double> memory_;  // 4 x N, and more
   StepEnergy pending_;            // works after the moment of the last forces
   bool started_ = false;          // a step has been done
 };

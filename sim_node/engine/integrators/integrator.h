@@ -8,7 +8,7 @@
 
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/description/network.h"
-#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
 
 namespace cordis::engine {

@@ -16,7 +16,7 @@ const char* not_a_potential(const StateMachine& state_machine) {
   const LinkState& state = state_machine.states[0];
   if (state.viscosity > 0.0 || state.dissipation.kind != Law::Kind::kNone) return "viscosity";
   if (std::isfinite(state.force_limit)) return "a force limit";
-  if (state.elasticity.kind == Law::Kind::kFunction) return "a free expression";
+  if (state.elasticity.kind == Law::Kind::kExpression) return "a free expression";
   return nullptr;
 }
 
@@ -101,7 +101,7 @@ std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
     const bool freezes = network.integrator == IntegratorKind::kCordis ||
                          network.integrator == IntegratorKind::kLeapfrog;
     if (!freezes) return IntegratorRefusal{"freezing", {}};
-    if (damps_in_sweeps(network) || solves_stiff_friction(network)) {
+    if (damps_implicitly(network) || solves_stiff_friction(network)) {
       return IntegratorRefusal{"freezing together with viscosities above Z dt / m = 0.3", {}};
     }
   }
@@ -138,7 +138,17 @@ double largest_extrapolated_step(const NetworkDescription& network) {
   return kMaxExtrapolatedViscosity / most;
 }
 
-bool damps_in_sweeps(const NetworkDescription& network) {
+double largest_damping(const NetworkDescription& network) {
+  return kMaxExtrapolatedViscosity * network.step / largest_extrapolated_step(network);
+}
+
+double implicit_damping_limit(double viscosity) noexcept {
+  constexpr double kQ = kImplicitDampingShare * kImplicitDampingShare;
+  return 2.0 * (2.0 + 2.0 * kQ * viscosity + kQ * viscosity * viscosity) /
+         (1.0 + 2.0 * kQ * viscosity);
+}
+
+bool damps_implicitly(const NetworkDescription& network) {
   return network.integrator == IntegratorKind::kLeapfrog &&
          network.step > largest_extrapolated_step(network);
 }

@@ -32,7 +32,7 @@ inline constexpr double kSymplectic4Limit = 3.1634;
 /// Trace of what a period of `symplectic4` makes of an undamped vibration, K' = (w dt)^2.
 double symplectic4_trace(double stiffness) noexcept;
 
-/// The viscosity Z' = dt Z / m beyond which `leapfrog` takes the dampers apart from the rest.
+/// The viscosity Z' = dt Z / m beyond which `leapfrog` solves dampers implicitly.
 inline constexpr double kMaxExtrapolatedViscosity = 0.3;
 
 /// The largest step [s] at which `leapfrog` feeds all dampers of the network an extrapolated
@@ -40,9 +40,21 @@ inline constexpr double kMaxExtrapolatedViscosity = 0.3;
 /// kMaxExtrapolatedViscosity. Infinite without dampers.
 double largest_extrapolated_step(const NetworkDescription& network);
 
-/// True if `leapfrog` damps the linear links and the medium of this network in sweeps of their own,
-/// each pair exactly: beyond largest_extrapolated_step. The step is then limited by their stiffness
-/// alone.
-bool damps_in_sweeps(const NetworkDescription& network);
+/// True if `leapfrog` solves the linear dampers and the medium of this network implicitly
+/// (ImplicitDamping): beyond largest_extrapolated_step. Then stiffness alone limits the step.
+bool damps_implicitly(const NetworkDescription& network);
+
+/// The coefficient of the implicit dampers of `leapfrog`: 1 - 1 / sqrt(2).
+inline constexpr double kImplicitDampingShare = 0.29289321881345247559915563789515;
+
+/// The stiffness K' = dt^2 K / m at which one mass with an implicit damper ends being stable,
+/// 2 (2 + 2 q Z' + q Z'^2) / (1 + 2 q Z') with q = kImplicitDampingShare^2. It is convex, 4 without
+/// a damper and below 4 + Z'.
+double implicit_damping_limit(double viscosity) noexcept;
+/// The least of them: below this stiffness every network of implicit dampers is stable.
+inline constexpr double kImplicitDampingLimit = 3.852;
+
+/// The largest Z' of a network of masses, linear links and medium at its step, as an edge bound.
+double largest_damping(const NetworkDescription& network);
 
 }  // namespace cordis::engine

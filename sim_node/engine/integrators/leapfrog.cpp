@@ -6,31 +6,28 @@
 #include "sim_node/engine/integrators/world_state.h"
 
 namespace cordis::engine {
-namespace {
-
-Eigen::Map<Vec3> column(AlignedVector<double>& columns, std::size_t mat) noexcept {
-  return Eigen::Map<Vec3>(columns.data() + 4 * mat);
-}
-
-}  // namespace
 
 Leapfrog::Leapfrog(const NetworkDescription& network)
-    : FullStepIntegrator(network.mats.size()),
-      sweeps_(damps_in_sweeps(network) ? std::make_unique<DampingSweeps>(network) : nullptr),
+    : FullStepIntegrator(network.mats.size(), 4 * network.mats.size() + 2),
+      damping_(damps_implicitly(network) ? std::make_unique<ImplicitDamping>(network) : nullptr),
       stiff_friction_(network),
-      velocity_(sweeps_ ? felt_.size() : 0, 0.0) {}
+      velocity_(4 * network.mats.size(), 0.0) {}
 
 void Leapfrog::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
-  world.add_frozen_forces(mats.force_columns());  // the delayed positions are x0 - dt v0
-  for (std::uint32_t i = 0; i < mats.count(); ++i) column(felt_, i) = mats.delayed(i);
-  world.outside.start(mats);
-  mats.start();
-  mats.set_forces_are_present(true);
-  if (sweeps_) {
+  if (damping_) {
     world.links.drop_viscosity();
     world.ties.drop_viscosity();
   }
+  world.add_frozen_forces(mats.force_columns());  // the delayed positions are x0 - dt v0
+  for (std::uint32_t i = 0; i < mats.count(); ++i) column(felt_, i) = mats.delayed(i);
+  world.outside.start(mats);
+  if (damping_) {
+    mats.clear_forces();
+  } else {
+    mats.start();
+  }
+  mats.set_forces_are_present(true);
   world.links.start();
   world.ties.start();
   world.state_links.start();
@@ -47,16 +44,17 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   stiff_friction_.begin_step(world);
   find_forces(world, felt_.data(), energy);
 
-  if (sweeps_) {
-    moved.non_finite_mats = advance_in_sweeps(world, energy);
+  if (damping_) {
+    moved.non_finite_mats = advance_damped(world, energy);
   } else {
+    memory_[2 * velocity_.size()] = 0.0;
     if (world.freezing) energy.dissipated += stop_what_rests(world);
     const AdvanceReport advance = mats.extrapolate(world.kernel, felt_);
     moved.non_finite_mats = advance.non_finite_mats;
     take_half(0.5 * advance.medium_work, energy);
   }
   pending_.port_work += world.outside.release(mats);
-  if (sweeps_) mats.add_forces(sweeps_->force());
+  if (damping_) mats.add_forces(damping_->force());
   end_step(world);
   return moved;
 }
@@ -73,7 +71,8 @@ double Leapfrog::stop_what_rests(WorldState& world) noexcept {
 /// A network that freezes has no links to be solved (refusal_of), whatever they are changed to.
 double Leapfrog::correct_forces(WorldState& world) noexcept {
   if (world.freezing) return 0.0;
-  return stiff_friction_.solve(world, felt_, sweeps_.get(), started_);
+  if (damping_) begin_damping(world);
+  return stiff_friction_.solve(world, felt_, damping_.get(), started_);
 }
 
 void Leapfrog::adopt(WorldState& world) noexcept {
@@ -87,38 +86,32 @@ void Leapfrog::feel_ports(const WorldState& world) noexcept {
   }
 }
 
-/// Half of the push, what dampers do in a period, the other half.
-std::uint32_t Leapfrog::advance_in_sweeps(WorldState& world, StepEnergy& energy) noexcept {
-  MatArray& mats = world.mats;
-  const double rate = 1.0 / world.network->step();
+void Leapfrog::begin_damping(WorldState& world) noexcept {
+  const MatArray& mats = world.mats;
   for (std::uint32_t i = 0; i < mats.count(); ++i) {
     const Vec3 before = started_ || !mats.is_mass(i) ? mats.delayed_at_rest(i) : column(felt_, i);
-    column(velocity_, i) = rate * (mats.position(i) - before);
+    column(velocity_, i) = mats.position(i) - before;
   }
   for (const std::uint32_t port : world.outside.ports()) {
-    column(velocity_, port) = rate * (mats.position(port) - mats.delayed(port));
+    column(velocity_, port) = mats.position(port) - mats.delayed(port);
   }
-  sweeps_->clear_force();
-  if (started_) {  // before step 0 nothing is known to have pushed
-    mats.kick(world.kernel, 0.5, velocity_);
-    const DampingSweeps::Loss loss = sweeps_->sweep(mats, false, velocity_);
-    energy.dissipated += loss.dissipated;
-    energy.port_work += loss.port_work;
-  }
-  felt_ = velocity_;  // v(n), of which follows what is felt; the same size: no allocation
-  const DampingSweeps::Loss loss = sweeps_->sweep(mats, true, velocity_);
-  pending_.dissipated += loss.dissipated;
-  pending_.port_work += loss.port_work;
-  mats.kick(world.kernel, 0.5, velocity_);
-  const double dt = world.network->step();
-  for (double& value : velocity_) value *= dt;  // displacements now
-  const std::uint32_t non_finite = mats.move_by(velocity_);
+  damping_->begin_step(mats, velocity_, has_last_kick() ? last_kick() : nullptr);
+}
 
-  for (std::uint32_t i = 0; i < mats.count(); ++i) {
-    const Vec3 moved = mats.position(i) - mats.delayed_at_rest(i);
-    column(felt_, i) = mats.delayed_at_rest(i) - (moved - dt * column(felt_, i));
-  }
-  return non_finite;
+/// Half of the work of dampers lies before the moment of the forces; in the first step all of it
+/// comes after.
+std::uint32_t Leapfrog::advance_damped(WorldState& world, StepEnergy& energy) noexcept {
+  damping_->find_velocities(world.mats, nullptr);
+  const ImplicitDamping::Work work = damping_->advance(world.mats, felt_, !started_);
+  const double before = started_ ? 0.5 : 0.0;
+  energy.dissipated += before * work.dissipated;
+  energy.port_work += before * work.port_work;
+  pending_.dissipated += (1.0 - before) * work.dissipated;
+  pending_.port_work += (1.0 - before) * work.port_work;
+  std::copy(damping_->kick().begin(), damping_->kick().end(), last_kick());
+  memory_[memory_.size() - 2] = 1.0;
+  memory_.back() = work.kinetic;
+  return work.non_finite_mats;
 }
 
 /// dt v at the moment of the last forces [m].
@@ -130,6 +123,7 @@ Vec3 Leapfrog::centred_displacement(const WorldState& world, std::uint32_t mat) 
 }
 
 Energy Leapfrog::energy(WorldState& world) const noexcept {
+  if (damping_ && has_last_kick()) return world.energy_at_full_step(memory_.back());
   const double rate = 1.0 / world.network->step();
   return world.energy_at_full_step(
       [&](std::uint32_t mat) { return Vec3(rate * centred_displacement(world, mat)); });
@@ -141,7 +135,8 @@ Vec3 Leapfrog::velocity(const WorldState& world, std::uint32_t mat) const noexce
 }
 
 void Leapfrog::add_to(StateHash& hash) const noexcept {
-  for (const double value : felt_) hash.add(value);
+  const std::size_t size = damping_ ? memory_.size() : velocity_.size();
+  for (std::size_t i = 0; i < size; ++i) hash.add(memory_[i]);
 }
 
 }  // namespace cordis::engine

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/integrators/damping_sweeps.h"
 #include "sim_node/engine/integrators/full_step_integrator.h"
+#include "sim_node/engine/integrators/implicit_damping.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
 
@@ -17,15 +17,16 @@ namespace cordis::engine {
 /// v(n-3/2). With it every viscosity, of links, of states, of sets, is of second order. Stable
 /// while 4 M - dt^2 K - 4 dt Z > 0.
 ///
-/// Where linear links or the medium are too viscous for that (damps_in_sweeps), their viscosities
-/// act in DampingSweeps between the two halves of the push by all other forces:
-/// 4 M - dt^2 K > 0 is enough then. Where the viscosity of state links is (friction, bows), they
-/// are solved one by one (StiffFriction), with the same limit. Sets are always extrapolated.
+/// Where linear links or the medium are too viscous for that (damps_implicitly), ImplicitDamping
+/// solves them, and 3.852 M - dt^2 K > 0 is enough. Where the viscosity of state links is (friction,
+/// bows), they are solved one by one (StiffFriction), with the same limit. Sets are always
+/// extrapolated.
 ///
 /// Ports are given, so their velocity is that of the last period; Maxwell elements answer to the
 /// growth in the last period. The account belongs to the moment of the last forces: kinetic energy
-/// of the centred velocity (x(n+1) - x(n-1)) / 2 dt, all else in closed form; what finite steps do
-/// to it is the residual, of second order.
+/// of the centred velocity (x(n+1) - x(n-1)) / 2 dt, with implicit dampers the mean of those of the
+/// two velocities; all else in closed form. What finite steps do to it is the residual, of second
+/// order; implicit dampers, whose work is that of their forces, leave none.
 class Leapfrog final : public FullStepIntegrator {
  public:
   explicit Leapfrog(const NetworkDescription& network);
@@ -42,13 +43,18 @@ class Leapfrog final : public FullStepIntegrator {
   double correct_forces(WorldState& world) noexcept override;
   double stop_what_rests(WorldState& world) noexcept;
   void feel_ports(const WorldState& world) noexcept;
-  std::uint32_t advance_in_sweeps(WorldState& world, StepEnergy& energy) noexcept;
+  void begin_damping(WorldState& world) noexcept;
+  std::uint32_t advance_damped(WorldState& world, StepEnergy& energy) noexcept;
+  double* last_kick() noexcept { return memory_.data() + velocity_.size(); }
+  bool has_last_kick() const noexcept { return memory_[2 * velocity_.size()] != 0.0; }
   Vec3 centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept;
 
-  AlignedVector<double>& felt_ = memory_;  // x(n) - dt v(n) [m]
-  std::unique_ptr<DampingSweeps> sweeps_;  // none: dampers see the extrapolated velocity
+  // memory_: felt, 4 x N; then of implicit dampers the kick of the last step, 4 x N, 1 if there is
+  // one, and the kinetic energy of the moment of the last forces [J].
+  AlignedVector<double>& felt_ = memory_;     // x(n) - dt v(n) [m]
+  std::unique_ptr<ImplicitDamping> damping_;  // none: dampers see the extrapolated velocity
   StiffFriction stiff_friction_;
-  AlignedVector<double> velocity_;  // of the step in progress, of sweeps [m/s]
+  AlignedVector<double> velocity_;  // dt v(n-1/2) [m]
 };
 
 }  // namespace cordis::engine

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim_node/engine/integrators/damping_sweeps.h"
+#include "sim_node/engine/integrators/implicit_damping.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/world_state.h"
 
@@ -28,10 +28,12 @@ double steepest_of_table(const Table& table) noexcept {
   return most;
 }
 
-double steepest_of_function(const LinkFunction& law) noexcept {
+double steepest_of(const Program& expression) noexcept {
   constexpr int kParts = 64;
   constexpr double kStep = 2.0 * kMaxSpeed / kParts;
-  const auto pull = [&](int i) { return law(1.0, 0.0, kStep * i - kMaxSpeed, 1.0, 1.0); };
+  const auto pull = [&](int i) {
+    return expression_pull(expression, 1.0, 0.0, kStep * i - kMaxSpeed, 1.0, 1.0);
+  };
   double most = 0.0;
   for (int i = 1; i <= kParts; ++i) most = std::max(most, (pull(i) - pull(i - 1)) / kStep);
   return std::isfinite(most) ? most : kUnbounded;
@@ -45,8 +47,8 @@ double steepest(const Law& law) noexcept {
     case Law::Kind::kPower:
       if (law.coefficient <= 0.0) return 0.0;
       return law.exponent < 1.0 ? kUnbounded : law.coefficient * law.exponent;
-    case Law::Kind::kFunction:
-      return steepest_of_function(*law.function);
+    case Law::Kind::kExpression:
+      return steepest_of(law.expression);
     case Law::Kind::kNone:
     case Law::Kind::kLennardJones:
     case Law::Kind::kRings:
@@ -298,17 +300,17 @@ void StiffFriction::prepare(WorldState& world, const Around& around, Solved& sol
 double StiffFriction::free_speed(const WorldState& world, const Around& around,
                                  const Solved& solved) const noexcept {
   const StateLink& ends = world.description().state_links[solved.link];
+  if (around.damping != nullptr) {
+    const double speed = around.damping->elongation(ends.mat_a, ends.mat_b, solved.axis) / dt_;
+    return speed + solved.half_mobility * solved.pull;
+  }
   const double part = around.started ? 0.5 : 1.0;
   const auto moved = [&](std::uint32_t mat) {
     Vec3 moving = world.mats.position(mat) - world.mats.delayed(mat);
     if (!world.mats.is_mass(mat)) return moving;
     Vec3 force = world.mats.force(mat) + world.outside.external_force(mat);
-    if (around.sweeps != nullptr) {
-      force += Vec3::Map(around.sweeps->force().data() + 4 * std::size_t{mat});
-    } else {
-      force += world.mats.force_of_medium(
-          mat, Vec3::Map(around.extrapolated.data() + 4 * std::size_t{mat}));
-    }
+    force += world.mats.force_of_medium(
+        mat, Vec3::Map(around.extrapolated.data() + 4 * std::size_t{mat}));
     moving += part * world.mats.pushed_by(mat, force);
     return moving;
   };
@@ -335,21 +337,49 @@ double StiffFriction::solve_one(const WorldState& world, const Solved& solved, d
   return speed;
 }
 
+/// Counts the pulls as constant over the period, and finds the velocities with them.
+void StiffFriction::find_damped_velocities(WorldState& world, ImplicitDamping& damping) noexcept {
+  add_to(damping, world, 1.0);
+  damping.find_velocities(world.mats, &world.outside);
+  add_to(damping, world, -1.0);
+}
+
+/// Adds a part of the present pulls to the forces that are constant over the period.
+void StiffFriction::add_to(ImplicitDamping& damping, const WorldState& world,
+                           double part) const noexcept {
+  for (const Solved& solved : solved_) {
+    if (solved.rests) continue;
+    const StateLink& ends = world.description().state_links[solved.link];
+    damping.add_constant_force(ends.mat_a, part * solved.pull * solved.axis);
+    damping.add_constant_force(ends.mat_b, -part * solved.pull * solved.axis);
+  }
+}
+
 double StiffFriction::solve(WorldState& world, const AlignedVector<double>& extrapolated,
-                            const DampingSweeps* sweeps, bool started) noexcept {
-  const Around around{extrapolated, sweeps, started};
+                            ImplicitDamping* damping, bool started) noexcept {
+  if (solved_.empty()) return 0.0;
+  const Around around{extrapolated, damping, started};
   for (Solved& solved : solved_) prepare(world, around, solved);
+  if (damping != nullptr) find_damped_velocities(world, *damping);
   constexpr double kSettled = 1e-10;  // of the largest pull
-  for (int round = 0; round < (share_masses_ ? kMaxRounds : 1); ++round) {
+  // Dampers couple all links.
+  const bool in_turn = share_masses_ || (damping != nullptr && solved_.size() > 1);
+  const double part = started || damping != nullptr ? 1.0 : 0.5;
+  for (int round = 0; round < (in_turn ? kMaxRounds : 1); ++round) {
     double largest = 0.0;
     double changed = 0.0;
     for (Solved& solved : solved_) {
       if (solved.rests) continue;
+      if (damping != nullptr) {
+        const StateLink& ends = world.description().state_links[solved.link];
+        solved.half_mobility = damping->find_response(ends.mat_a, ends.mat_b, solved.axis) / dt_;
+      }
       double pull = solved.pull;
       const double free = free_speed(world, around, solved);
       const double speed = solve_one(world, solved, free, pull);
       if (!std::isfinite(pull)) continue;
-      add_pull(world, solved, (started ? 1.0 : 0.5) * (pull - solved.pull));
+      add_pull(world, solved, part * (pull - solved.pull));
+      if (damping != nullptr) damping->add_response(pull - solved.pull);
       largest = std::max(largest, std::abs(pull));
       changed = std::max(changed, std::abs(pull - solved.pull));
       solved.pull = pull;
@@ -357,6 +387,7 @@ double StiffFriction::solve(WorldState& world, const AlignedVector<double>& extr
     }
     if (!(changed > kSettled * largest)) break;
   }
+  if (damping != nullptr) add_to(*damping, world, 1.0);
   double power = 0.0;
   for (const Solved& solved : solved_) {
     if (solved.rests) continue;

@@ -11,7 +11,7 @@
 
 namespace cordis::engine {
 
-class DampingSweeps;
+class ImplicitDamping;
 struct WorldState;
 
 /// For each state link of a network the largest step [s] at which `leapfrog` feeds its viscosity an
@@ -34,7 +34,9 @@ bool solves_stiff_friction(const NetworkDescription& network);
 /// Where a law falls with the speed there may be three roots: the one on the side and branch of the
 /// extrapolated speed is taken, so that what sticks goes on sticking until it cannot. Links that
 /// share a mass are solved in turn, each with the last pulls of the others, until these no longer
-/// change, at most kMaxRounds times. In the step in which a state is entered its speed is 0, as
+/// change, at most kMaxRounds times. Where linear dampers are implicit (ImplicitDamping), u is their
+/// w, and 1/m its answer to the pull through all of them; the pulls are constant over the period,
+/// which with dampers of Z dt / m above 1 makes what drags on friction of first order. In the step in which a state is entered its speed is 0, as
 /// everywhere.
 class StiffFriction {
  public:
@@ -51,17 +53,17 @@ class StiffFriction {
   void begin_step(const WorldState& world) noexcept;
   /// Replaces the pulls of these links, computed with the extrapolated speed, by the solved ones.
   /// @param extrapolated     x(n) - dt v(n), extrapolated, 4 x N [m]
-  /// @param sweeps   what damps the linear links; null when they are among the forces
+  /// @param damping  of the linear links, its step begun; null: they are among the forces
   /// @param started  a step has been done
   /// @return half of what that changes in the energy that viscosity takes in a period [J]
   /// Real time: O(links to be solved * kMaxRounds), no allocation.
   double solve(WorldState& world, const AlignedVector<double>& extrapolated,
-               const DampingSweeps* sweeps, bool started) noexcept;
+               ImplicitDamping* damping, bool started) noexcept;
 
  private:
   struct Solved {
     std::uint32_t link = 0;
-    double half_mobility = 0.0;  // dt / 2 (1/m_a + 1/m_b) [s/kg]
+    double half_mobility = 0.0;  // dt / 2 (1/m_a + 1/m_b), or that of implicit dampers [s/kg]
     double pull = 0.0;           // [N]
     double speed = 0.0;          // [m/s]
     double viscous_power = 0.0;  // of the pull with the extrapolated speed [W]
@@ -71,12 +73,14 @@ class StiffFriction {
   };
   struct Around {
     const AlignedVector<double>& extrapolated;
-    const DampingSweeps* sweeps;
+    ImplicitDamping* damping;
     bool started;
   };
 
   void prepare(WorldState& world, const Around& around, Solved& solved) noexcept;
   static void add_pull(WorldState& world, const Solved& solved, double pull) noexcept;
+  void find_damped_velocities(WorldState& world, ImplicitDamping& damping) noexcept;
+  void add_to(ImplicitDamping& damping, const WorldState& world, double part) const noexcept;
   double free_speed(const WorldState& world, const Around& around,
                     const Solved& solved) const noexcept;
   double solve_one(const WorldState& world, const Solved& solved, double free_speed,

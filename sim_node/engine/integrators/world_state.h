@@ -71,11 +71,18 @@ struct WorldState {
   template <class VelocityOf>
   Energy energy_at_full_step(VelocityOf velocity_of) noexcept {
     double kinetic = 0.0;
+    for (std::uint32_t i = 0; i < mats.count(); ++i) {
+      if (mats.is_mass(i))
+        kinetic += 0.5 * description().mats[i].mass * velocity_of(i).squaredNorm();
+    }
+    return energy_at_full_step(kinetic);
+  }
+  /// The same with the kinetic energy [J] given.
+  Energy energy_at_full_step(double kinetic) noexcept {
     double gravity = 0.0;
     for (std::uint32_t i = 0; i < mats.count(); ++i) {
       if (!mats.is_mass(i)) continue;
       const Mat& mat = description().mats[i];
-      kinetic += 0.5 * mat.mass * velocity_of(i).squaredNorm();
       gravity -= mat.mass * description().gravity_on(mat).dot(mats.position_of_forces(i));
     }
     return account.at_moment(kinetic, potential_energy(), gravity);

@@ -50,7 +50,41 @@ void check_rings(const Law& law, const std::string& name) {
   }
 }
 
+void check_expression(const Program& expression, const std::string& name) {
+  check_program(expression, name);
+  require(!has_edge(expression), name, "one without rising and falling");
+  for (const Instruction& instruction : expression.code) {
+    require(instruction.operation != Operation::kQuantity || is_known_to_laws(instruction.quantity),
+            name + ": quantity", "distance, elongation, speed, or the mass of an end");
+  }
+}
+
 }  // namespace
+
+bool is_known_to_laws(Quantity quantity) noexcept {
+  switch (quantity) {
+    case Quantity::kDistance:
+    case Quantity::kElongation:
+    case Quantity::kSpeed:
+    case Quantity::kMassA:
+    case Quantity::kMassB:
+      return true;
+    default:
+      return false;
+  }
+}
+
+double expression_pull(const Program& expression, double distance, double elongation, double speed,
+                       double mass_a, double mass_b) noexcept {
+  LinkQuantities link{};
+  link[static_cast<std::size_t>(Quantity::kDistance)] = distance;
+  link[static_cast<std::size_t>(Quantity::kElongation)] = elongation;
+  link[static_cast<std::size_t>(Quantity::kSpeed)] = speed;
+  link[static_cast<std::size_t>(Quantity::kMassA)] = mass_a;
+  link[static_cast<std::size_t>(Quantity::kMassB)] = mass_b;
+  const double pull = value_of(expression, link);
+  return std::isfinite(pull) ? pull : 0.0;
+}
 
 void check_elasticity(const Law& law, const std::string& name) {
   switch (law.kind) {
@@ -64,8 +98,8 @@ void check_elasticity(const Law& law, const std::string& name) {
       return check_lennard_jones(law, name);
     case Law::Kind::kRings:
       return check_rings(law, name);
-    case Law::Kind::kFunction:
-      return require(law.function != nullptr, name + ": function", "given");
+    case Law::Kind::kExpression:
+      return check_expression(law.expression, name + ": expression");
   }
   require(false, name + ": kind", "a known one");
 }

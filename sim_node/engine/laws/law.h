@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
+
+#include "sim_node/engine/expressions/program.h"
 
 namespace cordis::engine {
 
@@ -21,26 +22,6 @@ struct Ring {
   double radius = 0.0;     ///< [m], > 0
 };
 
-/// A law that is none of the kinds below, such as a compiled expression of the language.
-///
-/// Called once per link and step: must be quick, must not allocate, and should compute with + - * /
-/// and sqrt alone when its results are to be the same bits everywhere.
-class LinkFunction {
- public:
-  LinkFunction() = default;
-  LinkFunction(const LinkFunction&) = delete;
-  LinkFunction& operator=(const LinkFunction&) = delete;
-  virtual ~LinkFunction() = default;
-
-  /// @param distance    d [m], signed in 1 dimension
-  /// @param elongation  d - rest length [m]
-  /// @param speed       growth of the link [m/s]; 0 in the step in which its state is entered
-  /// @param mass_a      of the ends [kg]; 0 for a fixed point or a port mass
-  /// @return pull [N]; positive pulls the ends together.
-  virtual double operator()(double distance, double elongation, double speed, double mass_a,
-                            double mass_b) const noexcept = 0;
-};
-
 /// An elastic law gives a pull over the elongation or the distance, a viscous one over the speed.
 /// [Luc90 III.2.2 Modelisation of the material in its continuous behaviour]
 struct Law {
@@ -50,7 +31,7 @@ struct Law {
     kPower,         ///< coefficient * sign(e) * |e|^exponent, e the elongation, or the speed
     kLennardJones,  ///< slope of 4 depth ((s/d)^12 - (s/d)^6), s the diameter: elastic only
     kRings,         ///< sum over the rings, over the distance: elastic only
-    kFunction
+    kExpression     ///< over what an expression of a law may ask for
   };
 
   Kind kind = Kind::kNone;
@@ -61,7 +42,7 @@ struct Law {
   double diameter = 0.0;     ///< [m], > 0
   double cut = 0.0;          ///< distance from which on there is no force [m]; 0: everywhere
   std::vector<Ring> rings;
-  std::shared_ptr<const LinkFunction> function;
+  Program expression;  ///< of distance, elongation, speed and masses alone, without edges
 };
 
 inline constexpr double kMaxExponent = 16.0;
@@ -71,5 +52,17 @@ inline constexpr double kMaxExponent = 16.0;
 void check_elasticity(const Law& law, const std::string& name);
 /// The same for its viscosity.
 void check_dissipation(const Law& law, const std::string& name);
+
+/// True when an expression of a law may ask for the quantity.
+bool is_known_to_laws(Quantity quantity) noexcept;
+
+/// The pull [N] of an expression for one link; 0 where it is not finite.
+/// Precondition: checked as the expression of a law.
+/// @param distance    d [m], signed in 1 dimension
+/// @param elongation  d - rest length [m]
+/// @param speed       growth of the link [m/s]; 0 in the step in which its state is entered
+/// @param mass_a      of the ends [kg]; 0 for a fixed point or a port mass
+double expression_pull(const Program& expression, double distance, double elongation, double speed,
+                       double mass_a, double mass_b) noexcept;
 
 }  // namespace cordis::engine

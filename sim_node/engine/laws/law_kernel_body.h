@@ -3,6 +3,7 @@
 // Powers are made by multiplication and square root alone: those round the same everywhere.
 #pragma once
 
+#include "sim_node/engine/expressions/program_kernel_body.h"
 #include "sim_node/engine/laws/law_term.h"
 #include "sim_node/engine/simd/lane_batch.h"
 
@@ -12,7 +13,7 @@ namespace cordis::engine {
 struct LawArguments {
   const double* argument;    // elongation or speed: of a table or a power
   const double* distance;    // of Lennard-Jones and rings
-  const double* elongation;  // of a function
+  const double* elongation;  // of an expression, with those below and the distance
   const double* speed;
   const double* mass_a;
   const double* mass_b;
@@ -36,8 +37,8 @@ struct LawLoop {
         return add_lennard_jones(law, of.distance, pull);
       case LawCode::kRings:
         return add_rings(law, of.distance, pull);
-      case LawCode::kFunction:
-        return add_function(law, of, pull);
+      case LawCode::kExpression:
+        return add_expression(law, of, pull);
     }
   }
 
@@ -117,11 +118,22 @@ struct LawLoop {
     }
   }
 
-  static void add_function(const LawTerm& law, const LawArguments& of, double* pull) noexcept {
-    for (std::size_t i = 0; i < Batch::kRows; ++i) {
-      pull[i] += law.call(law.function, of.distance[i], of.elongation[i], of.speed[i], of.mass_a[i],
-                          of.mass_b[i]);
-    }
+  /// A value that is not finite counts as 0.
+  static void add_expression(const LawTerm& law, const LawArguments& of, double* pull) noexcept {
+    const double* quantity[kQuantityCount] = {};
+    quantity[static_cast<std::size_t>(Quantity::kDistance)] = of.distance;
+    quantity[static_cast<std::size_t>(Quantity::kElongation)] = of.elongation;
+    quantity[static_cast<std::size_t>(Quantity::kSpeed)] = of.speed;
+    quantity[static_cast<std::size_t>(Quantity::kMassA)] = of.mass_a;
+    quantity[static_cast<std::size_t>(Quantity::kMassB)] = of.mass_b;
+    ProgramLoop<Lanes> program;
+    const double* value = program.evaluate(law.expression, {quantity, nullptr}, 0);
+    const Row endless = Lanes::every(__builtin_huge_val());
+    const auto finite = [&](Row p, Row v) {
+      const auto is_finite = Lanes::less(Lanes::magnitude(v), endless);
+      return p + Lanes::select(is_finite, v, Lanes::zero());
+    };
+    Batch::each(pull, finite, pull, value);
   }
 };
 

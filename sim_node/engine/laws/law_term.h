@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sim_node/engine/expressions/program_term.h"
+
 namespace cordis::engine {
 
 /// Kinds of Law as the kernels see them.
-enum class LawCode : std::uint8_t { kNone, kTable, kPower, kLennardJones, kRings, kFunction };
+enum class LawCode : std::uint8_t { kNone, kTable, kPower, kLennardJones, kRings, kExpression };
 
 struct RingTerm {
   double stiffness;  // [N/m]
@@ -27,9 +29,7 @@ struct LawTerm {
   double attraction = 0.0;        // Lennard-Jones: 24 depth s^6 [J m^6]
   double repulsion = 0.0;         // 48 depth s^12 [J m^12]
   double cut = 0.0;               // [m]; infinity for none
-  double (*call)(const void* function, double distance, double elongation, double speed,
-                 double mass_a, double mass_b) noexcept = nullptr;
-  const void* function = nullptr;
+  ProgramTerm expression;
 };
 
 }  // namespace cordis::engine

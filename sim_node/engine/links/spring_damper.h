@@ -6,7 +6,7 @@
 
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/description/network.h"
-#include "sim_node/engine/matter/energy.h"
+#include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
 #include "sim_node/engine/matter/step_kernel.h"

@@ -50,7 +50,7 @@ struct StateTerm {
 
 /// 8 rows; every array holds 8 values and is 64-byte aligned.
 struct StateMachineRows {
-  // given: what does not depend on the state, and all that the states' programs and functions ask
+  // given: what does not depend on the state, and all that the states' programs ask
   // for (StateTable::needs); what nobody asks for may be null. quantity[kElongation], [kForce],
   // [kImpulse] and [kRestLength] are the arrays below.
   const double* quantity[kQuantityCount] = {};
@@ -93,7 +93,7 @@ struct PlainRows {
   const double* inverse = nullptr;               // of the distance, 0 while it is 0 [1/m]
   const double* elongation_increment = nullptr;  // [m]
   const double* rest_length = nullptr;           // [m]
-  const double* mass_a = nullptr;                // [kg]; may be null unless its law is a function
+  const double* mass_a = nullptr;                // [kg]; may be null unless its law asks for it
   const double* mass_b = nullptr;
   double rate = 0.0;                 // 1 / dt [1/s]
   double* factor = nullptr;          // pull / distance [N/m]

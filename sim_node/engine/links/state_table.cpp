@@ -14,10 +14,8 @@ namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-double call(const void* function, double distance, double elongation, double speed, double mass_a,
-            double mass_b) noexcept {
-  const auto& law = *static_cast<const LinkFunction*>(function);
-  return law(distance, elongation, speed, mass_a, mass_b);
+ProgramTerm ready(const Program& program) {
+  return {program.code.data(), program.code.size()};
 }
 
 }  // namespace
@@ -68,17 +66,12 @@ ReadyLaw ready(const Law& law) {
       made.term.count = made.rings.size();
       made.term.rings = made.rings.data();
       break;
-    case Law::Kind::kFunction:
-      made.term.code = LawCode::kFunction;
-      made.term.call = call;
-      made.term.function = law.function.get();
+    case Law::Kind::kExpression:
+      made.term.code = LawCode::kExpression;
+      made.term.expression = ready(law.expression);
       break;
   }
   return made;
-}
-
-ProgramTerm ready(const Program& program) {
-  return {program.code.data(), program.code.size()};
 }
 
 }  // namespace
@@ -99,7 +92,6 @@ struct StateTable::Content {
   void add_state_machine(const StateMachine& state_machine);
   void add_state(const LinkState& state, const std::vector<TransitionTerm>& exits_of_state_machine);
   void record_needs(const Program& program);
-  void record_needs(const Law& law);
 };
 
 void StateTable::Content::build() {
@@ -128,8 +120,8 @@ void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
   exits.push_back(std::move(exits_of_state_machine));
   first_state.push_back(first);
   for (const LinkState& state : state_machine.states) {
-    record_needs(state.elasticity);
-    record_needs(state.dissipation);
+    record_needs(state.elasticity.expression);
+    record_needs(state.dissipation.expression);
     state_machine_of.push_back(static_cast<std::uint32_t>(first_state.size() - 1));
     add_state(state, exits.back());
   }
@@ -165,12 +157,6 @@ void StateTable::Content::record_needs(const Program& program) {
       slot_count = std::max(slot_count, instruction.slot + 1);
     }
   }
-}
-
-void StateTable::Content::record_needs(const Law& law) {
-  if (law.kind != Law::Kind::kFunction) return;
-  needs[static_cast<std::size_t>(Quantity::kMassA)] = true;
-  needs[static_cast<std::size_t>(Quantity::kMassB)] = true;
 }
 
 StateTable::StateTable(std::vector<StateMachine> state_machines, double dt, bool whole_steps)

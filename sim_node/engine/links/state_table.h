@@ -32,12 +32,12 @@ class StateTable {
   const std::vector<StateMachine>& state_machines() const noexcept;
   const LinkState& state(StateIndex state) const noexcept;
 
-  /// True if a program or function of any state machine asks for the quantity.
+  /// True if a program of any state machine asks for the quantity.
   bool needs(Quantity quantity) const noexcept;
   std::uint32_t slot_count() const noexcept;  ///< one more than the largest slot used
 
   /// Energy [J] that a row stores in a state: closed form of the linear part and of the law, 0 for
-  /// a function. In a state that does not pull (push) only what the spring and a power law store
+  /// an expression. In a state that does not pull (push) only what the spring and a power law store
   /// while they push (pull). Lennard-Jones: 0 at its cut.
   double stored_energy(StateIndex state, double distance, double rest_length) const noexcept;
   /// What a change adds to the stored energy as the account keeps it: after minus before. In the

@@ -70,7 +70,7 @@ double stored_energy(const Law& law, double distance, double elongation) noexcep
     case Law::Kind::kRings:
       return ring_energy(law, distance);
     case Law::Kind::kNone:
-    case Law::Kind::kFunction:
+    case Law::Kind::kExpression:
       break;
   }
   return 0.0;

@@ -197,8 +197,8 @@ void OdeSystem::rate(const Values& values, Values& rate) {
   }
 }
 
-LinkQuantities OdeSystem::quantities(const Joined& joined, double time,
-                                     const Geometry& link) const {
+engine::LinkQuantities OdeSystem::quantities(const Joined& joined, double time,
+                                             const Geometry& link) const {
   return {link.distance,
           link.distance - joined.present.rest_length,
           link.speed,
@@ -227,12 +227,12 @@ const OdeSystem::Values& OdeSystem::earlier(double time, const Values& values) {
 std::int64_t OdeSystem::exit_of(const Joined& joined, double time, const Values& values) {
   const engine::LinkState& state = joined.state_machine.states[joined.present.state];
   if (state.first_exit == state.last_exit) return -1;
-  const LinkQuantities now = quantities(joined, time, geometry(values, joined));
+  const engine::LinkQuantities now = quantities(joined, time, geometry(values, joined));
   for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
     const engine::Program& when = joined.state_machine.exits[e].when;
     // A trend is not known yet at the moment in which the state is entered, nor at the start.
-    if (asks_for_trend(when) && time > std::max(joined.present.entered, 0.0)) {
-      const LinkQuantities before =
+    if (has_edge(when) && time > std::max(joined.present.entered, 0.0)) {
+      const engine::LinkQuantities before =
           quantities(joined, time, geometry(earlier(time, values), joined));
       if (value_of(when, now, &before) != 0.0) return e;
     } else if (value_of(when, now) != 0.0) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/expressions/program.h"
 #include "sim_node/plan/reference/near_pairs.h"
-#include "sim_node/plan/reference/program_value.h"
 
 namespace cordis::plan {
 
@@ -74,7 +74,7 @@ class OdeSystem {
   Geometry geometry(const Values& values, const Joined& joined) const;
   double mass(std::uint32_t mat) const;
   double pull(const Joined& joined, const Geometry& link) const;
-  LinkQuantities quantities(const Joined& joined, double time, const Geometry& link) const;
+  engine::LinkQuantities quantities(const Joined& joined, double time, const Geometry& link) const;
   /// The exit of the present state that holds; -1 when none does.
   std::int64_t exit_of(const Joined& joined, double time, const Values& values);
   /// Values a moment earlier, for conditions that ask for a trend.

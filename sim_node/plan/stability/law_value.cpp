@@ -48,8 +48,8 @@ double elastic_pull(const Law& law, double distance, double elongation, double m
       }
       return pull;
     }
-    case Law::Kind::kFunction:
-      return (*law.function)(distance, elongation, 0.0, mass_a, mass_b);
+    case Law::Kind::kExpression:
+      return engine::expression_pull(law.expression, distance, elongation, 0.0, mass_a, mass_b);
   }
   return 0.0;
 }
@@ -61,8 +61,8 @@ double viscous_pull(const Law& law, double distance, double elongation, double s
       return of_table(law.table, speed);
     case Law::Kind::kPower:
       return of_power(law, speed);
-    case Law::Kind::kFunction:
-      return (*law.function)(distance, elongation, speed, mass_a, mass_b);
+    case Law::Kind::kExpression:
+      return engine::expression_pull(law.expression, distance, elongation, speed, mass_a, mass_b);
     case Law::Kind::kNone:
     case Law::Kind::kLennardJones:
     case Law::Kind::kRings:

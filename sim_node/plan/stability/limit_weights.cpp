@@ -9,15 +9,36 @@ namespace cordis::plan {
 
 using engine::IntegratorKind;
 
+namespace {
+
+/// Stable while 3.852 M - dt^2 K > 0. Surely diverging beyond B(Z') M - dt^2 K > 0: there the form
+/// of the scheme at the root -1 has changed its sign. B is convex, hence below its chord from Z' = 0
+/// to the largest Z' of the network. What is extrapolated beside it only makes it worse.
+void weigh_implicit_damping(const engine::NetworkDescription& network, LimitWeights& weights,
+                            Limit limit) {
+  if (limit == Limit::kDiverging) {
+    const double most = engine::largest_damping(network);
+    weights.link_viscosity = -0.5 * (engine::implicit_damping_limit(most) - 4.0) / most;
+    weights.viscosity = 0.0;
+    return;
+  }
+  const double share = 4.0 / engine::kImplicitDampingLimit;
+  weights.link_viscosity = 0.0;
+  weights.link_stiffness = weights.stiffness = share;
+  weights.viscosity *= share;
+}
+
+}  // namespace
+
 LimitWeights limit_weights(const engine::NetworkDescription& network, Limit limit) {
   constexpr double kSurelyDiverging = 5.0269;  // w dt of symplectic4
   LimitWeights weights;
   switch (network.integrator) {
     case IntegratorKind::kCordis:
       break;
-    case IntegratorKind::kLeapfrog:  // 4 M - dt^2 K - 4 dt Z > 0, without Z in sweeps
-      weights.link_viscosity = engine::damps_in_sweeps(network) ? 0.0 : 2.0;
-      weights.viscosity = 2.0;
+    case IntegratorKind::kLeapfrog:  // 4 M - dt^2 K - 4 dt Z > 0
+      weights.link_viscosity = weights.viscosity = 2.0;
+      if (engine::damps_implicitly(network)) weigh_implicit_damping(network, weights, limit);
       for (const double step : engine::largest_extrapolated_steps(network)) {
         weights.solved.push_back(network.step > step ? 1 : 0);
       }

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/step_bound.h"
@@ -68,6 +70,15 @@ auto limit_of_all_steps(const engine::NetworkDescription& network, LimitOf limit
     if (at.mats.empty()) at = network;
     before = at.step = *(after - 1) * (1.0 + 1e-9);
     limit = limit_of(at);
+  }
+  // The chord of weigh_implicit_damping depends on the step too.
+  constexpr double kSettled = 1e-6;
+  for (int round = 0; round < kMaxRounds && std::isfinite(step_of(limit)); ++round) {
+    if (at.mats.empty()) at = network;
+    const double reached = at.step = step_of(limit);
+    if (!engine::damps_implicitly(at)) break;
+    limit = limit_of(at);
+    if (std::abs(step_of(limit) - reached) <= kSettled * reached) break;
   }
   return limit;
 }

@@ -29,6 +29,33 @@ Roots of_extrapolated_damping(double stiffness, double viscosity) {
   return {-a - real, b + real * (a + real)};
 }
 
+/// ImplicitDamping of one mass: dt v+ = left dt v + now a + change (a - a before).
+Roots of_implicit_damping(double stiffness, double viscosity) {
+  constexpr double kG = engine::kImplicitDampingShare;
+  const double solved = 1.0 / (1.0 + kG * viscosity);
+  const double left = (1.0 - (1.0 - 2.0 * kG) * viscosity) * solved * solved;
+  const double now = (1.0 - kG) * solved * solved + kG * solved;
+  const double change = (1.0 - kG) * (kG - 0.5) * solved * solved + 0.5 * kG * solved;
+  return {1.0 + left - stiffness * (now + change), left - stiffness * change};
+}
+
+/// The relative error of the slower of two real modes, from the root nearest to 1 on its left.
+void judge_creep(double angular_frequency, double viscosity, double step, const Roots& roots,
+                 OscillatorError& error) {
+  const double rate = 0.5 * viscosity;
+  const double apart = std::sqrt(rate * rate - angular_frequency * angular_frequency);
+  const double square = 0.25 * roots.trace * roots.trace - roots.product;
+  if (!(square >= 0.0)) return;
+  const double slow = 0.5 * roots.trace + std::sqrt(square);
+  const double fast = roots.trace - slow;
+  if (!(slow > 0.0 && slow < 1.0 && fast > -1.0)) return;
+  const double exact = angular_frequency * angular_frequency / (rate + apart);
+  // 1 - slow, without the difference of two numbers near 1
+  const double left = (1.0 - roots.trace + roots.product) / (1.0 - fast);
+  error.creeps = true;
+  error.creep = -std::log1p(-left) / (exact * step) - 1.0;
+}
+
 Roots roots_of(IntegratorKind integrator, double stiffness, double viscosity) {
   switch (integrator) {
     case IntegratorKind::kCordis:
@@ -37,8 +64,7 @@ Roots roots_of(IntegratorKind integrator, double stiffness, double viscosity) {
       if (viscosity <= engine::kMaxExtrapolatedViscosity) {
         return of_extrapolated_damping(stiffness, viscosity);
       }
-      const double left = std::exp(-viscosity);
-      return {(1.0 + left) * (1.0 - 0.5 * stiffness), left};
+      return of_implicit_damping(stiffness, viscosity);
     }
     case IntegratorKind::kSymplectic4:
       return {engine::symplectic4_trace(stiffness), 1.0};
@@ -63,6 +89,11 @@ OscillatorError oscillator_error(double angular_frequency, double viscosity, dou
   OscillatorError error;
   if (integrator == IntegratorKind::kModal) {  // exact
     error.oscillates = square > 0.0;
+    error.creeps = !error.oscillates;
+    return error;
+  }
+  if (square <= 0.0) {
+    judge_creep(angular_frequency, viscosity, step, roots, error);
     return error;
   }
   error.oscillates =

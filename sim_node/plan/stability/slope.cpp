@@ -75,7 +75,7 @@ Slope of_rings(const Law& law, const Argument& about) {
   return slope;
 }
 
-Slope of_function(const Law& law, const Argument& about) {
+Slope of_expression(const Law& law, const Argument& about) {
   Slope slope{0.0, 0.0, false};
   const double step = 2.0 * about.reach / kSamples;
   for (int i = 0; i < kSamples && step > 0.0; ++i) {
@@ -99,8 +99,8 @@ Slope of_law(const Law& law, const Argument& about, const Reach& reach) {
       return of_lennard_jones(law, reach);
     case Law::Kind::kRings:
       return of_rings(law, about);
-    case Law::Kind::kFunction:
-      return of_function(law, about);
+    case Law::Kind::kExpression:
+      return of_expression(law, about);
   }
   return {};
 }

@@ -23,14 +23,21 @@ constexpr std::size_t kMaxWords = 1'000;  // of one expression
 struct FunctionWord {
   const char* word;
   Operation operation;
-  bool of_two;  // or more
-  bool is_truth;
+  bool of_two = false;  // or more
+  bool is_truth = false;
 };
-constexpr std::array<FunctionWord, 6> kFunctions{{
-    {"abs", Operation::kAbs, false, false},
-    {"sqrt", Operation::kSqrt, false, false},
-    {"min", Operation::kMin, true, false},
-    {"max", Operation::kMax, true, false},
+constexpr std::array<FunctionWord, 13> kFunctions{{
+    {"abs", Operation::kAbs},
+    {"sqrt", Operation::kSqrt},
+    {"sign", Operation::kSign},
+    {"exp", Operation::kExp},
+    {"log", Operation::kLog},
+    {"sin", Operation::kSin},
+    {"cos", Operation::kCos},
+    {"tanh", Operation::kTanh},
+    {"min", Operation::kMin, true},
+    {"max", Operation::kMax, true},
+    {"if", Operation::kSelect},
     {"rising", Operation::kRising, false, true},
     {"falling", Operation::kFalling, false, true},
 }};
@@ -45,13 +52,14 @@ constexpr std::array<std::pair<const char*, Operation>, 6> kComparisons{{
 }};
 
 /// What other languages write, and what is written here.
-constexpr std::array<std::pair<const char*, const char*>, 6> kForeign{{
+constexpr std::array<std::pair<const char*, const char*>, 7> kForeign{{
     {"&&", "write 'and'"},
     {"||", "write 'or'"},
     {"!", "write 'not'"},
     {"=", "to compare, write '=='"},
-    {"**", "there are no powers here; multiply"},
-    {"^", "there are no powers here; multiply"},
+    {"**", "write '^'"},
+    {"?", "write if(condition, value, other value)"},
+    {":", "write if(condition, value, other value)"},
 }};
 
 const FunctionWord* find_function(std::string_view word) {
@@ -59,6 +67,14 @@ const FunctionWord* find_function(std::string_view word) {
       std::find_if(kFunctions.begin(), kFunctions.end(),
                    [&](const FunctionWord& function) { return word == function.word; });
   return found == kFunctions.end() ? nullptr : found;
+}
+
+std::string list_of_functions() {
+  std::string list;
+  for (const FunctionWord& known : kFunctions) {
+    list += (list.empty() ? " " : ", ") + std::string(known.word);
+  }
+  return list;
 }
 
 bool is_letter(char c) {
@@ -171,13 +187,25 @@ class Parser {
   Operand read_sign() {
     std::size_t at = at_;
     const bool minus = take("-", at);
-    if (!minus && !take("+", at)) return read_primary();
+    if (!minus && !take("+", at)) return read_power();
     if (++level_ > kMaxLevels) throw Fault{at, "is nested too deeply", {}};
     const Operand operand = read_sign();
     --level_;
     require(operand, Type::kNumber, minus ? "-" : "+");
     if (minus) emit(Operation::kNegate, at);
     return {Type::kNumber, at};
+  }
+
+  /// The exponent may have a sign of its own, and powers are read from the right.
+  Operand read_power() {
+    const Operand base = read_primary();
+    std::size_t at = at_;
+    if (!take("^", at)) return base;
+    if (++level_ > kMaxLevels) throw Fault{at, "is nested too deeply", {}};
+    const Operand power =
+        join(base, read_sign(), Operation::kPower, Type::kNumber, Type::kNumber, at);
+    --level_;
+    return power;
   }
 
   Operand read_primary() {
@@ -224,10 +252,11 @@ class Parser {
       std::vector<std::string> words;
       for (const FunctionWord& known : kFunctions) words.emplace_back(known.word);
       std::string hint = config::did_you_mean(std::string(word), words);
-      if (hint.empty()) hint = "functions: abs, sqrt, min, max, rising, falling";
+      if (hint.empty()) hint = "functions:" + list_of_functions();
       throw Fault{at, "knows no function '" + std::string(word) + "'", hint};
     }
     const std::size_t bracket = at_++;
+    if (function->operation == Operation::kSelect) return read_choice(bracket, at);
     int count = 0;
     do {
       require(read_or(), Type::kNumber, function->word);
@@ -242,6 +271,21 @@ class Parser {
     }
     if (!function->of_two) emit(function->operation, at);
     return {function->is_truth ? Type::kTruth : Type::kNumber, at};
+  }
+
+  /// if(condition, value, other value)
+  Operand read_choice(std::size_t bracket, std::size_t at) {
+    int count = 0;
+    do {
+      require(read_or(), count == 0 ? Type::kTruth : Type::kNumber, "if");
+      ++count;
+    } while (take(",", at_));
+    close_bracket(bracket);
+    if (count != 3)
+      throw Fault{at, "gives 'if' a wrong number of values",
+                  "write if(condition, value, other value)"};
+    emit(Operation::kSelect, at);
+    return {Type::kNumber, at};
   }
 
   Operand join(Operand left, Operand right, Operation operation, Type wanted, Type result,

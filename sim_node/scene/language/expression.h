@@ -32,13 +32,14 @@ struct Expression {
 
 /// Parses
 ///
-///     a + b  a - b  a * b  a / b  -a     of numbers
-///     abs(a)  sqrt(a)  min(a, b, ...)  max(a, b, ...)
+///     a + b  a - b  a * b  a / b  -a  a ^ b     of numbers
+///     abs(a)  sqrt(a)  sign(a)  exp(a)  log(a)  sin(a)  cos(a)  tanh(a)
+///     min(a, b, ...)  max(a, b, ...)  if(truth, a, b)
 ///     a < b  a <= b  a > b  a >= b  a == b  a != b  rising(a)  falling(a)     numbers to a truth
 ///     a and b  a or b  not a     of truths
 ///
-/// with numbers, names and parentheses; the precedence is that of Python. A fault is a problem of
-/// its place within the text.
+/// with numbers, names and parentheses; the precedence is that of Python, with ^ for its **. A fault
+/// is a problem of its place within the text.
 /// @param what  names the expression in messages
 std::optional<Expression> parse_expression(const config::Value& text, const std::string& what,
                                            config::Problems& problems);

@@ -2,9 +2,11 @@
 #include "sim_node/scene/language/formula.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "sim_node/engine/expressions/elementary_functions.h"
 #include "sim_node/scene/language/quantity.h"
 
 namespace cordis::scene {
@@ -39,10 +41,8 @@ std::size_t deepest_stack(const engine::Program& program) {
   std::size_t depth = 0;
   std::size_t deepest = 0;
   for (const Instruction& instruction : program.code) {
-    const bool pushes = instruction.operation == Operation::kConstant ||
-                        instruction.operation == Operation::kQuantity;
-    if (pushes) ++depth;
-    if (engine::operand_count(instruction.operation) == 2) --depth;
+    depth += 1;
+    depth -= engine::operand_count(instruction.operation);
     deepest = std::max(deepest, depth);
   }
   return deepest;
@@ -52,24 +52,32 @@ bool is_constant(const Instruction& instruction) {
   return instruction.operation == Operation::kConstant;
 }
 
+/// Makes `x ^ n` with a whole number n multiplications. @return whether it was that.
+bool add_whole_power(std::vector<Instruction>& code) {
+  const double exponent = code.back().constant;
+  if (!is_constant(code.back()) || std::abs(exponent) > engine::kMaxWholePower ||
+      exponent != std::floor(exponent)) {
+    return false;
+  }
+  code.back() = {Operation::kWholePower, engine::Quantity::kDistance, exponent, 0};
+  return true;
+}
+
 /// Adds an operation to a program, or its result when its operands are constants.
 void add_operation(std::vector<Instruction>& code, Operation operation, std::uint32_t& next_slot) {
   const std::size_t operands = engine::operand_count(operation);
   const bool remembers = engine::is_edge(operation);
-  const bool foldable =
-      !remembers && code.size() >= operands &&
-      std::all_of(code.end() - static_cast<std::ptrdiff_t>(operands), code.end(), is_constant);
-  if (!foldable) {
-    code.push_back({operation, engine::Quantity::kDistance, 0.0, remembers ? next_slot++ : 0});
+  const Instruction added{operation, engine::Quantity::kDistance, 0.0, remembers ? next_slot++ : 0};
+  const auto first = code.end() - static_cast<std::ptrdiff_t>(operands);
+  if (remembers || !std::all_of(first, code.end(), is_constant)) {
+    if (operation != Operation::kPower || !add_whole_power(code)) code.push_back(added);
     return;
   }
-  const double last = code.back().constant;
-  if (operands == 2) {
-    code.pop_back();
-    code.back().constant = apply(operation, code.back().constant, last);
-  } else {
-    code.back().constant = apply(operation, last);
-  }
+  std::array<double, 3> values{};
+  std::transform(first, code.end(), values.begin(),
+                 [](const Instruction& each) { return each.constant; });
+  code.erase(first + 1, code.end());
+  code.back().constant = engine::apply(added, values.data());
 }
 
 }  // namespace
@@ -119,6 +127,34 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
   }
   if (problems.error_count() != errors_before) return std::nullopt;
   return compiled;
+}
+
+std::optional<engine::Program> compile_law(const Value& text, const std::string& what,
+                                           const ParameterValues& parameters, Problems& problems) {
+  const std::optional<Expression> expression = parse_expression(text, what, problems);
+  if (!expression) return std::nullopt;
+  if (expression->is_truth) {
+    problems.error(text.place(), what + " must be a number, got a comparison",
+                   "write if(..., 1, 0)");
+    return std::nullopt;
+  }
+  for (const ExpressionWord& word : expression->words) {
+    const QuantityName* const known =
+        word.kind == ExpressionWord::Kind::kName ? find_quantity(word.name) : nullptr;
+    const bool has_edge =
+        word.kind == ExpressionWord::Kind::kOperation && engine::is_edge(word.operation);
+    if (!has_edge && (known == nullptr || engine::is_known_to_laws(known->quantity))) continue;
+    problems.error(
+        expression->place_of(word),
+        what + " cannot ask for '" + (has_edge ? "rising' or 'falling" : word.name) + "'",
+        "it may ask for distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg");
+    return std::nullopt;
+  }
+  std::uint32_t slots = 0;
+  std::optional<CompiledExpression> compiled =
+      compile(*expression, what, parameters, slots, problems);
+  if (!compiled) return std::nullopt;
+  return std::move(compiled->program);
 }
 
 namespace {

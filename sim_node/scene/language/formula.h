@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "node/config/mapping_reader.h"
-#include "sim_node/engine/expressions/program.h"
+#include "sim_node/engine/laws/law.h"
 #include "sim_node/scene/language/expression.h"
 
 namespace cordis::scene {
@@ -65,5 +65,11 @@ struct CompiledExpression {
 std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
                                           const ParameterValues& parameters,
                                           std::uint32_t& next_slot, config::Problems& problems);
+
+/// A law: a pull [N] over distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg and the
+/// parameters. Whatever is wrong is a problem of its place.
+std::optional<engine::Program> compile_law(const config::Value& text, const std::string& what,
+                                           const ParameterValues& parameters,
+                                           config::Problems& problems);
 
 }  // namespace cordis::scene

@@ -2,7 +2,6 @@
 #include "sim_node/scene/liaisons/diagnostics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -18,7 +17,7 @@ using engine::Operation;
 using engine::Program;
 using engine::StateMachine;
 using engine::Transition;
-using Quantities = std::array<double, engine::kQuantityCount>;
+using Quantities = engine::LinkQuantities;
 
 constexpr std::size_t kTries = 32;            // entries tried for one exit
 constexpr std::size_t kWordsTried = 200'000;  // of conditions in all tries of one kind
@@ -27,30 +26,6 @@ constexpr int kHalvings = 40;                 // of the way between them
 
 double& at(Quantities& quantities, engine::Quantity quantity) {
   return quantities[static_cast<std::size_t>(quantity)];
-}
-double at(const Quantities& quantities, engine::Quantity quantity) {
-  return quantities[static_cast<std::size_t>(quantity)];
-}
-
-/// @param edge  what `rising` and `falling` are
-double value_of(const Program& program, const Quantities& quantities, double edge) {
-  std::array<double, engine::kMaxStack> stack{};
-  std::size_t depth = 0;
-  for (const engine::Instruction& instruction : program.code) {
-    if (instruction.operation == Operation::kConstant) {
-      stack[depth++] = instruction.constant;
-    } else if (instruction.operation == Operation::kQuantity) {
-      stack[depth++] = at(quantities, instruction.quantity);
-    } else if (engine::operand_count(instruction.operation) == 2) {
-      --depth;
-      stack[depth - 1] = apply(instruction.operation, stack[depth - 1], stack[depth]);
-    } else if (engine::is_edge(instruction.operation)) {
-      stack[depth - 1] = edge;
-    } else {
-      stack[depth - 1] = apply(instruction.operation, stack[depth - 1]);
-    }
-  }
-  return stack[0];
 }
 
 bool is_linear(const LinkState& state) {
@@ -114,14 +89,14 @@ class Entries {
     std::optional<Quantities> after;
     for (int d = 0; d < kDrawsOfATry && (!before || !after); ++d) {
       const Quantities drawn = draw(from, exit.when);
-      (value_of(exit.when, drawn, 1.0) != 0.0 ? after : before) = drawn;
+      (value_of(exit.when, drawn, nullptr, 1.0) != 0.0 ? after : before) = drawn;
     }
     if (!before || !after) return std::nullopt;
     for (int h = 0; h < kHalvings; ++h) {
       Quantities middle{};
       for (std::size_t q = 0; q < middle.size(); ++q)
         middle[q] = 0.5 * ((*before)[q] + (*after)[q]);
-      (value_of(exit.when, middle, 1.0) != 0.0 ? after : before) = middle;
+      (value_of(exit.when, middle, nullptr, 1.0) != 0.0 ? after : before) = middle;
     }
     return after;
   }
@@ -157,7 +132,7 @@ class Entries {
     const double distance = at(link, engine::Quantity::kDistance);
     if (exit.rest == engine::RestRule::kHere) at(link, engine::Quantity::kRestLength) = distance;
     if (exit.rest == engine::RestRule::kExpression)
-      at(link, engine::Quantity::kRestLength) = value_of(exit.rest_length, link, 0.0);
+      at(link, engine::Quantity::kRestLength) = value_of(exit.rest_length, link);
     if (exit.rest != engine::RestRule::kKeep)
       at(link, engine::Quantity::kElongation) = distance - at(link, engine::Quantity::kRestLength);
     at(link, engine::Quantity::kAge) = 0.0;
@@ -232,7 +207,7 @@ void lint(const StateMachine& state_machine, const StateMachinePlaces& places,
       for (std::uint32_t next = to.first_exit; next < to.last_exit && !links.empty(); ++next) {
         const Transition& exit = state_machine.exits[next];
         const bool holds = std::all_of(links.begin(), links.end(), [&](const Quantities& link) {
-          return value_of(exit.when, link, 0.0) != 0.0;
+          return value_of(exit.when, link) != 0.0;
         });
         if (!holds || !open[next]) continue;
         problems.warning(

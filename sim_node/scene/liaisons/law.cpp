@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
-
-#include "sim_node/scene/language/link_expression.h"
 
 namespace cordis::scene {
 
@@ -101,8 +100,10 @@ void read_rings(LawSource& source, Law& law) {
 Law read_expression(const Value& text, const std::string& what, const ParameterValues& parameters,
                     Problems& problems) {
   Law law;
-  law.function = compile_link_expression(text, what, parameters, problems);
-  if (law.function) law.kind = Law::Kind::kFunction;
+  std::optional<engine::Program> expression = compile_law(text, what, parameters, problems);
+  if (!expression) return law;
+  law.kind = Law::Kind::kExpression;
+  law.expression = std::move(*expression);
   return law;
 }
 

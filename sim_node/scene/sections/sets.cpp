@@ -26,7 +26,7 @@ bool depends_on_rest(const engine::StateMachine& state_machine) {
   const auto asks = [](const engine::LinkState& state) {
     const Law::Kind kind = state.elasticity.kind;
     return state.stiffness > 0.0 || kind == Law::Kind::kTable || kind == Law::Kind::kPower ||
-           kind == Law::Kind::kFunction || state.dissipation.kind == Law::Kind::kFunction;
+           kind == Law::Kind::kExpression || state.dissipation.kind == Law::Kind::kExpression;
   };
   return std::any_of(state_machine.states.begin(), state_machine.states.end(), asks) ||
          std::any_of(state_machine.exits.begin(), state_machine.exits.end(),

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include <sim_node/engine/world.h>
+#include <cordis/world.h>
 
 int main() {
   using namespace cordis::engine;

@@ -1,57 +1,14 @@
-// sim_node/engine/matter/energy.h -- where the energy of a world is, and where it came from and
-// went.
+// sim_node/engine/matter/energy_account.h -- gathers the works of every step.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
+#include "sim_node/engine/description/energy.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
 
 namespace cordis::engine {
-
-/// Energies of the present state and the account since step 0 [J].
-///
-///     kinetic + elastic + gravity = initial + port_work + switching - dissipated + residual
-///
-/// All of them belong to the middle of the last period, between x(n-1) and x(n), where this scheme
-/// keeps its account: a force f(n) changes the kinetic energy of the half-step velocities by
-/// exactly f(n) . (x(n+1) - x(n-1)) / 2, and dissipated and port_work are these exact works.
-///
-/// For linear links in 1 dimension, elastic is the product that the scheme keeps,
-/// K e(n) e(n-1) / 2, which changes by exactly the work of the springs. Of all other links, elastic
-/// is what they stored at first, and the exact works of their elastic forces and the energies of
-/// their changes of state since. So no residual is left but rounding, for every law and every step
-/// that is stable; and what the links should store by the closed forms of their laws differs from
-/// elastic by elastic_error, which shows what finite steps have done to them.
-/// A port that has moved counts up to its present position, and rests there until the next step.
-///
-/// All of this is so for Integrator::kCordis. The others keep the account at the moment of the last
-/// forces, with all energies in closed form and the works of viscosity at that moment: then the
-/// residual is what finite steps have done, and elastic_error is 0.
-struct Energy {
-  double kinetic =
-      0.0;  ///< of the half-step velocity (x(n) - x(n-1)) / dt before the present position
-  double elastic = 0.0;  ///< in the links; below 0 for a moment where a link passes its rest length
-  double gravity = 0.0;  ///< potential in the uniform gravity, 0 at the origin
-  double dissipated = 0.0;  ///< taken since step 0 by the viscosity of links and medium, and by all
-                            ///< else of the pull of a link that is not the slope of a potential:
-                            ///< a force limit, the cutting off of a clamped one, a function
-  double port_work = 0.0;   ///< brought in by imposed positions and external forces since step 0
-  double switching = 0.0;   ///< brought in by changes of state and of parameters since step 0: the
-                            ///< sum of LinkEvent::energy
-  double initial = 0.0;     ///< kinetic + elastic + gravity at step 0
-  double elastic_error = 0.0;  ///< part of elastic that a finite step has put there, above what the
-                               ///< laws of the links store: of order dt^2; 0 for linear links and
-                               ///< states in 1 dimension, and at changes of state
-  double largest = 0.0;  ///< largest magnitude among the fields above, and that port_work ever had:
-                         ///< the scale for a relative residual
-
-  double total() const noexcept { return kinetic + elastic + gravity; }
-  double residual() const noexcept {
-    return total() - initial - port_work - switching + dissipated;
-  }
-};
 
 /// What one step does to the account [J].
 struct StepEnergy {

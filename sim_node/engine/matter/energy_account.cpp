@@ -1,5 +1,5 @@
-// sim_node/engine/matter/energy.cpp
-#include "sim_node/engine/matter/energy.h"
+// sim_node/engine/matter/energy_account.cpp
+#include "sim_node/engine/matter/energy_account.h"
 
 #include <algorithm>
 #include <cmath>

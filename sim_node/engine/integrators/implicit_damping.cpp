@@ -1,0 +1,195 @@
+// sim_node/engine/integrators/implicit_damping.cpp
+#include "sim_node/engine/integrators/implicit_damping.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/engine/integrators/integrator_limits.h"
+
+namespace cordis::engine {
+namespace {
+
+constexpr double kG = kImplicitDampingShare;
+
+/// A network whose M + dt Z + dt^2 K is M + g dt Z of this one.
+NetworkDescription dampers_alone(const NetworkDescription& network) {
+  NetworkDescription dampers = network;
+  dampers.step = kG * network.step;
+  std::erase_if(dampers.links, [](const Link& link) { return link.viscosity == 0.0; });
+  for (Link& link : dampers.links) link.stiffness = 0.0;
+  return dampers;
+}
+
+}  // namespace
+
+ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
+    : in_line_(network.dimension == 1),
+      dt_(network.step),
+      medium_viscosity_(network.step * network.medium_viscosity),
+      matrix_(dampers_alone(network)),
+      displacement_(4 * network.mats.size(), 0.0),
+      drag_of_ports_(displacement_.size(), 0.0),
+      constant_(displacement_.size(), 0.0),
+      kick_(displacement_.size(), 0.0),
+      first_(displacement_.size(), 0.0),
+      second_(displacement_.size(), 0.0),
+      middle_(displacement_.size(), 0.0),
+      response_(displacement_.size(), 0.0),
+      force_(displacement_.size(), 0.0),
+      drag_(displacement_.size(), 0.0) {
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    const Mat& mat = network.mats[i];
+    mass_.push_back(mat.kind == MatKind::kMass ? mat.mass : 0.0);
+    if (mat.kind == MatKind::kPort) ports_.push_back(i);
+  }
+  for (const Link& link : network.links) {
+    if (link.viscosity == 0.0 || mass_[link.mat_a] + mass_[link.mat_b] == 0.0) continue;
+    dampers_.push_back({link.mat_a, link.mat_b, network.step * link.viscosity,
+                        link.isotropic && !in_line_, Vec3::UnitX()});
+  }
+}
+
+void ImplicitDamping::find_axes(const MatArray& mats) noexcept {
+  if (in_line_) return;
+  for (Damper& damper : dampers_) {
+    if (damper.isotropic) continue;
+    const Vec3 along = mats.position(damper.b) - mats.position(damper.a);
+    const double length = std::sqrt(dot(along, along));
+    damper.axis = length == 0.0 ? Vec3(Vec3::Zero()) : Vec3(along / length);
+  }
+}
+
+/// Adds the forces with which dampers resist these displacements [kg m].
+void ImplicitDamping::add_drag_of_links(const AlignedVector<double>& displacement,
+                                        AlignedVector<double>& drag) const noexcept {
+  for (const Damper& damper : dampers_) {
+    const Vec3 apart = column(displacement, damper.b) - column(displacement, damper.a);
+    const Vec3 force = damper.isotropic
+                           ? Vec3(damper.viscosity * apart)
+                           : Vec3((damper.viscosity * dot(damper.axis, apart)) * damper.axis);
+    column(drag, damper.a) -= force;
+    column(drag, damper.b) += force;
+  }
+}
+
+void ImplicitDamping::begin_step(const MatArray& mats, const AlignedVector<double>& displacement,
+                                 const double* last_kick) noexcept {
+  find_axes(mats);
+  matrix_.assemble(mats);
+  displacement_ = displacement;  // the same size: no allocation
+  last_kick_ = last_kick;
+  std::fill(constant_.begin(), constant_.end(), 0.0);
+  if (ports_.empty()) return;
+  std::fill(middle_.begin(), middle_.end(), 0.0);
+  std::fill(drag_of_ports_.begin(), drag_of_ports_.end(), 0.0);
+  for (const std::uint32_t port : ports_) column(middle_, port) = kG * column(displacement_, port);
+  add_drag_of_links(middle_, drag_of_ports_);
+}
+
+void ImplicitDamping::add_constant_force(std::uint32_t mat, const Vec3& force) noexcept {
+  column(constant_, mat) += force;
+}
+
+void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* external) noexcept {
+  const std::size_t count = mass_.size();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (mass_[i] == 0.0) continue;
+    Vec3 force = mats.force(i) - column(constant_, i);
+    if (external != nullptr) force += external->external_force(i);
+    column(kick_, i) = mats.pushed_by(i, force);
+  }
+  const double* before = last_kick_ != nullptr ? last_kick_ : kick_.data();
+  const auto kick_at = [&](std::size_t mat, double ahead) {
+    const Vec3 now = column(kick_, mat);
+    const Vec3 change = now - Vec3::Map(before + 4 * mat);
+    return Vec3(now + ahead * change + (dt_ * dt_ / mass_[mat]) * column(constant_, mat));
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mass_[i] == 0.0) continue;
+    column(first_, i) = mass_[i] * (column(displacement_, i) + kG * kick_at(i, kG - 0.5)) -
+                        column(drag_of_ports_, i);
+  }
+  matrix_.solve(first_.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mass_[i] == 0.0) continue;
+    const Vec3 begin = column(displacement_, i);
+    column(second_, i) = mass_[i] * (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) +
+                                     kG * kick_at(i, 0.5)) -
+                         column(drag_of_ports_, i);
+  }
+  matrix_.solve(second_.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    column(middle_, i) = mass_[i] > 0.0
+                             ? Vec3((1.0 - kG) * column(first_, i) + kG * column(second_, i))
+                             : Vec3(column(displacement_, i));
+  }
+}
+
+double ImplicitDamping::elongation(std::uint32_t a, std::uint32_t b,
+                                   const Vec3& axis) const noexcept {
+  return dot(axis, column(middle_, b) - column(middle_, a));
+}
+
+double ImplicitDamping::find_response(std::uint32_t a, std::uint32_t b, const Vec3& axis) noexcept {
+  std::fill(response_.begin(), response_.end(), 0.0);
+  column(response_, a) = dt_ * dt_ * axis;
+  column(response_, b) = -dt_ * dt_ * axis;
+  matrix_.solve(response_.data());
+  for (std::size_t i = 0; i < mass_.size(); ++i) column(drag_, i) = mass_[i] * column(response_, i);
+  matrix_.solve(drag_.data());
+  for (std::size_t i = 0; i < response_.size(); ++i) {
+    response_[i] = kG * (response_[i] + (1.0 - kG) * drag_[i]);
+  }
+  return dot(axis, column(response_, a) - column(response_, b));
+}
+
+void ImplicitDamping::add_response(double force) noexcept {
+  for (std::size_t i = 0; i < response_.size(); ++i) middle_[i] += force * response_[i];
+}
+
+ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<double>& felt,
+                                               bool first) noexcept {
+  const std::size_t count = mass_.size();
+  // The mean velocity of the first period takes half a period of the forces.
+  const double part = first ? 0.5 : 1.0;
+  if (first) {
+    for (std::size_t i = 0; i < count; ++i) {
+      column(middle_, i) =
+          mass_[i] == 0.0
+              ? Vec3(0.5 * column(displacement_, i))
+              : Vec3(2.0 * kG * (1.0 - kG) * column(first_, i) + kG * kG * column(second_, i));
+    }
+  }
+  std::fill(drag_.begin(), drag_.end(), 0.0);
+  add_drag_of_links(middle_, drag_);
+  const double rate = 1.0 / dt_;
+  for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = -(rate * rate / part) * drag_[i];
+
+  Work work;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3 begin = column(displacement_, i);
+    if (mass_[i] == 0.0) {
+      work.port_work += dot(begin, column(drag_, i));
+      continue;
+    }
+    column(drag_, i) += medium_viscosity_ * column(middle_, i);
+    const Vec3 end =
+        begin + (part * mats.pushed_by(i, mats.force(i)) - column(drag_, i) / mass_[i]);
+    const double energy_at_begin = mass_[i] * dot(begin, begin);
+    work.dissipated += 0.5 * dot(begin + end, column(drag_, i));
+    work.kinetic += first ? energy_at_begin : 0.5 * (energy_at_begin + mass_[i] * dot(end, end));
+    column(felt, i) = first ? Vec3(column(second_, i)) : Vec3(2.0 * end - column(middle_, i));
+    column(displacement_, i) = end;
+  }
+  work.dissipated = rate * rate * (work.dissipated + work.port_work);
+  work.port_work *= rate * rate;
+  work.kinetic *= 0.5 * rate * rate;
+
+  work.non_finite_mats = mats.move_by(displacement_);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    column(felt, i) = mass_[i] == 0.0 ? mats.position(i) : Vec3(mats.position(i) - column(felt, i));
+  }
+  return work;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,110 @@
+// sim_node/engine/integrators/implicit_damping.h -- linear dampers and the medium, solved implicitly.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/description/network.h"
+#include "sim_node/engine/integrators/stiffness_matrix.h"
+#include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/matter/port_inputs.h"
+
+namespace cordis::engine {
+
+/// One period of the velocities under linear dampers and the medium, Z, and under all other forces
+/// f. The scheme is SDIRK2 from n-1/2 to n+1/2 with g = 1 - 1/sqrt(2), of second order and
+/// L-stable; Z is that of the positions x(n):
+///
+///     (M + g dt Z) u1 = M v + g dt f1,                              f1 = f(n) + (g - 1/2) df
+///     (M + g dt Z) u2 = M v + (1-g)/g M (u1 - v) + g dt f2,         f2 = f(n) + df / 2
+///     w = (1-g) u1 + g u2,     v(n+1/2) = v + dt M^-1 (f(n) - Z w),  df = f(n) - f(n-1)
+///
+/// w is the velocity of the moment x(n). The dampers act as pairs of opposite forces, so momentum
+/// and angular momentum are kept to rounding; the rounding of a velocity grows with Z dt / m.
+/// Stable while dt^2 K < 3.852 M, however large Z is (implicit_damping_limit).
+///
+/// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity.
+/// All vectors are dt times a velocity, or dt^2 times an acceleration [m], 4 x N.
+/// Source: Alexander, Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s, 1977.
+class ImplicitDamping {
+ public:
+  explicit ImplicitDamping(const NetworkDescription& network);
+
+  /// Takes Z at the present positions; no force is constant over the period yet.
+  /// @param displacement  dt v(n-1/2); before the first period dt v(0); of a port its last one
+  /// @param last_kick     kick() of the last step, which stays until the next; null: not known, and
+  ///                      the forces change little
+  /// Real time: in 2 and 3 dimensions one numeric factorisation, no allocation.
+  void begin_step(const MatArray& mats, const AlignedVector<double>& displacement,
+                  const double* last_kick) noexcept;
+
+  /// Counts `force` [N] at `mat`, which is among the forces of the MATs, as constant over the
+  /// period.
+  void add_constant_force(std::uint32_t mat, const Vec3& force) noexcept;
+
+  /// Finds dt w under the forces of the MATs.
+  /// @param external  forces from outside to be added to them; null: they have been
+  /// Real time: two solves, no allocation.
+  void find_velocities(const MatArray& mats, const PortInputs* external) noexcept;
+  /// dt^2 (f(n) / m + g) of the masses, without what is constant over the period.
+  const AlignedVector<double>& kick() const noexcept { return kick_; }
+  /// The component of dt w at b less that at a [m].
+  double elongation(std::uint32_t a, std::uint32_t b, const Vec3& axis) const noexcept;
+  /// Finds how dt w answers to a constant force of 1 N that pulls a and b together along the axis.
+  /// @return how much shorter elongation() becomes [m/N], > 0
+  /// Real time: two solves, no allocation.
+  double find_response(std::uint32_t a, std::uint32_t b, const Vec3& axis) noexcept;
+  /// Adds the last response, times a force [N], to dt w.
+  void add_response(double force) noexcept;
+
+  /// What a period has done.
+  struct Work {
+    double dissipated = 0.0;  ///< by the dampers and the medium [J]
+    double port_work = 0.0;   ///< brought in by ports through the dampers [J]
+    double kinetic = 0.0;     ///< of the moment x(n): mean of the half steps around it [J]
+    std::uint32_t non_finite_mats = 0;
+  };
+  /// Ends the period: moves the masses to x(n+1).
+  /// @param felt   becomes x(n+1) - dt v(n+1)
+  /// @param first  this is the period from x(0)
+  /// Real time: O(MATs + dampers), no allocation.
+  Work advance(MatArray& mats, AlignedVector<double>& felt, bool first) noexcept;
+
+  /// Forces of the linear dampers on each MAT in the last period [N], 4 x N.
+  const AlignedVector<double>& force() const noexcept { return force_; }
+
+ private:
+  struct Damper {
+    std::uint32_t a;
+    std::uint32_t b;
+    double viscosity;  // dt Z [kg]
+    bool isotropic;
+    Vec3 axis = Vec3::UnitX();
+  };
+
+  void find_axes(const MatArray& mats) noexcept;
+  void add_drag_of_links(const AlignedVector<double>& displacement,
+                         AlignedVector<double>& drag) const noexcept;
+
+  bool in_line_;
+  double dt_;
+  std::vector<Damper> dampers_;
+  std::vector<double> mass_;             // [kg], 0 unless a mass
+  double medium_viscosity_;              // dt Z [kg]
+  std::vector<std::uint32_t> ports_;     // that move
+  StiffnessMatrix matrix_;               // M + g dt Z
+  AlignedVector<double> displacement_;   // dt v(n-1/2)
+  AlignedVector<double> drag_of_ports_;  // g dt Z of their displacements, on the masses [kg m]
+  AlignedVector<double> constant_;       // forces [N]
+  AlignedVector<double> kick_;
+  const double* last_kick_ = nullptr;
+  AlignedVector<double> first_;   // dt u1
+  AlignedVector<double> second_;  // dt u2
+  AlignedVector<double> middle_;  // dt w
+  AlignedVector<double> response_;
+  AlignedVector<double> force_;
+  AlignedVector<double> drag_;  // dt Z w [kg m]
+};
+
+}  // namespace cordis::engine
