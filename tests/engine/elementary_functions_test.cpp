@@ -1,4 +1,4 @@
-// tests/engine/elementary_functions_test.cpp -- the functions of expressions against the library in 80 bits.
+// tests/engine/elementary_functions_test.cpp -- functions of expressions against the library.
 #include "sim_node/engine/expressions/elementary_functions.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using Functions = engine::ElementaryFunctions<OfThisFile>;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr int kDraws = 200'000;
-constexpr double kMostError = 2.0;  // units in the last place
+constexpr double kMaxError = 2.0;  // units in the last place
 
 static_assert(std::numeric_limits<long double>::digits >= 64, "the reference has more bits");
 
@@ -77,7 +77,7 @@ TEST(ElementaryFunctions, AreWithinTwoUnitsInTheLastPlace) {
         if (error > worst) at = x;
         worst = std::max(worst, error);
       }
-      EXPECT_LT(worst, kMostError) << function.name << " at " << at;
+      EXPECT_LT(worst, kMaxError) << function.name << " at " << at;
     }
   }
 }
@@ -91,7 +91,7 @@ TEST(ElementaryFunctions, KeepTheirErrorNextToQuarterTurns) {
                         error_of(Functions::cos(x), std::cos(static_cast<long double>(x)))});
     }
   }
-  EXPECT_LT(worst, kMostError);
+  EXPECT_LT(worst, kMaxError);
 }
 
 TEST(ElementaryFunctions, KeepTheirErrorNextToOne) {
@@ -100,7 +100,7 @@ TEST(ElementaryFunctions, KeepTheirErrorNextToOne) {
   for (int i = 0; i < 2000; ++i, x = std::nextafter(x, 2.0)) {
     worst = std::max(worst, error_of(Functions::log(x), std::log(static_cast<long double>(x))));
   }
-  EXPECT_LT(worst, kMostError);
+  EXPECT_LT(worst, kMaxError);
 }
 
 TEST(ElementaryFunctions, PowersAreWithinTwoUnitsInTheLastPlace) {
@@ -121,7 +121,7 @@ TEST(ElementaryFunctions, PowersAreWithinTwoUnitsInTheLastPlace) {
       const long double expected = std::pow(static_cast<long double>(x), y);
       worst = std::max(worst, error_of(Functions::power(x, y), expected));
     }
-    EXPECT_LT(worst, kMostError) << range.lowest << " to " << range.highest;
+    EXPECT_LT(worst, kMaxError) << range.lowest << " to " << range.highest;
   }
 }
 
@@ -152,7 +152,7 @@ TEST(ElementaryFunctions, TreatSpecialArgumentsAsIeeeAsks) {
       }
       const long double expected = function.reference(x);
       const auto nearest = static_cast<double>(expected);
-      EXPECT_LT(error_of(function.own(x), expected), kMostError) << what;
+      EXPECT_LT(error_of(function.own(x), expected), kMaxError) << what;
       if (nearest == 0.0 || std::isinf(nearest)) expect_same(function.own(x), nearest, what);
     }
     for (const double y : special) {
@@ -162,7 +162,7 @@ TEST(ElementaryFunctions, TreatSpecialArgumentsAsIeeeAsks) {
         expect_same(Functions::power(x, y), expected, what);
       } else {
         EXPECT_LT(error_of(Functions::power(x, y), std::pow(static_cast<long double>(x), y)),
-                  kMostError)
+                  kMaxError)
             << what;
       }
     }

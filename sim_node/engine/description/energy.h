@@ -1,4 +1,4 @@
-// sim_node/engine/description/energy.h -- where the energy of a world is, and where it came from and went.
+// sim_node/engine/description/energy.h -- the energies of a world, and what changed them.
 #pragma once
 
 namespace cordis::engine {

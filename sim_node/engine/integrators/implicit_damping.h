@@ -1,4 +1,4 @@
-// sim_node/engine/integrators/implicit_damping.h -- linear dampers and the medium, solved implicitly.
+// sim_node/engine/integrators/implicit_damping.h -- linear dampers and medium, solved implicitly.
 #pragma once
 
 #include <cstdint>

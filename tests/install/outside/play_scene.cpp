@@ -1,3 +1,5 @@
+// tests/install/outside/play_scene.cpp -- a program of somebody else that reads and steps a scene.
+//
 // Reads a scene in YAML, steps it for a second of its time, and prints where its matter is.
 // usage: play_scene SCENE
 #include <cstdio>
