@@ -65,7 +65,7 @@ PLACE=$(mktemp -d "${TMPDIR:-/tmp}/cordis script test XXXXXX")
 export PLACE
 trap 'rm -rf "$PLACE"' EXIT
 tree="$PLACE/a tree"
-mkdir -p "$tree"/{cmake,idl,node,sim_node,device_node,viz_node/web,cli} "$PLACE/tools"
+mkdir -p "$tree"/{cmake,idl,include,node,sim_node,device_node,viz_node/web,cli} "$PLACE/tools"
 cp "$1/cordis" "$1/packages.txt" "$tree"
 touch "$tree"/CMakeLists.txt "$tree/node/a.cpp"
 touch -d '1 hour ago' "$tree/CMakePresets.json" "$tree/viz_node/web/package-lock.json"
