@@ -6,11 +6,6 @@
 #include <limits>
 
 namespace cordis::engine {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 PairStateMachines::PairStateMachines(const NetworkDescription& description, const SetLiaison& set,
                                      const StateTable& table, std::size_t capacity,
@@ -77,7 +72,8 @@ std::size_t PairStateMachines::add_bound(const PairKernel& kernel, const PairSte
   }
   if (merged + count - next == count) return count;
   while (next < count) merged_[merged++] = row.column[next++];
-  return kernel.gather_pairs(members, a, merged_.data(), merged, kInfinity, row);
+  return kernel.gather_pairs(members, a, merged_.data(), merged,
+                             std::numeric_limits<double>::infinity(), row);
 }
 
 void PairStateMachines::step(const PairStep& step, const MemberColumns& members,
