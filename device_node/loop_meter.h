@@ -12,7 +12,7 @@ namespace cordis::device {
 
 /// How a device stands with the scene.
 enum class Phase : std::uint8_t {
-  kWaiting,       ///< no scene is there yet, or no answer has come yet; motors off
+  kWaiting,       ///< no scene or no answer has been received yet; motors off
   kUnused,        ///< the scene does not name the device; motors off
   kRunning,       ///< answers come in time
   kStandby,       ///< the scene answers another node that plays the same device; motors off

@@ -50,7 +50,7 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const
     roster_.look();
     const std::size_t addressed = addressed_count(target);
     if (addressed == 0 && now > began + longest_discovery) break;
-    // Before DDS has found a reader, a command would reach nobody.
+    // A command sent before DDS has found a reader is lost.
     const bool reaches = commands_.matched_count() > 0;
     if (addressed > replies.size() && now >= send_at && reaches) {
       commands_.write(command);

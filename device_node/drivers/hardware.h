@@ -75,11 +75,11 @@ class Hardware : public Driver {
     kOldSample,  ///< one that answers an earlier request
     kLetGo,      ///< the board has let go of its motors, and may go on to
     kLetGoOnce,  ///< it has, and takes forces again
-    kRestarted,  ///< the board has restarted, and knows nothing of what it was told
+    kRestarted,  ///< the board has restarted and lost its configuration
     kBad         ///< damaged
   };
 
-  /// Forgets half a message, and what the device was told: at an open wire, and again every 0.25 s
+  /// Discards a partial message and the sent configuration: at an open wire, and again every 0.25 s
   /// until the device is present.
   virtual void begin() noexcept = 0;
   /// Writes what the device is asked first; 0: it need not say what it is.

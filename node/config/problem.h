@@ -43,7 +43,7 @@ class ConfigError : public std::runtime_error {
 };
 
 /// Collects problems while files are read, so that a person sees all of them at once.
-/// A problem that is there already is not added again; after kMaxProblems the others are counted.
+/// A problem is added once. After kMaxProblems, further ones are only counted.
 class Problems {
  public:
   static constexpr std::size_t kMaxProblems = 100;
