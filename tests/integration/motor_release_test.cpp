@@ -91,6 +91,11 @@ class Kfb1OnALine : public Board {
   Kfb1Board board_;
 };
 
+constexpr const char* kWithAView =
+    "  sim: {node: sim_node, scene: scene.yaml}\n"
+    "  keyboard: {node: device_node, device: key.yaml}\n"
+    "  view: {node: viz_node, port: 0}\n";
+
 const std::array<const char*, 4> kBoards{"firefader", "haply", "kfb1", "kfb1 over UDP"};
 
 std::unique_ptr<Board> board_of(const std::string& name) {
@@ -143,7 +148,7 @@ bool has_ended(pid_t pid) {
 class PressedKey {
  public:
   explicit PressedKey(const std::string& board_name)
-      : name_(board_name), board_(board_of(board_name)), session_("realtime", kSimAndKey) {
+      : name_(board_name), board_(board_of(board_name)), session_("realtime", kWithAView) {
     session_.add_file("scene.yaml", wall_scene(200.0));
     session_.add_file("key.yaml", board_->plug_in(session_.folder()) +
                                       "trace: {file: " + trace().string() + "}\n");
@@ -173,6 +178,7 @@ class PressedKey {
     })) << name_;
     if (launcher_ > 0) device_ = child_of(launcher_, "device_node");
     if (launcher_ > 0) sim_ = child_of(launcher_, "sim_node");
+    if (launcher_ > 0) view_ = child_of(launcher_, "viz_node");
     guardian_ = child_of(device_, "cordis-guardian");
   }
 
@@ -198,6 +204,7 @@ class PressedKey {
   pid_t launcher() const { return launcher_; }
   pid_t sim() const { return sim_; }
   pid_t device() const { return device_; }
+  pid_t view() const { return view_; }
   pid_t guardian() const { return guardian_; }
 
  private:
@@ -207,6 +214,7 @@ class PressedKey {
   pid_t launcher_ = -1;
   pid_t sim_ = -1;
   pid_t device_ = -1;
+  pid_t view_ = -1;
   pid_t guardian_ = -1;
   std::int64_t killed_nsec_ = 0;
 };
@@ -260,6 +268,39 @@ TEST(MotorRelease, KillOfTheLauncherAndTheNodesGroupLeavesNoForce) {
     key.expect_zero("launcher + device_node");
     EXPECT_TRUE(has_ended(key.guardian()));
     EXPECT_EQ(key.board().log().newest(), 0.0);
+  }
+}
+
+TEST(MotorRelease, KillOfTheViewTakesNoForceAwayAndWithAnotherNodeLeavesNone) {
+  for (const std::string board : kBoards) {
+    PressedKey key(board);
+    key.start_launcher();
+    if (HasFatalFailure()) return;
+    const pid_t sim = key.sim();
+    const pid_t device = key.device();
+    const pid_t view = key.view();
+
+    key.kill_all({view});
+
+    EXPECT_TRUE(has_ended(view));
+    key.await_press();  // by then another view runs
+    EXPECT_EQ(key.sim(), sim);
+    EXPECT_EQ(key.device(), device);
+    EXPECT_NE(key.view(), view);
+
+    key.kill_all({key.view(), key.sim()});
+    key.expect_zero("viz_node + sim_node");
+    key.await_press();
+    if (HasFatalFailure()) return;
+
+    key.kill_all({key.view(), key.device()});
+    key.expect_zero("viz_node + device_node");
+    key.await_press();
+    if (HasFatalFailure()) return;
+
+    key.kill_all({key.launcher(), key.view()});
+    key.expect_zero("launcher + viz_node");
+    EXPECT_TRUE(has_ended(key.device()));
   }
 }
 
