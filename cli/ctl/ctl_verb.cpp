@@ -1,6 +1,8 @@
 // cli/ctl/ctl_verb.cpp -- cordis ctl: changes a session while it runs.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "cli/ctl/control_line.h"
@@ -50,6 +52,16 @@ config::Launch launch_of(const CtlWords& words) {
   return launch;
 }
 
+/// Of several sessions of one name, keeps the one that the launch file began.
+void prefer_launch_file(std::vector<node::SessionRecord>& sessions, const std::string& file) {
+  const auto is_of_file = [&](const node::SessionRecord& record) {
+    std::error_code gone;
+    return std::filesystem::equivalent(record.launch_file, file, gone);
+  };
+  if (sessions.size() > 1 && std::count_if(sessions.begin(), sessions.end(), is_of_file) == 1)
+    std::erase_if(sessions, std::not_fn(is_of_file));
+}
+
 /// Where the session is: in the domain of the command line, else where it runs on this host, else
 /// in that of its launch file.
 Address address_of(const CtlWords& words) {
@@ -57,6 +69,7 @@ Address address_of(const CtlWords& words) {
   if (!words.domain.empty()) return {launch.session, *launch.domain};
   std::vector<node::SessionRecord> running = node::running_sessions(node::runtime_folder());
   std::erase_if(running, [&](const auto& record) { return record.session != launch.session; });
+  if (is_file(words.session)) prefer_launch_file(running, words.session);
   if (running.size() == 1) return {launch.session, running[0].domain};
   if (running.size() > 1)
     throw std::runtime_error("session '" + launch.session + "' runs in " +

@@ -2,16 +2,19 @@
 #include "cli/lab/lab_chart.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/run/child.h"
-#include "sim_node/engine/integrators/integrator_limits.h"
+#include "sim_node/engine/core/vector_width.h"
+#include "sim_node/scene/naming.h"
 
 namespace cordis::cli {
 namespace {
@@ -43,43 +46,110 @@ std::string csv_of(const LabReport& report) {
   return text;
 }
 
-/// The bottom of the chart, a third of a decade below the best run.
-double min_error(const LabReport& report) {
+struct Range {
+  double low = 1.0;
+  double high = 1.0;
+};
+
+/// Errors of the chart: from half of the least, to the place of what blew up.
+Range errors_of(const LabReport& report) {
   double least = 1.0;
+  double worst = 1.0;
   for (const LabRun& run : report.runs) {
-    if (!run.result.blown_up && run.result.error > 0.0) least = std::min(least, run.result.error);
+    if (run.result.blown_up) continue;
+    worst = std::max(worst, run.result.error);
+    if (run.result.error > 0.0) least = std::min(least, run.result.error);
   }
-  return 0.5 * least;
+  return {0.5 * least, 6.0 * worst};
 }
 
-/// One panel: error over a column of the table.
-std::string panel(const LabReport& report, int column, const std::string& label, bool limits) {
-  std::string text = fmt::format("set xlabel '{}'\nunset arrow\nunset label\n", label);
-  int mark = 0;
+/// The name of an integrator beside the end of its curve.
+struct EndLabel {
+  std::string name;
+  int style = 0;
+  double height = 0.0;  // 0 at the bottom of a panel, 1 at its top
+};
+
+/// Labels from the top down, so far apart that none covers another.
+std::vector<EndLabel> end_labels(const LabReport& report, const Range& errors) {
+  constexpr double kApart = 0.06;
+  std::vector<EndLabel> labels;
+  for (const auto& [name, stability] : report.stability) {
+    const LabRun* last = nullptr;
+    for (const LabRun& run : report.runs) {
+      if (run.result.integrator == name && !run.result.blown_up) last = &run;
+    }
+    const int style = static_cast<int>(labels.size()) + 1;
+    const double error = last ? std::max(last->result.error, errors.low) : errors.high;
+    labels.push_back(
+        {name, style, std::log(error / errors.low) / std::log(errors.high / errors.low)});
+  }
+  std::sort(labels.begin(), labels.end(),
+            [](const EndLabel& a, const EndLabel& b) { return a.height > b.height; });
+  for (std::size_t i = 1; i < labels.size(); ++i)
+    labels[i].height = std::min(labels[i].height, labels[i - 1].height - kApart);
+  double floor = 0.0;
+  for (auto label = labels.rbegin(); label != labels.rend(); ++label) {
+    label->height = std::max(label->height, floor);
+    floor = label->height + kApart;
+  }
+  return labels;
+}
+
+/// A colour that the colour-blind tell from the others (Okabe and Ito).
+const char* colour(int style) {
+  constexpr std::array kColours{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9"};
+  return kColours[static_cast<std::size_t>(style - 1) % kColours.size()];
+}
+
+/// A mark that needs no colour.
+int mark(int style) {
+  constexpr std::array kMarks{7, 5, 9, 11, 13, 15};
+  return kMarks[static_cast<std::size_t>(style - 1) % kMarks.size()];
+}
+
+/// One panel: error over a column of the table. Its names stand to the right of it.
+/// @param cost  the column, as gnuplot writes it
+std::string panel(const LabReport& report, const std::string& cost, const std::string& label,
+                  bool with_limits) {
+  const Range errors = errors_of(report);
+  std::string text = fmt::format("set xlabel '{}'\nunset arrow\n", label);
+  int style = 0;
   for (const auto& [integrator, stability] : report.stability) {
-    ++mark;
-    if (!limits || !std::isfinite(stability.diverging_step)) continue;
+    ++style;
+    if (!with_limits || !std::isfinite(stability.diverging_step)) continue;
     text += fmt::format(
-        "set arrow {0} from {1:.6g}, graph 0 to {1:.6g}, graph 1 nohead dashtype 2 linecolor {0}\n"
-        "set label {0} 'limit of {2}' at {1:.6g}, graph {3:.2f} right rotate offset -0.6,0\n",
-        mark, plan::evaluations_per_step(integrator) / stability.diverging_step, integrator,
-        0.97 - 0.34 * (mark - 1));
+        "set arrow from {0:.6g}, graph 0 to {0:.6g}, graph 1 nohead dashtype 2 linecolor rgb '{1}' "
+        " # "
+        "limit "
+        "of {2}\n",
+        plan::evaluations_per_step(integrator) / stability.diverging_step, colour(style),
+        integrator);
+  }
+  for (const EndLabel& end : end_labels(report, errors)) {
+    text += fmt::format("set label '{}' at graph 1.03, graph {:.3f} textcolor rgb '{}'\n", end.name,
+                        end.height, colour(end.style));
   }
   text += "plot ";
-  int colour = 1;
+  style = 0;
   for (const auto& [name, stability] : report.stability) {
-    const std::string own = fmt::format("(strcol(1) eq '{}' ? column({}) : NaN)", name, column);
+    ++style;
+    const std::string own = fmt::format("(strcol(1) eq '{}' ? {} : NaN)", name, cost);
     text += fmt::format(
-        "table using {0}:6 with linespoints pointtype 7 pointsize 0.5 linecolor {1} title '{2}', "
-        "\\\n     table using {0}:(column(9) == 1 ? top : NaN) with points pointtype 2 "
-        "linecolor {1} notitle, \\\n     ",
-        own, colour++, name);
+        "table using {0}:6 with linespoints linecolor rgb '{1}' pointtype {2} pointsize 0.5 "
+        "notitle, \\\n"
+        "     table using {0}:(column(9) == 1 ? top : NaN) with points linecolor rgb '{1}' "
+        "pointtype 2 "
+        "pointsize 0.8 notitle, \\\n     ",
+        own, colour(style), mark(style));
   }
   text += fmt::format(
-      "table using (column(8) == 1 ? column({}) : NaN):6 with points pointtype 6 pointsize 1 "
-      "linecolor rgb '#000000' title 'Pareto front'",
-      column);
-  if (report.reference.uncertainty > min_error(report)) {
+      "table using (column(8) == 1 ? {} : NaN):6 with points pointtype 6 pointsize 1.2 "
+      "linecolor rgb '#000000' title 'none is cheaper and as exact', \\\n"
+      "     NaN with points pointtype 2 linecolor rgb '#000000' title 'blew up', \\\n"
+      "     NaN with lines dashtype 2 linecolor rgb '#000000' title 'unstable to the left'",
+      cost);
+  if (report.reference.uncertainty > errors.low) {
     text += fmt::format(
         ", \\\n     {:.3g} with lines dashtype 3 linecolor rgb '#888888' title 'uncertainty of the "
         "reference'",
@@ -88,28 +158,52 @@ std::string panel(const LabReport& report, int column, const std::string& label,
   return text + "\n";
 }
 
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line)) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown processor";
+}
+
+/// What a reader of the chart needs, without a quotation mark of gnuplot.
+std::string caption_of(const LabReport& report) {
+  const scene::Scene& scene = report.lab.scene;
+  std::string text =
+      fmt::format("{} ({}), {:.4g} s; rms amplitude {:.3g} m; {}.\\n{}, {}, Cordis {}", scene.name,
+                  scene::size_text(scene), report.reference.sampling.duration(),
+                  report.reference.amplitude, report.reference.made_by, processor_name(),
+                  engine::to_string(engine::best_vector_width()), CORDIS_VERSION);
+  std::replace(text.begin(), text.end(), '"', '\'');
+  return text;
+}
+
 std::string script_of(const LabReport& report) {
-  double worst = 1.0;
-  for (const LabRun& run : report.runs) worst = std::max(worst, run.result.error);
-  return fmt::format(
-             "# Error against cost; crosses at the top blew up.  usage: gnuplot chart.gp\n"
-             "set terminal svg size 1000,420 font 'sans-serif,12' background rgb 'white'\n"
-             "set output 'chart.svg'\n"
-             "set datafile separator ','\n"
-             "set datafile missing ''\n"
-             "table = 'lab.csv'\n"
-             "top = {:.3g}\n"
-             "set logscale xy\n"
-             "set format xy '10^{{%T}}'\n"
-             "set yrange [{:.3g}:3 * top]\n"
-             "set key bottom left\n"
-             "set grid\n"
-             "set ylabel 'rms position error / amplitude'\n"
-             "set multiplot layout 1,2 title '{}: {:.3g} s' noenhanced\n",
-             2.0 * worst, min_error(report), report.lab.scene.name,
-             report.reference.sampling.duration()) +
-         panel(report, 3, "force evaluations per simulated second", true) + "unset key\n" +
-         panel(report, 4, "processor time per simulated second [ns]", false) + "unset multiplot\n";
+  const Range errors = errors_of(report);
+  return "# Error against cost; crosses at the top blew up.  usage: gnuplot chart.gp\n"
+         "set terminal svg size 1100,560 font 'sans-serif,12' background rgb 'white'\n"
+         "set output 'chart.svg'\n"
+         "set datafile separator ','\n"
+         "set datafile missing ''\n"
+         "table = 'lab.csv'\n" +
+         fmt::format("top = {0:.3g}\nset yrange [{1:.3g}:{2:.3g}]\n", errors.high / 3.0, errors.low,
+                     errors.high) +
+         "set logscale xy\n"
+         "set format xy '10^{%T}'\n"
+         "set grid linecolor rgb '#dddddd'\n"
+         "set multiplot\nset tmargin at screen 0.96\nset bmargin at screen 0.34\n"
+         "set lmargin at screen 0.08\nset rmargin at screen 0.41\n"
+         "set key at screen 0.5, 0.165 center center\n"
+         "set ylabel 'rms position error / amplitude [1]'\n" +
+         fmt::format("set label 1 \"{}\" at screen 0.5, 0.065 center noenhanced\n",
+                     caption_of(report)) +
+         panel(report, "column(3)", "force evaluations per simulated second [1/s]", true) +
+         "unset label\nunset key\nunset ylabel\nset lmargin at screen 0.56\nset rmargin at screen "
+         "0.89\n" +
+         panel(report, "column(4) * 1e-6", "processor time per simulated second [ms]", false) +
+         "unset multiplot\n";
 }
 
 /// @return whether gnuplot is there and is content

@@ -19,29 +19,29 @@ constexpr int kTimedSteps = 200;
 /// melts. @param drop  in free space, as in melt_bench.cpp, instead of a periodic box
 std::string lammps_input(bool drop) {
   return std::string(drop ? "boundary s s s\n" : "") +
-         "units lj\n"
-         "atom_style atomic\n"
-         "lattice fcc 0.8442\n"
-         "region box block 0 20 0 20 0 20\n"
-         "create_box 1 box\n"
-         "create_atoms 1 box\n"
-         "mass 1 1.0\n"
-         "velocity all create 1.44 87287 loop geom\n"
-         "pair_style lj/cut 2.5\n"
-         "pair_coeff 1 1 1.0 1.0 2.5\n"
-         "neighbor 0.3 bin\n"
-         "neigh_modify delay 0 every 20 check no\n"
-         "fix 1 all nve\n"
-         "run 100\n"
-         "run " +
-         std::to_string(kTimedSteps) +
-         "\n"
-         "compute near all coord/atom cutoff 2.5\n"
-         "compute mean all reduce ave c_near\n"
-         "thermo_style custom step c_mean\n"
-         "run 0\n"
-         "variable pairs equal c_mean/2\n"
-         "print \"pairs ${pairs}\"\n";
+         R"(units lj
+atom_style atomic
+lattice fcc 0.8442
+region box block 0 20 0 20 0 20
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0 2.5
+neighbor 0.3 bin
+neigh_modify delay 0 every 20 check no
+fix 1 all nve
+run 100
+run )" + std::to_string(kTimedSteps) +
+         R"(
+compute near all coord/atom cutoff 2.5
+compute mean all reduce ave c_near
+thermo_style custom step c_mean
+run 0
+variable pairs equal c_mean/2
+print "pairs ${pairs}"
+)";
 }
 
 /// What LAMMPS has printed of a run.

@@ -16,9 +16,10 @@ namespace {
 
 int usage() {
   std::fputs(
-      "usage: stall_campaign lockstep|realtime [--sessions N] [--parallel N] [--longest SECONDS]\n"
-      "       [--window SECONDS] [--simulated SECONDS] [--seed N] [--patience SECONDS]\n"
-      "       [--programs FOLDER]\n",
+      R"(usage: stall_campaign lockstep|realtime [--sessions N] [--parallel N] [--longest SECONDS]
+       [--window SECONDS] [--simulated SECONDS] [--seed N] [--patience SECONDS]
+       [--programs FOLDER]
+)",
       stderr);
   return 2;
 }

@@ -1,5 +1,5 @@
-// tests/campaigns/page_stalls_test.mjs -- each node of a realtime session, with launcher and page in
-// Chromium, stalls once for a long time; the same processes and the picture go on afterwards.
+// tests/campaigns/page_stalls_test.mjs -- each node of a realtime session, with launcher and page,
+// stalls once for a long time; the same processes and the picture in Chromium go on afterwards.
 //
 // CORDIS_STALL_S seconds each (3), CORDIS_STALL_SESSIONS sessions one after the other (1).
 import assert from 'node:assert/strict';

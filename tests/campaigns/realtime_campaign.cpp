@@ -27,39 +27,42 @@ constexpr const char* kNodes[] = {"sim", "keyboard", "view"};
 
 /// A key on a spring, at a tenth of the usual rate: what is looked at is who receives whom.
 constexpr const char* kLaunch =
-    "cordis: 1\n"
-    "clock: realtime\n"
-    "nodes:\n"
-    "  sim: {node: sim_node, scene: scene.yaml}\n"
-    "  keyboard: {node: device_node, device: key.yaml}\n"
-    "  view: {node: viz_node, port: 0}\n";
+    R"(cordis: 1
+clock: realtime
+nodes:
+  sim: {node: sim_node, scene: scene.yaml}
+  keyboard: {node: device_node, device: key.yaml}
+  view: {node: viz_node, port: 0}
+)";
 constexpr const char* kScene =
-    "cordis: 1\n"
-    "name: wall\n"
-    "space: 1\n"
-    "step: {rate_hz: 400, gesture_rate_hz: 100, integrator: cordis}\n"
-    "liaisons:\n"
-    "  wall: {kind: spring, stiffness_n_per_m: 100}\n"
-    "matter:\n"
-    "  ground: {kind: fixed, at_m: [0]}\n"
-    "  bob: {kind: mass, mass_kg: 1, at_m: [0.1]}\n"
-    "ports:\n"
-    "  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}\n"
-    "links:\n"
-    "  - {liaison: wall, between: [key, ground]}\n";
+    R"(cordis: 1
+name: wall
+space: 1
+step: {rate_hz: 400, gesture_rate_hz: 100, integrator: cordis}
+liaisons:
+  wall: {kind: spring, stiffness_n_per_m: 100}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  bob: {kind: mass, mass_kg: 1, at_m: [0.1]}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}
+links:
+  - {liaison: wall, between: [key, ground]}
+)";
 constexpr const char* kKey =
-    "cordis: 1\n"
-    "axes: 1\n"
-    "travel_m: 0.04\n"
-    "rest: top\n"
-    "rate_hz: 100\n"
-    "driver: script\n"
-    "watchdog_s: 0.2\n"
-    "script:\n"
-    "  interpolation: linear\n"
-    "  positions:\n"
-    "    - {at_s: 0, m: 0}\n"
-    "    - {at_s: 0.2, m: -0.01}\n";
+    R"(cordis: 1
+axes: 1
+travel_m: 0.04
+rest: top
+rate_hz: 100
+driver: script
+watchdog_s: 0.2
+script:
+  interpolation: linear
+  positions:
+    - {at_s: 0, m: 0}
+    - {at_s: 0.2, m: -0.01}
+)";
 
 class Folder {
  public:

@@ -239,23 +239,26 @@ TEST(DoctorReport, SaysWhetherAForceLoopWorks) {
   Finding finding{.key = "a.b", .title = "something", .text = "is well"};
   EXPECT_TRUE(force_loop_works({finding}));
   EXPECT_EQ(report_text({finding}, false),
-            "OK       something            is well\n"
-            "A force loop at 1 kHz works on this machine.\n");
+            R"(OK       something            is well
+A force loop at 1 kHz works on this machine.
+)");
   finding.level = Level::kWarning;
   finding.advice = "mend it";
   EXPECT_TRUE(force_loop_works({finding}));
   EXPECT_EQ(report_text({finding}, false),
-            "warning  something            is well\n"
-            "                              What to do: mend it.\n"
-            "A force loop at 1 kHz works on this machine, with 1 warning.\n");
+            R"(warning  something            is well
+                              What to do: mend it.
+A force loop at 1 kHz works on this machine, with 1 warning.
+)");
   finding.level = Level::kUnusable;
   finding.commands = {"mend it"};
   EXPECT_FALSE(force_loop_works({finding}));
   EXPECT_EQ(report_text({finding}, false),
-            "FAILURE  something            is well\n"
-            "                              What to do: mend it:\n"
-            "           mend it\n"
-            "A force loop at 1 kHz cannot work on this machine.\n");
+            R"(FAILURE  something            is well
+                              What to do: mend it:
+           mend it
+A force loop at 1 kHz cannot work on this machine.
+)");
 }
 
 TEST(DoctorReport, IsJsonForPrograms) {

@@ -1,11 +1,16 @@
 // tests/cli/lab_test.cpp
 #include "cli/lab/lab.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <regex>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -27,12 +32,18 @@ class Lab : public testing::Test {
     std::filesystem::remove(options_.file);
   }
   void write(const std::string& more) {
-    std::ofstream(options_.file)
-        << "cordis: 1\nname: bob\nspace: 1\nstep: {rate_hz: 1000}\nmatter:\n"
-           "  ground: {kind: fixed, at_m: [0]}\n  bob: {kind: mass, mass_kg: 0.1, at_m: [0.1]}\n"
-           "liaisons:\n  holder: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}\n"
-           "links:\n  - {liaison: holder, between: [ground, bob]}\n"
-        << more;
+    std::ofstream(options_.file) << R"(cordis: 1
+name: bob
+space: 1
+step: {rate_hz: 1000}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: [0.1]}
+liaisons:
+  holder: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}
+links:
+  - {liaison: holder, between: [ground, bob]}
+)" << more;
   }
   LabReport run() {
     return run_lab(options_, [](const std::string&) {});
@@ -103,8 +114,27 @@ TEST_F(Lab, WritesATableAndAScriptForItsChart) {
   const std::string csv = read("lab.csv");
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
             report.runs.size() + 1);
-  EXPECT_NE(read("chart.gp").find("limit of cordis"), std::string::npos);
+  const std::string script = read("chart.gp");
+  EXPECT_NE(script.find("limit of cordis"), std::string::npos);
+  EXPECT_NE(script.find("bob (2 MATs, 1 link, 0 sets, 1-D), 2 s; "), std::string::npos);
   EXPECT_NE(text_of(report).find("blew up"), std::string::npos);
+}
+
+TEST_F(Lab, NoNameCoversAnotherBesideTheCurves) {
+  draw_chart(run(), options_.folder);
+  const std::string script = read("chart.gp");
+  const std::regex label("set label '([^']+)' at graph 1.03, graph ([0-9.]+) ");
+  std::map<std::string, double> heights;
+  for (auto found = std::sregex_iterator(script.begin(), script.end(), label);
+       found != std::sregex_iterator(); ++found)
+    heights[(*found)[1]] = std::stod((*found)[2]);
+  ASSERT_GE(heights.size(), 4u) << script;
+  std::vector<double> sorted;
+  for (const auto& [name, height] : heights) sorted.push_back(height);
+  std::sort(sorted.begin(), sorted.end());
+  EXPECT_GE(sorted.front(), 0.0);
+  EXPECT_LE(sorted.back(), 1.0);
+  for (std::size_t i = 1; i < sorted.size(); ++i) EXPECT_GT(sorted[i] - sorted[i - 1], 0.05);
 }
 
 TEST_F(Lab, AFolderThatCannotBeMadeIsNamed) {
@@ -119,12 +149,14 @@ TEST_F(Lab, AFolderThatCannotBeMadeIsNamed) {
 }
 
 TEST_F(Lab, ASceneThatOnlyADeviceMovesIsRefusedWithWhatItNeeds) {
-  std::ofstream(options_.file)
-      << "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\n"
-         "matter: {bob: {kind: mass, mass_kg: 0.1, at_m: 0}}\n"
-         "ports: {key: {device: keyboard, axes: [0], role: mass, coupling: direct}}\n"
-         "liaisons: {holder: {kind: spring, stiffness_n_per_m: 1000}}\n"
-         "links: [{liaison: holder, between: [key, bob]}]\n";
+  std::ofstream(options_.file) << R"(cordis: 1
+space: 1
+step: {rate_hz: 1000}
+matter: {bob: {kind: mass, mass_kg: 0.1, at_m: 0}}
+ports: {key: {device: keyboard, axes: [0], role: mass, coupling: direct}}
+liaisons: {holder: {kind: spring, stiffness_n_per_m: 1000}}
+links: [{liaison: holder, between: [key, bob]}]
+)";
   try {
     run();
     FAIL() << "nothing moves";

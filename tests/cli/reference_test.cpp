@@ -13,11 +13,13 @@ namespace {
 
 constexpr const char* kFile = CORDIS_SOURCE_DIR "/docs/cli.md";
 constexpr const char* kBeginning =
-    "# The command line\n\n"
-    "This file is made from the help texts of the program; `cordis VERB --help` prints the same. "
-    "A\n"
-    "test keeps both equal. To write it again, run\n"
-    "`CORDIS_WRITE_DOCS=1 build/release/bin/cli_test --gtest_filter=Reference.*`.\n\n";
+    R"(# The command line
+
+This file is made from the help texts of the program; `cordis VERB --help` prints the same. A
+test keeps both equal. To write it again, run
+`CORDIS_WRITE_DOCS=1 build/release/bin/cli_test --gtest_filter=Reference.*`.
+
+)";
 
 std::string document() {
   CommandLine line("cordis", "Physical objects that you can build from parts, touch and see.",

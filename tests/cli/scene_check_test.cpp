@@ -23,11 +23,15 @@ class Checked : public testing::Test {
   ~Checked() override { std::remove(path_.c_str()); }
   void write(const std::string& rate, const std::string& more = "") {
     std::ofstream(path_) << "cordis: 1\nname: bob\nspace: 1\nstep: {rate_hz: " << rate
-                         << ", gesture_rate_hz: 10}\nmatter:\n  ground: {kind: fixed, at_m: [0]}\n"
-                            "  bob: {kind: mass, mass_kg: 0.1, at_m: [0.1]}\n"
-                            "liaisons:\n  holder: {kind: spring, stiffness_n_per_m: 1000}\n"
-                            "links:\n  - {liaison: holder, between: [ground, bob]}\n"
-                         << more;
+                         << R"(, gesture_rate_hz: 10}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: [0.1]}
+liaisons:
+  holder: {kind: spring, stiffness_n_per_m: 1000}
+links:
+  - {liaison: holder, between: [ground, bob]}
+)" << more;
   }
   int run(std::vector<std::string> words) {
     CommandLine line("cordis", "", "1");
@@ -52,9 +56,11 @@ TEST_F(Checked, AStableSceneHasItsMarginAndItsLimitByNameAndLine) {
 
 TEST_F(Checked, LinksWithStatesAndSetsHaveALineToo) {
   const std::string states =
-      "  - {liaison: catch, between: [ground, bob], name: catch}\n"
-      "  - {liaison: knock, within: [bob, other]}\n"
-      "ports:\n  other: {device: d, axes: [0], role: mass, coupling: direct, at_m: 0.5}\n";
+      R"(  - {liaison: catch, between: [ground, bob], name: catch}
+  - {liaison: knock, within: [bob, other]}
+ports:
+  other: {device: d, axes: [0], role: mass, coupling: direct, at_m: 0.5}
+)";
   const auto soft = [&](const std::string& stiffness, const std::string& of_set) {
     write("1000", states);
     std::ifstream in(path_);
@@ -127,16 +133,20 @@ TEST_F(Checked, AProgramReadsTheSame) {
 }
 
 TEST_F(Checked, TellsTheReductionsInBothForms) {
-  std::ofstream(path_) << "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\nreduce: all\n"
-                          "liaisons: {s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0}}\n"
-                          "matter:\n"
-                          "  wall: {kind: fixed, at_m: [0, 0]}\n"
-                          "  joint: {kind: mass, mass_kg: 0, at_m: [0.1, 0]}\n"
-                          "  bob: {kind: mass, mass_kg: 0.1, at_m: [0.3, 0]}\n"
-                          "links:\n"
-                          "  - {liaison: s, between: [wall, joint]}\n"
-                          "  - {liaison: s, between: [joint, bob]}\n"
-                          "  - {liaison: s, between: [wall, bob]}\n";
+  std::ofstream(path_) << R"(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+reduce: all
+liaisons: {s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0}}
+matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  joint: {kind: mass, mass_kg: 0, at_m: [0.1, 0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: [0.3, 0]}
+links:
+  - {liaison: s, between: [wall, joint]}
+  - {liaison: s, between: [joint, bob]}
+  - {liaison: s, between: [wall, bob]}
+)";
   EXPECT_EQ(run({}), kSuccess) << error_;
   EXPECT_NE(out_.find("reduced     dimension: 2-D computed as 1-D"), std::string::npos) << out_;
   EXPECT_NE(out_.find("parallel: 1 link merged into another between the same MATs; exact"),
@@ -160,8 +170,10 @@ TEST_F(Checked, WhatIsStableAtAnyStepHasNoLimit) {
 
 TEST_F(Checked, PortsAreJudgedInTheirRole) {
   write("100",
-        "  - {liaison: holder, between: [key, bob]}\n"
-        "ports:\n  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}\n");
+        R"(  - {liaison: holder, between: [key, bob]}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}
+)");
   // K (T / 2 + d T) with T = 0.1 s: 150 N s/m with one period of delay, 250 with two
   ASSERT_EQ(run({"--device-viscosity", "200"}), kSuccess) << error_;
   EXPECT_NE(out_.find("the device needs 150 N s/m"), std::string::npos) << out_;

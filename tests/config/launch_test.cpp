@@ -7,15 +7,15 @@ namespace cordis::config {
 namespace {
 
 constexpr const char* kLaunch =
-    "cordis: 1\n"
-    "session: plucked_string\n"
-    "domain: 42\n"
-    "clock: lockstep\n"
-    "nodes:\n"
-    "  sim:      {node: sim_node, scene: scenes/plucked_string.yaml}\n"
-    "  keyboard: {node: device_node, device: devices/keyboard.yaml, driver: mock, hand: {mass_kg: "
-    "1}}\n"
-    "  view:     {node: viz_node, port: 8080, required: false}\n";
+    R"(cordis: 1
+session: plucked_string
+domain: 42
+clock: lockstep
+nodes:
+  sim:      {node: sim_node, scene: scenes/plucked_string.yaml}
+  keyboard: {node: device_node, device: devices/keyboard.yaml, driver: mock, hand: {mass_kg: 1}}
+  view:     {node: viz_node, port: 8080, required: false}
+)";
 
 TEST(Launch, ReadsSessionAndNodesInTheOrderOfTheFile) {
   Problems problems;

@@ -34,11 +34,20 @@ std::string hint_for_number(const std::string& text) {
 
 TEST(MappingReader, ReadsEveryKind) {
   Problems problems;
-  MappingReader reader(
-      load_text("n: -1.5e-3\ni: +12\nt: true\nw: some words\nc: b\nl: [1, 2.5]\no: 3\n"
-                "k: [0, 15]\nm: {a: 1}\ns: [x]\nv: x\n",
-                "t", problems),
-      "thing", problems);
+  MappingReader reader(load_text(R"(n: -1.5e-3
+i: +12
+t: true
+w: some words
+c: b
+l: [1, 2.5]
+o: 3
+k: [0, 15]
+m: {a: 1}
+s: [x]
+v: x
+)",
+                                 "t", problems),
+                       "thing", problems);
 
   EXPECT_EQ(reader.required_number("n"), -1.5e-3);
   EXPECT_EQ(reader.required_integer("i", 0, 12), 12);
@@ -84,8 +93,12 @@ TEST(MappingReader, ReportsEveryMissingKeyAtTheMapping) {
                           r.required_number("mass_kg");
                           r.required_text("kind");
                         }),
-            "t:1:1: error: missing key 'mass_kg' in thing\na:\n^\n"
-            "t:1:1: error: missing key 'kind' in thing\na:\n^");
+            R"(t:1:1: error: missing key 'mass_kg' in thing
+a:
+^
+t:1:1: error: missing key 'kind' in thing
+a:
+^)");
 }
 
 TEST(MappingReader, StandsInForABrokenRequiredValueWithOneInRange) {
@@ -108,17 +121,25 @@ TEST(MappingReader, SuggestsTheKnownKeyNextToAnUnknownOne) {
       problems_of("mass_g: 3\n", read),
       "t:1:1: error: unknown key 'mass_g' in thing\nmass_g: 3\n^\n  hint: did you mean 'mass_kg'?");
   EXPECT_EQ(problems_of("rate_khz: 3\n", read),
-            "t:1:1: error: unknown key 'rate_khz' in thing\nrate_khz: 3\n^\n  hint: did you mean "
-            "'rate_hz'?");
+            R"(t:1:1: error: unknown key 'rate_khz' in thing
+rate_khz: 3
+^
+  hint: did you mean 'rate_hz'?)");
   EXPECT_EQ(problems_of("colour: 3\n", read),
-            "t:1:1: error: unknown key 'colour' in thing\ncolour: 3\n^\n  hint: known keys: "
-            "mass_kg, rate_hz");
+            R"(t:1:1: error: unknown key 'colour' in thing
+colour: 3
+^
+  hint: known keys: mass_kg, rate_hz)");
   EXPECT_EQ(problems_of("{zzz:3}\n", read),
-            "t:1:2: error: unknown key 'zzz:3' in thing\n{zzz:3}\n ^\n  hint: write a space after "
-            "the ':'");
+            R"(t:1:2: error: unknown key 'zzz:3' in thing
+{zzz:3}
+ ^
+  hint: write a space after the ':')");
   EXPECT_EQ(problems_of("hand.finger.mass_kg: 3\n", read),
-            "t:1:1: error: unknown key 'hand.finger.mass_kg' in thing\nhand.finger.mass_kg: 3\n^\n"
-            "  hint: the dots are for the command line; write hand: {finger: {mass_kg: ...}}");
+            R"(t:1:1: error: unknown key 'hand.finger.mass_kg' in thing
+hand.finger.mass_kg: 3
+^
+  hint: the dots are for the command line; write hand: {finger: {mass_kg: ...}})");
 }
 
 TEST(MappingReader, AsksForAMappingOnceAndIsSilentAfterwards) {
@@ -221,13 +242,14 @@ TEST(MappingReader, RefusesTextsThatAreNone) {
 }
 
 TEST(MappingReader, ListsTheChoicesAndSuggestsOne) {
-  EXPECT_EQ(
-      problems_of("x: lockstp\n",
-                  [](MappingReader& r) {
-                    r.required_choice("x", {"asap", "lockstep"});
-                  }),
-      "t:1:4: error: 'x' in thing must be one of asap, lockstep, got 'lockstp'\nx: lockstp\n   ^\n"
-      "  hint: did you mean 'lockstep'?");
+  EXPECT_EQ(problems_of("x: lockstp\n",
+                        [](MappingReader& r) {
+                          r.required_choice("x", {"asap", "lockstep"});
+                        }),
+            R"(t:1:4: error: 'x' in thing must be one of asap, lockstep, got 'lockstp'
+x: lockstp
+   ^
+  hint: did you mean 'lockstep'?)");
 }
 
 TEST(MappingReader, CountsTheNumbersOfASequence) {
@@ -250,8 +272,12 @@ TEST(MappingReader, NamesTheKindThatWasWanted) {
                           r.optional_mapping("x");
                           r.required_sequence("y");
                         }),
-            "t:1:4: error: 'x' in thing must be a mapping of keys, got '1'\nx: 1\n   ^\n"
-            "t:2:4: error: 'y' in thing must be a sequence, got '2'\ny: 2\n   ^");
+            R"(t:1:4: error: 'x' in thing must be a mapping of keys, got '1'
+x: 1
+   ^
+t:2:4: error: 'y' in thing must be a sequence, got '2'
+y: 2
+   ^)");
 }
 
 TEST(MappingReader, SaysWhatTheCallerFindsWrong) {

@@ -21,10 +21,10 @@ TEST(Problem, ShowsPlaceLineCaretAndHint) {
   problems.error({"demo.yaml", 5, 5}, "unknown key 'arg' in node", "did you mean 'args'?");
 
   EXPECT_EQ(problems.text(),
-            "demo.yaml:5:5: error: unknown key 'arg' in node\n"
-            "    arg: [--dt, 0.001]\n"
-            "    ^\n"
-            "  hint: did you mean 'args'?");
+            R"(demo.yaml:5:5: error: unknown key 'arg' in node
+    arg: [--dt, 0.001]
+    ^
+  hint: did you mean 'args'?)");
 }
 
 TEST(Problem, WithoutALineIsOneLine) {

@@ -91,11 +91,12 @@ TEST(LoadText, MergedKeysGiveWayToWrittenOnes) {
   Problems problems;
 
   const Value root = load_text(
-      "base: &base {a: 1, b: 2}\n"
-      "more: &more {b: 3, c: 4}\n"
-      "x: {<<: *base, b: 5}\n"
-      "y: {b: 5, <<: *base}\n"
-      "z: {<<: [*base, *more]}\n",
+      R"(base: &base {a: 1, b: 2}
+more: &more {b: 3, c: 4}
+x: {<<: *base, b: 5}
+y: {b: 5, <<: *base}
+z: {<<: [*base, *more]}
+)",
       "t", problems);
 
   EXPECT_EQ(problems.text(), "");
@@ -113,9 +114,14 @@ TEST(LoadText, GoesOnBehindADuplicateKeyWithItsFirstValue) {
   const Value root = load_text("a: 1\nb: {c: 1, c: 2}\na: 3\n", "t", problems);
 
   EXPECT_EQ(problems.text(),
-            "t:2:11: error: duplicate key 'c'\nb: {c: 1, c: 2}\n          ^\n  hint: first defined "
-            "at line 2\n"
-            "t:3:1: error: duplicate key 'a'\na: 3\n^\n  hint: first defined at line 1");
+            R"(t:2:11: error: duplicate key 'c'
+b: {c: 1, c: 2}
+          ^
+  hint: first defined at line 2
+t:3:1: error: duplicate key 'a'
+a: 3
+^
+  hint: first defined at line 1)");
   EXPECT_EQ(root.find("a").text(), "1");
 }
 
@@ -281,8 +287,10 @@ TEST_F(LoadFile, BlamesThePlaceThatNamesAMissingFile) {
 
   EXPECT_EQ(
       problems.text(),
-      "launch.yaml:1:8: error: cannot read 'no_such_folder/x.yaml': No such file or directory\n"
-      "scene: x.yaml\n       ^\n  hint: there is no folder 'no_such_folder'");
+      R"(launch.yaml:1:8: error: cannot read 'no_such_folder/x.yaml': No such file or directory
+scene: x.yaml
+       ^
+  hint: there is no folder 'no_such_folder')");
 }
 
 TEST_F(LoadFile, RefusesAFolderAndWhatNeverEnds) {

@@ -28,13 +28,13 @@ TEST(PhaseLog, TellsEachChangeInItsWords) {
   phases.note(Phase::kRunning, true, 600 * kMillisecond);
 
   EXPECT_EQ(log.lines(""),
-            "no answer from the scene for more than 20 ms: motors at zero\n"
-            "plays again after 0.250 s\n"
-            "driver kfb1: the device does not answer; trying again\n"
-            "driver kfb1: the motors have been let go of outside the loop; forces return by the "
-            "ramp\n"
-            "another node plays 'keyboard' with more strength; ready to take over\n"
-            "takes over 'keyboard'\n");
+            R"(no answer from the scene for more than 20 ms: motors at zero
+plays again after 0.250 s
+driver kfb1: the device does not answer; trying again
+driver kfb1: the motors have been let go of outside the loop; forces return by the ramp
+another node plays 'keyboard' with more strength; ready to take over
+takes over 'keyboard'
+)");
 }
 
 TEST(PhaseLog, CountsAPhaseThatComesAndGoes) {
@@ -49,12 +49,13 @@ TEST(PhaseLog, CountsAPhaseThatComesAndGoes) {
   }
   phases.report(5'001 * kMillisecond);
 
-  EXPECT_EQ(log.lines(""),
-            "driver kfb1: the motors have been let go of outside the loop; forces return by the "
-            "ramp\n"
-            "plays again after 0.001 s\n"
-            "driver kfb1: the motors were let go of outside the loop: 49 more times in 5 s\n"
-            "played again: 49 more times in 5 s, the worst 50 ms\n");
+  EXPECT_EQ(
+      log.lines(""),
+      R"(driver kfb1: the motors have been let go of outside the loop; forces return by the ramp
+plays again after 0.001 s
+driver kfb1: the motors were let go of outside the loop: 49 more times in 5 s
+played again: 49 more times in 5 s, the worst 50 ms
+)");
 }
 
 }  // namespace

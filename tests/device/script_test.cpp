@@ -20,14 +20,15 @@ std::unique_ptr<Driver> script_of(const std::string& text, const AxisLayout& lay
 }
 
 constexpr const char* kScript =
-    "interpolation: linear\n"
-    "repeat_s: 0.5\n"
-    "positions:\n"
-    "  - {at_s: 0.1, m: [0, -0.01]}\n"
-    "  - {at_s: 0.2, m: [-0.02, -0.01]}\n"
-    "  - {at_s: 0.3, m: -0.03}\n"
-    "forces:\n"
-    "  - {at_s: 0, n: -2.5}\n";
+    R"(interpolation: linear
+repeat_s: 0.5
+positions:
+  - {at_s: 0.1, m: [0, -0.01]}
+  - {at_s: 0.2, m: [-0.02, -0.01]}
+  - {at_s: 0.3, m: -0.03}
+forces:
+  - {at_s: 0, n: -2.5}
+)";
 
 TEST(Script, GivesEachPointInItsVerySample) {
   config::Problems problems;

@@ -63,16 +63,16 @@ void collect(const config::Problems& problems, Tables& tables) {
 void collect_device(const std::string& hand, Tables& tables) {
   const std::string wire = "port: /dev/null, coupling: {q: 1}, q: 1";
   std::string text =
-      "axes: 4\nq: 1\n"
-      "end_piece: {map: [[1, 0, 0, 0]], q: 1}\n"
-      "passivity: {q: 1}\n"
-      "trace: {file: /tmp/trace.csv, q: 1}\n"
-      "mock: {q: 1, key: {q: 1}, sensor: {q: 1}, hand: {q: 1, axes: [0, 1, 2, 3], finger: {q: "
-      "1}, " +
+      R"(axes: 4
+q: 1
+end_piece: {map: [[1, 0, 0, 0]], q: 1}
+passivity: {q: 1}
+trace: {file: /tmp/trace.csv, q: 1}
+mock: {q: 1, key: {q: 1}, sensor: {q: 1}, hand: {q: 1, axes: [0, 1, 2, 3], finger: {q: 1}, )" +
       hand +
-      "}}\n"
-      "script: {q: 1, positions: [{at_s: 0, m: 0, q: 1}]}\n"
-      "kfb1: {" +
+      R"(}}
+script: {q: 1, positions: [{at_s: 0, m: 0, q: 1}]}
+kfb1: {)" +
       wire + "}\nfirefader: {" + wire + "}\nhaply: {" + wire + "}\n";
   text = std::regex_replace(text, std::regex("\\bq: 1"), kUnknown + std::string(": 1"));
   config::Problems problems;

@@ -218,8 +218,9 @@ TEST(BadInput, AnUnstableSceneIsRefusedAtTheLinkThatSetsItsLimit) {
 
 TEST(BadInput, ADivergingSceneStopsWithTheReasonAndNoForce) {
   LiveSession session("lockstep",
-                      "  sim: {node: sim_node, scene: scene.yaml, force: true}\n"
-                      "  keyboard: {node: device_node, device: key.yaml}\n");
+                      R"(  sim: {node: sim_node, scene: scene.yaml, force: true}
+  keyboard: {node: device_node, device: key.yaml}
+)");
   session.add_file("scene.yaml", unstable_scene());
   session.add_file("key.yaml", steady_key(0, 0));
   session.start("device_node", "keyboard");
@@ -233,21 +234,38 @@ TEST(BadInput, ADivergingSceneStopsWithTheReasonAndNoForce) {
 /// A bob on springs that harden with the cube of what they are stretched by, at rest; the key pulls
 /// it out 2 cm, where K' is 7: no check can know that.
 std::string hardening_scene() {
-  return "cordis: 1\nname: hardening\nspace: 1\nstep: {rate_hz: 4000}\n"
-         "liaisons:\n"
-         "  hardening: {elasticity: {kind: power, coefficient: 2.0e+9, exponent: 3}}\n"
-         "matter:\n  ground: {kind: fixed, at_m: [0]}\n"
-         "  bob: {kind: mass, mass_kg: 0.01, at_m: [0]}\n"
-         "ports:\n  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}\n"
-         "links:\n  - {liaison: hardening, between: [key, bob]}\n"
-         "  - {liaison: hardening, between: [bob, ground]}\n";
+  return R"(cordis: 1
+name: hardening
+space: 1
+step: {rate_hz: 4000}
+liaisons:
+  hardening: {elasticity: {kind: power, coefficient: 2.0e+9, exponent: 3}}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  bob: {kind: mass, mass_kg: 0.01, at_m: [0]}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}
+links:
+  - {liaison: hardening, between: [key, bob]}
+  - {liaison: hardening, between: [bob, ground]}
+)";
 }
 
 /// Presses after 10,000 periods, when the reader of the test has long been found.
 std::string late_key() {
-  return "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nrate_hz: 1000\ndriver: script\n"
-         "script:\n  interpolation: linear\n  positions:\n    - {at_s: 0, m: 0}\n"
-         "    - {at_s: 10, m: 0}\n    - {at_s: 10.2, m: -0.02}\n";
+  return R"(cordis: 1
+axes: 1
+travel_m: 0.04
+rest: top
+rate_hz: 1000
+driver: script
+script:
+  interpolation: linear
+  positions:
+    - {at_s: 0, m: 0}
+    - {at_s: 10, m: 0}
+    - {at_s: 10.2, m: -0.02}
+)";
 }
 
 TEST(BadInput, ASceneThatDivergesAtRunTimeEndsTheSessionWithTheReasonAndNoForce) {

@@ -6,15 +6,20 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "idl/gesture.h"
 #include "idl/scene.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
+#include "node/runtime_folder.h"
+#include "node/session_registry.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
@@ -24,6 +29,14 @@ namespace cordis::test {
 namespace {
 
 using namespace std::chrono_literals;
+
+constexpr const char* kFreeScene = R"(cordis: 1
+name: free
+space: 1
+step: {rate_hz: 1000}
+matter:
+  bob: {kind: mass, mass_kg: 1, at_m: 0}
+)";
 
 struct Outcome {
   int code;
@@ -172,14 +185,22 @@ TEST_P(Control, SetChangesAParameterAndTheKeyFeelsIt) {
 TEST(ControlOfStates, StatePutsALinkIntoAStateAndAnEventTells) {
   LiveSession session("asap", "  sim: {node: sim_node, scene: scene.yaml}\n");
   session.add_file("scene.yaml",
-                   "cordis: 1\nname: fuse\nspace: 1\nstep: {rate_hz: 1000}\n"
-                   "liaisons:\n  fuse:\n    start: whole\n    states:\n"
-                   "      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: "
-                   "\"elongation_m > 1\"}]}\n"
-                   "      broken: {exits: [{to: whole, when: \"elongation_m < -1\"}]}\n"
-                   "matter:\n  wall: {kind: fixed, at_m: 0}\n"
-                   "  bob: {kind: mass, mass_kg: 1, at_m: 0.1}\n"
-                   "links:\n  - {name: joint, liaison: fuse, between: [wall, bob]}\n");
+                   R"(cordis: 1
+name: fuse
+space: 1
+step: {rate_hz: 1000}
+liaisons:
+  fuse:
+    start: whole
+    states:
+      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: "elongation_m > 1"}]}
+      broken: {exits: [{to: whole, when: "elongation_m < -1"}]}
+matter:
+  wall: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 1, at_m: 0.1}
+links:
+  - {name: joint, liaison: fuse, between: [wall, bob]}
+)");
   dds::Reader<msg::SceneEvents> events(session.participant(), dds::Topic::kEvents);
   StatusWatch status(session.participant());
   session.start("sim_node", "sim");
@@ -224,11 +245,7 @@ INSTANTIATE_TEST_SUITE_P(Clocks, Control, ::testing::Values("realtime", "lockste
 
 class ControlWithoutDevices : public Control {
  protected:
-  ControlWithoutDevices() : Control("asap") {
-    session_.add_file("scene.yaml",
-                      "cordis: 1\nname: free\nspace: 1\nstep: {rate_hz: 1000}\n"
-                      "matter:\n  bob: {kind: mass, mass_kg: 1, at_m: 0}\n");
-  }
+  ControlWithoutDevices() : Control("asap") { session_.add_file("scene.yaml", kFreeScene); }
 };
 
 TEST_F(ControlWithoutDevices, AScenePlayedAsFastAsCanBeObeysJustTheSame) {
@@ -365,11 +382,46 @@ TEST_F(ControlInRealtime, WithoutASimulationTheCommandEndsInOneClearMessage) {
   })) << outcome.output;
 }
 
-TEST_F(ControlInRealtime, ASessionIsFoundByItsNameToo) {
-  start();
-  ChildProcess process({program_path("cordis"), "ctl", "test", "pause", "--timeout", "60s"});
+TEST(ControlByName, FindsTheSessionInWhicheverDomainItRuns) {
+  const std::string name = "by-name-" + std::to_string(getpid());
+  LiveSession session("asap", "  sim: {node: sim_node, scene: scene.yaml}\n", name);
+  session.add_file("scene.yaml", kFreeScene);
+  StatusWatch status(session.participant());
+  session.start("sim_node", "sim");
+  ASSERT_TRUE(status.wait_for_phase("sim", "running"));
+
+  ChildProcess process({program_path("cordis"), "ctl", name, "pause", "--timeout", "60s"});
+
   EXPECT_EQ(process.wait(kPatience), 0) << process.output();
-  ASSERT_TRUE(status_.wait_for_phase("sim", "paused"));
+  ASSERT_TRUE(status.wait_for_phase("sim", "paused"));
+}
+
+/// Another session of a name, as the registry of this host records it.
+std::unique_ptr<node::SessionRegistration> register_twin(const std::string& session,
+                                                         const std::string& launch_file) {
+  constexpr int kFirstOfTests = 10;
+  for (int domain = 0; domain < kFirstOfTests; ++domain) {
+    try {
+      return std::make_unique<node::SessionRegistration>(
+          node::runtime_folder(),
+          node::SessionRequest{session, domain, launch_file, {"sim-of-the-twin"}});
+    } catch (const std::runtime_error&) {  // the domain is taken
+    }
+  }
+  return nullptr;
+}
+
+TEST_F(ControlInRealtime, OfTwoSessionsOfOneNameTheLaunchFileSaysWhich) {
+  start();
+  const auto twin = register_twin("test", "/elsewhere/launch.yaml");
+  ASSERT_TRUE(twin);
+
+  expect_done({"pause"}, "sim: paused at step ");
+
+  ChildProcess by_name({program_path("cordis"), "ctl", "test", "pause"});
+  EXPECT_EQ(by_name.wait(kPatience), 1);
+  EXPECT_NE(by_name.output().find("session 'test' runs in domains "), std::string::npos)
+      << by_name.output();
 }
 
 TEST_F(ControlInRealtime, BadWordsAreRefusedBeforeAnythingIsSent) {

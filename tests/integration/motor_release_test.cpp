@@ -38,8 +38,13 @@ class Board {
 };
 
 const char* const kLimits =
-    "cordis: 1\nrate_hz: 1000\nforce_limit_n: 5\nslew_limit_n_per_s: 300\nwatchdog_s: 0.05\n"
-    "start_ramp_s: 0.05\n";
+    R"(cordis: 1
+rate_hz: 1000
+force_limit_n: 5
+slew_limit_n_per_s: 300
+watchdog_s: 0.05
+start_ramp_s: 0.05
+)";
 const char* const kPatient = "lost_after_s: 0.2, retry_s: 0.05, ";  // with a busy emulator
 
 class FireFaderOnALine : public Board {
@@ -92,9 +97,10 @@ class Kfb1OnALine : public Board {
 };
 
 constexpr const char* kWithAView =
-    "  sim: {node: sim_node, scene: scene.yaml}\n"
-    "  keyboard: {node: device_node, device: key.yaml}\n"
-    "  view: {node: viz_node, port: 0}\n";
+    R"(  sim: {node: sim_node, scene: scene.yaml}
+  keyboard: {node: device_node, device: key.yaml}
+  view: {node: viz_node, port: 0}
+)";
 
 const std::array<const char*, 4> kBoards{"firefader", "haply", "kfb1", "kfb1 over UDP"};
 

@@ -43,11 +43,20 @@ std::string number(double value) {
 /// sub-steps, no friction, a guard that lets everything through.
 std::string bare_key(int delay, const std::string& hand, double force_limit = 1e5,
                      double beta = kBeta) {
-  return "cordis: 1\naxes: 1\ntravel_m: 1\nrest: middle\nrate_hz: 1000\ndriver: mock\n"
-         "force_limit_n: " +
+  return R"(cordis: 1
+axes: 1
+travel_m: 1
+rest: middle
+rate_hz: 1000
+driver: mock
+force_limit_n: )" +
          number(force_limit) +
-         "\nslew_limit_n_per_s: 1.0e+9\nspeed_limit_m_per_s: 1.0e+6\n"
-         "power_limit_w: 1.0e+12\nstart_ramp_s: 0\ndelay_periods: " +
+         R"(
+slew_limit_n_per_s: 1.0e+9
+speed_limit_m_per_s: 1.0e+6
+power_limit_w: 1.0e+12
+start_ramp_s: 0
+delay_periods: )" +
          std::to_string(delay) + "\nmock:\n  key: {mass_kg: " + number(kMass) +
          ", viscosity_n_s_per_m: " + number(beta * kMass / kPeriod) +
          ", friction_n: 0, stop_n_per_m: 4.0e+6, stop_viscosity_n_s_per_m: 20, "
@@ -102,14 +111,23 @@ Swing swing_of(const std::string& scene, const std::string& key, dds::Topic topi
 class PortStability : public ::testing::TestWithParam<int> {};
 
 std::string wall_scene(double kappa, double z) {
-  return "cordis: 1\nname: wall\nspace: 1\nstep: {rate_hz: 1000, gesture_rate_hz: 1000}\n"
-         "liaisons:\n  wall: {kind: spring_damper, stiffness_n_per_m: " +
+  return R"(cordis: 1
+name: wall
+space: 1
+step: {rate_hz: 1000, gesture_rate_hz: 1000}
+liaisons:
+  wall: {kind: spring_damper, stiffness_n_per_m: )" +
          number(kappa * kMass / (kPeriod * kPeriod)) +
          ", viscosity_n_s_per_m: " + number(z * kMass / kPeriod) +
-         ", rest_m: 0.0001}\nmatter:\n  ground: {kind: fixed, at_m: [0]}\n"
-         "  bob: {kind: mass, mass_kg: 1, at_m: [0.1]}\n"
-         "ports:\n  key: {device: keyboard, axes: [0], role: mass, at_m: [0], coupling: direct}\n"
-         "links:\n  - {liaison: wall, between: [key, ground]}\n";
+         R"(, rest_m: 0.0001}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  bob: {kind: mass, mass_kg: 1, at_m: [0.1]}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, at_m: [0], coupling: direct}
+links:
+  - {liaison: wall, between: [key, ground]}
+)";
 }
 
 /// A wall that pushes the key to 0.1 mm below its rest.
@@ -128,11 +146,18 @@ TEST_P(PortStability, RoleMassSwingsJustWhereTheTableSays) {
 }
 
 std::string held_scene() {
-  return "cordis: 1\nname: held\nspace: 1\nstep: {rate_hz: 1000, gesture_rate_hz: 1000}\n"
-         "liaisons:\n  air: {kind: damper, viscosity_n_s_per_m: " +
+  return R"(cordis: 1
+name: held
+space: 1
+step: {rate_hz: 1000, gesture_rate_hz: 1000}
+liaisons:
+  air: {kind: damper, viscosity_n_s_per_m: )" +
          number(kZ * kMass / kPeriod) +
-         "}\nmatter:\n  ground: {kind: fixed, at_m: [0]}\n"
-         "ports:\n  key: {device: keyboard, axes: [0], role: liaison, mass_kg: " +
+         R"(}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+ports:
+  key: {device: keyboard, axes: [0], role: liaison, mass_kg: )" +
          number(kMass) + ", at_m: [0]}\nlinks:\n  - {liaison: air, between: [key, ground]}\n";
 }
 

@@ -38,10 +38,15 @@ class LaunchFile {
 };
 
 const char* const kTwoDevices =
-    "cordis: 1\nsession: test\ndomain: 7\nclock: lockstep\nnodes:\n"
-    "  left: {node: device_node, device: a.yaml}\n"
-    "  right: {node: device_node, device: b.yaml}\n"
-    "  sim: {node: sim_node, scene: s.yaml}\n";
+    R"(cordis: 1
+session: test
+domain: 7
+clock: lockstep
+nodes:
+  left: {node: device_node, device: a.yaml}
+  right: {node: device_node, device: b.yaml}
+  sim: {node: sim_node, scene: s.yaml}
+)";
 
 NodeStart last_start;
 
@@ -102,8 +107,12 @@ TEST(NodeMain, EndsWith1WhenTheNodeFails) {
 
 TEST(NodeMain, JoinsTheRunningSessionOfItsNameOrClaimsADomain) {
   const LaunchFile file(
-      "cordis: 1\nsession: test\nnodes:\n  sim: {node: sim_node}\n"
-      "  view: {node: viz_node}\n");
+      R"(cordis: 1
+session: test
+nodes:
+  sim: {node: sim_node}
+  view: {node: viz_node}
+)");
   const pid_t other = fork();
   if (other == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -8,31 +8,34 @@ namespace {
 
 /// A net in the plane y = 0.3 m, with balls and a port in it.
 std::string in_a_plane(const std::string& gravity, const std::string& more = {}) {
-  return "cordis: 1\nspace: 3\nstep: {rate_hz: 1000}\nreduce: [dimension]\n"
-         "world: {gravity_m_per_s2: " +
+  return R"(cordis: 1
+space: 3
+step: {rate_hz: 1000}
+reduce: [dimension]
+world: {gravity_m_per_s2: )" +
          gravity +
-         "}\n"
-         "liaisons:\n"
-         "  push: {states: {on: {stiffness_n_per_m: 200, pulls: false, final: true}}}\n"
-         "  s: {kind: spring_damper, stiffness_n_per_m: 60, viscosity_n_s_per_m: 0.01}\n"
-         "  thread: {states: {taut: {stiffness_n_per_m: 50, pushes: false, final: true}}}\n"
-         "matter:\n"
-         "  net: {kind: grid, rows: 4, columns: 5, corner_m: [0, 0.3, 0], spacing_m: 0.1, plane: "
-         "xz,\n"
-         "        border: corners, mass_kg: 0.01, stiffness_n_per_m: 50, rest_m: 0.09}\n"
-         "  balls: {kind: mass, ball: {mass_kg: 0.01, radius_m: 0.02},\n"
-         "          at_m: [[0.1, 0.3, 0.55], [0.21, 0.3, 0.62], [0.2, 0.3, 0.7]]}\n"
-         "ports:\n"
-         "  key: {device: k, axes: [0], role: mass, at_m: [0, 0.3, 1], along: z}\n"
-         "links:\n"
-         "  - {liaison: push, within: balls, range: rest}\n"
-         "  - {liaison: s, between: [key, \"balls[2]\"]}\n"
-         "  - {liaison: thread, between: [\"net[7]\", \"balls[0]\"], rest_m: 0.2}\n" +
-         more +
-         "signals:\n"
-         "  height: {of: \"net[7]\", quantity: position, axis: z}\n"
-         "  aside: {of: \"net[7]\", quantity: position, axis: y}\n"
-         "  moved: {of: key, quantity: position}\n";
+         R"(}
+liaisons:
+  push: {states: {on: {stiffness_n_per_m: 200, pulls: false, final: true}}}
+  s: {kind: spring_damper, stiffness_n_per_m: 60, viscosity_n_s_per_m: 0.01}
+  thread: {states: {taut: {stiffness_n_per_m: 50, pushes: false, final: true}}}
+matter:
+  net: {kind: grid, rows: 4, columns: 5, corner_m: [0, 0.3, 0], spacing_m: 0.1, plane: xz,
+        border: corners, mass_kg: 0.01, stiffness_n_per_m: 50, rest_m: 0.09}
+  balls: {kind: mass, ball: {mass_kg: 0.01, radius_m: 0.02},
+          at_m: [[0.1, 0.3, 0.55], [0.21, 0.3, 0.62], [0.2, 0.3, 0.7]]}
+ports:
+  key: {device: k, axes: [0], role: mass, at_m: [0, 0.3, 1], along: z}
+links:
+  - {liaison: push, within: balls, range: rest}
+  - {liaison: s, between: [key, "balls[2]"]}
+  - {liaison: thread, between: ["net[7]", "balls[0]"], rest_m: 0.2}
+)" + more +
+         R"(signals:
+  height: {of: "net[7]", quantity: position, axis: z}
+  aside: {of: "net[7]", quantity: position, axis: y}
+  moved: {of: key, quantity: position}
+)";
 }
 
 TEST(Dimension, APlaneOf3DIsComputedIn2DToTheBit) {
@@ -81,25 +84,27 @@ TEST(Dimension, ASceneThatMayLeaveItsPlaneStays) {
 
 /// Three masses on the line y = 1 m, springs of this rest length between them.
 std::string on_a_line(const std::string& rest, const std::string& more = {}) {
-  return "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\nreduce: all\n"
-         "liaisons:\n"
-         "  s: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01, rest_m: " +
+  return R"(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+reduce: all
+liaisons:
+  s: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01, rest_m: )" +
          rest +
-         "}\n"
-         "  m: {kind: maxwell, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.1}\n"
-         "  push: {states: {on: {stiffness_n_per_m: 200, pulls: false, final: true}}}\n"
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: [-0.3, 1]}\n"
-         "  bobs: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.05}, at_m: [[0, 1], [0.2, 1], "
-         "[0.5, 1]]}\n"
-         "  fast: {kind: mass, mass_kg: 0.1, at_m: [0.6, 1], velocity_m_per_s: [-3, 0]}\n"
-         "links:\n"
-         "  - {liaison: s, between: [wall, \"bobs[0]\"]}\n"
-         "  - {liaison: s, between: [\"bobs[2]\", \"bobs[1]\"]}\n"
-         "  - {liaison: s, between: [fast, \"bobs[1]\"]}\n"
-         "  - {liaison: m, between: [wall, fast]}\n"
-         "  - {liaison: push, within: bobs, range_m: 0.1}\n" +
-         more;
+         R"(}
+  m: {kind: maxwell, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.1}
+  push: {states: {on: {stiffness_n_per_m: 200, pulls: false, final: true}}}
+matter:
+  wall: {kind: fixed, at_m: [-0.3, 1]}
+  bobs: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.05}, at_m: [[0, 1], [0.2, 1], [0.5, 1]]}
+  fast: {kind: mass, mass_kg: 0.1, at_m: [0.6, 1], velocity_m_per_s: [-3, 0]}
+links:
+  - {liaison: s, between: [wall, "bobs[0]"]}
+  - {liaison: s, between: ["bobs[2]", "bobs[1]"]}
+  - {liaison: s, between: [fast, "bobs[1]"]}
+  - {liaison: m, between: [wall, fast]}
+  - {liaison: push, within: bobs, range_m: 0.1}
+)" + more;
 }
 
 TEST(Dimension, ALineIsComputedIn1DWhereTheSignOfItsLinksMakesNoDifference) {

@@ -9,22 +9,24 @@ std::string on_three_links(int space, const std::string& signals = {}) {
   const std::string at = space == 1 ? "0.12" : "[0.12, 0.05]";
   const std::string wall = space == 1 ? "0" : "[0, 0]";
   return "cordis: 1\nspace: " + std::to_string(space) +
-         "\nstep: {rate_hz: 1000}\nreduce: [parallel]\n"
-         "liaisons:\n"
-         "  a: {kind: spring, stiffness_n_per_m: 30, rest_m: 0.1}\n"
-         "  b: {kind: spring_damper, stiffness_n_per_m: 10, viscosity_n_s_per_m: 0.02, rest_m: " +
+         R"(
+step: {rate_hz: 1000}
+reduce: [parallel]
+liaisons:
+  a: {kind: spring, stiffness_n_per_m: 30, rest_m: 0.1}
+  b: {kind: spring_damper, stiffness_n_per_m: 10, viscosity_n_s_per_m: 0.02, rest_m: )" +
          (space == 1 ? "-0.2" : "0.2") +
-         "}\n"
-         "  c: {kind: damper, viscosity_n_s_per_m: 0.03}\n"
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: " +
+         R"(}
+  c: {kind: damper, viscosity_n_s_per_m: 0.03}
+matter:
+  wall: {kind: fixed, at_m: )" +
          wall + "}\n  bob: {kind: mass, mass_kg: 0.1, at_m: " + at +
-         "}\n"
-         "links:\n"
-         "  - {liaison: a, between: [wall, bob], name: first}\n"
-         "  - {liaison: b, between: [bob, wall], name: second}\n"
-         "  - {liaison: c, between: [wall, bob], name: third}\n" +
-         signals;
+         R"(}
+links:
+  - {liaison: a, between: [wall, bob], name: first}
+  - {liaison: b, between: [bob, wall], name: second}
+  - {liaison: c, between: [wall, bob], name: third}
+)" + signals;
 }
 
 TEST(Parallel, LinksBetweenTheSameTwoMatsBecomeOne) {

@@ -8,24 +8,25 @@ namespace {
 std::string row_text(const std::string& mass, const std::string& links, double rate_hz,
                      const std::string& head = "reduce: [series]\n") {
   return "cordis: 1\nspace: 1\nstep: {rate_hz: " + std::to_string(rate_hz) + "}\n" + head +
-         "liaisons:\n"
-         "  soft: {kind: spring, stiffness_n_per_m: 60}\n"
-         "  hard: {kind: spring, stiffness_n_per_m: 120}\n"
-         "  oil: {kind: damper, viscosity_n_s_per_m: 0.8}\n"
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: 0}\n"
-         "  joint: {kind: mass, mass_kg: " +
+         R"(liaisons:
+  soft: {kind: spring, stiffness_n_per_m: 60}
+  hard: {kind: spring, stiffness_n_per_m: 120}
+  oil: {kind: damper, viscosity_n_s_per_m: 0.8}
+matter:
+  wall: {kind: fixed, at_m: 0}
+  joint: {kind: mass, mass_kg: )" +
          mass +
-         ", at_m: [0, 0]}\n"
-         "  bob: {kind: mass, mass_kg: 0.1, at_m: 0, velocity_m_per_s: 0.5}\n"
-         "links:\n" +
-         links;
+         R"(, at_m: [0, 0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0, velocity_m_per_s: 0.5}
+links:
+)" + links;
 }
 
 const std::string kSprings =
-    "  - {liaison: soft, between: [wall, \"joint[0]\"], rest_m: 0}\n"
-    "  - {liaison: hard, between: [\"joint[1]\", \"joint[0]\"], rest_m: 0}\n"
-    "  - {liaison: hard, between: [\"joint[1]\", bob], rest_m: 0}\n";
+    R"(  - {liaison: soft, between: [wall, "joint[0]"], rest_m: 0}
+  - {liaison: hard, between: ["joint[1]", "joint[0]"], rest_m: 0}
+  - {liaison: hard, between: ["joint[1]", bob], rest_m: 0}
+)";
 
 TEST(Series, SpringsInARowAreOneOfTheirCompliances) {
   const scene::Scene scene = reduced(row_text("0", kSprings, 1000));
@@ -42,9 +43,10 @@ TEST(Series, SpringsInARowAreOneOfTheirCompliances) {
 TEST(Series, RestLengthsAddUpWhicheverWayTheLinksAreWritten) {
   const scene::Scene scene =
       reduced(row_text("0",
-                       "  - {liaison: soft, between: [\"joint[0]\", wall], rest_m: -0.1}\n"
-                       "  - {liaison: hard, between: [\"joint[0]\", \"joint[1]\"], rest_m: 0.2}\n"
-                       "  - {liaison: hard, between: [bob, \"joint[1]\"], rest_m: 0.05}\n",
+                       R"(  - {liaison: soft, between: ["joint[0]", wall], rest_m: -0.1}
+  - {liaison: hard, between: ["joint[0]", "joint[1]"], rest_m: 0.2}
+  - {liaison: hard, between: [bob, "joint[1]"], rest_m: 0.05}
+)",
                        1000));
 
   ASSERT_EQ(scene.network.links.size(), 1u);
@@ -54,12 +56,12 @@ TEST(Series, RestLengthsAddUpWhicheverWayTheLinksAreWritten) {
 }
 
 TEST(Series, DampersInARowAreOneOfTheirFluidities) {
-  const scene::Scene scene = reduced(
-      row_text("0",
-               "  - {liaison: oil, between: [wall, \"joint[0]\"]}\n"
-               "  - {liaison: oil, between: [\"joint[0]\", \"joint[1]\"]}\n"
-               "  - {liaison: oil, viscosity_n_s_per_m: 0.4, between: [\"joint[1]\", bob]}\n",
-               1000));
+  const scene::Scene scene = reduced(row_text("0",
+                                              R"(  - {liaison: oil, between: [wall, "joint[0]"]}
+  - {liaison: oil, between: ["joint[0]", "joint[1]"]}
+  - {liaison: oil, viscosity_n_s_per_m: 0.4, between: ["joint[1]", bob]}
+)",
+                                              1000));
 
   ASSERT_EQ(scene.network.links.size(), 1u);
   EXPECT_EQ(scene.network.links[0].stiffness, 0.0);
@@ -96,9 +98,10 @@ TEST(Series, AMatThatNothingTakesOutIsAnError) {
       << three;
   const std::string unlike =
       refusal_of(row_text("0",
-                          "  - {liaison: soft, between: [wall, \"joint[0]\"], rest_m: 0}\n"
-                          "  - {liaison: oil, between: [\"joint[0]\", \"joint[1]\"]}\n"
-                          "  - {liaison: hard, between: [\"joint[1]\", bob], rest_m: 0}\n",
+                          R"(  - {liaison: soft, between: [wall, "joint[0]"], rest_m: 0}
+  - {liaison: oil, between: ["joint[0]", "joint[1]"]}
+  - {liaison: hard, between: ["joint[1]", bob], rest_m: 0}
+)",
                           1000));
   EXPECT_NE(unlike.find("its two links are not of one kind"), std::string::npos) << unlike;
 }
@@ -109,10 +112,11 @@ TEST(Series, AMatInAMediumOrOnALoopIsAnError) {
   EXPECT_NE(in_medium.find("the medium acts on it"), std::string::npos) << in_medium;
   const std::string loop =
       refusal_of(row_text("0",
-                          "  - {liaison: soft, between: [wall, \"joint[0]\"], rest_m: 0}\n"
-                          "  - {liaison: hard, between: [wall, \"joint[0]\"], rest_m: 0}\n"
-                          "  - {liaison: hard, between: [wall, \"joint[1]\"], rest_m: 0}\n"
-                          "  - {liaison: hard, between: [\"joint[1]\", bob], rest_m: 0}\n",
+                          R"(  - {liaison: soft, between: [wall, "joint[0]"], rest_m: 0}
+  - {liaison: hard, between: [wall, "joint[0]"], rest_m: 0}
+  - {liaison: hard, between: [wall, "joint[1]"], rest_m: 0}
+  - {liaison: hard, between: ["joint[1]", bob], rest_m: 0}
+)",
                           1000));
   EXPECT_NE(loop.find("both its links lead to the same MAT"), std::string::npos) << loop;
 }
@@ -125,18 +129,22 @@ TEST(Series, AMatOfASignalIsAnError) {
 
 /// A row of springs without rest length along the x axis of a plane, with gravity across it or not.
 std::string row_in_a_plane(const std::string& gravity) {
-  return "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\nreduce: all\n"
-         "world: {gravity_m_per_s2: " +
+  return R"(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+reduce: all
+world: {gravity_m_per_s2: )" +
          gravity +
-         "}\n"
-         "liaisons: {s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0}}\n"
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: [0, 0]}\n"
-         "  joint: {kind: mass, mass_kg: 0, at_m: [0.1, 0]}\n"
-         "  bob: {kind: mass, mass_kg: 0.1, at_m: [0.3, 0]}\n"
-         "links:\n"
-         "  - {liaison: s, between: [wall, joint]}\n"
-         "  - {liaison: s, between: [joint, bob]}\n";
+         R"(}
+liaisons: {s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0}}
+matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  joint: {kind: mass, mass_kg: 0, at_m: [0.1, 0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: [0.3, 0]}
+links:
+  - {liaison: s, between: [wall, joint]}
+  - {liaison: s, between: [joint, bob]}
+)";
 }
 
 TEST(Series, ARowInAPlaneGoesOnlyWhereItsLineIsComputedIn1D) {

@@ -29,8 +29,10 @@ TEST_P(BadLiaisons, HaveOneProblemAtItsPlace) {
 /// A liaison with one condition.
 std::string when(const std::string& condition) {
   return scene_of(
-      "  l:\n    parameters: {hold_m: 1}\n    states:\n"
-      "      x: {exits: [{to: y, when: " +
+      R"(  l:
+    parameters: {hold_m: 1}
+    states:
+      x: {exits: [{to: y, when: )" +
       condition + "}, {to: y, when: elongation_m > hold_m}]}\n      y: {}\n");
 }
 
@@ -139,31 +141,37 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Lints, BadLiaisons,
     testing::Values(
-        BadLiaison{states("      x: {exits: [{to: x, when: elongation_m > hold_m, rest: here}]}\n  "
-                          "    ^yy: {}\n"),
+        BadLiaison{states(R"(      x: {exits: [{to: x, when: elongation_m > hold_m, rest: here}]}
+      ^yy: {}
+)"),
                    "state 'yy' of liaison 'l' cannot be reached from its start, 'x'", ""},
-        BadLiaison{states("      x: {exits: [{to: yy, when: elongation_m > hold_m}]}\n"
-                          "      ^yy: {stiffness_n_per_m: 1}\n"),
+        BadLiaison{states(R"(      x: {exits: [{to: yy, when: elongation_m > hold_m}]}
+      ^yy: {stiffness_n_per_m: 1}
+)"),
                    "no exit leads out of state 'yy' of liaison 'l'",
                    "if that is meant, write final: true"},
-        BadLiaison{states("      x: {exits: [{to: yy, when: ^1 > 2}, {to: yy, when: elongation_m > "
-                          "hold_m}]}\n      yy: {}\n"),
-                   "this condition of liaison 'l' never holds", ""},
+        BadLiaison{
+            states(
+                R"(      x: {exits: [{to: yy, when: ^1 > 2}, {to: yy, when: elongation_m > hold_m}]}
+      yy: {}
+)"),
+            "this condition of liaison 'l' never holds", ""},
         BadLiaison{scene_of("  l:\n    parameters: {hold_m: ^1}\n    states: {x: {}}\n"),
                    "parameter 'hold_m' of liaison 'l' is used nowhere", ""},
         // the bow of the paper: at the moment of release both ends still move alike
         BadLiaison{
-            states("      x: {exits: [{to: yy, when: abs(elongation_m) > hold_m}]}\n"
-                   "      yy: {exits: [{to: x, when: ^abs(speed_m_per_s) < 0.01, rest: "
-                   "here}]}\n"),
+            states(R"(      x: {exits: [{to: yy, when: abs(elongation_m) > hold_m}]}
+      yy: {exits: [{to: x, when: ^abs(speed_m_per_s) < 0.01, rest: here}]}
+)"),
             "this exit of state 'yy' of liaison 'l' holds already when the state is entered "
             "from 'x' by ends that move slowly: the link would change again in the next "
             "step, and what comes of it would depend on the length of a step",
             "let the state last: add 'and falling(...)' of the compared value, or 'and age_s "
             "> ...'"},
         BadLiaison{
-            states("      x: {exits: [{to: yy, when: elongation_m > hold_m}]}\n"
-                   "      yy: {exits: [{to: x, when: ^elongation_m > hold_m / 2}]}\n"),
+            states(R"(      x: {exits: [{to: yy, when: elongation_m > hold_m}]}
+      yy: {exits: [{to: x, when: ^elongation_m > hold_m / 2}]}
+)"),
             "this exit of state 'yy' of liaison 'l' holds already when the state is entered "
             "from 'x' by ends that move slowly: the link would change again in the next "
             "step, and what comes of it would depend on the length of a step",
@@ -242,18 +250,27 @@ INSTANTIATE_TEST_SUITE_P(
                    "the liaison 'a' stands in parallel with itself", "a -> a"},
         BadLiaison{scene_of("  a: {parallel: ^[]}\n"),
                    "'parallel' in liaison 'a' must not be empty", ""},
-        BadLiaison{scene_of("  l:\n    parameters: {a: 2 * b, b: c + 1, c: ^a}\n    "
-                            "stiffness_n_per_m: a\n    kind: spring\n"),
+        BadLiaison{scene_of(R"(  l:
+    parameters: {a: 2 * b, b: c + 1, c: ^a}
+    stiffness_n_per_m: a
+    kind: spring
+)"),
                    "parameter 'c' of liaison 'l' depends on itself", "a -> b -> c -> a"},
-        BadLiaison{scene_of("  l:\n    parameters: {^rest_m: 2}\n    kind: spring\n    "
-                            "stiffness_n_per_m: rest_m\n"),
+        BadLiaison{scene_of(R"(  l:
+    parameters: {^rest_m: 2}
+    kind: spring
+    stiffness_n_per_m: rest_m
+)"),
                    "'rest_m' cannot be the name of a parameter", "it is a quantity of the link"}));
 
 constexpr const char* kBrittle =
-    "  l:\n    parameters: {hold_m: 1}\n    states:\n"
-    "      x: {stiffness_n_per_m: 1, exits: [{to: y, when: elongation_m > sqrt(hold_m)}]}\n"
-    "      y: {}\n"
-    "  m: {kind: maxwell, stiffness_n_per_m: 1, viscosity_n_s_per_m: 1}\n";
+    R"(  l:
+    parameters: {hold_m: 1}
+    states:
+      x: {stiffness_n_per_m: 1, exits: [{to: y, when: elongation_m > sqrt(hold_m)}]}
+      y: {}
+  m: {kind: maxwell, stiffness_n_per_m: 1, viscosity_n_s_per_m: 1}
+)";
 
 INSTANTIATE_TEST_SUITE_P(
     Links, BadLiaisons,

@@ -68,36 +68,41 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2, "matter:\n  a: {kind: fixed, at_m: [0, 0], ^layout_at_m: [1, 2]}\n",
                  "unknown key 'layout_at_m' in matter 'a'",
                  "known keys: kind, at_m, ball, drawn_radius_m"},
-        BadScene{
-            kHead2,
-            "matter:\n  a: {kind: string, count: ^1, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-            "stiffness_n_per_m: 1}\n",
-            "'count' in matter 'a' must be between 2 and 1000000, got 1", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: string, count: ^2.5, mass_kg: 1, from_m: [0, 0], to_m: [1, "
-                 "0], stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: string, count: ^1, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 1}
+)",
+                 "'count' in matter 'a' must be between 2 and 1000000, got 1", ""},
+        BadScene{kHead2,
+                 R"(matter:
+  a: {kind: string, count: ^2.5, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 1}
+)",
                  "'count' in matter 'a' must be a whole number, got '2.5'", ""},
         BadScene{
             kHead2,
             "matter:\n  a: ^{kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0]}\n",
             "missing key 'stiffness_n_per_m' in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: ^{kind: string, count: 2, mass_kg: 1, to_m: [1, 0], "
-                 "stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: ^{kind: string, count: 2, mass_kg: 1, to_m: [1, 0], stiffness_n_per_m: 1}
+)",
                  "missing key 'from_m' in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: string, count: 2, mass_kg: 1, from_m: ^[0, 2e6], to_m: [1, "
-                 "0], stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: string, count: 2, mass_kg: 1, from_m: ^[0, 2e6], to_m: [1, 0], stiffness_n_per_m: 1}
+)",
                  "'from_m' in matter 'a' is farther than 1e6 m away", ""},
         BadScene{
             kHead2,
-            "matter:\n  a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-            "stiffness_n_per_m: 1, ends: ^fixd}\n",
+            R"(matter:
+  a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 1, ends: ^fixd}
+)",
             "'ends' in matter 'a' must be one of free, fixed, first_fixed, last_fixed, got 'fixd'",
             "did you mean 'fixed'?"},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-                 "stiffness_n_per_m: 10, tension_n: ^6}\n",
+                 R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 10, tension_n: ^6}
+)",
                  "'tension_n' in matter 'a' asks for a negative rest length",
                  "with this stiffness and these distances it is at most 5 N"},
         BadScene{kHead2,
@@ -105,65 +110,78 @@ INSTANTIATE_TEST_SUITE_P(
                  "stiffness_n_per_m: 10, tension_n: ^1, rest_m: 1}\n",
                  "either 'tension_n' or 'rest_m' can be given in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-                 "stiffness_n_per_m: 0, tension_n: ^1}\n",
+                 R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 0, tension_n: ^1}
+)",
                  "'tension_n' in matter 'a' needs a stiffness > 0", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-                 "stiffness_n_per_m: 10, rest_m: ^-1}\n",
+                 R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 10, rest_m: ^-1}
+)",
                  "'rest_m' in matter 'a' must be >= 0, got -1", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-                 "liaison: ^steel}\n",
+                 R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: ^steel}
+)",
                  "no liaison is named 'steel'", ""},
-        BadScene{
-            kHead2,
-            "liaisons: {d: {kind: damper, viscosity_n_s_per_m: 1}}\nmatter:\n  a: {kind: string, "
-            "count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: d, tension_n: ^1}\n",
-            "a damper has no 'tension_n'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: ring, count: ^2, mass_kg: 1, center_m: [0, 0], radius_m: 1, "
-                 "stiffness_n_per_m: 1}\n",
+                 R"(liaisons: {d: {kind: damper, viscosity_n_s_per_m: 1}}
+matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: d, tension_n: ^1}
+)",
+                 "a damper has no 'tension_n'", ""},
+        BadScene{kHead2,
+                 R"(matter:
+  a: {kind: ring, count: ^2, mass_kg: 1, center_m: [0, 0], radius_m: 1, stiffness_n_per_m: 1}
+)",
                  "'count' in matter 'a' must be between 3 and 1000000, got 2", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: ^0, "
-                 "stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: ^0, stiffness_n_per_m: 1}
+)",
                  "'radius_m' in matter 'a' must be > 0 and <= 1000000, got 0", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: 1, "
-                 "stiffness_n_per_m: 1, ^plane: xz}\n",
+                 R"(matter:
+  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0], radius_m: 1, stiffness_n_per_m: 1, ^plane: xz}
+)",
                  "unknown key 'plane' in matter 'a'",
                  "known keys: kind, count, mass_kg, ball, center_m, radius_m, liaison, "
                  "stiffness_n_per_m, viscosity_n_s_per_m, rest_m, rest, tension_n, "
                  "drawn_radius_m"},
         BadScene{kHead3,
-                 "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0, 0], radius_m: "
-                 "1, stiffness_n_per_m: 1, plane: ^zx}\n",
+                 R"(matter:
+  a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0, 0], radius_m: 1, stiffness_n_per_m: 1, plane: ^zx}
+)",
                  "'plane' in matter 'a' must be one of xy, xz, yz, got 'zx'", "did you mean 'xz'?"},
         BadScene{kHead1,
-                 "matter:\n  a: {kind: ring, count: 3, mass_kg: 1, ^radius_m: 1, "
-                 "stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: ring, count: 3, mass_kg: 1, ^radius_m: 1, stiffness_n_per_m: 1}
+)",
                  "unknown key 'radius_m' in matter 'a'",
                  "known keys: kind, count, mass_kg, ball, at_m, liaison, stiffness_n_per_m, "
                  "viscosity_n_s_per_m, rest_m, rest, tension_n, layout_at_m, layout_spacing_m, "
                  "drawn_radius_m"},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: grid, rows: ^1, columns: 2, mass_kg: 1, corner_m: [0, 0], "
-                 "spacing_m: 1, stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: grid, rows: ^1, columns: 2, mass_kg: 1, corner_m: [0, 0], spacing_m: 1, stiffness_n_per_m: 1}
+)",
                  "'rows' in matter 'a' must be between 2 and 500000, got 1", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: grid, rows: ^2000, columns: 2000, mass_kg: 1, corner_m: [0, "
-                 "0], spacing_m: 1, stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: grid, rows: ^2000, columns: 2000, mass_kg: 1, corner_m: [0, 0], spacing_m: 1, stiffness_n_per_m: 1}
+)",
                  "matter 'a' has more than 1000000 MATs", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], "
-                 "spacing_m: ^[1, 2, 3], stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], spacing_m: ^[1, 2, 3], stiffness_n_per_m: 1}
+)",
                  "'spacing_m' in matter 'a' must be one number > 0, or two: between columns, "
                  "between rows",
                  ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], "
-                 "spacing_m: ^-1, stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], spacing_m: ^-1, stiffness_n_per_m: 1}
+)",
                  "'spacing_m' in matter 'a' must be one number > 0, or two: between columns, "
                  "between rows",
                  ""},
@@ -174,8 +192,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead1, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: 0, layout_at_m: ^1}\n",
                  "'layout_at_m' in matter 'a' must have 2 numbers, got 1", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: string, count: 1000000, mass_kg: 1, from_m: [0, 0], to_m: "
-                 "[1, 0], stiffness_n_per_m: 1}\n  ^b: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n",
+                 R"(matter:
+  a: {kind: string, count: 1000000, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 1}
+  ^b: {kind: mass, mass_kg: 1, at_m: [0, 0]}
+)",
                  "the scene has more than 1000000 MATs or 8000000 links", ""}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -189,16 +209,20 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2, "matter:\n  a: {kind: mass, at_m: [0, 0], ball: ^3}\n",
                  "'ball' in matter 'a' must be a mapping of keys, got '3'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: mass, at_m: [0, 0], mass_kg: ^1, ball: {mass_kg: 1, "
-                 "radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: mass, at_m: [0, 0], mass_kg: ^1, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "either 'mass_kg' or 'ball' can be given in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: mass, at_m: [0, 0], drawn_radius_m: ^1, ball: {mass_kg: 1, "
-                 "radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: mass, at_m: [0, 0], drawn_radius_m: ^1, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "a ball is drawn with its own radius", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: mass, at_m: [0, 0], ball: {mass_kg: 1, radius_m: 0.1}}\n  "
-                 "b: {kind: fixed, at_m: [0, 0], ball: {^mass_kg: 1, radius_m: 1}}\n",
+                 R"(matter:
+  a: {kind: mass, at_m: [0, 0], ball: {mass_kg: 1, radius_m: 0.1}}
+  b: {kind: fixed, at_m: [0, 0], ball: {^mass_kg: 1, radius_m: 1}}
+)",
                  "unknown key 'mass_kg' in 'ball' of matter 'b'", "known keys: radius_m"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -207,42 +231,49 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead1, "matter:\n  a: {kind: ^lattice, structure: square}\n",
                  "a lattice needs a scene of space 2 or 3, this one has 1", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: lattice, structure: ^fcc, corner_m: [0, 0], counts: [2, 2], "
-                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: lattice, structure: ^fcc, corner_m: [0, 0], counts: [2, 2], ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "a fcc lattice needs a scene of space 3, this one has 2", ""},
         BadScene{
             kHead2,
-            "matter:\n  a: {kind: lattice, structure: ^bcc, corner_m: [0, 0], counts: [2, 2], "
-            "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+            R"(matter:
+  a: {kind: lattice, structure: ^bcc, corner_m: [0, 0], counts: [2, 2], ball: {mass_kg: 1, radius_m: 0.1}}
+)",
             "'structure' in matter 'a' must be one of square, triangular, cubic, fcc, got 'bcc'",
             "did you mean 'fcc'?"},
         BadScene{kHead2,
-                 "matter:\n  a: ^{kind: lattice, structure: square, corner_m: [0, 0], counts: [2, "
-                 "2], mass_kg: 1}\n",
+                 R"(matter:
+  a: ^{kind: lattice, structure: square, corner_m: [0, 0], counts: [2, 2], mass_kg: 1}
+)",
                  "missing key 'spacing_m' in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: lattice, structure: square, corner_m: [0, 0], counts: ^[2, "
-                 "2, 2], ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: lattice, structure: square, corner_m: [0, 0], counts: ^[2, 2, 2], ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "'counts' in matter 'a' must have 2 numbers, got 3", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: lattice, structure: square, corner_m: [0, 0], counts: "
-                 "^[2000, 2000], ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: lattice, structure: square, corner_m: [0, 0], counts: ^[2000, 2000], ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "matter 'a' has more than 1000000 MATs", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: lattice, structure: square, region: ^{from_m: [0, 0], to_m: "
                  "[1e4, 1e4]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
                  "matter 'a' has more than 1000000 MATs", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: lattice, structure: square, region: ^{from_m: [0, 0], to_m: "
-                 "[1, 0.1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: lattice, structure: square, region: ^{from_m: [0, 0], to_m: [1, 0.1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "no ball of matter 'a' fits into it", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: lattice, structure: square, counts: ^[1, 1], region: "
                  "{from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
                  "either 'region' or 'counts' can be given in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: lattice, structure: square, region: ^{to_m: [1, 1]}, ball: "
-                 "{mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: lattice, structure: square, region: ^{to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "missing key 'from_m' in 'region' of matter 'a'", ""},
         BadScene{kHead2,
                  "matter:\n  a: ^{kind: lattice, structure: square, corner_m: [0, 0], counts: [2, "
@@ -256,39 +287,46 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter:\n  a: ^{kind: pack, count: 2, region: {from_m: [0, 0], to_m: [1, 1]}}\n",
                  "missing key 'ball' in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: ^{kind: pack, region: {from_m: [0, 0], to_m: [1, 1]}, ball: "
-                 "{mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: ^{kind: pack, region: {from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "missing key 'count' in matter 'a'", "give 'count' or 'fill'"},
         BadScene{kHead2,
                  "matter:\n  a: ^{kind: pack, count: 2, ball: {mass_kg: 1, radius_m: 0.1}}\n",
                  "missing key 'region' in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: pack, fill: 0.5, count: ^2, region: {from_m: [0, 0], to_m: "
-                 "[1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: pack, fill: 0.5, count: ^2, region: {from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "either 'count' or 'fill' can be given in matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: pack, fill: ^1.5, region: {from_m: [0, 0], to_m: [1, 1]}, "
-                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: pack, fill: ^1.5, region: {from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "'fill' in matter 'a' must be > 0 and <= 1, got 1.5", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: pack, fill: ^0.001, region: {from_m: [0, 0], to_m: [1, 1]}, "
-                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: pack, fill: ^0.001, region: {from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "'fill' in matter 'a' asks for 0 balls, which must be between 1 and 1000000", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: pack, count: 30, region: ^{from_m: [0, 0], to_m: [1, 1]}, "
-                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: pack, count: 30, region: ^{from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "30 balls of matter 'a' do not fit into the region",
                  "they are 94 % of it; without order, at most about 84 % of an area can be filled, "
                  "less at its border"},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: pack, count: 28, region: ^{from_m: [0, 0], to_m: [1, 1]}, "
-                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: pack, count: 28, region: ^{from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "28 balls of matter 'a' do not fit into the region",
                  "they are 88 % of it; without order, at most about 84 % of an area can be filled, "
                  "less at its border"},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: pack, count: 1, region: ^{from_m: [0, 0], to_m: [9, 0.1]}, "
-                 "ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: pack, count: 1, region: ^{from_m: [0, 0], to_m: [9, 0.1]}, ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "1 ball of matter 'a' does not fit into the region",
                  "they are 3 % of it; without order, at most about 84 % of an area can be filled, "
                  "less at its border"}));
@@ -299,54 +337,63 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2, "matter:\n  a: {kind: ^ball, center_m: [0, 0], radius_m: 1}\n",
                  "a ball needs a scene of space 3, this one has 2", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: disc, center_m: [0, 0], radius_m: ^1000, spacing_m: 0.01, "
-                 "mass_kg: 1}\n",
+                 R"(matter:
+  a: {kind: disc, center_m: [0, 0], radius_m: ^1000, spacing_m: 0.01, mass_kg: 1}
+)",
                  "matter 'a' has more than 1000000 MATs", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: ^1000, "
-                 "spacing_m: 0.01, mass_kg: 1}\n",
+                 R"(matter:
+  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: ^1000, spacing_m: 0.01, mass_kg: 1}
+)",
                  "matter 'a' has more than 1000000 MATs", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: ^0.1, "
-                 "ball: {mass_kg: 1, radius_m: 0.2}}\n",
+                 R"(matter:
+  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: ^0.1, ball: {mass_kg: 1, radius_m: 0.2}}
+)",
                  "no ball of matter 'a' fits into it", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: 1, "
                  "spacing_m: 0.1, mass_kg: 1, shear_stiffness_n_per_m: ^1}\n",
                  "a disc of rings has no second neighbours that could be joined", ""},
         BadScene{kHead3,
-                 "matter:\n  a: {kind: ball, structure: ^square, center_m: [0, 0, 0], radius_m: 1, "
-                 "spacing_m: 0.1, mass_kg: 1}\n",
+                 R"(matter:
+  a: {kind: ball, structure: ^square, center_m: [0, 0, 0], radius_m: 1, spacing_m: 0.1, mass_kg: 1}
+)",
                  "'structure' in matter 'a' must be one of cubic, fcc, got 'square'", ""},
         BadScene{kHead3,
-                 "matter:\n  a: {kind: skin, center_m: [0, 0, 0], radius_m: 1, subdivisions: ^9, "
-                 "mass_kg: 1, stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: skin, center_m: [0, 0, 0], radius_m: 1, subdivisions: ^9, mass_kg: 1, stiffness_n_per_m: 1}
+)",
                  "'subdivisions' in matter 'a' must be between 0 and 8, got 9", ""},
-        BadScene{
-            kHead2,
-            "matter:\n  a: {kind: skin, corners_m: ^[[0, 0], [1, 0]], spacing_m: 0.1, mass_kg: "
-            "1, stiffness_n_per_m: 1}\n",
-            "'corners_m' in matter 'a' must be at least 3 points, got 2", ""},
-        BadScene{
-            kHead2,
-            "matter:\n  a: {kind: skin, corners_m: [[0, 0], [1, 0], [0, 1]], spacing_m: ^1e-7, "
-            "mass_kg: 1, stiffness_n_per_m: 1}\n",
-            "matter 'a' has more than 1000000 MATs", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: skin, center_m: [0, 0], radius_m: 1, count: 5, mass_kg: 1, "
-                 "stiffness_n_per_m: 1, core: ^{mass_kg: 1}}\n",
+                 R"(matter:
+  a: {kind: skin, corners_m: ^[[0, 0], [1, 0]], spacing_m: 0.1, mass_kg: 1, stiffness_n_per_m: 1}
+)",
+                 "'corners_m' in matter 'a' must be at least 3 points, got 2", ""},
+        BadScene{kHead2,
+                 R"(matter:
+  a: {kind: skin, corners_m: [[0, 0], [1, 0], [0, 1]], spacing_m: ^1e-7, mass_kg: 1, stiffness_n_per_m: 1}
+)",
+                 "matter 'a' has more than 1000000 MATs", ""},
+        BadScene{kHead2,
+                 R"(matter:
+  a: {kind: skin, center_m: [0, 0], radius_m: 1, count: 5, mass_kg: 1, stiffness_n_per_m: 1, core: ^{mass_kg: 1}}
+)",
                  "missing key 'stiffness_n_per_m' in 'core' of matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: beam, from_m: [0, 0], to_m: ^[0, 0], cells: 1, height_m: 1, "
-                 "mass_kg: 1, stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: beam, from_m: [0, 0], to_m: ^[0, 0], cells: 1, height_m: 1, mass_kg: 1, stiffness_n_per_m: 1}
+)",
                  "the ends of matter 'a' are one point", ""},
         BadScene{kHead3,
-                 "matter:\n  a: {kind: beam, from_m: [0, 0, 0], to_m: [1, 0, 0], cells: 1, "
-                 "height_m: 1, mass_kg: 1, stiffness_n_per_m: 1, up: ^x}\n",
+                 R"(matter:
+  a: {kind: beam, from_m: [0, 0, 0], to_m: [1, 0, 0], cells: 1, height_m: 1, mass_kg: 1, stiffness_n_per_m: 1, up: ^x}
+)",
                  "'up' in matter 'a' must be one direction that is not along the beam", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: beam, from_m: [0, 0], to_m: [1, 0], cells: ^600000, "
-                 "height_m: 1, mass_kg: 1, stiffness_n_per_m: 1}\n",
+                 R"(matter:
+  a: {kind: beam, from_m: [0, 0], to_m: [1, 0], cells: ^600000, height_m: 1, mass_kg: 1, stiffness_n_per_m: 1}
+)",
                  "'cells' in matter 'a' must be between 1 and 499999, got 600000", ""}));
 
 }  // namespace

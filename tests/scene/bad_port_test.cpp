@@ -31,8 +31,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kLinked, "ports:\n  p: ^{device: k, axes: [0], role: mass}\n",
                  "missing key 'at_m' in port 'p'", ""},
         BadScene{kLinked,
-                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], mass_kg: ^1, ball: "
-                 "{mass_kg: 1, radius_m: 1}}\n",
+                 R"(ports:
+  p: {device: k, axes: [0], role: mass, at_m: [0, 0], mass_kg: ^1, ball: {mass_kg: 1, radius_m: 1}}
+)",
                  "the mass is given twice in port 'p', by 'mass_kg' and by 'ball'", ""},
         BadScene{kLinked, "ports:\n  p: {device: k, axes: ^[], role: mass, at_m: [0, 0]}\n",
                  "'axes' in port 'p' must not be empty", ""},
@@ -45,16 +46,19 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kLinked, "ports:\n  ^p: {device: k, axes: [0, 0], role: mass, at_m: [0, 0]}\n",
                  "axis 0 of device 'k' is taken by port 'p'", ""},
         BadScene{kLinked,
-                 "ports: {p: {device: k, axes: [0], role: mass, at_m: [0, 0]},\n  ^q: {device: k, "
-                 "axes: [0], role: mass, at_m: [0, 0]}}\n",
+                 R"(ports: {p: {device: k, axes: [0], role: mass, at_m: [0, 0]},
+  ^q: {device: k, axes: [0], role: mass, at_m: [0, 0]}}
+)",
                  "axis 0 of device 'k' is taken by port 'p'", ""},
         BadScene{kLinked,
-                 "ports: {p: {device: k, axes: [0], role: mass, at_m: [0, 0]},\n  ^q: {device: k, "
-                 "axes: [1], role: liaison, mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(ports: {p: {device: k, axes: [0], role: mass, at_m: [0, 0]},
+  ^q: {device: k, axes: [1], role: liaison, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "all ports of a device have one role, and 'k' has the role mass in port 'p'", ""},
         BadScene{kLinked,
-                 "ports: {p: {device: costarring, axes: [0], role: mass, at_m: [0, 0]},\n  ^q: "
-                 "{device: liquid, axes: [1], role: mass, at_m: [0, 0]}}\n",
+                 R"(ports: {p: {device: costarring, axes: [0], role: mass, at_m: [0, 0]},
+  ^q: {device: liquid, axes: [1], role: mass, at_m: [0, 0]}}
+)",
                  "the devices 'liquid' and 'costarring' have the same hash", "rename one of them"},
         BadScene{kLinked,
                  "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], along: ^z}\n",
@@ -69,20 +73,23 @@ INSTANTIATE_TEST_SUITE_P(
                  "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], along: ^[x, y]}\n",
                  "'along' in port 'p' must have one direction per axis: 1, got 2", ""},
         BadScene{kLinked,
-                 "ports:\n  p: {device: k, axes: [0, 1], role: mass, at_m: [0, 0], along: ^[x, "
-                 "[-3, 0]]}\n",
+                 R"(ports:
+  p: {device: k, axes: [0, 1], role: mass, at_m: [0, 0], along: ^[x, [-3, 0]]}
+)",
                  "'along' in port 'p': the directions depend on each other",
                  "no two may be parallel, no three in one plane"},
         BadScene{kLinked,
                  "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], needs: ^0.05}\n",
                  "'needs' in port 'p' must be a mapping of keys, got '0.05'", ""},
         BadScene{kLinked,
-                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], needs: {force_n: "
-                 "^-5}}\n",
+                 R"(ports:
+  p: {device: k, axes: [0], role: mass, at_m: [0, 0], needs: {force_n: ^-5}}
+)",
                  "'force_n' in 'needs' of port 'p' must be > 0, got -5", ""},
         BadScene{kLinked,
-                 "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], needs: "
-                 "{^travel: 1}}\n",
+                 R"(ports:
+  p: {device: k, axes: [0], role: mass, at_m: [0, 0], needs: {^travel: 1}}
+)",
                  "unknown key 'travel' in 'needs' of port 'p'", "did you mean 'travel_m'?"},
         BadScene{
             kLinked,

@@ -34,12 +34,13 @@ inline void PrintTo(const BadScene& bad, std::ostream* stream) {
 
 inline std::string text_before(Before before) {
   constexpr const char* kLiaisonsAndMatter =
-      "liaisons:\n"
-      "  s: {kind: spring, stiffness_n_per_m: 1}\n"
-      "  d: {kind: damper, viscosity_n_s_per_m: 1}\n"
-      "matter:\n"
-      "  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0]]}\n"
-      "  b: {kind: mass, mass_kg: 1, at_m: [[0, 1], [1, 1]]}\n";
+      R"(liaisons:
+  s: {kind: spring, stiffness_n_per_m: 1}
+  d: {kind: damper, viscosity_n_s_per_m: 1}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0]]}
+  b: {kind: mass, mass_kg: 1, at_m: [[0, 1], [1, 1]]}
+)";
   if (before == kNothing) return {};
   if (before == kLinked) return scene_head(2) + kLiaisonsAndMatter;
   return scene_head(static_cast<int>(before));

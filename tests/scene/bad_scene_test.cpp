@@ -32,46 +32,73 @@ INSTANTIATE_TEST_SUITE_P(
             "^cordis: 1\nstep: {rate_hz: 1000}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
             "missing key 'space' in scene", ""},
         BadScene{kNothing,
-                 "cordis: 1\nspace: ^4\nstep: {rate_hz: 1000}\nmatter: {a: {kind: mass, mass_kg: "
-                 "1, at_m: 0}}\n",
+                 R"(cordis: 1
+space: ^4
+step: {rate_hz: 1000}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "'space' in scene must be between 1 and 3, got 4", ""},
         BadScene{kNothing, "^cordis: 1\nspace: 1\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
                  "missing key 'step' in scene", ""},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: ^1500}\nmatter: {a: {kind: mass, mass_kg: "
-                 "1, at_m: 0}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: ^1500}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "'rate_hz' must be an integer multiple of the gesture rate, 1000 Hz, got 1500",
                  "take 1000 or 2000, or set 'gesture_rate_hz'"},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: ^500}\nmatter: {a: {kind: mass, mass_kg: 1, "
-                 "at_m: 0}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: ^500}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "'rate_hz' must be an integer multiple of the gesture rate, 1000 Hz, got 500",
                  "take 1000, or set 'gesture_rate_hz'"},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: ^44100}\nmatter: {a: {kind: mass, mass_kg: "
-                 "1, at_m: 0}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: ^44100}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "'rate_hz' must be an integer multiple of the gesture rate, 1000 Hz, got 44100",
                  "take 44000 or 45000, or set 'gesture_rate_hz' to 980, and 'rate_hz' of the "
                  "device"},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, frame_rate_hz: ^999, gesture_rate_hz: "
-                 "500}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, frame_rate_hz: ^999, gesture_rate_hz: 500}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "'frame_rate_hz' must not exceed the gesture rate, 500 Hz", ""},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: ^0}\nmatter: {a: {kind: mass, mass_kg: 1, "
-                 "at_m: 0}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: ^0}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "'rate_hz' in step must be between 1 and 1000000, got 0", ""},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, freeze: {tolerance_m: ^0}}\nmatter: "
-                 "{a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, freeze: {tolerance_m: ^0}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "'tolerance_m' in freeze must be > 0, got 0", ""},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^implicit, freeze: "
-                 "{tolerance_m: 1e-6}}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, integrator: ^implicit, freeze: {tolerance_m: 1e-6}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "the integrator implicit does not take freezing, which the scene has", ""},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^euler}\nmatter: {a: "
-                 "{kind: mass, mass_kg: 1, at_m: 0}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, integrator: ^euler}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "'integrator' in step must be one of cordis, leapfrog, symplectic4, implicit, "
                  "modal, got "
                  "'euler'",
@@ -89,15 +116,17 @@ INSTANTIATE_TEST_SUITE_P(
             "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nworld: {viscosity_n_s_per_m: ^-1}\n",
             "'viscosity_n_s_per_m' in world must be >= 0, got -1", ""},
         BadScene{kHead2,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\nworld: {gravity_m_per_s2: "
-                 "^-9.81}\n",
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+world: {gravity_m_per_s2: ^-9.81}
+)",
                  "'gravity_m_per_s2' in world must have 2 numbers, got 1", ""},
         BadScene{kHead2, "matter: ^{a: {kind: fixed, at_m: [0, 0]}}\n",
                  "the scene has no mass that can move", ""},
         BadScene{kHead2, "matter: ^{}\n", "the scene has no mass that can move", ""},
         BadScene{kHead2,
-                 "matter: ^{}\nports: {p: {device: d, axes: 0, role: mass, at_m: [0, 0], coupling: "
-                 "direct}}\n",
+                 R"(matter: ^{}
+ports: {p: {device: d, axes: 0, role: mass, at_m: [0, 0], coupling: direct}}
+)",
                  "the scene has no mass that can move", ""},
         BadScene{kHead2,
                  "matter: ^{a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
@@ -114,12 +143,16 @@ INSTANTIATE_TEST_SUITE_P(
             "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: ^{kind: spring}\n",
             "missing key 'stiffness_n_per_m' in liaison 's'", ""},
         BadScene{kHead1,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: ^{kind: "
-                 "spring_damper, stiffness_n_per_m: 1}\n",
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  s: ^{kind: spring_damper, stiffness_n_per_m: 1}
+)",
                  "missing key 'viscosity_n_s_per_m' in liaison 's'", ""},
         BadScene{kHead1,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: "
-                 "^{stiffness_n_per_m: 1}\n",
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  s: ^{stiffness_n_per_m: 1}
+)",
                  "missing key 'kind' in liaison 's'", ""},
         BadScene{kHead1,
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: ^sprng}\n",
@@ -127,50 +160,58 @@ INSTANTIATE_TEST_SUITE_P(
                  "state_machine, parallel, got 'sprng'",
                  "did you mean 'spring'?"},
         BadScene{kHead1,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: spring, "
-                 "stiffness_n_per_m: ^-2}\n",
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  s: {kind: spring, stiffness_n_per_m: ^-2}
+)",
                  "'stiffness_n_per_m' in liaison 's' must be >= 0, got -2", ""},
         BadScene{kHead1,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: damper, "
-                 "viscosity_n_s_per_m: 1, rest_m: ^1}\n",
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  s: {kind: damper, viscosity_n_s_per_m: 1, rest_m: ^1}
+)",
                  "a damper has no 'rest_m'", ""},
         BadScene{
             kHead1,
-            "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: spring, "
-            "stiffness_n_per_m: 1, ^colour: red}\n",
+            R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  s: {kind: spring, stiffness_n_per_m: 1, ^colour: red}
+)",
             "unknown key 'colour' in liaison 's'",
             "known keys: kind, parameters, stiffness_n_per_m, viscosity_n_s_per_m, rest_m, rest"},
         BadScene{kHead1,
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  include: [^[x]]\n",
                  "'include' must be the path of a file, got a sequence", ""},
         BadScene{kHead2,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\nliaisons:\n  s: {kind: "
-                 "spring, stiffness_n_per_m: 1, rest_m: ^-1}\n",
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+liaisons:
+  s: {kind: spring, stiffness_n_per_m: 1, rest_m: ^-1}
+)",
                  "'rest_m' in liaison 's' must be >= 0, got -1", ""}));
 
 TEST(BadScene, TellsAllItsProblemsInOneGoAndNoneThatFollowsFromAnother) {
   config::Problems problems;
 
   load_scene_text(
-      "cordis: 1\n"
-      "space: 2\n"
-      "step: {rate_khz: 1, rate_hz: 1000}\n"
-      "liaisons:\n"
-      "  soft: {kind: spring, stiffness: 3}\n"
-      "matter:\n"
-      "  string: {kind: string, count: 0, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: "
-      "soft}\n"
-      "  nail: {kind: fixed, at_m: [0, x]}\n"
-      "ports:\n"
-      "  key: {device: k, axes: [77], role: mass, at_m: [0, 0]}\n"
-      "links:\n"
-      "  - {liaison: soft, between: [key, \"string[20]\"]}\n"
-      "  - {liaison: sift, name: held, between: [nail, \"string[99]\"]}\n"
-      "signals:\n"
-      "  f: {of: key, quantity: force, axis: y}\n"
-      "  g: {of: held, quantity: force}\n"
-      "  h: {of: string.links, quantity: elongation}\n"
-      "  i: {of: strin, quantity: elongation}\n",
+      R"(cordis: 1
+space: 2
+step: {rate_khz: 1, rate_hz: 1000}
+liaisons:
+  soft: {kind: spring, stiffness: 3}
+matter:
+  string: {kind: string, count: 0, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: soft}
+  nail: {kind: fixed, at_m: [0, x]}
+ports:
+  key: {device: k, axes: [77], role: mass, at_m: [0, 0]}
+links:
+  - {liaison: soft, between: [key, "string[20]"]}
+  - {liaison: sift, name: held, between: [nail, "string[99]"]}
+signals:
+  f: {of: key, quantity: force, axis: y}
+  g: {of: held, quantity: force}
+  h: {of: string.links, quantity: elongation}
+  i: {of: strin, quantity: elongation}
+)",
       "t", problems);
 
   std::string places;
@@ -184,26 +225,26 @@ TEST(BadScene, OfEverySectionIsToldInOneGo) {
   config::Problems problems;
 
   load_scene_text(
-      "cordis: 1\n"
-      "space: 2\n"
-      "step: {rate_hz: 1000}\n"
-      "parts:\n"
-      "  wheel: {matter: {hub: {part: axle}}}\n"
-      "  axle: {matter: {pin: {part: wheel}}}\n"
-      "liaisons:\n"
-      "  asks: {states: {one: {exits: [{to: two, when: tension_n > 1}]}, two: {}}}\n"
-      "  lost: {states: {one: {}, two: {}}}\n"
-      "  shut: {states: {one: {exits: [{to: two, when: age_s > 1}]}, two: {stiffness_n_per_m: "
-      "1}}}\n"
-      "  trap: {states: {one: {exits: [{to: two, when: elongation_m > 1}]},\n"
-      "                  two: {exits: [{to: one, when: elongation_m > 0.5}]}}}\n"
-      "  bent: {elasticity: {kind: table, at_m: [1, 0], force_n: [0, 1]}}\n"
-      "matter:\n"
-      "  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-      "  w: {part: wheel}\n"
-      "links:\n"
-      "  - {liaison: shut, within: []}\n"
-      "  - {liaison: shut, between: [\"m[0]\", \"m[7]\"]}\n",
+      R"(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+parts:
+  wheel: {matter: {hub: {part: axle}}}
+  axle: {matter: {pin: {part: wheel}}}
+liaisons:
+  asks: {states: {one: {exits: [{to: two, when: tension_n > 1}]}, two: {}}}
+  lost: {states: {one: {}, two: {}}}
+  shut: {states: {one: {exits: [{to: two, when: age_s > 1}]}, two: {stiffness_n_per_m: 1}}}
+  trap: {states: {one: {exits: [{to: two, when: elongation_m > 1}]},
+                  two: {exits: [{to: one, when: elongation_m > 0.5}]}}}
+  bent: {elasticity: {kind: table, at_m: [1, 0], force_n: [0, 1]}}
+matter:
+  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+  w: {part: wheel}
+links:
+  - {liaison: shut, within: []}
+  - {liaison: shut, between: ["m[0]", "m[7]"]}
+)",
       "t", problems);
 
   const std::string report = problems.text();
@@ -226,19 +267,26 @@ TEST(BadScene, OfEverySectionIsToldInOneGo) {
 
 TEST(BadScene, IsPrintedWithItsLineAndACaret) {
   config::Problems problems;
-  load_scene_text(
-      scene_head(2) +
-          "matter:\n  string:\n    kind: string\n    count: 40\n    mass_g: 20\n    from_m: [0, "
-          "0]\n    to_m: [1, 0]\n    stiffness_n_per_m: 1\n    mass_kg: -0.1\n",
-      "scenes/bow.yaml", problems);
+  load_scene_text(scene_head(2) +
+                      R"(matter:
+  string:
+    kind: string
+    count: 40
+    mass_g: 20
+    from_m: [0, 0]
+    to_m: [1, 0]
+    stiffness_n_per_m: 1
+    mass_kg: -0.1
+)",
+                  "scenes/bow.yaml", problems);
   EXPECT_EQ(problems.text(),
-            "scenes/bow.yaml:8:5: error: unknown key 'mass_g' in matter 'string'\n"
-            "    mass_g: 20\n"
-            "    ^\n"
-            "  hint: did you mean 'mass_kg'?\n"
-            "scenes/bow.yaml:12:14: error: 'mass_kg' in matter 'string' must be > 0, got -0.1\n"
-            "    mass_kg: -0.1\n"
-            "             ^");
+            R"(scenes/bow.yaml:8:5: error: unknown key 'mass_g' in matter 'string'
+    mass_g: 20
+    ^
+  hint: did you mean 'mass_kg'?
+scenes/bow.yaml:12:14: error: 'mass_kg' in matter 'string' must be > 0, got -0.1
+    mass_kg: -0.1
+             ^)");
 }
 
 TEST(LoadScene, OfAMissingFileIsOneProblem) {
@@ -250,8 +298,9 @@ TEST(LoadScene, OfAMissingFileIsOneProblem) {
   of_launch.remember_source("l.yaml", "scene: no_such.yaml");
   load_scene("no_such.yaml", of_launch, {"l.yaml", 1, 8});
   EXPECT_EQ(of_launch.text(),
-            "l.yaml:1:8: error: cannot read 'no_such.yaml': No such file or directory\nscene: "
-            "no_such.yaml\n       ^");
+            R"(l.yaml:1:8: error: cannot read 'no_such.yaml': No such file or directory
+scene: no_such.yaml
+       ^)");
 }
 
 }  // namespace

@@ -171,8 +171,10 @@ TEST(Skin, HasACoreThatHoldsAllOfIt) {
       "  a: {kind: skin, center_m: [0, 0, 1], radius_m: 0.1, subdivisions: 1, mass_kg: 0.01, "
       "stiffness_n_per_m: 9, core: {mass_kg: 0.5, stiffness_n_per_m: 20, viscosity_n_s_per_m: "
       "0.1}}\n",
-      "signals:\n  core: {of: a.core, quantity: speed}\n  first: {of: \"a.skin[0]\", quantity: "
-      "speed}\n");
+      R"(signals:
+  core: {of: a.core, quantity: speed}
+  first: {of: "a.skin[0]", quantity: speed}
+)");
   ASSERT_EQ(mat_count(scene), 44u);
   EXPECT_EQ(scene.network.mats[42].mass, 0.5);
   EXPECT_TRUE(scene.network.mats[42].position.isApprox(Vec3(0, 0, 1)));

@@ -21,14 +21,17 @@ std::string whole_text() {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   return text.str() +
-         "space: 1\nstep: {rate_hz: 1000}\n"
-         "matter:\n  a: {kind: mass, ball: {mass_kg: 1, radius_m: 0.1}, at_m: [0, 1, 2]}\n"
-         "links:\n"
-         "  - {liaison: contact, within: a}\n"
-         "  - {liaison: collophane, between: [\"a[0]\", \"a[1]\"], hold_m: 0.5}\n"
-         "  - {liaison: ecrouissage, between: [\"a[1]\", \"a[2]\"], original_m: 1}\n"
-         "  - {liaison: plastic, between: [\"a[1]\", \"a[2]\"], name: lead}\n"
-         "  - {liaison: standard_linear_solid, between: [\"a[0]\", \"a[2]\"]}\n";
+         R"(space: 1
+step: {rate_hz: 1000}
+matter:
+  a: {kind: mass, ball: {mass_kg: 1, radius_m: 0.1}, at_m: [0, 1, 2]}
+links:
+  - {liaison: contact, within: a}
+  - {liaison: collophane, between: ["a[0]", "a[1]"], hold_m: 0.5}
+  - {liaison: ecrouissage, between: ["a[1]", "a[2]"], original_m: 1}
+  - {liaison: plastic, between: ["a[1]", "a[2]"], name: lead}
+  - {liaison: standard_linear_solid, between: ["a[0]", "a[2]"]}
+)";
 }
 
 /// The outcome must be a scene that the engine takes and steps, or problems.
@@ -81,10 +84,13 @@ TEST(SetLiaison, OfUnsoundMatterSaysNothingOfItsOwn) {
   for (const char* link : {"within: a", "between_sets: [a, b]", "between_sets: [b, a]"}) {
     config::Problems problems;
     load_scene_text(scene_head(2) +
-                        "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}\n"
-                        "matter:\n  a: {kind: mass, at_m: [[0, 0], [1, 0]]}\n"
-                        "  b: {kind: mass, mass_kg: 1, at_m: [[2, 0], [3, 0]]}\n"
-                        "links:\n  - {liaison: s, range_m: 1, " +
+                        R"(liaisons:
+  s: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}
+matter:
+  a: {kind: mass, at_m: [[0, 0], [1, 0]]}
+  b: {kind: mass, mass_kg: 1, at_m: [[2, 0], [3, 0]]}
+links:
+  - {liaison: s, range_m: 1, )" +
                         link + "}\n",
                     "t", problems);
     ASSERT_EQ(problems.all().size(), 1u) << problems.text();
@@ -95,10 +101,15 @@ TEST(SetLiaison, OfUnsoundMatterSaysNothingOfItsOwn) {
 TEST(SetLiaison, HasNoQuantitiesOfALink) {
   config::Problems problems;
   load_scene_text(scene_head(2) +
-                      "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}\n"
-                      "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-                      "links:\n  - {liaison: s, within: a, range_m: 1, name: glue}\n"
-                      "signals:\n  g: {of: glue, quantity: force}\n",
+                      R"(liaisons:
+  s: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+links:
+  - {liaison: s, within: a, range_m: 1, name: glue}
+signals:
+  g: {of: glue, quantity: force}
+)",
                   "t", problems);
   ASSERT_EQ(problems.all().size(), 1u) << problems.text();
   EXPECT_EQ(problems.all()[0].message, "a liaison of sets has no quantity 'force'");
@@ -108,21 +119,21 @@ TEST(SetLiaison, HasNoQuantitiesOfALink) {
 TEST(BadLiaisons, AreAllToldInOneGo) {
   config::Problems problems;
   load_scene_text(scene_head(2) +
-                      "liaisons:\n"
-                      "  a: {like: b}\n"
-                      "  b: {like: a}\n"
-                      "  c:\n"
-                      "    parameters: {x: y}\n"
-                      "    states: {one: {exits: [{to: two, when: elongation_m > 1}]}, two: {}}\n"
-                      "  d: {elasticity: {kind: table, at_m: [1, 0], force_n: [0, 0]}}\n"
-                      "  e: {parallel: [f]}\n"
-                      "  g: {states: {one: {stiffness_n_per_m: -1, exits: [{to: too, when: "
-                      "age_s}]}, two: {}}}\n"
-                      "matter:\n"
-                      "  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-                      "links:\n"
-                      "  - {liaison: a, between: [\"m[0]\", \"m[1]\"], hold_m: 1}\n"
-                      "  - {liaison: h, within: m}\n",
+                      R"(liaisons:
+  a: {like: b}
+  b: {like: a}
+  c:
+    parameters: {x: y}
+    states: {one: {exits: [{to: two, when: elongation_m > 1}]}, two: {}}
+  d: {elasticity: {kind: table, at_m: [1, 0], force_n: [0, 0]}}
+  e: {parallel: [f]}
+  g: {states: {one: {stiffness_n_per_m: -1, exits: [{to: too, when: age_s}]}, two: {}}}
+matter:
+  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+links:
+  - {liaison: a, between: ["m[0]", "m[1]"], hold_m: 1}
+  - {liaison: h, within: m}
+)",
                   "t", problems);
 
   std::string places;

@@ -24,11 +24,11 @@ class Include : public testing::Test {
   }
   /// A scene with two bobs joined by liaison `used`.
   std::string scene_file(const std::string& liaisons, const std::string& used) {
-    return write("scene.yaml",
-                 scene_head(2) + "liaisons:\n" + liaisons +
-                     "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-                     "links:\n  - {liaison: " +
-                     used + ", between: [\"a[0]\", \"a[1]\"]}\n");
+    return write("scene.yaml", scene_head(2) + "liaisons:\n" + liaisons +
+                                   R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+links:
+  - {liaison: )" + used + ", between: [\"a[0]\", \"a[1]\"]}\n");
   }
   std::string problems_of(const std::string& file) {
     config::Problems problems;
@@ -79,8 +79,10 @@ TEST_F(Include, OfItselfIsAProblem) {
   EXPECT_EQ(problems,
             b + ":3:12: error: 'a.yaml' includes itself\n  include: a.yaml\n           ^");
   write("scene_of_itself.yaml", scene_head(2) +
-                                    "liaisons: {include: scene_of_itself.yaml}\nmatter:\n  a: "
-                                    "{kind: mass, mass_kg: 1, at_m: [0, 0]}\n");
+                                    R"(liaisons: {include: scene_of_itself.yaml}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0]}
+)");
   EXPECT_NE(problems_of((folder / "scene_of_itself.yaml").string()).find("includes itself"),
             std::string::npos);
 }
@@ -91,8 +93,10 @@ TEST_F(Include, OfAMissingFileIsAProblemOfItsPlace) {
       scene_file("  include: [sofd.yaml]\n  own: {kind: spring, stiffness_n_per_m: 1}\n", "own");
   EXPECT_EQ(problems_of(file), file + ":5:13: error: cannot read '" +
                                    (folder / "sofd.yaml").string() +
-                                   "': No such file or directory\n  include: [sofd.yaml]\n         "
-                                   "   ^\n  hint: did you mean 'soft.yaml'?");
+                                   R"(': No such file or directory
+  include: [sofd.yaml]
+            ^
+  hint: did you mean 'soft.yaml'?)");
 }
 
 TEST_F(Include, ReportsProblemsInTheIncludedFile) {
@@ -116,9 +120,11 @@ TEST_F(Include, RefusesASecondLiaisonOfTheSameName) {
   const std::string file =
       scene_file("  include: soft.yaml\n  soft: {kind: spring, stiffness_n_per_m: 1}\n", "soft");
   EXPECT_EQ(problems_of(file), file +
-                                   ":6:3: error: the liaison 'soft' is defined twice\n  soft: "
-                                   "{kind: spring, stiffness_n_per_m: 1}\n  ^\n" +
-                                   "  hint: first defined at " + soft + ":3");
+                                   R"(:6:3: error: the liaison 'soft' is defined twice
+  soft: {kind: spring, stiffness_n_per_m: 1}
+  ^
+)" + "  hint: first defined at " + soft +
+                                   ":3");
 }
 
 }  // namespace

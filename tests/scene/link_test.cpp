@@ -9,15 +9,17 @@ namespace cordis::scene {
 namespace {
 
 constexpr const char* kMatter =
-    "matter:\n"
-    "  one: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n"
-    "  three: {kind: mass, mass_kg: 1, at_m: [[3, 4], [6, 8], [9, 12]]}\n"
-    "  other: {kind: mass, mass_kg: 1, at_m: [[3, 5], [6, 10], [9, 15]]}\n";
+    R"(matter:
+  one: {kind: mass, mass_kg: 1, at_m: [0, 0]}
+  three: {kind: mass, mass_kg: 1, at_m: [[3, 4], [6, 8], [9, 12]]}
+  other: {kind: mass, mass_kg: 1, at_m: [[3, 5], [6, 10], [9, 15]]}
+)";
 constexpr const char* kLiaisons =
-    "liaisons:\n"
-    "  s: {kind: spring, stiffness_n_per_m: 10}\n"
-    "  d: {kind: damper, viscosity_n_s_per_m: 20}\n"
-    "  sd: {kind: spring_damper, stiffness_n_per_m: 30, viscosity_n_s_per_m: 40, rest_m: 0.5}\n";
+    R"(liaisons:
+  s: {kind: spring, stiffness_n_per_m: 10}
+  d: {kind: damper, viscosity_n_s_per_m: 20}
+  sd: {kind: spring_damper, stiffness_n_per_m: 30, viscosity_n_s_per_m: 40, rest_m: 0.5}
+)";
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> ends_of(const std::string& links) {
   const Scene scene = sound_scene(2, kMatter + std::string(kLiaisons) + "links:\n" + links);
@@ -73,20 +75,23 @@ TEST(Links, HaveTheParametersOfTheirLiaisonUnlessOverridden) {
 }
 
 TEST(Links, RestLengthIsSignedInOneDimension) {
-  const Scene scene =
-      sound_scene(1, std::string(kLiaisons) +
-                         "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [2, 5]}\n"
-                         "links:\n  - {liaison: s, between: [\"a[1]\", \"a[0]\"]}\n"
-                         "  - {liaison: s, between: [\"a[0]\", \"a[1]\"], rest_m: -4}\n");
+  const Scene scene = sound_scene(1, std::string(kLiaisons) +
+                                         R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [2, 5]}
+links:
+  - {liaison: s, between: ["a[1]", "a[0]"]}
+  - {liaison: s, between: ["a[0]", "a[1]"], rest_m: -4}
+)");
   EXPECT_EQ(scene.network.links[0].rest_length, -3.0);
   EXPECT_EQ(scene.network.links[1].rest_length, -4.0);
 }
 
 TEST(Links, BearTheNameGivenOrThatOfTheirLiaison) {
-  const Scene scene =
-      sound_scene(2, kMatter + std::string(kLiaisons) +
-                         "links:\n  - {liaison: s, between: [one, three]}\n"
-                         "  - {liaison: s, name: mine, between: [one, \"other[0..1]\"]}\n");
+  const Scene scene = sound_scene(2, kMatter + std::string(kLiaisons) +
+                                         R"(links:
+  - {liaison: s, between: [one, three]}
+  - {liaison: s, name: mine, between: [one, "other[0..1]"]}
+)");
   ASSERT_EQ(scene.links.size(), 2u);
   EXPECT_EQ(scene.links[0].name, "s");
   EXPECT_EQ(scene.links[0].count, 3u);

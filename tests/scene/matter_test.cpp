@@ -29,8 +29,9 @@ int fixed_count(const std::vector<Mat>& mats) {
 
 TEST(Matter, MassStandsWhereItIsPutAndMovesAsToldTo) {
   const Scene scene = sound_scene(2,
-                                  "matter:\n  a: {kind: mass, mass_kg: 0.5, at_m: [[1, 2], [3, "
-                                  "4]], velocity_m_per_s: [5, 6], drawn_radius_m: 0.1}\n");
+                                  R"(matter:
+  a: {kind: mass, mass_kg: 0.5, at_m: [[1, 2], [3, 4]], velocity_m_per_s: [5, 6], drawn_radius_m: 0.1}
+)");
 
   ASSERT_EQ(scene.network.mats.size(), 2u);
   const Mat& second = scene.network.mats[1];
@@ -91,9 +92,10 @@ TEST(Matter, PointsHaveEachItsOwnPlaceMassAndVelocity) {
 
 TEST(Matter, NamesTheRangesInTheOrderOfTheFile) {
   const Scene scene = sound_scene(2,
-                                  "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-                                  "  b: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: "
-                                  "[2, 1], stiffness_n_per_m: 1}\n");
+                                  R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+  b: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: [2, 1], stiffness_n_per_m: 1}
+)");
   ASSERT_EQ(scene.matter.size(), 2u);
   EXPECT_EQ(scene.matter[1].name, "b");
   EXPECT_EQ(scene.matter[1].first, 2u);
@@ -147,23 +149,26 @@ TEST(Matter, ChainIsFixedAtTheEndsItNames) {
 
 TEST(Matter, TensionStretchesTheLinks) {
   const Scene scene = sound_scene(2,
-                                  "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, "
-                                  "0], to_m: [2, 0], stiffness_n_per_m: 100, tension_n: 20}\n");
+                                  R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [2, 0], stiffness_n_per_m: 100, tension_n: 20}
+)");
   // 100 N/m times (1 m - rest) = 20 N
   EXPECT_DOUBLE_EQ(scene.network.links[0].rest_length, 0.8);
 }
 
 TEST(Matter, RestLengthCanBeWritten) {
   const Scene scene = sound_scene(2,
-                                  "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, "
-                                  "0], to_m: [2, 0], stiffness_n_per_m: 100, rest_m: 0.3}\n");
+                                  R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [2, 0], stiffness_n_per_m: 100, rest_m: 0.3}
+)");
   EXPECT_EQ(scene.network.links[1].rest_length, 0.3);
 }
 
 TEST(Matter, RingIsARegularPolygonThatCloses) {
   const Scene scene = sound_scene(2,
-                                  "matter:\n  a: {kind: ring, count: 6, mass_kg: 1, center_m: [1, "
-                                  "2], radius_m: 3, stiffness_n_per_m: 4}\n");
+                                  R"(matter:
+  a: {kind: ring, count: 6, mass_kg: 1, center_m: [1, 2], radius_m: 3, stiffness_n_per_m: 4}
+)");
 
   ASSERT_EQ(scene.network.mats.size(), 6u);
   ASSERT_EQ(scene.network.links.size(), 6u);
@@ -188,19 +193,19 @@ TEST(Matter, RingAndGridLieInThePlaneTheyName) {
   EXPECT_TRUE(second_of_ring(", plane: xy").isApprox(Vec3(0, 1, 0)));
   EXPECT_TRUE(second_of_ring(", plane: xz").isApprox(Vec3(0, 0, 1)));
   EXPECT_TRUE(second_of_ring(", plane: yz").isApprox(Vec3(0, 0, 1)));
-  const Scene grid =
-      sound_scene(3,
-                  "matter:\n  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [1, 1, "
-                  "1], spacing_m: 2, stiffness_n_per_m: 4, plane: yz}\n");
+  const Scene grid = sound_scene(3,
+                                 R"(matter:
+  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [1, 1, 1], spacing_m: 2, stiffness_n_per_m: 4, plane: yz}
+)");
   EXPECT_EQ(grid.network.mats[1].position, Vec3(1, 3, 1));
   EXPECT_EQ(grid.network.mats[2].position, Vec3(1, 1, 3));
 }
 
 TEST(Matter, GridJoinsNeighboursInRowsAndColumns) {
-  const Scene scene =
-      sound_scene(2,
-                  "matter:\n  a: {kind: grid, rows: 3, columns: 4, mass_kg: 1, corner_m: [1, 2], "
-                  "spacing_m: [0.5, 0.25], stiffness_n_per_m: 4}\n");
+  const Scene scene = sound_scene(2,
+                                  R"(matter:
+  a: {kind: grid, rows: 3, columns: 4, mass_kg: 1, corner_m: [1, 2], spacing_m: [0.5, 0.25], stiffness_n_per_m: 4}
+)");
 
   ASSERT_EQ(scene.network.mats.size(), 12u);
   EXPECT_EQ(scene.network.mats[2 * 4 + 3].position, Vec3(1 + 3 * 0.5, 2 + 2 * 0.25, 0));
@@ -257,14 +262,12 @@ TEST(Matter, TakesItsLinksFromALiaison) {
 
 TEST(Matter, InOneDimensionGeneratorsRestAtOneDisplacementAndAreLaidOut) {
   const Scene scene = sound_scene(1,
-                                  "matter:\n"
-                                  "  a: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, "
-                                  "layout_at_m: [1, 2], layout_spacing_m: 0.5}\n"
-                                  "  b: {kind: grid, rows: 2, columns: 2, mass_kg: 1, at_m: 3, "
-                                  "stiffness_n_per_m: 1, layout_spacing_m: 0.1}\n"
-                                  "  c: {kind: ring, count: 4, mass_kg: 1, stiffness_n_per_m: 1, "
-                                  "layout_at_m: [1, 0], layout_spacing_m: 0.5}\n"
-                                  "  d: {kind: mass, mass_kg: 1, at_m: [5, 6]}\n");
+                                  R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, layout_at_m: [1, 2], layout_spacing_m: 0.5}
+  b: {kind: grid, rows: 2, columns: 2, mass_kg: 1, at_m: 3, stiffness_n_per_m: 1, layout_spacing_m: 0.1}
+  c: {kind: ring, count: 4, mass_kg: 1, stiffness_n_per_m: 1, layout_at_m: [1, 0], layout_spacing_m: 0.5}
+  d: {kind: mass, mass_kg: 1, at_m: [5, 6]}
+)");
 
   ASSERT_EQ(scene.layout.size(), scene.network.mats.size());
   EXPECT_EQ(scene.network.mats[2].position, Vec3::Zero());
@@ -282,8 +285,9 @@ TEST(Matter, InOneDimensionGeneratorsRestAtOneDisplacementAndAreLaidOut) {
 
 TEST(Matter, InOneDimensionAChainMayStretchAlongItsDisplacement) {
   const Scene scene = sound_scene(1,
-                                  "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: 2, "
-                                  "to_m: 0, stiffness_n_per_m: 1}\n");
+                                  R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: 2, to_m: 0, stiffness_n_per_m: 1}
+)");
   EXPECT_EQ(scene.network.mats[1].position.x(), 1.0);
   EXPECT_EQ(scene.network.links[0].rest_length, -1.0);  // signed
 }
@@ -291,10 +295,14 @@ TEST(Matter, InOneDimensionAChainMayStretchAlongItsDisplacement) {
 TEST(Scene, ReadsItsRatesAndItsWorld) {
   config::Problems problems;
   const Scene scene = load_scene_text(
-      "cordis: 1\nname: my scene\nspace: 3\nstep: {rate_hz: 6000, gesture_rate_hz: 2000, "
-      "frame_rate_hz: 50, integrator: cordis}\n"
-      "world: {gravity_m_per_s2: [0, 1, -9.81], viscosity_n_s_per_m: 0.25}\n"
-      "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0, 0]}\n",
+      R"(cordis: 1
+name: my scene
+space: 3
+step: {rate_hz: 6000, gesture_rate_hz: 2000, frame_rate_hz: 50, integrator: cordis}
+world: {gravity_m_per_s2: [0, 1, -9.81], viscosity_n_s_per_m: 0.25}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0, 0]}
+)",
       "dir/t.yaml", problems);
   EXPECT_EQ(problems.text(), "");
   EXPECT_EQ(scene.name, "my scene");
@@ -311,8 +319,12 @@ TEST(Scene, ReadsItsRatesAndItsWorld) {
 TEST(Scene, HasDefaults) {
   config::Problems problems;
   const Scene scene = load_scene_text(
-      "cordis: 1\nspace: 1\nstep: {rate_hz: 2000}\nmatter:\n  a: {kind: mass, mass_kg: 1, at_m: "
-      "0}\n",
+      R"(cordis: 1
+space: 1
+step: {rate_hz: 2000}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: 0}
+)",
       "dir/my.yaml", problems);
   EXPECT_EQ(problems.text(), "");
   EXPECT_EQ(scene.name, "my");

@@ -129,18 +129,17 @@ TEST_F(ParametersOfAScene, OfImpossibleValuesAreRefused) {
 }
 
 TEST(Parameters, OfMatterThatSharesItsStateMachineAreThoseOfTheLiaison) {
-  const auto scene = std::make_shared<const Scene>(sound_scene(
-      2,
-      "liaisons:\n"
-      "  brittle:\n"
-      "    parameters: {length_m: 0.1}\n"
-      "    states:\n"
-      "      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > length_m}]}\n"
-      "      broken: {}\n"
-      "matter:\n"
-      "  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], liaison: brittle}\n"
-      "  b: {kind: string, count: 3, mass_kg: 1, from_m: [0, 2], to_m: [1, 2], liaison: "
-      "brittle}\n"));
+  const auto scene = std::make_shared<const Scene>(sound_scene(2,
+                                                               R"(liaisons:
+  brittle:
+    parameters: {length_m: 0.1}
+    states:
+      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > length_m}]}
+      broken: {}
+matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], liaison: brittle}
+  b: {kind: string, count: 3, mass_kg: 1, from_m: [0, 2], to_m: [1, 2], liaison: brittle}
+)"));
   Parameters parameters(scene);
 
   const Parameters::Outcome outcome = parameters.set("a.links", "length_m", 0.2);

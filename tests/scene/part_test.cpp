@@ -19,16 +19,16 @@ using engine::Vec3;
 
 /// A hub and a rim of three, with spokes.
 const std::string kWheel =
-    "liaisons: {s: {kind: spring, stiffness_n_per_m: 5}}\n"
-    "parts:\n"
-    "  wheel:\n"
-    "    parameters: {mass: 1, size: 1, hub: $mass}\n"
-    "    matter:\n"
-    "      hub: {kind: mass, mass_kg: $hub, at_m: [0, 0]}\n"
-    "      rim: {kind: ring, count: 3, mass_kg: $mass, center_m: [0, 0], radius_m: $size, "
-    "stiffness_n_per_m: 7}\n"
-    "    links:\n"
-    "      - {liaison: s, between: [hub, rim], name: spokes}\n";
+    R"(liaisons: {s: {kind: spring, stiffness_n_per_m: 5}}
+parts:
+  wheel:
+    parameters: {mass: 1, size: 1, hub: $mass}
+    matter:
+      hub: {kind: mass, mass_kg: $hub, at_m: [0, 0]}
+      rim: {kind: ring, count: 3, mass_kg: $mass, center_m: [0, 0], radius_m: $size, stiffness_n_per_m: 7}
+    links:
+      - {liaison: s, between: [hub, rim], name: spokes}
+)";
 
 Vec3 position(const Scene& scene, std::size_t mat) {
   return scene.network.mats.at(mat).position;
@@ -55,11 +55,12 @@ TEST(Part, IsPutWhereItsUseSays) {
 }
 
 TEST(Part, TurnsVelocitiesToo) {
-  const Scene scene =
-      sound_scene(2,
-                  "parts:\n  p: {matter: {m: {kind: mass, mass_kg: 1, at_m: [1, "
-                  "0], velocity_m_per_s: [2, 0]}}}\n"
-                  "matter:\n  a: {part: p, rotate_deg: -90, translate_m: [5, 5]}\n");
+  const Scene scene = sound_scene(2,
+                                  R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: 1, at_m: [1, 0], velocity_m_per_s: [2, 0]}}}
+matter:
+  a: {part: p, rotate_deg: -90, translate_m: [5, 5]}
+)");
   EXPECT_EQ(position(scene, 0), Vec3(5, 4, 0));
   EXPECT_EQ(scene.network.mats[0].velocity, Vec3(0, -2, 0));
 }
@@ -67,9 +68,10 @@ TEST(Part, TurnsVelocitiesToo) {
 TEST(Part, TurnsAboutAnyAxisIn3D) {
   const auto turned = [](const std::string& rotate) {
     return position(sound_scene(3,
-                                "parts:\n  p: {matter: {m: {kind: mass, mass_kg: 1, at_m: [1, 2, "
-                                "3]}}}\nmatter:\n  a: {part: p, rotate: " +
-                                    rotate + "}\n"),
+                                R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: 1, at_m: [1, 2, 3]}}}
+matter:
+  a: {part: p, rotate: )" + rotate + "}\n"),
                     0);
   };
   EXPECT_EQ(turned("{axis: x, deg: 90}"), Vec3(1, -3, 2));
@@ -81,9 +83,11 @@ TEST(Part, TurnsAboutAnyAxisIn3D) {
 
 TEST(Part, HasParametersThatAUseOverrides) {
   const Scene scene = sound_scene(2, kWheel +
-                                         "matter:\n  a: {part: wheel}\n"
-                                         "  b: {part: wheel, parameters: {mass: 3}}\n"
-                                         "  c: {part: wheel, parameters: {hub: 4, size: 2}}\n");
+                                         R"(matter:
+  a: {part: wheel}
+  b: {part: wheel, parameters: {mass: 3}}
+  c: {part: wheel, parameters: {hub: 4, size: 2}}
+)");
   const auto mass = [&](std::size_t mat) { return scene.network.mats.at(mat).mass; };
   EXPECT_EQ(mass(0), 1.0);
   EXPECT_EQ(mass(1), 1.0);
@@ -95,13 +99,15 @@ TEST(Part, HasParametersThatAUseOverrides) {
 }
 
 TEST(Part, IsRepeatedStepByStep) {
-  const Scene scene = sound_scene(
-      2, kWheel +
-             "matter:\n  row: {part: wheel, translate_m: [0, 1], repeat: {count: 3, translate_m: "
-             "[5, 0]}}\n"
-             "links:\n  - {liaison: s, between: [\"row[0..1].hub\", \"row[1..2].hub\"]}\n"
-             "signals:\n  x: {of: \"row[2].rim[1]\", quantity: position, axis: x}\n"
-             "  e: {of: \"row[1].spokes[2]\", quantity: elongation}\n");
+  const Scene scene = sound_scene(2, kWheel +
+                                         R"(matter:
+  row: {part: wheel, translate_m: [0, 1], repeat: {count: 3, translate_m: [5, 0]}}
+links:
+  - {liaison: s, between: ["row[0..1].hub", "row[1..2].hub"]}
+signals:
+  x: {of: "row[2].rim[1]", quantity: position, axis: x}
+  e: {of: "row[1].spokes[2]", quantity: elongation}
+)");
   ASSERT_EQ(scene.network.mats.size(), 12u);
   EXPECT_EQ(position(scene, 8), Vec3(10, 1, 0));
   EXPECT_EQ(scene.matter[4].name, "row[2].hub");
@@ -113,14 +119,16 @@ TEST(Part, IsRepeatedStepByStep) {
 }
 
 TEST(Part, StandsInPartsAndEachIsPutInTheOther) {
-  const Scene scene = sound_scene(
-      2,
-      kWheel +
-          "  arm:\n    parameters: {long: 2}\n"
-          "    matter:\n      w: {part: wheel, translate_m: [$long, 0], parameters: {size: 0.5}}\n"
-          "matter:\n  carousel: {part: arm, translate_m: [0, 9], repeat: {count: 4, rotate_deg: "
-          "90}}\n"
-          "links:\n  - {liaison: s, between: [\"carousel[1].w.hub\", \"carousel[3].w.rim[0]\"]}\n");
+  const Scene scene = sound_scene(2, kWheel +
+                                         R"(  arm:
+    parameters: {long: 2}
+    matter:
+      w: {part: wheel, translate_m: [$long, 0], parameters: {size: 0.5}}
+matter:
+  carousel: {part: arm, translate_m: [0, 9], repeat: {count: 4, rotate_deg: 90}}
+links:
+  - {liaison: s, between: ["carousel[1].w.hub", "carousel[3].w.rim[0]"]}
+)");
   ASSERT_EQ(scene.network.mats.size(), 16u);
   EXPECT_EQ(position(scene, 0), Vec3(2, 9, 0));
   EXPECT_EQ(position(scene, 4), Vec3(0, 11, 0));
@@ -133,10 +141,11 @@ TEST(Part, StandsInPartsAndEachIsPutInTheOther) {
 
 TEST(Part, InOneDimensionIsShiftedAndLaidOut) {
   const Scene scene = sound_scene(1,
-                                  "parts:\n  p: {matter: {m: {kind: mass, mass_kg: 1, at_m: 2, "
-                                  "layout_at_m: [0.1, 0]}}}\n"
-                                  "matter:\n  a: {part: p, translate_m: 1, repeat: {count: 3, "
-                                  "layout_translate_m: [0, 0.5]}}\n");
+                                  R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: 1, at_m: 2, layout_at_m: [0.1, 0]}}}
+matter:
+  a: {part: p, translate_m: 1, repeat: {count: 3, layout_translate_m: [0, 0.5]}}
+)");
   EXPECT_EQ(position(scene, 2), Vec3(3, 0, 0));
   EXPECT_EQ(scene.layout[2].x, 0.1);
   EXPECT_EQ(scene.layout[2].z, 1.0);
@@ -159,14 +168,17 @@ TEST(Part, RestsWhereItIsPut) {
 
 TEST(Part, WithFaultsIsToldOnceHoweverOftenItIsUsed) {
   config::Problems problems;
-  load_scene_text(
-      scene_head(2) +
-          "parts:\n  p: {matter: {m: {kind: mass, mass_kg: -1, at_m: [1, 0]}, n: {kind: "
-          "mass, mass_kg: 0, at_m: [1, 0]}}}\n"
-          "  q: {matter: {a: {part: p}, b: {part: p}}}\n"
-          "matter:\n  a: {part: q, repeat: {count: 100000}}\n  b: {part: p}\n"
-          "signals:\n  x: {of: a.b.m, quantity: speed}\n",
-      "t", problems);
+  load_scene_text(scene_head(2) +
+                      R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: -1, at_m: [1, 0]}, n: {kind: mass, mass_kg: 0, at_m: [1, 0]}}}
+  q: {matter: {a: {part: p}, b: {part: p}}}
+matter:
+  a: {part: q, repeat: {count: 100000}}
+  b: {part: p}
+signals:
+  x: {of: a.b.m, quantity: speed}
+)",
+                  "t", problems);
   ASSERT_EQ(problems.all().size(), 2u) << problems.text();
   EXPECT_EQ(problems.all()[0].message, "'mass_kg' in matter 'm' of part 'p' must be > 0, got -1");
 }
@@ -196,8 +208,11 @@ class PartFiles : public testing::Test {
 TEST_F(PartFiles, BringTheirPartsAndTheLiaisonsOfThese) {
   write("parts/wheel.yaml", "cordis: 1\n" + kWheel);
   write("parts/cart.yaml",
-        "cordis: 1\nparts:\n  include: wheel.yaml\n  cart: {matter: {front: {part: wheel}, back: "
-        "{part: wheel, translate_m: [3, 0]}}}\n");
+        R"(cordis: 1
+parts:
+  include: wheel.yaml
+  cart: {matter: {front: {part: wheel}, back: {part: wheel, translate_m: [3, 0]}}}
+)");
 
   EXPECT_EQ(problems_of("[parts/cart.yaml, parts/wheel.yaml]", "  a: {part: cart}\n"), "");
   EXPECT_EQ(scene.network.mats.size(), 8u);
@@ -229,58 +244,96 @@ INSTANTIATE_TEST_SUITE_P(
     Parts, BadPart,
     testing::Values(
         BadScene{kHead2,
-                 "parts:\n  wheel: {matter: {m: {kind: fixed, at_m: [0, 0]}}}\n"
-                 "matter:\n  a: {part: ^weel}\n",
+                 R"(parts:
+  wheel: {matter: {m: {kind: fixed, at_m: [0, 0]}}}
+matter:
+  a: {part: ^weel}
+)",
                  "no part is named 'weel'", "did you mean 'wheel'?"},
         BadScene{kHead2, "matter:\n  a: {part: ^[p]}\n",
                  "a part is called by its name, got a sequence", ""},
         BadScene{kHead2,
-                 "parts:\n  a: {matter: {x: {part: b}}}\n  b: {matter: {y: {part: c}}}\n"
-                 "  c: {matter: {z: {part: ^a}}}\n"
-                 "matter:\n  m: {part: a}\n",
+                 R"(parts:
+  a: {matter: {x: {part: b}}}
+  b: {matter: {y: {part: c}}}
+  c: {matter: {z: {part: ^a}}}
+matter:
+  m: {part: a}
+)",
                  "part 'a' contains itself: a > b > c > a", ""},
         BadScene{kHead2,
-                 "parts:\n  a: {matter: {x: {part: b}}}\n  b: {matter: {y: {part: ^b}}}\n"
-                 "matter:\n  m: {part: a}\n",
+                 R"(parts:
+  a: {matter: {x: {part: b}}}
+  b: {matter: {y: {part: ^b}}}
+matter:
+  m: {part: a}
+)",
                  "part 'b' contains itself: b > b", ""},
         BadScene{kHead2,
-                 "parts:\n  p: {^ports: {}, matter: {m: {kind: fixed, at_m: [0, 0]}}}\n"
-                 "matter:\n  b: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n",
+                 R"(parts:
+  p: {^ports: {}, matter: {m: {kind: fixed, at_m: [0, 0]}}}
+matter:
+  b: {kind: mass, mass_kg: 1, at_m: [0, 0]}
+)",
                  "unknown key 'ports' in part 'p'", "known keys: parameters, matter, links"},
         BadScene{kHead2, "parts:\n  p: {matter: ^{}}\nmatter:\n  a: {part: p}\n",
                  "part 'p' has no matter", ""},
         BadScene{kHead2,
-                 "parts:\n  p: {matter: {m: {kind: mass, mass_kg: ^$mas, at_m: [0, 0]}}, "
-                 "parameters: {mass: 1}}\nmatter:\n  a: {part: p}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: ^$mas, at_m: [0, 0]}}, parameters: {mass: 1}}
+matter:
+  a: {part: p}
+)",
                  "part 'p' has no parameter 'mas'", "did you mean 'mass'?"},
         BadScene{kHead2,
-                 "parts:\n  p: {matter: {m: {kind: mass, mass_kg: $mass, at_m: [0, 0]}}, "
-                 "parameters: {mass: 1}}\nmatter:\n  a: {part: p, parameters: {^mas: 3}}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: $mass, at_m: [0, 0]}}, parameters: {mass: 1}}
+matter:
+  a: {part: p, parameters: {^mas: 3}}
+)",
                  "part 'p' has no parameter 'mas'", "did you mean 'mass'?"},
         BadScene{kHead2,
-                 "parts:\n  p: {matter: {m: {kind: mass, mass_kg: $mass, at_m: [0, 0]}}, "
-                 "parameters: {mass: }}\nmatter:\n  ^a: {part: p}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: $mass, at_m: [0, 0]}}, parameters: {mass: }}
+matter:
+  ^a: {part: p}
+)",
                  "part 'p' needs a value for the parameter 'mass'", ""},
         BadScene{kHead2,
-                 "parts:\n  p: {matter: {m: {kind: mass, mass_kg: $mass, at_m: [0, 0]}}, "
-                 "parameters: {mass: 1}}\nmatter:\n  a: {part: p, parameters: {mass: ^-3}}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: $mass, at_m: [0, 0]}}, parameters: {mass: 1}}
+matter:
+  a: {part: p, parameters: {mass: ^-3}}
+)",
                  "'mass_kg' in matter 'm' of part 'p' must be > 0, got -3", ""},
         BadScene{kHead2,
-                 "parts:\n  p: {matter: {m: {kind: fixed, at_m: [0, 0]}}}\n"
-                 "matter:\n  a: {part: p, repeat: {count: ^0}}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: fixed, at_m: [0, 0]}}}
+matter:
+  a: {part: p, repeat: {count: ^0}}
+)",
                  "'count' in 'repeat' of matter 'a' must be between 1 and 1000000, got 0", ""},
         BadScene{kHead1,
-                 "parts:\n  p: {matter: {m: {kind: fixed, at_m: 0}}}\n"
-                 "matter:\n  a: {part: p, ^rotate_deg: 3}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: fixed, at_m: 0}}}
+matter:
+  a: {part: p, ^rotate_deg: 3}
+)",
                  "unknown key 'rotate_deg' in matter 'a'",
                  "known keys: part, translate_m, layout_translate_m, parameters, repeat"},
         BadScene{kHead3,
-                 "parts:\n  p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}\n"
-                 "matter:\n  a: {part: p, rotate: {deg: 3, axis: ^[0, 0, 0]}}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}
+matter:
+  a: {part: p, rotate: {deg: 3, axis: ^[0, 0, 0]}}
+)",
                  "'axis' in 'rotate' of matter 'a' must not be zero", ""},
         BadScene{kHead3,
-                 "parts:\n  p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}\n"
-                 "matter:\n  a: {part: p, rotate: ^{deg: 3}}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}
+matter:
+  a: {part: p, rotate: ^{deg: 3}}
+)",
                  "missing key 'axis' in 'rotate' of matter 'a'", ""},
         BadScene{kHead2,
                  "parts:\n  p: {matter: {^m: {kind: lattice, structure: square, corner_m: [0, 0], "
@@ -288,9 +341,13 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter:\n  a: {part: p, repeat: {count: 2}}\n",
                  "the scene has more than 1000000 MATs or 8000000 links", ""},
         BadScene{kHead2,
-                 "parts:\n  p: {matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}}\n"
-                 "matter:\n  a: {part: p, repeat: {count: 2}}\n"
-                 "signals:\n  s: {of: ^\"a[2].m\", quantity: speed}\n",
+                 R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}}
+matter:
+  a: {part: p, repeat: {count: 2}}
+signals:
+  s: {of: ^"a[2].m", quantity: speed}
+)",
                  "'a' has the copies 0 to 1, got 2", ""}));
 
 }  // namespace

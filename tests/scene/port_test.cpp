@@ -13,10 +13,10 @@ namespace {
 using engine::Vec3;
 
 TEST(Port, OfRoleMassIsAMatWhosePositionIsImposed) {
-  const Scene scene =
-      scene_with_bob(2, "",
-                     "ports:\n  key: {device: keyboard, axes: [3], role: mass, "
-                     "coupling: direct, at_m: [1, 2], along: y, drawn_radius_m: 0.5}\n");
+  const Scene scene = scene_with_bob(2, "",
+                                     R"(ports:
+  key: {device: keyboard, axes: [3], role: mass, coupling: direct, at_m: [1, 2], along: y, drawn_radius_m: 0.5}
+)");
 
   ASSERT_EQ(scene.ports.size(), 1u);
   const Port& port = scene.ports[0];
@@ -38,9 +38,11 @@ TEST(Port, OfRoleMassIsAMatWhosePositionIsImposed) {
 
 TEST(Port, OfRoleLiaisonIsAMassThatTheDevicePushes) {
   const Scene scene = sound_scene(3,
-                                  "matter:\n  a: {kind: fixed, at_m: [0, 0, 0]}\n"
-                                  "ports:\n  thimble: {device: left, axes: [0, 1, 2], role: "
-                                  "liaison, at_m: [1, 2, 3], mass_kg: 0.1}\n");
+                                  R"(matter:
+  a: {kind: fixed, at_m: [0, 0, 0]}
+ports:
+  thimble: {device: left, axes: [0, 1, 2], role: liaison, at_m: [1, 2, 3], mass_kg: 0.1}
+)");
   EXPECT_EQ(scene.ports[0].role, Role::kLiaison);
   EXPECT_EQ(scene.network.mats[1].kind, engine::MatKind::kMass);
   EXPECT_EQ(scene.network.mats[1].mass, 0.1);
@@ -68,40 +70,47 @@ TEST(Port, DirectionsAreUnitVectorsHoweverTheyAreWritten) {
 }
 
 TEST(Port, SeveralPortsShareADevice) {
-  const Scene scene = scene_with_bob(
-      2, "",
-      "ports:\n  left: {device: thimbles, axes: [0, 1], role: mass, coupling: direct, at_m: [0, "
-      "0]}\n"
-      "  right: {device: thimbles, axes: [2, 3], role: mass, coupling: direct, at_m: [1, 0]}\n"
-      "  key: {device: keyboard, axes: 0, role: liaison, at_m: [1, 0], mass_kg: 1}\n");
+  const Scene scene = scene_with_bob(2, "",
+                                     R"(ports:
+  left: {device: thimbles, axes: [0, 1], role: mass, coupling: direct, at_m: [0, 0]}
+  right: {device: thimbles, axes: [2, 3], role: mass, coupling: direct, at_m: [1, 0]}
+  key: {device: keyboard, axes: 0, role: liaison, at_m: [1, 0], mass_kg: 1}
+)");
   EXPECT_EQ(scene.ports.size(), 3u);
   EXPECT_EQ(scene.ports[1].mat, 2u);
 }
 
 TEST(Port, IsShownBesideTheFirstMatItIsLinkedToInOneDimension) {
-  const Scene scene = sound_scene(
-      1,
-      "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 1}\n"
-      "matter:\n  a: {kind: string, count: 5, mass_kg: 1, "
-      "stiffness_n_per_m: 1, layout_spacing_m: 1}\n"
-      "ports:\n  p: {device: d, axes: [0], role: mass, coupling: direct}\n  q: {device: "
-      "d, axes: [1], role: mass, coupling: direct, layout_at_m: [7, 8]}\n"
-      "links:\n  - {liaison: s, between: [p, \"a[3]\"]}\n  - {liaison: "
-      "s, between: [q, \"a[3]\"]}\n");
+  const Scene scene = sound_scene(1,
+                                  R"(liaisons:
+  s: {kind: spring, stiffness_n_per_m: 1}
+matter:
+  a: {kind: string, count: 5, mass_kg: 1, stiffness_n_per_m: 1, layout_spacing_m: 1}
+ports:
+  p: {device: d, axes: [0], role: mass, coupling: direct}
+  q: {device: d, axes: [1], role: mass, coupling: direct, layout_at_m: [7, 8]}
+links:
+  - {liaison: s, between: [p, "a[3]"]}
+  - {liaison: s, between: [q, "a[3]"]}
+)");
   EXPECT_EQ(scene.layout[5].x, 3.0);
   EXPECT_EQ(scene.layout[6].x, 7.0);
   EXPECT_EQ(scene.layout[6].z, 8.0);
 }
 
 TEST(Port, ACouplingPutsAToolBetweenTheDeviceAndTheScene) {
-  const Scene scene = scene_with_bob(
-      2, "  ground: {kind: fixed, at_m: [0, 0]}\n",
-      "liaisons:\n  wall: {kind: spring, stiffness_n_per_m: 9000}\n"
-      "ports:\n  key: {device: keyboard, axes: 0, role: mass, at_m: [1, 2], along: y,\n"
-      "        coupling: {stiffness_n_per_m: 300, viscosity_n_s_per_m: 2, mass_kg: 0.2}}\n"
-      "links:\n  - {liaison: wall, between: [key, ground]}\n"
-      "signals:\n  hand: {of: key.handle, quantity: force}\n"
-      "  tool: {of: key, quantity: position}\n");
+  const Scene scene = scene_with_bob(2, "  ground: {kind: fixed, at_m: [0, 0]}\n",
+                                     R"(liaisons:
+  wall: {kind: spring, stiffness_n_per_m: 9000}
+ports:
+  key: {device: keyboard, axes: 0, role: mass, at_m: [1, 2], along: y,
+        coupling: {stiffness_n_per_m: 300, viscosity_n_s_per_m: 2, mass_kg: 0.2}}
+links:
+  - {liaison: wall, between: [key, ground]}
+signals:
+  hand: {of: key.handle, quantity: force}
+  tool: {of: key, quantity: position}
+)");
 
   const Port& port = scene.ports.at(0);
   EXPECT_EQ(scene.network.mats[port.mat].kind, engine::MatKind::kPort);
@@ -172,9 +181,9 @@ TEST(Port, SaysWhatItNeedsOfItsDevice) {
 TEST(Port, TheToolHasNoWeight) {
   for (const std::string role : {"role: mass", "role: liaison", "role: mass, coupling: direct"}) {
     const Scene scene = scene_with_bob(2, "",
-                                       "world: {gravity_m_per_s2: [0, -9.81]}\n"
-                                       "ports:\n  key: {device: d, axes: [0, 1], at_m: [1, 2], "
-                                       "ball: {mass_kg: 0.3, radius_m: 0.1}, " +
+                                       R"(world: {gravity_m_per_s2: [0, -9.81]}
+ports:
+  key: {device: d, axes: [0, 1], at_m: [1, 2], ball: {mass_kg: 0.3, radius_m: 0.1}, )" +
                                            role + "}\n");
     engine::World world(std::make_shared<const engine::Network>(scene.network));
     for (int n = 0; n < 500; ++n) world.step();

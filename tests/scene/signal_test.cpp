@@ -40,10 +40,16 @@ class Observed {
 TEST(SignalReader, TellsWhatPartIsAwakeAndKeepsAwakeWhoseForceIsAskedFor) {
   config::Problems problems;
   Observed run(load_scene_text(
-      "cordis: 1\nspace: 2\nstep: {rate_hz: 1000, freeze: {tolerance_m: 1e-6}}\n"
-      "matter:\n  s: {kind: string, count: 5, mass_kg: 0.01, from_m: [0, 0], to_m: [1, 0],\n"
-      "    ends: fixed, stiffness_n_per_m: 100, tension_n: 1}\n"
-      "signals:\n  f: {of: \"s[2]\", quantity: force, axis: x}\n  a: {quantity: awake}\n",
+      R"(cordis: 1
+space: 2
+step: {rate_hz: 1000, freeze: {tolerance_m: 1e-6}}
+matter:
+  s: {kind: string, count: 5, mass_kg: 0.01, from_m: [0, 0], to_m: [1, 0],
+    ends: fixed, stiffness_n_per_m: 100, tension_n: 1}
+signals:
+  f: {of: "s[2]", quantity: force, axis: x}
+  a: {quantity: awake}
+)",
       "t", problems));
   ASSERT_EQ(problems.text(), "");
 
@@ -56,13 +62,17 @@ TEST(SignalReader, TellsWhatPartIsAwakeAndKeepsAwakeWhoseForceIsAskedFor) {
 }
 
 TEST(SignalReader, TellsPositionVelocityAndSpeedOfAFreeMass) {
-  Observed run(sound_scene(
-      2,
-      "matter:\n  a: {kind: mass, mass_kg: 2, at_m: [1, 2], velocity_m_per_s: [3, -4]}\n"
-      "signals:\n  x: {of: a, quantity: position, axis: x}\n  y: {of: \"a[0]\", quantity: "
-      "position, axis: y}\n"
-      "  vy: {of: a, quantity: velocity, axis: y}\n  v: {of: a, quantity: speed}\n"
-      "  e: {quantity: energy}\n  k: {quantity: kinetic_energy}\n"));
+  Observed run(sound_scene(2,
+                           R"(matter:
+  a: {kind: mass, mass_kg: 2, at_m: [1, 2], velocity_m_per_s: [3, -4]}
+signals:
+  x: {of: a, quantity: position, axis: x}
+  y: {of: "a[0]", quantity: position, axis: y}
+  vy: {of: a, quantity: velocity, axis: y}
+  v: {of: a, quantity: speed}
+  e: {quantity: energy}
+  k: {quantity: kinetic_energy}
+)"));
 
   run.step(100);  // 0.1 s of straight motion
 
@@ -78,18 +88,22 @@ TEST(SignalReader, TellsPositionVelocityAndSpeedOfAFreeMass) {
 }
 
 TEST(SignalReader, TellsDistanceElongationGrowthAndPullOfALink) {
-  Observed run(
-      sound_scene(2,
-                  "liaisons:\n  s: {kind: spring_damper, stiffness_n_per_m: 10, "
-                  "viscosity_n_s_per_m: 2, rest_m: 4}\n"
-                  "matter:\n  wall: {kind: fixed, at_m: [0, 0]}\n  a: {kind: mass, mass_kg: "
-                  "1000000, at_m: [3, 4], velocity_m_per_s: [6, 8]}\n"
-                  "links:\n  - {liaison: s, name: rope, between: [wall, a]}\n"
-                  "signals:\n  d: {of: rope, quantity: distance}\n  e: {of: \"rope[0]\", "
-                  "quantity: elongation}\n"
-                  "  g: {of: rope, quantity: speed}\n  f: {of: rope, quantity: force}\n  "
-                  "onwall: {of: wall, quantity: force, axis: y}\n"
-                  "  stored: {quantity: elastic_energy}\n"));
+  Observed run(sound_scene(2,
+                           R"(liaisons:
+  s: {kind: spring_damper, stiffness_n_per_m: 10, viscosity_n_s_per_m: 2, rest_m: 4}
+matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  a: {kind: mass, mass_kg: 1000000, at_m: [3, 4], velocity_m_per_s: [6, 8]}
+links:
+  - {liaison: s, name: rope, between: [wall, a]}
+signals:
+  d: {of: rope, quantity: distance}
+  e: {of: "rope[0]", quantity: elongation}
+  g: {of: rope, quantity: speed}
+  f: {of: rope, quantity: force}
+  onwall: {of: wall, quantity: force, axis: y}
+  stored: {quantity: elastic_energy}
+)"));
 
   run.step(1);  // so heavy a mass goes straight on: 10 m/s along the link
 
@@ -103,28 +117,39 @@ TEST(SignalReader, TellsDistanceElongationGrowthAndPullOfALink) {
 }
 
 TEST(SignalReader, TellsOfEachLiaisonOfSeveralInParallel) {
-  Observed run(sound_scene(
-      1,
-      "matter:\n  a: {kind: fixed, at_m: 0}\n  b: {kind: mass, mass_kg: 1, at_m: 0.5}\n"
-      "liaisons:\n  thread: {kind: spring, stiffness_n_per_m: 10, rest_m: 0.2}\n"
-      "  cord: {parallel: [thread, {kind: spring, stiffness_n_per_m: 100, rest_m: 0.5}]}\n"
-      "links:\n  - {liaison: cord, between: [a, b], name: rope}\n"
-      "signals:\n  soft: {of: rope.thread, quantity: elongation}\n"
-      "  hard: {of: rope.spring, quantity: elongation}\n"));
+  Observed run(sound_scene(1,
+                           R"(matter:
+  a: {kind: fixed, at_m: 0}
+  b: {kind: mass, mass_kg: 1, at_m: 0.5}
+liaisons:
+  thread: {kind: spring, stiffness_n_per_m: 10, rest_m: 0.2}
+  cord: {parallel: [thread, {kind: spring, stiffness_n_per_m: 100, rest_m: 0.5}]}
+links:
+  - {liaison: cord, between: [a, b], name: rope}
+signals:
+  soft: {of: rope.thread, quantity: elongation}
+  hard: {of: rope.spring, quantity: elongation}
+)"));
 
   EXPECT_DOUBLE_EQ(run.value("soft"), 0.3);
   EXPECT_DOUBLE_EQ(run.value("hard"), 0.0);
 }
 
 TEST(SignalReader, GivesLinksInOneDimensionTheirSign) {
-  Observed run(sound_scene(
-      1,
-      "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 10, rest_m: -1}\n"
-      "matter:\n  wall: {kind: fixed, at_m: 0}\n  a: {kind: mass, mass_kg: 1, at_m: -3}\n"
-      "links:\n  - {liaison: s, name: rope, between: [wall, a]}\n"
-      "signals:\n  d: {of: rope, quantity: distance}\n  e: {of: rope, quantity: elongation}\n  f: "
-      "{of: rope, quantity: force}\n"
-      "  x: {of: a, quantity: position}\n"));
+  Observed run(sound_scene(1,
+                           R"(liaisons:
+  s: {kind: spring, stiffness_n_per_m: 10, rest_m: -1}
+matter:
+  wall: {kind: fixed, at_m: 0}
+  a: {kind: mass, mass_kg: 1, at_m: -3}
+links:
+  - {liaison: s, name: rope, between: [wall, a]}
+signals:
+  d: {of: rope, quantity: distance}
+  e: {of: rope, quantity: elongation}
+  f: {of: rope, quantity: force}
+  x: {of: a, quantity: position}
+)"));
   EXPECT_EQ(run.value("d"), -3.0);
   EXPECT_EQ(run.value("e"), -2.0);
   EXPECT_EQ(run.value("f"), -20.0);
@@ -132,14 +157,20 @@ TEST(SignalReader, GivesLinksInOneDimensionTheirSign) {
 }
 
 TEST(SignalReader, OfAPortOfOneAxisIsSeenAlongItFromItsRest) {
-  Observed run(sound_scene(
-      2,
-      "liaisons:\n  s: {kind: spring, stiffness_n_per_m: 100, rest_m: 1}\n"
-      "matter:\n  a: {kind: mass, mass_kg: 1000000, at_m: [1, 3]}\n"
-      "ports:\n  p: {device: d, axes: [0], role: mass, coupling: direct, at_m: [1, 2], along: -y}\n"
-      "links:\n  - {liaison: s, between: [p, a]}\n"
-      "signals:\n  p: {of: p, quantity: position}\n  y: {of: p, quantity: "
-      "position, axis: y}\n  f: {of: p, quantity: force}\n"));
+  Observed run(sound_scene(2,
+                           R"(liaisons:
+  s: {kind: spring, stiffness_n_per_m: 100, rest_m: 1}
+matter:
+  a: {kind: mass, mass_kg: 1000000, at_m: [1, 3]}
+ports:
+  p: {device: d, axes: [0], role: mass, coupling: direct, at_m: [1, 2], along: -y}
+links:
+  - {liaison: s, between: [p, a]}
+signals:
+  p: {of: p, quantity: position}
+  y: {of: p, quantity: position, axis: y}
+  f: {of: p, quantity: force}
+)"));
 
   run.world().impose_position(1, engine::Vec3(1.0, 1.75, 0.0));
   run.step(1);
@@ -151,11 +182,16 @@ TEST(SignalReader, OfAPortOfOneAxisIsSeenAlongItFromItsRest) {
 
 TEST(SignalReader, TellsTheAccountOfEnergy) {
   Observed run(sound_scene(2,
-                           "world: {gravity_m_per_s2: [0, -10], viscosity_n_s_per_m: 0.5}\n"
-                           "matter:\n  a: {kind: mass, mass_kg: 2, at_m: [0, 1]}\n"
-                           "signals:\n  k: {quantity: kinetic_energy}\n  g: {quantity: "
-                           "gravity_energy}\n  d: {quantity: dissipated_energy}\n"
-                           "  w: {quantity: port_work}\n  e: {quantity: energy}\n"));
+                           R"(world: {gravity_m_per_s2: [0, -10], viscosity_n_s_per_m: 0.5}
+matter:
+  a: {kind: mass, mass_kg: 2, at_m: [0, 1]}
+signals:
+  k: {quantity: kinetic_energy}
+  g: {quantity: gravity_energy}
+  d: {quantity: dissipated_energy}
+  w: {quantity: port_work}
+  e: {quantity: energy}
+)"));
   const double before = run.value("e");
 
   run.step(200);
@@ -169,24 +205,27 @@ TEST(SignalReader, TellsTheAccountOfEnergy) {
 
 /// Two pairs of balls that touch, and one that flies at the second; what touches sticks.
 const char* const kGlue =
-    "liaisons:\n  spring: {kind: spring, stiffness_n_per_m: 1}\n  stick:\n    range: rest\n    "
-    "states:\n"
-    "      apart: {exits: [{to: stuck, when: elongation_m < 0}]}\n"
-    "      stuck: {stiffness_n_per_m: 1, exits: [{to: apart, when: elongation_m > 1}]}\n"
-    "matter:\n"
-    "  row: {kind: mass, at_m: [[0, 0], [1.5, 0], [6, 0], [7.5, 0]], "
-    "ball: {mass_kg: 1, radius_m: 1}}\n"
-    "  thrown: {kind: mass, at_m: [6, 2.5], velocity_m_per_s: [0, -10], "
-    "ball: {mass_kg: 1, radius_m: 1}}\n"
-    "links:\n  - {liaison: stick, within: [row, thrown], name: glue}\n";
+    R"(liaisons:
+  spring: {kind: spring, stiffness_n_per_m: 1}
+  stick:
+    range: rest
+    states:
+      apart: {exits: [{to: stuck, when: elongation_m < 0}]}
+      stuck: {stiffness_n_per_m: 1, exits: [{to: apart, when: elongation_m > 1}]}
+matter:
+  row: {kind: mass, at_m: [[0, 0], [1.5, 0], [6, 0], [7.5, 0]], ball: {mass_kg: 1, radius_m: 1}}
+  thrown: {kind: mass, at_m: [6, 2.5], velocity_m_per_s: [0, -10], ball: {mass_kg: 1, radius_m: 1}}
+links:
+  - {liaison: stick, within: [row, thrown], name: glue}
+)";
 
 TEST(SignalReader, CountsThePiecesAndBondsOfASetOfBalls) {
-  Observed run(sound_scene(
-      2,
-      kGlue + std::string("signals:\n  p: {of: glue, quantity: pieces}\n"
-                          "  b: {of: glue, quantity: bonds}\n"
-                          "  near: {of: glue, quantity: pieces, near_m: 2.4}\n"
-                          "  row: {of: [\"row[1..2]\", thrown], quantity: pieces, near_m: 4}\n")));
+  Observed run(sound_scene(2, kGlue + std::string(R"(signals:
+  p: {of: glue, quantity: pieces}
+  b: {of: glue, quantity: bonds}
+  near: {of: glue, quantity: pieces, near_m: 2.4}
+  row: {of: ["row[1..2]", thrown], quantity: pieces, near_m: 4}
+)")));
   EXPECT_EQ(run.value("p"), 5.0);  // nothing has touched yet
   EXPECT_EQ(run.value("b"), 0.0);
   EXPECT_EQ(run.value("near"), 3.0);
@@ -203,17 +242,23 @@ TEST(SignalReader, CountsThePiecesAndBondsOfASetOfBalls) {
 }
 
 TEST(SignalReader, CountsThePiecesAndBondsOfLinksThatBreak) {
-  Observed run(sound_scene(
-      2,
-      "liaisons:\n  fuse:\n    parameters: {life_s: 1}\n    states:\n"
-      "      whole: {stiffness_n_per_m: 1, exits: [{to: broken, when: age_s >= life_s}]}\n"
-      "      broken: {final: true}\n"
-      "matter:\n"
-      "  a: {kind: string, count: 4, mass_kg: 1, from_m: [0, 0], to_m: [3, 0], liaison: fuse}\n"
-      "  b: {kind: mass, mass_kg: 1, at_m: [0, 1]}\n"
-      "links:\n  - {liaison: fuse, between: [\"a[0]\", b], name: early, life_s: 0.01}\n"
-      "signals:\n  all: {of: [a.links, early], quantity: pieces}\n"
-      "  p: {of: a.links, quantity: pieces}\n  b: {of: [a.links, early], quantity: bonds}\n"));
+  Observed run(sound_scene(2,
+                           R"(liaisons:
+  fuse:
+    parameters: {life_s: 1}
+    states:
+      whole: {stiffness_n_per_m: 1, exits: [{to: broken, when: age_s >= life_s}]}
+      broken: {final: true}
+matter:
+  a: {kind: string, count: 4, mass_kg: 1, from_m: [0, 0], to_m: [3, 0], liaison: fuse}
+  b: {kind: mass, mass_kg: 1, at_m: [0, 1]}
+links:
+  - {liaison: fuse, between: ["a[0]", b], name: early, life_s: 0.01}
+signals:
+  all: {of: [a.links, early], quantity: pieces}
+  p: {of: a.links, quantity: pieces}
+  b: {of: [a.links, early], quantity: bonds}
+)"));
   EXPECT_EQ(run.value("all"), 1.0);
   EXPECT_EQ(run.value("b"), 4.0);
 
@@ -231,10 +276,10 @@ TEST(SignalReader, SaysWhatCannotBeCounted) {
   const auto problem = [](const std::string& signal) {
     config::Problems problems;
     load_scene_text(scene_head(2) + kGlue +
-                        "  - {liaison: spring, within: row, range_m: 1, name: s}\n"
-                        "  - {liaison: spring, between: [thrown, row], name: stiff}\n"
-                        "signals:\n  p: " +
-                        signal,
+                        R"(  - {liaison: spring, within: row, range_m: 1, name: s}
+  - {liaison: spring, between: [thrown, row], name: stiff}
+signals:
+  p: )" + signal,
                     "t", problems);
     return problems.all().empty() ? std::string() : problems.all()[0].message;
   };
@@ -249,14 +294,15 @@ TEST(SignalReader, SaysWhatCannotBeCounted) {
 }
 
 TEST(SignalReader, ReadsWithoutAllocating) {
-  Observed run(
-      sound_scene(2,
-                  "matter:\n  a: {kind: string, count: 9, mass_kg: 1, from_m: [0, 0], to_m: [1, "
-                  "0], stiffness_n_per_m: 10}\n"
-                  "signals:\n  p: {of: a, quantity: pieces, near_m: 0.2}\n"
-                  "  x: {of: \"a[3]\", quantity: position, axis: x}\n  f: {of: "
-                  "\"a.links[2]\", quantity: force}\n"
-                  "  e: {quantity: energy}\n"));
+  Observed run(sound_scene(2,
+                           R"(matter:
+  a: {kind: string, count: 9, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 10}
+signals:
+  p: {of: a, quantity: pieces, near_m: 0.2}
+  x: {of: "a[3]", quantity: position, axis: x}
+  f: {of: "a.links[2]", quantity: force}
+  e: {quantity: energy}
+)"));
   std::vector<double> values(4);
   run.step(3);
 

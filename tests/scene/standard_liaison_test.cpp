@@ -24,9 +24,11 @@ Scene scene_with(const std::string& body) {
       (std::filesystem::path(CORDIS_SOURCE_DIR) / "launch_configs" / "scenes" / "t.yaml").string();
   config::Problems problems;
   Scene scene = load_scene_text(
-      "cordis: 1\nspace: 1\nstep: {rate_hz: 100000}\nliaisons: {include: "
-      "../liaisons/standard.yaml}\n" +
-          body,
+      R"(cordis: 1
+space: 1
+step: {rate_hz: 100000}
+liaisons: {include: ../liaisons/standard.yaml}
+)" + body,
       file, problems);
   EXPECT_EQ(problems.text(), "");
   return scene;
@@ -37,11 +39,13 @@ Scene scene_with(const std::string& body) {
 class Rig {
  public:
   explicit Rig(const std::string& links, const std::string& mass = "{mass_kg: 1, at_m: 9}")
-      : scene_(scene_with(
-            "matter:\n  wall: {kind: fixed, at_m: 0}\n  bob: {kind: mass, " + mass.substr(1) +
-            "\nports:\n  hand: {device: d, axes: [0], role: mass, coupling: direct, at_m: 0}\n"
-            "links:\n" +
-            links)),
+      : scene_(scene_with("matter:\n  wall: {kind: fixed, at_m: 0}\n  bob: {kind: mass, " +
+                          mass.substr(1) +
+                          R"(
+ports:
+  hand: {device: d, axes: [0], role: mass, coupling: direct, at_m: 0}
+links:
+)" + links)),
         world_(std::make_shared<const engine::Network>(scene_.network)) {}
 
   /// Moves the hand to a place at a steady speed. @param each_step  called after each step
@@ -181,8 +185,9 @@ struct Bowing {
 };
 Bowing bow(double speed) {
   Rig rig(
-      "  - {liaison: collophane, between: [hand, bob], rest_m: 0, viscosity_n_s_per_m: 0.2}\n"
-      "  - {liaison: kelvin_voigt, between: [wall, bob], viscosity_n_s_per_m: 0.02, rest_m: 0}\n",
+      R"(  - {liaison: collophane, between: [hand, bob], rest_m: 0, viscosity_n_s_per_m: 0.2}
+  - {liaison: kelvin_voigt, between: [wall, bob], viscosity_n_s_per_m: 0.02, rest_m: 0}
+)",
       "{mass_kg: 0.01, at_m: 0}");
   Bowing bowing;
   rig.move_to(2.0 * speed, std::abs(speed),
@@ -374,8 +379,10 @@ TEST(StandardLiaisons, SayWhatTheirStatesAndParametersMean) {
 TEST(StandardLiaisons, CanAllBeUsedInASet) {
   for (const char* name : {"contact", "contact_clamped", "grasp", "pluck", "stick"}) {
     const Scene scene = scene_with(
-        "matter:\n  b: {kind: mass, ball: {mass_kg: 1, radius_m: 0.01}, at_m: [0, 1]}\nlinks:\n  - "
-        "{liaison: " +
+        R"(matter:
+  b: {kind: mass, ball: {mass_kg: 1, radius_m: 0.01}, at_m: [0, 1]}
+links:
+  - {liaison: )" +
         std::string(name) + ", within: b}\n");
     ASSERT_EQ(scene.network.sets.size(), 1u) << name;
     EXPECT_EQ(scene.network.sets[0].range, 0.02) << name;

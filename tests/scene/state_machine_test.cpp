@@ -13,9 +13,10 @@ namespace cordis::scene {
 namespace {
 
 constexpr const char* kTwo =
-    "matter:\n"
-    "  wall: {kind: fixed, at_m: [0, 0]}\n"
-    "  bob: {kind: mass, mass_kg: 1, at_m: [1, 0]}\n";
+    R"(matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  bob: {kind: mass, mass_kg: 1, at_m: [1, 0]}
+)";
 
 engine::NetworkDescription network_of(const std::string& liaisons, const std::string& links) {
   return sound_scene(2, kTwo + ("liaisons:\n" + liaisons) + "links:\n" + links).network;
@@ -64,11 +65,12 @@ TEST(StateMachine, HasItsStatesExitsAndParametersPutToValues) {
 TEST(StateMachine, IsOneForEachDistinctSetOfParameters) {
   const engine::NetworkDescription network =
       network_of(kCollophane,
-                 "  - {liaison: collophane, between: [wall, bob]}\n"
-                 "  - {liaison: collophane, between: [bob, wall]}\n"
-                 "  - {liaison: collophane, between: [wall, bob], hold_m: 0.004}\n"
-                 "  - {liaison: collophane, between: [wall, bob], hold_m: 0.004}\n"
-                 "  - {liaison: collophane, between: [wall, bob], hold_m: 0.004, name: own}\n");
+                 R"(  - {liaison: collophane, between: [wall, bob]}
+  - {liaison: collophane, between: [bob, wall]}
+  - {liaison: collophane, between: [wall, bob], hold_m: 0.004}
+  - {liaison: collophane, between: [wall, bob], hold_m: 0.004}
+  - {liaison: collophane, between: [wall, bob], hold_m: 0.004, name: own}
+)");
   ASSERT_EQ(network.state_links.size(), 5u);
   const auto of = [&](std::size_t link) { return network.state_links[link].state_machine; };
   EXPECT_EQ(network.state_machines.size(), 3u);
@@ -96,12 +98,13 @@ TEST(StateMachine, LikeAnotherHasWhatItDoesNotSayItself) {
 
 TEST(StateMachine, OfOneStateNeedsNoStates) {
   const engine::NetworkDescription network = network_of(
-      "  clay:\n"
-      "    viscosity_n_s_per_m: 0.02\n"
-      "    elasticity: {kind: lennard_jones, depth_j: 1.0e-5, diameter_m: 0.008, cut_m: 0.02}\n"
-      "    dissipation: {kind: table, at_m_per_s: [-1, 0, 1], force_n: [-2, 0, 3]}\n"
-      "    force_limit_n: 5\n"
-      "    pulls: false\n",
+      R"(  clay:
+    viscosity_n_s_per_m: 0.02
+    elasticity: {kind: lennard_jones, depth_j: 1.0e-5, diameter_m: 0.008, cut_m: 0.02}
+    dissipation: {kind: table, at_m_per_s: [-1, 0, 1], force_n: [-2, 0, 3]}
+    force_limit_n: 5
+    pulls: false
+)",
       "  - {liaison: clay, between: [wall, bob], viscosity_n_s_per_m: 0.03}\n");
   const engine::StateMachine& clay = network.state_machines.at(0);
   ASSERT_TRUE(clay.is_stateless());
@@ -135,16 +138,19 @@ TEST(Condition, AsksForEveryQuantityByItsName) {
     return std::to_string((axis == 2 ? 0 : axis + 3) - kAge * velocity[axis]);
   };
   for (const auto& [word, value] : values) {
-    const Scene scene = sound_scene(
-        3,
-        "matter:\n  a: {kind: mass, mass_kg: 3e6, at_m: [0, 0, 0]}\n  b: {kind: mass, mass_kg: "
-        "2e6, at_m: [" +
-            place(0) + ", " + place(1) + ", " + place(2) +
-            "], velocity_m_per_s: [0.5, -0.25, 2]}\n"
-            "liaisons:\n  l: {states: {x: {stiffness_n_per_m: 10, exits: [{to: y, when: " +
-            word +
-            " > -1e9 and age_s > 0.0015}]}, y: {}}}\n"
-            "links:\n  - {liaison: l, between: [a, b], rest_m: 4}\n");
+    const Scene scene = sound_scene(3,
+                                    R"(matter:
+  a: {kind: mass, mass_kg: 3e6, at_m: [0, 0, 0]}
+  b: {kind: mass, mass_kg: 2e6, at_m: [)" +
+                                        place(0) + ", " + place(1) + ", " + place(2) +
+                                        R"(], velocity_m_per_s: [0.5, -0.25, 2]}
+liaisons:
+  l: {states: {x: {stiffness_n_per_m: 10, exits: [{to: y, when: )" +
+                                        word +
+                                        R"( > -1e9 and age_s > 0.0015}]}, y: {}}}
+links:
+  - {liaison: l, between: [a, b], rest_m: 4}
+)");
     engine::World world(std::make_shared<const engine::Network>(scene.network));
     for (int n = 0; n < 3; ++n) world.step();
     ASSERT_EQ(world.events().size(), 1u) << word;
@@ -154,12 +160,15 @@ TEST(Condition, AsksForEveryQuantityByItsName) {
 
 TEST(StateMachine, MayHaveALimitOfItsForceThatALinkGives) {
   const engine::NetworkDescription network = network_of(
-      "  clutch:\n    parameters: {slip_n: 3}\n    states: {on: {stiffness_n_per_m: 9, "
-      "force_limit_n: slip_n, final: true}}\n"
-      "  rubber: {stiffness_n_per_m: 9, force_limit_n: 4}\n",
-      "  - {liaison: clutch, between: [wall, bob]}\n"
-      "  - {liaison: clutch, between: [wall, bob], slip_n: 0.5}\n"
-      "  - {liaison: rubber, between: [wall, bob], force_limit_n: 2}\n");
+      R"(  clutch:
+    parameters: {slip_n: 3}
+    states: {on: {stiffness_n_per_m: 9, force_limit_n: slip_n, final: true}}
+  rubber: {stiffness_n_per_m: 9, force_limit_n: 4}
+)",
+      R"(  - {liaison: clutch, between: [wall, bob]}
+  - {liaison: clutch, between: [wall, bob], slip_n: 0.5}
+  - {liaison: rubber, between: [wall, bob], force_limit_n: 2}
+)");
   const auto limit_of = [&](std::size_t link) {
     return network.state_machines.at(network.state_links.at(link).state_machine)
         .states[0]
@@ -262,8 +271,9 @@ TEST(Law, IsPartOfTheFingerprint) {
 TEST(Liaison, MayBeAMaxwellElement) {
   const engine::NetworkDescription network =
       network_of("  creep: {kind: maxwell, stiffness_n_per_m: 100, viscosity_n_s_per_m: 5}\n",
-                 "  - {liaison: creep, between: [wall, bob]}\n"
-                 "  - {liaison: creep, between: [wall, bob], stiffness_n_per_m: 50}\n");
+                 R"(  - {liaison: creep, between: [wall, bob]}
+  - {liaison: creep, between: [wall, bob], stiffness_n_per_m: 50}
+)");
   ASSERT_EQ(network.maxwell_links.size(), 2u);
   EXPECT_EQ(network.maxwell_links[0].stiffness, 100.0);
   EXPECT_EQ(network.maxwell_links[0].viscosity, 5.0);
@@ -271,17 +281,15 @@ TEST(Liaison, MayBeAMaxwellElement) {
 }
 
 TEST(Liaison, OfSeveralInParallelMakesALinkOfEach) {
-  const Scene scene = sound_scene(
-      2,
-      kTwo + std::string("liaisons:\n"
-                         "  soft: {kind: spring, stiffness_n_per_m: 3}\n"
-                         "  solid:\n"
-                         "    parameters: {late_n_per_m: 7}\n"
-                         "    parallel: [soft, {kind: maxwell, stiffness_n_per_m: late_n_per_m, "
-                         "viscosity_n_s_per_m: 1}]\n"
-                         "links:\n"
-                         "  - {liaison: solid, between: [wall, bob], rest_m: 2}\n"
-                         "  - {liaison: solid, between: [wall, bob], late_n_per_m: 9, name: n}\n"));
+  const Scene scene = sound_scene(2, kTwo + std::string(R"(liaisons:
+  soft: {kind: spring, stiffness_n_per_m: 3}
+  solid:
+    parameters: {late_n_per_m: 7}
+    parallel: [soft, {kind: maxwell, stiffness_n_per_m: late_n_per_m, viscosity_n_s_per_m: 1}]
+links:
+  - {liaison: solid, between: [wall, bob], rest_m: 2}
+  - {liaison: solid, between: [wall, bob], late_n_per_m: 9, name: n}
+)"));
   ASSERT_EQ(scene.network.links.size(), 2u);
   ASSERT_EQ(scene.network.maxwell_links.size(), 2u);
   EXPECT_EQ(scene.network.links[0].rest_length, 2.0);
@@ -327,12 +335,14 @@ TEST(SetLiaison, WithinASetReachesAsFarAsItsLaw) {
 }
 
 TEST(SetLiaison, MayBeLinear) {
-  const Scene scene = sound_scene(
-      2,
-      "liaisons:\n  s: {kind: spring_damper, stiffness_n_per_m: 3, viscosity_n_s_per_m: 4, rest_m: "
-      "1}\n"
-      "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-      "links:\n  - {liaison: s, within: a, range_m: 2}\n");
+  const Scene scene = sound_scene(2,
+                                  R"(liaisons:
+  s: {kind: spring_damper, stiffness_n_per_m: 3, viscosity_n_s_per_m: 4, rest_m: 1}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+links:
+  - {liaison: s, within: a, range_m: 2}
+)");
   const engine::StateMachine& pair =
       scene.network.state_machines.at(scene.network.sets.at(0).state_machine);
   EXPECT_TRUE(pair.is_stateless());
@@ -342,21 +352,20 @@ TEST(SetLiaison, MayBeLinear) {
 }
 
 TEST(Matter, MayBeJoinedByLinksWithStates) {
-  const Scene scene = sound_scene(
-      2,
-      "liaisons:\n"
-      "  brittle:\n"
-      "    parameters: {length_m: 0.1}\n"
-      "    states:\n"
-      "      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > length_m}]}\n"
-      "      broken: {}\n"
-      "matter:\n"
-      "  bar: {kind: string, count: 4, mass_kg: 1, from_m: [0, 0], to_m: [3, 0], liaison: brittle, "
-      "length_m: 0.2}\n"
-      "signals:\n"
-      "  s: {of: \"bar.links[2]\", quantity: state}\n"
-      "  r: {of: \"bar.links[2]\", quantity: rest_length}\n"
-      "  n: {quantity: changes}\n");
+  const Scene scene = sound_scene(2,
+                                  R"(liaisons:
+  brittle:
+    parameters: {length_m: 0.1}
+    states:
+      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > length_m}]}
+      broken: {}
+matter:
+  bar: {kind: string, count: 4, mass_kg: 1, from_m: [0, 0], to_m: [3, 0], liaison: brittle, length_m: 0.2}
+signals:
+  s: {of: "bar.links[2]", quantity: state}
+  r: {of: "bar.links[2]", quantity: rest_length}
+  n: {quantity: changes}
+)");
   ASSERT_EQ(scene.network.state_links.size(), 3u);
   EXPECT_EQ(scene.network.state_machines.at(0).exits[0].when.code[1].constant, 0.2);
   engine::World world(std::make_shared<const engine::Network>(scene.network));

@@ -18,16 +18,21 @@ namespace {
 
 /// The wall holds the bob by two springs that are merged.
 std::string merged_text() {
-  return "cordis: 1\nname: merged\nspace: 1\nstep: {rate_hz: 4000}\nreduce: [parallel]\n"
-         "liaisons:\n"
-         "  spring: {kind: spring, stiffness_n_per_m: 100}\n"
-         "  rubber: {kind: spring_damper, stiffness_n_per_m: 7, viscosity_n_s_per_m: 0.1}\n"
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: 0}\n"
-         "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.01}\n"
-         "links:\n"
-         "  - {liaison: spring, between: [wall, bob], rest_m: 0}\n"
-         "  - {liaison: rubber, between: [wall, bob], rest_m: 0}\n";
+  return R"(cordis: 1
+name: merged
+space: 1
+step: {rate_hz: 4000}
+reduce: [parallel]
+liaisons:
+  spring: {kind: spring, stiffness_n_per_m: 100}
+  rubber: {kind: spring_damper, stiffness_n_per_m: 7, viscosity_n_s_per_m: 0.1}
+matter:
+  wall: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.01}
+links:
+  - {liaison: spring, between: [wall, bob], rest_m: 0}
+  - {liaison: rubber, between: [wall, bob], rest_m: 0}
+)";
 }
 
 /// A director and a loop in another thread that plays for it as fast as it can.

@@ -26,14 +26,22 @@ constexpr double kForce = 20.0;   // [N]
 /// A key on a spring, of role mass, or a mass that a key pushes against one, of role liaison.
 std::string key_scene(const std::string& role) {
   const std::string port = role == "mass" ? "coupling: direct" : "mass_kg: 0.1";
-  return "cordis: 1\nname: key\nspace: 1\nstep: {rate_hz: 4000, gesture_rate_hz: 1000}\n"
-         "liaisons: {spring: {kind: spring_damper, stiffness_n_per_m: 100, viscosity_n_s_per_m: "
-         "4}}\nmatter:\n  wall: {kind: fixed, at_m: 0}\n  bob: {kind: mass, mass_kg: 0.1, at_m: "
-         "0}\nports:\n  key: {device: keyboard, axes: [0], role: " +
+  return R"(cordis: 1
+name: key
+space: 1
+step: {rate_hz: 4000, gesture_rate_hz: 1000}
+liaisons: {spring: {kind: spring_damper, stiffness_n_per_m: 100, viscosity_n_s_per_m: 4}}
+matter:
+  wall: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0}
+ports:
+  key: {device: keyboard, axes: [0], role: )" +
          role + ", " + port +
-         ", at_m: 0}\n"
-         "links:\n  - {liaison: spring, between: [key, wall], rest_m: 0}\n"
-         "  - {liaison: spring, between: [key, bob], rest_m: 0}\n";
+         R"(, at_m: 0}
+links:
+  - {liaison: spring, between: [key, wall], rest_m: 0}
+  - {liaison: spring, between: [key, bob], rest_m: 0}
+)";
 }
 
 DeviceReach described_reach() {

@@ -13,19 +13,23 @@ namespace {
 /// A mass of 0.1 kg, 1000 steps per second; a link that is soft until it is drawn by 1 mm, then of
 /// the stiffness given.
 std::string snatch_text(const std::string& stiffness) {
-  return "cordis: 1\nname: snatch\nspace: 1\nstep: {rate_hz: 1000}\n"
-         "liaisons:\n"
-         "  rope:\n"
-         "    states:\n"
-         "      slack: {viscosity_n_s_per_m: 1, exits: [{to: taut, when: elongation_m > 0.001}]}\n"
-         "      taut: {stiffness_n_per_m: " +
+  return R"(cordis: 1
+name: snatch
+space: 1
+step: {rate_hz: 1000}
+liaisons:
+  rope:
+    states:
+      slack: {viscosity_n_s_per_m: 1, exits: [{to: taut, when: elongation_m > 0.001}]}
+      taut: {stiffness_n_per_m: )" +
          stiffness +
-         ", final: true}\n"
-         "matter:\n"
-         "  hook: {kind: fixed, at_m: 0}\n"
-         "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1, velocity_m_per_s: 1}\n"
-         "links:\n"
-         "  - {liaison: rope, between: [hook, bob]}\n";
+         R"(, final: true}
+matter:
+  hook: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1, velocity_m_per_s: 1}
+links:
+  - {liaison: rope, between: [hook, bob]}
+)";
 }
 
 TEST(LimitWatch, KeepsTheLargestThatAMassHasHad) {
@@ -43,12 +47,16 @@ TEST(LimitWatch, KeepsTheLargestThatAMassHasHad) {
 
 TEST(LimitWatch, CountsTheNeighboursThatABallOfASetMayHave) {
   const auto stage = stage_of(
-      "cordis: 1\nname: row\nspace: 1\nstep: {rate_hz: 1000}\n"
-      "liaisons: {touch: {states: {on: {stiffness_n_per_m: 3000, viscosity_n_s_per_m: 1, pulls: "
-      "false, final: true}}}}\n"
-      "matter:\n  balls: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.01}, at_m: [0, 0.03, "
-      "0.06]}\n"
-      "links:\n  - {liaison: touch, within: balls, rest: radii, range_m: 0.02}\n");
+      R"(cordis: 1
+name: row
+space: 1
+step: {rate_hz: 1000}
+liaisons: {touch: {states: {on: {stiffness_n_per_m: 3000, viscosity_n_s_per_m: 1, pulls: false, final: true}}}}
+matter:
+  balls: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.01}, at_m: [0, 0.03, 0.06]}
+links:
+  - {liaison: touch, within: balls, rest: radii, range_m: 0.02}
+)");
   stage->limits.look(stage->simulation.world());
   const double one = 3000.0 * 1e-6 + 2.0 * 1e-3;                       // K dt^2 + 2 Z dt
   EXPECT_NEAR(stage->limits.largest(), 2.0 * 2.0 * one / 0.1, 1e-12);  // one on each side
@@ -58,15 +66,21 @@ TEST(LimitWatch, StaysBelowFourWhereTheStepIsCertified) {
   // Five equal masses between walls: 2 - 2 cos(5 pi / 6) = 3.73 of 4 K dt^2 / m.
   const auto row = [](const std::string& stiffness) {
     const auto stage = stage_of(
-        "cordis: 1\nname: row\nspace: 1\nstep: {rate_hz: 1000}\n"
-        "liaisons: {s: {kind: spring, stiffness_n_per_m: " +
+        R"(cordis: 1
+name: row
+space: 1
+step: {rate_hz: 1000}
+liaisons: {s: {kind: spring, stiffness_n_per_m: )" +
         stiffness +
-        ", rest_m: 0}}\n"
-        "matter:\n  wall: {kind: fixed, at_m: [0, 0]}\n"
-        "  bob: {kind: mass, mass_kg: 0.1, at_m: [0, 0, 0, 0, 0]}\n"
-        "links:\n  - {liaison: s, between: [\"wall[0]\", \"bob[0]\"]}\n"
-        "  - {liaison: s, between: [\"wall[1]\", \"bob[4]\"]}\n"
-        "  - {liaison: s, between: [\"bob[0..3]\", \"bob[1..4]\"]}\n");
+        R"(, rest_m: 0}}
+matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: [0, 0, 0, 0, 0]}
+links:
+  - {liaison: s, between: ["wall[0]", "bob[0]"]}
+  - {liaison: s, between: ["wall[1]", "bob[4]"]}
+  - {liaison: s, between: ["bob[0..3]", "bob[1..4]"]}
+)");
     stage->limits.look(stage->simulation.world());
     return stage->limits.largest();
   };

@@ -16,22 +16,23 @@ inline constexpr std::uint64_t kEpochOfSim = 77;
 /// A mass that swings between two walls, and a key pressed against it; 4 steps per tick.
 inline std::string swing_text(const std::string& name = "swing", double gesture_rate_hz = 1000.0) {
   return "cordis: 1\nname: " + name +
-         "\nspace: 1\n"
-         "step: {rate_hz: 4000, gesture_rate_hz: " +
+         R"(
+space: 1
+step: {rate_hz: 4000, gesture_rate_hz: )" +
          std::to_string(gesture_rate_hz) +
-         "}\n"
-         "liaisons: {spring: {kind: spring_damper, stiffness_n_per_m: 100, "
-         "viscosity_n_s_per_m: 0.1}}\n"
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: 0}\n"
-         "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.01}\n"
-         "ports:\n"
-         "  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 0}\n"
-         "links:\n"
-         "  - {liaison: spring, between: [wall, bob], rest_m: 0}\n"
-         "  - {liaison: spring, between: [key, bob], rest_m: 0}\n"
-         "signals:\n"
-         "  height: {of: bob, quantity: position}\n";
+         R"(}
+liaisons: {spring: {kind: spring_damper, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.1}}
+matter:
+  wall: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.01}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 0}
+links:
+  - {liaison: spring, between: [wall, bob], rest_m: 0}
+  - {liaison: spring, between: [key, bob], rest_m: 0}
+signals:
+  height: {of: bob, quantity: position}
+)";
 }
 
 inline std::shared_ptr<const scene::Scene> scene_of(const std::string& text) {

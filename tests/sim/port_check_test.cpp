@@ -19,15 +19,22 @@ namespace {
 scene::Scene walls_of(const std::string& stiffness, const std::string& needs = {}) {
   config::Problems problems;
   scene::Scene scene = scene::load_scene_text(
-      "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\n"
-      "matter:\n  ground: {kind: fixed, at_m: 0}\n  bob: {kind: mass, mass_kg: 1, at_m: 0}\n"
-      "liaisons:\n  wall: {kind: spring, stiffness_n_per_m: " +
+      R"(cordis: 1
+space: 1
+step: {rate_hz: 1000}
+matter:
+  ground: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 1, at_m: 0}
+liaisons:
+  wall: {kind: spring, stiffness_n_per_m: )" +
           stiffness +
           "}\nports:\n  key: {device: keyboard, axes: 0, role: mass, at_m: 0, coupling: direct" +
           needs +
-          "}\n"
-          "links:\n  - {liaison: wall, between: [key, ground]}\n"
-          "  - {liaison: wall, between: [key, bob]}\n",
+          R"(}
+links:
+  - {liaison: wall, between: [key, ground]}
+  - {liaison: wall, between: [key, bob]}
+)",
       "t", problems);
   EXPECT_EQ(problems.text(), "");
   return scene;

@@ -8,16 +8,16 @@ namespace {
 
 /// A mass on a spring, 16 vibrations per second.
 scene::Scene settled(const std::string& step, config::Problems& problems) {
-  scene::Scene scene = scene::load_scene_text(
-      "cordis: 1\nspace: 1\nstep: {" + step +
-          "gesture_rate_hz: 10, integrator: cordis}\n"
-          "accuracy: {tolerance: 0.001, band_hz: 16}\n"
-          "liaisons: {holder: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}}\n"
-          "matter:\n"
-          "  ground: {kind: fixed, at_m: 0}\n"
-          "  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}\n"
-          "links: [{liaison: holder, between: [ground, bob]}]\n",
-      "t", problems);
+  scene::Scene scene = scene::load_scene_text("cordis: 1\nspace: 1\nstep: {" + step +
+                                                  R"(gesture_rate_hz: 10, integrator: cordis}
+accuracy: {tolerance: 0.001, band_hz: 16}
+liaisons: {holder: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}}
+matter:
+  ground: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}
+links: [{liaison: holder, between: [ground, bob]}]
+)",
+                                              "t", problems);
   select_rate(scene, problems);
   return scene;
 }

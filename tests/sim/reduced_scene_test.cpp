@@ -16,13 +16,17 @@ std::shared_ptr<const scene::Scene> reduced_scene_of(const std::string& text) {
 }
 
 std::string swing_in_a_plane() {
-  return "cordis: 1\nspace: 3\nstep: {rate_hz: 1000}\nreduce: all\n"
-         "liaisons: {s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0.1}}\n"
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: [0, 0.5, 0]}\n"
-         "  bob: {kind: mass, mass_kg: 0.1, at_m: [0.2, 0.5, 0], velocity_m_per_s: [1, 0, 0.1]}\n"
-         "links:\n"
-         "  - {liaison: s, between: [wall, bob]}\n";
+  return R"(cordis: 1
+space: 3
+step: {rate_hz: 1000}
+reduce: all
+liaisons: {s: {kind: spring, stiffness_n_per_m: 100, rest_m: 0.1}}
+matter:
+  wall: {kind: fixed, at_m: [0, 0.5, 0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: [0.2, 0.5, 0], velocity_m_per_s: [1, 0, 0.1]}
+links:
+  - {liaison: s, between: [wall, bob]}
+)";
 }
 
 TEST(ReducedScene, IsShownInTheSpaceOfItsFile) {
