@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "sim_node/engine/core/assert.h"
+#include "sim_node/engine/core/float_mode.h"
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/integrators/world_state.h"
 
@@ -19,8 +20,9 @@ Vec3 velocity_at_half_step(const WorldState& state, std::uint32_t mat) noexcept 
 
 }  // namespace
 
-World::World(std::shared_ptr<const Network> network, VectorWidth width)
-    : state_(std::make_unique<WorldState>(std::move(network), width)) {
+World::World(std::shared_ptr<const Network> network, VectorWidth width) {
+  const FloatMode mode;
+  state_ = std::make_unique<WorldState>(std::move(network), width);
   state_->scheme->start(*state_);
 }
 
@@ -51,6 +53,7 @@ void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
 }
 
 StepReport World::step() noexcept {
+  const FloatMode mode;
   return state_->step();
 }
 
@@ -65,6 +68,7 @@ void World::force_state(std::uint32_t state_link, std::uint32_t state) noexcept 
 }
 
 void World::replace_state_machine(std::uint32_t index, const StateMachine& state_machine) {
+  const FloatMode mode;
   state_->replace_state_machine(index, state_machine);
 }
 
@@ -119,12 +123,14 @@ std::uint64_t World::step_count() const noexcept {
 }
 
 Vec3 World::position(std::uint32_t mat) const noexcept {
+  const FloatMode mode;
   CORDIS_ASSERT(mat < network().mat_count());
   state_->scheme->show(*state_, mat);
   return state_->mats.position(mat);
 }
 
 Vec3 World::velocity(std::uint32_t mat) const noexcept {
+  const FloatMode mode;
   CORDIS_ASSERT(mat < network().mat_count());
   state_->scheme->show(*state_, mat);
   return state_->scheme->velocity(*state_, mat);
@@ -136,11 +142,13 @@ Vec3 World::link_force(std::uint32_t mat) const noexcept {
 }
 
 const Columns& World::positions() const noexcept {
+  const FloatMode mode;
   state_->scheme->show_all(*state_);
   return state_->positions;
 }
 
 Energy World::energy() const noexcept {
+  const FloatMode mode;
   return state_->scheme->energy(*state_);
 }
 
@@ -149,6 +157,7 @@ double World::dissipated() const noexcept {
 }
 
 Vec3 World::momentum() const noexcept {
+  const FloatMode mode;
   state_->scheme->show_all(*state_);
   const NetworkDescription& network = state_->network->description();
   Vec3 sum = Vec3::Zero();
@@ -160,6 +169,7 @@ Vec3 World::momentum() const noexcept {
 }
 
 Vec3 World::angular_momentum() const noexcept {
+  const FloatMode mode;
   state_->scheme->show_all(*state_);
   const NetworkDescription& network = state_->network->description();
   Vec3 sum = Vec3::Zero();
@@ -171,6 +181,7 @@ Vec3 World::angular_momentum() const noexcept {
 }
 
 std::uint64_t World::state_hash() const noexcept {
+  const FloatMode mode;
   state_->scheme->show_all(*state_);
   StateHash hash;
   hash.add(state_->step_count);
@@ -188,6 +199,7 @@ std::uint64_t World::state_hash() const noexcept {
 }
 
 Snapshot World::snapshot() const {
+  const FloatMode mode;
   Snapshot snapshot{state_->network->fingerprint(), state_->step_count, {}, {}};
   if (state_->replaced) snapshot.state_machines = state_->table.state_machines();
   state_->append_state(snapshot.state);
@@ -195,6 +207,7 @@ Snapshot World::snapshot() const {
 }
 
 void World::restore(const Snapshot& snapshot) {
+  const FloatMode mode;
   state_->restore(snapshot);
 }
 
