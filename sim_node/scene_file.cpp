@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "node/config/problem.h"
-#include "sim_node/checks/rate_choice.h"
+#include "sim_node/checks/planned_scene.h"
 #include "sim_node/checks/stability_check.h"
-#include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis {
@@ -23,12 +22,10 @@ SceneFile::SceneFile(std::shared_ptr<const Content> content) noexcept
 
 SceneFile SceneFile::load(const std::string& path) {
   config::Problems problems;
-  scene::Scene scene = scene::load_scene(path, problems);
-  if (!problems.has_errors()) scene = plan::reduce(std::move(scene), problems);
-  if (!problems.has_errors()) sim::select_rate(scene, problems);
-  if (!problems.has_errors()) sim::check_stability(scene, false, problems);
+  sim::PlannedScene planned = sim::plan_scene(path, {}, problems);
+  if (!problems.has_errors()) sim::check_stability(planned.scene, false, problems);
   problems.throw_if_any();
-  Content content{std::move(scene), nullptr, problems.text()};
+  Content content{std::move(planned.scene), nullptr, problems.text()};
   content.network = std::make_shared<const engine::Network>(content.scene.network);
   return SceneFile(std::make_shared<const Content>(std::move(content)));
 }

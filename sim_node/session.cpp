@@ -11,6 +11,7 @@
 #include "node/config/count_text.h"
 #include "node/stop.h"
 #include "node/time.h"
+#include "sim_node/checks/device_check.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/run/describe.h"
 #include "sim_node/scene/naming.h"

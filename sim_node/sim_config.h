@@ -14,8 +14,13 @@ struct SimConfig {
   scene::Scene scene;  ///< `scene`: what the file of that name says
 };
 
-/// Age of the position that a force answers when it reaches the motor, in periods of the device.
-int delay_periods_of(config::Clock clock) noexcept;
+/// The scene that a sim_node's section names.
+struct SceneReference {
+  std::string file;  ///< as a person wrote it; relative to the launch file
+  config::Place place;
+  bool force = false;
+};
+SceneReference scene_reference_of(const config::LaunchNode& node, config::Problems& problems);
 
 /// Reads the section and the scene, checks every port against the device files of the same launch,
 /// and the stability of the scene. All that is wrong becomes a

@@ -126,9 +126,17 @@ std::string needs_text(const scene::PortNeeds& needs) {
   return "            needs a device of " + text + " along each of its axes\n";
 }
 
+std::string support_text(const DeviceAtPort& device) {
+  if (!device.supported_stiffness)
+    return std::string("has no known viscosity or limit") +
+           (device.is_supported ? "" : ", and lacks what the port needs");
+  return fmt::format("supports {:.4g} N/m: {}", *device.supported_stiffness,
+                     device.is_supported ? "enough" : "see below");
+}
+
 std::string port_text(const SceneCheck& check, const PortCheck& port) {
   const double rate = check.scene.gesture_rate_hz;
-  const int delay_periods = check.options.delay_periods;
+  const int delay_periods = check.delay_periods;
   const std::string delay = config::count_text(static_cast<std::size_t>(delay_periods), "period");
   const std::string who =
       fmt::format("port        {} ({}): ", port.port->name, place_text(port.port->place));
@@ -142,14 +150,11 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
   }
   std::string text =
       who + fmt::format(
-                "{:.4g} N/m and {:.3g} N s/m; the device needs {:.3g} N s/m of its own, at "
-                "{:.4g} Hz and {} of delay\n",
+                "{:.4g} N/m and {:.3g} N s/m; with any hand safe from {:.3g} N s/m of the device "
+                "on, at {:.4g} Hz and {} of delay\n",
                 port.load.stiffness, port.load.viscosity, port.min_device_viscosity, rate, delay);
-  if (check.options.device_viscosity > 0.0) {
-    text += fmt::format(
-        "            a device of {:.3g} N s/m supports {:.4g} N/m: {}\n",
-        check.options.device_viscosity, port.largest_stiffness,
-        port.load.stiffness <= port.largest_stiffness ? "safe with any hand" : "TOO STIFF");
+  for (const DeviceAtPort& device : port.devices) {
+    text += fmt::format("            the device of {} {}\n", device.node, support_text(device));
   }
   return text + needs_text(port.port->needs);
 }
@@ -219,17 +224,19 @@ nlohmann::json ports_json(const SceneCheck& check) {
                         {"device", port.port->device},
                         {"stiffness_n_per_m", port.load.stiffness},
                         {"viscosity_n_s_per_m", port.load.viscosity},
-                        {"delay_periods", check.options.delay_periods}};
+                        {"delay_periods", check.delay_periods}};
     if (port.port->role == scene::Role::kMass) {
       json["role"] = "mass";
       json["min_device_viscosity_n_s_per_m"] = port.min_device_viscosity;
-      if (check.options.device_viscosity > 0.0) {
-        json["device_viscosity_n_s_per_m"] = check.options.device_viscosity;
-        json["largest_stiffness_n_per_m"] = port.largest_stiffness;
-      }
     } else {
       json["role"] = "liaison";
       json["largest_hand_stiffness_n_per_m"] = port.largest_hand_stiffness;
+    }
+    for (const DeviceAtPort& device : port.devices) {
+      nlohmann::json one{{"node", device.node}, {"supported", device.is_supported}};
+      if (device.supported_stiffness)
+        one["largest_stiffness_n_per_m"] = *device.supported_stiffness;
+      json["devices"].push_back(std::move(one));
     }
     const scene::PortNeeds& needs = port.port->needs;
     if (needs.travel > 0.0) json["needs"]["travel_m"] = needs.travel;
@@ -239,6 +246,20 @@ nlohmann::json ports_json(const SceneCheck& check) {
     ports.push_back(std::move(json));
   }
   return ports;
+}
+
+nlohmann::json problems_json(const config::Problems& problems) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const config::Problem& problem : problems.in_order()) {
+    const bool is_error = problem.severity == config::Problem::Severity::kError;
+    list.push_back({{"severity", is_error ? "error" : "warning"},
+                    {"file", problem.place.file},
+                    {"line", problem.place.line},
+                    {"column", problem.place.column},
+                    {"message", problem.message},
+                    {"hint", problem.hint}});
+  }
+  return list;
 }
 
 // What freezing does to positions, in tolerances: measured, docs/reductions.md.
@@ -305,6 +326,7 @@ std::string json_of(const SceneCheck& check) {
         {"pitch_error", edge.error.pitch},
         {"decay_error", edge.error.decay}}},
       {"ports", ports_json(check)},
+      {"problems", problems_json(check.problems)},
       {"reductions", reductions_json(check.scene.reductions)},
       {"load", {{"step_nsec", check.step_nsec}, {"share_of_real_time", check.load()}}}};
   const double tolerance = check.scene.network.freeze_tolerance;

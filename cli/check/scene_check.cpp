@@ -1,33 +1,84 @@
 // cli/check/scene_check.cpp
 #include "cli/check/scene_check.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
-#include "sim_node/plan/reduction/reduce.h"
+#include "node/config/value.h"
+#include "sim_node/checks/device_check.h"
+#include "sim_node/checks/planned_scene.h"
+#include "sim_node/checks/port_check.h"
+#include "sim_node/checks/stability_check.h"
 #include "sim_node/plan/reference/load.h"
 #include "sim_node/plan/reference/trial_run.h"
+#include "sim_node/sim_config.h"
 
 namespace cordis::cli {
 namespace {
 
-PortCheck check_port(const scene::Scene& scene, const plan::LiaisonGraph& graph,
-                     const scene::Port& port, const CheckOptions& options) {
+PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
+                     const scene::Port& port) {
+  const scene::Scene& scene = check.scene;
   const plan::PortLoop loop{
-      1.0 / scene.gesture_rate_hz, options.delay_periods,
+      1.0 / scene.gesture_rate_hz, check.delay_periods,
       static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz))};
-  PortCheck check;
-  check.port = &port;
-  check.load = plan::port_load(graph, port.mat);
+  PortCheck result;
+  result.port = &port;
+  result.load = plan::port_load(graph, port.mat);
   if (port.role == scene::Role::kMass) {
-    check.min_device_viscosity = plan::min_device_viscosity(check.load, loop);
-    check.largest_stiffness =
-        plan::largest_port_stiffness(options.device_viscosity, check.load.viscosity, loop);
+    result.min_device_viscosity = plan::min_device_viscosity(result.load, loop);
   } else {
-    check.largest_hand_stiffness =
-        plan::largest_hand_stiffness(check.load, scene.network.mats[port.mat].mass, loop);
+    result.largest_hand_stiffness =
+        plan::largest_hand_stiffness(result.load, scene.network.mats[port.mat].mass, loop);
   }
-  return check;
+  return result;
+}
+
+/// Adds what each device of the launch file is for each port that it may play.
+void add_devices(SceneCheck& check, const config::Launch& launch) {
+  const std::vector<sim::PortDemand> demands = sim::demands_of(check.scene);
+  for (const sim::LaunchedDevice& device : sim::launched_devices(launch)) {
+    if (!device.limits) continue;
+    for (std::size_t i = 0; i < demands.size(); ++i) {
+      const sim::PortDemand& demand = demands[i];
+      if (demand.device != device.plays) continue;
+      const sim::PortVerdict verdict = sim::verdict_on(demand, *device.limits, check.delay_periods);
+      DeviceAtPort at_port{device.node->name, {}, true};
+      at_port.is_supported =
+          verdict.lacks.empty() && verdict.refusal.empty() && verdict.uncertainty.empty();
+      if (demand.role == scene::Role::kMass)
+        at_port.supported_stiffness =
+            sim::supported_stiffness(demand, *device.limits, check.delay_periods);
+      check.ports[i].devices.push_back(std::move(at_port));
+    }
+  }
+}
+
+/// The launch file of these options; empty when their file is a scene.
+std::optional<config::Launch> launch_of(const CheckOptions& options) {
+  config::Problems problems;
+  const config::Value root = config::load_file(options.file, problems);
+  problems.throw_if_any();
+  if (!root.find("nodes").exists()) {
+    if (!options.overrides.empty())
+      throw std::runtime_error("'" + options.overrides[0] + "' changes a launch file, and " +
+                               options.file + " is a scene");
+    return {};
+  }
+  config::Launch launch = config::load_launch(options.file, options.overrides, problems);
+  problems.throw_if_any();
+  return launch;
+}
+
+const config::LaunchNode& sim_node_of(const config::Launch& launch) {
+  const auto found =
+      std::find_if(launch.nodes.begin(), launch.nodes.end(),
+                   [](const config::LaunchNode& node) { return node.program == "sim_node"; });
+  if (found == launch.nodes.end())
+    throw std::runtime_error(launch.file + " has no sim_node, whose scene could be judged");
+  return *found;
 }
 
 }  // namespace
@@ -41,27 +92,29 @@ double SceneCheck::real_time_rate() const noexcept {
 }
 
 SceneCheck check_scene(const CheckOptions& options) {
-  config::Problems problems;
   SceneCheck check;
   check.options = options;
-  check.scene = scene::load_scene(options.scene_file, problems);
-  problems.throw_if_any();
-  check.scene = plan::reduce(std::move(check.scene), problems);
-  problems.throw_if_any();
-  if (check.scene.accuracy) {
-    const scene::Accuracy& asked = *check.scene.accuracy;
-    check.choice = plan::choose(
-        check.scene.network, {asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s},
-        check.scene.gesture_rate_hz,
-        check.scene.integrator_is_open
-            ? plan::integrators_for(check.scene.network)
-            : std::vector<std::string>{to_string(check.scene.network.integrator)},
-        !check.scene.ports.empty());
-    if (check.scene.rate_is_open) {
-      scene::set_step(check.scene, check.choice->rate_hz,
-                      engine::integrator_named(check.choice->integrator));
-    }
+  check.launch = launch_of(options);
+  const std::optional<config::Launch>& launch = check.launch;
+  std::string scene_file = options.file;
+  config::Place referrer;
+  bool force = options.force;
+  if (launch) {
+    const sim::SceneReference reference =
+        sim::scene_reference_of(sim_node_of(*launch), check.problems);
+    check.problems.throw_if_any();
+    scene_file = launch->resolve(reference.file).string();
+    referrer = reference.place;
+    force = force || reference.force;
+    check.delay_periods = sim::delay_periods_of(launch->clock);
   }
+  sim::PlannedScene planned = sim::plan_scene(scene_file, referrer, check.problems);
+  check.problems.throw_if_any();
+  check.scene = std::move(planned.scene);
+  check.choice = std::move(planned.rate);
+  if (launch) sim::check_devices(*launch, check.scene, check.problems);
+  sim::check_stability(check.scene, force, check.problems);
+
   constexpr double kBand = 100.0;
   if (check.options.band_hz == 0.0) {
     check.options.band_hz = check.scene.accuracy ? check.scene.accuracy->band_hz : kBand;
@@ -70,10 +123,10 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.plan = plan::plan_of(network, check.options.band_hz);
   if (!check.scene.ports.empty()) {
     const plan::LiaisonGraph graph = plan::liaison_graph(network);
-    for (const scene::Port& port : check.scene.ports) {
-      check.ports.push_back(check_port(check.scene, graph, port, options));
-    }
+    for (const scene::Port& port : check.scene.ports)
+      check.ports.push_back(check_port(check, graph, port));
   }
+  if (launch) add_devices(check, *launch);
   check.step_nsec = plan::measure_step_nsec(network);
   return check;
 }

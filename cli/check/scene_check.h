@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "node/config/launch.h"
+#include "node/config/problem.h"
 #include "sim_node/engine/core/assert.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/rate_selection.h"
@@ -15,27 +17,36 @@ namespace cordis::cli {
 
 /// What a person asked for.
 struct CheckOptions {
-  std::string scene_file;
-  std::string json_file;  ///< empty: none; "-": instead of the text
+  std::string file;                    ///< a scene, or a launch file
+  std::vector<std::string> overrides;  ///< of a launch file: words `name.key=value`
+  std::string json_file;               ///< empty: none; "-": instead of the text
   /// The upper end of the band that matters; 0: that of the scene's `accuracy`, or 100 Hz.
   double band_hz = 0.0;
-  int delay_periods = 1;        ///< of the loop through a device
-  double device_viscosity = 0;  ///< of the device [N s/m]; 0: not known
   bool force = false;
+};
+
+/// A device of the launch file at a port.
+struct DeviceAtPort {
+  std::string node;
+  std::optional<double> supported_stiffness;  ///< role mass; empty: nothing is known [N/m]
+  bool is_supported = true;                   ///< for certain: else a problem says what is wrong
 };
 
 /// The loop through one port, in its role.
 struct PortCheck {
   const scene::Port* port = nullptr;
   plan::PortLoad load;
-  double min_device_viscosity = 0.0;    ///< role mass: what the device must have [N s/m]
-  double largest_stiffness = 0.0;       ///< role mass, of the device asked for [N/m]
+  double min_device_viscosity = 0.0;    ///< role mass, for any hand: what it must have [N s/m]
   double largest_hand_stiffness = 0.0;  ///< role liaison [N/m]
+  std::vector<DeviceAtPort> devices;    ///< of the launch file
 };
 
 struct SceneCheck {
   scene::Scene scene;
   CheckOptions options;
+  std::optional<config::Launch> launch;  ///< empty for a scene
+  config::Problems problems;             ///< as `cordis run` finds them; errors refuse the run
+  int delay_periods = 1;                 ///< of the loop through a device: 0 in lockstep
   plan::Plan plan;
   std::optional<plan::RateSelection> choice;  ///< for the `accuracy` of the scene
   std::vector<PortCheck> ports;
@@ -63,7 +74,9 @@ struct SceneCheck {
   double rate_above(double rate_hz) const noexcept;
 };
 
-/// @throws config::ConfigError when the scene has faults.
+/// Judges a scene, or the scene of a launch file at its devices, as `cordis run` does.
+/// @throws config::ConfigError when a file has faults, std::runtime_error for a launch file without
+/// a sim_node.
 SceneCheck check_scene(const CheckOptions& options);
 
 /// Lines for a person.

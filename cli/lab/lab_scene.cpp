@@ -5,8 +5,7 @@
 
 #include "cli/lab/offline_session.h"
 #include "node/config/value.h"
-#include "sim_node/checks/rate_choice.h"
-#include "sim_node/plan/reduction/reduce.h"
+#include "sim_node/checks/planned_scene.h"
 
 namespace cordis::cli {
 namespace {
@@ -55,11 +54,8 @@ LabScene load_lab_scene(const std::string& file, double duration_s) {
     record(stage, lab);
     return lab;
   }
-  lab.scene = scene::load_scene(file, problems);
+  lab.scene = sim::plan_scene(file, {}, problems).scene;
   problems.throw_if_any();
-  lab.scene = plan::reduce(std::move(lab.scene), problems);
-  problems.throw_if_any();
-  sim::select_rate(lab.scene, problems);
   lab.duration_s = duration_of(lab.scene, duration_s);
   for (const scene::Port& port : lab.scene.ports) {
     lab.ports.push_back(port.name + " rests: give the launch file to have it played");

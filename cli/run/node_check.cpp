@@ -54,7 +54,7 @@ std::optional<int> check_nodes(const RunPlan& plan, StopSignals& signals) {
 
   std::optional<int> result;
   if (watcher.late()) {
-    std::fputs("cordis run: the nodes check their files for too long\n", stderr);
+    std::fputs("cordis: the nodes check their files for too long\n", stderr);
     result = kFailure;
   }
   for (std::size_t i = 0; i < endings.size(); ++i) {
@@ -64,8 +64,8 @@ std::optional<int> check_nodes(const RunPlan& plan, StopSignals& signals) {
       result = result.value_or(kBadInput);
     } else {
       result = kFailure;
-      std::fprintf(stderr, "cordis run: %s could not check its files: %s\n",
-                   plan.nodes[i].name.c_str(), endings[i].text().c_str());
+      std::fprintf(stderr, "cordis: %s could not check its files: %s\n", plan.nodes[i].name.c_str(),
+                   endings[i].text().c_str());
     }
   }
   return result;

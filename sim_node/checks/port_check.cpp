@@ -158,4 +158,10 @@ PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& lim
   return verdict;
 }
 
+std::optional<double> supported_stiffness(const PortDemand& demand,
+                                          const config::DeviceLimits& limits, int delay_periods) {
+  const double most = ImpedanceLimits(limits, delay_periods).stiffness(demand.most.viscosity).most;
+  return most > 0.0 ? std::optional(most) : std::nullopt;
+}
+
 }  // namespace cordis::sim

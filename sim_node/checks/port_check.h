@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,5 +44,10 @@ struct PortVerdict {
 /// @param delay_periods  of the wire: 1 in real time, 0 in lockstep
 PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
                        int delay_periods);
+
+/// The stiffest port of role mass that the device alone leaves at rest, with the viscosity that the
+/// port has at most [N/m]; empty where nothing is known of the device.
+std::optional<double> supported_stiffness(const PortDemand& demand,
+                                          const config::DeviceLimits& limits, int delay_periods);
 
 }  // namespace cordis::sim

@@ -4,15 +4,14 @@
 #include <string>
 
 #include "node/config/mapping_reader.h"
-#include "sim_node/plan/rate_selection.h"
 #include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::sim {
 
-void select_rate(scene::Scene& scene, config::Problems& problems) {
-  if (!scene.accuracy) return;
+std::optional<plan::RateSelection> select_rate(scene::Scene& scene, config::Problems& problems) {
+  if (!scene.accuracy) return {};
   const scene::Accuracy& asked = *scene.accuracy;
-  const plan::RateSelection choice = plan::choose(
+  plan::RateSelection choice = plan::choose(
       scene.network, {asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s},
       scene.gesture_rate_hz,
       scene.integrator_is_open ? plan::integrators_for(scene.network)
@@ -28,6 +27,7 @@ void select_rate(scene::Scene& scene, config::Problems& problems) {
             " Hz the scene does not keep this: " + choice.because + " asks for more",
         "take a rate_hz of " + config::number_text(choice.rate_hz) + ", or leave rate_hz out");
   }
+  return choice;
 }
 
 }  // namespace cordis::sim

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -85,10 +86,14 @@ ports:
 
 TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
   write("40");
-  EXPECT_EQ(run({}), kFailure);
+  EXPECT_EQ(run({}), kBadInput);
   EXPECT_NE(out_.find("UNSTABLE: take a rate_hz of 60 or more"), std::string::npos) << out_;
-  EXPECT_NE(error_.find("unstable at 40 Hz"), std::string::npos) << error_;
+  EXPECT_NE(
+      error_.find(path_ + ":11:32: error: at 40 Hz the scene is unstable: holder at the mass "),
+      std::string::npos)
+      << error_;
   EXPECT_EQ(run({"--force"}), kSuccess);
+  EXPECT_NE(error_.find("warning: at 40 Hz the scene is unstable"), std::string::npos) << error_;
 }
 
 TEST_F(Checked, ASceneMayAskForAccuracyInsteadOfARate) {
@@ -174,13 +179,93 @@ TEST_F(Checked, PortsAreJudgedInTheirRole) {
 ports:
   key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}
 )");
-  // K (T / 2 + d T) with T = 0.1 s: 150 N s/m with one period of delay, 250 with two
-  ASSERT_EQ(run({"--device-viscosity", "200"}), kSuccess) << error_;
-  EXPECT_NE(out_.find("the device needs 150 N s/m"), std::string::npos) << out_;
+  // K (T / 2 + d T) with T = 0.1 s: 150 N s/m with one period of delay, 50 without
+  ASSERT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("safe from 150 N s/m of the device on"), std::string::npos) << out_;
   EXPECT_NE(out_.find("and 1 period of delay\n"), std::string::npos) << out_;
-  EXPECT_NE(out_.find("safe with any hand"), std::string::npos) << out_;
-  ASSERT_EQ(run({"--device-viscosity", "200", "--delay", "2"}), kSuccess) << error_;
-  EXPECT_NE(out_.find("TOO STIFF"), std::string::npos) << out_;
+  EXPECT_EQ(out_.find("the device of"), std::string::npos) << out_;
+}
+
+/// A launch file beside the scene, with a device of rate 10 Hz and this viscosity.
+class CheckedLaunch : public Checked {
+ protected:
+  CheckedLaunch() {
+    write("100", R"(  - {liaison: holder, between: [key, bob]}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}
+)");
+    scene_ = path_;
+    device_ = path_ + ".device.yaml";
+    path_ += ".launch.yaml";
+  }
+  ~CheckedLaunch() override {
+    std::remove(scene_.c_str());
+    std::remove(device_.c_str());
+  }
+  void launch(const std::string& clock, const std::string& viscosity) const {
+    std::ofstream(device_) << "cordis: 1\ndriver: mock\naxes: 1\nrate_hz: 10\nmoving_mass_kg: 1\n"
+                              "viscosity_n_s_per_m: "
+                           << viscosity << "\n";
+    std::ofstream(path_) << "cordis: 1\nsession: checked\nclock: " << clock
+                         << "\nnodes:\n  sim: {node: sim_node, scene: " << scene_
+                         << "}\n  keyboard: {node: device_node, device: " << device_ << "}\n";
+  }
+
+  SceneCheck check(const std::vector<std::string>& overrides = {}) const {
+    CheckOptions options;
+    options.file = path_;
+    options.overrides = overrides;
+    return check_scene(options);
+  }
+
+  std::string scene_;
+  std::string device_;
+};
+
+TEST_F(CheckedLaunch, IsJudgedAtItsDevicesAndItsClock) {
+  launch("lockstep", "200");
+  const std::string text = text_of(check());
+  EXPECT_NE(text.find("safe from 50 N s/m of the device on"), std::string::npos) << text;
+  EXPECT_NE(text.find("and 0 periods of delay\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("the device of keyboard supports "), std::string::npos) << text;
+
+  const SceneCheck realtime = check({"clock=realtime"});
+  const nlohmann::json json = nlohmann::json::parse(json_of(realtime));
+  EXPECT_EQ(json["ports"][0]["delay_periods"], 1);
+  EXPECT_EQ(json["ports"][0]["devices"][0]["node"], "keyboard");
+  EXPECT_EQ(json["ports"][0]["devices"][0]["supported"], true);
+  EXPECT_TRUE(json["problems"].empty());
+}
+
+TEST_F(CheckedLaunch, ADeviceThatThePortIsTooStiffForIsRefusedAsByARun) {
+  launch("realtime", "2");
+  const SceneCheck refused = check();
+  EXPECT_NE(text_of(refused).find(" N/m: see below\n"), std::string::npos) << text_of(refused);
+  EXPECT_TRUE(refused.problems.has_errors());
+  const nlohmann::json json = nlohmann::json::parse(json_of(refused));
+  EXPECT_EQ(json["problems"][0]["severity"], "error");
+  EXPECT_EQ(json["problems"][0]["file"], scene_);
+  EXPECT_EQ(json["problems"][0]["message"].get<std::string>().find(
+                "port 'key' is as stiff as 1000 N/m, and the device 'keyboard' supports "),
+            0u);
+  EXPECT_EQ(json["ports"][0]["devices"][0]["supported"], false);
+}
+
+TEST_F(CheckedLaunch, WordsChangeALaunchFileAlone) {
+  launch("realtime", "200");
+  EXPECT_THROW(check({"sim.scene=/nowhere.yaml"}), config::ConfigError);
+  path_ = std::exchange(scene_, path_);
+  EXPECT_EQ(run({"clock=lockstep"}), kFailure);
+  EXPECT_NE(error_.find("'clock=lockstep' changes a launch file, and " + path_ + " is a scene"),
+            std::string::npos)
+      << error_;
+}
+
+TEST_F(CheckedLaunch, WithoutASimNodeThereIsNothingToJudge) {
+  std::ofstream(path_)
+      << "cordis: 1\nsession: checked\nclock: realtime\nnodes:\n  view: {node: viz_node}\n";
+  EXPECT_EQ(run({}), kFailure);
+  EXPECT_NE(error_.find("has no sim_node"), std::string::npos) << error_;
 }
 
 TEST_F(Checked, WhatAPortNeedsOfItsDeviceIsSaid) {
@@ -205,7 +290,7 @@ TEST_F(Checked, WhatAPortNeedsOfItsDeviceIsSaid) {
 TEST_F(Checked, TooSlowForRealTimeIsToldWithBothAlternatives) {
   write("100");
   CheckOptions options;
-  options.scene_file = path_;
+  options.file = path_;
   SceneCheck check = check_scene(options);
 
   check.step_nsec = 1.25e7;  // 80 steps a second are what the machine can do, and 50 the limit
@@ -244,10 +329,6 @@ TEST_F(Checked, WrongWordsAndFilesAreBadInput) {
   write("100");
   EXPECT_EQ(run({"--band", "loud"}), kBadInput);
   EXPECT_NE(error_.find("--band must be a number"), std::string::npos) << error_;
-  EXPECT_EQ(run({"--delay", "1.5"}), kBadInput);
-  EXPECT_NE(error_.find("--delay must be a whole number from 0 to 1000, got '1.5'"),
-            std::string::npos)
-      << error_;
   write("100", "tuning: 440\n");
   EXPECT_EQ(run({}), kBadInput);
   EXPECT_NE(error_.find(":12:1: error"), std::string::npos) << error_;

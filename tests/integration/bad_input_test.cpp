@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -27,6 +29,20 @@ struct Outcome {
   std::string output;
 };
 
+/// `cordis check` refuses what a run refuses, with the same words, and nothing else.
+void expect_same_judgement(const Outcome& of_run, const std::string& launch_file,
+                           std::vector<std::string> words) {
+  words.insert(words.begin(), {program_path("cordis"), "check", launch_file});
+  ChildProcess process(words);
+  const int code = process.wait(kPatience);
+  EXPECT_EQ(code == 2, of_run.code == 2) << process.output() << of_run.output;
+  std::istringstream lines(process.output());
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(": error: ") == std::string::npos) continue;
+    EXPECT_NE(of_run.output.find(line), std::string::npos) << line << "\nin\n" << of_run.output;
+  }
+}
+
 Outcome run(const std::string& scene, const std::string& key,
             const std::vector<std::string>& words = {}) {
   LiveSession session("lockstep", kSimAndKey);
@@ -34,6 +50,7 @@ Outcome run(const std::string& scene, const std::string& key,
   session.add_file("key.yaml", key);
   ChildProcess& launcher = session.start_launcher(words);
   const int code = launcher.wait(kPatience);
+  expect_same_judgement({code, launcher.output()}, session.launch_file(), words);
   return {code, launcher.output()};
 }
 

@@ -1,0 +1,20 @@
+// sim_node/checks/planned_scene.cpp
+#include "sim_node/checks/planned_scene.h"
+
+#include <utility>
+
+#include "sim_node/checks/rate_choice.h"
+#include "sim_node/plan/reduction/reduce.h"
+
+namespace cordis::sim {
+
+PlannedScene plan_scene(const std::string& file, const config::Place& referrer,
+                        config::Problems& problems) {
+  PlannedScene planned{scene::load_scene(file, problems, referrer), {}};
+  if (problems.has_errors()) return planned;
+  planned.scene = plan::reduce(std::move(planned.scene), problems);
+  if (!problems.has_errors()) planned.rate = select_rate(planned.scene, problems);
+  return planned;
+}
+
+}  // namespace cordis::sim
