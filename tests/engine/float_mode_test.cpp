@@ -1,5 +1,5 @@
-// tests/engine/float_mode_test.cpp -- a world computes the same bits in whatever floating-point mode
-// its caller is, and what has faded away costs nothing.
+// tests/engine/float_mode_test.cpp -- a world computes the same bits in every floating-point mode
+// of its caller, and what has faded away costs nothing.
 #include "sim_node/engine/core/float_mode.h"
 
 #include <bit>
