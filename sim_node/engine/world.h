@@ -115,7 +115,8 @@ class World {
   std::uint64_t state_hash() const noexcept;
 
   Snapshot snapshot() const;
-  /// @throws std::invalid_argument when the snapshot is of another network.
+  /// @throws std::invalid_argument when the snapshot is of another network, is cut short or too
+  ///         long, or holds counts or state machines that do not fit. Then nothing has changed.
   void restore(const Snapshot& snapshot);
 
  private:

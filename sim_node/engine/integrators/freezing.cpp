@@ -299,18 +299,15 @@ void Freezing::wake_where_states_change(const WorldState& world) noexcept {
   if (world.log.lost() > 0) wake_all();
 }
 
-void Freezing::add_to(StateHash& hash) const noexcept {
-  for (const std::uint8_t steps : rest_) hash.add(static_cast<std::uint64_t>(steps));
+void Freezing::serialize(Archive& archive) {
+  archive.wholes(std::span(rest_),
+                 [](std::size_t, std::uint8_t steps) { return steps <= kAsleep; });
+  archive.hash_rows(rest_.size(), rest_);
 }
 
-void Freezing::append_state(std::vector<double>& state) const {
-  for (const std::uint8_t steps : rest_) state.push_back(steps);
-}
-
-void Freezing::take_state(const PortInputs& outside, const double* state) noexcept {
+void Freezing::restored(const PortInputs& outside) noexcept {
   asleep_count_ = 0;
   for (std::uint32_t i = 0; i < rest_.size(); ++i) {
-    rest_[i] = static_cast<std::uint8_t>(*state++);
     if (is_asleep(i)) ++asleep_count_;
     held_[i] = !outside.external_force(i).isZero(0.0);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/step_kernel.h"
 
@@ -125,11 +126,8 @@ class MatArray {
   /// Where the links find the positions and leave their forces.
   ForceColumns force_columns() noexcept;
 
-  std::size_t state_size() const noexcept { return 3 * position_.size(); }
-  /// The state as a row of values: x(n), x(n-1), f(n).
-  void append_state(std::vector<double>& state) const;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// x(n), x(n-1), f(n).
+  void serialize(Archive& archive);
 
  private:
   MassColumns columns(double* extrapolated) noexcept;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
 
@@ -49,14 +50,8 @@ class PortInputs {
   /// period.
   double release(MatArray& mats) const noexcept;
 
-  /// The state as a row of values; the number of held forces decides its length.
-  void append_state(std::vector<double>& state) const;
-  /// Values of the longest such row.
-  std::size_t max_values() const noexcept { return 6 * ports_.size() + 2 + 4 * slot_.size(); }
-  /// True if the values from `first` on are such a row, of a network with the same ports.
-  bool is_end_of_state(const std::vector<double>& state, std::size_t first) const noexcept;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// Its length depends on the number of held forces.
+  void serialize(Archive& archive);
 
  private:
   struct Port {
@@ -71,6 +66,7 @@ class PortInputs {
   };
 
   Vec3 within_dimension(Vec3 value) const noexcept;
+  bool is_port(std::uint32_t mat) const noexcept;
 
   int dimension_;
   std::vector<Port> ports_;               // in MAT order

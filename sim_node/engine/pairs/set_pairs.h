@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/matter/energy_account.h"
@@ -75,15 +76,8 @@ class SetPairs {
   bool is_overflowed() const noexcept;
   NeighbourList& neighbours() noexcept { return neighbours_; }
 
-  void add_to(StateHash& hash) const noexcept;
-  /// The state as a row of values, of a length that depends on it.
-  void append_state(std::vector<double>& state) const;
-  /// Values of the longest such row.
-  std::size_t max_values() const noexcept;
-  /// How long such a row is that begins with these values; 0 when it is none.
-  std::size_t size_of_state(const double* state, std::size_t available) const noexcept;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// Its length depends on the pairs that have states.
+  void serialize(Archive& archive, const StateTable& table);
 
  private:
   enum class Path { kLinear, kLennardJones, kAnyStateMachine };
