@@ -142,6 +142,7 @@ void Freezing::adopt(const NetworkDescription& network,
   const double dt = network.step;
   for (std::size_t i = 0; i < of_mats.size(); ++i) {
     const double stiffness = of_mats[i].stiffness();
+    max_push_[i] = -1.0;
     if (mass_over_dt2_[i] == 0.0 || stiffness == 0.0) continue;
     double kick = tolerance * stiffness / mass_over_dt2_[i];
     const double weight_step = network.gravity_on(network.mats[i]).norm() * dt * dt;
