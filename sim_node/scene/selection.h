@@ -105,7 +105,7 @@ struct IndexRange {
 
 /// Reads what stands between the brackets of a selection: 3 or 2..5. None when it is neither, or
 /// runs backwards.
-std::optional<IndexRange> read_index_range(std::string_view text);
+[[nodiscard]] std::optional<IndexRange> read_index_range(std::string_view text);
 
 /// Reads `name`, `name[3]`, `name[2..5]` (both ends included, from 0), `part.name`, `part[1].name`,
 /// `part.*` (all matter in it), or a list of these. A repeated part without an index stands for all
@@ -118,6 +118,7 @@ std::optional<Selection> select(const config::Value& value, const std::string& w
 
 /// True if a name may be given to something in a scene: letters, digits, '_' and '-', first a
 /// letter or '_'. If not, a problem of the place.
-bool check_name(const std::string& name, const config::Place& place, config::Problems& problems);
+bool check_name(const std::string& name, const config::Place& place,
+                              config::Problems& problems);
 
 }  // namespace cordis::scene

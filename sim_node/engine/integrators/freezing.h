@@ -67,7 +67,7 @@ class Freezing {
   /// @param at_moments  whether the account belongs to the moments x(n), or the middles between
   /// @return the energy of those that are stopped [J]. Real time: O(MATs with whole forces), no
   ///         allocation.
-  double choose_movers(WorldState& world, bool at_moments) noexcept;
+  [[nodiscard]] double choose_movers(WorldState& world, bool at_moments) noexcept;
   /// The masses that choose_movers has stopped.
   std::span<const std::uint32_t> stopped() const noexcept { return stopped_; }
 

@@ -51,6 +51,6 @@ class Integrator {
 };
 
 /// @throws std::invalid_argument when the integrator does not take the network: see refusal_of().
-std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network);
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network);
 
 }  // namespace cordis::engine

@@ -41,7 +41,9 @@ struct WorldState {
   /// Real time: O(MATs + links + pairs), no allocation, except when it saves. @return the archive
   Archive serialize(Archive archive);
   /// True if a row is of a state of this world.
-  bool matches(std::span<const double> row) { return serialize(Archive::checking(row)).matches(); }
+  [[nodiscard]] bool matches(std::span<const double> row) {
+    return serialize(Archive::checking(row)).matches();
+  }
   /// Restores it, with all that depends on it. Precondition: it matches.
   void take(std::span<const double> row);
   StateTable make_table(std::vector<StateMachine> state_machines) const;
@@ -67,7 +69,7 @@ struct WorldState {
 
   /// Clears the forces. Of a world that freezes, ends the account of the last ones of the sets and
   /// chooses the liaisons that are computed. @return works [J]
-  StepEnergy begin_forces(const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy begin_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of the sets after that.
   StepEnergy add_set_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of all liaisons as `cordis` does; enters what they take.
@@ -76,7 +78,8 @@ struct WorldState {
   /// dampers and conditions see the velocity (position - extrapolated) / dt, Maxwell elements how
   /// the MATs have moved. Enters changes of state and what Maxwell elements have taken.
   /// @return half of what viscosity takes in a period at this moment [J]
-  double add_forces_at_full_step(const double* extrapolated, StepEnergy& energy) noexcept;
+  [[nodiscard]] double add_forces_at_full_step(const double* extrapolated,
+                                               StepEnergy& energy) noexcept;
   /// The account at the moment of the last forces. @param velocity_of  of a MAT at that moment
   template <class VelocityOf>
   Energy energy_at_full_step(VelocityOf velocity_of) noexcept {

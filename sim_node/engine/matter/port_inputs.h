@@ -26,7 +26,7 @@ class PortInputs {
   /// The force held on a mass [N].
   Vec3 external_force(std::uint32_t mat) const noexcept;
   /// How many positions and forces were not finite since this was last asked.
-  std::uint32_t take_refused() noexcept;
+  [[nodiscard]] std::uint32_t take_refused() noexcept;
 
   /// The forces of the links before step 0, which the account of the ports begins with.
   void start(const MatArray& mats) noexcept;
@@ -39,16 +39,16 @@ class PortInputs {
 
   /// Moves the ports. @return work [J] the last forces of their links took from the outside on the
   /// way, half of it.
-  double move_ports(MatArray& mats) noexcept;
+  [[nodiscard]] double move_ports(MatArray& mats) noexcept;
   /// @return the other half, with the forces of the links at the new positions.
-  double work_at_ports(const MatArray& mats) noexcept;
+  [[nodiscard]] double work_at_ports(const MatArray& mats) noexcept;
 
   /// Adds the held forces to those of the links. @return half of their work [J] over the last
   /// period.
   double kick(MatArray& mats) noexcept;
   /// Takes them away again after the masses have moved. @return half of their work [J] over the new
   /// period.
-  double release(MatArray& mats) const noexcept;
+  [[nodiscard]] double release(MatArray& mats) const noexcept;
 
   /// Its length depends on the number of held forces.
   void serialize(Archive& archive);

@@ -43,11 +43,11 @@ class PairStates {
   /// Adds a pair to the row that is being written.
   /// @param memory  its slots, `stride` values apart
   /// @return false when there is no room: the pair is forgotten.
-  bool add(const PairState& state, const double* memory, std::size_t stride) noexcept;
+  [[nodiscard]] bool add(const PairState& state, const double* memory, std::size_t stride) noexcept;
   void end_row(std::size_t row) noexcept { written_.start[row + 1] = written_.count; }
 
   /// Writes rows [first, last) as they were in the last step. @return pairs that found no room
-  std::size_t keep_rows(std::size_t first, std::size_t last) noexcept;
+  [[nodiscard]] std::size_t keep_rows(std::size_t first, std::size_t last) noexcept;
 
   /// The pairs of a row as last written.
   std::size_t begin(std::size_t row) const noexcept { return written_.start[row]; }

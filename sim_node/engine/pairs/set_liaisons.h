@@ -24,9 +24,10 @@ class SetLiaisons {
 
   /// As those of SetPairs, for all sets:
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
-  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy take_positions(const ForceColumns& columns) noexcept;
   bool refresh() noexcept;
-  StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy add_pair_forces(const PairStep& step,
+                                           const ForceColumns& columns) noexcept;
   void mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                        MatRoles& roles) noexcept;
   void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;

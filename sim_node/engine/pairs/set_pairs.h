@@ -41,15 +41,16 @@ class SetPairs {
   /// @return elastic, dissipated and switched energy, as EnergyAccount counts them: half of the
   /// works of the last forces up to now, and half of those of these from then to now.
   /// Real time: O(members + pairs), no allocation.
-  StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
 
   /// add_forces() in parts, with a choice of the pairs that are computed between them:
   /// takes the positions of the members and the works of the last forces up to now ...
-  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy take_positions(const ForceColumns& columns) noexcept;
   /// ... fits the neighbour list to them; @return whether other pairs may be in range now ...
   bool refresh() noexcept;
   /// ... and adds the forces.
-  StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy add_pair_forces(const PairStep& step,
+                                           const ForceColumns& columns) noexcept;
 
   /// Passes on between members that are near each other or bound. All are beside all others where
   /// all pairs are computed in every step: because their conditions may come true while they rest,
