@@ -118,7 +118,6 @@ std::optional<Selection> select(const config::Value& value, const std::string& w
 
 /// True if a name may be given to something in a scene: letters, digits, '_' and '-', first a
 /// letter or '_'. If not, a problem of the place.
-bool check_name(const std::string& name, const config::Place& place,
-                              config::Problems& problems);
+bool check_name(const std::string& name, const config::Place& place, config::Problems& problems);
 
 }  // namespace cordis::scene
