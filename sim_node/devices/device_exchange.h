@@ -19,7 +19,8 @@ namespace cordis::sim {
 
 using scene::Role;
 
-constexpr std::size_t kMaxAxes = 16;
+using scene::kMaxAxes;
+static_assert(std::tuple_size_v<msg::PerAxis> == kMaxAxes);
 
 /// The ports of one device: takes its samples, moves or pushes the MATs over the sub-steps, and
 /// makes the answers.

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/float_mode.h"
 #include "sim_node/engine/core/state_hash.h"
@@ -184,17 +185,7 @@ std::uint64_t World::state_hash() const noexcept {
   const FloatMode mode;
   state_->scheme->show_all(*state_);
   StateHash hash;
-  hash.add(state_->step_count);
-  for (const Columns& columns : {state_->mats.position(), state_->mats.delayed()}) {
-    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis) hash.add(columns(axis, i));
-    }
-  }
-  state_->state_links.add_to(hash);
-  state_->maxwell_links.add_to(hash);
-  state_->sets.add_to(hash);
-  state_->scheme->add_to(hash);
-  if (state_->freezing) state_->freezing->add_to(hash);
+  state_->serialize(Archive::hashing(hash));
   return hash.value();
 }
 
@@ -202,7 +193,7 @@ Snapshot World::snapshot() const {
   const FloatMode mode;
   Snapshot snapshot{state_->network->fingerprint(), state_->step_count, {}, {}};
   if (state_->replaced) snapshot.state_machines = state_->table.state_machines();
-  state_->append_state(snapshot.state);
+  state_->serialize(Archive::saving(snapshot.state));
   return snapshot;
 }
 
@@ -212,26 +203,25 @@ void World::restore(const Snapshot& snapshot) {
 }
 
 std::size_t World::max_values_of_state() const noexcept {
-  return state_->state_size_before_sets() + state_->sets.max_values() +
-         state_->outside.max_values();
+  return state_->serialize(Archive::measuring()).size();
 }
 
 bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   room.clear();
-  before.state_->append_state(room);
+  before.state_->serialize(Archive::saving(room));
   const bool same_mats = network().mat_count() == before.network().mat_count();
   const bool same_sets =
       network().description().sets.size() == before.network().description().sets.size();
   const bool same_integrator =
       network().description().integrator == before.network().description().integrator;
-  if (!same_mats || !same_sets || !same_integrator || !state_->can_take(room)) return false;
-
   const bool both_freeze = (state_->freezing == nullptr) == (before.state_->freezing == nullptr);
-  if (!both_freeze) return false;
+  if (!same_mats || !same_sets || !same_integrator || !both_freeze || !state_->matches(room)) {
+    return false;
+  }
 
   const Energy energy_before = before.energy();
   const double stored_before = before.state_->stored_energy();
-  state_->take_state(room);
+  state_->take(room);
   state_->step_count = before.state_->step_count;
   StepEnergy change;
   change.switching = state_->stored_energy() - stored_before;

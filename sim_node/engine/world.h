@@ -97,9 +97,9 @@ class World {
   /// changes by counts as switching. Real time: O(MATs + links + pairs), no allocation.
   /// @param room  its capacity is at least max_values_of_state(); what is in it is overwritten
   /// @return false when the networks do not fit; then this world is as it was.
-  bool take_over(const World& before, std::vector<double>& room) noexcept;
+  [[nodiscard]] bool take_over(const World& before, std::vector<double>& room) noexcept;
   /// How many values the state of a world may have.
-  std::size_t max_values_of_state() const noexcept;
+  [[nodiscard]] std::size_t max_values_of_state() const noexcept;
 
   Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
   /// Energy::dissipated but for what the forces of the last step have still to take [J]. Real time:
@@ -114,8 +114,9 @@ class World {
   /// and internal forces of links that have them. Real time: O(MATs + links), no allocation.
   std::uint64_t state_hash() const noexcept;
 
-  Snapshot snapshot() const;
-  /// @throws std::invalid_argument when the snapshot is of another network.
+  [[nodiscard]] Snapshot snapshot() const;
+  /// @throws std::invalid_argument when the snapshot is of another network, is cut short or too
+  ///         long, or holds counts or state machines that do not fit. Then nothing has changed.
   void restore(const Snapshot& snapshot);
 
  private:

@@ -54,13 +54,15 @@ class Parameters {
   /// links of a name (a `name` of the scene, or string.links), which must not share their state
   /// machine with others. Parameters are those that a link may give. What follows from the
   /// parameter by a formula follows. Nothing is set after a problem. Not in real time.
-  Outcome set(const std::string& name, const std::string& parameter, double value);
+  [[nodiscard]] Outcome set(const std::string& name, const std::string& parameter, double value);
 
  private:
   struct Target;
 
-  Outcome set_of_liaison(const std::string& name, const std::string& parameter, double value);
-  Outcome set_of_links(const std::string& name, const std::string& parameter, double value);
+  [[nodiscard]] Outcome set_of_liaison(const std::string& name, const std::string& parameter,
+                                       double value);
+  [[nodiscard]] Outcome set_of_links(const std::string& name, const std::string& parameter,
+                                     double value);
   std::vector<std::string> names() const;
 
   std::shared_ptr<const Scene> scene_;

@@ -105,7 +105,7 @@ struct IndexRange {
 
 /// Reads what stands between the brackets of a selection: 3 or 2..5. None when it is neither, or
 /// runs backwards.
-std::optional<IndexRange> read_index_range(std::string_view text);
+[[nodiscard]] std::optional<IndexRange> read_index_range(std::string_view text);
 
 /// Reads `name`, `name[3]`, `name[2..5]` (both ends included, from 0), `part.name`, `part[1].name`,
 /// `part.*` (all matter in it), or a list of these. A repeated part without an index stands for all

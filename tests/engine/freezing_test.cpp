@@ -218,6 +218,23 @@ TEST(Freezing, DoesNotStopAMassWithoutStiffness) {
   EXPECT_EQ(world.asleep_count(), 0U);
 }
 
+TEST(Freezing, DoesNotStopAMassWhoseStiffnessIsTakenAway) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(0.1, 0, 0), Vec3(1e-3, 0, 0))};
+  scene.state_machines = {Behaving().state(1.0).state_machine};
+  scene.state_links = {{0, 1, 0, 0.1}};
+  scene.freeze_tolerance = 1e-3;
+  World world = make_world(scene);
+  world.replace_state_machine(0, Behaving().state(0.0).state_machine);
+
+  run(world, 1000);
+
+  EXPECT_EQ(world.asleep_count(), 0U);
+  EXPECT_NEAR(world.position(1).x(), 0.101, 1e-9);  // free flight: 1 mm/s for 1 s
+}
+
 /// Two masses at rest on springs, and a link with states between them.
 NetworkDescription resting_pair(const Behaving& state_machine) {
   NetworkDescription scene;

@@ -5,6 +5,8 @@
 #include <new>
 #include <vector>
 
+#include "sim_node/engine/core/vector_width.h"
+
 namespace cordis::engine {
 
 /// Hands out memory that begins on a cache line, so that neither a batch of 8 values nor a column
@@ -28,6 +30,9 @@ struct CacheLineAllocator {
     return true;
   }
 };
+
+static_assert(static_cast<std::size_t>(CacheLineAllocator<double>::kAlignment) ==
+              kBatchRows * sizeof(double));
 
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;

@@ -29,6 +29,7 @@ enum class Quantity : std::uint8_t {
   kNone = 13  ///< not a quantity: of a change of state that was forced from outside
 };
 inline constexpr std::size_t kQuantityCount = 13;
+static_assert(static_cast<std::size_t>(Quantity::kNone) == kQuantityCount);
 
 /// What one instruction does with the values on top of the stack. Truth is 1 or 0; any value that
 /// is not 0 counts as true. Comparisons with NaN are false, kNotEqual is true.
@@ -69,6 +70,7 @@ enum class Operation : std::uint8_t {
                ///< kMaxWholePower
 };
 inline constexpr std::size_t kOperationCount = 31;
+static_assert(static_cast<std::size_t>(Operation::kWholePower) + 1 == kOperationCount);
 
 struct Instruction {
   Operation operation = Operation::kConstant;

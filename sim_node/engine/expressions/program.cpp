@@ -22,12 +22,14 @@ void check_instruction(const Instruction& instruction, const std::string& name) 
               "a known one");
       break;
     case Operation::kWholePower:
+      static_assert(kMaxWholePower == 64);
       require(std::abs(instruction.constant) <= kMaxWholePower &&
                   instruction.constant == std::floor(instruction.constant),
               name + ": exponent", "a whole number of at most 64");
       break;
     case Operation::kRising:
     case Operation::kFalling:
+      static_assert(kMaxSlots == 16);
       require(instruction.slot < kMaxSlots, name + ": slot", "below 16");
       break;
     default:
@@ -199,6 +201,7 @@ void check_program(const Program& program, const std::string& name) {
     const std::size_t taken = operand_count(instruction.operation);
     require(depth >= taken, name + ": every operation", "given its operands");
     depth += 1 - taken;
+    static_assert(kMaxStack == 16);
     require(depth <= kMaxStack, name + ": depth of the stack", "at most 16");
   }
   require(depth == 1, name, "an expression that leaves one value");

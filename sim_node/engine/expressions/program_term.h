@@ -5,12 +5,13 @@
 #include <cstddef>
 #include <limits>
 
+#include "sim_node/engine/core/vector_width.h"
 #include "sim_node/engine/expressions/instruction.h"
 
 namespace cordis::engine {
 
-/// Rows are stepped 8 at a time, whatever the width.
-inline constexpr std::size_t kStateBatch = 8;
+/// Rows are stepped so many at a time, whatever the width.
+inline constexpr std::size_t kStateBatch = kBatchRows;
 
 /// In a slot of the memory of a row: none yet.
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();

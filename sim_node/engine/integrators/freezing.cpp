@@ -142,6 +142,7 @@ void Freezing::adopt(const NetworkDescription& network,
   const double dt = network.step;
   for (std::size_t i = 0; i < of_mats.size(); ++i) {
     const double stiffness = of_mats[i].stiffness();
+    max_push_[i] = -1.0;
     if (mass_over_dt2_[i] == 0.0 || stiffness == 0.0) continue;
     double kick = tolerance * stiffness / mass_over_dt2_[i];
     const double weight_step = network.gravity_on(network.mats[i]).norm() * dt * dt;
@@ -299,18 +300,15 @@ void Freezing::wake_where_states_change(const WorldState& world) noexcept {
   if (world.log.lost() > 0) wake_all();
 }
 
-void Freezing::add_to(StateHash& hash) const noexcept {
-  for (const std::uint8_t steps : rest_) hash.add(static_cast<std::uint64_t>(steps));
+void Freezing::serialize(Archive& archive) {
+  archive.wholes(std::span(rest_),
+                 [](std::size_t, std::uint8_t steps) { return steps <= kAsleep; });
+  archive.hash_rows(rest_.size(), rest_);
 }
 
-void Freezing::append_state(std::vector<double>& state) const {
-  for (const std::uint8_t steps : rest_) state.push_back(steps);
-}
-
-void Freezing::take_state(const PortInputs& outside, const double* state) noexcept {
+void Freezing::restored(const PortInputs& outside) noexcept {
   asleep_count_ = 0;
   for (std::uint32_t i = 0; i < rest_.size(); ++i) {
-    rest_[i] = static_cast<std::uint8_t>(*state++);
     if (is_asleep(i)) ++asleep_count_;
     held_[i] = !outside.external_force(i).isZero(0.0);
   }

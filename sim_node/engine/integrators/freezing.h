@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
@@ -67,15 +67,13 @@ class Freezing {
   /// @param at_moments  whether the account belongs to the moments x(n), or the middles between
   /// @return the energy of those that are stopped [J]. Real time: O(MATs with whole forces), no
   ///         allocation.
-  double choose_movers(WorldState& world, bool at_moments) noexcept;
+  [[nodiscard]] double choose_movers(WorldState& world, bool at_moments) noexcept;
   /// The masses that choose_movers has stopped.
   std::span<const std::uint32_t> stopped() const noexcept { return stopped_; }
 
-  void add_to(StateHash& hash) const noexcept;
-  std::size_t state_size() const noexcept { return rest_.size(); }
-  void append_state(std::vector<double>& state) const;
-  /// @param outside  of the same state
-  void take_state(const PortInputs& outside, const double* state) noexcept;
+  void serialize(Archive& archive);
+  /// After it has been restored. @param outside  of the same state
+  void restored(const PortInputs& outside) noexcept;
 
  private:
   /// Asleep, and its liaisons have been computed with it at rest: what their conditions remember of

@@ -1,8 +1,6 @@
 // sim_node/engine/integrators/full_step_integrator.cpp
 #include "sim_node/engine/integrators/full_step_integrator.h"
 
-#include <algorithm>
-
 #include "sim_node/engine/integrators/world_state.h"
 
 namespace cordis::engine {
@@ -31,22 +29,16 @@ void FullStepIntegrator::end_step(WorldState& world) noexcept {
   started_ = true;
 }
 
-void FullStepIntegrator::append_state(std::vector<double>& state) const {
-  state.insert(state.end(), memory_.begin(), memory_.end());
-  state.insert(state.end(),
-               {pending_.dissipated, pending_.port_work, static_cast<double>(started_)});
+void FullStepIntegrator::serialize(Archive& archive) {
+  archive.reals(memory_);
+  archive.real(pending_.dissipated);
+  archive.real(pending_.port_work);
+  archive.flag(started_);
 }
 
-const double* FullStepIntegrator::take_state(WorldState& world, const double* state) noexcept {
-  std::copy_n(state, memory_.size(), memory_.data());
-  state += memory_.size();
-  pending_ = {};
-  pending_.dissipated = *state++;
-  pending_.port_work = *state++;
-  started_ = *state++ != 0.0;
+void FullStepIntegrator::restored(WorldState& world) noexcept {
   world.mats.set_forces_are_present(!started_);
   adopt(world);
-  return state;
 }
 
 }  // namespace cordis::engine

@@ -2,8 +2,6 @@
 // belongs to a moment.
 #pragma once
 
-#include <vector>
-
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/integrators/integrator.h"
 
@@ -14,9 +12,8 @@ namespace cordis::engine {
 /// each MAT.
 class FullStepIntegrator : public Integrator {
  public:
-  std::size_t state_size() const noexcept final { return memory_.size() + 3; }
-  void append_state(std::vector<double>& state) const final;
-  const double* take_state(WorldState& world, const double* state) noexcept final;
+  void serialize(Archive& archive) override;
+  void restored(WorldState& world) noexcept final;
 
  protected:
   /// @param more  values to be remembered besides one vector for each MAT

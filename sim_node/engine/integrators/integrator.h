@@ -1,12 +1,10 @@
 // sim_node/engine/integrators/integrator.h -- how a world goes from one step to the next.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
-#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
@@ -47,14 +45,12 @@ class Integrator {
   virtual void show_all(WorldState&) const noexcept {}
 
   /// What it remembers besides the state of the MATs.
-  virtual void add_to(StateHash&) const noexcept {}
-  virtual std::size_t state_size() const noexcept { return 0; }
-  virtual void append_state(std::vector<double>&) const {}
-  /// @return one past the last value taken.
-  virtual const double* take_state(WorldState&, const double* state) noexcept { return state; }
+  virtual void serialize(Archive&) {}
+  /// After all of the world has been restored.
+  virtual void restored(WorldState&) noexcept {}
 };
 
 /// @throws std::invalid_argument when the integrator does not take the network: see refusal_of().
-std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network);
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network);
 
 }  // namespace cordis::engine

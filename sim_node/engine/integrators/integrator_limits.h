@@ -21,7 +21,7 @@ struct IntegratorRefusal {
 inline constexpr std::size_t kMaxModalMasses = 2000;
 
 /// The first thing in the network that its integrator does not take; none when it takes it all.
-std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network);
+[[nodiscard]] std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network);
 
 /// How often a step computes all forces.
 int evaluations_per_step(IntegratorKind integrator) noexcept;

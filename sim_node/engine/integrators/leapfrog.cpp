@@ -134,9 +134,9 @@ Vec3 Leapfrog::velocity(const WorldState& world, std::uint32_t mat) const noexce
   return (world.mats.position(mat) - column(felt_, mat)) / world.network->step();
 }
 
-void Leapfrog::add_to(StateHash& hash) const noexcept {
-  const std::size_t size = damping_ ? memory_.size() : velocity_.size();
-  for (std::size_t i = 0; i < size; ++i) hash.add(memory_[i]);
+void Leapfrog::serialize(Archive& archive) {
+  FullStepIntegrator::serialize(archive);
+  archive.hash({memory_.data(), damping_ ? memory_.size() : velocity_.size()});
 }
 
 }  // namespace cordis::engine

@@ -37,7 +37,7 @@ class Leapfrog final : public FullStepIntegrator {
   Energy energy(WorldState& world) const noexcept override;
   Vec3 velocity(const WorldState& world, std::uint32_t mat) const noexcept override;
 
-  void add_to(StateHash& hash) const noexcept override;
+  void serialize(Archive& archive) override;
 
  private:
   double correct_forces(WorldState& world) noexcept override;

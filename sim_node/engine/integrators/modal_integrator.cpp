@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "sim_node/engine/integrators/world_state.h"
 #include "sim_node/engine/simd/kernel_of_width.h"
@@ -42,6 +43,7 @@ ModalIntegrator::ModalIntegrator(const NetworkDescription& network)
       for (const std::uint32_t mat : *half) drive(mat);
     }
   }
+  own_driven_ = static_cast<std::ptrdiff_t>(driven_.size());
 }
 
 /// There is room for all MATs.
@@ -124,30 +126,30 @@ Energy ModalIntegrator::energy(WorldState& world) const noexcept {
       world.work_since_last_call(), world.stored_energy());
 }
 
-void ModalIntegrator::add_to(StateHash& hash) const noexcept {
-  for (const double value : block_.place()) hash.add(value);
-  for (const double value : block_.moved()) hash.add(value);
-}
-
-std::size_t ModalIntegrator::state_size() const noexcept {
-  return 2 * block_.place().size() + is_driven_.size();
-}
-
-void ModalIntegrator::append_state(std::vector<double>& state) const {
-  state.insert(state.end(), block_.place().begin(), block_.place().end());
-  state.insert(state.end(), block_.moved().begin(), block_.moved().end());
-  state.insert(state.end(), is_driven_.begin(), is_driven_.end());
-}
-
-const double* ModalIntegrator::take_state(WorldState&, const double* state) noexcept {
+void ModalIntegrator::serialize(Archive& archive) {
   for (AlignedVector<double>* values : {&block_.place(), &block_.moved()}) {
-    std::copy_n(state, values->size(), values->data());
-    state += values->size();
+    archive.reals(*values);
+    archive.hash(*values);
   }
-  for (std::uint32_t mat = 0; mat < is_driven_.size(); ++mat) {
-    if (*state++ != 0.0) drive(mat);
+  archive.wholes(std::span(is_driven_), [this](std::size_t mat, std::uint8_t driven) {
+    return driven == 0 || (driven == 1 && is_mass_[mat] != 0);
+  });
+}
+
+/// What drives the modes is summed in the order in which it began: the network's own, then held
+/// forces as they were first given.
+void ModalIntegrator::restored(WorldState& world) noexcept {
+  driven_.erase(driven_.begin() + own_driven_, driven_.end());
+  drives_.erase(drives_.begin() + own_driven_, drives_.end());
+  for (const std::uint32_t mat : driven_) is_driven_[mat] = 0;
+  for (std::size_t i = 0; i < world.outside.held_count(); ++i) {
+    const std::uint32_t mat = world.outside.held_mat(i);
+    if (is_driven_[mat] == 0) continue;
+    is_driven_[mat] = 0;
+    drive(mat);
   }
-  return state;
+  std::fill(is_driven_.begin(), is_driven_.end(), std::uint8_t{0});
+  for (const std::uint32_t mat : driven_) is_driven_[mat] = 1;
 }
 
 }  // namespace cordis::engine

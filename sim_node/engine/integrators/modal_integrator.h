@@ -1,6 +1,7 @@
 // sim_node/engine/integrators/modal_integrator.h -- linear networks in 1 dimension by their modes.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "sim_node/engine/integrators/integrator.h"
@@ -26,10 +27,8 @@ class ModalIntegrator final : public Integrator {
   void show(WorldState& world, std::uint32_t mat) const noexcept override;
   void show_all(WorldState& world) const noexcept override;
 
-  void add_to(StateHash& hash) const noexcept override;
-  std::size_t state_size() const noexcept override;
-  void append_state(std::vector<double>& state) const override;
-  const double* take_state(WorldState& world, const double* state) noexcept override;
+  void serialize(Archive& archive) override;
+  void restored(WorldState& world) noexcept override;
 
  private:
   void drive(std::uint32_t mat);
@@ -43,6 +42,7 @@ class ModalIntegrator final : public Integrator {
   std::vector<std::uint8_t> is_driven_;  // by MAT
   std::vector<std::uint8_t> is_mass_;    // by MAT
   std::vector<ModeDrive> drives_;        // of driven_
+  std::ptrdiff_t own_driven_ = 0;        // of driven_, whatever is held from outside
 };
 
 }  // namespace cordis::engine

@@ -85,7 +85,7 @@ void find_steps(const NetworkDescription& network, const std::vector<StateMachin
 /// The pull of one link at 8 speeds, everything else being as it is.
 class PullOverSpeed {
  public:
-  static constexpr std::size_t kCount = 8;
+  static constexpr std::size_t kCount = kStateBatch;
 
   PullOverSpeed(const WorldState& world, std::uint32_t link) noexcept
       : find_pulls_(world.state_machines.pulls),

@@ -105,19 +105,10 @@ Vec3 Symplectic4::velocity(const WorldState&, std::uint32_t mat) const noexcept 
   return Vec3::Map(velocity_.data() + 4 * std::size_t{mat});
 }
 
-void Symplectic4::add_to(StateHash& hash) const noexcept {
-  for (const double value : velocity_) hash.add(value);
-}
-
-void Symplectic4::append_state(std::vector<double>& state) const {
-  state.insert(state.end(), velocity_.begin(), velocity_.end());
-}
-
-/// The forces of the last step are part of the state of the MATs.
-const double* Symplectic4::take_state(WorldState& world, const double* state) noexcept {
-  std::copy_n(state, velocity_.size(), velocity_.data());
-  world.mats.set_forces_are_present(true);
-  return state + velocity_.size();
+/// The forces of the last step are part of the state of the MATs, and always present.
+void Symplectic4::serialize(Archive& archive) {
+  archive.reals(velocity_);
+  archive.hash(velocity_);
 }
 
 }  // namespace cordis::engine

@@ -28,10 +28,7 @@ class Symplectic4 final : public Integrator {
   Energy energy(WorldState& world) const noexcept override;
   Vec3 velocity(const WorldState& world, std::uint32_t mat) const noexcept override;
 
-  void add_to(StateHash& hash) const noexcept override;
-  std::size_t state_size() const noexcept override { return velocity_.size(); }
-  void append_state(std::vector<double>& state) const override;
-  const double* take_state(WorldState& world, const double* state) noexcept override;
+  void serialize(Archive& archive) override;
 
  private:
   static void find_forces(WorldState& world) noexcept;

@@ -11,6 +11,8 @@ namespace cordis::engine {
 namespace {
 
 constexpr std::size_t kMinEventRoom = 1024;
+constexpr const char* kNotOfThisState =
+    "the snapshot is cut short, too long, or holds a count that does not fit";
 
 std::shared_ptr<const Network> require(std::shared_ptr<const Network> network) {
   if (!network) throw std::invalid_argument("a world needs a network");
@@ -35,6 +37,24 @@ SpringDamperArray stepped_links(const NetworkDescription& network) {
            network.mats[link.mat_b].kind != MatKind::kPort;
   });
   return {stepped, kAlong};
+}
+
+/// The state machines of a snapshot: those of the network unless one has been replaced.
+const std::vector<StateMachine>& state_machines_of(const Snapshot& snapshot,
+                                                   const NetworkDescription& network) {
+  const std::vector<StateMachine>& own = network.state_machines;
+  const std::vector<StateMachine>& saved = snapshot.state_machines;
+  if (saved.empty()) return own;
+  const auto fit = [](const StateMachine& first, const StateMachine& second) {
+    return first.states.size() == second.states.size();
+  };
+  if (!std::equal(own.begin(), own.end(), saved.begin(), saved.end(), fit)) {
+    throw std::invalid_argument("the snapshot has other state machines than the network");
+  }
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    check_state_machine(saved[i], "state machine " + std::to_string(i) + " of the snapshot");
+  }
+  return saved;
 }
 
 }  // namespace
@@ -194,71 +214,65 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
   replaced = true;
 }
 
-std::size_t WorldState::state_size_before_sets() const noexcept {
-  return mats.state_size() + links.state_size() + ties.state_size() + state_links.state_size() +
-         maxwell_links.state_size() + log.state_size() + EnergyAccount::kStateSize +
-         scheme->state_size() + (freezing ? freezing->state_size() : 0);
+Archive WorldState::serialize(Archive archive) {
+  archive.hash(step_count);
+  mats.serialize(archive);
+  links.serialize(archive);
+  ties.serialize(archive);
+  state_links.serialize(archive, table);
+  maxwell_links.serialize(archive);
+  log.serialize(archive);
+  account.serialize(archive);
+  if (archive.hashes()) sets.serialize(archive, table);  // a hash takes the sets first, a row last
+  scheme->serialize(archive);
+  if (freezing) freezing->serialize(archive);
+  if (!archive.hashes()) sets.serialize(archive, table);
+  outside.serialize(archive);
+  return archive;
 }
 
-bool WorldState::can_take(const std::vector<double>& state) const noexcept {
-  const std::size_t first = state_size_before_sets();
-  std::size_t size = 0;
-  return state.size() >= first &&
-         sets.find_size_of_state(state.data() + first, state.size() - first, size) &&
-         outside.is_end_of_state(state, first + size);
+void WorldState::take(std::span<const double> row) {
+  serialize(Archive::restoring(row));
+  scheme->restored(*this);
+  if (freezing) freezing->restored(outside);
+}
+
+void WorldState::swap_table(StateTable& other, StateLinkArray& links_of_other) {
+  std::swap(table, other);
+  std::swap(state_links, links_of_other);
+  sets.adopt(table);
 }
 
 void WorldState::restore(const Snapshot& snapshot) {
   if (snapshot.network != network->fingerprint()) {
     throw std::invalid_argument("the snapshot is of another network");
   }
-  const std::vector<StateMachine>& own = description().state_machines;
-  StateTable table_of_snapshot =
-      make_table(snapshot.state_machines.empty() ? own : snapshot.state_machines);
-  StateLinkArray links_of_snapshot(description(), table_of_snapshot);
-  std::swap(table, table_of_snapshot);
-  std::swap(state_links, links_of_snapshot);
-  sets.adopt(table);
-  if (!can_take(snapshot.state)) {
-    std::swap(table, table_of_snapshot);
-    std::swap(state_links, links_of_snapshot);
-    sets.adopt(table);
-    throw std::invalid_argument("the snapshot is not complete");
+  if (!snapshot.state_machines.empty() || replaced) {
+    restore_with_table(snapshot);
+  } else if (matches(snapshot.state)) {
+    take(snapshot.state);
+  } else {
+    throw std::invalid_argument(kNotOfThisState);
   }
   step_count = snapshot.step;
   replaced = !snapshot.state_machines.empty();
+}
+
+void WorldState::restore_with_table(const Snapshot& snapshot) {
+  StateTable table_of_snapshot = make_table(state_machines_of(snapshot, description()));
+  StateLinkArray links_of_snapshot(description(), table_of_snapshot);
+  std::vector<double> own_sets;
+  Archive saving = Archive::saving(own_sets);
+  sets.serialize(saving, table);
+  swap_table(table_of_snapshot, links_of_snapshot);
+  if (!matches(snapshot.state)) {
+    swap_table(table_of_snapshot, links_of_snapshot);
+    Archive restoring = Archive::restoring(own_sets);
+    sets.serialize(restoring, table);
+    throw std::invalid_argument(kNotOfThisState);
+  }
   if (freezing) freezing->adopt(description(), table.state_machines());
-  take_state(snapshot.state);
-}
-
-void WorldState::append_state(std::vector<double>& state) const {
-  mats.append_state(state);
-  links.append_state(state);
-  ties.append_state(state);
-  state_links.append_state(state);
-  maxwell_links.append_state(state);
-  log.append_state(state);
-  account.append_state(state);
-  scheme->append_state(state);
-  if (freezing) freezing->append_state(state);
-  sets.append_state(state);
-  outside.append_state(state);
-}
-
-void WorldState::take_state(const std::vector<double>& state) noexcept {
-  const double* next = mats.take_state(state.data());
-  next = links.take_state(next);
-  next = ties.take_state(next);
-  next = state_links.take_state(next);
-  next = maxwell_links.take_state(next);
-  next = log.take_state(next);
-  next = account.take_state(next);
-  next = scheme->take_state(*this, next);
-  const double* rest = next;
-  if (freezing) next += freezing->state_size();
-  next = sets.take_state(next);
-  outside.take_state(next);
-  if (freezing) freezing->take_state(outside, rest);
+  take(snapshot.state);
 }
 
 }  // namespace cordis::engine

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/integrators/freezing.h"
 #include "sim_node/engine/integrators/integrator.h"
@@ -31,13 +33,23 @@ struct WorldState {
   const NetworkDescription& description() const noexcept { return network->description(); }
   StepReport step() noexcept;
   void restore(const Snapshot& snapshot);
+  /// The same where the state machines are not those of the network, or have not been.
+  void restore_with_table(const Snapshot& snapshot);
   void replace_state_machine(std::uint32_t index, const StateMachine& state_machine);
 
-  std::size_t state_size_before_sets() const noexcept;
-  bool can_take(const std::vector<double>& state) const noexcept;
-  void append_state(std::vector<double>& state) const;
-  void take_state(const std::vector<double>& state) noexcept;
+  /// Shows all parts but the network, the state machines and, except to a hash, the step count.
+  /// Real time: O(MATs + links + pairs), no allocation, except when it saves. @return the archive
+  Archive serialize(Archive archive);
+  /// True if a row is of a state of this world.
+  [[nodiscard]] bool matches(std::span<const double> row) {
+    return serialize(Archive::checking(row)).matches();
+  }
+  /// Restores it, with all that depends on it. Precondition: it matches.
+  void take(std::span<const double> row);
   StateTable make_table(std::vector<StateMachine> state_machines) const;
+  /// Exchanges the table and the links that belong to it with others; of the sets only what has
+  /// states in both keeps them.
+  void swap_table(StateTable& other, StateLinkArray& links_of_other);
 
   PairStep pair_step(bool frozen) noexcept {
     return {table, state_machines, log, step_count, frozen};
@@ -57,7 +69,7 @@ struct WorldState {
 
   /// Clears the forces. Of a world that freezes, ends the account of the last ones of the sets and
   /// chooses the liaisons that are computed. @return works [J]
-  StepEnergy begin_forces(const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy begin_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of the sets after that.
   StepEnergy add_set_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of all liaisons as `cordis` does; enters what they take.
@@ -66,7 +78,8 @@ struct WorldState {
   /// dampers and conditions see the velocity (position - extrapolated) / dt, Maxwell elements how
   /// the MATs have moved. Enters changes of state and what Maxwell elements have taken.
   /// @return half of what viscosity takes in a period at this moment [J]
-  double add_forces_at_full_step(const double* extrapolated, StepEnergy& energy) noexcept;
+  [[nodiscard]] double add_forces_at_full_step(const double* extrapolated,
+                                               StepEnergy& energy) noexcept;
   /// The account at the moment of the last forces. @param velocity_of  of a MAT at that moment
   template <class VelocityOf>
   Energy energy_at_full_step(VelocityOf velocity_of) noexcept {

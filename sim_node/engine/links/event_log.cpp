@@ -32,14 +32,9 @@ std::uint64_t EventLog::change_count(std::uint32_t state_machine, std::uint32_t 
   return change_count_[place(state_machine, from, to)];
 }
 
-void EventLog::append_state(std::vector<double>& state) const {
-  for (const std::uint64_t count : change_count_) state.push_back(static_cast<double>(count));
-}
-
-const double* EventLog::take_state(const double* state) noexcept {
-  for (std::uint64_t& count : change_count_) count = static_cast<std::uint64_t>(*state++);
-  begin_step();
-  return state;
+void EventLog::serialize(Archive& archive) {
+  archive.wholes(std::span(change_count_), [](std::size_t, std::uint64_t) { return true; });
+  if (archive.restores()) begin_step();
 }
 
 std::size_t EventLog::place(std::uint32_t state_machine, std::uint32_t from,

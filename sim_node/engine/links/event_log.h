@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/links/link_event.h"
 #include "sim_node/engine/links/state_table.h"
 
@@ -28,11 +29,8 @@ class EventLog {
   std::uint64_t change_count(std::uint32_t state_machine, std::uint32_t from,
                              std::uint32_t to) const noexcept;
 
-  std::size_t state_size() const noexcept { return change_count_.size(); }
-  /// The counts as a row of values; exact up to 2^53.
-  void append_state(std::vector<double>& state) const;
-  /// Takes them back, and forgets the events. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// The counts. One that is restored has no events.
+  void serialize(Archive& archive);
 
  private:
   struct Matrix {

@@ -76,19 +76,10 @@ double MaxwellArray::stored_energy() const noexcept {
   return 0.5 * sum;
 }
 
-void MaxwellArray::add_to(StateHash& hash) const noexcept {
-  for (std::size_t l = 0; l < link_count_; ++l) hash.add(pull_[l]);
-}
-
-void MaxwellArray::append_state(std::vector<double>& state) const {
-  state.insert(state.end(), pull_.begin(), pull_.end());
-  state.insert(state.end(), factor_.begin(), factor_.end());
-}
-
-const double* MaxwellArray::take_state(const double* state) noexcept {
-  std::copy_n(state, pull_.size(), pull_.data());
-  std::copy_n(state + pull_.size(), factor_.size(), factor_.data());
-  return state + state_size();
+void MaxwellArray::serialize(Archive& archive) {
+  archive.reals(pull_);
+  archive.reals(factor_);
+  archive.hash_rows(link_count_, pull_);
 }
 
 }  // namespace cordis::engine

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/matter/energy_account.h"
@@ -38,12 +38,7 @@ class MaxwellArray {
   /// Energy in the springs of the elements at the last call [J].
   double stored_energy() const noexcept;
 
-  void add_to(StateHash& hash) const noexcept;
-  std::size_t state_size() const noexcept { return pull_.size() + factor_.size(); }
-  /// The state as a row of values.
-  void append_state(std::vector<double>& state) const;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  void serialize(Archive& archive);
 
  private:
   bool is_1d_;  // 1 dimension

@@ -134,15 +134,9 @@ void SpringDamperArray::drop_viscosity() noexcept {
   viscous_ = false;
 }
 
-void SpringDamperArray::append_state(std::vector<double>& state) const {
-  state.insert(state.end(), viscous_factor_.begin(), viscous_factor_.end());
-  state.insert(state.end(), elastic_factor_.begin(), elastic_factor_.end());
-}
-
-const double* SpringDamperArray::take_state(const double* state) noexcept {
-  std::copy_n(state, viscous_factor_.size(), viscous_factor_.data());
-  std::copy_n(state + viscous_factor_.size(), elastic_factor_.size(), elastic_factor_.data());
-  return state + state_size();
+void SpringDamperArray::serialize(Archive& archive) {
+  archive.reals(viscous_factor_);
+  archive.reals(elastic_factor_);
 }
 
 }  // namespace cordis::engine

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
@@ -61,13 +62,8 @@ class SpringDamperArray {
   /// From now on these links are springs alone.
   void drop_viscosity() noexcept;
 
-  std::size_t state_size() const noexcept {
-    return viscous_factor_.size() + elastic_factor_.size();
-  }
-  /// The state as a row of values: what the account remembers of the last call.
-  void append_state(std::vector<double>& state) const;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// What the account remembers of the last call.
+  void serialize(Archive& archive);
 
  private:
   LinkRows rows(const ActiveLinks::Run& run) noexcept;

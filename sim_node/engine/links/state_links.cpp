@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/links/elongation_increment.h"
@@ -12,13 +13,6 @@ namespace {
 
 double mass_of(const Mat& mat) {
   return mat.kind == MatKind::kMass ? mat.mass : 0.0;
-}
-
-/// Takes as many values as there are. @return one past the last.
-template <class Values>
-const double* take(const double* from, Values& values) noexcept {
-  for (auto& value : values) value = static_cast<typename Values::value_type>(*from++);
-  return from;
 }
 
 }  // namespace
@@ -199,7 +193,7 @@ void StateLinkArray::force_state(const StateTable& table, std::uint32_t link,
 }
 
 void StateLinkArray::adopt(const StateTable& table) {
-  if (memory_.empty() || slot_count_ < table.slot_count()) {
+  if (slot_count_ != table.slot_count()) {
     slot_count_ = table.slot_count();
     memory_.assign(slot_count_ * column_a_.size(), kNoValue);
   }
@@ -216,39 +210,23 @@ std::uint32_t StateLinkArray::state_of(const StateTable& table, std::uint32_t li
   return state_[link] - table.first_state(state_machine_[link]);
 }
 
-void StateLinkArray::add_to(StateHash& hash) const noexcept {
-  for (std::size_t l = 0; l < link_count_; ++l) {
-    hash.add(static_cast<std::uint64_t>(state_[l]));
-    for (const double value : {rest_length_[l], pull_[l], impulse_[l], entered_[l]}) {
-      hash.add(value);
-    }
-  }
-}
-
-std::size_t StateLinkArray::state_size() const noexcept {
-  constexpr std::size_t kArrays = 8;
-  return kArrays * column_a_.size() + memory_.size();
-}
-
-void StateLinkArray::append_state(std::vector<double>& state) const {
-  for (const auto* values : {&state_, &forced_}) {
-    state.insert(state.end(), values->begin(), values->end());
-  }
-  for (const auto* values : {&rest_length_, &pull_, &impulse_, &entered_, &elastic_factor_,
-                             &viscous_factor_, &memory_}) {
-    state.insert(state.end(), values->begin(), values->end());
-  }
-}
-
-const double* StateLinkArray::take_state(const double* state) noexcept {
-  for (auto* values : {&state_, &forced_}) state = take(state, *values);
+void StateLinkArray::serialize(Archive& archive, const StateTable& table) {
+  const auto is_state = [this, &table](std::size_t l, StateIndex state) {
+    return l < link_count_ ? table.has_state(state_machine_[l], state)
+                           : state == table.padding_state();
+  };
+  archive.wholes(std::span(state_), is_state);
+  archive.wholes(std::span(forced_), [&is_state](std::size_t l, StateIndex state) {
+    return state == kNotForced || is_state(l, state);
+  });
   for (auto* values : {&rest_length_, &pull_, &impulse_, &entered_, &elastic_factor_,
                        &viscous_factor_, &memory_}) {
-    state = take(state, *values);
+    archive.reals(*values);
   }
+  archive.hash_rows(link_count_, state_, rest_length_, pull_, impulse_, entered_);
+  if (!archive.restores()) return;
   any_forced_ = std::any_of(forced_.begin(), forced_.end(),
                             [](std::uint32_t target) { return target != kNotForced; });
-  return state;
 }
 
 }  // namespace cordis::engine

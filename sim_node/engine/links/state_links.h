@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/event_log.h"
 #include "sim_node/engine/links/state_kernel.h"
@@ -70,12 +70,7 @@ class StateLinkArray {
     pull_[link] = pull;
   }
 
-  void add_to(StateHash& hash) const noexcept;
-  std::size_t state_size() const noexcept;
-  /// The state as a row of values.
-  void append_state(std::vector<double>& state) const;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  void serialize(Archive& archive, const StateTable& table);
 
  private:
   StateLinkRows rows(const StateTable& table, const ActiveLinks::Run& run) noexcept;

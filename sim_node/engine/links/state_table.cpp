@@ -13,6 +13,9 @@ namespace cordis::engine {
 namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+static_assert(static_cast<int>(RestCode::kKeep) == static_cast<int>(RestRule::kKeep) &&
+              static_cast<int>(RestCode::kHere) == static_cast<int>(RestRule::kHere) &&
+              static_cast<int>(RestCode::kExpression) == static_cast<int>(RestRule::kExpression));
 
 ProgramTerm ready(const Program& program) {
   return {program.code.data(), program.code.size()};

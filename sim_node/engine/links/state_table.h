@@ -29,6 +29,10 @@ class StateTable {
   StateIndex first_state(std::uint32_t state_machine) const noexcept;
   StateIndex start_state(std::uint32_t state_machine) const noexcept;
   std::uint32_t state_machine_of(StateIndex state) const noexcept;
+  /// True if the state is one of the state machine.
+  bool has_state(std::uint32_t state_machine, StateIndex state) const noexcept {
+    return state < state_count() && state_machine_of(state) == state_machine;
+  }
   const std::vector<StateMachine>& state_machines() const noexcept;
   const LinkState& state(StateIndex state) const noexcept;
 

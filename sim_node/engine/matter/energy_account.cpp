@@ -110,17 +110,11 @@ void EnergyAccount::enter_account(Energy& energy) const noexcept {
                              largest_port_work_, std::abs(energy.initial)});
 }
 
-void EnergyAccount::append_state(std::vector<double>& state) const {
-  state.insert(state.end(),
-               {initial_, dissipated_, port_work_, largest_port_work_, stored_, switching_});
-}
-
-const double* EnergyAccount::take_state(const double* state) noexcept {
+void EnergyAccount::serialize(Archive& archive) {
   for (double* value :
        {&initial_, &dissipated_, &port_work_, &largest_port_work_, &stored_, &switching_}) {
-    *value = *state++;
+    archive.real(*value);
   }
-  return state;
 }
 
 }  // namespace cordis::engine

@@ -1,9 +1,7 @@
 // sim_node/engine/matter/energy_account.h -- gathers the works of every step.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/energy.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
@@ -66,11 +64,7 @@ class EnergyAccount {
   Energy at_half_step(const OfMatter& matter, const StepEnergy& since,
                       double stored) const noexcept;
 
-  static constexpr std::size_t kStateSize = 6;
-  /// The state as a row of values.
-  void append_state(std::vector<double>& state) const;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  void serialize(Archive& archive);
 
  private:
   void enter_account(Energy& energy) const noexcept;

@@ -223,18 +223,12 @@ ForceColumns MatArray::force_columns() noexcept {
   return {position_.data(), delayed_.data(), force_.data()};
 }
 
-void MatArray::append_state(std::vector<double>& state) const {
-  for (const auto* columns : {&position_, &delayed_, &force_}) {
-    state.insert(state.end(), columns->begin(), columns->end());
+void MatArray::serialize(Archive& archive) {
+  for (auto* columns : {&position_, &delayed_, &force_}) archive.reals(*columns);
+  if (!archive.hashes()) return;
+  for (const Columns& columns : {position(), delayed()}) {
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) archive.hash({columns.col(i).data(), 3});
   }
-}
-
-const double* MatArray::take_state(const double* state) noexcept {
-  for (auto* columns : {&position_, &delayed_, &force_}) {
-    std::copy_n(state, columns->size(), columns->data());
-    state += columns->size();
-  }
-  return state;
 }
 
 Columns MatArray::view(const AlignedVector<double>& columns) const noexcept {

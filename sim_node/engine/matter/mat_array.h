@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/step_kernel.h"
 
@@ -57,11 +58,12 @@ class MatArray {
   void halt(std::uint32_t mat) noexcept;
 
   /// Moves every mass by one step. Real time: O(N), no allocation.
-  AdvanceReport advance(const StepKernel& kernel) noexcept;
+  [[nodiscard]] AdvanceReport advance(const StepKernel& kernel) noexcept;
 
   /// Moves every mass by one step of `leapfrog`; see StepKernel::extrapolate.
   /// @param extrapolated  4 x N, x(n) - dt v(n), then that of the next step
-  AdvanceReport extrapolate(const StepKernel& kernel, AlignedVector<double>& extrapolated) noexcept;
+  [[nodiscard]] AdvanceReport extrapolate(const StepKernel& kernel,
+                                          AlignedVector<double>& extrapolated) noexcept;
 
   /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
   void kick(const StepKernel& kernel, double part, AlignedVector<double>& velocity) noexcept;
@@ -70,7 +72,7 @@ class MatArray {
   void kick_and_drift(const StepKernel& kernel, double kick, double drift,
                       AlignedVector<double>& velocity) noexcept;
   /// Moves the masses by these displacements. @return how many are not finite then
-  std::uint32_t move_by(const AlignedVector<double>& displacement) noexcept;
+  [[nodiscard]] std::uint32_t move_by(const AlignedVector<double>& displacement) noexcept;
   /// Puts a mass of a network in 1 dimension somewhere.
   void set_motion(std::uint32_t mat, double position, double delayed) noexcept {
     position_[4 * std::size_t{mat}] = position;
@@ -79,7 +81,8 @@ class MatArray {
   /// The delayed positions become the present ones, and those of the masses a period at these
   /// velocities before them. @return how many positions are not finite
   void delay() noexcept { delayed_ = position_; }
-  std::uint32_t delay_by(const StepKernel& kernel, const AlignedVector<double>& velocity) noexcept;
+  [[nodiscard]] std::uint32_t delay_by(const StepKernel& kernel,
+                                       const AlignedVector<double>& velocity) noexcept;
   /// x(n) - x(n-1) of the masses and ports, 4 x N [m].
   void find_displacements(AlignedVector<double>& displacement) const noexcept;
   /// dt^2 times the forces and weights of the masses, and what the medium takes of these
@@ -125,11 +128,8 @@ class MatArray {
   /// Where the links find the positions and leave their forces.
   ForceColumns force_columns() noexcept;
 
-  std::size_t state_size() const noexcept { return 3 * position_.size(); }
-  /// The state as a row of values: x(n), x(n-1), f(n).
-  void append_state(std::vector<double>& state) const;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// x(n), x(n-1), f(n).
+  void serialize(Archive& archive);
 
  private:
   MassColumns columns(double* extrapolated) noexcept;

@@ -10,16 +10,9 @@ namespace cordis::engine {
 namespace {
 
 constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kValuesPerPort = 6;
-constexpr std::size_t kValuesPerForce = 4;
 
-const double* take(const double* state, Vec3& value) noexcept {
-  value = Vec3::Map(state);
-  return state + 3;
-}
-
-void append(std::vector<double>& state, const Vec3& value) {
-  state.insert(state.end(), value.begin(), value.end());
+void serialize(Archive& archive, Vec3& value) {
+  archive.reals({value.data(), 3});
 }
 
 }  // namespace
@@ -36,7 +29,7 @@ PortInputs::PortInputs(const NetworkDescription& description)
 }
 
 void PortInputs::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
-  CORDIS_ASSERT(mat < slot_.size() && slot_[mat] < ports_.size() && ports_[slot_[mat]].mat == mat);
+  CORDIS_ASSERT(mat < slot_.size() && is_port(mat));
   if (!position.allFinite()) {
     ++refused_;
     return;
@@ -106,42 +99,31 @@ double PortInputs::release(MatArray& mats) const noexcept {
   return work;
 }
 
-void PortInputs::append_state(std::vector<double>& state) const {
-  for (const Port& port : ports_) {
-    append(state, port.next);
-    append(state, port.link_force);
-  }
-  state.push_back(refused_);
-  state.push_back(static_cast<double>(forces_.size()));
-  for (const HeldForce& held : forces_) {
-    state.push_back(held.mat);
-    append(state, held.force);
-  }
-}
-
-bool PortInputs::is_end_of_state(const std::vector<double>& state,
-                                 std::size_t first) const noexcept {
-  const std::size_t forces = first + kValuesPerPort * ports_.size() + 2;
-  return state.size() >= forces &&
-         static_cast<double>(state.size() - forces) == kValuesPerForce * state[forces - 1];
-}
-
-const double* PortInputs::take_state(const double* state) noexcept {
+void PortInputs::serialize(Archive& archive) {
   for (Port& port : ports_) {
-    state = take(state, port.next);
-    state = take(state, port.link_force);
+    engine::serialize(archive, port.next);
+    engine::serialize(archive, port.link_force);
   }
-  refused_ = static_cast<std::uint32_t>(*state++);
-  for (const HeldForce& held : forces_) slot_[held.mat] = kNoSlot;
-  forces_.clear();
-  const auto force_count = static_cast<std::size_t>(*state++);
-  for (std::size_t i = 0; i < force_count; ++i) {
-    const auto mat = static_cast<std::uint32_t>(*state++);
-    slot_[mat] = static_cast<std::uint32_t>(i);
-    forces_.push_back({mat, Vec3::Zero()});
-    state = take(state, forces_.back().force);
+  archive.whole(refused_, [](std::uint32_t) { return true; });
+  std::size_t held_count = forces_.size();
+  held_count = archive.count(held_count, forces_.capacity());
+  if (archive.restores()) {
+    for (const HeldForce& held : forces_) slot_[held.mat] = kNoSlot;
+    forces_.clear();
   }
-  return state;
+  for (std::size_t i = 0; i < held_count; ++i) {
+    HeldForce held = i < forces_.size() ? forces_[i] : HeldForce{0, Vec3::Zero()};
+    archive.whole(held.mat,
+                  [this](std::uint32_t mat) { return mat < slot_.size() && !is_port(mat); });
+    engine::serialize(archive, held.force);
+    if (!archive.restores() || slot_[held.mat] != kNoSlot) continue;
+    slot_[held.mat] = static_cast<std::uint32_t>(forces_.size());
+    forces_.push_back(held);
+  }
+}
+
+bool PortInputs::is_port(std::uint32_t mat) const noexcept {
+  return slot_[mat] < ports_.size() && ports_[slot_[mat]].mat == mat;
 }
 
 Vec3 PortInputs::within_dimension(Vec3 value) const noexcept {

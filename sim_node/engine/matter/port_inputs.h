@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/matter/mat_array.h"
 
@@ -25,7 +26,7 @@ class PortInputs {
   /// The force held on a mass [N].
   Vec3 external_force(std::uint32_t mat) const noexcept;
   /// How many positions and forces were not finite since this was last asked.
-  std::uint32_t take_refused() noexcept;
+  [[nodiscard]] std::uint32_t take_refused() noexcept;
 
   /// The forces of the links before step 0, which the account of the ports begins with.
   void start(const MatArray& mats) noexcept;
@@ -38,25 +39,19 @@ class PortInputs {
 
   /// Moves the ports. @return work [J] the last forces of their links took from the outside on the
   /// way, half of it.
-  double move_ports(MatArray& mats) noexcept;
+  [[nodiscard]] double move_ports(MatArray& mats) noexcept;
   /// @return the other half, with the forces of the links at the new positions.
-  double work_at_ports(const MatArray& mats) noexcept;
+  [[nodiscard]] double work_at_ports(const MatArray& mats) noexcept;
 
   /// Adds the held forces to those of the links. @return half of their work [J] over the last
   /// period.
   double kick(MatArray& mats) noexcept;
   /// Takes them away again after the masses have moved. @return half of their work [J] over the new
   /// period.
-  double release(MatArray& mats) const noexcept;
+  [[nodiscard]] double release(MatArray& mats) const noexcept;
 
-  /// The state as a row of values; the number of held forces decides its length.
-  void append_state(std::vector<double>& state) const;
-  /// Values of the longest such row.
-  std::size_t max_values() const noexcept { return 6 * ports_.size() + 2 + 4 * slot_.size(); }
-  /// True if the values from `first` on are such a row, of a network with the same ports.
-  bool is_end_of_state(const std::vector<double>& state, std::size_t first) const noexcept;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// Its length depends on the number of held forces.
+  void serialize(Archive& archive);
 
  private:
   struct Port {
@@ -71,6 +66,7 @@ class PortInputs {
   };
 
   Vec3 within_dimension(Vec3 value) const noexcept;
+  bool is_port(std::uint32_t mat) const noexcept;
 
   int dimension_;
   std::vector<Port> ports_;               // in MAT order

@@ -13,8 +13,8 @@
 
 namespace cordis::engine {
 
-/// Links are stepped 8 at a time, whatever the width: the order of every sum is the same then.
-inline constexpr std::size_t kLinkBatch = 8;
+/// Links are stepped so many at a time, whatever the width.
+inline constexpr std::size_t kLinkBatch = kBatchRows;
 
 /// Spring-dampers, one row per link; arrays 64-byte aligned, padded with links of no force to a
 /// multiple of 8.

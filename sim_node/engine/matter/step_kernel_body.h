@@ -1,21 +1,7 @@
 // sim_node/engine/matter/step_kernel_body.h -- the loops of a step, written once over the vector
 // registers of each width.
 //
-// `Lanes` is a type of an unnamed namespace, one for each width, and gives
-//   kWidth                             links in one register: 2, 4 or 8
-//   Row                                a register: one value of each link, with + - *
-//     load, store, zero, sqrt          of a Row
-//   Row3                               the vectors x, y, z of these links
-//   Column                             the 4 values of one MAT, with + - *
-//     load_column, store_column, broadcast, unite, is_zero, sum_column
-//   inverse_or_zero(square, length)    1 / length, but 0 where square is 0
-//   difference(columns, a, b)          the vectors from a to b
-//   differences                        those of two sets of columns
-//   difference_1d(columns, a, b)       the first components of these vectors
-//   add_pairs(force, a, b, pull)       one link after the other: += at a, -= at b
-//   add_pairs_1d                       the same of first components
-// so every function here belongs to the file that instantiates it, and is never shared between
-// widths. Each + - * is rounded by itself: no operation may be contracted or reordered.
+// `Lanes` is a type of SimdLanes.
 #pragma once
 
 #include "sim_node/engine/matter/step_kernel.h"

@@ -12,9 +12,9 @@
 
 namespace cordis::engine {
 
-/// Pairs of a row are stepped 8 at a time, whatever the width. An array that is written without
-/// regard to its end has room for as many more.
-inline constexpr std::size_t kPairBatch = 8;
+/// Pairs of a row are stepped so many at a time, whatever the width. An array that is written
+/// without regard to its end has room for as many more.
+inline constexpr std::size_t kPairBatch = kBatchRows;
 
 /// Members of a set sorted by the cell they are in.
 struct CellTable {

@@ -1,13 +1,7 @@
 // sim_node/engine/pairs/pair_kernel_body.h -- the loops over pairs, written once over the vector
 // registers of each width.
 //
-// `Lanes` is a type of lanes as step_kernel_body.h says, and gives besides
-//   load_any                 loads values that need not be aligned
-//   vectors(columns, at)     the columns that begin at `at`, as x, y, z
-//   neighbours(columns)      columns that follow one another
-//   subtract(columns, at, v) subtracts v from the columns at `at`, one after the other
-//   pack(out, v, chosen)     writes the chosen lanes one after the other, kWidth values in all
-// Each + - * is rounded by itself: no operation may be contracted or reordered.
+// `Lanes` is a type of SimdPairLanes.
 #pragma once
 
 #include "sim_node/engine/pairs/pair_kernel.h"
@@ -190,7 +184,8 @@ void give(const RowSum<Lanes>& sum, double* column) noexcept {
   column[2] += sum_of<Lanes>(sum.z);
 }
 
-alignas(64) constexpr double kLaneNumber[kPairBatch] = {0, 1, 2, 3, 4, 5, 6, 7};
+alignas(64) constexpr double kLaneNumber[] = {0, 1, 2, 3, 4, 5, 6, 7};
+static_assert(sizeof(kLaneNumber) == kPairBatch * sizeof(double));
 
 /// As `spread`, of pairs that begin anywhere, and of the first `count` lanes alone: what else
 /// stands in the lanes belongs to other rows, and gets nothing.

@@ -3,14 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace cordis::engine {
-namespace {
-
-constexpr std::size_t kValuesOfState = 6;
-
-}  // namespace
 
 PairStates::PairStates(std::size_t row_count, std::size_t capacity, std::uint32_t slot_count)
     : slot_count_(slot_count) {
@@ -62,55 +58,38 @@ void PairStates::change_slots(std::uint32_t slot_count) {
 void PairStates::add_to(StateHash& hash) const noexcept {
   for (std::size_t i = 0; i < written_.count; ++i) {
     const PairState& pair = written_.states[i];
-    hash.add(static_cast<std::uint64_t>(pair.column) << 32 | pair.state);
+    hash.add(std::uint64_t{pair.column} << 32 | pair.state);
     for (const double value : {pair.rest_length, pair.pull, pair.impulse, pair.entered}) {
       hash.add(value);
     }
   }
-  hash.add(static_cast<std::uint64_t>(written_.count));
+  hash.add(std::uint64_t{written_.count});
 }
 
-void PairStates::append_state(std::vector<double>& state) const {
-  state.push_back(static_cast<double>(written_.count));
-  state.push_back(has_rows_ ? 1.0 : 0.0);
-  for (const std::size_t start : written_.start) state.push_back(static_cast<double>(start));
-  for (std::size_t i = 0; i < written_.count; ++i) {
-    const PairState& pair = written_.states[i];
-    state.insert(state.end(), {static_cast<double>(pair.column), static_cast<double>(pair.state),
-                               pair.rest_length, pair.pull, pair.impulse, pair.entered});
-  }
-  state.insert(state.end(), written_.memory.begin(),
-               written_.memory.begin() + static_cast<std::ptrdiff_t>(written_.count * slot_count_));
-}
-
-std::size_t PairStates::max_values() const noexcept {
-  return 2 + written_.start.size() + written_.states.size() * (kValuesOfState + slot_count_);
-}
-
-std::size_t PairStates::size_of_state(const double* state, std::size_t available) const noexcept {
-  if (available == 0) return 0;
-  if (!(state[0] >= 0.0 && state[0] <= static_cast<double>(written_.states.size()))) return 0;
-  const std::size_t size = 2 + written_.start.size() +
-                           static_cast<std::size_t>(state[0]) * (kValuesOfState + slot_count_);
-  return size <= available ? size : 0;
-}
-
-const double* PairStates::take_state(const double* state) noexcept {
-  written_.count = static_cast<std::size_t>(*state++);
-  has_rows_ = *state++ != 0.0;
-  for (std::size_t& start : written_.start) start = static_cast<std::size_t>(*state++);
-  for (std::size_t i = 0; i < written_.count; ++i) {
-    written_.states[i] = {static_cast<std::uint32_t>(state[0]),
-                          static_cast<StateIndex>(state[1]),
-                          state[2],
-                          state[3],
-                          state[4],
-                          state[5]};
-    state += kValuesOfState;
-  }
-  const std::size_t memory = written_.count * slot_count_;
-  std::copy_n(state, memory, written_.memory.begin());
-  return state + memory;
+/// Checks that each row holds later members than its own, in their order.
+void PairStates::serialize(Archive& archive, std::size_t member_count, const StateTable& table,
+                           std::uint32_t state_machine) {
+  const std::size_t count = archive.count(written_.count, written_.states.size());
+  archive.flag(has_rows_);
+  std::vector<std::size_t>& starts = read_.start;  // free between two steps
+  archive.wholes(std::span(written_.start), [&](std::size_t row, std::size_t start) {
+    starts[row] = start;
+    return (row == 0 ? start == 0 : start >= starts[row - 1]) &&
+           (row + 1 < starts.size() || start == count);
+  });
+  std::uint32_t row = 0;
+  std::uint32_t previous = 0;  // column
+  const auto fits = [&](std::size_t i, const PairState& pair) {
+    while (i >= starts[row + 1]) previous = 4 * ++row;
+    const bool follows = pair.column > previous && pair.column / 4 < member_count;
+    previous = pair.column;
+    return follows && pair.column % 4 == 0 && table.has_state(state_machine, pair.state);
+  };
+  archive.records(std::span(written_.states).first(count), fits, &PairState::column,
+                  &PairState::state, &PairState::rest_length, &PairState::pull, &PairState::impulse,
+                  &PairState::entered);
+  archive.reals({written_.memory.data(), count * slot_count_});
+  archive.hash_with([this](StateHash& hash) { add_to(hash); });
 }
 
 }  // namespace cordis::engine

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/core/assert.h"
-#include "sim_node/engine/core/state_hash.h"
-#include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/links/state_table.h"
 
 namespace cordis::engine {
 
@@ -43,11 +43,11 @@ class PairStates {
   /// Adds a pair to the row that is being written.
   /// @param memory  its slots, `stride` values apart
   /// @return false when there is no room: the pair is forgotten.
-  bool add(const PairState& state, const double* memory, std::size_t stride) noexcept;
+  [[nodiscard]] bool add(const PairState& state, const double* memory, std::size_t stride) noexcept;
   void end_row(std::size_t row) noexcept { written_.start[row + 1] = written_.count; }
 
   /// Writes rows [first, last) as they were in the last step. @return pairs that found no room
-  std::size_t keep_rows(std::size_t first, std::size_t last) noexcept;
+  [[nodiscard]] std::size_t keep_rows(std::size_t first, std::size_t last) noexcept;
 
   /// The pairs of a row as last written.
   std::size_t begin(std::size_t row) const noexcept { return written_.start[row]; }
@@ -62,17 +62,14 @@ class PairStates {
   void change_slots(std::uint32_t slot_count);
   std::uint32_t slot_count() const noexcept { return slot_count_; }
 
-  void add_to(StateHash& hash) const noexcept;
-  /// The state as a row of values, of a length that depends on it.
-  void append_state(std::vector<double>& state) const;
-  /// Values of the longest such row.
-  std::size_t max_values() const noexcept;
-  /// How long such a row is that begins with these values; 0 when it is none.
-  std::size_t size_of_state(const double* state, std::size_t available) const noexcept;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// What was written in the last step.
+  /// @param state_machine  of these pairs
+  void serialize(Archive& archive, std::size_t member_count, const StateTable& table,
+                 std::uint32_t state_machine);
 
  private:
+  void add_to(StateHash& hash) const noexcept;
+
   struct Table {
     std::vector<std::size_t> start;  // by row; one past the last too
     std::vector<PairState> states;

@@ -71,34 +71,8 @@ std::uint32_t SetLiaisons::overflowed_count() const noexcept {
   return count;
 }
 
-void SetLiaisons::add_to(StateHash& hash) const noexcept {
-  for (const SetPairs& set : sets_) set.add_to(hash);
-}
-
-void SetLiaisons::append_state(std::vector<double>& state) const {
-  for (const SetPairs& set : sets_) set.append_state(state);
-}
-
-std::size_t SetLiaisons::max_values() const noexcept {
-  std::size_t values = 0;
-  for (const SetPairs& set : sets_) values += set.max_values();
-  return values;
-}
-
-bool SetLiaisons::find_size_of_state(const double* state, std::size_t available,
-                                     std::size_t& size) const noexcept {
-  size = 0;
-  for (const SetPairs& set : sets_) {
-    const std::size_t more = set.size_of_state(state + size, available - size);
-    if (more == 0) return false;
-    size += more;
-  }
-  return true;
-}
-
-const double* SetLiaisons::take_state(const double* state) noexcept {
-  for (SetPairs& set : sets_) state = set.take_state(state);
-  return state;
+void SetLiaisons::serialize(Archive& archive, const StateTable& table) {
+  for (SetPairs& set : sets_) set.serialize(archive, table);
 }
 
 }  // namespace cordis::engine

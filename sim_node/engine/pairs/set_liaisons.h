@@ -24,9 +24,10 @@ class SetLiaisons {
 
   /// As those of SetPairs, for all sets:
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
-  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy take_positions(const ForceColumns& columns) noexcept;
   bool refresh() noexcept;
-  StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy add_pair_forces(const PairStep& step,
+                                           const ForceColumns& columns) noexcept;
   void mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                        MatRoles& roles) noexcept;
   void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;
@@ -35,14 +36,7 @@ class SetLiaisons {
   void start() noexcept;
   void adopt(const StateTable& table);
   std::uint32_t overflowed_count() const noexcept;
-  void add_to(StateHash& hash) const noexcept;
-
-  void append_state(std::vector<double>& state) const;
-  std::size_t max_values() const noexcept;
-  /// How long the row of values is that begins with these. @return false when they are none.
-  bool find_size_of_state(const double* state, std::size_t available,
-                          std::size_t& size) const noexcept;
-  const double* take_state(const double* state) noexcept;
+  void serialize(Archive& archive, const StateTable& table);
 
  private:
   std::vector<SetPairs> sets_;

@@ -339,41 +339,17 @@ bool SetPairs::is_overflowed() const noexcept {
   return !neighbours_.is_whole() || state_machines_.forgotten() > 0;
 }
 
-void SetPairs::add_to(StateHash& hash) const noexcept {
-  if (state_machines_.has_states()) state_machines_.states().add_to(hash);
-}
-
-void SetPairs::append_state(std::vector<double>& state) const {
-  state.insert(state.end(), force_.begin(), force_.end());
-  state.insert(state.end(), viscous_.begin(), viscous_.end());
-  state.insert(state.end(), position_.begin(), position_.end());
-  if (state_machines_.has_states()) state_machines_.states().append_state(state);
-}
-
-std::size_t SetPairs::max_values() const noexcept {
-  const std::size_t states =
-      state_machines_.has_states() ? state_machines_.states().max_values() : 0;
-  return force_.size() + viscous_.size() + position_.size() + states;
-}
-
-std::size_t SetPairs::size_of_state(const double* state, std::size_t available) const noexcept {
-  const std::size_t forces = force_.size() + viscous_.size() + position_.size();
-  if (available < forces) return 0;
-  if (!state_machines_.has_states()) return forces;
-  const std::size_t states =
-      state_machines_.states().size_of_state(state + forces, available - forces);
-  return states > 0 ? forces + states : 0;
-}
-
-const double* SetPairs::take_state(const double* state) noexcept {
-  for (AlignedVector<double>* values : {&force_, &viscous_, &position_}) {
-    std::copy_n(state, values->size(), values->data());
-    state += values->size();
+void SetPairs::serialize(Archive& archive, const StateTable& table) {
+  for (AlignedVector<double>* values : {&force_, &viscous_, &position_}) archive.reals(*values);
+  if (archive.restores()) {
+    neighbours_.forget();
+    neighbours_.refresh(position_.data());
+    active_.choose_all();
+    has_viscous_ = has_viscous_ || std::any_of(viscous_.begin(), viscous_.end(),
+                                               [](double force) { return force != 0.0; });
   }
-  neighbours_.forget();
-  neighbours_.refresh(position_.data());
-  active_.choose_all();
-  return state_machines_.has_states() ? state_machines_.states().take_state(state) : state;
+  if (!state_machines_.has_states()) return;
+  state_machines_.states().serialize(archive, column_.size(), table, state_machine_);
 }
 
 }  // namespace cordis::engine

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/matter/energy_account.h"
@@ -40,15 +41,16 @@ class SetPairs {
   /// @return elastic, dissipated and switched energy, as EnergyAccount counts them: half of the
   /// works of the last forces up to now, and half of those of these from then to now.
   /// Real time: O(members + pairs), no allocation.
-  StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
 
   /// add_forces() in parts, with a choice of the pairs that are computed between them:
   /// takes the positions of the members and the works of the last forces up to now ...
-  StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy take_positions(const ForceColumns& columns) noexcept;
   /// ... fits the neighbour list to them; @return whether other pairs may be in range now ...
   bool refresh() noexcept;
   /// ... and adds the forces.
-  StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy add_pair_forces(const PairStep& step,
+                                           const ForceColumns& columns) noexcept;
 
   /// Passes on between members that are near each other or bound. All are beside all others where
   /// all pairs are computed in every step: because their conditions may come true while they rest,
@@ -75,15 +77,8 @@ class SetPairs {
   bool is_overflowed() const noexcept;
   NeighbourList& neighbours() noexcept { return neighbours_; }
 
-  void add_to(StateHash& hash) const noexcept;
-  /// The state as a row of values, of a length that depends on it.
-  void append_state(std::vector<double>& state) const;
-  /// Values of the longest such row.
-  std::size_t max_values() const noexcept;
-  /// How long such a row is that begins with these values; 0 when it is none.
-  std::size_t size_of_state(const double* state, std::size_t available) const noexcept;
-  /// Takes it back. @return one past the last value taken.
-  const double* take_state(const double* state) noexcept;
+  /// Its length depends on the pairs that have states.
+  void serialize(Archive& archive, const StateTable& table);
 
  private:
   enum class Path { kLinear, kLennardJones, kAnyStateMachine };

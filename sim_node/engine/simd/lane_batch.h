@@ -6,13 +6,15 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sim_node/engine/core/vector_width.h"
+
 namespace cordis::engine {
 
 template <class Lanes>
 struct LaneBatch {
   using Row = typename Lanes::Row;
-  static constexpr std::size_t kRows = 8;
-  static constexpr std::uint32_t kAll = 0xff;
+  static constexpr std::size_t kRows = kBatchRows;
+  static constexpr std::uint32_t kAll = (1U << kRows) - 1U;
 
   /// out = make(values...), value by value; arrays 64-byte aligned, out may be one of the others.
   template <class Make, class... Values>

@@ -1,15 +1,16 @@
 // sim_node/engine/simd/lanes_avx512.h -- eight links in a register: for files compiled with
 // -mavx512f, without contraction.
 //
-// What a type of lanes must give is written in step_kernel_body.h. It stands in an unnamed
-// namespace so that every file that includes it has its own, which the linker cannot mix up with
-// another's.
+// It stands in an unnamed namespace so that every file that includes it has its own, which the
+// linker cannot mix up with another's.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 #include <immintrin.h>
+
+#include "sim_node/engine/simd/simd_lanes.h"
 
 namespace cordis::engine {
 namespace {
@@ -156,6 +157,8 @@ struct Avx512Lanes {
     store_column(force_b, load_column(force_b) - pull);
   }
 };
+
+static_assert(SimdLanes<Avx512Lanes>);
 
 }  // namespace
 

@@ -1,14 +1,15 @@
 // sim_node/engine/simd/lanes_sse2.h -- two links in a register: runs on every x86-64 processor.
 //
-// What a type of lanes must give is written in step_kernel_body.h. It stands in an unnamed
-// namespace so that every file that includes it has its own, which the linker cannot mix up with
-// another's.
+// It stands in an unnamed namespace so that every file that includes it has its own, which the
+// linker cannot mix up with another's.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 #include <emmintrin.h>
+
+#include "sim_node/engine/simd/simd_lanes.h"
 
 namespace cordis::engine {
 namespace {
@@ -133,6 +134,8 @@ struct Sse2Lanes {
     store_column(force_b, load_column(force_b) - pull);
   }
 };
+
+static_assert(SimdLanes<Sse2Lanes>);
 
 }  // namespace
 

@@ -11,8 +11,8 @@
 
 namespace cordis::engine {
 
-/// Modes are summed 8 at a time, whatever the width.
-inline constexpr std::size_t kModeBatch = 8;
+/// Modes are summed so many at a time, whatever the width.
+inline constexpr std::size_t kModeBatch = kBatchRows;
 
 /// A force on one MAT, and how much of every mode moves there.
 struct ModeDrive {

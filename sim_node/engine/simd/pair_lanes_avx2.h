@@ -1,5 +1,4 @@
-// sim_node/engine/simd/pair_lanes_avx2.h -- what pairs need beyond lanes_avx2.h; see
-// pair_kernel_body.h.
+// sim_node/engine/simd/pair_lanes_avx2.h -- what pairs need beyond lanes_avx2.h.
 #pragma once
 
 #include "sim_node/engine/simd/lanes_avx2.h"
@@ -59,6 +58,8 @@ struct Avx2PairLanes : Avx2Lanes {
   }
   static void subtract_column(double* column, Row v) noexcept { store(column, load(column) - v); }
 };
+
+static_assert(SimdPairLanes<Avx2PairLanes>);
 
 }  // namespace
 }  // namespace cordis::engine

@@ -1,5 +1,4 @@
-// sim_node/engine/simd/pair_lanes_avx512.h -- what pairs need beyond lanes_avx512.h; see
-// pair_kernel_body.h.
+// sim_node/engine/simd/pair_lanes_avx512.h -- what pairs need beyond lanes_avx512.h.
 #pragma once
 
 #include "sim_node/engine/simd/lanes_avx512.h"
@@ -54,6 +53,8 @@ struct Avx512PairLanes : Avx512Lanes {
     store_column(column, load_column(column) - v);
   }
 };
+
+static_assert(SimdPairLanes<Avx512PairLanes>);
 
 }  // namespace
 }  // namespace cordis::engine

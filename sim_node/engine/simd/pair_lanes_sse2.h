@@ -1,5 +1,4 @@
-// sim_node/engine/simd/pair_lanes_sse2.h -- what pairs need beyond lanes_sse2.h; see
-// pair_kernel_body.h.
+// sim_node/engine/simd/pair_lanes_sse2.h -- what pairs need beyond lanes_sse2.h.
 #pragma once
 
 #include "sim_node/engine/simd/lanes_sse2.h"
@@ -37,6 +36,8 @@ struct Sse2PairLanes : Sse2Lanes {
     return {_mm_unpacklo_pd(u.xy, v.xy), _mm_unpackhi_pd(u.xy, v.xy), _mm_unpacklo_pd(u.z, v.z)};
   }
 };
+
+static_assert(SimdPairLanes<Sse2PairLanes>);
 
 }  // namespace
 }  // namespace cordis::engine

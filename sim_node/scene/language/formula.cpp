@@ -121,6 +121,7 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
     problems.error(expression.text.place(), what + " is nested too deeply",
                    "write what is nested first: (a + b) * c instead of c * (a + b)");
   }
+  static_assert(engine::kMaxSlots == 16);
   if (next_slot > engine::kMaxSlots) {
     problems.error(expression.text.place(), what + " is one of too many with rising and falling",
                    "the exits of a state have room for 16 of them");

@@ -50,12 +50,12 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Edge>& joints);
 
 /// The law of the links between neighbours; nothing after a problem.
-std::optional<LinkLaw> read_neighbour_law(Source& source);
+[[nodiscard]] std::optional<LinkLaw> read_neighbour_law(Source& source);
 /// The law of a kind whose MATs need not be joined: nothing, too, when no law is written.
-std::optional<LinkLaw> optional_neighbour_law(Source& source);
+[[nodiscard]] std::optional<LinkLaw> optional_neighbour_law(Source& source);
 /// `shear_stiffness_n_per_m` and `shear_viscosity_n_s_per_m`: the links between second neighbours.
 /// Nothing when neither is written.
-std::optional<LinkLaw> read_shear_law(config::MappingReader& reader);
+[[nodiscard]] std::optional<LinkLaw> read_shear_law(config::MappingReader& reader);
 
 /// Layout of MATs one beside the other in 1-D; empty beyond.
 std::vector<LayoutPoint> row_layout(Source& source, std::size_t count);

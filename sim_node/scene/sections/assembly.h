@@ -77,11 +77,12 @@ class Assembly {
   };
   void read_part_use(const config::Value::Entry& entry);
   /// Nothing after a problem.
-  std::optional<PartUse> read_use(const config::Value::Entry& entry);
+  [[nodiscard]] std::optional<PartUse> read_use(const config::Value::Entry& entry);
   /// Adds the matter and links of a part. @return whether all of it was sound.
-  bool add_copy(const PartUse& use, const std::string& name, const Placement& placement);
+  [[nodiscard]] bool add_copy(const PartUse& use, const std::string& name,
+                              const Placement& placement);
   /// True if the part is none of those that are being added; if it is, a problem.
-  bool check_cycle(const Part& part, const config::Place& place);
+  [[nodiscard]] bool check_cycle(const Part& part, const config::Place& place);
   /// What matter is called in messages.
   std::string matter_called(const std::string& name) const;
 
@@ -119,7 +120,7 @@ class Assembly {
 
   /// Adds the MATs and links of a piece. @return false when the scene would become too large, which
   /// is a problem.
-  bool add(Piece piece, const config::Place& place);
+  [[nodiscard]] bool add(Piece piece, const config::Place& place);
   /// Puts a piece where the part it belongs to stands.
   void put(Piece& piece) const;
   void check_devices();

@@ -1,5 +1,5 @@
 // viz_node/web/page/viz.ts -- window.viz: what the page knows, for tests and for the curious.
-import type { Page } from './main.ts';
+import type { Page } from './page.ts';
 import type { NodeState, Reply } from './protocol.ts';
 
 export interface Viz {

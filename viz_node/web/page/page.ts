@@ -1,0 +1,287 @@
+// viz_node/web/page/page.ts -- the page: takes messages, draws the newest frame, and says so.
+import { ClockOffset, RealTimeFactor } from './clock.ts';
+import type { Pose } from './camera_rig.ts';
+import { Connection } from './connection.ts';
+import { Controls } from './controls.ts';
+import { roundLength } from './ground.ts';
+import { joined, withUnit } from './format.ts';
+import { Hud } from './hud.ts';
+import { Plots } from './plots.ts';
+import { toolsOf, type Description, type Frame, type Message, type Topology } from './protocol.ts';
+import { chooseQuality, findRenderer } from './quality.ts';
+import { SceneView } from './scene_view.ts';
+import type { SignalStore } from './signal_store.ts';
+
+const FIGURES_PERIOD_MS = 200;
+const PLOTS_PERIOD_MS = 60;
+const MOST_ERRORS = 20;
+const CONTEXT_LOST = 'The browser stopped drawing: its graphics driver failed. Reload the page if the picture does not come back';
+
+function find<T extends HTMLElement>(selector: string): T {
+  const found = document.querySelector<T>(selector);
+  if (found === null) throw new Error(`the page has no ${selector}`);
+  return found;
+}
+
+export class Page {
+  readonly hud = new Hud();
+  readonly errors: string[] = [];
+  description: Description | null = null;
+  view: SceneView | null = null;
+  store: SignalStore | null = null;
+  framesReceived = 0;
+  framesDrawn = 0;
+  lastFrame: Frame | null = null; // drawn
+  dropped = 0;
+  lagS = Number.NaN;
+  held = false;
+
+  private readonly stage = find('#stage');
+  private readonly plots = new Plots(find('#plots'));
+  private readonly clock = new ClockOffset();
+  private readonly factor = new RealTimeFactor();
+  private readonly renderer = findRenderer();
+  readonly connection: Connection;
+  private readonly controls: Controls;
+  private pending: Frame | null = null;
+  private pendingIsLate = false; // it came, or waited, while nobody could see the page
+  private frameMs = Number.NaN; // when the newest frame came
+  private pose: Pose | null = null; // of the eye, for the next view
+  private drawAsked = false;
+  private speeds = false;
+  private plotsMs = 0;
+  private plotsDirty = false;
+
+  constructor() {
+    window.addEventListener('error', (event) => this.note(event.error ?? event.message));
+    window.addEventListener('unhandledrejection', (event) => this.note(event.reason));
+    if (this.renderer === null) this.say('This browser has no WebGL 2: figures and signals only');
+    new ResizeObserver(() => this.view?.resize()).observe(this.stage);
+    document.addEventListener('visibilitychange', () => {
+      if (document.hidden) this.pendingIsLate = true;
+      else this.askToDraw();
+    });
+    this.listenToKeys();
+    this.connection = new Connection(`ws${location.protocol.slice(4)}//${location.host}/live`, {
+      message: (message) => this.take(message),
+      opened: () => {},
+      closed: () => this.forgetConnection(),
+      failed: (error) => this.note(error),
+    });
+    this.controls = new Controls(this.connection);
+    window.setInterval(() => this.refresh(), FIGURES_PERIOD_MS);
+  }
+
+  get sinceFrameS(): number {
+    return (performance.now() - this.frameMs) / 1000;
+  }
+
+  note(error: unknown): void {
+    console.error(error);
+    this.errors.push(String(error));
+    if (this.errors.length > MOST_ERRORS) this.errors.shift();
+  }
+
+  private take(message: Message): void {
+    switch (message.type) {
+      case 'hello':
+        return this.hud.setHello(message);
+      case 'description':
+        return this.describe(message);
+      case 'topology':
+        return this.build(message);
+      case 'status':
+        this.clock.note(message.sent_nsec, performance.now());
+        this.hud.setStatus(message);
+        return this.controls.update(this.hud.alive('sim_node'), message.replies);
+      case 'signals':
+        if (message.scene !== this.description?.scene) return;
+        this.store?.append(message);
+        this.plotsDirty = true;
+        return this.askToDraw();
+      case 'frame':
+        return this.takeFrame(message);
+    }
+  }
+
+  private takeFrame(frame: Frame): void {
+    const now = performance.now();
+    this.clock.note(frame.sentNsec, now);
+    ++this.framesReceived;
+    this.frameMs = now;
+    this.dropped = frame.dropped;
+    if (frame.scene !== this.description?.scene) return this.connection.acknowledge();
+    this.factor.note(frame.takenNsec, frame.simulatedS);
+    this.pending = frame;
+    this.pendingIsLate = document.hidden;
+    this.askToDraw();
+  }
+
+  /** A scene that is told again, by a viz_node that was restarted, goes on where it was. */
+  private describe(description: Description): void {
+    const last = this.description;
+    const isSame = last !== null && last.epoch === description.epoch && last.version === description.version;
+    const looksAlike = last !== null && last.name === description.name && last.space === description.space;
+    this.description = description;
+    this.pending = null;
+    this.connection.acknowledge(); // frames of the last scene are not drawn any more
+    this.factor.clear();
+    this.hud.setDescription(description);
+    if (isSame) return;
+    this.pose = looksAlike && this.view !== null ? this.view.rig.pose : null;
+    this.view?.dispose();
+    this.view = null;
+    this.store = this.plots.describe(description);
+  }
+
+  private build(topology: Topology): void {
+    if (topology.scene !== this.description?.scene || this.view !== null || this.renderer === null) return;
+    const size = Math.max(topology.matCount, topology.linkCount / 2);
+    const quality = chooseQuality(this.renderer.software, size, window.devicePixelRatio);
+    this.say(quality.note);
+    const { space } = this.description;
+    const tools = toolsOf(this.description);
+    const changed = () => this.askToDraw();
+    const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : quality.note);
+    try {
+      this.view = new SceneView(this.stage, topology, tools, space, quality, this.pose, changed, lost);
+      this.view.colourBySpeed(this.speeds);
+    } catch (error) {
+      this.note(error);
+      this.say('The browser gives this page no WebGL: figures and signals only. Close other tabs and reload the page');
+    }
+  }
+
+  private forgetConnection(): void {
+    this.pending = null;
+    this.clock.clear();
+    this.factor.clear();
+    this.refresh();
+  }
+
+  private say(text: string): void {
+    const notice = document.getElementById('notice') ?? this.stage.appendChild(document.createElement('p'));
+    notice.id = 'notice';
+    notice.textContent = text;
+  }
+
+  askToDraw(): void {
+    if (this.drawAsked) return;
+    this.drawAsked = true;
+    requestAnimationFrame(() => {
+      this.drawAsked = false;
+      this.draw();
+    });
+  }
+
+  private draw(): void {
+    const frame = this.pending;
+    this.pending = null;
+    try {
+      if (frame !== null && this.view !== null && !this.held) this.view.show(frame);
+      this.view?.draw();
+    } catch (error) {
+      this.note(error);
+    }
+    if (frame === null) this.connection.acknowledge();
+    else this.finish(frame);
+    this.drawPlots();
+    this.drawRuler();
+  }
+
+  private finish(frame: Frame): void {
+    const drawn = this.view !== null && !this.held && !this.pendingIsLate;
+    this.connection.acknowledge(drawn ? frame.sequence : 0);
+    if (this.view === null || this.held) return;
+    ++this.framesDrawn;
+    this.lastFrame = frame;
+    this.pendingIsLate = false;
+    const lagS = Math.max(0, this.clock.serverMs(performance.now()) * 1e-3 - frame.takenNsec * 1e-9);
+    // Smoothed so that it can be read; a picture that falls behind shows within a second.
+    this.lagS = Number.isNaN(this.lagS) || !drawn ? lagS : this.lagS + 0.1 * (lagS - this.lagS);
+  }
+
+  private drawPlots(): void {
+    const now = performance.now();
+    if (!this.plotsDirty || this.held || now - this.plotsMs < PLOTS_PERIOD_MS) return;
+    this.plotsMs = now;
+    this.plotsDirty = false;
+    this.plots.draw();
+  }
+
+  /** A length to measure by; in perspective it holds at the middle of the scene. */
+  private drawRuler(): void {
+    if (this.view === null || this.lastFrame === null) return;
+    const scale = this.view.rig.metresPerPixel;
+    const length = roundLength(160 * scale);
+    const ruler = find('#ruler');
+    (ruler.firstElementChild as HTMLElement).style.width = `${length / scale}px`;
+    ruler.lastElementChild!.textContent = joined(withUnit(length, 'm')).replace(/\.0+(?=\D)/, '');
+    if (this.speeds) {
+      find('#speed-most').textContent = joined(withUnit(this.view.fastestSpeed, 'm/s'));
+    }
+  }
+
+  private refresh(): void {
+    this.hud.refresh({
+      connected: this.connection.isOpen,
+      held: this.held,
+      simulatedS: this.lastFrame?.simulatedS ?? Number.NaN,
+      realTimeFactor: this.factor.value,
+      lagS: this.lagS,
+      dropped: this.dropped,
+      sinceFrameS: this.sinceFrameS,
+    });
+  }
+
+  private listenToKeys(): void {
+    const keys: Record<string, () => void> = {
+      f: () => this.view?.fit(),
+      '1': () => this.view?.rig.look('front'),
+      '2': () => this.view?.rig.look('side'),
+      '3': () => this.view?.rig.look('top'),
+      '4': () => this.view?.rig.look('free'),
+      o: () => this.view?.rig.toggleProjection(),
+      g: () => this.view?.toggleGround(),
+      c: () => this.colourBySpeed(!this.speeds),
+      ' ': () => (this.held = !this.held),
+      s: () => void this.savePicture(),
+    };
+    window.addEventListener('keydown', (event) => {
+      if (event.ctrlKey || event.altKey || event.metaKey) return;
+      const action = keys[event.key];
+      if (action === undefined) return;
+      event.preventDefault();
+      action();
+    });
+    for (const button of document.querySelectorAll<HTMLButtonElement>('#tools button')) {
+      button.addEventListener('click', () => {
+        keys[button.dataset.key!]!();
+        button.blur();
+      });
+    }
+    for (const button of document.querySelectorAll<HTMLButtonElement>('#windows button')) {
+      button.addEventListener('click', () => {
+        document.querySelector('#windows .on')?.classList.remove('on');
+        button.classList.add('on');
+        this.plots.setWindow(Number(button.dataset.window));
+      });
+    }
+  }
+
+  private colourBySpeed(wanted: boolean): void {
+    this.speeds = wanted;
+    this.view?.colourBySpeed(wanted);
+    find('#speed-scale').hidden = !wanted;
+  }
+
+  private async savePicture(): Promise<void> {
+    const picture = await this.view?.picture();
+    if (!picture) return;
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(picture);
+    link.download = `${this.description?.name ?? 'cordis'}_${(this.lastFrame?.simulatedS ?? 0).toFixed(2)}s.png`;
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }
+}
