@@ -10,6 +10,7 @@
 // Each + - * is rounded by itself: no operation may be contracted or reordered.
 #pragma once
 
+#include "sim_node/engine/laws/lennard_jones.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 
 namespace cordis::engine {
@@ -271,10 +272,8 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
         const std::size_t at = i + part * Lanes::kWidth;
-        const Row square = Lanes::load(row.square + at);
-        const Row inverse_square = Lanes::inverse_or_zero(square, square);
-        const Row sixth = inverse_square * inverse_square * inverse_square;
-        const Row factor = (attraction - repulsion * sixth) * sixth * inverse_square;
+        const Row factor = LennardJones::pull_per_distance<Lanes>(attraction, repulsion,
+                                                                  Lanes::load(row.square + at));
         spread<Lanes>(row, at, factor, force, sum, part);
       }
     }
