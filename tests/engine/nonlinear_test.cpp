@@ -83,12 +83,13 @@ TEST_P(Laws, OfATableMeetsItsPointsExactly) {
 }
 
 TEST_P(Laws, OfALongTableFindsEverySegment) {
-  engine::Table table;
+  std::vector<double> at;
+  std::vector<double> value;
   for (int i = 0; i < 77; ++i) {
-    table.at.push_back(0.03 * i - 0.4);
-    table.value.push_back(i * i);
+    at.push_back(0.03 * i - 0.4);
+    value.push_back(i * i);
   }
-  const LinkState state = with(table);
+  const LinkState state = with(engine::Table(at, value));
   std::vector<double> distances;
   for (int i = 0; i < 76; ++i) distances.push_back(0.5 + 0.03 * (i + 0.5) - 0.4);
   const std::vector<double> found = pulls(state, distances, GetParam());

@@ -111,7 +111,7 @@ TEST(StateMachine, OfOneStateNeedsNoStates) {
   EXPECT_EQ(ball.well_depth, 1.0e-5);
   EXPECT_EQ(ball.diameter, 0.008);
   EXPECT_EQ(ball.cutoff, 0.02);
-  EXPECT_EQ(std::get<engine::Table>(state.dissipation).value,
+  EXPECT_EQ(std::get<engine::Table>(state.dissipation).value(),
             (std::vector<double>{-2.0, 0.0, 3.0}));
   EXPECT_EQ(state.force_limit, 5.0);
   EXPECT_FALSE(state.pulls);
@@ -181,7 +181,7 @@ TEST(Law, OfEveryKindIsRead) {
   };
   const auto table =
       std::get<engine::Table>(law("{kind: table, at_m: [-1, 0, 2], force_n: [-5, 0, 1]}"));
-  EXPECT_EQ(table.at, (std::vector<double>{-1.0, 0.0, 2.0}));
+  EXPECT_EQ(table.at(), (std::vector<double>{-1.0, 0.0, 2.0}));
   const auto power = std::get<engine::Power>(law("{kind: power, coefficient: 3e4, exponent: 1.5}"));
   EXPECT_EQ(power.coefficient, 3e4);
   EXPECT_EQ(power.exponent, 1.5);

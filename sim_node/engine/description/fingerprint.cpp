@@ -56,8 +56,8 @@ class Fingerprint {
          {power.coefficient, power.exponent, ball.well_depth, ball.diameter, ball.cutoff}) {
       add(value);
     }
-    add_all(table.at);
-    add_all(table.value);
+    add_all(table.at());
+    add_all(table.value());
     add_all(held_or_default<Rings>(law).rings);
     if (const auto* expression = std::get_if<Expression>(&law)) add_all(expression->program.code);
   }

@@ -14,14 +14,13 @@ template <class Lanes>
 struct LawLoop {
   /// Adds the pull of the law to `pull`.
   static void add(const LawTerm& law, const LawArguments& of, double* pull) noexcept {
-    if (law.type == 0) return;  // no law
-    add(law, of, pull, std::make_index_sequence<std::variant_size_v<Law>>{});
+    if (law.type != 0) add_any(law, of, pull, std::make_index_sequence<std::variant_size_v<Law>>{});
   }
 
  private:
   template <std::size_t... kTypes>
-  static void add(const LawTerm& law, const LawArguments& of, double* pull,
-                  std::index_sequence<kTypes...> /*all*/) noexcept {
+  static void add_any(const LawTerm& law, const LawArguments& of, double* pull,
+                      std::index_sequence<kTypes...> /*all*/) noexcept {
     static_cast<void>((add_if<kTypes>(law, of, pull) || ...));
   }
 

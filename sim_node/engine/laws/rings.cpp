@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sim_node/engine/core/require.h"
 
@@ -44,12 +43,12 @@ LawSlope Rings::largest_slope(const LawRange& range) const noexcept {
 }
 
 double Rings::smallest_slope(double /*elongation*/) const noexcept {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double smallest = kInfinity;
+  double smallest = 0.0;
   for (const Ring& ring : rings) {
-    if (ring.stiffness != 0.0) smallest = std::min(smallest, std::abs(ring.stiffness));
+    const double size = std::abs(ring.stiffness);
+    if (size != 0.0 && (smallest == 0.0 || size < smallest)) smallest = size;
   }
-  return smallest < kInfinity ? smallest : 0.0;
+  return smallest;
 }
 
 double Rings::range() const noexcept {

@@ -10,9 +10,15 @@
 namespace cordis::engine {
 
 /// Linear between the points, constant beyond the first and the last.
-struct Table {
-  std::vector<double> at;     ///< elongation [m] or speed [m/s], strictly ascending
-  std::vector<double> value;  ///< pull [N], one for each
+class Table {
+ public:
+  Table() = default;
+  /// @param at     elongation [m] or speed [m/s], strictly ascending
+  /// @param value  pull [N], one for each
+  Table(std::vector<double> at, std::vector<double> value);
+
+  const std::vector<double>& at() const noexcept { return at_; }
+  const std::vector<double>& value() const noexcept { return value_; }
 
   static constexpr LawArgument kArgument = LawArgument::kElongation;
   static constexpr bool kStoresEnergy = true;
@@ -26,9 +32,10 @@ struct Table {
   struct Term {
     const double* at;
     const double* value;
+    const double* slope;  // to the next point; 0 at the last
     std::size_t count;
   };
-  Term term() const noexcept { return {at.data(), value.data(), at.size()}; }
+  Term term() const noexcept { return {at_.data(), value_.data(), slope_.data(), at_.size()}; }
 
   template <class Lanes>
   static void add(const Term& table, const LawArguments& of, double* pull) noexcept {
@@ -37,8 +44,7 @@ struct Table {
     alignas(64) double clamped[Batch::kRows];
     alignas(64) double at[Batch::kRows];
     alignas(64) double value[Batch::kRows];
-    alignas(64) double next_at[Batch::kRows];
-    alignas(64) double next_value[Batch::kRows];
+    alignas(64) double slope[Batch::kRows];
     const Row first = Lanes::every(table.at[0]);
     const Row last = Lanes::every(table.at[table.count - 1]);
     Batch::each(
@@ -46,19 +52,13 @@ struct Table {
         of.argument);
     for (std::size_t i = 0; i < Batch::kRows; ++i) {
       const std::size_t point = last_point_up_to<Lanes>(table, clamped[i]);
-      const std::size_t next = point + 1 < table.count ? point + 1 : point;
       at[i] = table.at[point];
       value[i] = table.value[point];
-      next_at[i] = table.at[next];
-      next_value[i] = table.value[next];
+      slope[i] = table.slope[point];
     }
-    const auto sum = [](Row p, Row u, Row a, Row v, Row next_a, Row next_v) {
-      const Row run = next_a - a;
-      const Row slope =
-          Lanes::select(Lanes::equal(run, Lanes::zero()), Lanes::zero(), (next_v - v) / run);
-      return p + (v + slope * (u - a));
-    };
-    Batch::each(pull, sum, pull, clamped, at, value, next_at, next_value);
+    Batch::each(
+        pull, [](Row p, Row u, Row a, Row v, Row s) { return p + (v + s * (u - a)); }, pull,
+        clamped, at, value, slope);
   }
 
  private:
@@ -74,6 +74,10 @@ struct Table {
     }
     return first;
   }
+
+  std::vector<double> at_;
+  std::vector<double> value_;
+  std::vector<double> slope_;
 };
 
 }  // namespace cordis::engine

@@ -1,7 +1,9 @@
 // sim_node/scene/liaisons/law.cpp
 #include "sim_node/scene/liaisons/law.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -36,24 +38,24 @@ std::vector<double> read_numbers(LawSource& source, const char* key) {
 
 engine::Table read_table(LawSource& source, const char* argument) {
   const std::size_t errors_before = source.problems.error_count();
-  engine::Table table{read_numbers(source, argument), read_numbers(source, "force_n")};
+  const std::vector<double> at = read_numbers(source, argument);
+  engine::Table table(at, read_numbers(source, "force_n"));
   if (source.problems.error_count() != errors_before) return table;
 
   const std::string name = std::string("'") + argument + "' in " + source.reader.what();
-  if (table.at.empty()) source.reader.error_at(argument, name + " must not be empty");
-  if (table.at.size() != table.value.size()) {
+  if (at.empty()) source.reader.error_at(argument, name + " must not be empty");
+  if (at.size() != table.value().size()) {
     source.reader.error_at("force_n", "'force_n' in " + source.reader.what() +
                                           " must have one number for each of '" + argument + "', " +
-                                          std::to_string(table.at.size()) + ", got " +
-                                          std::to_string(table.value.size()));
+                                          std::to_string(at.size()) + ", got " +
+                                          std::to_string(table.value().size()));
   }
-  const Value points = source.reader.optional_value(argument);
-  for (std::size_t i = 1; i < table.at.size(); ++i) {
-    if (table.at[i] > table.at[i - 1]) continue;
-    source.problems.error(points.items()[i].place(),
-                          name + " must ascend, got " + config::number_text(table.at[i]) +
-                              " after " + config::number_text(table.at[i - 1]));
-    break;
+  const auto turn = std::adjacent_find(at.begin(), at.end(), std::greater_equal<>());
+  if (turn != at.end()) {
+    const auto points = source.reader.optional_value(argument).items();
+    source.problems.error(points[static_cast<std::size_t>(turn - at.begin()) + 1].place(),
+                          name + " must ascend, got " + config::number_text(turn[1]) + " after " +
+                              config::number_text(turn[0]));
   }
   return table;
 }
