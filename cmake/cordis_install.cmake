@@ -10,8 +10,8 @@ set(engine_headers
   core/aligned_vector.h core/vec.h core/vector_width.h
   description/energy.h description/integrator_kind.h description/network.h description/state_machine.h
   description/world_records.h
-  expressions/instruction.h expressions/program.h
-  laws/law.h
+  expressions/instruction.h expressions/program.h expressions/program_term.h
+  laws/expression.h laws/law.h laws/law_term.h laws/lennard_jones.h laws/power.h laws/rings.h laws/table.h
   links/link_event.h
   world.h)
 foreach(header ${engine_headers})

@@ -10,8 +10,8 @@ namespace cordis::engine {
 
 /// True if a liaison neither pulls nor pushes in a state, whatever its ends do: apart, broken.
 inline bool is_idle(const LinkState& state) noexcept {
-  return state.stiffness == 0.0 && state.viscosity == 0.0 &&
-         state.elasticity.kind == Law::Kind::kNone && state.dissipation.kind == Law::Kind::kNone;
+  return state.stiffness == 0.0 && state.viscosity == 0.0 && is_none(state.elasticity) &&
+         is_none(state.dissipation);
 }
 
 /// True if a link with states is idle in its present state. Precondition: the link exists.

@@ -53,9 +53,7 @@ std::shared_ptr<const Network> agglomerate(double tolerance) {
   }
   LinkState paste;
   const double diameter = kSpacing / std::pow(2.0, 1.0 / 6.0);
-  paste.elasticity.kind = cordis::engine::Law::Kind::kLennardJones;
-  paste.elasticity.depth = 200.0 * diameter * diameter / 57.14628;
-  paste.elasticity.diameter = diameter;
+  paste.elasticity = cordis::engine::LennardJones{200.0 * diameter * diameter / 57.14628, diameter};
   paste.viscosity = 0.2;
   StateMachine state_machine;
   state_machine.states = {paste};

@@ -45,10 +45,7 @@ std::shared_ptr<const Network> melt() {
   }
   cordis::engine::StateMachine state_machine;
   state_machine.states.resize(1);
-  state_machine.states[0].elasticity.kind = cordis::engine::Law::Kind::kLennardJones;
-  state_machine.states[0].elasticity.depth = 1.0;
-  state_machine.states[0].elasticity.diameter = 1.0;
-  state_machine.states[0].elasticity.cut = 2.5;
+  state_machine.states[0].elasticity = cordis::engine::LennardJones{1.0, 1.0, 2.5};
   network.state_machines = {state_machine};
   cordis::engine::SetLiaison set;
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) set.set_p.push_back(i);

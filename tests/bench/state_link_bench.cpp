@@ -51,8 +51,7 @@ StateMachine with_expression(Kind kind) {
   const auto number = [](double value) { return Instruction{Operation::kConstant, {}, value, 0}; };
   StateMachine state_machine;
   state_machine.states.resize(1);
-  state_machine.states[0].elasticity.kind = cordis::engine::Law::Kind::kExpression;
-  Program& law = state_machine.states[0].elasticity.expression;
+  Program& law = state_machine.states[0].elasticity.emplace<cordis::engine::Expression>().program;
   if (kind == kFunctions) {  // 100 * e * exp(-abs(e)) + 0.01 * tanh(v)
     law.code = {number(100.0), e};
     append(law, {Operation::kMultiply});
@@ -85,8 +84,8 @@ StateMachine collophane(Kind kind) {
   hooked.last_exit = 1;
   if (kind == kTableOfForces) {
     hooked.stiffness = 0.0;
-    hooked.elasticity.kind = cordis::engine::Law::Kind::kTable;
-    hooked.elasticity.table = {{-0.01, -0.001, 0.0, 0.001, 0.01}, {-2.0, -0.1, 0.0, 0.1, 2.0}};
+    hooked.elasticity =
+        cordis::engine::Table{{-0.01, -0.001, 0.0, 0.001, 0.01}, {-2.0, -0.1, 0.0, 0.1, 2.0}};
   }
   LinkState unhooked;
   unhooked.viscosity = 0.02;

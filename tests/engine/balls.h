@@ -46,12 +46,9 @@ inline LinkState contact(double stiffness, double viscosity) {
   return state;
 }
 
-inline LinkState lennard_jones(double depth, double diameter, double cut) {
+inline LinkState lennard_jones(double well_depth, double diameter, double cutoff) {
   LinkState state;
-  state.elasticity.kind = Law::Kind::kLennardJones;
-  state.elasticity.depth = depth;
-  state.elasticity.diameter = diameter;
-  state.elasticity.cut = cut;
+  state.elasticity = engine::LennardJones{well_depth, diameter, cutoff};
   return state;
 }
 

@@ -72,9 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Clamped, Restitution, testing::Bool());
 TEST(Contact, OfHertzGoesAsDeepAndLastsAsLongAsItMust) {
   const nlohmann::json data = reference("R13_hertz_bounce");
   LinkState touching;
-  touching.elasticity.kind = engine::Law::Kind::kPower;
-  touching.elasticity.coefficient = number(data["params"]["K"]);
-  touching.elasticity.exponent = 1.5;
+  touching.elasticity = engine::Power{number(data["params"]["K"]), 1.5};
   touching.pulls = false;
   const double step = 1e-6;
   World world = make_world(

@@ -9,34 +9,19 @@
 namespace cordis::test {
 
 inline engine::Law table_law() {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kTable;
-  law.table = {{-0.2, -0.05, 0.0, 0.1, 0.3}, {-9.0, -1.0, 0.0, 2.5, 3.0}};
-  return law;
+  return engine::Table{{-0.2, -0.05, 0.0, 0.1, 0.3}, {-9.0, -1.0, 0.0, 2.5, 3.0}};
 }
 
 inline engine::Law power_law(double coefficient, double exponent) {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kPower;
-  law.coefficient = coefficient;
-  law.exponent = exponent;
-  return law;
+  return engine::Power{coefficient, exponent};
 }
 
-inline engine::Law lennard_jones_law(double depth, double diameter, double cut) {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kLennardJones;
-  law.depth = depth;
-  law.diameter = diameter;
-  law.cut = cut;
-  return law;
+inline engine::Law lennard_jones_law(double well_depth, double diameter, double cutoff) {
+  return engine::LennardJones{well_depth, diameter, cutoff};
 }
 
 inline engine::Law ring_law() {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kRings;
-  law.rings = {{40.0, 0.2}, {-15.0, 0.4}};
-  return law;
+  return engine::Rings{{{40.0, 0.2}, {-15.0, 0.4}}};
 }
 
 /// 30 e + 100 e^3 + (m_a + m_b) v.

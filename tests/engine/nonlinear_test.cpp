@@ -75,21 +75,21 @@ TEST_P(Laws, OfATableIsLinearBetweenItsPointsAndConstantBeyond) {
 
 TEST_P(Laws, OfATableMeetsItsPointsExactly) {
   LinkState state;
-  state.elasticity.kind = Law::Kind::kTable;
-  state.elasticity.table = {{-0.25, 0.125, 0.25, 1.5}, {-0.3, 0.7, 0.1, 7.7}};
+  state.elasticity = engine::Table{{-0.25, 0.125, 0.25, 1.5}, {-0.3, 0.7, 0.1, 7.7}};
   EXPECT_EQ(pulls(state, {0.25, 0.625, 0.75, 2.0, 0.125, 9.0}, GetParam()),
             (std::vector<double>{-0.3, 0.7, 0.1, 7.7, -0.3, 7.7}));
-  state.elasticity.table = {{0.3}, {2.5}};
+  state.elasticity = engine::Table{{0.3}, {2.5}};
   EXPECT_EQ(pulls(state, {0.25, 0.75, 0.8}, GetParam()), (std::vector<double>{2.5, 2.5, 2.5}));
 }
 
 TEST_P(Laws, OfALongTableFindsEverySegment) {
-  LinkState state;
-  state.elasticity.kind = Law::Kind::kTable;
+  std::vector<double> at;
+  std::vector<double> value;
   for (int i = 0; i < 77; ++i) {
-    state.elasticity.table.at.push_back(0.03 * i - 0.4);
-    state.elasticity.table.value.push_back(i * i);
+    at.push_back(0.03 * i - 0.4);
+    value.push_back(i * i);
   }
+  const LinkState state = with(engine::Table(at, value));
   std::vector<double> distances;
   for (int i = 0; i < 76; ++i) distances.push_back(0.5 + 0.03 * (i + 0.5) - 0.4);
   const std::vector<double> found = pulls(state, distances, GetParam());
@@ -148,8 +148,7 @@ TEST_P(Laws, OfAnExpressionHaveTheBitsOfTheScalarEvaluator) {
   const std::vector<double> found = pulls(state, distances, GetParam());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double d = distances[i];
-    EXPECT_EQ(found[i],
-              engine::expression_pull(state.elasticity.expression, d, d - 0.5, 0.0, 1.0, 1.0));
+    EXPECT_EQ(found[i], elastic_pull(state.elasticity, {d, d - 0.5, 0.0, 1.0, 1.0}));
   }
   expect_pulls(state, [](double d) {
     const double e = d - 0.5;

@@ -85,10 +85,7 @@ inline Term size(Term u) {
 
 /// A law that is the value of an expression.
 inline engine::Law expression_law(Term pull) {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kExpression;
-  law.expression = std::move(pull.program);
-  return law;
+  return engine::Expression{std::move(pull.program)};
 }
 
 /// A state machine under construction.

@@ -50,8 +50,7 @@ std::vector<LawCase> laws() {
                    [](const Pair& p) { return std::clamp(100.0 * p.elongation, -1.5, 1.5); }});
 
   LinkState table;
-  table.elasticity.kind = Law::Kind::kTable;
-  table.elasticity.table = {{-0.05, 0.0, 0.02, 0.05}, {-8.0, 0.0, 1.0, 0.0}};
+  table.elasticity = engine::Table{{-0.05, 0.0, 0.02, 0.05}, {-8.0, 0.0, 1.0, 0.0}};
   cases.push_back({"table", table, 0.06, [](const Pair& p) {
                      const double e = p.elongation;
                      if (e < -0.05) return -8.0;
@@ -61,12 +60,8 @@ std::vector<LawCase> laws() {
                    }});
 
   LinkState hertz;
-  hertz.elasticity.kind = Law::Kind::kPower;
-  hertz.elasticity.coefficient = 900.0;
-  hertz.elasticity.exponent = 1.5;
-  hertz.dissipation.kind = Law::Kind::kPower;
-  hertz.dissipation.coefficient = 0.05;
-  hertz.dissipation.exponent = 2.0;
+  hertz.elasticity = engine::Power{900.0, 1.5};
+  hertz.dissipation = engine::Power{0.05, 2.0};
   hertz.pulls = false;
   cases.push_back({"power", hertz, -1.0, [](const Pair& p) {
                      const double elastic =
@@ -76,8 +71,7 @@ std::vector<LawCase> laws() {
 
   LinkState rings;
   rings.viscosity = 0.01;
-  rings.elasticity.kind = Law::Kind::kRings;
-  rings.elasticity.rings = {{200.0, 0.07}, {-30.0, 0.1}};
+  rings.elasticity = engine::Rings{{{200.0, 0.07}, {-30.0, 0.1}}};
   cases.push_back({"rings", rings, 0.0, [](const Pair& p) {
                      return -200.0 * std::max(0.0, 0.07 - p.distance) +
                             30.0 * std::max(0.0, 0.1 - p.distance) + 0.01 * p.speed;

@@ -277,9 +277,7 @@ TEST_P(StateLinks, HaveNoForceWhileTheirLengthIsZero) {
   LinkState state;
   state.stiffness = 100.0;
   state.viscosity = 2.0;
-  state.elasticity.kind = engine::Law::Kind::kLennardJones;
-  state.elasticity.depth = 1e-3;
-  state.elasticity.diameter = 0.1;
+  state.elasticity = engine::LennardJones{1e-3, 0.1};
   scene.state_machines = {Behaving().state(state).state_machine};
   scene.state_links = {{0, 1, 0, 0.5}};
   World world = make(scene);

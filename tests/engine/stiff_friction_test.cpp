@@ -19,11 +19,7 @@ using engine::IntegratorKind;
 using engine::Law;
 
 Law power_of_speed(double coefficient, double exponent) {
-  Law law;
-  law.kind = Law::Kind::kPower;
-  law.coefficient = coefficient;
-  law.exponent = exponent;
-  return law;
+  return engine::Power{coefficient, exponent};
 }
 
 LinkState with_friction(const Law& law) {
@@ -125,15 +121,14 @@ TEST(StiffFriction, CannotBeFrozen) {
 
 /// Bow friction [N] over the speed [m/s]: steep through 0, falling beyond 0.07 m/s.
 Law bow_law(double force) {
-  Law law;
-  law.kind = Law::Kind::kTable;
+  std::vector<double> at;
+  std::vector<double> value;
   for (int i = -1000; i <= 1000; ++i) {
     const double speed = 1e-3 * i;
-    law.table.at.push_back(speed);
-    law.table.value.push_back(force * std::sqrt(200.0) * speed *
-                              std::exp(-100.0 * speed * speed + 0.5));
+    at.push_back(speed);
+    value.push_back(force * std::sqrt(200.0) * speed * std::exp(-100.0 * speed * speed + 0.5));
   }
-  return law;
+  return engine::Table(at, value);
 }
 
 /// 60 masses of 84 mg, 100 Hz, drawn by a bow of 5 N at 0.1 m/s: while it sticks, 117 N s/m.

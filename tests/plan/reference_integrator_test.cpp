@@ -79,12 +79,8 @@ TEST(ReferenceIntegrator, FollowsTwoBodiesAsTheReferenceDoes) {
 TEST(ReferenceIntegrator, FollowsACubicSpringAsTheReferenceDoes) {
   const nlohmann::json problem = reference("R07_duffing");
   NetworkDescription scene = oscillator(1.0, 1.0, 0.0, 2.0, 0.0, 1e-2);
-  engine::Law cubic;
-  cubic.kind = engine::Law::Kind::kPower;
-  cubic.coefficient = 0.5;
-  cubic.exponent = 3.0;
   scene.links.clear();
-  scene.state_machines.push_back(state_machine(1.0, cubic));
+  scene.state_machines.push_back(state_machine(1.0, engine::Power{0.5, 3.0}));
   scene.state_links = {{0, 1, 0, 0.0}};
   ReferenceIntegrator reference_integrator(scene);
   for (const auto& row : problem["t_x"]) {

@@ -141,11 +141,7 @@ ReferenceProblem two_bodies() {
 }
 
 engine::Law power(double coefficient, double exponent) {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kPower;
-  law.coefficient = coefficient;
-  law.exponent = exponent;
-  return law;
+  return engine::Power{coefficient, exponent};
 }
 
 NetworkDescription with_law(NetworkDescription scene, const engine::StateMachine& state_machine) {
@@ -208,11 +204,7 @@ ReferenceProblem quadratic_chain() {
 }
 
 engine::Law lennard_jones() {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kLennardJones;
-  law.depth = 1.0;
-  law.diameter = 1.0;
-  return law;
+  return engine::LennardJones{1.0, 1.0};
 }
 
 ReferenceProblem dimer() {
@@ -292,10 +284,7 @@ ReferenceProblem standard_linear_solid() {
 }
 
 engine::Law always(double pull) {
-  engine::Law law;
-  law.kind = engine::Law::Kind::kTable;
-  law.table = {{0.0}, {pull}};
-  return law;
+  return engine::Table{{0.0}, {pull}};
 }
 
 /// A block on a spring under a belt, from where it is farthest on. It sticks by a spring so stiff

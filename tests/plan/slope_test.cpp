@@ -15,12 +15,8 @@ using plan::largest_slope;
 using plan::Reach;
 using plan::Slope;
 
-Law lennard_jones(double depth, double diameter) {
-  Law law;
-  law.kind = Law::Kind::kLennardJones;
-  law.depth = depth;
-  law.diameter = diameter;
-  return law;
+Law lennard_jones(double well_depth, double diameter) {
+  return engine::LennardJones{well_depth, diameter};
 }
 
 TEST(Slope, OfLennardJonesGrowsWithTheEnergyOfTheApproach) {
@@ -36,9 +32,7 @@ TEST(Slope, OfLennardJonesGrowsWithTheEnergyOfTheApproach) {
 }
 
 TEST(Slope, OfATableIsThatOfItsSteepestPiece) {
-  Law law;
-  law.kind = Law::Kind::kTable;
-  law.table = {{-0.01, 0.0, 0.02, 0.03}, {-8.0, 0.0, 1.0, 1.0}};
+  const engine::Table law{{-0.01, 0.0, 0.02, 0.03}, {-8.0, 0.0, 1.0, 1.0}};
 
   const Slope slope = largest_slope(state_machine(5.0, law), 0.1, 3, {});
 
@@ -48,21 +42,15 @@ TEST(Slope, OfATableIsThatOfItsSteepestPiece) {
 
 TEST(Slope, OfAPullThatLastsIsAlsoAcrossTheLink) {
   // 10 N at 2 cm: across the link that is 500 N/m, while the pull itself does not grow.
-  Law law;
-  law.kind = Law::Kind::kTable;
-  law.table = {{-0.08, 0.0, 1.0}, {0.0, 0.0, 0.0}};
-  law.table.value = {0.0, 1.0, 1.0};
+  engine::Table law{{-0.08, 0.0, 1.0}, {0.0, 1.0, 1.0}};
   EXPECT_NEAR(largest_slope(state_machine(0.0, law), 0.1, 1, {}).stiffness, 12.5, 1e-12);
-  law.table = {{-0.0801, -0.08, 1.0}, {9.99, 10.0, 10.0}};
+  law = {{-0.0801, -0.08, 1.0}, {9.99, 10.0, 10.0}};
   EXPECT_NEAR(largest_slope(state_machine(0.0, law), 0.1, 3, {}).stiffness, 10.0 / 0.02, 5.0);
   EXPECT_LE(largest_slope(state_machine(0.0, law), 0.1, 1, {}).stiffness, 101.0);
 }
 
 TEST(Slope, OfAPowerIsThatAtTheReach) {
-  Law law;
-  law.kind = Law::Kind::kPower;
-  law.coefficient = 1e5;
-  law.exponent = 1.5;
+  const engine::Power law{1e5, 1.5};
 
   const Slope slope = largest_slope(state_machine(0.0, law), 0.01, 1, Reach{0.01, 1.0, 0.0});
 
@@ -72,9 +60,7 @@ TEST(Slope, OfAPowerIsThatAtTheReach) {
 
 TEST(Slope, OfRingsIsThatOfTheirSteepestSum) {
   // Pushing within 1 cm, pulling between 1 and 2 cm.
-  Law law;
-  law.kind = Law::Kind::kRings;
-  law.rings = {{300.0, 0.01}, {-100.0, 0.02}};
+  const engine::Rings law{{{300.0, 0.01}, {-100.0, 0.02}}};
 
   EXPECT_DOUBLE_EQ(largest_slope(state_machine(0.0, law), 0.0, 1, {}).stiffness, 200.0);
   // At 1 cm it pulls with 1 N: 100 N/m across, still less.

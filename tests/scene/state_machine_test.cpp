@@ -110,11 +110,12 @@ TEST(StateMachine, OfOneStateNeedsNoStates) {
   ASSERT_TRUE(clay.is_stateless());
   const engine::LinkState& state = clay.states[0];
   EXPECT_EQ(state.viscosity, 0.03);
-  EXPECT_EQ(state.elasticity.kind, engine::Law::Kind::kLennardJones);
-  EXPECT_EQ(state.elasticity.depth, 1.0e-5);
-  EXPECT_EQ(state.elasticity.diameter, 0.008);
-  EXPECT_EQ(state.elasticity.cut, 0.02);
-  EXPECT_EQ(state.dissipation.table.value, (std::vector<double>{-2.0, 0.0, 3.0}));
+  const auto ball = std::get<engine::LennardJones>(state.elasticity);
+  EXPECT_EQ(ball.well_depth, 1.0e-5);
+  EXPECT_EQ(ball.diameter, 0.008);
+  EXPECT_EQ(ball.cutoff, 0.02);
+  EXPECT_EQ(std::get<engine::Table>(state.dissipation).value(),
+            (std::vector<double>{-2.0, 0.0, 3.0}));
   EXPECT_EQ(state.force_limit, 5.0);
   EXPECT_FALSE(state.pulls);
   EXPECT_TRUE(state.pushes);
@@ -187,16 +188,15 @@ TEST(Law, OfEveryKindIsRead) {
         .states[0]
         .elasticity;
   };
-  const engine::Law table = law("{kind: table, at_m: [-1, 0, 2], force_n: [-5, 0, 1]}");
-  EXPECT_EQ(table.kind, engine::Law::Kind::kTable);
-  EXPECT_EQ(table.table.at, (std::vector<double>{-1.0, 0.0, 2.0}));
-  const engine::Law power = law("{kind: power, coefficient: 3e4, exponent: 1.5}");
-  EXPECT_EQ(power.kind, engine::Law::Kind::kPower);
+  const auto table =
+      std::get<engine::Table>(law("{kind: table, at_m: [-1, 0, 2], force_n: [-5, 0, 1]}"));
+  EXPECT_EQ(table.at(), (std::vector<double>{-1.0, 0.0, 2.0}));
+  const auto power = std::get<engine::Power>(law("{kind: power, coefficient: 3e4, exponent: 1.5}"));
   EXPECT_EQ(power.coefficient, 3e4);
   EXPECT_EQ(power.exponent, 1.5);
-  const engine::Law rings =
+  const auto rings = std::get<engine::Rings>(
       law("{kind: rings, rings: [{stiffness_n_per_m: 5, radius_m: 0.1}, {stiffness_n_per_m: -1, "
-          "radius_m: 0.2}]}");
+          "radius_m: 0.2}]}"));
   ASSERT_EQ(rings.rings.size(), 2u);
   EXPECT_EQ(rings.rings[1].stiffness, -1.0);
   EXPECT_EQ(rings.rings[1].radius, 0.2);
@@ -209,14 +209,13 @@ TEST(Law, OfAFreeExpressionIsItsValue) {
       "    dissipation: 3 * speed_m_per_s * mass_a_kg\n",
       "  - {liaison: l, between: [wall, bob]}\n");
   const engine::LinkState& state = network.state_machines.at(0).states[0];
-  ASSERT_EQ(state.elasticity.kind, engine::Law::Kind::kExpression);
+  ASSERT_TRUE(std::holds_alternative<engine::Expression>(state.elasticity));
   const auto pull = [&](double distance, double elongation) {
-    return engine::expression_pull(state.elasticity.expression, distance, elongation, 0.0, 0.0,
-                                   0.0);
+    return elastic_pull(state.elasticity, {distance, elongation});
   };
   EXPECT_NEAR(pull(1.0, 0.1), 500 * 0.1 + 2e6 * 0.001, 1e-9);
   EXPECT_NEAR(pull(3.0, 0.1), 500 * 0.1 + 2e6 * 0.001 - 1.0, 1e-9);
-  EXPECT_EQ(engine::expression_pull(state.dissipation.expression, 1.0, 0.1, 2.0, 4.0, 0.0), 24.0);
+  EXPECT_EQ(viscous_pull(state.dissipation, {1.0, 0.1, 2.0, 4.0}), 24.0);
 }
 
 /// The pull of an expression at a distance of 2 m, an elongation of 0.5 m and a speed of -3 m/s.
@@ -224,8 +223,7 @@ double pull_of_text(const std::string& text, const std::string& parameters = "{}
   const engine::NetworkDescription network =
       network_of("  l:\n    parameters: " + parameters + "\n    elasticity: \"" + text + "\"\n",
                  "  - {liaison: l, between: [wall, bob]}\n");
-  return engine::expression_pull(network.state_machines.at(0).states[0].elasticity.expression, 2.0,
-                                 0.5, -3.0, 7.0, 0.0);
+  return elastic_pull(network.state_machines.at(0).states[0].elasticity, {2.0, 0.5, -3.0, 7.0});
 }
 
 TEST(Law, KnowsPowersChoicesAndFunctions) {

@@ -6,6 +6,12 @@
 namespace cordis::engine {
 namespace {
 
+template <class Type>
+Type held_or_default(const Law& law) {
+  const Type* held = std::get_if<Type>(&law);
+  return held != nullptr ? *held : Type{};
+}
+
 // What a network does not have leaves no trace, so that networks of older kinds keep their number.
 class Fingerprint {
  public:
@@ -41,14 +47,19 @@ class Fingerprint {
     add(ring.radius);
   }
   void add(const Law& law) {
-    add(static_cast<std::uint64_t>(law.kind));
-    for (const double value : {law.coefficient, law.exponent, law.depth, law.diameter, law.cut}) {
+    static_assert(std::variant_size_v<Law> == 6, "what a new law holds belongs to the fingerprint");
+    add(static_cast<std::uint64_t>(law.index()));
+    const auto power = held_or_default<Power>(law);
+    const auto ball = held_or_default<LennardJones>(law);
+    const auto table = held_or_default<Table>(law);
+    for (const double value :
+         {power.coefficient, power.exponent, ball.well_depth, ball.diameter, ball.cutoff}) {
       add(value);
     }
-    add_all(law.table.at);
-    add_all(law.table.value);
-    add_all(law.rings);
-    if (law.kind == Law::Kind::kExpression) add_all(law.expression.code);
+    add_all(table.at());
+    add_all(table.value());
+    add_all(held_or_default<Rings>(law).rings);
+    if (const auto* expression = std::get_if<Expression>(&law)) add_all(expression->program.code);
   }
   void add(const LinkState& state) {
     add(state.stiffness);

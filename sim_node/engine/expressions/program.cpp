@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "sim_node/engine/core/require.h"
-#include "sim_node/engine/expressions/elementary_functions.h"
+#include "sim_node/engine/expressions/program_kernel_body.h"
+#include "sim_node/engine/simd/lanes_scalar.h"
 
 namespace cordis::engine {
 namespace {
@@ -41,74 +42,6 @@ double truth(bool value) noexcept {
   return value ? 1.0 : 0.0;
 }
 
-/// Owner of this file's own elementary functions.
-struct OneValue;
-using Functions = ElementaryFunctions<OneValue>;
-
-double of_one(const Instruction& instruction, double a) noexcept {
-  switch (instruction.operation) {
-    case Operation::kNegate:
-      return -a;
-    case Operation::kAbs:
-      return std::abs(a);
-    case Operation::kSqrt:
-      return std::sqrt(a);
-    case Operation::kNot:
-      return truth(a == 0.0);
-    case Operation::kSign:
-      return a > 0.0 ? 1.0 : (a < 0.0 ? -1.0 : a);
-    case Operation::kExp:
-      return Functions::exp(a);
-    case Operation::kLog:
-      return Functions::log(a);
-    case Operation::kSin:
-      return Functions::sin(a);
-    case Operation::kCos:
-      return Functions::cos(a);
-    case Operation::kTanh:
-      return Functions::tanh(a);
-    case Operation::kWholePower:
-      return Functions::whole_power(a, instruction.constant);
-    default:
-      return 0.0;  // an edge, which a value alone does not tell
-  }
-}
-
-double of_two(Operation operation, double a, double b) noexcept {
-  switch (operation) {
-    case Operation::kMin:
-      return a < b ? a : b;
-    case Operation::kMax:
-      return a > b ? a : b;
-    case Operation::kAdd:
-      return a + b;
-    case Operation::kSubtract:
-      return a - b;
-    case Operation::kMultiply:
-      return a * b;
-    case Operation::kDivide:
-      return a / b;
-    case Operation::kPower:
-      return Functions::power(a, b);
-    case Operation::kLess:
-      return truth(a < b);
-    case Operation::kLessOrEqual:
-      return truth(a <= b);
-    case Operation::kGreater:
-      return truth(a > b);
-    case Operation::kGreaterOrEqual:
-      return truth(a >= b);
-    case Operation::kEqual:
-      return truth(a == b);
-    case Operation::kNotEqual:
-      return truth(a != b);
-    case Operation::kAnd:
-      return truth(a != 0.0 && b != 0.0);
-    default:
-      return truth(a != 0.0 || b != 0.0);
-  }
-}
-
 }  // namespace
 
 std::size_t operand_count(Operation operation) noexcept {
@@ -142,16 +75,14 @@ bool is_edge(Operation operation) noexcept {
 }
 
 double apply(const Instruction& instruction, const double* operands) noexcept {
-  switch (operand_count(instruction.operation)) {
-    case 1:
-      return of_one(instruction, operands[0]);
-    case 2:
-      return of_two(instruction.operation, operands[0], operands[1]);
-    case 3:
-      return operands[0] != 0.0 ? operands[1] : operands[2];
-    default:
-      return 0.0;
+  std::array<Instruction, 4> code{};
+  std::size_t count = 0;
+  for (; count < operand_count(instruction.operation); ++count) {
+    code[count] = {Operation::kConstant, {}, operands[count], 0};
   }
+  code[count] = instruction;
+  ProgramLoop<ScalarLanes> loop;
+  return *loop.evaluate({code.data(), count + 1}, {nullptr, nullptr}, 0);
 }
 
 bool asks_for(const Program& program, Quantity quantity) noexcept {

@@ -31,43 +31,10 @@ struct OfMat {
   }
 };
 
-/// What a law pulls at an elongation as small as the tolerance, over that; 0 when nothing is known.
-double min_slope(const Law& law, double tolerance) {
-  constexpr double kSlopeAtRest = 57.14628;  // of Lennard-Jones, 72 / 2^(1/3) depth / diameter^2
-  double least = kInfinity;
-  switch (law.kind) {
-    case Law::Kind::kTable:
-      for (std::size_t i = 1; i < law.table.at.size(); ++i) {
-        const double slope =
-            (law.table.value[i] - law.table.value[i - 1]) / (law.table.at[i] - law.table.at[i - 1]);
-        if (slope != 0.0) least = std::min(least, std::abs(slope));
-      }
-      return least < kInfinity ? least : 0.0;
-    case Law::Kind::kPower: {
-      double power = law.coefficient / tolerance;  // times tolerance^exponent
-      auto halves = static_cast<unsigned>(2.0 * law.exponent);
-      if ((halves & 1U) != 0) power *= std::sqrt(tolerance);
-      for (halves >>= 1; halves != 0; --halves) power *= tolerance;
-      return std::abs(power);
-    }
-    case Law::Kind::kLennardJones:
-      return kSlopeAtRest * law.depth / (law.diameter * law.diameter);
-    case Law::Kind::kRings:
-      for (const Ring& ring : law.rings) {
-        if (ring.stiffness != 0.0) least = std::min(least, std::abs(ring.stiffness));
-      }
-      return least < kInfinity ? least : 0.0;
-    case Law::Kind::kNone:
-    case Law::Kind::kExpression:
-      break;
-  }
-  return 0.0;
-}
-
 void add(const StateMachine& state_machine, double tolerance, OfMat& of_mat) {
   double viscosity = 0.0;
   for (const LinkState& state : state_machine.states) {
-    const double stiffness = state.stiffness + min_slope(state.elasticity, tolerance);
+    const double stiffness = state.stiffness + smallest_slope(state.elasticity, tolerance);
     if (stiffness > 0.0) of_mat.least = std::min(of_mat.least, stiffness);
     viscosity = std::max(viscosity, state.viscosity);
   }

@@ -14,9 +14,9 @@ namespace {
 const char* not_a_potential(const StateMachine& state_machine) {
   if (!state_machine.is_stateless()) return "states";
   const LinkState& state = state_machine.states[0];
-  if (state.viscosity > 0.0 || state.dissipation.kind != Law::Kind::kNone) return "viscosity";
+  if (state.viscosity > 0.0 || !is_none(state.dissipation)) return "viscosity";
   if (std::isfinite(state.force_limit)) return "a force limit";
-  if (state.elasticity.kind == Law::Kind::kExpression) return "a free expression";
+  if (!stores_energy(state.elasticity)) return "a free expression";
   return nullptr;
 }
 

@@ -20,41 +20,15 @@ double inverse_mass(const Mat& mat) noexcept {
   return mat.kind == MatKind::kMass ? 1.0 / mat.mass : 0.0;
 }
 
-double steepest_of_table(const Table& table) noexcept {
-  double most = 0.0;
-  for (std::size_t i = 1; i < table.at.size(); ++i) {
-    most = std::max(most, (table.value[i] - table.value[i - 1]) / (table.at[i] - table.at[i - 1]));
-  }
-  return most;
-}
-
-double steepest_of(const Program& expression) noexcept {
-  constexpr int kParts = 64;
-  constexpr double kStep = 2.0 * kMaxSpeed / kParts;
-  const auto pull = [&](int i) {
-    return expression_pull(expression, 1.0, 0.0, kStep * i - kMaxSpeed, 1.0, 1.0);
-  };
-  double most = 0.0;
-  for (int i = 1; i <= kParts; ++i) most = std::max(most, (pull(i) - pull(i - 1)) / kStep);
-  return std::isfinite(most) ? most : kUnbounded;
-}
-
-/// Slope of a law over the speed where it is steepest [N s/m].
+/// Slope of a dissipation over the speed where it is steepest [N s/m].
 double steepest(const Law& law) noexcept {
-  switch (law.kind) {
-    case Law::Kind::kTable:
-      return steepest_of_table(law.table);
-    case Law::Kind::kPower:
-      if (law.coefficient <= 0.0) return 0.0;
-      return law.exponent < 1.0 ? kUnbounded : law.coefficient * law.exponent;
-    case Law::Kind::kExpression:
-      return steepest_of(law.expression);
-    case Law::Kind::kNone:
-    case Law::Kind::kLennardJones:
-    case Law::Kind::kRings:
-      break;
-  }
-  return 0.0;
+  LawRange range{kMaxSpeed};
+  range.viscous = true;
+  range.rest_length = 1.0;
+  range.mass = 1.0;
+  range.samples = 64;
+  const LawSlope slope = largest_slope(law, range);
+  return slope.infinite_at_zero ? kUnbounded : slope.value;
 }
 
 /// @param slope, viscosity, steps  room for one value of each state machine, MAT and state link

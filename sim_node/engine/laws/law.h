@@ -1,51 +1,49 @@
-// sim_node/engine/laws/law.h -- elasticity or viscosity that is not linear.
+// sim_node/engine/laws/law.h -- elasticity or viscosity that is not linear: the table of all laws.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
+#include <variant>
 
-#include "sim_node/engine/expressions/program.h"
+#include "sim_node/engine/laws/expression.h"
+#include "sim_node/engine/laws/lennard_jones.h"
+#include "sim_node/engine/laws/power.h"
+#include "sim_node/engine/laws/rings.h"
+#include "sim_node/engine/laws/table.h"
 
 namespace cordis::engine {
 
-/// A function given by points: linear between them, constant beyond the first and the last.
-struct Table {
-  std::vector<double> at;     ///< strictly ascending
-  std::vector<double> value;  ///< one for each
-};
+/// No pull.
+struct NoLaw {
+  static constexpr LawArgument kArgument = LawArgument::kNone;
+  static constexpr bool kStoresEnergy = true;
 
-/// One term of a ring sum: pushes apart with stiffness * (radius - d) while d < radius; pulls
-/// together when the stiffness is below 0.
-struct Ring {
-  double stiffness = 0.0;  ///< [N/m]
-  double radius = 0.0;     ///< [m], > 0
+  void check(const std::string& /*name*/) const noexcept {}
+  double potential(double /*distance*/, double /*elongation*/) const noexcept { return 0.0; }
+  LawSlope largest_slope(const LawRange& /*range*/) const noexcept { return {}; }
+  double smallest_slope(double /*elongation*/) const noexcept { return 0.0; }
+  double range() const noexcept { return 0.0; }
+
+  struct Term {};
+  Term term() const noexcept { return {}; }
+
+  template <class Lanes>
+  static void add(const Term& /*law*/, const LawArguments& /*of*/, double* /*pull*/) noexcept {}
 };
 
 /// An elastic law gives a pull over the elongation or the distance, a viscous one over the speed.
+/// A new law is a type with the members of NoLaw, added here at the end: its place is part of the
+/// fingerprint of a network.
 /// [Luc90 III.2.2 Modelisation of the material in its continuous behaviour]
-struct Law {
-  enum class Kind : std::uint8_t {
-    kNone,          ///< 0
-    kTable,         ///< over the elongation, or the speed
-    kPower,         ///< coefficient * sign(e) * |e|^exponent, e the elongation, or the speed
-    kLennardJones,  ///< slope of 4 depth ((s/d)^12 - (s/d)^6), s the diameter: elastic only
-    kRings,         ///< sum over the rings, over the distance: elastic only
-    kExpression     ///< over what an expression of a law may ask for
-  };
+using Law = std::variant<NoLaw, Table, Power, LennardJones, Rings, Expression>;
 
-  Kind kind = Kind::kNone;
-  Table table;
-  double coefficient = 0.0;  ///< [N/m^exponent], or [N (s/m)^exponent]
-  double exponent = 1.0;     ///< a multiple of 0.5 from 0 to kMaxExponent
-  double depth = 0.0;        ///< [J], >= 0
-  double diameter = 0.0;     ///< [m], > 0
-  double cut = 0.0;          ///< distance from which on there is no force [m]; 0: everywhere
-  std::vector<Ring> rings;
-  Program expression;  ///< of distance, elongation, speed and masses alone, without edges
-};
+inline bool is_none(const Law& law) noexcept {
+  return law.index() == 0;
+}
 
-inline constexpr double kMaxExponent = 16.0;
+/// What the law is a function of.
+LawArgument argument_of(const Law& law) noexcept;
+/// False when no energy counts as stored in it, because there is no closed form.
+bool stores_energy(const Law& law) noexcept;
 
 /// @throws std::invalid_argument beginning with `name` when the law is not fit to be the elasticity
 /// of a state.
@@ -53,16 +51,23 @@ void check_elasticity(const Law& law, const std::string& name);
 /// The same for its viscosity.
 void check_dissipation(const Law& law, const std::string& name);
 
-/// True when an expression of a law may ask for the quantity.
-bool is_known_to_laws(Quantity quantity) noexcept;
+/// The pull [N] of the elasticity of one link, with the bits that the kernels find. Precondition:
+/// checked.
+double elastic_pull(const Law& law, const LawPoint& link) noexcept;
+/// The same of a dissipation.
+double viscous_pull(const Law& law, const LawPoint& link) noexcept;
 
-/// The pull [N] of an expression for one link; 0 where it is not finite.
-/// Precondition: checked as the expression of a law.
-/// @param distance    d [m], signed in 1 dimension
-/// @param elongation  d - rest length [m]
-/// @param speed       growth of the link [m/s]; 0 in the step in which its state is entered
-/// @param mass_a      of the ends [kg]; 0 for a fixed point or a port mass
-double expression_pull(const Program& expression, double distance, double elongation, double speed,
-                       double mass_a, double mass_b) noexcept;
+/// Energy [J] whose slope over the distance is the pull of the law: 0 at the elongation 0 for a
+/// table or a power, 0 at its cutoff (or far away) for Lennard-Jones, 0 outside all rings, and 0 for
+/// an expression, of which there is no closed form.
+double potential(const Law& law, double distance, double elongation) noexcept;
+
+LawSlope largest_slope(const Law& law, const LawRange& range) noexcept;
+/// What an elasticity pulls at an elongation as small as this one, over it, where it is least
+/// [N/m]; 0 when nothing is known.
+double smallest_slope(const Law& law, double elongation) noexcept;
+
+/// The distance from which on the law is 0 by itself [m]; 0 when there is none.
+double range_of(const Law& law) noexcept;
 
 }  // namespace cordis::engine

@@ -1,35 +1,63 @@
-// sim_node/engine/laws/law_term.h -- a law as the kernels of every vector width read it.
+// sim_node/engine/laws/law_term.h -- what a law is asked, and what it answers.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-
-#include "sim_node/engine/expressions/program_term.h"
 
 namespace cordis::engine {
 
-/// Kinds of Law as the kernels see them.
-enum class LawCode : std::uint8_t { kNone, kTable, kPower, kLennardJones, kRings, kExpression };
+template <class Lanes>
+struct LaneBatch;  // simd/lane_batch.h
 
-struct RingTerm {
-  double stiffness;  // [N/m]
-  double radius;     // [m]
+/// What a law is a function of.
+enum class LawArgument : std::uint8_t {
+  kNone,
+  kElongation,  ///< as an elasticity; the speed as a dissipation
+  kDistance,    ///< an elasticity only
+  kAny          ///< all of LawPoint
 };
 
-/// A Law, made ready.
+/// One link, as a law sees it.
+struct LawPoint {
+  double distance = 0.0;    ///< [m], signed in 1 dimension
+  double elongation = 0.0;  ///< distance - rest length [m]
+  double speed = 0.0;       ///< growth of the link [m/s]; 0 in the step in which a state is entered
+  double mass_a = 0.0;      ///< of the ends [kg]; 0 for a fixed point or a port mass
+  double mass_b = 0.0;
+};
+
+/// The same of the rows of a LaneBatch.
+struct LawArguments {
+  const double* argument;  ///< the elongation of an elasticity, the speed of a dissipation
+  const double* distance;
+  const double* elongation;
+  const double* speed;
+  const double* mass_a;  ///< may be null unless an expression asks for it
+  const double* mass_b;
+};
+
+/// A Law as the kernels of every vector width read it.
 struct LawTerm {
-  LawCode code = LawCode::kNone;
-  std::size_t count = 0;          // points of the table, or rings
-  const double* at = nullptr;     // table: points, ascending
-  const double* value = nullptr;  // at the points
-  const double* slope = nullptr;  // to the next point; 0 at the last
-  const RingTerm* rings = nullptr;
-  double coefficient = 0.0;       // power
-  std::uint32_t half_powers = 0;  // 2 * exponent
-  double attraction = 0.0;        // Lennard-Jones: 24 depth s^6 [J m^6]
-  double repulsion = 0.0;         // 48 depth s^12 [J m^12]
-  double cut = 0.0;               // [m]; infinity for none
-  ProgramTerm expression;
+  std::uint32_t type = 0;      ///< its place in Law; 0: no law
+  bool stores_energy = true;   ///< kStoresEnergy of its type
+  const void* term = nullptr;  ///< Term of its type
+};
+
+/// How far a law is followed in search of its largest slope.
+struct LawRange {
+  double argument = 0.0;     ///< elongation [m] or speed [m/s], either way
+  double rest_length = 0.0;  ///< of an elasticity; the distance of a dissipation [m]
+  double energy = 0.0;       ///< with which two MATs approach each other [J]
+  double mass = 0.0;         ///< of each end [kg]
+  bool viscous = false;      ///< it is a dissipation
+  bool turns = false;        ///< a pull also has a slope across the link: pull / distance
+  int samples = 400;         ///< of a law that is known by its values alone
+};
+
+/// Slopes below 0 (a compressed link gives way sideways) never count.
+struct LawSlope {
+  double value = 0.0;             ///< the largest [N/m] or [N s/m], >= 0
+  bool bounded = true;            ///< false: it holds within the range alone
+  bool infinite_at_zero = false;  ///< towards 0 the law rises beyond `value`
 };
 
 }  // namespace cordis::engine

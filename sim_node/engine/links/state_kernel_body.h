@@ -124,7 +124,7 @@ class StateMachineLoop {
     alignas(64) double pull[Batch::kRows];
     alignas(64) double elastic[Batch::kRows];
     alignas(64) double speed[Batch::kRows];
-    const bool by_expression = state.elasticity.code == LawCode::kExpression;
+    const bool stores_energy = state.elasticity.stores_energy;
     const Row rate = Lanes::every(rows_.rate);
     const auto stretch = [&](const double* elongation, double* out) {
       const Row stiffness = Lanes::every(state.stiffness);
@@ -136,11 +136,11 @@ class StateMachineLoop {
         speed, [&](Row g) { return g * rate; }, elongation_increment);
     stretch(rows_.elongation, elastic);
     LawArguments of = arguments(rows_.elongation, speed);
-    if (!by_expression) LawLoop<Lanes>::add(state.elasticity, of, elastic);
+    if (stores_energy) LawLoop<Lanes>::add(state.elasticity, of, elastic);
     const Row viscosity = Lanes::every(state.viscosity_over_dt);
     Batch::each(
         pull, [&](Row e, Row g) { return e + viscosity * g; }, elastic, elongation_increment);
-    if (by_expression) LawLoop<Lanes>::add(state.elasticity, of, pull);
+    if (!stores_energy) LawLoop<Lanes>::add(state.elasticity, of, pull);
     of.argument = speed;
     LawLoop<Lanes>::add(state.dissipation, of, pull);
 
@@ -158,7 +158,7 @@ class StateMachineLoop {
           elongation, [&](Row e) { return Lanes::minimum(most, Lanes::maximum(least, e)); },
           rows_.elongation);
       stretch(elongation, elastic);
-      if (!by_expression) {
+      if (stores_energy) {
         LawLoop<Lanes>::add(state.elasticity, arguments(elongation, speed), elastic);
       }
     }

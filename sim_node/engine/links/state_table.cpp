@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "sim_node/engine/core/assert.h"
-#include "sim_node/engine/links/stored_energy.h"
 
 namespace cordis::engine {
 namespace {
@@ -23,58 +22,21 @@ ProgramTerm ready(const Program& program) {
 
 }  // namespace
 
-/// A LawTerm and the arrays it points to.
+/// A LawTerm and what it points to.
 struct ReadyLaw {
   LawTerm term;
-  std::vector<double> slope;
-  std::vector<RingTerm> rings;
+  std::shared_ptr<const void> owner;
 };
 
 namespace {
 
+/// Precondition: the law lives as long as what is made of it.
 ReadyLaw ready(const Law& law) {
-  ReadyLaw made;
-  switch (law.kind) {
-    case Law::Kind::kNone:
-      break;
-    case Law::Kind::kTable: {
-      const Table& table = law.table;
-      made.slope.assign(table.at.size(), 0.0);
-      for (std::size_t i = 1; i < table.at.size(); ++i) {
-        made.slope[i - 1] = (table.value[i] - table.value[i - 1]) / (table.at[i] - table.at[i - 1]);
-      }
-      made.term.code = LawCode::kTable;
-      made.term.count = table.at.size();
-      made.term.at = table.at.data();
-      made.term.value = table.value.data();
-      made.term.slope = made.slope.data();
-      break;
-    }
-    case Law::Kind::kPower:
-      made.term.code = LawCode::kPower;
-      made.term.coefficient = law.coefficient;
-      made.term.half_powers = static_cast<std::uint32_t>(2.0 * law.exponent);
-      break;
-    case Law::Kind::kLennardJones: {
-      const double cube = law.diameter * law.diameter * law.diameter;
-      made.term.code = LawCode::kLennardJones;
-      made.term.attraction = 24.0 * law.depth * (cube * cube);
-      made.term.repulsion = 48.0 * law.depth * (cube * cube * cube * cube);
-      made.term.cut = law.cut > 0.0 ? law.cut : kUnlimited;
-      break;
-    }
-    case Law::Kind::kRings:
-      for (const Ring& ring : law.rings) made.rings.push_back({ring.stiffness, ring.radius});
-      made.term.code = LawCode::kRings;
-      made.term.count = made.rings.size();
-      made.term.rings = made.rings.data();
-      break;
-    case Law::Kind::kExpression:
-      made.term.code = LawCode::kExpression;
-      made.term.expression = ready(law.expression);
-      break;
-  }
-  return made;
+  const auto make = [&law](const auto& of) -> ReadyLaw {
+    const auto term = std::make_shared<const decltype(of.term())>(of.term());
+    return {{static_cast<std::uint32_t>(law.index()), of.kStoresEnergy, term.get()}, term};
+  };
+  return std::visit(make, law);
 }
 
 }  // namespace
@@ -123,8 +85,9 @@ void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
   exits.push_back(std::move(exits_of_state_machine));
   first_state.push_back(first);
   for (const LinkState& state : state_machine.states) {
-    record_needs(state.elasticity.expression);
-    record_needs(state.dissipation.expression);
+    for (const Law* law : {&state.elasticity, &state.dissipation}) {
+      if (const auto* of = std::get_if<Expression>(law)) record_needs(of->program);
+    }
     state_machine_of.push_back(static_cast<std::uint32_t>(first_state.size() - 1));
     add_state(state, exits.back());
   }
@@ -221,8 +184,8 @@ double StateTable::stored_energy(StateIndex index, double distance,
   const double elongation =
       std::min(term.max_elongation, std::max(term.min_elongation, distance - rest_length));
   const double linear = 0.5 * term.stiffness * elongation * elongation;
-  if (term.elasticity.code == LawCode::kNone) return linear;
-  return linear + engine::stored_energy(state(index).elasticity, distance, elongation);
+  if (term.elasticity.type == 0) return linear;
+  return linear + potential(state(index).elasticity, distance, elongation);
 }
 
 double StateTable::change_energy(const StateMachineRows& rows, std::size_t row) const noexcept {

@@ -42,7 +42,7 @@ class StateTable {
 
   /// Energy [J] that a row stores in a state: closed form of the linear part and of the law, 0 for
   /// an expression. In a state that does not pull (push) only what the spring and a power law store
-  /// while they push (pull). Lennard-Jones: 0 at its cut.
+  /// while they push (pull). Lennard-Jones: 0 at its cutoff.
   double stored_energy(StateIndex state, double distance, double rest_length) const noexcept;
   /// What a change adds to the stored energy as the account keeps it: after minus before. In the
   /// middle of the last period that is stored energy less half of the elastic work of the period.

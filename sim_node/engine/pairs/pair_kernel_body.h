@@ -4,6 +4,7 @@
 // `Lanes` is a type of SimdPairLanes.
 #pragma once
 
+#include "sim_node/engine/laws/lennard_jones.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 
 namespace cordis::engine {
@@ -266,10 +267,8 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
         const std::size_t at = i + part * Lanes::kWidth;
-        const Row square = Lanes::load(row.square + at);
-        const Row inverse_square = Lanes::inverse_or_zero(square, square);
-        const Row sixth = inverse_square * inverse_square * inverse_square;
-        const Row factor = (attraction - repulsion * sixth) * sixth * inverse_square;
+        const Row factor = LennardJones::pull_per_distance<Lanes>(attraction, repulsion,
+                                                                  Lanes::load(row.square + at));
         spread<Lanes>(row, at, factor, force, sum, part);
       }
     }

@@ -83,18 +83,22 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
 
 void SetPairs::adopt(const StateTable& table) {
   state_machines_.adopt(table);
-  const StateTerm& term = table.terms()[table.start_state(state_machine_)];
-  const bool plain = !state_machines_.has_states() && term.dissipation.code == LawCode::kNone;
+  const StateIndex start = table.start_state(state_machine_);
+  const StateTerm& term = table.terms()[start];
+  const Law& elasticity = table.state(start).elasticity;
+  const auto* lennard_jones = std::get_if<LennardJones>(&elasticity);
+  const bool plain = !state_machines_.has_states() && is_none(table.state(start).dissipation);
   const bool bare = term.stiffness == 0.0 && term.viscosity_over_dt == 0.0 && !term.limited;
   path_ = Path::kAnyStateMachine;
-  if (plain && term.elasticity.code == LawCode::kNone) {
+  if (plain && is_none(elasticity)) {
     path_ = Path::kLinear;
     linear_ = {term.stiffness, term.viscosity_over_dt, term.min_pull,
                term.max_pull,  term.min_elongation,    term.max_elongation};
-  } else if (plain && bare && term.elasticity.code == LawCode::kLennardJones) {
+  } else if (plain && bare && lennard_jones != nullptr) {
     path_ = Path::kLennardJones;
-    const double range = std::min(range_, term.elasticity.cut);
-    lennard_jones_ = {term.elasticity.attraction, term.elasticity.repulsion, range * range};
+    const LennardJones::Term law = lennard_jones->term();
+    const double range = std::min(range_, law.cutoff);
+    lennard_jones_ = {law.attraction, law.repulsion, range * range};
   }
   const auto is_bare_limit = [](double pull) { return pull == 0.0 || std::isinf(pull); };
   const bool conservative = path_ == Path::kLennardJones ||

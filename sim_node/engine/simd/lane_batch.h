@@ -1,4 +1,5 @@
-// sim_node/engine/simd/lane_batch.h -- 8 values in memory, worked on in the registers of one width.
+// sim_node/engine/simd/lane_batch.h -- 8 values in memory, worked on in the registers of one width;
+// a single value with scalar lanes.
 //
 // `Lanes` is one of the types of lanes_*.h; what is made of it belongs to the file that does so.
 #pragma once
@@ -13,8 +14,8 @@ namespace cordis::engine {
 template <class Lanes>
 struct LaneBatch {
   using Row = typename Lanes::Row;
-  static constexpr std::size_t kRows = kBatchRows;
-  static constexpr std::uint32_t kAll = (1U << kRows) - 1U;
+  static constexpr std::size_t kRows = Lanes::kWidth == 1 ? 1 : kBatchRows;
+  static constexpr std::uint32_t kAll = (1U << kBatchRows) - 1U;
 
   /// out = make(values...), value by value; arrays 64-byte aligned, out may be one of the others.
   template <class Make, class... Values>

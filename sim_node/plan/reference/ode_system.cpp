@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim_node/plan/stability/law_value.h"
-
 namespace cordis::plan {
 namespace {
 
@@ -132,12 +130,11 @@ OdeSystem::Geometry OdeSystem::geometry(const Values& values, const Joined& join
 double OdeSystem::pull(const Joined& joined, const Geometry& link) const {
   const engine::LinkState& state = joined.state_machine.states[joined.present.state];
   const double elongation = link.distance - joined.present.rest_length;
-  const double mass_a = mass(joined.mat_a);
-  const double mass_b = mass(joined.mat_b);
-  double pull =
-      state.stiffness * elongation + state.viscosity * link.speed +
-      elastic_pull(state.elasticity, link.distance, elongation, mass_a, mass_b) +
-      viscous_pull(state.dissipation, link.distance, elongation, link.speed, mass_a, mass_b);
+  engine::LawPoint at{link.distance, elongation, 0.0, mass(joined.mat_a), mass(joined.mat_b)};
+  double pull = state.stiffness * elongation + state.viscosity * link.speed +
+                elastic_pull(state.elasticity, at);
+  at.speed = link.speed;
+  pull += viscous_pull(state.dissipation, at);
   if (!state.pulls) pull = std::min(pull, 0.0);
   if (!state.pushes) pull = std::max(pull, 0.0);
   return std::clamp(pull, -state.force_limit, state.force_limit);

@@ -29,7 +29,7 @@ double& at(Quantities& quantities, engine::Quantity quantity) {
 }
 
 bool is_linear(const LinkState& state) {
-  return state.elasticity.kind == engine::Law::Kind::kNone;
+  return is_none(state.elasticity);
 }
 
 /// The elastic pull of a linear state.
@@ -166,7 +166,7 @@ void lint_states(const StateMachine& state_machine, const StateMachinePlaces& pl
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const LinkState& state = state_machine.states[s];
     const bool acts = state.stiffness > 0.0 || state.viscosity > 0.0 || !is_linear(state) ||
-                      state.dissipation.kind != engine::Law::Kind::kNone;
+                      !is_none(state.dissipation);
     if (!reached[s]) {
       problems.error(places.states[s].place, "state '" + state.name + "' of " + what +
                                                  " cannot be reached from its start, '" +

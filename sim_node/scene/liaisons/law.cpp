@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -35,53 +36,56 @@ std::vector<double> read_numbers(LawSource& source, const char* key) {
   return numbers;
 }
 
-void read_table(LawSource& source, Law& law, const char* argument) {
+engine::Table read_table(LawSource& source, const char* argument) {
   const std::size_t errors_before = source.problems.error_count();
-  law.kind = Law::Kind::kTable;
-  law.table.at = read_numbers(source, argument);
-  law.table.value = read_numbers(source, "force_n");
-  if (source.problems.error_count() != errors_before) return;
+  const std::vector<double> at = read_numbers(source, argument);
+  engine::Table table(at, read_numbers(source, "force_n"));
+  if (source.problems.error_count() != errors_before) return table;
 
   const std::string name = std::string("'") + argument + "' in " + source.reader.what();
-  if (law.table.at.empty()) source.reader.error_at(argument, name + " must not be empty");
-  if (law.table.at.size() != law.table.value.size()) {
+  if (at.empty()) source.reader.error_at(argument, name + " must not be empty");
+  if (at.size() != table.value().size()) {
     source.reader.error_at("force_n", "'force_n' in " + source.reader.what() +
                                           " must have one number for each of '" + argument + "', " +
-                                          std::to_string(law.table.at.size()) + ", got " +
-                                          std::to_string(law.table.value.size()));
+                                          std::to_string(at.size()) + ", got " +
+                                          std::to_string(table.value().size()));
   }
-  const Value points = source.reader.optional_value(argument);
-  for (std::size_t i = 1; i < law.table.at.size(); ++i) {
-    if (law.table.at[i] > law.table.at[i - 1]) continue;
-    source.problems.error(points.items()[i].place(),
-                          name + " must ascend, got " + config::number_text(law.table.at[i]) +
-                              " after " + config::number_text(law.table.at[i - 1]));
-    return;
+  const auto turn = std::adjacent_find(at.begin(), at.end(), std::greater_equal<>());
+  if (turn != at.end()) {
+    const auto points = source.reader.optional_value(argument).items();
+    source.problems.error(points[static_cast<std::size_t>(turn - at.begin()) + 1].place(),
+                          name + " must ascend, got " + config::number_text(turn[1]) + " after " +
+                              config::number_text(turn[0]));
   }
+  return table;
 }
 
-void read_power(LawSource& source, Law& law) {
-  law.kind = Law::Kind::kPower;
-  law.coefficient = source.required("coefficient");
-  law.exponent = source.required("exponent", Range::between(0.0, engine::kMaxExponent));
-  if (2.0 * law.exponent == std::floor(2.0 * law.exponent)) return;
-  source.reader.error_at("exponent",
-                         "'exponent' in " + source.reader.what() +
-                             " must be a multiple of 0.5, got " + config::number_text(law.exponent),
-                         "give any other power as a table");
+engine::Power read_power(LawSource& source) {
+  engine::Power power;
+  power.coefficient = source.required("coefficient");
+  power.exponent = source.required("exponent", Range::between(0.0, engine::kMaxExponent));
+  if (2.0 * power.exponent != std::floor(2.0 * power.exponent)) {
+    source.reader.error_at("exponent",
+                           "'exponent' in " + source.reader.what() +
+                               " must be a multiple of 0.5, got " +
+                               config::number_text(power.exponent),
+                           "give any other power as a table");
+  }
+  return power;
 }
 
-void read_lennard_jones(LawSource& source, Law& law) {
-  law.kind = Law::Kind::kLennardJones;
+engine::LennardJones read_lennard_jones(LawSource& source) {
   constexpr double kSmallest = 1.0e-12;  // its 12th power is still a number
-  law.depth = source.required("depth_j", Range::not_negative());
+  engine::LennardJones law;
+  law.well_depth = source.required("depth_j", Range::not_negative());
   law.diameter = source.required("diameter_m", Range::between(kSmallest, 1.0 / kSmallest));
-  law.cut = optional_formula(source.reader, "cut_m", 0.0, Range::positive(), source.parameters,
-                             source.problems);
+  law.cutoff = optional_formula(source.reader, "cut_m", 0.0, Range::positive(), source.parameters,
+                                source.problems);
+  return law;
 }
 
-void read_rings(LawSource& source, Law& law) {
-  law.kind = Law::Kind::kRings;
+engine::Rings read_rings(LawSource& source) {
+  engine::Rings law;
   const Value rings = source.reader.required_sequence("rings");
   if (rings.exists() && rings.items().empty())
     source.reader.error_at("rings", "'rings' in " + source.reader.what() + " must not be empty");
@@ -95,15 +99,29 @@ void read_rings(LawSource& source, Law& law) {
     reader.finish();
     law.rings.push_back(ring);
   }
+  return law;
 }
 
-Law read_expression(const Value& text, const std::string& what, const ParameterValues& parameters,
-                    Problems& problems) {
+/// Reads the key of a law. @param argument  key of the points of a table
+Law read_law(config::MappingReader& reader, const char* key, const char* argument,
+             const std::vector<std::string>& kinds, const ParameterValues& parameters,
+             Problems& problems) {
+  const Value value = reader.optional_value(key);
+  const std::string what = std::string(key) + " of " + reader.what();
+  if (!value.exists()) return {};
+  if (value.kind() == Value::Kind::kScalar) {
+    std::optional<engine::Program> program = compile_law(value, what, parameters, problems);
+    return program ? Law(engine::Expression{std::move(*program)}) : Law();
+  }
   Law law;
-  std::optional<engine::Program> expression = compile_law(text, what, parameters, problems);
-  if (!expression) return law;
-  law.kind = Law::Kind::kExpression;
-  law.expression = std::move(*expression);
+  LawSource source{config::MappingReader(value, what, problems), parameters, problems};
+  const std::string kind = source.reader.required_choice("kind", kinds);
+  if (!source.reader.ok()) return law;
+  if (kind == "table") law = read_table(source, argument);
+  if (kind == "power") law = read_power(source);
+  if (kind == "lennard_jones") law = read_lennard_jones(source);
+  if (kind == "rings") law = read_rings(source);
+  source.reader.finish();
   return law;
 }
 
@@ -111,50 +129,13 @@ Law read_expression(const Value& text, const std::string& what, const ParameterV
 
 engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues& parameters,
                             Problems& problems) {
-  const Value value = reader.optional_value("elasticity");
-  const std::string what = "elasticity of " + reader.what();
-  if (!value.exists()) return {};
-  if (value.kind() == Value::Kind::kScalar)
-    return read_expression(value, what, parameters, problems);
-
-  Law law;
-  LawSource source{config::MappingReader(value, what, problems), parameters, problems};
-  const std::string kind =
-      source.reader.required_choice("kind", {"table", "power", "lennard_jones", "rings"});
-  if (!source.reader.ok()) return law;
-  if (kind == "table") read_table(source, law, "at_m");
-  if (kind == "power") read_power(source, law);
-  if (kind == "lennard_jones") read_lennard_jones(source, law);
-  if (kind == "rings") read_rings(source, law);
-  source.reader.finish();
-  return law;
+  return read_law(reader, "elasticity", "at_m", {"table", "power", "lennard_jones", "rings"},
+                  parameters, problems);
 }
 
 engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,
                              Problems& problems) {
-  const Value value = reader.optional_value("dissipation");
-  const std::string what = "dissipation of " + reader.what();
-  if (!value.exists()) return {};
-  if (value.kind() == Value::Kind::kScalar)
-    return read_expression(value, what, parameters, problems);
-
-  Law law;
-  LawSource source{config::MappingReader(value, what, problems), parameters, problems};
-  const std::string kind = source.reader.required_choice("kind", {"table", "power"});
-  if (!source.reader.ok()) return law;
-  if (kind == "table") read_table(source, law, "at_m_per_s");
-  if (kind == "power") read_power(source, law);
-  source.reader.finish();
-  return law;
-}
-
-double reach_of(const engine::Law& law) noexcept {
-  if (law.kind == Law::Kind::kLennardJones) return law.cut;
-  double reach = 0.0;
-  if (law.kind == Law::Kind::kRings) {
-    for (const engine::Ring& ring : law.rings) reach = std::max(reach, ring.radius);
-  }
-  return reach;
+  return read_law(reader, "dissipation", "at_m_per_s", {"table", "power"}, parameters, problems);
 }
 
 }  // namespace cordis::scene

@@ -16,7 +16,4 @@ engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues
 engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,
                              config::Problems& problems);
 
-/// The distance from which on a law is 0 by itself [m]; 0 when there is none.
-double reach_of(const engine::Law& law) noexcept;
-
 }  // namespace cordis::scene

@@ -11,7 +11,7 @@ namespace cordis::scene {
 namespace {
 
 using config::Value;
-using engine::Law;
+using engine::LawArgument;
 
 bool depends_on_rest(const engine::Program& program) {
   return std::any_of(program.code.begin(), program.code.end(), [](const auto& instruction) {
@@ -24,9 +24,9 @@ bool depends_on_rest(const engine::Program& program) {
 /// True if anything in a state machine asks for the rest length of a pair.
 bool depends_on_rest(const engine::StateMachine& state_machine) {
   const auto asks = [](const engine::LinkState& state) {
-    const Law::Kind kind = state.elasticity.kind;
-    return state.stiffness > 0.0 || kind == Law::Kind::kTable || kind == Law::Kind::kPower ||
-           kind == Law::Kind::kExpression || state.dissipation.kind == Law::Kind::kExpression;
+    const LawArgument elastic = argument_of(state.elasticity);
+    return state.stiffness > 0.0 || elastic == LawArgument::kElongation ||
+           elastic == LawArgument::kAny || argument_of(state.dissipation) == LawArgument::kAny;
   };
   return std::any_of(state_machine.states.begin(), state_machine.states.end(), asks) ||
          std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
@@ -37,7 +37,7 @@ bool depends_on_rest(const engine::StateMachine& state_machine) {
 double reach_of_all(const engine::StateMachine& state_machine) {
   double reach = 0.0;
   for (const engine::LinkState& state : state_machine.states) {
-    const double own = reach_of(state.elasticity);
+    const double own = range_of(state.elasticity);
     if (state.stiffness > 0.0 || own <= 0.0) return 0.0;
     reach = std::max(reach, own);
   }

@@ -1,0 +1,52 @@
+// sim_node/engine/laws/expression.cpp
+#include "sim_node/engine/laws/expression.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/engine/core/require.h"
+#include "sim_node/engine/laws/scalar_pull.h"
+
+namespace cordis::engine {
+
+bool is_known_to_laws(Quantity quantity) noexcept {
+  switch (quantity) {
+    case Quantity::kDistance:
+    case Quantity::kElongation:
+    case Quantity::kSpeed:
+    case Quantity::kMassA:
+    case Quantity::kMassB:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void Expression::check(const std::string& name) const {
+  const std::string what = name + ": expression";
+  check_program(program, what);
+  require(!has_edge(program), what, "one without rising and falling");
+  for (const Instruction& instruction : program.code) {
+    require(instruction.operation != Operation::kQuantity || is_known_to_laws(instruction.quantity),
+            what + ": quantity", "distance, elongation, speed, or the mass of an end");
+  }
+}
+
+/// The largest rise between two samples.
+LawSlope Expression::largest_slope(const LawRange& range) const noexcept {
+  const auto pull = [&](double at) {
+    LawPoint point{range.rest_length, 0.0, at, range.mass, range.mass};
+    if (!range.viscous) point = {at + range.rest_length, at, 0.0, range.mass, range.mass};
+    return scalar_pull(*this, point, at);
+  };
+  LawSlope slope{0.0, false};
+  const double step = 2.0 * range.argument / range.samples;
+  for (int i = 0; i < range.samples && step > 0.0; ++i) {
+    const double at = -range.argument + step * i;
+    const double rise = (pull(at + step) - pull(at)) / step;
+    if (std::isfinite(rise)) slope.value = std::max(slope.value, rise);
+  }
+  return slope;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,54 @@
+// sim_node/engine/laws/expression.h -- a law that is the value of an expression.
+#pragma once
+
+#include <string>
+
+#include "sim_node/engine/expressions/program.h"
+#include "sim_node/engine/expressions/program_term.h"
+#include "sim_node/engine/laws/law_term.h"
+
+namespace cordis::engine {
+
+template <class Lanes>
+class ProgramLoop;  // expressions/program_kernel_body.h
+
+/// True when an expression of a law may ask for the quantity.
+bool is_known_to_laws(Quantity quantity) noexcept;
+
+/// The pull is 0 where the value is not finite.
+struct Expression {
+  Program program;  ///< of distance, elongation, speed and masses alone, without edges
+
+  static constexpr LawArgument kArgument = LawArgument::kAny;
+  static constexpr bool kStoresEnergy = false;
+
+  void check(const std::string& name) const;
+  double potential(double /*distance*/, double /*elongation*/) const noexcept { return 0.0; }
+  LawSlope largest_slope(const LawRange& range) const noexcept;
+  double smallest_slope(double /*elongation*/) const noexcept { return 0.0; }
+  double range() const noexcept { return 0.0; }
+
+  using Term = ProgramTerm;
+  Term term() const noexcept { return {program.code.data(), program.code.size()}; }
+
+  template <class Lanes>
+  static void add(const Term& program, const LawArguments& of, double* pull) noexcept {
+    using Row = typename Lanes::Row;
+    const double* quantity[kQuantityCount] = {};
+    quantity[static_cast<std::size_t>(Quantity::kDistance)] = of.distance;
+    quantity[static_cast<std::size_t>(Quantity::kElongation)] = of.elongation;
+    quantity[static_cast<std::size_t>(Quantity::kSpeed)] = of.speed;
+    quantity[static_cast<std::size_t>(Quantity::kMassA)] = of.mass_a;
+    quantity[static_cast<std::size_t>(Quantity::kMassB)] = of.mass_b;
+    ProgramLoop<Lanes> loop;
+    const double* value = loop.evaluate(program, {quantity, nullptr}, 0);
+    const Row infinity = Lanes::every(__builtin_huge_val());
+    const auto sum = [&](Row p, Row v) {
+      const auto is_finite = Lanes::less(Lanes::magnitude(v), infinity);
+      return p + Lanes::select(is_finite, v, Lanes::zero());
+    };
+    LaneBatch<Lanes>::each(pull, sum, pull, value);
+  }
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,51 @@
+// sim_node/engine/laws/rings.h -- a sum over rings, each of which acts within its radius.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim_node/engine/laws/law_term.h"
+
+namespace cordis::engine {
+
+/// Pushes apart with stiffness * (radius - d) while the distance d < radius; pulls together when the
+/// stiffness is below 0.
+struct Ring {
+  double stiffness = 0.0;  ///< [N/m]
+  double radius = 0.0;     ///< [m], > 0
+};
+
+struct Rings {
+  std::vector<Ring> rings;
+
+  static constexpr LawArgument kArgument = LawArgument::kDistance;
+  static constexpr bool kStoresEnergy = true;
+
+  void check(const std::string& name) const;
+  double potential(double distance, double elongation) const noexcept;
+  LawSlope largest_slope(const LawRange& range) const noexcept;
+  double smallest_slope(double elongation) const noexcept;
+  double range() const noexcept;
+
+  struct Term {
+    const Ring* rings;
+    std::size_t count;
+  };
+  Term term() const noexcept { return {rings.data(), rings.size()}; }
+
+  template <class Lanes>
+  static void add(const Term& law, const LawArguments& of, double* pull) noexcept {
+    using Row = typename Lanes::Row;
+    for (std::size_t r = 0; r < law.count; ++r) {
+      const Row stiffness = Lanes::every(law.rings[r].stiffness);
+      const Row radius = Lanes::every(law.rings[r].radius);
+      const auto sum = [&](Row p, Row d) {
+        return p - Lanes::select(Lanes::less(d, radius), stiffness * (radius - d), Lanes::zero());
+      };
+      LaneBatch<Lanes>::each(pull, sum, pull, of.distance);
+    }
+  }
+};
+
+}  // namespace cordis::engine

@@ -1,0 +1,83 @@
+// sim_node/engine/laws/table.h -- a law given by points.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim_node/engine/laws/law_term.h"
+
+namespace cordis::engine {
+
+/// Linear between the points, constant beyond the first and the last.
+class Table {
+ public:
+  Table() = default;
+  /// @param at     elongation [m] or speed [m/s], strictly ascending
+  /// @param value  pull [N], one for each
+  Table(std::vector<double> at, std::vector<double> value);
+
+  const std::vector<double>& at() const noexcept { return at_; }
+  const std::vector<double>& value() const noexcept { return value_; }
+
+  static constexpr LawArgument kArgument = LawArgument::kElongation;
+  static constexpr bool kStoresEnergy = true;
+
+  void check(const std::string& name) const;
+  double potential(double distance, double elongation) const noexcept;
+  LawSlope largest_slope(const LawRange& range) const noexcept;
+  double smallest_slope(double elongation) const noexcept;
+  double range() const noexcept { return 0.0; }
+
+  struct Term {
+    const double* at;
+    const double* value;
+    const double* slope;  // to the next point; 0 at the last
+    std::size_t count;
+  };
+  Term term() const noexcept { return {at_.data(), value_.data(), slope_.data(), at_.size()}; }
+
+  template <class Lanes>
+  static void add(const Term& table, const LawArguments& of, double* pull) noexcept {
+    using Row = typename Lanes::Row;
+    using Batch = LaneBatch<Lanes>;
+    alignas(64) double clamped[Batch::kRows];
+    alignas(64) double at[Batch::kRows];
+    alignas(64) double value[Batch::kRows];
+    alignas(64) double slope[Batch::kRows];
+    const Row first = Lanes::every(table.at[0]);
+    const Row last = Lanes::every(table.at[table.count - 1]);
+    Batch::each(
+        clamped, [&](Row u) { return Lanes::minimum(last, Lanes::maximum(first, u)); },
+        of.argument);
+    for (std::size_t i = 0; i < Batch::kRows; ++i) {
+      const std::size_t point = last_point_up_to<Lanes>(table, clamped[i]);
+      at[i] = table.at[point];
+      value[i] = table.value[point];
+      slope[i] = table.slope[point];
+    }
+    Batch::each(
+        pull, [](Row p, Row u, Row a, Row v, Row s) { return p + (v + s * (u - a)); }, pull,
+        clamped, at, value, slope);
+  }
+
+ private:
+  /// Bisection without a branch on a value.
+  template <class Lanes>
+  static std::size_t last_point_up_to(const Term& table, double argument) noexcept {
+    std::size_t first = 0;
+    std::size_t count = table.count;
+    while (count > 1) {
+      const std::size_t half = count / 2;
+      first += table.at[first + half] <= argument ? half : 0;
+      count -= half;
+    }
+    return first;
+  }
+
+  std::vector<double> at_;
+  std::vector<double> value_;
+  std::vector<double> slope_;
+};
+
+}  // namespace cordis::engine
