@@ -71,6 +71,10 @@ std::uint32_t SetLiaisons::overflowed_count() const noexcept {
   return count;
 }
 
+void SetLiaisons::forget_partners() noexcept {
+  for (SetPairs& set : sets_) set.forget_partners();
+}
+
 void SetLiaisons::add_to(StateHash& hash) const noexcept {
   for (const SetPairs& set : sets_) set.add_to(hash);
 }
