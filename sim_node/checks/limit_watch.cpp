@@ -43,10 +43,18 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
   }
   for (const plan::ContactBound& crowd : graph.crowds) {
     const double most = plan::largest_of_others(crowd, weight);
+    const bool is_second_half =
+        !members_.empty() && crowd.counted && members_.back().set == crowd.set;
+    const std::size_t first = is_second_half ? network.sets[crowd.set].set_p.size() : 0;
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       const std::uint32_t mat = crowd.members[m];
-      steady_[mat] +=
-          crowd.neighbours[m] * number(crowd.stiffness, crowd.viscosity) * (weight[mat] + most);
+      const double one = number(crowd.stiffness, crowd.viscosity) * (weight[mat] + most);
+      if (crowd.counted) {
+        members_.push_back(
+            {crowd.set, static_cast<std::uint32_t>(first + m), mat, crowd.neighbours[m], one});
+      } else {
+        steady_[mat] += crowd.neighbours[m] * one;
+      }
     }
   }
   const plan::Reach reach = plan::reach_of(network);
@@ -71,6 +79,10 @@ void LimitWatch::look(const engine::World& world) noexcept {
     const double slope = slopes_[link.first + world.state_of(l)] * link.both;
     sum_[link.mat_a] += slope;
     sum_[link.mat_b] += slope;
+  }
+  for (const Member& member : members_) {
+    const double partners = world.partners_of(member.set, member.member);
+    sum_[member.mat] += std::max(member.partners, partners) * member.number;
   }
   for (std::size_t i = 0; i < sum_.size(); ++i) {
     largest_ = std::max(largest_, share_[i] * sum_[i]);
