@@ -6,6 +6,7 @@
 
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/limit_weights.h"
+#include "sim_node/plan/stability/partner_limit.h"
 
 namespace cordis::sim {
 namespace {
@@ -29,8 +30,12 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     return dt * dt * stiffness + 2.0 * dt * viscosity;
   };
   const plan::LimitWeights weights = plan::limit_weights(network, plan::Limit::kStable);
-  const plan::LiaisonGraph graph = plan::weighted(plan::liaison_graph(network), weights);
-  const std::vector<double> weight = plan::row_weights(graph, dt);
+  const plan::LiaisonGraph needed = plan::liaison_graph(network);
+  const plan::LiaisonGraph graph = plan::weighted(needed, weights);
+  // The weights with which the largest numbers of partners are certified.
+  const plan::LiaisonGraph crowded =
+      plan::with_certified_partners(graph, plan::partner_limits(network, needed, false));
+  const std::vector<double> weight = plan::row_weights(crowded, dt).weight;
   for (std::size_t i = 0; i < share_.size(); ++i) {
     if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
     steady_[i] = number(0.0, graph.medium_viscosity) * weight[i];

@@ -22,7 +22,7 @@ using engine::World;
 std::string gathering_text(const std::string& stiffness) {
   return "cordis: 1\nname: gathering\nspace: 2\nstep: {rate_hz: 1000}\n"
          "liaisons:\n"
-         "  pull: {kind: spring_damper, stiffness_n_per_m: 0.5, viscosity_n_s_per_m: 0.01}\n"
+         "  pull: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01}\n"
          "  push: {kind: state_machine, stiffness_n_per_m: " +
          stiffness +
          ", pulls: false}\n"
@@ -58,7 +58,7 @@ TEST(PartnerWatch, SeesInItsStepThatMorePartnersCameThanCertified) {
   }
   ASSERT_TRUE(passed) << "the crowd gathers";
   const std::string text = crowding_text(simulation.scene(), *simulation.partners().nearest());
-  EXPECT_NE(text.find("a mass of push of sets (t:14) touches"), std::string::npos) << text;
+  EXPECT_NE(text.find("a mass of push of sets (t:13) touches"), std::string::npos) << text;
   EXPECT_NE(text.find("certified up to " + std::to_string(certified)), std::string::npos) << text;
 
   // The bound from above on K' + 2 Z' counts the partners that are there.

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/step_bound.h"
@@ -14,66 +14,106 @@ namespace {
 using engine::NetworkDescription;
 
 constexpr double kLimit = 4.0 * (1.0 - 1e-9);
+constexpr double kFinest = 1.01;     // of a factor
+constexpr double kLargest = 1024.0;  // of a factor
+constexpr double kSmallest = 1.0 / kLargest;
 
-/// What the rows of the graph are made of, at one step: the share of liaisons that are always there
-/// at most, and of the partners that may become more.
-struct RowShares {
-  std::vector<double> constant;
-  std::vector<double> growing;
-};
-
-RowShares row_shares(const LiaisonGraph& graph, double step) {
-  const std::vector<double> weight = row_weights(graph, step);
-  const std::size_t count = weight.size();
-  RowShares shares{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
-  const auto number = [step](double stiffness, double viscosity) {
-    return step * step * stiffness + 2.0 * step * viscosity;
-  };
-  const auto add = [&](std::vector<double>& to, std::uint32_t mat, double value) {
-    if (weight[mat] > 0.0) to[mat] += graph.inverse_mass[mat] / weight[mat] * value;
-  };
-  for (const Edge& joint : graph.joints) {
-    const double both =
-        number(joint.stiffness, joint.viscosity) * (weight[joint.mat_a] + weight[joint.mat_b]);
-    add(shares.constant, joint.mat_a, both);
-    add(shares.constant, joint.mat_b, both);
-  }
-  for (const ContactBound& crowd : graph.crowds) {
-    const double most = largest_of_others(crowd, weight);
-    for (std::size_t m = 0; m < crowd.members.size(); ++m) {
-      const std::uint32_t mat = crowd.members[m];
-      const bool grows = crowd.neighbours[m] < crowd.possible[m];
-      add(grows ? shares.growing : shares.constant, mat,
-          crowd.neighbours[m] * number(crowd.stiffness, crowd.viscosity) * (weight[mat] + most));
+/// The numbers of partners of a graph, raised set by set.
+class Partners {
+ public:
+  Partners(const NetworkDescription& network, const LiaisonGraph& graph)
+      : step_(network.step),
+        graph_(weighted(graph, limit_weights(network, Limit::kStable))),
+        factor_(network.sets.size(), 1.0),
+        grows_(network.sets.size(), false) {
+    for (const ContactBound& crowd : graph_.crowds) {
+      needed_.push_back(crowd.neighbours);
+      for (std::size_t m = 0; m < crowd.members.size(); ++m) {
+        if (crowd.neighbours[m] < crowd.possible[m]) grows_[crowd.set] = true;
+      }
     }
   }
-  for (std::uint32_t mat = 0; mat < count; ++mat) {
-    add(shares.constant, mat, number(0.0, graph.medium_viscosity) * weight[mat]);
-  }
-  return shares;
-}
 
-/// The factor on the numbers of partners with which a row comes to its limit first.
-double largest_factor(const RowShares& shares) {
-  double factor = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < shares.growing.size(); ++i) {
-    if (shares.growing[i] == 0.0) continue;
-    factor = std::min(factor, std::max(0.0, kLimit - shares.constant[i]) / shares.growing[i]);
+  /// True if a row bound of the step stays below 4 with these factors, one for each set.
+  bool are_stable(const std::vector<double>& factor) {
+    for (std::size_t c = 0; c < needed_.size(); ++c) {
+      ContactBound& crowd = graph_.crowds[c];
+      for (std::size_t m = 0; m < crowd.neighbours.size(); ++m) {
+        crowd.neighbours[m] = std::min(crowd.possible[m], factor[crowd.set] * needed_[c][m]);
+      }
+    }
+    return row_weights(graph_, step_).number < kLimit;
   }
-  return factor;
-}
+
+  /// Raises, or lowers, the factors of these sets together as far as the step stays stable.
+  void find_factor(const std::vector<std::size_t>& sets) {
+    std::vector<double> trial = factor_;
+    const double before = factor_[sets.front()];
+    const auto stable = [&](double factor) {
+      for (const std::size_t set : sets) trial[set] = factor;
+      return are_stable(trial);
+    };
+    double low = before;
+    double high = before;
+    if (stable(before)) {
+      while (high < kLargest && stable(2.0 * high)) low = high *= 2.0;
+      high *= 2.0;
+    } else {
+      while (low > kSmallest && !stable(low)) {
+        high = low;
+        low *= 0.5;
+      }
+    }
+    while (high > kFinest * low) {
+      const double middle = std::sqrt(low * high);
+      (stable(middle) ? low : high) = middle;
+    }
+    for (const std::size_t set : sets) factor_[set] = low;
+  }
+
+  /// Half of what all sets can grow by together; the rest goes to one set after the other, first to
+  /// the one that can grow the most by itself.
+  const std::vector<double>& find_factors() {
+    std::vector<std::size_t> sets;
+    for (std::size_t set = 0; set < grows_.size(); ++set) {
+      if (grows_[set]) sets.push_back(set);
+    }
+    if (sets.empty()) return factor_;
+    find_factor(sets);
+    if (sets.size() == 1 || factor_[sets.front()] <= 1.0) return factor_;
+    for (const std::size_t set : sets) factor_[set] = std::sqrt(factor_[set]);
+    const std::vector<double> base = factor_;
+    std::vector<double> alone = base;
+    for (const std::size_t set : sets) {
+      find_factor({set});
+      alone[set] = std::exchange(factor_[set], base[set]);
+    }
+    std::sort(sets.begin(), sets.end(),
+              [&](std::size_t a, std::size_t b) { return alone[a] > alone[b]; });
+    for (const std::size_t set : sets) find_factor({set});
+    return factor_;
+  }
+
+ private:
+  double step_;
+  LiaisonGraph graph_;
+  std::vector<double> factor_;
+  std::vector<bool> grows_;
+  std::vector<std::vector<double>> needed_;  // by crowd and member
+};
 
 }  // namespace
 
 std::vector<PartnerLimit> partner_limits(const NetworkDescription& network,
                                          const LiaisonGraph& graph, bool holds) {
   if (network.sets.empty()) return {};
-  double factor = 1.0;
+  std::vector<double> factor(network.sets.size(), 1.0);
   if (network.integrator != engine::IntegratorKind::kModal) {
-    const LiaisonGraph scaled = weighted(graph, limit_weights(network, Limit::kStable));
-    factor = largest_factor(row_shares(scaled, network.step));
+    factor = Partners(network, graph).find_factors();
   }
-  if (holds) factor = std::max(factor, 1.0);
+  if (holds) {
+    for (double& value : factor) value = std::max(value, 1.0);
+  }
   std::vector<PartnerLimit> limits;
   for (const ContactBound& crowd : graph.crowds) {
     if (!crowd.counted) continue;
@@ -84,10 +124,11 @@ std::vector<PartnerLimit> partner_limits(const NetworkDescription& network,
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       constexpr double kRounding = 1e-9;
       const double possible = crowd.possible[m];
-      const bool scales = crowd.neighbours[m] < possible || !holds;
+      const bool scales = crowd.neighbours[m] < possible;
       const double certified =
-          scales ? std::min(possible, std::floor(factor * crowd.neighbours[m] + kRounding))
-                 : possible;
+          scales
+              ? std::min(possible, std::floor(factor[crowd.set] * crowd.neighbours[m] + kRounding))
+              : possible;
       const bool is_mass = network.mats[crowd.members[m]].kind == engine::MatKind::kMass;
       const bool guaranteed = certified >= possible || !is_mass;
       limit.certified.push_back(static_cast<std::uint32_t>(certified));
@@ -100,6 +141,18 @@ std::vector<PartnerLimit> partner_limits(const NetworkDescription& network,
     }
   }
   return limits;
+}
+
+LiaisonGraph with_certified_partners(LiaisonGraph graph, const std::vector<PartnerLimit>& limits) {
+  std::vector<std::size_t> next(limits.size(), 0);
+  for (ContactBound& crowd : graph.crowds) {
+    if (!crowd.counted) continue;
+    for (std::size_t l = 0; l < limits.size(); ++l) {
+      if (limits[l].set != crowd.set) continue;
+      for (double& partners : crowd.neighbours) partners = limits[l].certified[next[l]++];
+    }
+  }
+  return graph;
 }
 
 }  // namespace cordis::plan

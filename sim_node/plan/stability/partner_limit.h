@@ -30,12 +30,15 @@ struct PartnerLimit {
   }
 };
 
-/// Of all sets, with a common factor on the numbers that the graph has: the largest with which a
-/// row bound of the step stays below 4. Not below 1 where `holds`, for then the numbers of the
-/// graph are certified. O(liaisons).
+/// Of all sets: the numbers that the graph has times the largest factors, to 1 %, with which a row
+/// bound of the step stays below 4. All sets are raised together by half, then one after the other.
+/// Not below the numbers of the graph where `holds`, for then these are certified. O(liaisons).
 /// @param graph  without weights, of this network
 /// @param holds  the certified step of the graph is above that of the network
 std::vector<PartnerLimit> partner_limits(const engine::NetworkDescription& network,
                                          const LiaisonGraph& graph, bool holds);
+
+/// The graph with the certified numbers of partners in the place of those needed.
+LiaisonGraph with_certified_partners(LiaisonGraph graph, const std::vector<PartnerLimit>& limits);
 
 }  // namespace cordis::plan
