@@ -33,9 +33,9 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
   const plan::LiaisonGraph needed = plan::liaison_graph(network);
   const plan::LiaisonGraph graph = plan::weighted(needed, weights);
   // The weights with which the largest numbers of partners are certified.
-  const plan::LiaisonGraph crowded =
+  const plan::LiaisonGraph fullest =
       plan::with_certified_partners(graph, plan::partner_limits(network, needed, false));
-  const std::vector<double> weight = plan::row_weights(crowded, dt).weight;
+  const std::vector<double> weight = plan::row_weights(fullest, dt).weight;
   for (std::size_t i = 0; i < share_.size(); ++i) {
     if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
     steady_[i] = number(0.0, graph.medium_viscosity) * weight[i];

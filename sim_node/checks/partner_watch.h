@@ -1,4 +1,4 @@
-// sim_node/checks/partner_watch.h -- how many others a mass of a set touches while a scene is played.
+// sim_node/checks/partner_watch.h -- how many others a mass of a set touches in a run.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ std::uint32_t partners(const NetworkDescription& scene, const World& world, std:
 /// Steps a set within all MATs and counts beside it, at every vector width.
 template <class Touch>
 void expect_counts(NetworkDescription scene, Touch touch) {
-  std::uint32_t most_ever = 0;
+  std::uint32_t largest_ever = 0;
   for (const VectorWidth width : engine::supported_vector_widths()) {
     World world = make_world(scene, width);
     for (int n = 0; n < 40; ++n) {
@@ -41,10 +41,10 @@ void expect_counts(NetworkDescription scene, Touch touch) {
       }
       EXPECT_EQ(world.largest_partners(0).of_p, most);
       EXPECT_EQ(world.largest_partners(0).of_q, 0u);
-      most_ever = std::max(most_ever, most);
+      largest_ever = std::max(largest_ever, most);
     }
   }
-  EXPECT_GE(most_ever, 3u);
+  EXPECT_GE(largest_ever, 3u);
 }
 
 TEST(PartnerCount, OfContactsCountsThePairsThatArePressed) {
