@@ -249,6 +249,7 @@ bool Session::advance() {
   mailbox_.report_steps_left(runner_.steps_left());
   const Simulation& simulation = runner_.simulation();
   LoadedScene& stage = runner_.stage();
+  report_partners();
   if (complete) {
     simulation.read_signals(stage.frames.next_row(simulation.world().step_count()));
     ticks_.store(++tick_count_, std::memory_order_relaxed);
@@ -259,6 +260,18 @@ bool Session::advance() {
   const bool many_events = stage.frames.events().is_half_full() && (waits || !frames_.is_busy());
   if (due || many_events) offer_frame();
   return complete;
+}
+
+/// Says at once that a mass touches more others than the step is certified for.
+void Session::report_partners() {
+  const std::optional<PartnersSeen> seen = runner_.simulation().partners().nearest();
+  const std::int64_t now = node::monotonic_nsec();
+  crowding_.report(now);
+  const bool passed = seen && seen->is_passed();
+  if (passed && seen->largest > partners_reported_ && crowding_.record(now)) {
+    spdlog::warn("{}", crowding_text(runner_.simulation().scene(), *seen));
+  }
+  partners_reported_ = passed ? seen->largest : 0;
 }
 
 void Session::offer_frame() {
@@ -311,6 +324,12 @@ void Session::record_state() {
   runner_.stage().limits.look(simulation.world());
   shown_.energy = simulation.world().energy();
   shown_.limit_number = runner_.stage().limits.largest();
+  shown_.partners = simulation.partners().nearest().value_or(PartnersSeen{});
+  if (!shown_.partners.is_passed()) {
+    shown_.crowding.clear();
+  } else if (shown_.crowding.empty()) {
+    shown_.crowding = crowding_text(simulation.scene(), shown_.partners);
+  }
   shown_.step = simulation.world().step_count();
   shown_.state_hash = simulation.world().state_hash();
   shown_.version = runner_.stage().frames.shape().version;
@@ -341,6 +360,7 @@ void Session::fill(msg::NodeStatus& status) {
   }
 
   const std::lock_guard lock(shown_mutex_);
+  if (status.text().empty()) status.text(shown_.crowding);
   if (!shown_.failure.empty()) status.text(shown_.failure);
   status.energy_j(shown_.energy.total());
   status.energy_drift(shown_.energy.largest > 0.0 ? shown_.energy.residual() / shown_.energy.largest
@@ -349,6 +369,8 @@ void Session::fill(msg::NodeStatus& status) {
   status.port_work_j(shown_.energy.port_work);
   status.dissipated_j(shown_.energy.dissipated);
   status.largest_limit_number(shown_.limit_number);
+  status.largest_partners(shown_.partners.largest);
+  status.certified_partners(shown_.partners.certified);
   status.step(shown_.step);
   status.state_hash(shown_.state_hash);
   status.lost_events(frames_.lost_events());

@@ -16,6 +16,7 @@
 #include "node/late_ticks.h"
 #include "node/node_main.h"
 #include "node/paced_loop.h"
+#include "node/repeated_event.h"
 #include "node/roster.h"
 #include "node/status.h"
 #include "sim_node/devices/device_reach.h"
@@ -60,6 +61,7 @@ class Session {
   void answer(DeviceExchange& device);
   void answer_all();
   void offer_frame();
+  void report_partners();
   void record_state();
   bool finished() const noexcept;
   void fill(msg::NodeStatus& status);
@@ -85,16 +87,20 @@ class Session {
   std::uint64_t tick_count_ = 0;  // over all stages
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
   bool wait_reported_ = false;
+  node::RepeatedEvent crowding_{"a mass of a set touched still more others"};
+  std::uint32_t partners_reported_ = 0;  // of this scene
 
   // What the loop reports to the status thread.
   struct StatusSnapshot {
     engine::Energy energy;
     double limit_number = 0.0;
+    PartnersSeen partners;
     std::uint64_t step = 0;
     std::uint64_t state_hash = 0;
     std::uint64_t version = 0;  // of the scene
     ChangeCounter::Counts changes{};
-    std::string failure;  // why the scene diverged
+    std::string failure;   // why the scene diverged
+    std::string crowding;  // more partners than certified
   };
   std::mutex shown_mutex_;
   StatusSnapshot shown_;

@@ -110,6 +110,8 @@ Json node_json(const ReportedNode& node, std::int64_t now_nsec) {
           {"port_work_j", s.port_work_j()},
           {"dissipated_j", s.dissipated_j()},
           {"largest_limit_number", s.largest_limit_number()},
+          {"largest_partners", s.largest_partners()},
+          {"certified_partners", s.certified_partners()},
           {"port_energy_j", s.port_energy_j()},
           {"passivity_ticks", s.passivity_ticks()},
           {"step", s.step()},

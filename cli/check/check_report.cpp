@@ -1,4 +1,5 @@
 // cli/check/check_report.cpp -- the report of `cordis check`, for a person and for a program.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -36,12 +37,33 @@ std::string limit_text(const SceneCheck& check) {
                      at(liaison), mat.name, check.scene.network.mats[bound.mat].mass, at(mat));
 }
 
+/// True if no pose whatever has more partners than the step is certified for.
+bool is_guaranteed(const plan::Stability& stability) {
+  return std::all_of(stability.sets.begin(), stability.sets.end(),
+                     [](const plan::PartnerLimit& set) { return set.is_guaranteed(); });
+}
+
+/// How many others a mass of a set may touch; nothing where geometry has no more.
+std::string partners_text(const SceneCheck& check, const plan::PartnerLimit& set) {
+  if (set.is_guaranteed()) return {};
+  const scene::Called liaison =
+      scene::call_liaison(check.scene, engine::LiaisonId{engine::LiaisonKind::kSet, set.set});
+  const std::string sizes =
+      set.least < set.most ? fmt::format(" (the largest of them {})", set.most) : std::string();
+  return fmt::format(
+      "            stable as long as no mass of {}{}\n            touches more than {} others at "
+      "once{}; "
+      "{} at the start; watched during the run\n",
+      liaison.name, at(liaison), set.least, sizes, set.at_start);
+}
+
 std::string stability_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
   std::string text;
   if (stability.holds()) {
-    text = fmt::format("stability   stable in every pose and state: margin {:.4g} % of stiffness\n",
-                       100.0 * stability.margin());
+    text = fmt::format(
+        "stability   stable in every pose and state{}: margin {:.4g} % of stiffness\n",
+        is_guaranteed(stability) ? "" : " with the partners below", 100.0 * stability.margin());
   } else if (stability.diverges()) {
     text = fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
                        check.rate_above(1.0 / stability.certified.step));
@@ -62,6 +84,7 @@ std::string stability_text(const SceneCheck& check) {
         "length at\n            the start, and no pair meets faster than the fastest two at the "
         "start\n";
   }
+  for (const plan::PartnerLimit& set : stability.sets) text += partners_text(check, set);
   return text + limit_text(check);
 }
 
@@ -273,6 +296,19 @@ std::string freezing_text(double tolerance) {
       tolerance, kUsualError * tolerance, kLargestError * tolerance);
 }
 
+nlohmann::json sets_json(const SceneCheck& check) {
+  nlohmann::json sets = nlohmann::json::array();
+  for (const plan::PartnerLimit& set : check.plan.stability.sets) {
+    const engine::LiaisonId liaison{engine::LiaisonKind::kSet, set.set};
+    sets.push_back({{"liaison", called(scene::call_liaison(check.scene, liaison))},
+                    {"partners_at_start", set.at_start},
+                    {"certified_partners",
+                     set.is_guaranteed() ? nlohmann::json(nullptr) : nlohmann::json(set.least)},
+                    {"guaranteed", set.is_guaranteed()}});
+  }
+  return sets;
+}
+
 const char* verdict(const plan::Stability& stability) {
   if (stability.holds()) return "stable";
   return stability.diverges() ? "unstable" : "not_certain";
@@ -317,7 +353,8 @@ std::string json_of(const SceneCheck& check) {
         {"certified_step_s", finite(stability.certified.step)},
         {"diverging_step_s", finite(stability.diverging_step)},
         {"margin", stability.margin()},
-        {"bounded_laws", stability.bounded}}},
+        {"bounded_laws", stability.bounded},
+        {"sets", sets_json(check)}}},
       {"accuracy",
        {{"band_hz", edge.frequency_hz},
         {"oscillates", edge.error.oscillates},

@@ -51,6 +51,16 @@ Row row_of(const std::string& node, const msg::NodeStatus* status) {
   return row;
 }
 
+/// The partners of a mass of a set; nothing without sets.
+std::string partners_of(const msg::NodeStatus& status) {
+  if (status.largest_partners() == 0 && status.certified_partners() == 0) return {};
+  const bool passed = status.largest_partners() > status.certified_partners();
+  return fmt::format("a mass of a set touched {} at once, certified up to {}{}\n",
+                     config::count_text(status.largest_partners(), "other"),
+                     status.certified_partners(),
+                     passed ? ": beyond it the scene may have been UNSTABLE" : "");
+}
+
 /// What does not fit the table, in lines.
 std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   std::string text;
@@ -68,6 +78,7 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
         "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
         status.energy_j(), status.port_work_j(), status.switching_energy_j(), status.dissipated_j(),
         status.largest_limit_number());
+    text += partners_of(status);
     text += fmt::format("state hash {:016x} after {}\n", status.state_hash(),
                         config::count_text(status.step(), "step"));
   }

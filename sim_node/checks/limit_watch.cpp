@@ -6,6 +6,7 @@
 
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/limit_weights.h"
+#include "sim_node/plan/stability/partner_limit.h"
 
 namespace cordis::sim {
 namespace {
@@ -29,8 +30,12 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     return dt * dt * stiffness + 2.0 * dt * viscosity;
   };
   const plan::LimitWeights weights = plan::limit_weights(network, plan::Limit::kStable);
-  const plan::LiaisonGraph graph = plan::weighted(plan::liaison_graph(network), weights);
-  const std::vector<double> weight = plan::row_weights(graph, dt);
+  const plan::LiaisonGraph needed = plan::liaison_graph(network);
+  const plan::LiaisonGraph graph = plan::weighted(needed, weights);
+  // The weights with which the largest numbers of partners are certified.
+  const plan::LiaisonGraph fullest =
+      plan::with_certified_partners(graph, plan::partner_limits(network, needed, false));
+  const std::vector<double> weight = plan::row_weights(fullest, dt).weight;
   for (std::size_t i = 0; i < share_.size(); ++i) {
     if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
     steady_[i] = number(0.0, graph.medium_viscosity) * weight[i];
@@ -43,10 +48,18 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
   }
   for (const plan::ContactBound& crowd : graph.crowds) {
     const double most = plan::largest_of_others(crowd, weight);
+    const bool is_second_half =
+        !members_.empty() && crowd.counted && members_.back().set == crowd.set;
+    const std::size_t first = is_second_half ? network.sets[crowd.set].set_p.size() : 0;
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       const std::uint32_t mat = crowd.members[m];
-      steady_[mat] +=
-          crowd.neighbours[m] * number(crowd.stiffness, crowd.viscosity) * (weight[mat] + most);
+      const double one = number(crowd.stiffness, crowd.viscosity) * (weight[mat] + most);
+      if (crowd.counted) {
+        members_.push_back(
+            {crowd.set, static_cast<std::uint32_t>(first + m), mat, crowd.neighbours[m], one});
+      } else {
+        steady_[mat] += crowd.neighbours[m] * one;
+      }
     }
   }
   const plan::Reach reach = plan::reach_of(network);
@@ -71,6 +84,10 @@ void LimitWatch::look(const engine::World& world) noexcept {
     const double slope = slopes_[link.first + world.state_of(l)] * link.both;
     sum_[link.mat_a] += slope;
     sum_[link.mat_b] += slope;
+  }
+  for (const Member& member : members_) {
+    const double partners = world.partners_of(member.set, member.member);
+    sum_[member.mat] += std::max(member.partners, partners) * member.number;
   }
   for (std::size_t i = 0; i < sum_.size(); ++i) {
     largest_ = std::max(largest_, share_[i] * sum_[i]);

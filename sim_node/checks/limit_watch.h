@@ -13,13 +13,14 @@ namespace cordis::sim {
 /// in: that of one mass by itself, and for masses on each other the largest eigenvalue of M^-1
 /// (dt^2 K + 2 dt Z), bounded from above by the rows of plan::row_weights as in `cordis check`.
 /// Below 4 nothing diverges; what viscosities count for in the limit of the other integrators is in
-/// it (plan::LimitWeights). Liaisons count with the largest slopes of their states; sets, whose
-/// pairs come and go, with as many contacts as there is room for.
+/// it (plan::LimitWeights). Liaisons count with the largest slopes of their states; a member of a set
+/// with as many partners as plan::partner_bounds() says, or as it has where these are more.
 class LimitWatch {
  public:
   explicit LimitWatch(const engine::NetworkDescription& network);
 
-  /// Looks at the present states. Real time: O(MATs + links), no allocation.
+  /// Looks at the present states and partners. Real time: O(MATs + links + members of sets), no
+  /// allocation.
   void look(const engine::World& world) noexcept;
   double largest() const noexcept { return largest_; }
 
@@ -31,10 +32,19 @@ class LimitWatch {
     double both;          // weights of its ends
   };
 
+  struct Member {
+    std::uint32_t set;
+    std::uint32_t member;  // of the set, those of its first half first
+    std::uint32_t mat;
+    double partners;  // that count at least
+    double number;    // of one partner
+  };
+
   std::vector<double> share_;   // per MAT: 1 / m over its weight, or 0
   std::vector<double> steady_;  // per MAT: sum over liaisons without states
   std::vector<double> sum_;     // per MAT, at the last look
   std::vector<StateLink> links_;
+  std::vector<Member> members_;
   std::vector<double> slopes_;  // K dt^2 + 2 Z dt of the states of a state machine, for each link
   double largest_ = 0.0;
 };

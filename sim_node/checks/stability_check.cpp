@@ -47,7 +47,7 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
   const plan::LiaisonGraph graph = plan::weighted(
       plan::liaison_graph(scene.network), plan::limit_weights(scene.network, plan::Limit::kStable));
   const double dt = scene.network.step;
-  const std::vector<double> weight = plan::row_weights(graph, dt);
+  const std::vector<double> weight = plan::row_weights(graph, dt).weight;
   double sum = 0.0;
   double strongest = -1.0;  // a law may be of no stiffness where it was looked at
   std::optional<plan::LiaisonId> liaison;

@@ -119,6 +119,14 @@ void World::visit_bound_pairs(std::size_t set, VisitBoundPair visit, void* owner
   state_->sets.set(set).visit_bound_pairs(state_->table, visit, owner);
 }
 
+PartnerCount World::largest_partners(std::size_t set) const noexcept {
+  return std::as_const(state_->sets).set(set).largest_partners();
+}
+
+std::uint32_t World::partners_of(std::size_t set, std::size_t member) const noexcept {
+  return std::as_const(state_->sets).set(set).partners_of(member);
+}
+
 std::uint64_t World::step_count() const noexcept {
   return state_->step_count;
 }

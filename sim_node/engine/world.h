@@ -92,6 +92,13 @@ class World {
   /// Shows them one by one. Real time: O(pairs), no allocation. Precondition: the set exists.
   void visit_bound_pairs(std::size_t set, VisitBoundPair visit, void* owner) const;
 
+  /// The largest numbers of partners in the last step, or at the start. Real time: O(1).
+  /// Precondition: the set exists.
+  PartnerCount largest_partners(std::size_t set) const noexcept;
+  /// Of one member, numbered from those of the first set on; 0 for what has none. Real time: O(1).
+  /// Precondition: the set and the member exist.
+  std::uint32_t partners_of(std::size_t set, std::size_t member) const noexcept;
+
   /// Goes on where another world is, of a network that differs in the parameters of links alone:
   /// motion, states, ports, account and counts are taken over, and what the energy of the links
   /// changes by counts as switching. Real time: O(MATs + links + pairs), no allocation.

@@ -79,8 +79,6 @@ Stability stability_of_modes(const engine::NetworkDescription& network, const Li
   stability.certified = load.worst;
   stability.certified.step = network.step / std::sqrt(load.together);
   stability.diverging_step = network.step / std::sqrt(load.alone);
-  stability.bounded = graph.bounded;
-  stability.step = network.step;
   return stability;
 }
 
@@ -113,13 +111,16 @@ double Stability::margin() const noexcept {
 }
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
-  if (network.integrator == engine::IntegratorKind::kModal)
-    return stability_of_modes(network, graph);
   Stability stability;
-  stability.certified = certified_bound(network, graph);
-  stability.diverging_step = diverging_step_of(network, graph);
+  if (network.integrator == engine::IntegratorKind::kModal) {
+    stability = stability_of_modes(network, graph);
+  } else {
+    stability.certified = certified_bound(network, graph);
+    stability.diverging_step = diverging_step_of(network, graph);
+  }
   stability.bounded = graph.bounded;
   stability.step = network.step;
+  stability.sets = partner_limits(network, graph, stability.holds());
   return stability;
 }
 

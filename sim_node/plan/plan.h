@@ -7,6 +7,7 @@
 
 #include "sim_node/engine/description/network.h"
 #include "sim_node/plan/stability/oscillator_error.h"
+#include "sim_node/plan/stability/partner_limit.h"
 #include "sim_node/plan/stability/port_limit.h"
 #include "sim_node/plan/stability/step_bound.h"
 
@@ -14,12 +15,14 @@ namespace cordis::plan {
 
 /// What is surely stable, what surely diverges.
 struct Stability {
-  StepBound certified;  ///< stable in every pose and every combination of states
+  /// Stable in every pose and every combination of states, with so many partners as `sets` says.
+  StepBound certified;
   /// Beyond it the scene diverges at the pose of its start once its links are in their stiffest
   /// states [s].
   double diverging_step = 0.0;
-  bool bounded = true;  ///< false: the certificate holds within a Reach alone
-  double step = 0.0;    ///< of the network [s]
+  bool bounded = true;             ///< false: the certificate holds within a Reach alone
+  double step = 0.0;               ///< of the network [s]
+  std::vector<PartnerLimit> sets;  ///< how many partners it is stable with, one of each set
 
   bool holds() const noexcept { return step < certified.step; }
   bool diverges() const noexcept { return step > diverging_step; }

@@ -43,6 +43,7 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
 Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch)
     : scene_(std::move(scene)),
       world_(std::make_shared<const engine::Network>(scene_->network)),
+      partners_(scene_->network),
       devices_(exchanges_of(*scene_, epoch)),
       steps_per_tick_(
           static_cast<int>(std::lround(scene_->step_rate_hz / scene_->gesture_rate_hz))) {}
@@ -69,6 +70,7 @@ bool Simulation::advance(int steps, EventRoom& events) noexcept {
     for (DeviceExchange& device : devices_) device.play(world_, steps_in_tick_, steps_per_tick_);
     const engine::StepReport report = world_.step();
     events.add(world_.events(), report.lost_events);
+    partners_.look(world_);
     if (report.non_finite_mats > 0) {
       failed_ = true;
       return false;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_node/checks/partner_watch.h"
 #include "sim_node/devices/device_exchange.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/run/event_room.h"
@@ -54,6 +55,9 @@ class Simulation {
   std::uint64_t tick_count() const noexcept { return tick_count_; }
   double simulated_s() const noexcept;
 
+  /// How many others a mass of a set has touched, over all steps.
+  const PartnerWatch& partners() const noexcept { return partners_; }
+
   /// The scene diverged: a position is no longer finite. Its forces must not be used any more.
   bool failed() const noexcept { return failed_; }
   /// Which MAT left the finite numbers first, when, and which liaison is to blame; empty while
@@ -63,6 +67,7 @@ class Simulation {
  private:
   std::shared_ptr<const scene::Scene> scene_;
   engine::World world_;
+  PartnerWatch partners_;
   std::vector<DeviceExchange> devices_;
   int steps_per_tick_;
   int steps_in_tick_ = 0;  // done in the present tick

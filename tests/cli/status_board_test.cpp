@@ -80,6 +80,8 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   sim.switching_energy_j(-0.0005);
   sim.dissipated_j(0.017);
   sim.largest_limit_number(1.75);
+  sim.largest_partners(7);
+  sim.certified_partners(12);
   sim.step(10000);
   sim.state_hash(0x0123456789abcdefull);
   board.put(sim);
@@ -106,6 +108,7 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
       "view      no status was received\n"
       "energy 0.0125 J: 0.03 J through the ports, -0.0005 J by changes of state, 0.017 J taken by "
       "viscosity; largest K' + 2 Z' 1.75 of 4\n"
+      "a mass of a set touched 7 others at once, certified up to 12\n"
       "state hash 0123456789abcdef after 10000 steps\n"
       "keyboard gave the hand -0.002 J, damped in 7 ticks\n");
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "sim_node/plan/stability/partner_bound.h"
 #include "sim_node/plan/stability/start_tangent.h"
 #include "tests/plan/networks.h"
 

@@ -265,6 +265,8 @@ int publish(const Options& options) {
     status.switching_energy_j(250e-6);
     status.dissipated_j(1.2e-3);
     status.largest_limit_number(1.75);
+    status.largest_partners(7);
+    status.certified_partners(12);
   };
   const node::StatusPublisher sim_status(sim, "sim_node", epoch, speak);
   const node::StatusPublisher keyboard_status(keyboard, "device_node", epoch,

@@ -18,6 +18,13 @@ struct StepReport {
   std::uint32_t lost_events = 0;  ///< changes of state that found no room in events()
 };
 
+/// The largest numbers of partners that a mass of a set liaison has at once: of its first set, and
+/// of its second, 0 where it has none. Partners exert a force on each other; see touch_distance().
+struct PartnerCount {
+  std::uint32_t of_p = 0;
+  std::uint32_t of_q = 0;
+};
+
 /// A pair of a set liaison that is in another state than that of the start.
 struct BoundPair {
   std::uint32_t mat_a = 0;

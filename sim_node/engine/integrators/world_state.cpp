@@ -89,6 +89,7 @@ StepReport WorldState::step() noexcept {
   StepReport report;
   report.refused_inputs = outside.take_refused();
   log.begin_step();
+  sets.forget_partners();
   const Moved moved = scheme->step(*this);
   account.add(moved.energy);
   ++step_count;

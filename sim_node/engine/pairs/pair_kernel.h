@@ -95,7 +95,8 @@ using GatherPairs = std::size_t (*)(const MemberColumns& members, std::size_t a,
 /// Finds length, inverse and elongation increment of all pairs.
 using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows) noexcept;
 
-/// Adds factor * (vector from a to b) to member a and takes it from member b, for each pair.
+/// Adds factor * (vector from a to b) to member a and takes it from member b, for each pair. Adds 1
+/// to the fourth value of both where the factor is not 0: the partners of a member.
 using SpreadRows = void (*)(const PairRows& rows, const double* factor, double* force) noexcept;
 
 /// A contact: pull = K e + Z / dt * elongation increment, within min_pull and max_pull.
@@ -118,6 +119,7 @@ struct LennardJonesPair {
   double attraction = 0.0;    // 24 depth s^6 [J m^6]
   double repulsion = 0.0;     // 48 depth s^12 [J m^12]
   double range_square = 0.0;  // [m^2]
+  double touch_square = 0.0;  // below it a pair counts as partners [m^2]
 };
 
 /// Gathers the rows, finds the forces and spreads them.

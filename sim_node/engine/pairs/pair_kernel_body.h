@@ -143,6 +143,7 @@ struct RowSum {
   typename Lanes::Row x[kParts];
   typename Lanes::Row y[kParts];
   typename Lanes::Row z[kParts];
+  typename Lanes::Row partners[kParts];  // less than 0
 };
 
 template <class Lanes>
@@ -152,20 +153,32 @@ RowSum<Lanes> no_force() noexcept {
     sum.x[part] = Lanes::zero();
     sum.y[part] = Lanes::zero();
     sum.z[part] = Lanes::zero();
+    sum.partners[part] = Lanes::zero();
   }
   return sum;
 }
 
+/// -1 in the lanes of a mask, else 0. The fourth value of a column of forces counts the partners of
+/// the member; it is subtracted, as the force on the second end is.
 template <class Lanes>
-void spread(const PairRow& row, std::size_t i, typename Lanes::Row factor, double* force,
-            RowSum<Lanes>& sum, std::size_t part) noexcept {
+typename Lanes::Row less_one(typename Lanes::Mask mask) noexcept {
+  return Lanes::select(mask, Lanes::every(-1.0), Lanes::zero());
+}
+
+/// @param touching  the pairs that count as partners
+template <class Lanes>
+void spread(const PairRow& row, std::size_t i, typename Lanes::Row factor,
+            typename Lanes::Mask touching, double* force, RowSum<Lanes>& sum,
+            std::size_t part) noexcept {
   using Row3 = typename Lanes::Row3;
+  const typename Lanes::Row partner = less_one<Lanes>(touching);
   const Row3 pull{Lanes::load(row.x + i) * factor, Lanes::load(row.y + i) * factor,
                   Lanes::load(row.z + i) * factor};
   sum.x[part] = sum.x[part] + pull.x;
   sum.y[part] = sum.y[part] + pull.y;
   sum.z[part] = sum.z[part] + pull.z;
-  Lanes::subtract(force, row.column + i, pull);
+  sum.partners[part] = sum.partners[part] + partner;
+  Lanes::subtract(force, row.column + i, pull, partner);
 }
 
 /// The 8 places of a batch in the same order at every width.
@@ -183,6 +196,7 @@ void give(const RowSum<Lanes>& sum, double* column) noexcept {
   column[0] += sum_of<Lanes>(sum.x);
   column[1] += sum_of<Lanes>(sum.y);
   column[2] += sum_of<Lanes>(sum.z);
+  column[3] -= sum_of<Lanes>(sum.partners);
 }
 
 alignas(64) constexpr double kLaneNumber[] = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -198,17 +212,20 @@ void spread_some(const PairRow& row, std::size_t i, std::size_t count, const dou
   typename Lanes::Row3 pull{Lanes::load_any(row.x + i) * factor,
                             Lanes::load_any(row.y + i) * factor,
                             Lanes::load_any(row.z + i) * factor};
+  Row partner = less_one<Lanes>(Lanes::not_equal(factor, Lanes::zero()));
   if (count < Lanes::kWidth) {
     const auto own =
         Lanes::less(Lanes::load(kLaneNumber), Lanes::every(static_cast<double>(count)));
     pull.x = Lanes::select(own, pull.x, Lanes::zero());
     pull.y = Lanes::select(own, pull.y, Lanes::zero());
     pull.z = Lanes::select(own, pull.z, Lanes::zero());
+    partner = Lanes::select(own, partner, Lanes::zero());
   }
   sum.x[part] = sum.x[part] + pull.x;
   sum.y[part] = sum.y[part] + pull.y;
   sum.z[part] = sum.z[part] + pull.z;
-  Lanes::subtract(force, row.column + i, pull);
+  sum.partners[part] = sum.partners[part] + partner;
+  Lanes::subtract(force, row.column + i, pull, partner);
 }
 
 template <class Lanes>
@@ -258,6 +275,7 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
   const PairRow row = all;
   const Row attraction = Lanes::every(pair.attraction);
   const Row repulsion = Lanes::every(pair.repulsion);
+  const Row touch_square = Lanes::every(pair.touch_square);
   for (std::size_t a = rows.first; a < rows.last; ++a) {
     const std::uint32_t* neighbour = rows.neighbour + (rows.start[a] - rows.origin);
     const std::size_t count = gather_row<Lanes>(
@@ -267,9 +285,11 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
         const std::size_t at = i + part * Lanes::kWidth;
-        const Row factor = LennardJones::pull_per_distance<Lanes>(attraction, repulsion,
-                                                                  Lanes::load(row.square + at));
-        spread<Lanes>(row, at, factor, force, sum, part);
+        const Row square = Lanes::load(row.square + at);
+        const Row factor = LennardJones::pull_per_distance<Lanes>(attraction, repulsion, square);
+        const auto touching =
+            Lanes::both(Lanes::less(square, touch_square), Lanes::not_equal(square, Lanes::zero()));
+        spread<Lanes>(row, at, factor, touching, force, sum, part);
       }
     }
     give<Lanes>(sum, force + 4 * a);

@@ -71,6 +71,10 @@ std::uint32_t SetLiaisons::overflowed_count() const noexcept {
   return count;
 }
 
+void SetLiaisons::forget_partners() noexcept {
+  for (SetPairs& set : sets_) set.forget_partners();
+}
+
 void SetLiaisons::serialize(Archive& archive, const StateTable& table) {
   for (SetPairs& set : sets_) set.serialize(archive, table);
 }

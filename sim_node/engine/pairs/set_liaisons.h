@@ -21,6 +21,10 @@ class SetLiaisons {
     CORDIS_ASSERT(index < sets_.size());
     return sets_[index];
   }
+  const SetPairs& set(std::size_t index) const noexcept {
+    CORDIS_ASSERT(index < sets_.size());
+    return sets_[index];
+  }
 
   /// As those of SetPairs, for all sets:
   StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
@@ -36,6 +40,7 @@ class SetLiaisons {
   void start() noexcept;
   void adopt(const StateTable& table);
   std::uint32_t overflowed_count() const noexcept;
+  void forget_partners() noexcept;
   void serialize(Archive& archive, const StateTable& table);
 
  private:

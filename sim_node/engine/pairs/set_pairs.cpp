@@ -54,6 +54,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
                    const StateTable& table, const PairKernel& kernel)
     : kernel_(kernel),
       state_machine_(description.sets[index].state_machine),
+      count_p_(description.sets[index].set_p.size()),
       rest_length_(description.sets[index].rest_length),
       range_(description.sets[index].range),
       neighbours_(description.sets[index].set_p.size(), description.sets[index].set_q.size(),
@@ -66,6 +67,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
       column_.push_back(4 * mat);
+      is_mass_.push_back(description.mats[mat].kind == MatKind::kMass ? 1.0 : 0.0);
       if (rest_length_ < 0.0) radius_.push_back(description.radius[mat]);
     }
   }
@@ -98,7 +100,8 @@ void SetPairs::adopt(const StateTable& table) {
     path_ = Path::kLennardJones;
     const LennardJones::Term law = lennard_jones->term();
     const double range = std::min(range_, law.cutoff);
-    lennard_jones_ = {law.attraction, law.repulsion, range * range};
+    const double touch = touch_distance(table.state_machines()[state_machine_]);
+    lennard_jones_ = {law.attraction, law.repulsion, range * range, touch * touch};
   }
   const auto is_bare_limit = [](double pull) { return pull == 0.0 || std::isinf(pull); };
   const bool conservative = path_ == Path::kLennardJones ||
@@ -140,6 +143,7 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   } else {
     step_active_rows(step);
   }
+  count_partners();
   StepEnergy energy = give_forces(columns);
   energy.switching += state_machines_.switching();
   return energy;
@@ -238,6 +242,20 @@ void SetPairs::clear_forces() noexcept {
     std::fill_n(force_.begin() + 4 * std::ptrdiff_t{m}, 4, 0.0);
     if (has_viscous_) std::fill_n(viscous_.begin() + 4 * std::ptrdiff_t{m}, 4, 0.0);
   }
+}
+
+void SetPairs::count_partners() noexcept {
+  largest_partners_.of_p = std::max(largest_partners_.of_p, largest_among(0, count_p_));
+  largest_partners_.of_q =
+      std::max(largest_partners_.of_q, largest_among(count_p_, column_.size()));
+}
+
+std::uint32_t SetPairs::largest_among(std::size_t first, std::size_t last) const noexcept {
+  double largest = 0.0;
+  for (std::size_t m = first; m < last; ++m) {
+    largest = std::max(largest, is_mass_[m] * force_[4 * m + 3]);
+  }
+  return static_cast<std::uint32_t>(largest);
 }
 
 StepEnergy SetPairs::give_forces(const ForceColumns& columns) const noexcept {

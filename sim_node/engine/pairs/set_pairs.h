@@ -7,6 +7,7 @@
 
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/matter/energy_account.h"
@@ -70,6 +71,15 @@ class SetPairs {
 
   void visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const;
 
+  /// The most since the last forget_partners(). Of what rests, as it came to rest.
+  PartnerCount largest_partners() const noexcept { return largest_partners_; }
+  void forget_partners() noexcept { largest_partners_ = {}; }
+  /// Of one member when the last forces were computed, those of P first.
+  std::uint32_t partners_of(std::size_t member) const noexcept {
+    CORDIS_ASSERT(member < column_.size());
+    return static_cast<std::uint32_t>(force_[4 * member + 3]);
+  }
+
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
   void start() noexcept;
 
@@ -93,6 +103,8 @@ class SetPairs {
   void clear_forces() noexcept;
   void step_active_rows(const PairStep& step) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) const noexcept;
+  void count_partners() noexcept;
+  std::uint32_t largest_among(std::size_t first, std::size_t last) const noexcept;
   void step_rows(const PairStep& step, const NeighbourRows& rows) noexcept;
   std::size_t gather(const NeighbourRows& rows, std::size_t a) noexcept;
   void find_rest_lengths() noexcept;
@@ -103,7 +115,9 @@ class SetPairs {
 
   const PairKernel& kernel_;
   std::uint32_t state_machine_;
+  std::size_t count_p_;
   std::vector<std::uint32_t> column_;  // of the MAT of each member
+  std::vector<double> is_mass_;        // of each member: 1 or 0
   std::vector<double> radius_;         // of each member [m]; empty when the rest length is given
   double rest_length_;                 // [m]
   double range_;                       // [m]
@@ -115,10 +129,11 @@ class SetPairs {
   PairStateMachines state_machines_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches and one batch more
   AlignedVector<double> moved_;
-  AlignedVector<double> force_;
+  AlignedVector<double> force_;    // and as fourth value the number of partners
   AlignedVector<double> viscous_;  // the part of the force that stores no energy
   bool has_viscous_ = false;
   ActivePairs active_;
+  PartnerCount largest_partners_;
 };
 
 }  // namespace cordis::engine

@@ -19,11 +19,11 @@ struct Avx512PairLanes : Avx512Lanes {
                       two_columns(columns + 8, columns + 24),
                       two_columns(columns + 12, columns + 28));
   }
-  static void subtract(double* columns, const std::uint32_t* at, const Row3& v) noexcept {
+  static void subtract(double* columns, const std::uint32_t* at, const Row3& v, Row w) noexcept {
     const Row even_xy = _mm512_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2  x4 y4 x6 y6
     const Row odd_xy = _mm512_unpackhi_pd(v.x, v.y);
-    const Row even_z = _mm512_unpacklo_pd(v.z, zero());
-    const Row odd_z = _mm512_unpackhi_pd(v.z, zero());
+    const Row even_z = _mm512_unpacklo_pd(v.z, w);
+    const Row odd_z = _mm512_unpackhi_pd(v.z, w);
     const Row c04 = first_pairs(even_xy, even_z);
     const Row c15 = first_pairs(odd_xy, odd_z);
     const Row c26 = second_pairs(even_xy, even_z);

@@ -16,9 +16,9 @@ struct Sse2PairLanes : Sse2Lanes {
   static Row3 neighbours(const double* columns) noexcept {
     return transposed(load_column(columns), load_column(columns + 4));
   }
-  static void subtract(double* columns, const std::uint32_t* at, const Row3& v) noexcept {
-    const Column first{_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, zero())};
-    const Column second{_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, zero())};
+  static void subtract(double* columns, const std::uint32_t* at, const Row3& v, Row w) noexcept {
+    const Column first{_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, w)};
+    const Column second{_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, w)};
     store_column(columns + at[0], load_column(columns + at[0]) - first);
     store_column(columns + at[1], load_column(columns + at[1]) - second);
   }

@@ -69,8 +69,8 @@ concept SimdPairLanes = SimdLanes<Lanes> &&
   // columns that begin at `at`, or follow one another, as x, y, z
   { Lanes::vectors(in, at) } -> std::same_as<typename Lanes::Row3>;
   { Lanes::neighbours(in) } -> std::same_as<typename Lanes::Row3>;
-  // subtracts from the columns at `at`, one after the other
-  Lanes::subtract(out, at, vectors);
+  // subtracts vectors and their fourth values from the columns at `at`, one after the other
+  Lanes::subtract(out, at, vectors, row);
   // writes the chosen lanes one after the other, kWidth values in all
   Lanes::pack(out, row, chosen);
   Lanes::pack(places, at, chosen);

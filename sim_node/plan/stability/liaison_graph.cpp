@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <utility>
+
+#include "sim_node/plan/stability/law_value.h"
+#include "sim_node/plan/stability/partner_bound.h"
 
 namespace cordis::plan {
 namespace {
@@ -21,17 +24,48 @@ double smallest_radius(const NetworkDescription& network, const std::vector<std:
   return smallest;
 }
 
-ContactBound crowd(const NetworkDescription& network, const std::vector<std::uint32_t>& members,
-                   const std::vector<std::uint32_t>& others, const Slope& slope,
-                   std::uint32_t set) {
-  ContactBound side{members, others, {}, slope.stiffness, slope.viscosity, set, slope.bounded};
-  const double smallest = smallest_radius(network, others);
-  const double available = static_cast<double>(others.size() - (&members == &others ? 1 : 0));
-  for (const std::uint32_t mat : members) {
-    const double most = max_neighbours(network.dimension, radius_of(network, mat), smallest);
-    side.neighbours.push_back(std::min(most, available));
+/// The largest slope of Lennard-Jones from its touch distance to its cut, along or across [N/m].
+double slope_beyond(const engine::Law& law, double touch, double range) {
+  constexpr int kSamples = 200;
+  const double end = law.cut > 0.0 ? std::min(law.cut, range) : range;
+  double largest = 0.0;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double distance = touch + (end - touch) * i / kSamples;
+    largest = std::max(largest, elastic_pull(law, distance, distance) / distance);
   }
-  return side;
+  return largest;
+}
+
+/// One side of a set: its touching pairs, and those beyond.
+void add_side(const NetworkDescription& network, std::uint32_t index, const Slope& slope,
+              const PartnerBounds& bounds, bool of_p, LiaisonGraph& graph) {
+  const engine::SetLiaison& set = network.sets[index];
+  const auto first = static_cast<std::ptrdiff_t>(of_p ? 0 : set.set_p.size());
+  const auto& members = of_p ? set.set_p : set.set_q;
+  const auto last = first + static_cast<std::ptrdiff_t>(members.size());
+  ContactBound side;
+  side.members = members;
+  side.others = of_p && !set.set_q.empty() ? set.set_q : set.set_p;
+  side.neighbours.assign(bounds.needed.begin() + first, bounds.needed.begin() + last);
+  side.possible.assign(bounds.possible.begin() + first, bounds.possible.begin() + last);
+  side.stiffness = slope.stiffness;
+  side.viscosity = slope.viscosity;
+  side.set = index;
+  side.bounded = slope.bounded;
+  side.at_start = bounds.at_start;
+  graph.crowds.push_back(side);
+
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  const double touch = engine::touch_distance(state_machine);
+  if (touch >= set.range) return;
+  const engine::Law& law = state_machine.states.front().elasticity;
+  side.stiffness = slope_beyond(law, touch, set.range);
+  side.counted = false;
+  for (double& most : side.possible) {
+    most = std::min(most, packing_bound(network.dimension, set.range, law.diameter));
+  }
+  side.neighbours = side.possible;
+  graph.crowds.push_back(std::move(side));
 }
 
 void add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
@@ -44,10 +78,9 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const Slope slope =
       largest_slope(network.state_machines[set.state_machine], rest, network.dimension, reach);
   graph.bounded = graph.bounded && slope.bounded;
-  graph.crowds.push_back(crowd(network, set.set_p, others, slope, index));
-  if (!set.set_q.empty()) {
-    graph.crowds.push_back(crowd(network, set.set_q, set.set_p, slope, index));
-  }
+  const PartnerBounds bounds = partner_bounds(network, set);
+  add_side(network, index, slope, bounds, /*of_p=*/true, graph);
+  if (!set.set_q.empty()) add_side(network, index, slope, bounds, /*of_p=*/false, graph);
 }
 
 }  // namespace
@@ -56,15 +89,6 @@ double largest_of_others(const ContactBound& crowd, const std::vector<double>& v
   double most = 0.0;
   for (const std::uint32_t mat : crowd.others) most = std::max(most, values[mat]);
   return most;
-}
-
-double max_neighbours(int dimension, double own, double other) {
-  if (dimension == 1) return 2.0;
-  if (other >= own || other <= 0.0) return dimension == 2 ? 6.0 : 12.0;
-  const double half_angle = std::asin(other / (own + other));  // under which one ball is seen
-  constexpr double kRounding = 1e-9;
-  if (dimension == 2) return std::floor(std::numbers::pi / half_angle + kRounding);
-  return std::floor(2.0 / (1.0 - std::cos(half_angle)) + kRounding);
 }
 
 void LiaisonGraph::set_step(const NetworkDescription& network, double step) {

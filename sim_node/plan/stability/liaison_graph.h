@@ -24,15 +24,20 @@ struct Edge {
   bool bounded = true;  ///< false: its law has no largest slope of its own; see Reach
 };
 
-/// One side of a set liaison: each member meets at most so many of the others at once.
+/// One side of a set liaison: each member touches at most so many of the others at once. The
+/// numbers are those of partner_bounds(); more may come in a run, which is held against
+/// partner_limits().
 struct ContactBound {
   std::vector<std::uint32_t> members;
   std::vector<std::uint32_t> others;
   std::vector<double> neighbours;  ///< per member
+  std::vector<double> possible;    ///< per member: no pose has more
   double stiffness = 0.0;          ///< of one pair [N/m]
   double viscosity = 0.0;          ///< of one pair [N s/m]
   std::uint32_t set = 0;           ///< index in NetworkDescription::sets
-  bool bounded = true;             ///< as Joint::bounded
+  bool bounded = true;             ///< as Edge::bounded
+  std::uint32_t at_start = 0;      ///< the most partners of any mass of the set at the start
+  bool counted = true;  ///< false: beyond touch_distance(), where nothing is counted in a run
 };
 
 /// The largest of these values, one per MAT, that a neighbour of a member may have; 0 if none.
@@ -53,9 +58,5 @@ struct LiaisonGraph {
 
 /// Maxwell elements at their full stiffness, as set_step(0) would have them.
 LiaisonGraph liaison_graph(const engine::NetworkDescription& network);
-
-/// How many balls of radius `other` touch a ball of radius `own` at once, at most: the kissing
-/// number of the space for balls that are not smaller, a bound of packing for smaller ones.
-double max_neighbours(int dimension, double own, double other);
 
 }  // namespace cordis::plan

@@ -10,6 +10,7 @@
 
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/step_bound.h"
 
 namespace cordis::plan {
@@ -98,6 +99,16 @@ Columns random_direction(const Eigen::RowVectorXd& root_of_inverse_mass, int dim
   return x;
 }
 
+/// True if a pair surely has its tangent: it neither is let go of nor at its limit. One that only
+/// pushes and just touches has none on one side.
+bool acts(const engine::LinkState& state, const Tangent& tangent, double distance) {
+  constexpr double kTouching = 1e-9;
+  const double rounding = kTouching * std::abs(tangent.stiffness) * distance;
+  if (!state.pulls && tangent.pull > -rounding) return false;
+  if (!state.pushes && tangent.pull < rounding) return false;
+  return std::abs(tangent.pull) < state.force_limit;
+}
+
 }  // namespace
 
 StartTangent::StartTangent(const engine::NetworkDescription& network)
@@ -139,6 +150,27 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     add(link.mat_a, link.mat_b, network, weights.stiffness * link.stiffness, 0.0, 0.0,
         weights.stiffness * link.viscosity);
+  }
+  for (const engine::SetLiaison& set : network.sets) {
+    add_set(network, set, weights.stiffness, weights.viscosity);
+  }
+}
+
+void StartTangent::add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
+                           double stiffness_weight, double viscosity_weight) {
+  const engine::StateMachine& all = network.state_machines[set.state_machine];
+  engine::StateMachine start;
+  start.states = {all.states[all.start]};
+  start.states[0].first_exit = start.states[0].last_exit = 0;
+  const StartPairs near(network, set);
+  for (const StartPair& pair : near.pairs()) {
+    const std::uint32_t a = mat_of(set, pair.member_a);
+    const std::uint32_t b = mat_of(set, pair.member_b);
+    const Tangent tangent =
+        stiffest_tangent(start, rest_length_of(network, set, a, b), pair.distance);
+    if (!acts(start.states[0], tangent, pair.distance)) continue;
+    add(a, b, network, stiffness_weight * tangent.stiffness, stiffness_weight * tangent.pull,
+        viscosity_weight * tangent.viscosity, 0.0);
   }
 }
 

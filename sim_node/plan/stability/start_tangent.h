@@ -11,8 +11,9 @@
 namespace cordis::plan {
 
 /// The linear network that a scene is for small movements about the pose of its start: every link
-/// with its tangent there, state links in their stiffest state, sets left out; with the weights of
-/// its integrator at its step (LimitWeights).
+/// with its tangent there, state links in their stiffest state, every pair of a set in the state of
+/// its start as far as it pulls or pushes; with the weights of its integrator at its step
+/// (LimitWeights). A set of more than StartPairs::kMaxPairs pairs is left out.
 ///
 /// In 1 dimension, for linear links alone, this is the network itself, and its limit is exact.
 class StartTangent {
@@ -40,6 +41,8 @@ class StartTangent {
 
   void add(std::uint32_t a, std::uint32_t b, const engine::NetworkDescription& network,
            double along, double pull, double viscosity, double maxwell_viscosity);
+  void add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
+               double stiffness_weight, double viscosity_weight);
   void add_tie(const engine::Link& tie, double stiffness, double viscosity);
   /// M^-1/2 (stiffness_factor K + viscosity_factor Z) M^-1/2 x; Maxwell elements as at a step.
   Columns times(const Columns& x, double stiffness_factor, double viscosity_factor,

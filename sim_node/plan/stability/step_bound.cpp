@@ -137,17 +137,13 @@ double limit_step(double stiffness, double viscosity) noexcept {
   return 4.0 / (viscosity + std::sqrt(viscosity * viscosity + 4.0 * stiffness));
 }
 
-std::vector<double> row_weights(const LiaisonGraph& graph, double step) {
+RowWeights row_weights(const LiaisonGraph& graph, double step) {
   std::vector<double> x = first_weights(graph);
-  std::vector<double> best = x;
-  double least = std::numeric_limits<double>::infinity();
+  RowWeights best{x, std::numeric_limits<double>::infinity()};
   for (int n = 0; n < kRowBounds; ++n) {
     const Rows rows = times(graph, x);
     const double number = row_number(graph, x, rows, step);
-    if (number < least) {
-      least = number;
-      best = x;
-    }
+    if (number < best.number) best = {x, number};
     iterate(graph, rows, step, x);
   }
   return best;

@@ -32,9 +32,14 @@ StepBound edge_bound(const LiaisonGraph& graph);
 /// O(liaisons). Derived in docs/stability.md.
 StepBound certified_bound(const engine::NetworkDescription& network, const LiaisonGraph& graph);
 
-/// The x > 0 of one of these row bounds, that which bounds the eigenvalues best at this step; 0
-/// where nothing moves. O(liaisons).
-std::vector<double> row_weights(const LiaisonGraph& graph, double step);
+/// A row bound at a step.
+struct RowWeights {
+  std::vector<double> weight;  ///< x, per MAT; 0 where nothing moves
+  double number = 0.0;         ///< max over i of (B x)_i / x_i: no eigenvalue is above it
+};
+
+/// The one of these row bounds that bounds the eigenvalues best at this step. O(liaisons).
+RowWeights row_weights(const LiaisonGraph& graph, double step);
 
 /// The step at which dt^2 stiffness + 2 dt viscosity = 4, both for unit mass; infinite for 0 and 0.
 double limit_step(double stiffness, double viscosity) noexcept;

@@ -127,6 +127,9 @@ export class Hud {
     set('by-viscosity', joined(withUnit(sim?.dissipated_j, 'J')));
     const limit = sim?.largest_limit_number;
     set('limit', typeof limit === 'number' ? `${threeDigits(limit)} of 4` : NONE, typeof limit === 'number' && limit >= 4 ? 'warn' : '');
+    const partners = sim?.largest_partners ?? 0;
+    const certified = sim?.certified_partners ?? 0;
+    set('partners', partners + certified > 0 ? `${partners} of ${certified}` : NONE, partners > certified ? 'warn' : '');
   }
 
   private writeNodes(nodes: NodeState[]): void {

@@ -1,0 +1,204 @@
+// tests/plan/partner_bound_test.cpp
+#include "sim_node/plan/stability/partner_bound.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/rate.h"
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+using plan::Plan;
+using plan::plan_of;
+
+/// Masses on a cubic lattice, each joined to all others within the range.
+NetworkDescription lattice(int edge, double spacing, const engine::StateMachine& law, double rest,
+                           double range) {
+  NetworkDescription scene;
+  scene.dimension = 3;
+  scene.step = 1e-3;
+  scene.state_machines.push_back(law);
+  engine::SetLiaison set;
+  for (int i = 0; i < edge * edge * edge; ++i) {
+    const Vec3 at(i % edge, i / edge % edge, i / (edge * edge));
+    set.set_p.push_back(static_cast<std::uint32_t>(scene.mats.size()));
+    scene.mats.push_back(mass(0.001, spacing * at));
+  }
+  set.rest_length = rest;
+  set.range = range;
+  scene.sets.push_back(set);
+  return scene;
+}
+
+/// A ball of 1 g above a floor of fixed points this far apart.
+NetworkDescription ball_on_floor(double spacing, double stiffness) {
+  NetworkDescription scene;
+  scene.dimension = 3;
+  scene.step = 1e-3;
+  scene.gravity = Vec3(0, 0, -9.81);
+  scene.state_machines.push_back(contact(stiffness));
+  engine::SetLiaison set;
+  set.set_p = {0};
+  scene.mats.push_back(mass(0.001, Vec3(0, 0, 0.02)));
+  scene.radius.push_back(0.005);
+  for (int i = -12; i <= 12; ++i) {
+    for (int j = -12; j <= 12; ++j) {
+      set.set_q.push_back(static_cast<std::uint32_t>(scene.mats.size()));
+      scene.mats.push_back(fixed(spacing * Vec3(i, j, 0)));
+      scene.radius.push_back(0.0);
+    }
+  }
+  set.rest_length = -1.0;
+  set.range = 0.005;
+  scene.sets.push_back(set);
+  return scene;
+}
+
+TEST(PackingBound, IsTheKissingNumberForBallsThatTouch) {
+  EXPECT_EQ(plan::packing_bound(1, 1.0, 1.0), 2.0);
+  EXPECT_EQ(plan::packing_bound(2, 1.0, 1.0), 6.0);
+  EXPECT_EQ(plan::packing_bound(3, 1.0, 1.0), 12.0);
+}
+
+TEST(PackingBound, IsAboveTheDensestPackings) {
+  // Within two diameters: 18 in the plane, 54 in space (12 + 6 + 24 + 12 of the fcc lattice).
+  EXPECT_EQ(plan::packing_bound(1, 2.0, 1.0), 4.0);
+  EXPECT_GE(plan::packing_bound(2, 2.0, 1.0), 18.0);
+  EXPECT_LE(plan::packing_bound(2, 2.0, 1.0), 21.0);
+  EXPECT_GE(plan::packing_bound(3, 2.0, 1.0), 54.0);
+  EXPECT_GE(plan::packing_bound(3, 1.42, 1.0), 18.0);  // 12 + 6
+}
+
+TEST(MaxInReach, IsNeverBelowTheTrueNumberAtAnyPlace) {
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    std::mt19937 random(seed);
+    const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+    const int dimension = 1 + static_cast<int>(seed % 3);
+    const auto place = [&] {
+      return Vec3(uniform(), dimension > 1 ? uniform() : 0.0, dimension > 2 ? uniform() : 0.0);
+    };
+    std::vector<Vec3> points(200);
+    for (Vec3& point : points) point = place();
+    const double reach = 0.05 + 0.3 * uniform();
+    const double bound = plan::max_in_reach(points, reach, dimension);
+    std::size_t most = 0;
+    for (int n = 0; n < 500; ++n) {
+      const Vec3 at = place();
+      std::size_t count = 0;
+      for (const Vec3& point : points) count += (point - at).norm() < reach ? 1U : 0U;
+      most = std::max(most, count);
+    }
+    EXPECT_GE(bound, static_cast<double>(most)) << "seed " << seed;
+    EXPECT_LE(bound, 200.0) << "seed " << seed;
+  }
+}
+
+TEST(Partners, OfACrowdWithinRangeOfEachOtherAreAllCounted) {
+  // 125 masses of 1 g, each with 124 springs of 100 N/m: far beyond 4 at 1000 Hz.
+  const NetworkDescription scene = lattice(5, 0.01, state_machine(100.0), 0.02, 1.0);
+
+  const plan::Stability stability = plan_of(scene, 10.0).stability;
+
+  ASSERT_EQ(stability.sets.size(), 1u);
+  EXPECT_EQ(stability.sets[0].at_start, 124u);
+  EXPECT_FALSE(stability.holds());
+  EXPECT_TRUE(stability.diverges());
+  EXPECT_LT(stability.certified.step, stability.diverging_step);
+}
+
+TEST(Partners, OfARowPressedTogetherAreAllCounted) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.state_machines.push_back(contact(500.0));
+  engine::SetLiaison set;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    scene.mats.push_back(mass(0.001, Vec3(0.0005 * i, 0, 0)));
+    set.set_p.push_back(i);
+  }
+  set.rest_length = set.range = 0.05;
+  scene.sets.push_back(set);
+
+  const plan::Stability stability = plan_of(scene, 10.0).stability;
+
+  EXPECT_EQ(stability.sets[0].at_start, 99u);
+  EXPECT_TRUE(stability.diverges());
+}
+
+TEST(Partners, OfABallOnAFloorAreThePointsInItsReachWhereverItFalls) {
+  const NetworkDescription dense = ball_on_floor(0.0005, 200.0);
+  const plan::Stability stability = plan_of(dense, 10.0).stability;
+  EXPECT_EQ(stability.sets[0].at_start, 0u);  // it is still above
+  EXPECT_FALSE(stability.holds());
+
+  // Points a diameter apart: one or a few at a time.
+  const plan::Stability coarse = plan_of(ball_on_floor(0.01, 200.0), 10.0).stability;
+  EXPECT_TRUE(coarse.holds());
+  EXPECT_TRUE(coarse.sets[0].is_guaranteed());
+}
+
+TEST(Partners, AreGuaranteedWhereThereAreNoMoreOthers) {
+  const plan::Stability few = plan_of(lattice(2, 0.02, contact(5.0), 0.01, 0.01), 10.0).stability;
+  EXPECT_TRUE(few.holds());
+  EXPECT_TRUE(few.sets[0].is_guaranteed()) << "each has 7 others at most";
+
+  const plan::Stability many = plan_of(lattice(6, 0.02, contact(20.0), 0.01, 0.01), 10.0).stability;
+  EXPECT_TRUE(many.holds());
+  ASSERT_FALSE(many.sets[0].is_guaranteed());
+  EXPECT_NEAR(many.sets[0].least, 99.0, 1.0) << "of 215 others; 2 n K dt^2 / m < 4";
+}
+
+TEST(Partners, UpToTheCertifiedNumberAreStable) {
+  // dt^2 n (K + K) / m < 4: with 5 N/m and 1 g up to 399 others.
+  const NetworkDescription scene = lattice(8, 0.02, contact(5.0), 0.01, 0.01);
+  const std::uint32_t certified = plan_of(scene, 10.0).stability.sets[0].least;
+  EXPECT_LE(certified, 399u);
+  EXPECT_GE(certified, 395u);
+}
+
+TEST(Partners, MakeTheRateOfACrowdHighEnough) {
+  const NetworkDescription scene = [] {
+    NetworkDescription crowd = lattice(5, 0.012, state_machine(300.0), 0.01, 0.5);
+    crowd.state_machines[0].states[0].viscosity = 0.002;
+    return crowd;
+  }();
+  const plan::RateChoice choice = plan::choose_rate(scene, {0.01, 20.0, 1.0, 0.0}, 1000.0);
+
+  NetworkDescription chosen = scene;
+  chosen.step = 1.0 / choice.rate_hz;
+  EXPECT_TRUE(plan_of(chosen, 20.0).stability.holds());
+  World world = make_world(chosen);
+  const double before = world.energy().total();
+  double most = before;
+  for (int n = 0; n < 5000; ++n) {
+    world.step();
+    most = std::max(most, world.energy().kinetic + world.energy().elastic);
+  }
+  EXPECT_LE(most, 1.1 * before);
+}
+
+TEST(StartTangent, OfASetIsTheTrueLimitOfALinearOne) {
+  // Rest length 0: the force of every pair is linear in its difference in space. n masses, each
+  // joined to all others: the largest eigenvalue is n K / m.
+  NetworkDescription scene = lattice(3, 0.01, state_machine(100.0), 0.0, 1.0);
+  const double exact = 2.0 / std::sqrt(27.0 * 100.0 / 0.001);
+  const plan::Stability stability = plan_of(scene, 10.0).stability;
+  EXPECT_NEAR(stability.diverging_step, exact, 1e-5 * exact);
+  EXPECT_LE(stability.certified.step, exact);
+}
+
+TEST(StartTangent, TakesNoPairThatIsNotPressed) {
+  // A contact that just touches has a tangent on one side alone; one contact by itself diverges
+  // from 2 sqrt(m / 2 K) on.
+  const NetworkDescription scene = lattice(3, 0.01, contact(100.0), 0.01, 0.02);
+  const double one = 2.0 / std::sqrt(200.0 / 0.001);
+  EXPECT_NEAR(plan_of(scene, 10.0).stability.diverging_step, one, 1e-6 * one);
+}
+
+}  // namespace
+}  // namespace cordis::test
