@@ -16,6 +16,7 @@
 #include "node/late_ticks.h"
 #include "node/node_main.h"
 #include "node/paced_loop.h"
+#include "node/repeated_event.h"
 #include "node/roster.h"
 #include "node/status.h"
 #include "sim_node/devices/device_reach.h"
@@ -64,7 +65,7 @@ class Session {
   bool finished() const noexcept;
   void fill(msg::NodeStatus& status);
   void publish_scene(const scene::Scene& scene, std::uint64_t version);
-  void set_phase(const char* phase) noexcept;
+  void set_phase(msg::NodePhase phase) noexcept;
   void listen_to_devices();
 
   const node::NodeStart& start_;
@@ -84,7 +85,8 @@ class Session {
   std::uint64_t turns_ = 0;       // of the loop, for the pace of frames while the scene is paused
   std::uint64_t tick_count_ = 0;  // over all stages
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
-  bool wait_reported_ = false;
+  std::uint64_t unwritten_ = 0;        // answers that DDS did not take
+  node::RepeatedEvent waits_{"has been waiting long for a device"};
 
   // What the loop reports to the status thread.
   struct StatusSnapshot {
@@ -101,7 +103,7 @@ class Session {
   std::vector<std::string> liaisons_;  // names of those whose changes are shown
   std::uint64_t liaisons_version_ = 0;
   bool passivity_reported_ = false;  // of the status thread
-  std::atomic<const char*> phase_{"starting"};
+  std::atomic<msg::NodePhase> phase_{msg::PHASE_STARTING};
   std::atomic<std::uint64_t> ticks_{0};
   node::LateTicks late_ticks_;
   std::atomic<std::uint64_t> dropped_{0};

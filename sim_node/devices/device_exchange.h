@@ -19,7 +19,7 @@ namespace cordis::sim {
 
 using scene::Role;
 
-constexpr std::size_t kMaxAxes = 16;
+constexpr std::size_t kMaxAxes = msg::MAX_AXES;
 
 /// The ports of one device: takes its samples, moves or pushes the MATs over the sub-steps, and
 /// makes the answers.

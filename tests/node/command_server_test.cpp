@@ -16,13 +16,13 @@ msg::ControlCommand command_for(const std::string& target, std::uint64_t id,
   command.command_id(id);
   command.sender(sender);
   command.target(target);
-  command.verb("pause");
+  command.verb(msg::VERB_PAUSE);
   return command;
 }
 
 struct Desk {
-  std::vector<std::string> executed;
-  CommandServer server{"sim", "sim_node", [this](const msg::ControlCommand& command) {
+  std::vector<msg::ControlVerb> executed;
+  CommandServer server{"sim", msg::KIND_SIM_NODE, [this](const msg::ControlCommand& command) {
                          executed.push_back(command.verb());
                          return Answer{true, "answer " + std::to_string(executed.size())};
                        }};
@@ -75,7 +75,7 @@ TEST(CommandServer, RemembersABoundedNumberOfCommands) {
 }
 
 TEST(CommandServer, AnswersAFailureWithItsReason) {
-  CommandServer server("sim", "sim_node", [](const msg::ControlCommand&) -> Answer {
+  CommandServer server("sim", msg::KIND_SIM_NODE, [](const msg::ControlCommand&) -> Answer {
     throw std::runtime_error("no memory for it");
   });
   const auto reply = server.take(command_for("sim", 1));
