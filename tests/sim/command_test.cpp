@@ -12,7 +12,7 @@ namespace {
 
 std::string refusal_of(msg::ControlVerb verb, const std::string& argument) {
   try {
-    read_command(verb, argument);
+    static_cast<void>(read_command(verb, argument));
   } catch (const std::invalid_argument& refusal) {
     return refusal.what();
   }
