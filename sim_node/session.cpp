@@ -237,8 +237,8 @@ void Session::report_wait(const DeviceExchange& device) {
   if (waits_since_nsec_ == 0) waits_since_nsec_ = now;
   if (now - waits_since_nsec_ < kLongWait) return;
   waits_since_nsec_ = kWaitIsReported;
-  if (!waits_.record(now)) return;
   const std::string alive = roster_.name_of(msg::KIND_DEVICE_NODE);
+  if (!(alive.empty() ? absences_ : silences_).record(now)) return;
   const std::string who = alive.empty() ? "no device_node of the session is alive"
                                         : "device_node " + alive + " is alive, and sends no sample";
   spdlog::warn("has been waiting for the device '{}' for {} s: {}", device.device(),
@@ -289,7 +289,9 @@ void Session::answer(DeviceExchange& device) {
 }
 
 void Session::record_state() {
-  waits_.report(node::monotonic_nsec());
+  const std::int64_t now = node::monotonic_nsec();
+  absences_.report(now);
+  silences_.report(now);
   std::uint64_t dropped = frames_.frames_left_out() + frames_.unwritten() + unwritten_;
   Simulation& simulation = runner_.simulation();
   std::uint64_t passivity_ticks = 0;

@@ -86,7 +86,9 @@ class Session {
   std::uint64_t tick_count_ = 0;  // over all stages
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
   std::uint64_t unwritten_ = 0;        // answers that DDS did not take
-  node::RepeatedEvent waits_{"has been waiting long for a device"};
+  node::RepeatedEvent absences_{"has been waiting long, with no device_node alive"};
+  node::RepeatedEvent silences_{
+      "has been waiting long for a sample of a device_node that is alive"};
 
   // What the loop reports to the status thread.
   struct StatusSnapshot {
