@@ -4,9 +4,11 @@
 #include <array>
 #include <cstdint>
 
+#include "node/config/max_axes.h"
+
 namespace cordis::device {
 
-inline constexpr int kMaxAxes = 16;  ///< entries of msg::PerAxis
+using config::kMaxAxes;
 
 /// One value per axis: positions [m] or forces [N]. Entries past the device's axes are 0.
 using AxisValues = std::array<double, kMaxAxes>;

@@ -55,7 +55,7 @@ Device::Device(LoadedDevice device, dds::Participant& participant, dds::Particip
                   ? std::chrono::duration<double>(kLockstepPatience).count()
                   : config_.force_guard.watchdog_s),
       scenes_(participant, config_, *driver_),
-      status_(participant, "device_node", epoch, [this](msg::NodeStatus& status) {
+      status_(participant, msg::KIND_DEVICE_NODE, epoch, [this](msg::NodeStatus& status) {
         meter_.fill(status);
         const std::string refusal = scenes_.refusal();
         if (!refusal.empty()) status.text("refused " + refusal);
@@ -105,7 +105,8 @@ void Device::describe() {
   description.force_n(limits.coordinate_force_n);
   description.plays_mass(driver_->can_play(Role::kMass));
   description.plays_liaison(driver_->can_play(Role::kLiaison));
-  description_.write(description);
+  if (!description_.write(description))
+    spdlog::error("DDS did not take the description of '{}'", config_.name);
 }
 
 /// Tells once that the scene, if there is one, does not play the device.
@@ -182,7 +183,7 @@ bool Device::keep_asking(Exchange& exchange) {
     }
     const bool never_answered = meter_.phase() == Phase::kWaiting;
     if (silent >= kLongSilence && never_answered && !std::exchange(silence_told_, true)) {
-      const std::string alive = roster_.name_of("sim_node");
+      const std::string alive = roster_.name_of(msg::KIND_SIM_NODE);
       spdlog::warn("no answer to the first sample for {} s: {}", kLongSilence.count(),
                    alive.empty() ? "no sim_node of the session is alive"
                                  : "sim_node " + alive + " is alive, and does not answer");

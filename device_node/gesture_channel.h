@@ -30,11 +30,12 @@ class GestureChannel {
   virtual ~GestureChannel() = default;
 
   /// Sends a sample; false when it could not be handed over.
-  virtual bool send(const GestureMessage& sample) noexcept = 0;
+  [[nodiscard]] virtual bool send(const GestureMessage& sample) noexcept = 0;
 
   /// The next answer for this device, waiting at most so long for one (0: not at all); false when
   /// none came. Entries past axis_count are 0; nothing else about it has been checked.
-  virtual bool receive(GestureMessage& answer, std::chrono::nanoseconds at_most) noexcept = 0;
+  [[nodiscard]] virtual bool receive(GestureMessage& answer,
+                                     std::chrono::nanoseconds at_most) noexcept = 0;
 };
 
 }  // namespace cordis::device

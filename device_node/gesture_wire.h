@@ -3,11 +3,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 #include "device_node/gesture_channel.h"
 #include "idl/gesture.h"
 
 namespace cordis::device::wire {
+
+static_assert(kMaxAxes == msg::MAX_AXES);
+static_assert(std::tuple_size_v<msg::PerAxis> == msg::MAX_AXES);
 
 inline AxisValues& values_of(msg::GesturePositions& message) {
   return message.position_m();

@@ -7,28 +7,29 @@ namespace {
 constexpr std::uint64_t kTicksPerPublication = 256;
 
 struct PhaseWords {
-  const char* phase;
+  msg::NodePhase phase;
   const char* text;
 };
 
 PhaseWords words_of(Phase phase) noexcept {
   switch (phase) {
     case Phase::kWaiting:
-      return {"waiting", "waits for a scene that plays this device; motors off"};
+      return {msg::PHASE_WAITING, "waits for a scene that plays this device; motors off"};
     case Phase::kUnused:
-      return {"unused", "the scene does not play this device; motors off"};
+      return {msg::PHASE_UNUSED, "the scene does not play this device; motors off"};
     case Phase::kRunning:
-      return {"running", ""};
+      return {msg::PHASE_RUNNING, ""};
     case Phase::kStandby:
-      return {"standby", "another node plays this device; ready to take over"};
+      return {msg::PHASE_STANDBY, "another node plays this device; ready to take over"};
     case Phase::kLost:
-      return {"lost", "no answer from the scene in time, or no device; motors at zero"};
+      return {msg::PHASE_LOST, "no answer from the scene in time, or no device; motors at zero"};
     case Phase::kDisconnected:
-      return {"disconnected", "the board has let go of its motors; forces return by the ramp"};
+      return {msg::PHASE_DISCONNECTED,
+              "the board has let go of its motors; forces return by the ramp"};
     case Phase::kStopped:
-      return {"stopped", ""};
+      return {msg::PHASE_STOPPED, ""};
   }
-  return {"", ""};
+  return {msg::PHASE_FAILED, "unknown phase"};
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
   cordis::dds::Participant participant(start.config());
   cordis::dds::Participant for_loop = start.join_for_force_loop();
   cordis::node::CommandListener commands(
-      participant, "device_node", [](const cordis::msg::ControlCommand& command) {
-        return cordis::node::nothing_to_do(command, "device_node");
+      participant, cordis::msg::KIND_DEVICE_NODE, [](const cordis::msg::ControlCommand& command) {
+        return cordis::node::nothing_to_do(command, cordis::msg::KIND_DEVICE_NODE);
       });
   commands.start();
   cordis::device::Device(std::move(device), participant, for_loop, start.launch.clock, start.epoch)

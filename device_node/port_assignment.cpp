@@ -9,8 +9,8 @@
 namespace cordis::device {
 namespace {
 
-constexpr std::uint32_t kMassOnWire = 0;
-constexpr std::uint32_t kLiaisonOnWire = 1;
+static_assert(static_cast<int>(Role::kMass) == msg::ROLE_MASS);
+static_assert(static_cast<int>(Role::kLiaison) == msg::ROLE_LIAISON);
 
 constexpr std::size_t kLongestName = 64;
 
@@ -23,9 +23,9 @@ std::string shown(const std::string& name) {
 }
 
 std::string trouble_with(const msg::PortDescription& port, const DeviceConfig& device) {
-  if (port.role() != kMassOnWire && port.role() != kLiaisonOnWire) {
+  if (port.role() != msg::ROLE_MASS && port.role() != msg::ROLE_LIAISON) {
     return fmt::format("port '{}' gives device '{}' the unknown role {}", shown(port.name()),
-                       device.name, port.role());
+                       device.name, static_cast<std::uint32_t>(port.role()));
   }
   for (const std::uint32_t axis : port.axes()) {
     const int count = device.end_piece.coordinate_count();
@@ -45,7 +45,7 @@ PortAssignment part_of(const msg::SceneDescription& scene, const DeviceConfig& d
   for (const msg::PortDescription& port : scene.ports()) {
     if (port.device_id() != device.device_id) continue;
     part.impossible = trouble_with(port, device);
-    const Role role = port.role() == kLiaisonOnWire ? Role::kLiaison : Role::kMass;
+    const Role role = port.role() == msg::ROLE_LIAISON ? Role::kLiaison : Role::kMass;
     if (part.impossible.empty() && part.wanted && role != part.role) {
       part.impossible =
           fmt::format("port '{}' gives device '{}' role {}, another port role {}",

@@ -2,7 +2,11 @@
 #include "node/command_listener.h"
 
 #include <chrono>
+#include <string>
 #include <utility>
+
+#include "node/control_verbs.h"
+#include "node/status_words.h"
 
 namespace cordis::node {
 namespace {
@@ -12,8 +16,7 @@ constexpr auto kLastReply = std::chrono::milliseconds(200);
 
 }  // namespace
 
-CommandListener::CommandListener(dds::Participant& participant, const std::string& kind,
-                                 Execute execute)
+CommandListener::CommandListener(dds::Participant& participant, msg::NodeKind kind, Execute execute)
     : reader_(participant, dds::Topic::kCommand),
       writer_(participant, dds::Topic::kReply),
       server_(participant.config().node, kind, std::move(execute)) {}
@@ -34,14 +37,16 @@ void CommandListener::loop() {
   msg::ControlCommand command;
   while (!ending_) {
     while (!ending_ && reader_.take(command)) {
-      if (auto reply = server_.take(command)) writer_.write(*reply);
+      // A reply that cannot be written is asked for again.
+      if (auto reply = server_.take(command)) static_cast<void>(writer_.write(*reply));
     }
     if (!ending_) reader_.wait(kLongestWait);
   }
 }
 
-Answer nothing_to_do(const msg::ControlCommand& command, const std::string& kind) {
-  return {command.target() == "*", "a " + kind + " has nothing to do at '" + command.verb() + "'"};
+Answer nothing_to_do(const msg::ControlCommand& command, msg::NodeKind kind) {
+  return {command.target() == "*", std::string("a ") + word_of(kind) + " has nothing to do at '" +
+                                       word_of(command.verb()) + "'"};
 }
 
 }  // namespace cordis::node

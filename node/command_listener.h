@@ -16,8 +16,7 @@ namespace cordis::node {
 /// it before raising the priority of any thread.
 class CommandListener {
  public:
-  /// @param kind  "sim_node", "device_node" or "viz_node"
-  CommandListener(dds::Participant& participant, const std::string& kind, Execute execute);
+  CommandListener(dds::Participant& participant, msg::NodeKind kind, Execute execute);
   /// Waits until the command being executed, if any, is done.
   ~CommandListener();
   CommandListener(const CommandListener&) = delete;
@@ -37,6 +36,6 @@ class CommandListener {
 };
 
 /// For nodes that have nothing to execute: says so, as a refusal unless all nodes were addressed.
-Answer nothing_to_do(const msg::ControlCommand& command, const std::string& kind);
+Answer nothing_to_do(const msg::ControlCommand& command, msg::NodeKind kind);
 
 }  // namespace cordis::node

@@ -5,14 +5,16 @@
 #include <exception>
 #include <utility>
 
+#include "node/status_words.h"
+
 namespace cordis::node {
 
-CommandServer::CommandServer(std::string node, std::string kind, Execute execute)
-    : node_(std::move(node)), kind_(std::move(kind)), execute_(std::move(execute)) {}
+CommandServer::CommandServer(std::string node, msg::NodeKind kind, Execute execute)
+    : node_(std::move(node)), kind_(kind), execute_(std::move(execute)) {}
 
 std::optional<msg::ControlReply> CommandServer::take(const msg::ControlCommand& command) {
   const std::string& target = command.target();
-  if (target != "*" && target != node_ && target != kind_) return std::nullopt;
+  if (target != "*" && target != node_ && target != word_of(kind_)) return std::nullopt;
 
   const auto known = std::ranges::find_if(given_, [&command](const msg::ControlReply& reply) {
     return reply.command_id() == command.command_id() && reply.sender() == command.sender();

@@ -26,14 +26,14 @@ class CommandServer {
  public:
   static constexpr std::size_t kRemembered = 64;
 
-  CommandServer(std::string node, std::string kind, Execute execute);
+  CommandServer(std::string node, msg::NodeKind kind, Execute execute);
 
   /// The reply to a command; nothing when it is for others.
-  std::optional<msg::ControlReply> take(const msg::ControlCommand& command);
+  [[nodiscard]] std::optional<msg::ControlReply> take(const msg::ControlCommand& command);
 
  private:
   std::string node_;
-  std::string kind_;
+  msg::NodeKind kind_;
   Execute execute_;
   std::deque<msg::ControlReply> given_;  // the newest replies, oldest first
 };

@@ -1,12 +1,16 @@
-// node/control_verbs.h -- the verbs of control/command that a sim_node executes.
+// node/control_verbs.h -- the verbs of control/command that a sim_node executes, in words.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "idl/control.h"
 
 namespace cordis::node {
 
 struct ControlVerb {
+  msg::ControlVerb verb;
   const char* name;
   const char* words;    ///< what follows it on a command line
   const char* summary;  ///< for help
@@ -14,15 +18,32 @@ struct ControlVerb {
 
 inline const std::vector<ControlVerb>& control_verbs() {
   static const std::vector<ControlVerb> kVerbs{
-      {"pause", "", "Pause the scene"},
-      {"resume", "", "Let it go on"},
-      {"step", "[N]", "Pause, then do one step, or N"},
-      {"reset", "", "Restart the scene, with its present parameters"},
-      {"load", "SCENE", "Play another scene from its beginning"},
-      {"set", "NAME.PARAMETER=VALUE ...", "Change parameters of liaisons or named links"},
-      {"state", "LINKS STATE", "Put links into a state"},
+      {msg::VERB_PAUSE, "pause", "", "Pause the scene"},
+      {msg::VERB_RESUME, "resume", "", "Let it go on"},
+      {msg::VERB_STEP, "step", "[N]", "Pause, then do one step, or N"},
+      {msg::VERB_RESET, "reset", "", "Restart the scene, with its present parameters"},
+      {msg::VERB_LOAD, "load", "SCENE", "Play another scene from its beginning"},
+      {msg::VERB_SET, "set", "NAME.PARAMETER=VALUE ...",
+       "Change parameters of liaisons or named links"},
+      {msg::VERB_STATE, "state", "LINKS STATE", "Put links into a state"},
   };
   return kVerbs;
+}
+
+/// The verb of a word; nullptr when there is none.
+inline const ControlVerb* find_control_verb(std::string_view name) {
+  for (const ControlVerb& verb : control_verbs()) {
+    if (name == verb.name) return &verb;
+  }
+  return nullptr;
+}
+
+/// The word of a verb. A number that another process wrote and that is none gets `verb 99`.
+inline std::string word_of(msg::ControlVerb wanted) {
+  for (const ControlVerb& verb : control_verbs()) {
+    if (verb.verb == wanted) return verb.name;
+  }
+  return "verb " + std::to_string(static_cast<unsigned>(wanted));
 }
 
 inline std::vector<std::string> control_verb_names() {

@@ -10,6 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "node/dds/udp_address.h"
 #include "node/instance_lock.h"
 
 namespace cordis::node {
@@ -26,10 +27,7 @@ constexpr std::chrono::seconds kPatience{5};
 int take_port(int port, in_addr_t address_to_bind) noexcept {
   const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (file < 0) return -1;
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(address_to_bind);
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  const sockaddr_in address = dds::udp_address(static_cast<std::uint16_t>(port), address_to_bind);
   if (bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return file;
   close(file);
   return -1;

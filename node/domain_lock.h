@@ -13,11 +13,11 @@ namespace cordis::node {
 /// Takes a domain that nobody uses: no program of this host, of whatever vendor and user, has a
 /// unicast port of it (7400 + 250 domain + 10 and above) on any address.
 /// @return a file descriptor that holds the domain until it is closed; -1 when somebody uses it
-int lock_domain(int domain) noexcept;
+[[nodiscard]] int lock_domain(int domain) noexcept;
 
 /// Holds a domain that others use, too.
 /// @param wanted  asked when no lock can come between any more: whether to hold it at all
 /// @return as lock_domain(); -1 also when it is not wanted
-int join_domain(int domain, const std::function<bool()>& wanted);
+[[nodiscard]] int join_domain(int domain, const std::function<bool()>& wanted);
 
 }  // namespace cordis::node

@@ -8,7 +8,7 @@ namespace cordis::node {
 /// Claims a name: an abstract socket, so that it is free again when the process ends, whichever
 /// way, and leaves nothing behind. Neither allocates nor throws.
 /// @return the socket, which holds the name until it is closed; -1 when another one does
-int try_to_lock(const char* name) noexcept;
+[[nodiscard]] int try_to_lock(const char* name) noexcept;
 
 /// Claims a name until the process ends.
 /// @throws std::runtime_error with `refusal` when another process holds it.

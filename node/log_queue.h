@@ -41,7 +41,7 @@ class LogQueue {
             std::string_view text) noexcept;
 
   /// Swaps the oldest line with `line`; false when there is none.
-  bool pop(LogLine& line) noexcept;
+  [[nodiscard]] bool pop(LogLine& line) noexcept;
 
  private:
   struct Cell {

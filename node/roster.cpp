@@ -1,6 +1,8 @@
 // node/roster.cpp
 #include "node/roster.h"
 
+#include "node/status_words.h"
+
 namespace cordis::node {
 
 void Roster::look() {
@@ -11,14 +13,13 @@ std::vector<msg::NodeStatus> Roster::alive() const {
   std::vector<msg::NodeStatus> alive;
   const auto now = Clock::now();
   for (const auto& [name, known] : nodes_) {
-    const std::string& phase = known.status.phase();
-    const bool ended = phase == "stopped" || phase == "failed";
-    if (!ended && now - known.taken <= lately_) alive.push_back(known.status);
+    if (!has_ended(known.status.phase()) && now - known.taken <= lately_)
+      alive.push_back(known.status);
   }
   return alive;
 }
 
-std::string Roster::name_of(const std::string& kind) const {
+std::string Roster::name_of(msg::NodeKind kind) const {
   for (const msg::NodeStatus& status : alive()) {
     if (status.kind() == kind) return "'" + status.node() + "'";
   }

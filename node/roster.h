@@ -29,7 +29,7 @@ class Roster {
   std::vector<msg::NodeStatus> alive() const;
 
   /// The name of a node of a kind that is alive, in quotes; empty when there is none.
-  std::string name_of(const std::string& kind) const;
+  std::string name_of(msg::NodeKind kind) const;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -32,7 +32,7 @@ double resident_bytes() {
 
 }  // namespace
 
-StatusPublisher::StatusPublisher(dds::Participant& participant, const std::string& kind,
+StatusPublisher::StatusPublisher(dds::Participant& participant, msg::NodeKind kind,
                                  std::uint64_t epoch, Fill fill)
     : participant_(participant),
       writer_(participant, dds::Topic::kStatus),
@@ -102,7 +102,7 @@ void StatusPublisher::publish() {
   status_.sequence_number(status_.sequence_number() + 1);
   status_.time_nsec(now);
   status_.memory_bytes(resident_bytes());
-  writer_.write(status_);
+  static_cast<void>(writer_.write(status_));  // the next one stands for it
 }
 
 }  // namespace cordis::node

@@ -25,8 +25,7 @@ class StatusPublisher {
   /// the mean rate (from `ticks`) are filled in already.
   using Fill = std::function<void(msg::NodeStatus&)>;
 
-  /// @param kind  "sim_node", "device_node" or "viz_node"
-  StatusPublisher(dds::Participant& participant, const std::string& kind, std::uint64_t epoch,
+  StatusPublisher(dds::Participant& participant, msg::NodeKind kind, std::uint64_t epoch,
                   Fill fill);
 
   /// Publishes the last status, not before others can have found this node, and waits a moment

@@ -10,7 +10,7 @@ namespace cordis::node {
 /// ignored. Call once at the beginning of main, before any thread exists.
 void install_stop_signals();
 
-bool stop_requested() noexcept;
+[[nodiscard]] bool stop_requested() noexcept;
 
 /// Asks the process to stop, as a signal would. Safe from any thread and from a signal handler.
 void request_stop() noexcept;

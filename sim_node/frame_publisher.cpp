@@ -2,6 +2,26 @@
 #include "sim_node/frame_publisher.h"
 
 namespace cordis::sim {
+namespace {
+
+static_assert(static_cast<int>(engine::Quantity::kDistance) == msg::QUANTITY_DISTANCE);
+static_assert(static_cast<int>(engine::Quantity::kElongation) == msg::QUANTITY_ELONGATION);
+static_assert(static_cast<int>(engine::Quantity::kSpeed) == msg::QUANTITY_SPEED);
+static_assert(static_cast<int>(engine::Quantity::kSpeedX) == msg::QUANTITY_SPEED_X);
+static_assert(static_cast<int>(engine::Quantity::kSpeedY) == msg::QUANTITY_SPEED_Y);
+static_assert(static_cast<int>(engine::Quantity::kSpeedZ) == msg::QUANTITY_SPEED_Z);
+static_assert(static_cast<int>(engine::Quantity::kSlip) == msg::QUANTITY_SLIP);
+static_assert(static_cast<int>(engine::Quantity::kForce) == msg::QUANTITY_FORCE);
+static_assert(static_cast<int>(engine::Quantity::kImpulse) == msg::QUANTITY_IMPULSE);
+static_assert(static_cast<int>(engine::Quantity::kAge) == msg::QUANTITY_AGE);
+static_assert(static_cast<int>(engine::Quantity::kRestLength) == msg::QUANTITY_REST_LENGTH);
+static_assert(static_cast<int>(engine::Quantity::kMassA) == msg::QUANTITY_MASS_A);
+static_assert(static_cast<int>(engine::Quantity::kMassB) == msg::QUANTITY_MASS_B);
+static_assert(static_cast<int>(engine::Quantity::kNone) == msg::QUANTITY_NONE);
+static_assert(engine::kNoLink == msg::NO_INDEX);
+static_assert(kLinkIsIdle == msg::LINK_IS_IDLE);
+
+}  // namespace
 
 FramePublisher::FramePublisher(dds::Participant& participant, std::uint64_t epoch)
     : frame_writer_(participant, dds::Topic::kFrame),
@@ -46,6 +66,10 @@ void FramePublisher::loop() {
   }
 }
 
+void FramePublisher::count(bool written) noexcept {
+  if (!written) unwritten_.fetch_add(1, std::memory_order_relaxed);
+}
+
 void FramePublisher::publish_frame(const FrameShape& shape, const FrameBuffer& buffer) {
   std::vector<float>& position = frame_.position_m();
   position.resize(3 * shape.mat_count);
@@ -59,7 +83,7 @@ void FramePublisher::publish_frame(const FrameShape& shape, const FrameBuffer& b
   frame_.time_nsec(buffer.time_nsec);
   frame_.action_time_nsec(buffer.action_time_nsec);
   frame_.simulated_s(buffer.simulated_s);
-  frame_writer_.write(frame_);
+  count(frame_writer_.write(frame_));
 }
 
 void FramePublisher::publish_signals(const FrameShape& shape, const FrameBuffer& buffer) {
@@ -73,7 +97,7 @@ void FramePublisher::publish_signals(const FrameShape& shape, const FrameBuffer&
   signals_.dropped_rows(buffer.dropped_rows);
   const auto values = static_cast<std::ptrdiff_t>(buffer.row_count * shape.signal_count);
   signals_.value().assign(buffer.rows.begin(), buffer.rows.begin() + values);
-  signal_writer_.write(signals_);
+  count(signal_writer_.write(signals_));
 }
 
 void FramePublisher::publish_events(const FrameShape& shape, const EventRoom& room) {
@@ -91,7 +115,7 @@ void FramePublisher::publish_events(const FrameShape& shape, const EventRoom& ro
     message[i].state_machine(event.state_machine);
     message[i].from_state(event.from);
     message[i].to_state(event.to);
-    message[i].quantity(static_cast<std::uint32_t>(event.quantity));
+    message[i].quantity(static_cast<msg::EventQuantity>(event.quantity));
     message[i].value(event.value);
     message[i].energy_j(event.energy);
   }
@@ -99,7 +123,7 @@ void FramePublisher::publish_events(const FrameShape& shape, const EventRoom& ro
   events_.version(shape.version);
   events_.batch(events_.batch() + 1);
   events_.lost(room.lost());
-  event_writer_.write(events_);
+  count(event_writer_.write(events_));
 }
 
 }  // namespace cordis::sim

@@ -41,12 +41,15 @@ class FramePublisher {
   std::uint64_t frames_left_out() const noexcept {
     return frames_left_out_.load(std::memory_order_relaxed);
   }
+  /// Frames, batches of signals and batches of events that DDS did not take.
+  std::uint64_t unwritten() const noexcept { return unwritten_.load(std::memory_order_relaxed); }
   std::uint64_t lost_events() const noexcept {
     return lost_events_.load(std::memory_order_relaxed);
   }  ///< in the whole run
 
  private:
   void loop();
+  void count(bool written) noexcept;
   void publish_frame(const FrameShape& shape, const FrameBuffer& buffer);
   void publish_signals(const FrameShape& shape, const FrameBuffer& buffer);
   void publish_events(const FrameShape& shape, const EventRoom& room);
@@ -61,6 +64,7 @@ class FramePublisher {
   const FrameStore* offered_ = nullptr;  // the thread's while busy_
   std::atomic<bool> busy_{false};
   std::atomic<std::uint64_t> frames_left_out_{0};
+  std::atomic<std::uint64_t> unwritten_{0};
   std::atomic<std::uint64_t> lost_events_{0};
   std::atomic<bool> ending_{false};
   std::counting_semaphore<4> wake_{0};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -32,6 +33,7 @@ constexpr auto kRest = 5ms;  // a turn of a loop without real time while the sce
 constexpr std::uint64_t kRestsPerFrame = 8;
 constexpr auto kLongestWait = 1s;                  // for a device that joins
 constexpr std::int64_t kLongWait = 2'000'000'000;  // of a scene in lockstep for a sample [ns]
+constexpr std::int64_t kWaitIsReported = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
@@ -52,7 +54,7 @@ Session::Session(const node::NodeStart& start, SimConfig config)
       refused_(delay_periods_of(start.launch.clock)),
       device_reader_(participant_, dds::Topic::kDevice),
       roster_(participant_),
-      status_(participant_, "sim_node", start.epoch,
+      status_(participant_, msg::KIND_SIM_NODE, start.epoch,
               [this](msg::NodeStatus& status) { fill(status); }),
       executor_(
           mailbox_, runner_.simulation().shared_scene(), start.epoch,
@@ -65,7 +67,7 @@ Session::Session(const node::NodeStart& start, SimConfig config)
           [this](const scene::Scene& scene, std::uint64_t version) {
             publish_scene(scene, version);
           }),
-      commands_(participant_, "sim_node", [this](const msg::ControlCommand& command) {
+      commands_(participant_, msg::KIND_SIM_NODE, [this](const msg::ControlCommand& command) {
         const auto before = executor_.scene();
         node::Answer answer = executor_.execute(command);
         if (executor_.scene() != before) refused_.play(*executor_.scene());
@@ -119,11 +121,11 @@ int Session::run() {
       const std::lock_guard lock(shown_mutex_);
       shown_.failure = failure;
     }
-    set_phase("failed");
+    set_phase(msg::PHASE_FAILED);
     spdlog::error("{}", failure);
     return 1;
   }
-  set_phase("stopped");
+  set_phase(msg::PHASE_STOPPED);
   spdlog::info("state hash {:016x} after {}", simulation.world().state_hash(),
                config::count_text(simulation.world().step_count(), "step"));
   return 0;
@@ -228,16 +230,16 @@ bool Session::receive_lockstep() {
   return true;
 }
 
-/// Says once for whom a scene in lockstep has long been waiting, and whether that node is alive.
+/// Says for whom a scene in lockstep has long been waiting, and whether that node is alive. Every
+/// wait is one event.
 void Session::report_wait(const DeviceExchange& device) {
   const std::int64_t now = node::monotonic_nsec();
   roster_.look();
-  if (waits_since_nsec_ == 0) {
-    waits_since_nsec_ = now;
-    wait_reported_ = false;
-  }
-  if (now - waits_since_nsec_ < kLongWait || std::exchange(wait_reported_, true)) return;
-  const std::string alive = roster_.name_of("device_node");
+  if (waits_since_nsec_ == 0) waits_since_nsec_ = now;
+  if (now - waits_since_nsec_ < kLongWait) return;
+  waits_since_nsec_ = kWaitIsReported;
+  const std::string alive = roster_.name_of(msg::KIND_DEVICE_NODE);
+  if (!(alive.empty() ? absences_ : silences_).record(now)) return;
   const std::string who = alive.empty() ? "no device_node of the session is alive"
                                         : "device_node " + alive + " is alive, and sends no sample";
   spdlog::warn("has been waiting for the device '{}' for {} s: {}", device.device(),
@@ -293,15 +295,18 @@ void Session::answer_all() {
 void Session::answer(DeviceExchange& device) {
   const bool safe = !runner_.simulation().failed();
   const std::int64_t now = node::monotonic_nsec();
-  if (device.role() == Role::kMass) {
-    force_writer_.write(device.answer_forces(runner_.simulation().world(), safe, now));
-  } else {
-    position_writer_.write(device.answer_positions(runner_.simulation().world(), safe, now));
-  }
+  const engine::World& world = runner_.simulation().world();
+  const bool written = device.role() == Role::kMass
+                           ? force_writer_.write(device.answer_forces(world, safe, now))
+                           : position_writer_.write(device.answer_positions(world, safe, now));
+  if (!written) ++unwritten_;
 }
 
 void Session::record_state() {
-  std::uint64_t dropped = frames_.frames_left_out();
+  const std::int64_t now = node::monotonic_nsec();
+  absences_.report(now);
+  silences_.report(now);
+  std::uint64_t dropped = frames_.frames_left_out() + frames_.unwritten() + unwritten_;
   Simulation& simulation = runner_.simulation();
   std::uint64_t passivity_ticks = 0;
   const config::Clock clock = start_.launch.clock;
@@ -313,7 +318,9 @@ void Session::record_state() {
   }
   dropped_.store(dropped, std::memory_order_relaxed);
   passivity_ticks_.store(passivity_ticks, std::memory_order_relaxed);
-  set_phase(runner_.is_paused() ? "paused" : has_sample ? "running" : "waiting");
+  set_phase(runner_.is_paused() ? msg::PHASE_PAUSED
+            : has_sample        ? msg::PHASE_RUNNING
+                                : msg::PHASE_WAITING);
   const bool realtime = clock == config::Clock::kRealtime;
   target_rate_hz_.store(realtime ? simulation.scene().gesture_rate_hz : 0.0,
                         std::memory_order_relaxed);
@@ -390,13 +397,14 @@ void Session::publish_scene(const scene::Scene& scene, std::uint64_t version) {
     liaisons_version_ = version;
   }
   msg::SceneDescription description = describe(scene, start_.epoch, version);
-  description_writer_.write(description);
+  if (!description_writer_.write(description))
+    spdlog::error("DDS did not take the description of scene '{}'", scene.name);
   spdlog::info("scene '{}': {}, {} steps per second, {} per gesture", scene.name,
                scene::size_text(scene), scene.step_rate_hz,
                std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
 }
 
-void Session::set_phase(const char* phase) noexcept {
+void Session::set_phase(msg::NodePhase phase) noexcept {
   phase_.store(phase);
 }
 

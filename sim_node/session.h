@@ -66,7 +66,7 @@ class Session {
   bool finished() const noexcept;
   void fill(msg::NodeStatus& status);
   void publish_scene(const scene::Scene& scene, std::uint64_t version);
-  void set_phase(const char* phase) noexcept;
+  void set_phase(msg::NodePhase phase) noexcept;
   void listen_to_devices();
 
   const node::NodeStart& start_;
@@ -86,9 +86,12 @@ class Session {
   std::uint64_t turns_ = 0;       // of the loop, for the pace of frames while the scene is paused
   std::uint64_t tick_count_ = 0;  // over all stages
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
-  bool wait_reported_ = false;
   node::RepeatedEvent crowding_{"a mass of a set touched still more others"};
   std::uint32_t partners_reported_ = 0;  // of this scene
+  std::uint64_t unwritten_ = 0;        // answers that DDS did not take
+  node::RepeatedEvent absences_{"has been waiting long, with no device_node alive"};
+  node::RepeatedEvent silences_{
+      "has been waiting long for a sample of a device_node that is alive"};
 
   // What the loop reports to the status thread.
   struct StatusSnapshot {
@@ -107,7 +110,7 @@ class Session {
   std::vector<std::string> liaisons_;  // names of those whose changes are shown
   std::uint64_t liaisons_version_ = 0;
   bool passivity_reported_ = false;  // of the status thread
-  std::atomic<const char*> phase_{"starting"};
+  std::atomic<msg::NodePhase> phase_{msg::PHASE_STARTING};
   std::atomic<std::uint64_t> ticks_{0};
   node::LateTicks late_ticks_;
   std::atomic<std::uint64_t> dropped_{0};

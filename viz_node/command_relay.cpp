@@ -1,6 +1,8 @@
 // viz_node/command_relay.cpp
 #include "viz_node/command_relay.h"
 
+#include "node/status_words.h"
+
 namespace cordis::viz {
 
 CommandRelay::CommandRelay(dds::Participant& participant, std::uint64_t epoch)
@@ -11,13 +13,13 @@ void CommandRelay::send(const PageCommand& wanted) noexcept {
   try {
     msg::ControlCommand command;
     command.sender(sender_);
-    command.target("sim_node");
+    command.target(node::word_of(msg::KIND_SIM_NODE));
     command.verb(wanted.verb);
-    if (wanted.verb == "step") command.argument(std::to_string(wanted.steps));
+    if (wanted.verb == msg::VERB_STEP) command.argument(std::to_string(wanted.steps));
     const std::lock_guard lock(mutex_);
     command.command_id(++count_);
-    writer_.write(command);
-  } catch (...) {  // no memory for it: the page sees no reply
+    static_cast<void>(writer_.write(command));  // the page sees no reply then
+  } catch (...) {                               // no memory for it: the page sees no reply
   }
 }
 

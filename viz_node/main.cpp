@@ -29,8 +29,8 @@ void fill(msg::NodeStatus& status, const viz::SceneMirror& mirror, const viz::We
   const viz::ServerFigures shown = server.figures();
   const bool fresh =
       seen.last_frame_nsec != 0 && node::monotonic_nsec() - seen.last_frame_nsec < kFreshNsec;
-  status.phase(fresh ? "running" : "waiting");
-  if (node::stop_requested()) status.phase("stopped");
+  status.phase(fresh ? msg::PHASE_RUNNING : msg::PHASE_WAITING);
+  if (node::stop_requested()) status.phase(msg::PHASE_STOPPED);
   status.text(server.url());
   status.target_rate_hz(seen.frame_rate_hz > 0.0 ? std::min(rate_hz, seen.frame_rate_hz) : rate_hz);
   status.ticks(seen.frames);
@@ -69,11 +69,12 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                         mirror, [&relay](const viz::PageCommand& command) { relay.send(command); });
   const viz::SceneListener listener(participant, mirror, relay);
   const node::StatusPublisher publisher(
-      participant, "viz_node", start.epoch,
+      participant, msg::KIND_VIZ_NODE, start.epoch,
       [&](msg::NodeStatus& status) { fill(status, mirror, server, config.rate_hz); });
-  node::CommandListener commands(participant, "viz_node", [](const msg::ControlCommand& command) {
-    return node::nothing_to_do(command, "viz_node");
-  });
+  node::CommandListener commands(participant, msg::KIND_VIZ_NODE,
+                                 [](const msg::ControlCommand& command) {
+                                   return node::nothing_to_do(command, msg::KIND_VIZ_NODE);
+                                 });
   commands.start();
   warn_about(config, server);
   spdlog::info("page at {}", server.url());

@@ -5,6 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "idl/gesture.h"
+#include "node/control_verbs.h"
+#include "node/status_words.h"
 #include "viz_node/frame_encoder.h"
 
 namespace cordis::viz {
@@ -14,7 +17,6 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kLongestText = 300;  // of a text that another process wrote
 constexpr std::size_t kMaxStates = 64;     // of a liaison, and liaisons whose changes are counted
-constexpr std::size_t kMaxAxes = 16;       // of a port
 constexpr std::size_t kMaxNames = 2000;    // names of matter, links and ports that a page is told
 
 std::string clipped(const std::string& text) {
@@ -40,7 +42,7 @@ Json ranges(const std::vector<msg::NamedRange>& named) {
 Json axes_of(const msg::PortDescription& port) {
   Json list = Json::array();
   for (const std::uint32_t axis : port.axes()) {
-    if (list.size() == kMaxAxes) break;
+    if (list.size() == msg::MAX_AXES) break;
     list.push_back(axis);
   }
   return list;
@@ -52,7 +54,7 @@ Json ports(const std::vector<msg::PortDescription>& described) {
     const auto& port = described[i];
     list.push_back({{"name", clipped(port.name())},
                     {"device", clipped(port.device())},
-                    {"role", port.role() == 0 ? "mass" : "liaison"},
+                    {"role", port.role() == msg::ROLE_MASS ? "mass" : "liaison"},
                     {"mat", port.mat()},
                     {"axes", axes_of(port)}});
   }
@@ -81,15 +83,15 @@ Json changes(const std::vector<msg::LiaisonChanges>& counted) {
 }
 
 std::string state_of(const ReportedNode& node, std::int64_t now_nsec) {
-  const std::string& phase = node.status.phase();
-  if (phase == "stopped" || phase == "failed") return phase;
-  return now_nsec - node.received_nsec > kLostAfterNsec ? "lost" : clipped(phase);
+  const msg::NodePhase phase = node.status.phase();
+  const bool is_silent = now_nsec - node.received_nsec > kLostAfterNsec;
+  return node::word_of(is_silent && !node::has_ended(phase) ? msg::PHASE_LOST : phase);
 }
 
 Json node_json(const ReportedNode& node, std::int64_t now_nsec) {
   const msg::NodeStatus& s = node.status;
   return {{"name", clipped(s.node())},
-          {"kind", clipped(s.kind())},
+          {"kind", node::word_of(s.kind())},
           {"epoch", std::to_string(s.epoch())},
           {"state", state_of(node, now_nsec)},
           {"text", clipped(s.text())},
@@ -120,17 +122,59 @@ Json node_json(const ReportedNode& node, std::int64_t now_nsec) {
           {"memory_bytes", s.memory_bytes()}};
 }
 
+struct QuantityWords {
+  const char* name;
+  const char* unit;
+};
+
+/// How a page shows what triggered a change of state; empty when nothing did.
+QuantityWords words_of(msg::EventQuantity quantity) noexcept {
+  switch (quantity) {
+    case msg::QUANTITY_DISTANCE:
+      return {"distance", "m"};
+    case msg::QUANTITY_ELONGATION:
+      return {"elongation", "m"};
+    case msg::QUANTITY_SPEED:
+      return {"speed", "m/s"};
+    case msg::QUANTITY_SPEED_X:
+      return {"speed x", "m/s"};
+    case msg::QUANTITY_SPEED_Y:
+      return {"speed y", "m/s"};
+    case msg::QUANTITY_SPEED_Z:
+      return {"speed z", "m/s"};
+    case msg::QUANTITY_SLIP:
+      return {"slip", "m/s"};
+    case msg::QUANTITY_FORCE:
+      return {"force", "N"};
+    case msg::QUANTITY_IMPULSE:
+      return {"impulse", "N s"};
+    case msg::QUANTITY_AGE:
+      return {"age", "s"};
+    case msg::QUANTITY_REST_LENGTH:
+      return {"rest", "m"};
+    case msg::QUANTITY_MASS_A:
+      return {"mass a", "kg"};
+    case msg::QUANTITY_MASS_B:
+      return {"mass b", "kg"};
+    case msg::QUANTITY_NONE:
+      break;
+  }
+  return {"", ""};
+}
+
 Json events_json(const HeardEvents& events) {
   Json newest = Json::array();
   for (const auto& event : events.newest) {
+    const QuantityWords quantity = words_of(event.quantity());
     newest.push_back({{"step", event.step()},
-                      {"link", event.link()},
+                      {"link", event.link() == msg::NO_INDEX ? Json() : Json(event.link())},
                       {"mat_a", event.mat_a()},
                       {"mat_b", event.mat_b()},
                       {"state_machine", event.state_machine()},
                       {"from", event.from_state()},
                       {"to", event.to_state()},
-                      {"quantity", event.quantity()},
+                      {"quantity", quantity.name},
+                      {"unit", quantity.unit},
                       {"value", event.value()},
                       {"energy_j", event.energy_j()}});
   }
@@ -146,6 +190,12 @@ Json replies_json(const HeardReplies& replies) {
                     {"text", clipped(reply.text())}});
   }
   return list;
+}
+
+/// True if a verb reads no file and changes no scene.
+bool is_for_pages(msg::ControlVerb verb) noexcept {
+  return verb == msg::VERB_PAUSE || verb == msg::VERB_RESUME || verb == msg::VERB_STEP ||
+         verb == msg::VERB_RESET;
 }
 
 }  // namespace
@@ -214,10 +264,9 @@ std::optional<PageCommand> read_page_command(std::string_view text) {
   const Json verb = json.value("verb", Json());
   const Json steps = json.value("steps", Json(1u));
   if (!verb.is_string() || !steps.is_number_unsigned()) return std::nullopt;
-  PageCommand command{verb.get<std::string>(), steps.get<std::uint64_t>()};
-  const std::string& word = command.verb;
-  if (word != "pause" && word != "resume" && word != "step" && word != "reset") return std::nullopt;
-  return command;
+  const node::ControlVerb* known = node::find_control_verb(verb.get<std::string>());
+  if (known == nullptr || !is_for_pages(known->verb)) return std::nullopt;
+  return PageCommand{known->verb, steps.get<std::uint64_t>()};
 }
 
 }  // namespace cordis::viz

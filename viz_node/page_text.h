@@ -61,8 +61,8 @@ std::optional<Acknowledgement> read_acknowledgement(std::string_view text);
 
 /// What a page wants of the simulation.
 struct PageCommand {
-  std::string verb;         ///< pause, resume, step or reset
-  std::uint64_t steps = 1;  ///< of step
+  msg::ControlVerb verb = msg::VERB_PAUSE;  ///< or resume, step, reset
+  std::uint64_t steps = 1;                  ///< of step
 };
 
 /// Reads `{"type": "command", "verb": "step", "steps": 10}`; nothing when `text` is anything else,

@@ -71,7 +71,7 @@ std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription
   const std::size_t mats = description.mat_kind().size();
   const std::size_t links = description.link_ends().size() / 2;
   const auto is_foreign = [&](const msg::LinkEvent& event) {
-    return (event.link() >= links && event.link() != kNoLink) || event.mat_a() >= mats ||
+    return (event.link() >= links && event.link() != msg::NO_INDEX) || event.mat_a() >= mats ||
            event.mat_b() >= mats;
   };
   if (std::ranges::any_of(events.event(), is_foreign))

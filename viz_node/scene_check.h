@@ -30,6 +30,4 @@ std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescripti
 /// Events are sound when they name links and MATs of `description`.
 std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription& description);
 
-inline constexpr std::uint32_t kNoLink = 0xffffffff;  ///< in an event: a pair of a set liaison
-
 }  // namespace cordis::viz

@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include "node/status_words.h"
 #include "node/time.h"
 
 namespace cordis::cli {
@@ -31,7 +32,7 @@ ControlLine::ControlLine(int domain, const std::string& session)
       replies_(participant_, dds::Topic::kReply),
       roster_(participant_, kLately) {}
 
-std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const std::string& verb,
+std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, msg::ControlVerb verb,
                                                 const std::string& argument,
                                                 std::chrono::nanoseconds at_most) {
   msg::ControlCommand command;
@@ -53,8 +54,7 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, const
     // A command sent before DDS has found a reader is lost.
     const bool reaches = commands_.matched_count() > 0;
     if (addressed > replies.size() && now >= send_at && reaches) {
-      commands_.write(command);
-      sent_ = true;
+      if (commands_.write(command)) sent_ = true;
       send_at = now + kRepeatAfter;
     }
     replies_.wait(kLook);
@@ -80,7 +80,7 @@ std::vector<std::string> ControlLine::present() const {
 std::size_t ControlLine::addressed_count(const std::string& target) const {
   const std::vector<msg::NodeStatus> alive = roster_.alive();
   return static_cast<std::size_t>(std::ranges::count_if(alive, [&](const msg::NodeStatus& status) {
-    return target == "*" || target == status.node() || target == status.kind();
+    return target == "*" || target == status.node() || target == node::word_of(status.kind());
   }));
 }
 

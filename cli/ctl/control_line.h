@@ -22,11 +22,13 @@ class ControlLine {
   /// Sends a command until every addressed node that is there has answered, at most so long.
   /// @param target  a node, a kind of node, or "*"
   /// @return the replies, one per node
-  std::vector<msg::ControlReply> ask(const std::string& target, const std::string& verb,
+  std::vector<msg::ControlReply> ask(const std::string& target, msg::ControlVerb verb,
                                      const std::string& argument, std::chrono::nanoseconds at_most);
 
   /// The nodes that are alive: they have said something lately, and not that they stop.
   std::vector<std::string> present() const;
+  /// Which process of the session this one cannot speak with, and why; empty when there is none.
+  std::string mismatch() const { return participant_.mismatch(); }
   /// True if a command has been sent.
   bool has_sent() const noexcept { return sent_; }
   /// How many of them a target addresses.

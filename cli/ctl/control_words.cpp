@@ -22,9 +22,7 @@ std::string quoted(const std::string& text) {
 }
 
 const node::ControlVerb& verb_named(const std::string& name) {
-  for (const node::ControlVerb& verb : node::control_verbs()) {
-    if (name == verb.name) return verb;
-  }
+  if (const node::ControlVerb* known = node::find_control_verb(name)) return *known;
   const std::string near = config::nearest_word(name, node::control_verb_names());
   throw UsageError("there is no command '" + name + "'" +
                    (near.empty() ? "" : ", did you mean '" + near + "'?"));
@@ -62,15 +60,15 @@ ControlWords read_control_words(const std::string& name, const std::vector<std::
   const bool optional = *verb.words == '[';
   const bool needs_a_word = *verb.words != '\0' && !optional;
   if ((needs_a_word && words.empty()) || (*verb.words == '\0' && !words.empty())) refuse(verb);
-  if (words.empty()) return {name, ""};
-  if (name == "set") return {name, values_argument(words)};
-  if (name == "state") {
+  if (words.empty()) return {verb.verb, ""};
+  if (verb.verb == msg::VERB_SET) return {verb.verb, values_argument(words)};
+  if (verb.verb == msg::VERB_STATE) {
     if (words.size() != 2) refuse(verb);
-    return {name, fmt::format("[{}, {}]", quoted(words[0]), quoted(words[1]))};
+    return {verb.verb, fmt::format("[{}, {}]", quoted(words[0]), quoted(words[1]))};
   }
   if (words.size() > 1) refuse(verb);
-  if (name == "step") return {name, words.front()};
-  return {name, path_argument(words.front())};
+  if (verb.verb == msg::VERB_STEP) return {verb.verb, words.front()};
+  return {verb.verb, path_argument(words.front())};
 }
 
 std::string control_verb_list() {

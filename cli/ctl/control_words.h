@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "idl/control.h"
+
 namespace cordis::cli {
 
 /// The part of a control/command that a person types.
 struct ControlWords {
-  std::string verb;
+  msg::ControlVerb verb = msg::VERB_PAUSE;
   std::string argument;  ///< YAML
 };
 

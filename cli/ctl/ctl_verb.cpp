@@ -92,6 +92,9 @@ std::runtime_error silence(const CtlWords& words, const Address& address, const 
   const bool addressed_is_there = line.addressed_count(words.node) > 0;
   if (line.has_sent() && !addressed_is_there)
     return std::runtime_error(words.node + " has left " + where + " before it answered");
+  const std::string mismatch = line.mismatch();
+  if (!addressed_is_there && !mismatch.empty())
+    return std::runtime_error("nobody answers in " + where + ": " + mismatch);
   if (present.empty())
     return std::runtime_error("nobody is in " + where + ": start it with `cordis run`" +
                               (words.domain.empty() ? ", or name its --domain" : ""));

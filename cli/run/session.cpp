@@ -132,14 +132,15 @@ class Session : public Watcher {
   void take_statuses() {
     msg::NodeStatus status;
     while (statuses_.take(status)) {
-      if (board_.put(status) && status.kind() == "viz_node") show_page(status);
+      if (board_.put(status) && status.kind() == msg::KIND_VIZ_NODE) show_page(status);
     }
   }
 
   void show_page(const msg::NodeStatus& status) {
     std::string& shown = pages_[status.node()];
-    if (!status.text().starts_with("http://") || status.text() == shown) return;
-    shown = status.text();
+    const std::string page = status.text().substr(0, status.text().find(';'));
+    if (!page.starts_with("http://") || page == shown) return;
+    shown = page;
     output_.say("page of " + status.node() + ": " + shown);
   }
 
@@ -152,14 +153,14 @@ class Session : public Watcher {
       if (!present_[i]) continue;
       const msg::NodeStatus* status = board_.find(plan_.nodes[i].name);
       if (status == nullptr) return false;
-      const std::string& phase = status->phase();
-      if (phase == "unused") continue;
-      if (phase == "waiting" && status->kind() == "sim_node") {
+      const msg::NodePhase phase = status->phase();
+      if (phase == msg::PHASE_UNUSED) continue;
+      if (phase == msg::PHASE_WAITING && status->kind() == msg::KIND_SIM_NODE) {
         sim_waits = true;
         continue;
       }
-      if (phase != "running" && phase != "standby") return false;
-      device_is_played = device_is_played || status->kind() == "device_node";
+      if (phase != msg::PHASE_RUNNING && phase != msg::PHASE_STANDBY) return false;
+      device_is_played = device_is_played || status->kind() == msg::KIND_DEVICE_NODE;
     }
     return !(sim_waits && device_is_played);
   }

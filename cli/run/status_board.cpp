@@ -21,7 +21,7 @@ std::string microseconds(double seconds) {
 
 /// The late ticks by their causes, and those without an answer of the other side.
 std::string causes_of(const msg::NodeStatus& status) {
-  const bool simulates = status.kind() == "sim_node";
+  const bool simulates = status.kind() == msg::KIND_SIM_NODE;
   std::string text;
   const auto add = [&text](const char* cause, std::uint64_t ticks) {
     if (ticks > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cause, ticks);
@@ -36,10 +36,10 @@ Row row_of(const std::string& node, const msg::NodeStatus* status) {
   if (status == nullptr) return {node, "no status was received"};
   Row row{node};
   const bool paced = status->target_rate_hz() > 0.0;
-  const bool simulates = status->kind() == "sim_node";
+  const bool simulates = status->kind() == msg::KIND_SIM_NODE;
   row.push_back(paced || status->ticks() > 0 ? fmt::format("{:.1f}", status->mean_rate_hz()) : "-");
   row.push_back(paced ? fmt::format("{:g}", status->target_rate_hz()) : "-");
-  const bool has_deadlines = paced && status->kind() != "viz_node";
+  const bool has_deadlines = paced && status->kind() != msg::KIND_VIZ_NODE;
   row.push_back(has_deadlines ? std::to_string(status->overruns()) : "-");
   row.push_back(std::to_string(status->dropped()));
   const bool timed = status->latency_count() > 0;
@@ -64,15 +64,15 @@ std::string partners_of(const msg::NodeStatus& status) {
 /// What does not fit the table, in lines.
 std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   std::string text;
-  if (status.phase() == "failed" && !status.text().empty()) {
+  if (status.phase() == msg::PHASE_FAILED && !status.text().empty()) {
     text += fmt::format("{} failed: {}\n", node, status.text());
   }
-  if (status.kind() == "device_node" &&
+  if (status.kind() == msg::KIND_DEVICE_NODE &&
       (status.port_energy_j() != 0.0 || status.passivity_ticks() > 0)) {
     text += fmt::format("{} gave the hand {:.3g} J, damped in {}\n", node, status.port_energy_j(),
                         config::count_text(status.passivity_ticks(), "tick"));
   }
-  if (status.kind() == "sim_node") {
+  if (status.kind() == msg::KIND_SIM_NODE) {
     text += fmt::format(
         "energy {:.3g} J: {:.3g} J through the ports, {:.3g} J by changes of state, {:.3g} J taken "
         "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",

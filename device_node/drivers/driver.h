@@ -29,13 +29,13 @@ class Driver {
   virtual ~Driver() = default;
 
   /// True if the device, as it is set up, can play the role at all.
-  virtual bool can_play(Role role) const noexcept = 0;
+  [[nodiscard]] virtual bool can_play(Role role) const noexcept = 0;
 
   /// Begins a life in a role: motors off, a simulated device back at its beginning.
   virtual void start(Role role) noexcept = 0;
 
   /// What the sensors say now; false when the device does not answer.
-  virtual bool read(AxisValues& sensed) noexcept = 0;
+  [[nodiscard]] virtual bool read(AxisValues& sensed) noexcept = 0;
 
   /// How old the command of the next write() is [s]. Role liaison: positions do not fade like
   /// forces, and a driver whose motors pull to them lets go once they are as old as the watchdog.
@@ -43,7 +43,7 @@ class Driver {
 
   /// Hands the motors what they hold for one period. A simulated device lives through that period
   /// here, and no other clock moves it. False when the device does not answer.
-  virtual bool write(const AxisValues& commanded) noexcept = 0;
+  [[nodiscard]] virtual bool write(const AxisValues& commanded) noexcept = 0;
 
   /// True if it drives motors of this world. For a simulated device no time passes while a scene in
   /// lockstep is silent or over; a hand at a real one lives on.

@@ -118,7 +118,7 @@ void Hardware::greet_now(std::int64_t now) noexcept {
   Message message;
   const std::size_t count = greet(message);
   greets_ = count > 0;
-  if (greets_) wire_->send({message.data(), count});
+  if (greets_) static_cast<void>(wire_->send({message.data(), count}));
 }
 
 /// The board has restarted behind an open wire.
@@ -134,13 +134,13 @@ void Hardware::welcome() noexcept {
   greets_ = false;
   Message message;
   const std::size_t count = configure(message);
-  if (count > 0) wire_->send({message.data(), count});
+  if (count > 0) static_cast<void>(wire_->send({message.data(), count}));
 }
 
 void Hardware::ask(const AxisValues& force_n) noexcept {
   Message message;
   const std::size_t count = request(force_n, message);
-  wire_->send({message.data(), count});
+  static_cast<void>(wire_->send({message.data(), count}));  // the next request stands for it
   Guardian* const guardian = Guardian::of_process();
   if (guardian != nullptr) guardian->record_frame(force_n != AxisValues{});
   if (!wire_->is_open()) lose();

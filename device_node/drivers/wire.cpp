@@ -23,6 +23,8 @@
 
 #include "device_node/drivers/guardian.h"
 #include "node/instance_lock.h"
+#include "node/repeated_event.h"
+#include "node/time.h"
 
 namespace cordis::device {
 namespace {
@@ -58,16 +60,22 @@ class SerialLine final : public Wire {
   }
 
  private:
-  /// Says why the line cannot be opened, once until the reason changes.
+  /// Says why the line cannot be opened, when the reason is another than at the last try.
   void log_reason(int reason) noexcept {
-    if (std::exchange(logged_, reason) == reason || reason == 0) return;
+    const std::int64_t now = node::monotonic_nsec();
+    absences_.report(now);
+    failures_.report(now);
+    if (std::exchange(reason_, reason) == reason || reason == 0) return;
+    if (!(reason == ENOENT ? absences_ : failures_).record(now)) return;
     spdlog::warn("{} cannot be opened: {}{}", path_, std::strerror(reason),
                  reason == EACCES ? "; is this user in the group 'dialout'?" : "");
   }
 
   std::string path_;
   speed_t baud_;
-  int logged_ = 0;  // errno
+  int reason_ = 0;  // errno of the last try
+  node::RepeatedEvent absences_{path_ + " was not there"};
+  node::RepeatedEvent failures_{path_ + " could not be opened"};
 };
 
 class Datagrams final : public Wire {

@@ -26,7 +26,7 @@ class Wire {
   /// What takes the force from the motors, whoever writes it; to be set before open().
   void set_release(const ReleaseFrame& release) noexcept { release_ = release; }
 
-  bool open() noexcept;  ///< false when the device is not there, or not to be had
+  [[nodiscard]] bool open() noexcept;  ///< false when the device is not there, or not to be had
   void close() noexcept;
   bool is_open() const noexcept { return file_ >= 0; }
 
@@ -34,7 +34,7 @@ class Wire {
   /// closed. Of a message that was taken in part the rest goes first at the next call, so that the
   /// device never takes the middle of a message for its beginning.
   /// @param bytes  at most 96
-  bool send(std::span<const std::uint8_t> bytes) noexcept;
+  [[nodiscard]] bool send(std::span<const std::uint8_t> bytes) noexcept;
 
   /// Takes the force from the motors, even where a line takes no more.
   void release() noexcept;

@@ -81,7 +81,6 @@ void set_reach(DeviceLimits& limits, const Map& map) {
 }  // namespace
 
 DeviceLimits read_device_limits(MappingReader& reader) {
-  constexpr int kMaxAxes = 16;
   constexpr int kMaxDelay = 16;
   DeviceLimits limits;
   limits.axis_count = static_cast<int>(reader.required_integer("axes", 1, kMaxAxes));

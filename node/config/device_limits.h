@@ -5,6 +5,7 @@
 
 #include "node/config/launch.h"
 #include "node/config/mapping_reader.h"
+#include "node/config/max_axes.h"
 
 namespace cordis::config {
 
@@ -21,11 +22,11 @@ struct DeviceLimits {
   double key_pitch_m = 0.0;  ///< of a key, which stands side by side with the next; 0: no keyboard
   double force_limit_n = 20.0;
   /// Travel of each coordinate, from stop to stop while the others are free; 0: unknown.
-  std::array<double, 16> coordinate_travel_m{};
+  std::array<double, kMaxAxes> coordinate_travel_m{};
   /// From its rest to its stops, likewise; both 0: unknown.
-  std::array<double, 16> coordinate_lowest_m{};
-  std::array<double, 16> coordinate_highest_m{};
-  std::array<double, 16> coordinate_force_n{};  ///< largest along each alone; 0: unknown
+  std::array<double, kMaxAxes> coordinate_lowest_m{};
+  std::array<double, kMaxAxes> coordinate_highest_m{};
+  std::array<double, kMaxAxes> coordinate_force_n{};  ///< largest along each alone; 0: unknown
   double moving_mass_kg = 0.05;
   double viscosity_n_s_per_m = 0.0;      ///< 0: unknown
   double stiffness_limit_n_per_m = 0.0;  ///< as declared; 0: what follows from the viscosity
@@ -44,7 +45,7 @@ struct DeviceLimits {
 Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& problems);
 
 /// Reads these keys, and marks them as known; the reader's owner reads the others.
-DeviceLimits read_device_limits(MappingReader& reader);
+[[nodiscard]] DeviceLimits read_device_limits(MappingReader& reader);
 
 /// Which device a node plays. Of several nodes that play one, the strongest that is there is
 /// received.
@@ -54,6 +55,6 @@ struct PlayedDevice {
 };
 
 /// Reads these keys, and marks them as known. @param node  name of the node
-PlayedDevice read_played_device(MappingReader& reader, const std::string& node);
+[[nodiscard]] PlayedDevice read_played_device(MappingReader& reader, const std::string& node);
 
 }  // namespace cordis::config

@@ -62,11 +62,12 @@ struct Launch {
 ///                   `clock=`, `domain=`, `session=` for the session itself, each value in YAML;
 ///                   a word that fits nothing is a problem.
 /// @return what could be read; to be used only when `problems` has no errors.
-Launch load_launch(const std::string& path, const std::vector<std::string>& overrides,
-                   Problems& problems);
+[[nodiscard]] Launch load_launch(const std::string& path, const std::vector<std::string>& overrides,
+                                 Problems& problems);
 
 /// Reads the text of a launch file in memory; `name` stands for its path.
-Launch load_launch_text(const std::string& text, const std::string& name,
-                        const std::vector<std::string>& overrides, Problems& problems);
+[[nodiscard]] Launch load_launch_text(const std::string& text, const std::string& name,
+                                      const std::vector<std::string>& overrides,
+                                      Problems& problems);
 
 }  // namespace cordis::config

@@ -14,7 +14,7 @@ struct FileBytes {
 
 /// Reads a regular file. A FIFO, a socket or a device is refused without waiting for its other end.
 /// @param max_bytes  a larger file is refused
-FileBytes read_regular_file(const std::string& path, std::size_t max_bytes);
+[[nodiscard]] FileBytes read_regular_file(const std::string& path, std::size_t max_bytes);
 
 /// Why a file cannot be written: it is there and no regular file, or a folder; empty when nothing
 /// speaks against it. Does not create it.

@@ -66,13 +66,14 @@ struct Value::Entry {
 /// empty file is a Value that is nothing.
 /// @param referrer  where a person wrote the path, if in a file: a file that cannot be read is a
 /// problem of that place.
-Value load_file(const std::string& path, Problems& problems, const Place& referrer = {});
+[[nodiscard]] Value load_file(const std::string& path, Problems& problems,
+                              const Place& referrer = {});
 
 /// Reads YAML from memory as load_file does; `name` stands for the file in messages.
-Value load_text(const std::string& text, const std::string& name, Problems& problems);
+[[nodiscard]] Value load_text(const std::string& text, const std::string& name, Problems& problems);
 
 /// Reads a value from a word of the command line; every place in it is `name` without a line.
-Value load_word(const std::string& text, const std::string& name, Problems& problems);
+[[nodiscard]] Value load_word(const std::string& text, const std::string& name, Problems& problems);
 
 /// `base` with the entries of mapping `over` laid on it, deeply: mappings merge, everything else is
 /// replaced.

@@ -9,6 +9,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "node/dds/udp_address.h"
+
 namespace cordis::dds {
 namespace {
 
@@ -38,10 +40,7 @@ bool send_departure(const ParticipantPrefix& participant, std::uint16_t port) no
   std::ranges::copy(participant, datagram.begin() + kKeyPrefix);
   const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (file < 0) return false;
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const sockaddr_in address = udp_address(port);
   const auto sent = sendto(file, datagram.data(), datagram.size(), MSG_DONTWAIT,
                            reinterpret_cast<const sockaddr*>(&address), sizeof address);
   close(file);

@@ -11,6 +11,7 @@ namespace cordis::dds {
 /// Tells who listens on 127.0.0.1:port that a participant has left, in the words in which it would
 /// have done so itself: its announcement, disposed of and unregistered [DDSI 8.5.3, 9.6.3.4].
 /// @return whether the datagram was sent
-bool send_departure(const ParticipantPrefix& participant, std::uint16_t port) noexcept;
+[[nodiscard]] bool send_departure(const ParticipantPrefix& participant,
+                                  std::uint16_t port) noexcept;
 
 }  // namespace cordis::dds

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "idl/control.h"
+
 namespace cordis::dds {
 
 /// Where a process takes part, and as what.
@@ -16,6 +18,7 @@ struct ParticipantConfig {
   std::string node;       ///< name of the node, shown by DDS tools
   bool lockstep = false;  ///< quality of service of the gesture topics
   bool standbys = false;  ///< likewise; the same for all processes of a session
+  std::uint32_t wire_version = msg::WIRE_VERSION;  ///< that it speaks; another one in tests alone
 };
 
 /// What all that a participant owns begins with, in DDS.
@@ -38,6 +41,9 @@ struct Peer {
 /// When one that was dropped is there again, as the same, the two would stay deaf to each other:
 /// the participant then joins again as another one. Readers and writers stay as they are; samples
 /// under way are lost.
+///
+/// Readers take nothing from a participant that speaks another version of the wire; writers fill in
+/// `wire_version` where a message has it.
 ///
 /// Its threads inherit the priority of the thread that makes it.
 class Participant {
@@ -63,7 +69,8 @@ class Participant {
   std::uint64_t rejoin_count() const noexcept;
 
   /// Says in a sentence which process of the session cannot be received, or cannot receive, because
-  /// it was started with another launch file; empty while there is none.
+  /// it speaks another version of the wire or was started with another launch file; empty while
+  /// there is none.
   std::string mismatch() const;
 
   struct Impl;

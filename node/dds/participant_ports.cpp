@@ -11,6 +11,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "node/dds/udp_address.h"
+
 namespace cordis::dds {
 namespace {
 
@@ -45,10 +47,7 @@ std::uint16_t discovery_port(int domain, int index) noexcept {
 bool is_free(std::uint16_t port) noexcept {
   const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (file < 0) return false;
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const sockaddr_in address = udp_address(port);
   const bool free = bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   close(file);
   return free;

@@ -15,7 +15,7 @@ inline constexpr int kMaxParticipants = 64;
 std::uint16_t discovery_port(int domain, int index) noexcept;
 
 /// True if no socket is bound to 127.0.0.1:port.
-bool is_free(std::uint16_t port) noexcept;
+[[nodiscard]] bool is_free(std::uint16_t port) noexcept;
 
 /// A pair of ports of 127.0.0.1 that is free, held against all other participants of the host for
 /// the life of this object.

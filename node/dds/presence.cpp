@@ -35,7 +35,7 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
   using eprosima::fastrtps::Duration_t;
   fast::DomainParticipantQos qos;
   qos.name(config.session + "/" + config.node);
-  const std::string identity = process_identity();
+  const std::string identity = process_identity() + wire_version_mark(config.wire_version);
   qos.user_data().setValue({identity.begin(), identity.end()});
 
   // UDP on 127.0.0.1 alone: as fast as shared memory here, and no process blocks when another is
@@ -72,6 +72,13 @@ ParticipantPrefix prefix_of(const rtps::GUID_t& guid) {
   ParticipantPrefix prefix;
   std::copy_n(guid.guidPrefix.value, prefix.size(), prefix.begin());
   return prefix;
+}
+
+rtps::GUID_t guid_of(const ParticipantPrefix& prefix) {
+  rtps::GUID_t guid;
+  std::ranges::copy(prefix, guid.guidPrefix.value);
+  guid.entityId = rtps::c_EntityId_RTPSParticipant;
+  return guid;
 }
 
 std::uint16_t discovery_port_of(const rtps::ParticipantProxyData& found) {
@@ -143,6 +150,16 @@ std::string Presence::mismatch() const {
   return mismatches_.empty() ? std::string() : mismatches_.begin()->second;
 }
 
+void Presence::judge(const ParticipantPrefix& participant, std::uint32_t wire_version) {
+  record_wire_version(participant, wire_version);
+  if (wire_version == config_.wire_version) return;
+  const std::lock_guard lock(mutex_);
+  const auto peer = peers_.find(participant);
+  const std::string name = peer == peers_.end() ? "another program" : peer->second.name;
+  mismatches_[guid_of(participant)] =
+      wire_version_refusal(name, wire_version, config_.wire_version);
+}
+
 void Presence::drop_ended_processes() noexcept {
   try {
     for (const Peer& peer : peers()) {
@@ -153,7 +170,8 @@ void Presence::drop_ended_processes() noexcept {
 }
 
 void Presence::drop(const Peer& peer) noexcept {
-  send_departure(peer.prefix, ports_.discovery());
+  // What cannot be sent is sent again: the peer is still there at the next look.
+  static_cast<void>(send_departure(peer.prefix, ports_.discovery()));
 }
 
 void Presence::on_participant_discovery(fast::DomainParticipant*,
@@ -166,6 +184,8 @@ void Presence::on_participant_discovery(fast::DomainParticipant*,
     if (found.status == Info::REMOVED_PARTICIPANT || found.status == Info::DROPPED_PARTICIPANT) {
       peers_.erase(prefix);
       dropped_.insert(prefix);
+      mismatches_.erase(guid_of(prefix));
+      forget_wire_version(prefix);
       return;
     }
     const std::vector<rtps::octet> process = found.info.m_userData;
@@ -176,7 +196,19 @@ void Presence::on_participant_discovery(fast::DomainParticipant*,
     const_cast<rtps::ParticipantProxyData&>(found.info).should_check_lease_duration = false;
     returned = found.status == Info::DISCOVERED_PARTICIPANT && dropped_.contains(prefix);
   }
+  judge_discovered(prefix);
   if (returned) on_return_();
+}
+
+/// Of a process of the session, before any message of it can come.
+void Presence::judge_discovered(const ParticipantPrefix& participant) {
+  std::optional<std::uint32_t> version;
+  {
+    const std::lock_guard lock(mutex_);
+    const Peer& peer = peers_[participant];
+    if (peer.name.starts_with(config_.session + "/")) version = marked_wire_version(peer.process);
+  }
+  if (version) judge(participant, *version);
 }
 
 void Presence::on_publisher_discovery(fast::DomainParticipant*, rtps::WriterDiscoveryInfo&& found) {

@@ -19,6 +19,7 @@
 #include "node/dds/participant.h"
 #include "node/dds/participant_ports.h"
 #include "node/dds/topics.h"
+#include "node/dds/wire_version.h"
 
 namespace cordis::dds {
 
@@ -45,6 +46,13 @@ class Presence final : public fast::DomainParticipantListener {
   std::vector<Peer> peers() const;
   std::string mismatch() const;
 
+  /// A participant of the session has said that it speaks this version of the wire.
+  void judge(const ParticipantPrefix& participant, std::uint32_t wire_version);
+  /// True if messages of a participant are refused. Real time.
+  bool refuses(const ParticipantPrefix& participant) const noexcept {
+    return has_other_wire_version(participant, config_.wire_version);
+  }
+
   /// Drops each participant whose process has ended without leaving: it would cost its share of
   /// every message, for DDS itself forgets nobody.
   void drop_ended_processes() noexcept;
@@ -61,6 +69,7 @@ class Presence final : public fast::DomainParticipantListener {
  private:
   using Guid = eprosima::fastrtps::rtps::GUID_t;
 
+  void judge_discovered(const ParticipantPrefix& participant);
   template <class Endpoint>
   void compare(const Endpoint& endpoint, bool writes, bool gone);
 

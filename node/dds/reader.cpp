@@ -1,6 +1,7 @@
 // node/dds/reader.cpp
 #include "node/dds/reader.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <mutex>
 #include <stdexcept>
@@ -16,6 +17,8 @@
 
 namespace cordis::dds {
 
+namespace rtps = eprosima::fastrtps::rtps;
+
 template <class Message>
 struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
   Impl(Participant::Impl& joined, Topic topic)
@@ -28,21 +31,23 @@ struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
   std::mutex in_use;  // held by whoever uses the reader; free but while it changes over
   fast::DataReader* reader = nullptr;
   fast::Subscriber* subscriber = nullptr;
+  Presence* presence = nullptr;
 
   fast::DataReader* prepared = nullptr;
   fast::Subscriber* next_subscriber = nullptr;
+  Presence* next_presence = nullptr;
 
   std::mutex mutex;
   std::condition_variable arrived;
   bool pending = false;
   bool interrupted = false;
 
-  void prepare(Presence& presence) override {
-    fast::Topic* topic =
-        presence.topic(row, fast::TypeSupport(new typename TypeOf<Message>::Type()));
+  void prepare(Presence& joined) override {
+    fast::Topic* topic = joined.topic(row, fast::TypeSupport(new typename TypeOf<Message>::Type()));
     fast::DataReaderQos qos;
     apply(row, qos);
-    next_subscriber = &presence.subscriber();
+    next_subscriber = &joined.subscriber();
+    next_presence = &joined;
     prepared =
         next_subscriber->create_datareader(topic, qos, this, fast::StatusMask::data_available());
     if (prepared == nullptr) {
@@ -54,6 +59,21 @@ struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
     const std::lock_guard lock(in_use);
     reader = prepared;
     subscriber = next_subscriber;
+    presence = next_presence;
+  }
+
+  /// True if a message is of a writer that speaks another version of the wire.
+  bool is_refused(const Message& message, const fast::SampleInfo& info) const {
+    const rtps::GUID_t writer = rtps::iHandle2GUID(info.publication_handle);
+    ParticipantPrefix prefix;
+    std::copy_n(writer.guidPrefix.value, prefix.size(), prefix.begin());
+    if constexpr (requires { message.wire_version(); }) {
+      const std::uint32_t version = message.wire_version();
+      if (version != participant.config().wire_version) presence->judge(prefix, version);
+      return version != participant.config().wire_version || presence->refuses(prefix);
+    } else {
+      return presence->refuses(prefix);
+    }
   }
 
   void on_data_available(fast::DataReader*) override {
@@ -85,7 +105,7 @@ bool Reader<Message>::take(Message& message) noexcept {
   try {
     fast::SampleInfo info;
     while (impl_->reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
-      if (info.valid_data) return true;
+      if (info.valid_data && !impl_->is_refused(message, info)) return true;
     }
   } catch (...) {  // a message too large to hold counts as none
   }

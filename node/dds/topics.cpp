@@ -1,35 +1,71 @@
 // node/dds/topics.cpp
 #include "node/dds/topics.h"
 
+#include "idl/topics.h"
+
 namespace cordis::dds {
+namespace {
+
+/// Of the force loop: in lockstep every message counts, otherwise the newest alone.
+TopicQos gesture_qos(const std::string& name, bool lockstep, bool standbys) noexcept {
+  return {.name = name.c_str(),
+          .reliable = lockstep,
+          .transient_local = false,
+          .history_depth = lockstep ? 8 : 1,
+          .asynchronous = false,
+          .heartbeat_msec = 20,
+          .exclusive_for_msec = !lockstep && standbys ? 20 : 0};
+}
+
+/// The newest of each key, also for who joins late.
+TopicQos kept_qos(const std::string& name) noexcept {
+  return {.name = name.c_str(),
+          .reliable = true,
+          .transient_local = true,
+          .history_depth = 1,
+          .asynchronous = false,
+          .heartbeat_msec = 50};
+}
+
+/// A stream in which every message counts.
+TopicQos stream_qos(const std::string& name, int history_depth) noexcept {
+  return {.name = name.c_str(),
+          .reliable = true,
+          .transient_local = false,
+          .history_depth = history_depth,
+          .asynchronous = false,
+          .heartbeat_msec = 50};
+}
+
+}  // namespace
 
 TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept {
-  const int exclusive_for_msec = standbys ? 20 : 0;
-  // name, reliable, kept, depth, asynchronous, heartbeat [ms], exclusive for [ms]
   switch (topic) {
     case Topic::kPositions:
-      return lockstep
-                 ? TopicQos{"gesture/positions", true, false, 8, false, 20}
-                 : TopicQos{"gesture/positions", false, false, 1, false, 20, exclusive_for_msec};
+      return gesture_qos(msg::TOPIC_POSITIONS, lockstep, standbys);
     case Topic::kForces:
-      return lockstep ? TopicQos{"gesture/forces", true, false, 8, false, 20}
-                      : TopicQos{"gesture/forces", false, false, 1, false, 20, exclusive_for_msec};
+      return gesture_qos(msg::TOPIC_FORCES, lockstep, standbys);
     case Topic::kDevice:
-      return {"device/description", true, true, 1, false, 50};
+      return kept_qos(msg::TOPIC_DEVICE);
     case Topic::kDescription:
-      return {"scene/description", true, true, 1, false, 50};
+      return kept_qos(msg::TOPIC_DESCRIPTION);
     case Topic::kFrame:
-      return {"scene/frame", true, false, 1, true, 20};
+      return {.name = msg::TOPIC_FRAME.c_str(),
+              .reliable = true,
+              .transient_local = false,
+              .history_depth = 1,
+              .asynchronous = true,
+              .heartbeat_msec = 20};
     case Topic::kSignals:
-      return {"scene/signals", true, false, 32, false, 50};
+      return stream_qos(msg::TOPIC_SIGNALS, 32);
     case Topic::kEvents:
-      return {"scene/events", true, false, 256, false, 50};
+      return stream_qos(msg::TOPIC_EVENTS, 256);
     case Topic::kCommand:
-      return {"control/command", true, false, 32, false, 50};
+      return stream_qos(msg::TOPIC_COMMAND, 32);
     case Topic::kReply:
-      return {"control/reply", true, false, 32, false, 50};
+      return stream_qos(msg::TOPIC_REPLY, 32);
     case Topic::kStatus:
-      return {"node/status", true, true, 1, false, 50};
+      return kept_qos(msg::TOPIC_STATUS);
   }
   return {};
 }

@@ -100,6 +100,8 @@ Writer<Message>::~Writer() {
 
 template <class Message>
 bool Writer<Message>::write(Message& message) noexcept {
+  if constexpr (requires { message.wire_version(0u); })
+    message.wire_version(impl_->participant.config().wire_version);
   const std::lock_guard lock(impl_->in_use);
   if (impl_->row.transient_local && !impl_->keep(message)) return false;
   return impl_->send(message);

@@ -21,8 +21,8 @@ class Writer {
   Writer& operator=(const Writer&) = delete;
 
   /// Sends one message; false when it could not be handed over. About 10 to 20 us for a gesture
-  /// message.
-  bool write(Message& message) noexcept;
+  /// message. Fills in `wire_version` where the message has it.
+  [[nodiscard]] bool write(Message& message) noexcept;
 
   int matched_count() const noexcept;  ///< readers there are now
 

@@ -19,8 +19,7 @@ namespace cordis::sim {
 
 using scene::Role;
 
-using scene::kMaxAxes;
-static_assert(std::tuple_size_v<msg::PerAxis> == kMaxAxes);
+constexpr std::size_t kMaxAxes = msg::MAX_AXES;
 
 /// The ports of one device: takes its samples, moves or pushes the MATs over the sub-steps, and
 /// makes the answers.

@@ -35,7 +35,7 @@ class RefusedDevices {
   void report_repeats();
 
   /// True if the process of this epoch is refused. Real time.
-  bool refuses(std::uint64_t epoch) const noexcept;
+  [[nodiscard]] bool refuses(std::uint64_t epoch) const noexcept;
 
   /// Why, a sentence per port of the devices that are refused; empty when none is.
   std::string text() const;

@@ -1,9 +1,7 @@
 // sim_node/run/command.cpp
 #include "sim_node/run/command.h"
 
-#include <array>
 #include <stdexcept>
-#include <utility>
 
 #include "node/config/mapping_reader.h"
 #include "node/control_verbs.h"
@@ -11,28 +9,11 @@
 namespace cordis::sim {
 namespace {
 
-constexpr std::array<std::pair<const char*, Verb>, 7> kVerbs{{{"pause", Verb::kPause},
-                                                              {"resume", Verb::kResume},
-                                                              {"step", Verb::kStep},
-                                                              {"reset", Verb::kReset},
-                                                              {"load", Verb::kLoad},
-                                                              {"set", Verb::kSet},
-                                                              {"state", Verb::kState}}};
-
 /// @throws std::invalid_argument with the first problem, as one sentence
 void throw_first(const config::Problems& problems) {
   if (!problems.has_errors()) return;
   const config::Problem& first = problems.all().front();
   throw std::invalid_argument(first.message + (first.hint.empty() ? "" : "; " + first.hint));
-}
-
-Verb verb_named(const std::string& name) {
-  for (const auto& [word, verb] : kVerbs) {
-    if (name == word) return verb;
-  }
-  const std::string near = config::did_you_mean(name, node::control_verb_names());
-  throw std::invalid_argument("a sim_node knows no command '" + name + "'" +
-                              (near.empty() ? "" : ", " + near));
 }
 
 std::uint64_t read_steps(const config::Value& argument, config::Problems& problems) {
@@ -78,33 +59,36 @@ void read_state(const config::Value& argument, Command& command, config::Problem
 
 }  // namespace
 
-Command read_command(const std::string& verb, const std::string& argument) {
+Command read_command(msg::ControlVerb verb, const std::string& argument) {
   Command command;
-  command.verb = verb_named(verb);
+  command.verb = verb;
+  const std::string word = node::word_of(verb);
   config::Problems problems;
-  const config::Value value = config::load_word(argument, "'" + verb + "'", problems);
+  const config::Value value = config::load_word(argument, "'" + word + "'", problems);
   throw_first(problems);
   const bool empty = value.kind() == config::Value::Kind::kNothing;
-  switch (command.verb) {
-    case Verb::kStep:
+  switch (verb) {
+    case msg::VERB_STEP:
       command.steps = read_steps(value, problems);
       break;
-    case Verb::kLoad:
+    case msg::VERB_LOAD:
       command.scene_file = read_file(value, problems);
       break;
-    case Verb::kSet:
+    case msg::VERB_SET:
       command.values = read_values(value, problems);
       break;
-    case Verb::kState:
+    case msg::VERB_STATE:
       read_state(value, command, problems);
       break;
-    case Verb::kPause:
-    case Verb::kResume:
-    case Verb::kReset:
+    case msg::VERB_PAUSE:
+    case msg::VERB_RESUME:
+    case msg::VERB_RESET:
       if (!empty)
         problems.error(value.place(),
-                       "'" + verb + "' stands alone, got " + value.described() + " behind it");
+                       "'" + word + "' stands alone, got " + value.described() + " behind it");
       break;
+    default:
+      throw std::invalid_argument("a sim_node knows no command '" + word + "'");
   }
   throw_first(problems);
   return command;

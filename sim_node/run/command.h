@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace cordis::sim {
+#include "idl/control.h"
 
-enum class Verb : std::uint8_t { kPause, kResume, kStep, kReset, kLoad, kSet, kState };
+namespace cordis::sim {
 
 /// A parameter of a liaison or of named links, and its new value.
 struct NewValue {
@@ -17,19 +17,19 @@ struct NewValue {
 };
 
 struct Command {
-  Verb verb = Verb::kPause;
-  std::uint64_t steps = 1;       ///< of kStep
-  std::string scene_file;        ///< of kLoad
-  std::vector<NewValue> values;  ///< of kSet, at least one
-  std::string links;             ///< of kState: name, name[3] or name[2..5]
-  std::string state;             ///< of kState
+  msg::ControlVerb verb = msg::VERB_PAUSE;
+  std::uint64_t steps = 1;       ///< of VERB_STEP
+  std::string scene_file;        ///< of VERB_LOAD
+  std::vector<NewValue> values;  ///< of VERB_SET, at least one
+  std::string links;             ///< of VERB_STATE: name, name[3] or name[2..5]
+  std::string state;             ///< of VERB_STATE
 };
 
 inline constexpr long kMaxSingleSteps = 1'000'000'000;
 
-/// @param verb      a word of node::control_verbs()
+/// @param verb      as another process wrote it: any number
 /// @param argument  YAML
 /// @throws std::invalid_argument with one sentence that says what is wrong
-Command read_command(const std::string& verb, const std::string& argument);
+[[nodiscard]] Command read_command(msg::ControlVerb verb, const std::string& argument);
 
 }  // namespace cordis::sim

@@ -62,21 +62,21 @@ node::Answer CommandExecutor::execute(const msg::ControlCommand& message) {
   }
   Request request;
   switch (command.verb) {
-    case Verb::kPause:
+    case msg::VERB_PAUSE:
       request.kind = Request::Kind::kPause;
       return give(request, "paused");
-    case Verb::kResume:
+    case msg::VERB_RESUME:
       request.kind = Request::Kind::kResume;
       return give(request, "goes on");
-    case Verb::kStep:
+    case msg::VERB_STEP:
       return step(command.steps);
-    case Verb::kReset:
+    case msg::VERB_RESET:
       return restart(scene_, "'" + scene_->name + "' restarts");
-    case Verb::kLoad:
+    case msg::VERB_LOAD:
       return load(command.scene_file);
-    case Verb::kSet:
+    case msg::VERB_SET:
       return set(command.values);
-    case Verb::kState:
+    case msg::VERB_STATE:
       return force(command.links, command.state);
   }
   return {};

@@ -1,13 +1,23 @@
 // sim_node/run/describe.cpp
 #include "sim_node/run/describe.h"
 
+#include <cstdint>
 #include <limits>
 #include <vector>
+
+#include "idl/gesture.h"
+#include "node/config/max_axes.h"
 
 namespace cordis::sim {
 namespace {
 
-constexpr std::uint32_t kNoStateMachine = std::numeric_limits<std::uint32_t>::max();
+static_assert(static_cast<int>(scene::Role::kMass) == msg::ROLE_MASS);
+static_assert(static_cast<int>(scene::Role::kLiaison) == msg::ROLE_LIAISON);
+static_assert(static_cast<int>(engine::MatKind::kMass) == msg::MAT_MASS);
+static_assert(static_cast<int>(engine::MatKind::kFixed) == msg::MAT_FIXED);
+static_assert(static_cast<int>(engine::MatKind::kPort) == msg::MAT_PORT);
+static_assert(config::kMaxAxes == msg::MAX_AXES);
+static_assert(msg::MAT_PORT <= std::numeric_limits<std::uint8_t>::max());
 
 std::vector<msg::NamedRange> ranges_of(const std::vector<scene::NamedRange>& ranges) {
   std::vector<msg::NamedRange> message(ranges.size());
@@ -24,7 +34,7 @@ msg::PortDescription port_of(const scene::Port& port) {
   message.name(port.name);
   message.device(port.device);
   message.device_id(port.device_id);
-  message.role(static_cast<std::uint32_t>(port.role));
+  message.role(static_cast<msg::PortRole>(port.role));
   message.mat(port.mat);
   message.axes(port.axes);
   return message;
@@ -59,10 +69,10 @@ void report_states(const engine::NetworkDescription& network, msg::SceneDescript
   }
   if (network.state_links.empty()) return;
   std::vector<std::uint32_t>& state_machine = description.link_state_machine();
-  state_machine.assign(network.links.size(), kNoStateMachine);
+  state_machine.assign(network.links.size(), msg::NO_INDEX);
   for (const engine::StateLink& link : network.state_links)
     state_machine.push_back(link.state_machine);
-  state_machine.resize(state_machine.size() + network.maxwell_links.size(), kNoStateMachine);
+  state_machine.resize(state_machine.size() + network.maxwell_links.size(), msg::NO_INDEX);
 }
 
 }  // namespace

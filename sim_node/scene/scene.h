@@ -50,9 +50,6 @@ struct PortNeeds {
   config::Place place;  ///< where it is said
 };
 
-/// The most axes a device may have.
-inline constexpr std::size_t kMaxAxes = 16;
-
 /// A MAT played by axes of a device.
 ///
 /// Role mass: an imposed position, rest + sum of axis position times direction; the force of an
@@ -69,7 +66,7 @@ struct Port {
   std::uint32_t tool =
       0;  ///< the MAT that the scene touches: that at the port, or the tool coupled to it
   engine::Vec3 rest = engine::Vec3::Zero();  ///< position of the MAT when all axes are at 0 [m]
-  std::vector<std::uint32_t> axes;  ///< of the device, each below kMaxAxes, none twice in a scene
+  std::vector<std::uint32_t> axes;  ///< of the device, each below config::kMaxAxes, none twice in a scene
   std::vector<engine::Vec3> directions;  ///< per axis, unit length, linearly independent
   PortNeeds needs;
   config::Place place;  ///< of the port in the scene file

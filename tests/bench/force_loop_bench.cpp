@@ -30,7 +30,8 @@ std::string nodes(const std::string& extra_of_sim, bool view) {
 }
 
 void print_memory(const NodeStatus& status) {
-  std::printf("  %-12s %6.1f MB resident\n", status.kind().c_str(), status.memory_bytes() / 1e6);
+  std::printf("  %-12s %6.1f MB resident\n", cordis::node::word_of(status.kind()),
+              status.memory_bytes() / 1e6);
 }
 
 void print_round_trip(const NodeStatus& device) {
@@ -46,15 +47,15 @@ bool lockstep() {
                       nodes(", duration_s: " + std::to_string(kSimulatedSeconds), false), "bench");
   StatusWatch status(session.participant());
   session.start("device_node", "keyboard");
-  if (!status.wait_for_phase("keyboard", "waiting")) return false;
+  if (!status.wait_for_phase("keyboard", msg::PHASE_WAITING)) return false;
   const auto start = std::chrono::steady_clock::now();
   cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
   if (sim.wait(120s) != 0) return false;
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   const bool is_seen = status.wait_for("keyboard", [](const NodeStatus& status_now) {
-    return status_now.phase() == "lost";
+    return status_now.phase() == msg::PHASE_LOST;
   }) && status.wait_for("sim", [](const NodeStatus& status_now) {
-    return status_now.phase() == "stopped";
+    return status_now.phase() == msg::PHASE_STOPPED;
   });
   const NodeStatus& simulated = status.of("sim");
   std::printf("lockstep, 40 masses, 4 steps per exchange, %d s simulated\n", kSimulatedSeconds);
@@ -90,14 +91,15 @@ bool realtime(std::chrono::seconds duration) {
   if (sim.wait(std::chrono::duration_cast<std::chrono::milliseconds>(duration) + 60s) != 0)
     return false;
   const bool is_seen = status.wait_for(
-      "sim", [](const NodeStatus& status_now) { return status_now.phase() == "stopped"; });
+      "sim", [](const NodeStatus& status_now) { return status_now.phase() == msg::PHASE_STOPPED; });
   std::printf("realtime, 1 kHz, %lld s, with viz_node and %llu frames drawn by a page\n",
               static_cast<long long>(duration.count()),
               static_cast<unsigned long long>(status.of("view").latency_count()));
   for (const char* name : {"sim", "keyboard"}) {
     const NodeStatus& status_now = status.of(name);
     std::printf("  %-12s %llu of %llu ticks began a period late (%.3f %%)\n",
-                status_now.kind().c_str(), static_cast<unsigned long long>(status_now.overruns()),
+                cordis::node::word_of(status_now.kind()),
+                static_cast<unsigned long long>(status_now.overruns()),
                 static_cast<unsigned long long>(status_now.ticks()),
                 100.0 * static_cast<double>(status_now.overruns()) /
                     static_cast<double>(status_now.ticks()));

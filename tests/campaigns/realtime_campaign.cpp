@@ -13,6 +13,7 @@
 
 #include "idl/control.h"
 #include "node/dds/reader.h"
+#include "node/status_words.h"
 #include "tests/campaigns/campaign.h"
 #include "tests/support/child_process.h"
 #include "tests/support/test_domain.h"
@@ -125,10 +126,11 @@ class Statuses {
       for (const char* name : kNodes) {
         const msg::NodeStatus& now = newest_[name];
         msg::NodeStatus& then = before[name];
-        if (now.phase() != "running") then = now;  // counts from when it runs
-        const bool goes_on = now.phase() == "running" && now.ticks() > then.ticks() &&
+        if (now.phase() != msg::PHASE_RUNNING) then = now;  // counts from when it runs
+        const bool goes_on = now.phase() == msg::PHASE_RUNNING && now.ticks() > then.ticks() &&
                              now.sequence_number() > then.sequence_number() + 1;
-        if (!goes_on) missing = std::string(name).append(", which is ").append(now.phase());
+        if (!goes_on)
+          missing = std::string(name).append(", which is ").append(node::word_of(now.phase()));
       }
     } while (!missing.empty() && Clock::now() < limit);
     return missing;

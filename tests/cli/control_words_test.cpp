@@ -2,6 +2,7 @@
 #include "cli/ctl/control_words.h"
 
 #include <filesystem>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -20,8 +21,11 @@ std::string refusal_of(const std::string& verb, const std::vector<std::string>& 
 }
 
 TEST(ControlWords, LeaveACommandWithoutWordsAlone) {
-  for (const char* verb : {"pause", "resume", "reset", "step"}) {
-    const ControlWords command = read_control_words(verb, {});
+  for (const auto& [word, verb] : {std::pair{"pause", msg::VERB_PAUSE},
+                                   {"resume", msg::VERB_RESUME},
+                                   {"reset", msg::VERB_RESET},
+                                   {"step", msg::VERB_STEP}}) {
+    const ControlWords command = read_control_words(word, {});
     EXPECT_EQ(command.verb, verb);
     EXPECT_EQ(command.argument, "");
   }

@@ -29,6 +29,7 @@
 
 #include "node/config/launch.h"
 #include "node/status.h"
+#include "node/status_words.h"
 #include "node/time.h"
 
 namespace {
@@ -59,17 +60,31 @@ Self read_words(int argc, char** argv) {
   return self;
 }
 
+msg::NodeKind kind_of(const std::string& word) {
+  for (const msg::NodeKind kind : {msg::KIND_SIM_NODE, msg::KIND_DEVICE_NODE}) {
+    if (word == node::word_of(kind)) return kind;
+  }
+  return msg::KIND_VIZ_NODE;
+}
+
+msg::NodePhase phase_of(const std::string& word) {
+  std::uint32_t phase = 0;
+  while (phase < msg::PHASE_FAILED && word != node::word_of(static_cast<msg::NodePhase>(phase)))
+    ++phase;
+  return static_cast<msg::NodePhase>(phase);
+}
+
 std::atomic<bool> is_stopping{false};
 
 /// Says what a node says of itself, as long as it lives.
 class FakeStatus {
  public:
-  FakeStatus(const Self& self, const std::string& phase, const std::string& text,
+  FakeStatus(const Self& self, msg::NodePhase phase, const std::string& text,
              std::uint64_t late = 0)
       : participant_(config(self)) {
     const auto run = static_cast<std::uint64_t>(node::monotonic_nsec());
     publisher_ = std::make_unique<node::StatusPublisher>(
-        participant_, self.kind, run, [phase, text, late](msg::NodeStatus& status) {
+        participant_, kind_of(self.kind), run, [phase, text, late](msg::NodeStatus& status) {
           status.phase(phase);
           status.text(text);
           status.target_rate_hz(1000);
@@ -147,9 +162,10 @@ void execute(const std::string& command, const Self& self, std::unique_ptr<FakeS
   if (verb == "await") wait_for({SIGUSR1});
   if (verb == "exit") std::exit(std::stoi(rest));
   if (verb == "die") raise(std::stoi(rest));
-  if (verb == "run") status = std::make_unique<FakeStatus>(self, "running", rest);
-  if (verb == "late") status = std::make_unique<FakeStatus>(self, "running", "", std::stoul(rest));
-  if (verb == "phase") status = std::make_unique<FakeStatus>(self, rest, "");
+  if (verb == "run") status = std::make_unique<FakeStatus>(self, msg::PHASE_RUNNING, rest);
+  if (verb == "late")
+    status = std::make_unique<FakeStatus>(self, msg::PHASE_RUNNING, "", std::stoul(rest));
+  if (verb == "phase") status = std::make_unique<FakeStatus>(self, phase_of(rest), "");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace cordis::cli {
 namespace {
 
-msg::NodeStatus status_of(const std::string& node, const std::string& kind, std::uint64_t epoch) {
+msg::NodeStatus status_of(const std::string& node, msg::NodeKind kind, std::uint64_t epoch) {
   msg::NodeStatus status;
   status.node(node);
   status.kind(kind);
@@ -21,7 +21,7 @@ bool ends_with_dash(const std::string& table, const std::string& node) {
 
 TEST(StatusBoard, KeepsTheNewestOfEachNode) {
   StatusBoard board(/*first_epoch=*/100);
-  msg::NodeStatus status = status_of("sim", "sim_node", 150);
+  msg::NodeStatus status = status_of("sim", msg::KIND_SIM_NODE, 150);
   status.step(1);
   EXPECT_TRUE(board.put(status));
   status.step(2);
@@ -34,29 +34,29 @@ TEST(StatusBoard, KeepsTheNewestOfEachNode) {
 
 TEST(StatusBoard, ForgetsTheLifeBeforeTheRestartOfANode) {
   StatusBoard board(/*first_epoch=*/100);
-  board.put(status_of("sim", "sim_node", 101));
-  board.put(status_of("key", "device_node", 102));
+  board.put(status_of("sim", msg::KIND_SIM_NODE, 101));
+  board.put(status_of("key", msg::KIND_DEVICE_NODE, 102));
 
   board.begin_life("sim", 200);
 
   EXPECT_EQ(board.find("sim"), nullptr);
-  EXPECT_FALSE(board.put(status_of("sim", "sim_node", 101))) << "it comes late";
+  EXPECT_FALSE(board.put(status_of("sim", msg::KIND_SIM_NODE, 101))) << "it comes late";
   EXPECT_EQ(board.find("sim"), nullptr);
-  EXPECT_TRUE(board.put(status_of("sim", "sim_node", 201)));
+  EXPECT_TRUE(board.put(status_of("sim", msg::KIND_SIM_NODE, 201)));
   EXPECT_NE(board.find("sim"), nullptr);
   EXPECT_NE(board.find("key"), nullptr) << "the others stay";
 }
 
 TEST(StatusBoard, RefusesProcessesOlderThanTheRun) {
   StatusBoard board(/*first_epoch=*/100);
-  EXPECT_FALSE(board.put(status_of("sim", "sim_node", 99)));
+  EXPECT_FALSE(board.put(status_of("sim", msg::KIND_SIM_NODE, 99)));
   EXPECT_EQ(board.find("sim"), nullptr);
 }
 
 TEST(StatusBoard, AddsUpTheLateTicksOfAllNodes) {
   StatusBoard board(/*first_epoch=*/0);
   for (const char* node : {"sim", "key"}) {
-    msg::NodeStatus status = status_of(node, "device_node", 1);
+    msg::NodeStatus status = status_of(node, msg::KIND_DEVICE_NODE, 1);
     status.late_by_machine(3);
     status.late_by_work(1);
     board.put(status);
@@ -67,7 +67,7 @@ TEST(StatusBoard, AddsUpTheLateTicksOfAllNodes) {
 
 TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   StatusBoard board(0);
-  msg::NodeStatus sim = status_of("sim", "sim_node", 1);
+  msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
   sim.target_rate_hz(1000);
   sim.mean_rate_hz(999.96);
   sim.overruns(12);
@@ -85,7 +85,7 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   sim.step(10000);
   sim.state_hash(0x0123456789abcdefull);
   board.put(sim);
-  msg::NodeStatus key = status_of("keyboard", "device_node", 1);
+  msg::NodeStatus key = status_of("keyboard", msg::KIND_DEVICE_NODE, 1);
   key.target_rate_hz(1000);
   key.mean_rate_hz(1000);
   key.dropped(3);
@@ -115,7 +115,7 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
 
 TEST(StatusTable, TellsCausesInTheWordsOfTheNode) {
   StatusBoard board(0);
-  msg::NodeStatus key = status_of("key", "device_node", 1);
+  msg::NodeStatus key = status_of("key", msg::KIND_DEVICE_NODE, 1);
   key.target_rate_hz(1000);
   key.late_by_work(2);
   key.silent_ticks(31);
@@ -126,14 +126,15 @@ TEST(StatusTable, TellsCausesInTheWordsOfTheNode) {
 
 TEST(StatusTable, TellsNoCausesOfANodeWithoutARate) {
   StatusBoard board(0);
-  msg::NodeStatus sim = status_of("sim", "sim_node", 1);  // as in lockstep and asap
+  msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);  // as in lockstep and asap
   sim.ticks(1000);
   sim.silent_ticks(31);
   board.put(sim);
   EXPECT_EQ(status_table({"sim"}, board).find("silent"), std::string::npos);
   EXPECT_TRUE(ends_with_dash(status_table({"sim"}, board), "sim"));
 
-  msg::NodeStatus view = status_of("view", "viz_node", 1);  // it skips frames, and is never late
+  msg::NodeStatus view =
+      status_of("view", msg::KIND_VIZ_NODE, 1);  // it skips frames, and is never late
   view.target_rate_hz(25);
   board.put(view);
   EXPECT_TRUE(ends_with_dash(status_table({"view"}, board), "view"));
@@ -141,7 +142,7 @@ TEST(StatusTable, TellsNoCausesOfANodeWithoutARate) {
 
 TEST(StatusTable, CountsNoSilenceOfANodeThatIsStopped) {
   StatusBoard board(0);
-  msg::NodeStatus sim = status_of("sim", "sim_node", 1);
+  msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
   sim.target_rate_hz(1000);
   sim.silent_ticks(31);
   board.put(sim);
@@ -157,8 +158,8 @@ TEST(StatusTable, CountsNoSilenceOfANodeThatIsStopped) {
 
 TEST(StatusTable, TellsWhyANodeFailed) {
   StatusBoard board(0);
-  msg::NodeStatus sim = status_of("sim", "sim_node", 1);
-  sim.phase("failed");
+  msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
+  sim.phase(msg::PHASE_FAILED);
   sim.text("the scene diverged");
   board.put(sim);
   EXPECT_NE(status_table({"sim"}, board).find("sim failed: the scene diverged\n"),
@@ -167,7 +168,7 @@ TEST(StatusTable, TellsWhyANodeFailed) {
 
 TEST(StatusTable, WritesTheWholeHash) {
   StatusBoard board(0);
-  msg::NodeStatus sim = status_of("sim", "sim_node", 1);
+  msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
   sim.state_hash(0xab);
   board.put(sim);
   EXPECT_NE(status_table({"sim"}, board).find("state hash 00000000000000ab after 0 steps\n"),

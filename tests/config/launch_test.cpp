@@ -45,8 +45,8 @@ TEST(Launch, ReadsSessionAndNodesInTheOrderOfTheFile) {
 TEST(Launch, TellsASceneFromALaunchFileInOneProblem) {
   Problems problems;
 
-  load_launch_text("cordis: 1\nname: bow\nspace: 1\nmatter: {a: {}}\nlinks: []\n", "bow.yaml", {},
-                   problems);
+  static_cast<void>(load_launch_text("cordis: 1\nname: bow\nspace: 1\nmatter: {a: {}}\nlinks: []\n",
+                                     "bow.yaml", {}, problems));
 
   ASSERT_EQ(problems.all().size(), 1u) << problems.text();
   EXPECT_NE(
@@ -130,7 +130,7 @@ class BadOverrides : public testing::TestWithParam<BadOverride> {};
 TEST_P(BadOverrides, AreProblemsOfTheCommandLine) {
   Problems problems;
 
-  load_launch_text(kLaunch, "l.yaml", {GetParam().word}, problems);
+  static_cast<void>(load_launch_text(kLaunch, "l.yaml", {GetParam().word}, problems));
 
   ASSERT_EQ(problems.all().size(), 1u) << problems.text();
   const Problem& problem = problems.all()[0];
@@ -172,7 +172,7 @@ class BadLaunches : public testing::TestWithParam<BadLaunch> {};
 TEST_P(BadLaunches, AreProblemsOfTheirPlace) {
   Problems problems;
 
-  load_launch_text(GetParam().text, "l.yaml", {}, problems);
+  static_cast<void>(load_launch_text(GetParam().text, "l.yaml", {}, problems));
 
   ASSERT_EQ(problems.in_order().size(), 1u) << problems.text();
   const std::string text = problems.text();
@@ -230,9 +230,9 @@ TEST(Launch, RefusesNodesWhoseNamesHaveTheSameHash) {
   // two names of letters with the same FNV-1a value
   Problems problems;
 
-  load_launch_text(
+  static_cast<void>(load_launch_text(
       "cordis: 1\nnodes:\n  costarring: {node: viz_node}\n  liquid: {node: viz_node}\n", "l.yaml",
-      {}, problems);
+      {}, problems));
 
   ASSERT_EQ(problems.all().size(), 1u);
   EXPECT_EQ(problems.all()[0].message, "'liquid' and 'costarring' have the same hash");

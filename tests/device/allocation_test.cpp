@@ -23,8 +23,8 @@ std::size_t allocations_of(Driver& driver, Role role) {
 
   const test::AllocationGuard guard;
   for (int n = 0; n < kPeriods; ++n) {
-    driver.write(values);
-    driver.read(values);
+    static_cast<void>(driver.write(values));
+    static_cast<void>(driver.read(values));
     for (double& value : values) value *= 0.5;
   }
   return guard.count();

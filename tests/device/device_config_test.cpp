@@ -179,8 +179,8 @@ TEST(DeviceConfig, LaysTheLaunchFileAndTheCommandLineOnTheDeviceFile) {
     AxisValues values{};
     for (int n = 0; n < 1700; ++n) {
       values.fill(2.0);
-      device.driver->write(values);
-      device.driver->read(values);
+      static_cast<void>(device.driver->write(values));
+      static_cast<void>(device.driver->read(values));
     }
     return values[0];
   };

@@ -35,17 +35,17 @@ TEST(LoopMeter, TellsWhatWasCounted) {
 
 TEST(LoopMeter, TellsItsPhase) {
   LoopMeter meter;
-  EXPECT_EQ(status_of(meter).phase(), "waiting");
+  EXPECT_EQ(status_of(meter).phase(), msg::PHASE_WAITING);
   meter.set_phase(Phase::kUnused);
-  EXPECT_EQ(status_of(meter).phase(), "unused");
+  EXPECT_EQ(status_of(meter).phase(), msg::PHASE_UNUSED);
   meter.set_phase(Phase::kRunning);
-  EXPECT_EQ(status_of(meter).phase(), "running");
+  EXPECT_EQ(status_of(meter).phase(), msg::PHASE_RUNNING);
   EXPECT_EQ(status_of(meter).text(), "");
   meter.set_phase(Phase::kLost);
-  EXPECT_EQ(status_of(meter).phase(), "lost");
+  EXPECT_EQ(status_of(meter).phase(), msg::PHASE_LOST);
   EXPECT_NE(status_of(meter).text(), "");
   meter.set_phase(Phase::kStopped);
-  EXPECT_EQ(status_of(meter).phase(), "stopped");
+  EXPECT_EQ(status_of(meter).phase(), msg::PHASE_STOPPED);
 }
 
 TEST(LoopMeter, ShowsLatenciesEvery256Ticks) {

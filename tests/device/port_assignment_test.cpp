@@ -25,7 +25,7 @@ msg::PortDescription port(const std::string& name, std::uint32_t device_id, std:
   msg::PortDescription description;
   description.name(name);
   description.device_id(device_id);
-  description.role(role);
+  description.role(static_cast<msg::PortRole>(role));
   description.axes(std::move(axes));
   return description;
 }

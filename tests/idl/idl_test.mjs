@@ -23,7 +23,13 @@ try {
 const NAMESPACE = 'cordis::msg::';
 const units = readdirSync(idlFolder).filter((file) => file.endsWith('.idl'));
 const parse = (unit) => parseIDL(readFileSync(join(idlFolder, unit), 'utf8'));
-const structs = units.flatMap(parse).filter((definition) => definition.aggregatedKind === 'struct');
+const definitions = units.flatMap(parse);
+const structs = definitions.filter((definition) => definition.aggregatedKind === 'struct');
+/** Constants and values of enums by their names. */
+const constants = new Map(
+  definitions.filter((d) => d.aggregatedKind === 'module').flatMap((d) => d.definitions.map(({ name, value }) => [name, value])),
+);
+const enums = definitions.filter((d) => d.aggregatedKind === 'module' && d.name !== NAMESPACE.slice(0, -2));
 const own = (definition) => definition.name.slice(NAMESPACE.length);
 
 /** Class name to the names of its members, as fastddsgen understood the file. */
@@ -44,6 +50,7 @@ test('the messages are those of the contract', () => {
       'NamedRange', 'PortDescription', 'SignalDescription', 'StateMachineDescription', 'SceneDescription', 'SceneFrame',
       'SceneSignals', 'LinkEvent', 'SceneEvents',
     ],
+    'topics.idl': [],
   };
   assert.deepEqual([...units].sort(), Object.keys(contract));
   for (const unit of units) assert.deepEqual(parse(unit).filter((d) => d.aggregatedKind === 'struct').map(own), contract[unit]);
@@ -57,12 +64,35 @@ for (const unit of units) {
   });
 }
 
+test('both parsers find the same values of enums', () => {
+  assert.deepEqual(enums.map(own).sort(), ['ControlVerb', 'EventQuantity', 'MatKind', 'NodeKind', 'NodePhase', 'PortRole']);
+  const generated = units.map((unit) => readFileSync(join(generatedFolder, `${basename(unit, '.idl')}.h`), 'utf8')).join('\n');
+  for (const definition of enums) {
+    const [, body] = generated.match(new RegExp(`enum ${own(definition)} : uint32_t\\s*\\{([^}]*)\\}`));
+    assert.deepEqual(body.split(',').map((name) => name.trim()), definition.definitions.map(({ name }) => name));
+  }
+});
+
+test('the version of the wire stands at the place where every version has it', () => {
+  assert.ok(constants.get('WIRE_VERSION') >= 1);
+  const placeOf = (name) =>
+    structs.find((definition) => own(definition) === name).definitions.findIndex((field) => field.name === 'wire_version');
+  assert.deepEqual(['DeviceDescription', 'NodeStatus', 'SceneDescription'].map(placeOf), [1, 1, 0]);
+});
+
+test('the page has the numbers of the contract', () => {
+  const text = readFileSync(join(web, 'page/wire.ts'), 'utf8');
+  const numbers = [...text.matchAll(/^export const (\w+) = (\d+);$/gm)];
+  assert.ok(numbers.length > 0);
+  for (const [, name, value] of numbers) assert.equal(Number(value), constants.get(name), name);
+});
+
 test('the generator keeps its temporary files in the build tree', () => {
   for (const unit of units) assert.ok(existsSync(join(generatedFolder, '../../idl/fastddsgen', `${unit}.cc`)), unit);
 });
 
 test('every message is final, in the namespace, and of complete types', () => {
-  const known = new Set(structs.map((definition) => definition.name));
+  const known = new Set([...structs, ...enums].map((definition) => definition.name));
   for (const definition of structs) {
     assert.ok(definition.name.startsWith(NAMESPACE), definition.name);
     assert.ok(definition.annotations?.final, `${definition.name} is not @final`);
@@ -73,6 +103,7 @@ test('every message is final, in the namespace, and of complete types', () => {
 });
 
 test('messages of the force loop have a fixed size and 16 axes', () => {
+  assert.equal(constants.get('MAX_AXES'), 16);
   for (const [name, perAxis] of [['GesturePositions', 'position_m'], ['GestureForces', 'force_n']]) {
     const fields = structs.find((definition) => own(definition) === name).definitions;
     for (const field of fields) {
@@ -88,5 +119,8 @@ test('the table of topics names every message that is sent by itself, and no oth
   const rows = readFileSync(join(idlFolder, 'README.md'), 'utf8').matchAll(/^\| `([a-z/]+)` \| `(\w+)` \|/gm);
   const nested = new Set(structs.flatMap((definition) => definition.definitions.map((field) => field.type)));
   const sent = structs.filter((definition) => !nested.has(definition.name)).map(own);
-  assert.deepEqual([...rows].map(([, , type]) => type).sort(), sent.sort());
+  const table = [...rows];
+  assert.deepEqual(table.map(([, , type]) => type).sort(), sent.sort());
+  const topics = [...constants].filter(([name]) => name.startsWith('TOPIC_')).map(([, value]) => value);
+  assert.deepEqual(table.map(([, topic]) => topic), topics);
 });

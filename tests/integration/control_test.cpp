@@ -60,8 +60,8 @@ class Control : public ::testing::TestWithParam<const char*> {
   void start() {
     session_.start("sim_node", "sim");
     session_.start("device_node", "keyboard");
-    ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
-    ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+    ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
+    ASSERT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING));
   }
 
   Outcome ctl(const std::vector<std::string>& words, const std::string& timeout = "60s") {
@@ -120,7 +120,7 @@ class Control : public ::testing::TestWithParam<const char*> {
 TEST_P(Control, PausesStepsAndResumes) {
   start();
   expect_done({"pause"}, "sim: paused at step ");
-  ASSERT_TRUE(status_.wait_for_phase("sim", "paused"));
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_PAUSED));
   const std::uint64_t step = step_shown();
   EXPECT_EQ(step_shown(), step) << "pictures go on, the scene does not";
 
@@ -128,7 +128,7 @@ TEST_P(Control, PausesStepsAndResumes) {
   expect_steps({"step", "7"}, step + 8);
 
   expect_done({"resume"}, "goes on at step " + std::to_string(step + 8));
-  ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
   EXPECT_TRUE(status_.wait_for(
       "sim", [&](const msg::NodeStatus& status) { return status.step() > step + 1000; }));
 }
@@ -148,7 +148,7 @@ TEST_P(Control, ResetBeginsTheSceneAnewUnderANewVersion) {
   EXPECT_EQ(description.version(), 2u);
   EXPECT_EQ(step_shown(), 0u);
   expect_done({"resume"}, "goes on at step 0");
-  ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING));
 }
 
 TEST_P(Control, LoadPlaysAnotherSceneAndTheKeyFeelsIt) {
@@ -162,7 +162,7 @@ TEST_P(Control, LoadPlaysAnotherSceneAndTheKeyFeelsIt) {
 
   ASSERT_TRUE(feels(4.0, forces, force));
   EXPECT_GT(force.sample(), before) << "the numbers of the answers go on";
-  EXPECT_TRUE(status_.wait_for_phase("keyboard", "running"));
+  EXPECT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING));
 }
 
 TEST_P(Control, SetChangesAParameterAndTheKeyFeelsIt) {
@@ -204,7 +204,7 @@ links:
   dds::Reader<msg::SceneEvents> events(session.participant(), dds::Topic::kEvents);
   StatusWatch status(session.participant());
   session.start("sim_node", "sim");
-  ASSERT_TRUE(status.wait_for_phase("sim", "running"));
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_RUNNING));
   ASSERT_TRUE(eventually([&] { return events.matched_count() == 1; }));
 
   ChildProcess process({program_path("cordis"), "ctl", session.launch_file(), "state", "joint",
@@ -218,7 +218,7 @@ links:
   EXPECT_EQ(batch.event()[0].link(), 0u);
   EXPECT_EQ(batch.event()[0].from_state(), 0u);
   EXPECT_EQ(batch.event()[0].to_state(), 1u);
-  EXPECT_EQ(batch.event()[0].quantity(), 13u);
+  EXPECT_EQ(batch.event()[0].quantity(), msg::QUANTITY_NONE);
   EXPECT_TRUE(status.wait_for("sim", [](const msg::NodeStatus& now) {
     return now.changes().size() == 1 && now.changes()[0].liaison() == "fuse" &&
            now.changes()[0].changes() == 1;
@@ -235,7 +235,7 @@ TEST_P(Control, ASceneWithErrorsIsRefusedWithThemAllAndTheOldOneGoesOn) {
   expect_refused({"load", "wide.yaml"},
                  "wide.yaml:11:75: error: port 'key' needs a travel of 0.05 m, and axis 0 of the "
                  "device 'keyboard' has 0.04 m");
-  EXPECT_TRUE(status_.wait_for_phase("sim", "running"));
+  EXPECT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
   EXPECT_TRUE(
       status_.wait_for("sim", [](const msg::NodeStatus& status) { return status.step() > 1000; }));
 }
@@ -250,14 +250,14 @@ class ControlWithoutDevices : public Control {
 
 TEST_F(ControlWithoutDevices, AScenePlayedAsFastAsCanBeObeysJustTheSame) {
   session_.start("sim_node", "sim");
-  ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
   expect_done({"pause"}, "sim: paused at step ");
   expect_done({"reset"}, "'free' restarts, paused");
   EXPECT_EQ(step_shown(), 0u);
   expect_steps({"step", "100000"}, 100000);
   expect_done({"load", "scene.yaml"}, "'free' begins, paused");
   expect_done({"resume"}, "goes on at step 0");
-  ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
 }
 
 class ControlInRealtime : public Control {
@@ -277,7 +277,8 @@ TEST_F(ControlInRealtime, TheKeyFeelsNothingWhileTheScenePausesAndComesBackGradu
     ASSERT_TRUE(eventually([&] { return forces.take(force); }));
     EXPECT_EQ(force.force_n()[0], 0.0);
   }
-  EXPECT_TRUE(status_.wait_for_phase("keyboard", "running")) << "it is answered all the time";
+  EXPECT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING))
+      << "it is answered all the time";
 
   expect_done({"resume"}, "goes on");
   double before = 0.0;
@@ -309,7 +310,7 @@ class Asking {
       return answers_["sim"] > before["sim"] && answers_["keyboard"] > before["keyboard"];
     };
     for (int i = 0; i < 200 && !have_answered(); ++i) {
-      commands_.write(command);
+      EXPECT_TRUE(commands_.write(command));
       ++sent_;
       const auto next = std::chrono::steady_clock::now() + 600ms;
       while (!have_answered() && std::chrono::steady_clock::now() < next) replies_.wait(5ms);
@@ -344,17 +345,17 @@ TEST_F(ControlInRealtime, EveryNodeAnswersACommandForAllJustOnce) {
   msg::ControlCommand command;
   command.sender("test");
   command.target("*");
-  command.verb("pause");
+  command.verb(msg::VERB_PAUSE);
   command.command_id(1);
   ASSERT_TRUE(asking.ask(command));
   EXPECT_EQ(asking.answers().size(), 2u);
 
   // Sent again, it is answered again and not executed again.
-  command.verb("resume");
+  command.verb(msg::VERB_RESUME);
   ASSERT_TRUE(asking.ask(command));
   EXPECT_EQ(asking.text_of("sim").find("goes on"), std::string::npos);
   for (const auto& [node, count] : asking.answers()) EXPECT_LE(count, asking.sent()) << node;
-  ASSERT_TRUE(status_.wait_for_phase("sim", "paused"));
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_PAUSED));
 }
 
 TEST_F(ControlInRealtime, WhoHasNothingToDoSaysSo) {
@@ -373,7 +374,7 @@ TEST_F(ControlInRealtime, WithoutASimulationTheCommandEndsInOneClearMessage) {
       << outcome.output;
 
   session_.start("device_node", "keyboard");
-  ASSERT_TRUE(status_.wait_for_phase("keyboard", "waiting"));
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_WAITING));
   EXPECT_TRUE(eventually([&] {
     outcome = ctl({"pause"}, "5s");
     EXPECT_EQ(outcome.code, 1);
@@ -388,12 +389,12 @@ TEST(ControlByName, FindsTheSessionInWhicheverDomainItRuns) {
   session.add_file("scene.yaml", kFreeScene);
   StatusWatch status(session.participant());
   session.start("sim_node", "sim");
-  ASSERT_TRUE(status.wait_for_phase("sim", "running"));
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_RUNNING));
 
   ChildProcess process({program_path("cordis"), "ctl", name, "pause", "--timeout", "60s"});
 
   EXPECT_EQ(process.wait(kPatience), 0) << process.output();
-  ASSERT_TRUE(status.wait_for_phase("sim", "paused"));
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_PAUSED));
 }
 
 /// Another session of a name, as the registry of this host records it.
@@ -451,10 +452,10 @@ class ControlOfFiles : public ControlInRealtime {
     msg::ControlCommand command;
     command.sender("test");
     command.target("sim_node");
-    command.verb("load");
+    command.verb(msg::VERB_LOAD);
     command.argument("'" + path + "'");
     command.command_id(++commands_);
-    commands.write(command);
+    EXPECT_TRUE(commands.write(command));
     msg::ControlReply reply;
     EXPECT_TRUE(eventually([&] {
       return replies.take(reply) && reply.command_id() == command.command_id();

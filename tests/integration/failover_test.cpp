@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -97,11 +98,12 @@ trace: {file: )" + trace("standby_node") +
     }
   }
 
-  bool in_phases(const std::string& hardware, const std::string& standby, double force) {
+  bool in_phases(std::optional<msg::NodePhase> hardware, msg::NodePhase standby, double force) {
     return eventually([&] {
       listen();
-      return (hardware.empty() || newest_["keyboard"].phase() == hardware) &&
-             newest_["standby_node"].phase() == standby && newest_["sim"].phase() == "running" &&
+      return (!hardware || newest_["keyboard"].phase() == *hardware) &&
+             newest_["standby_node"].phase() == standby &&
+             newest_["sim"].phase() == msg::PHASE_RUNNING &&
              std::abs(answer_.force_n()[0] - force) < 2e-3;
     });
   }
@@ -153,21 +155,21 @@ TEST_F(Failover, AStandInTakesOverWhenTheHardwareProcessDiesAndHandsBack) {
   session_.start("device_node", "keyboard");
   ASSERT_TRUE(eventually([&] {
     listen();
-    return newest_["keyboard"].phase() == "running";
+    return newest_["keyboard"].phase() == msg::PHASE_RUNNING;
   }));
   session_.start("device_node", "standby_node");
-  ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
+  ASSERT_TRUE(in_phases(msg::PHASE_RUNNING, msg::PHASE_STANDBY, kHardwareForce));
   ASSERT_TRUE(eventually([&] { return std::abs(board_force_ - kHardwareForce) < 2e-3; }));
   const std::uint64_t sim_epoch = newest_["sim"].epoch();
   const std::uint64_t ticks = newest_["sim"].ticks();
 
   session_.node("keyboard").signal(SIGKILL);
   ASSERT_EQ(session_.node("keyboard").wait(kPatience), 128 + SIGKILL);
-  ASSERT_TRUE(in_phases("", "running", kStandbyForce));
+  ASSERT_TRUE(in_phases({}, msg::PHASE_RUNNING, kStandbyForce));
   EXPECT_TRUE(eventually([&] { return board_.forces[0] == 0; })) << "its own watchdog has let go";
 
   session_.start("device_node", "keyboard");
-  ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
+  ASSERT_TRUE(in_phases(msg::PHASE_RUNNING, msg::PHASE_STANDBY, kHardwareForce));
   ASSERT_TRUE(eventually([&] { return std::abs(board_force_ - kHardwareForce) < 2e-3; }));
 
   end_and_check("standby_node", kStandbyForce);
@@ -184,13 +186,13 @@ TEST_F(Failover, AStandInPlaysWhileTheHardwareIsUnplugged) {
   session_.start("sim_node", "sim");
   session_.start("device_node", "keyboard");
   session_.start("device_node", "standby_node");
-  ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
+  ASSERT_TRUE(in_phases(msg::PHASE_RUNNING, msg::PHASE_STANDBY, kHardwareForce));
 
   board_.plug.pull();
-  ASSERT_TRUE(in_phases("lost", "running", kStandbyForce));
+  ASSERT_TRUE(in_phases(msg::PHASE_LOST, msg::PHASE_RUNNING, kStandbyForce));
 
   board_.plug.into_serial_line(session_.folder() / "tty");
-  ASSERT_TRUE(in_phases("running", "standby", kHardwareForce));
+  ASSERT_TRUE(in_phases(msg::PHASE_RUNNING, msg::PHASE_STANDBY, kHardwareForce));
   ASSERT_TRUE(eventually([&] { return std::abs(board_force_ - kHardwareForce) < 2e-3; }));
   end_and_check("keyboard", kHardwareForce, 1);
 }

@@ -56,7 +56,7 @@ TEST_P(ForceLoop, NodesClaimTheRateThatTheyKeepAndNoneInLockstep) {
 
   const double kept = GetParam() == std::string("realtime") ? 1000.0 : 0.0;
   for (const char* node : {"sim", "keyboard"}) {
-    ASSERT_TRUE(status.wait_for_phase(node, "running")) << node;
+    ASSERT_TRUE(status.wait_for_phase(node, msg::PHASE_RUNNING)) << node;
     EXPECT_EQ(status.of(node).target_rate_hz(), kept) << node;
   }
 }
@@ -87,7 +87,7 @@ TEST_P(ForceLoop, ThreadsOfLoopAndDdsHaveRealtimePriorityAndNoneInLockstep) {
   start_held_key(session);
 
   for (const char* node : {"sim", "keyboard"}) {
-    ASSERT_TRUE(status.wait_for_phase(node, "running")) << node;
+    ASSERT_TRUE(status.wait_for_phase(node, msg::PHASE_RUNNING)) << node;
     std::map<int, int> threads = realtime_threads_of(session.node(node).id());
     EXPECT_EQ(threads[kLoop], realtime ? 1 : 0) << node;
     EXPECT_GE(threads[kDds], realtime ? 4 : 0) << node << ": those that receive, at least";
@@ -152,7 +152,7 @@ TEST(ForceLoop, SamplesThatAreNotFiniteAreRefusedAndTheLoopGoesOn) {
   dds::Writer<msg::GesturePositions> rogue(session.participant(), dds::Topic::kPositions);
   session.start("sim_node", "sim");
   session.start("device_node", "keyboard");
-  ASSERT_TRUE(status.wait_for_phase("sim", "running"));
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_RUNNING));
   msg::GestureForces force;
   ASSERT_TRUE(
       eventually([&] { return forces.take(force) && std::abs(force.force_n()[0] - 2.0) < 1e-9; }));
@@ -165,13 +165,13 @@ TEST(ForceLoop, SamplesThatAreNotFiniteAreRefusedAndTheLoopGoesOn) {
   bad.position_m().fill(std::nan(""));
   ASSERT_TRUE(eventually([&] {
     bad.sample(bad.sample() + 1);
-    rogue.write(bad);
+    EXPECT_TRUE(rogue.write(bad));
     while (forces.take(force)) EXPECT_TRUE(std::isfinite(force.force_n()[0]));
     return status.wait_for("sim", [](const msg::NodeStatus&) { return true; }) &&
            status.of("sim").dropped() > dropped_before;
   }));
 
-  EXPECT_TRUE(status.wait_for_phase("sim", "running")) << "it goes on";
+  EXPECT_TRUE(status.wait_for_phase("sim", msg::PHASE_RUNNING)) << "it goes on";
   EXPECT_TRUE(
       eventually([&] { return forces.take(force) && std::abs(force.force_n()[0] - 2.0) < 1e-9; }));
 }
@@ -185,7 +185,7 @@ TEST(ForceLoop, ForcesThatAreNotFiniteNeverReachTheMotor) {
   dds::Reader<msg::GesturePositions> positions(session.participant(), dds::Topic::kPositions);
   session.start("sim_node", "sim");
   session.start("device_node", "keyboard");
-  ASSERT_TRUE(status.wait_for_phase("keyboard", "running"));
+  ASSERT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING));
   msg::GesturePositions position;
   ASSERT_TRUE(eventually([&] { return positions.take(position); }));
   const std::uint64_t dropped_before = status.of("keyboard").dropped();
@@ -201,11 +201,11 @@ TEST(ForceLoop, ForcesThatAreNotFiniteNeverReachTheMotor) {
     bad.sample(bad.sample() + 1);
     bad.answered_epoch(position.epoch());
     bad.answered_sample(position.sample());
-    rogue.write(bad);
+    EXPECT_TRUE(rogue.write(bad));
     return status.wait_for("keyboard", [](const msg::NodeStatus&) { return true; }) &&
            status.of("keyboard").dropped() > dropped_before;
   }));
-  EXPECT_TRUE(status.wait_for_phase("keyboard", "running")) << "it goes on";
+  EXPECT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING)) << "it goes on";
 }
 
 }  // namespace

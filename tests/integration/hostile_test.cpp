@@ -2,6 +2,7 @@
 // neither ends a node nor silences another.
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -78,7 +79,7 @@ TEST_F(Hostile, AnAnswerOfAnyNumberLeavesTheTrueOnes) {
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(answers.write(answer));
 
   EXPECT_TRUE(feels_after(force_.answered_sample() + 500));
-  EXPECT_TRUE(status_.wait_for_phase("keyboard", "running"));
+  EXPECT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING));
   EXPECT_TRUE(still_run());
 }
 
@@ -90,9 +91,10 @@ TEST_F(Hostile, ADescriptionOfAnUnknownRoleIsRefusedAndTheDevicePlaysOn) {
     msg::PortDescription port;
     port.name("port\n\033[2J");
     port.device_id(config::name_hash("keyboard"));
-    port.role(role);
+    port.role(static_cast<msg::PortRole>(role));
     port.axes({4'000'000'000u});
     msg::SceneDescription scene;
+    scene.wire_version(msg::WIRE_VERSION);
     scene.epoch(1);
     scene.name("hostile");
     scene.ports({port});
@@ -113,6 +115,138 @@ TEST_F(Hostile, ADescriptionOfAnUnknownRoleIsRefusedAndTheDevicePlaysOn) {
     ++times;
   }
   EXPECT_EQ(times, 1u) << "it is told once\n" << said;
+}
+
+/// A key of another version of the wire, in the session of a sim_node or alone.
+dds::ParticipantConfig of_another_version(LiveSession& session, const std::string& node) {
+  dds::ParticipantConfig config = session.participant().config();
+  config.node = node;
+  config.wire_version = msg::WIRE_VERSION + 6;
+  return config;
+}
+
+TEST(AnotherWireVersion, OfADeviceIsGivenNoForceAndNamedOnce) {
+  LiveSession session("realtime", kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  ChildProcess& sim = session.start("sim_node", "sim");
+  StatusWatch status(session.participant());
+  dds::Participant key(of_another_version(session, "keyboard"));
+  dds::Writer<msg::GesturePositions> positions(key, dds::Topic::kPositions);
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  ASSERT_TRUE(
+      eventually([&] { return positions.matched_count() > 0 && forces.matched_count() > 0; }));
+
+  msg::GesturePositions sample;
+  sample.device_id(config::name_hash("keyboard"));
+  sample.epoch(1);
+  sample.axis_count(1);
+  sample.position_m()[0] = -0.01;
+  const std::string refusal =
+      "'test/keyboard' speaks version 7 of the wire and this process "
+      "version 1: its messages are refused, and no force flows";
+  EXPECT_TRUE(status.wait_for("sim", [&](const msg::NodeStatus& said) {
+    for (int i = 0; i < 20; ++i) {
+      sample.sample(sample.sample() + 1);
+      EXPECT_TRUE(positions.write(sample));
+    }
+    return sample.sample() > 2000 && said.text().find(refusal) != std::string::npos;
+  }));
+  msg::GestureForces force;
+  EXPECT_FALSE(forces.take(force)) << "an answer to sample " << force.answered_sample();
+  EXPECT_TRUE(status.wait_for_phase("sim", msg::PHASE_WAITING));
+  const std::string log = sim.output();
+  EXPECT_NE(log.find(refusal), std::string::npos);
+  EXPECT_EQ(log.find(refusal), log.rfind(refusal)) << log;
+}
+
+TEST(AnotherWireVersion, OfASceneIsNotPlayedAndCtlSaysWhy) {
+  LiveSession session("realtime", kSimAndKey);
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  session.start("device_node", "keyboard");
+  dds::Participant sim(of_another_version(session, "sim"));
+  dds::Writer<msg::SceneDescription> descriptions(sim, dds::Topic::kDescription);
+  dds::Writer<msg::GestureForces> forces(sim, dds::Topic::kForces);
+  dds::Reader<msg::GesturePositions> samples(session.participant(), dds::Topic::kPositions);
+  StatusWatch status(session.participant());
+  msg::PortDescription port;
+  port.device_id(config::name_hash("keyboard"));
+  port.axes({0});
+  msg::SceneDescription scene;
+  scene.epoch(1);
+  scene.gesture_rate_hz(1000.0);
+  scene.ports({port});
+  EXPECT_TRUE(descriptions.write(scene));
+
+  const std::string refusal = "'test/sim' speaks version 7 of the wire and this process version 1";
+  EXPECT_TRUE(status.wait_for("keyboard", [&](const msg::NodeStatus& said) {
+    return said.text().find(refusal) != std::string::npos;
+  }));
+  EXPECT_EQ(status.of("keyboard").phase(), msg::PHASE_WAITING);
+  EXPECT_EQ(samples.matched_count(), 0) << "it plays no role";
+
+  ChildProcess ctl({program_path("cordis"), "ctl", session.launch_file(), "pause"});
+  EXPECT_EQ(ctl.wait(kPatience), 1);
+  EXPECT_NE(ctl.output().find(refusal), std::string::npos) << ctl.output();
+}
+
+/// 65 keys, each on a spring of its own: one more than DDS has room for among the forces.
+std::string keys_scene() {
+  std::string ports;
+  std::string links;
+  for (int key = 0; key < 65; ++key) {
+    const std::string name = "k" + std::to_string(key);
+    ports += "  " + name + ": {device: " + name +
+             ", axes: [0], role: mass, coupling: direct, at_m: [0]}\n";
+    links += "  - {liaison: wall, between: [" + name + ", ground]}\n";
+  }
+  return R"(cordis: 1
+name: keys
+space: 1
+step: {rate_hz: 1000, gesture_rate_hz: 1000, frame_rate_hz: 1, integrator: cordis}
+liaisons:
+  wall: {kind: spring, stiffness_n_per_m: 200}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  bob: {kind: mass, mass_kg: 1, at_m: [0.1]}
+ports:
+)" + ports +
+         "links:\n" + links;
+}
+
+TEST(UnwrittenForces, AreCountedAsDropped) {
+  LiveSession session("realtime", "  sim: {node: sim_node, scene: scene.yaml}\n");
+  session.add_file("scene.yaml", keys_scene());
+  session.start("sim_node", "sim");
+  StatusWatch status(session.participant());
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  const auto send = [](dds::Writer<msg::GesturePositions>& positions, int key) {
+    msg::GesturePositions sample;
+    sample.device_id(config::name_hash("k" + std::to_string(key)));
+    sample.epoch(1);
+    sample.sample(1);
+    sample.axis_count(1);
+    EXPECT_TRUE(positions.write(sample)) << key;
+  };
+  std::set<std::uint32_t> answered;
+  {
+    dds::Writer<msg::GesturePositions> positions(session.participant(), dds::Topic::kPositions);
+    ASSERT_TRUE(eventually([&] {
+      for (int key = 0; key < 64; ++key) send(positions, key);
+      msg::GestureForces force;
+      while (forces.take(force)) answered.insert(force.device_id());
+      return answered.size() == 64;
+    })) << answered.size();
+  }
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_WAITING));
+  const std::uint64_t before = status.of("sim").dropped();
+
+  // Frames are left out at most once a second: a thousand are forces.
+  dds::Writer<msg::GesturePositions> positions(session.participant(), dds::Topic::kPositions);
+  EXPECT_TRUE(status.wait_for("sim", [&](const msg::NodeStatus& said) {
+    send(positions, 64);
+    return said.dropped() > before + 1000;
+  })) << status.of("sim").dropped();
 }
 
 }  // namespace

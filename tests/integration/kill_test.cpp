@@ -59,7 +59,7 @@ TEST(Kill, TheForceIsZeroWithinTheWatchdogTimeWhenSimNodeIsKilled) {
   sim.signal(SIGKILL);
   ASSERT_EQ(sim.wait(kPatience), 128 + SIGKILL);
   const std::int64_t dead_nsec = node::monotonic_nsec();
-  ASSERT_TRUE(status.wait_for_phase("keyboard", "lost"));
+  ASSERT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_LOST));
   device.signal(SIGTERM);
   ASSERT_EQ(device.wait(kPatience), 0);
 
@@ -101,7 +101,7 @@ TEST(Kill, ASceneThatComesBackUnderAPressedKeyIsFeltWithoutAJump) {
 
   session.node("sim").signal(SIGKILL);
   ASSERT_EQ(session.node("sim").wait(kPatience), 128 + SIGKILL);
-  ASSERT_TRUE(status.wait_for_phase("keyboard", "lost"));
+  ASSERT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_LOST));
   while (forces.take(force)) {
   }
   session.start("sim_node", "sim");

@@ -36,8 +36,8 @@ class LateTicks : public testing::Test {
   }
 
   bool both_run() {
-    return status_.wait_for_phase("sim", "running") &&
-           status_.wait_for_phase("keyboard", "running");
+    return status_.wait_for_phase("sim", msg::PHASE_RUNNING) &&
+           status_.wait_for_phase("keyboard", msg::PHASE_RUNNING);
   }
 
   void signal(const std::string& node, int number) {
@@ -89,10 +89,10 @@ TEST_F(LateTicks, OfASceneAreNotThoseInWhichItsDeviceIsSilent) {
       "sim", [](const msg::NodeStatus& status) { return status.silent_ticks() >= 50; }));
   signal("keyboard", SIGCONT);
   ASSERT_TRUE(status_.wait_for("keyboard", [](const msg::NodeStatus& status) {
-    return status.phase() == "running" && status.late_by_machine() > 0;
+    return status.phase() == msg::PHASE_RUNNING && status.late_by_machine() > 0;
   }));
   ASSERT_TRUE(status_.wait_for(
-      "sim", [](const msg::NodeStatus& status) { return status.phase() == "running"; }));
+      "sim", [](const msg::NodeStatus& status) { return status.phase() == msg::PHASE_RUNNING; }));
 
   const std::string row = row_of("sim");
   EXPECT_TRUE(contains(row, "device silent ")) << row;
@@ -108,7 +108,7 @@ TEST_F(LateTicks, OfAProcessThatWasStoppedAreTheMachines) {
   signal("sim", SIGCONT);
   ASSERT_TRUE(status_.wait_for(
       "sim", [&](const msg::NodeStatus& status) { return status.late_by_machine() > before; }));
-  ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING));
 
   const std::string sim = row_of("sim");
   EXPECT_TRUE(contains(sim, "machine ")) << sim;

@@ -64,8 +64,8 @@ TEST(Locks, AreNeverSharedByTheForceLoopAndAThreadOfNormalPriority) {
   dds::Reader<msg::SceneFrame> frames(session.participant(), dds::Topic::kFrame);
   const ChildProcess& sim = start_watched(session, "sim_node", "sim");
   const ChildProcess& device = start_watched(session, "device_node", "keyboard");
-  ASSERT_TRUE(status.wait_for_phase("sim", "running"));
-  ASSERT_TRUE(status.wait_for_phase("keyboard", "running"));
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_RUNNING));
+  ASSERT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING));
   const auto run_on = [&](std::uint64_t ticks) {
     const std::uint64_t until = status.of("keyboard").ticks() + ticks;
     EXPECT_TRUE(status.wait_for("keyboard", [&](const auto& now) { return now.ticks() >= until; }));

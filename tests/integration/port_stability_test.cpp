@@ -103,7 +103,7 @@ Swing swing_of(const std::string& scene, const std::string& key, dds::Topic topi
   EXPECT_GT(last_sample, static_cast<std::uint64_t>(kTicks) * 9 / 10);
   const bool is_mass = topic == dds::Topic::kPositions;
   if (is_mass) session.node("keyboard").signal(SIGTERM);
-  EXPECT_TRUE(status.wait_for_phase(is_mass ? "keyboard" : "sim", "stopped"));
+  EXPECT_TRUE(status.wait_for_phase(is_mass ? "keyboard" : "sim", msg::PHASE_STOPPED));
   swing.passivity_ticks = status.of(is_mass ? "keyboard" : "sim").passivity_ticks();
   return swing;
 }

@@ -62,10 +62,10 @@ class Respawn : public testing::Test {
   bool launcher_runs() { return launcher_.wait(0ms) == -1; }
 
   bool all_run() {
-    return status_.wait_for_phase("sim", "running") &&
-           status_.wait_for_phase("keyboard", "running") &&
+    return status_.wait_for_phase("sim", msg::PHASE_RUNNING) &&
+           status_.wait_for_phase("keyboard", msg::PHASE_RUNNING) &&
            status_.wait_for("view", [](const msg::NodeStatus& status) {
-             return status.phase() == "running" && status.text().starts_with("http://");
+             return status.phase() == msg::PHASE_RUNNING && status.text().starts_with("http://");
            });
   }
 
@@ -92,7 +92,7 @@ class Respawn : public testing::Test {
     ASSERT_TRUE(status_.wait_for(node,
                                  [&](const msg::NodeStatus& status) {
                                    return status.epoch() != old_epoch &&
-                                          status.phase() == "running";
+                                          status.phase() == msg::PHASE_RUNNING;
                                  }))
         << node << " does not run again";
   }

@@ -28,8 +28,8 @@ class Restart : public ::testing::TestWithParam<const char*> {
   }
 
   void SetUp() override {
-    ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
-    ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+    ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
+    ASSERT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING));
     ASSERT_TRUE(status_.wait_for("view", serves_a_page));
   }
 
@@ -55,7 +55,7 @@ class Restart : public ::testing::TestWithParam<const char*> {
 
   bool restarts(const std::string& name, std::uint64_t old_epoch) {
     return status_.wait_for(name, [&](const auto& status) {
-      return status.epoch() != old_epoch && status.phase() == "running";
+      return status.epoch() != old_epoch && status.phase() == msg::PHASE_RUNNING;
     });
   }
 
@@ -67,11 +67,11 @@ TEST_P(Restart, OfSimLeavesTheDeviceWithoutForceUntilItIsBack) {
   const std::uint64_t old_epoch = status_.of("sim").epoch();
   kill_now("sim");
 
-  ASSERT_TRUE(status_.wait_for_phase("keyboard", "lost"));
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_LOST));
 
   session_.start("sim_node", "sim");
   ASSERT_TRUE(restarts("sim", old_epoch));
-  ASSERT_TRUE(status_.wait_for_phase("keyboard", "running"));
+  ASSERT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING));
   EXPECT_TRUE(goes_on("sim", 100));
   EXPECT_TRUE(goes_on("keyboard", 100));
 }
@@ -81,14 +81,14 @@ TEST_P(Restart, OfTheDeviceFindsTheSceneStillThere) {
   const std::uint64_t sim_epoch = status_.of("sim").epoch();
   kill_now("keyboard");
   if (GetParam() == std::string("realtime")) {
-    ASSERT_TRUE(status_.wait_for_phase("sim", "waiting"));
+    ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_WAITING));
     EXPECT_TRUE(goes_on("sim", 100)) << "the scene goes on without a hand";
   }
 
   session_.start("device_node", "keyboard");
 
   ASSERT_TRUE(restarts("keyboard", old_epoch));
-  ASSERT_TRUE(status_.wait_for_phase("sim", "running"));
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
   EXPECT_TRUE(goes_on("sim", 100));
   EXPECT_EQ(status_.of("sim").epoch(), sim_epoch);
 }
@@ -104,7 +104,7 @@ TEST_P(Restart, OfTheDisplayDisturbsNobody) {
   ASSERT_TRUE(status_.wait_for("view", [&](const auto& status) {
     return status.epoch() != old_epoch && serves_a_page(status);
   }));
-  EXPECT_TRUE(status_.wait_for_phase("sim", "running"));
+  EXPECT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
 }
 
 INSTANTIATE_TEST_SUITE_P(Clocks, Restart, ::testing::Values("realtime", "lockstep"),
@@ -125,7 +125,7 @@ TEST(Lockstep, WhoWaitsLongSaysForWhomAndWhetherAnybodyIsThereAndForgetsNobody) 
   scene.ports().emplace_back();
   scene.ports().back().device_id(config::name_hash("keyboard"));
   scene.ports().back().axes({0});
-  scenes.write(scene);
+  EXPECT_TRUE(scenes.write(scene));
 
   ChildProcess& sim = session.start("sim_node", "sim");
   ChildProcess& alone = sceneless.start("device_node", "keyboard");
@@ -140,14 +140,14 @@ TEST(Lockstep, WhoWaitsLongSaysForWhomAndWhetherAnybodyIsThereAndForgetsNobody) 
   msg::NodeStatus other;
   other.node_id(1);
   other.node("other");
-  other.kind("device_node");
-  other.phase("running");
+  other.kind(msg::KIND_DEVICE_NODE);
+  other.phase(msg::PHASE_RUNNING);
   ChildProcess& device = session.start("device_node", "keyboard");
-  ASSERT_TRUE(status.wait_for_phase("keyboard", "running"));
+  ASSERT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING));
   device.signal(SIGSTOP);
   EXPECT_TRUE(eventually([&] {
     other.sequence_number(other.sequence_number() + 1);
-    elsewhere.write(other);
+    EXPECT_TRUE(elsewhere.write(other));
     return sim.output().find("2 s: device_node 'other' is alive, and sends no sample") !=
            std::string::npos;
   })) << "the one that is stopped is not";

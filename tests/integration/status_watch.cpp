@@ -19,7 +19,7 @@ bool StatusWatch::wait_for(const std::string& node,
   });
 }
 
-bool StatusWatch::wait_for_phase(const std::string& node, const std::string& phase) {
+bool StatusWatch::wait_for_phase(const std::string& node, msg::NodePhase phase) {
   return wait_for(node, [&](const msg::NodeStatus& status) { return status.phase() == phase; });
 }
 

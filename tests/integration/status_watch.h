@@ -18,7 +18,7 @@ class StatusWatch {
   /// Waits until the node's newest status fulfils `condition`; false when patience ends.
   bool wait_for(const std::string& node,
                 const std::function<bool(const msg::NodeStatus&)>& condition);
-  bool wait_for_phase(const std::string& node, const std::string& phase);
+  bool wait_for_phase(const std::string& node, msg::NodePhase phase);
 
   const msg::NodeStatus& of(const std::string& node) { return newest_[node]; }
 

@@ -16,13 +16,13 @@ msg::ControlCommand command_for(const std::string& target, std::uint64_t id,
   command.command_id(id);
   command.sender(sender);
   command.target(target);
-  command.verb("pause");
+  command.verb(msg::VERB_PAUSE);
   return command;
 }
 
 struct Desk {
-  std::vector<std::string> executed;
-  CommandServer server{"sim", "sim_node", [this](const msg::ControlCommand& command) {
+  std::vector<msg::ControlVerb> executed;
+  CommandServer server{"sim", msg::KIND_SIM_NODE, [this](const msg::ControlCommand& command) {
                          executed.push_back(command.verb());
                          return Answer{true, "answer " + std::to_string(executed.size())};
                        }};
@@ -58,24 +58,24 @@ TEST(CommandServer, ObeysACommandOnceHoweverOftenItComes) {
 
 TEST(CommandServer, TellsSendersApartThatUseTheSameNumber) {
   Desk server;
-  server.server.take(command_for("sim", 7, "one"));
+  static_cast<void>(server.server.take(command_for("sim", 7, "one")));
   EXPECT_EQ(server.server.take(command_for("sim", 7, "other"))->text(), "answer 2");
 }
 
 TEST(CommandServer, RemembersABoundedNumberOfCommands) {
   Desk server;
   for (std::uint64_t id = 0; id <= CommandServer::kRemembered; ++id)
-    server.server.take(command_for("sim", id));
+    static_cast<void>(server.server.take(command_for("sim", id)));
   const std::size_t before = server.executed.size();
 
-  server.server.take(command_for("sim", 1));
+  static_cast<void>(server.server.take(command_for("sim", 1)));
   EXPECT_EQ(server.executed.size(), before) << "still known";
-  server.server.take(command_for("sim", 0));
+  static_cast<void>(server.server.take(command_for("sim", 0)));
   EXPECT_EQ(server.executed.size(), before + 1) << "forgotten, and executed as a new one";
 }
 
 TEST(CommandServer, AnswersAFailureWithItsReason) {
-  CommandServer server("sim", "sim_node", [](const msg::ControlCommand&) -> Answer {
+  CommandServer server("sim", msg::KIND_SIM_NODE, [](const msg::ControlCommand&) -> Answer {
     throw std::runtime_error("no memory for it");
   });
   const auto reply = server.take(command_for("sim", 1));

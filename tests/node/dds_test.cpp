@@ -1,6 +1,7 @@
 // tests/node/dds_test.cpp
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -12,6 +13,7 @@
 #include "idl/gesture.h"
 #include "idl/scene.h"
 #include "node/dds/reader.h"
+#include "node/dds/wire_version.h"
 #include "node/dds/writer.h"
 #include "node/roster.h"
 #include "node/status.h"
@@ -83,8 +85,8 @@ TEST(Dds, KeepsTheNewestSampleOfEachDeviceForASlowReader) {
       ++number;
       msg::GesturePositions first = sample_of(1, number);
       msg::GesturePositions second = sample_of(2, number);
-      writer.write(first);
-      writer.write(second);
+      EXPECT_TRUE(writer.write(first));
+      EXPECT_TRUE(writer.write(second));
     }
     while (reader.take(received)) {
       std::uint64_t& newest = received.device_id() == 1 ? newest_of_1 : newest_of_2;
@@ -103,9 +105,9 @@ TEST(Dds, SessionsInOneDomainDoNotHearEachOther) {
   Participant viewer(member("there", "view"));
   msg::SceneDescription description;
   description.name("of here");
-  writer_here.write(description);
+  EXPECT_TRUE(writer_here.write(description));
   description.name("of there");
-  writer_there.write(description);
+  EXPECT_TRUE(writer_there.write(description));
   Reader<msg::SceneDescription> reader(viewer, Topic::kDescription);
 
   msg::SceneDescription received;
@@ -122,7 +124,7 @@ TEST(Dds, KeepsTheDescriptionForLateJoiners) {
   msg::SceneDescription description;
   description.name("string");
   description.link_ends({0, 1, 1, 2});
-  writer.write(description);
+  EXPECT_TRUE(writer.write(description));
 
   Participant viewer(member("late", "view"));
   Reader<msg::SceneDescription> reader(viewer, Topic::kDescription);
@@ -171,23 +173,23 @@ TEST(Roster, KnowsWhoIsAliveByWhatItSays) {
   node::Roster forgetful(here, 0ms);
   msg::NodeStatus status;
   status.node("sim");
-  status.kind("sim_node");
-  status.phase("running");
-  statuses.write(status);
+  status.kind(msg::KIND_SIM_NODE);
+  status.phase(msg::PHASE_RUNNING);
+  EXPECT_TRUE(statuses.write(status));
 
   EXPECT_TRUE(eventually([&] {
     roster.look();
-    return roster.name_of("sim_node") == "'sim'";
+    return roster.name_of(msg::KIND_SIM_NODE) == "'sim'";
   }));
-  EXPECT_EQ(roster.name_of("device_node"), "");
+  EXPECT_EQ(roster.name_of(msg::KIND_DEVICE_NODE), "");
   msg::NodeStatus taken;
   Reader<msg::NodeStatus> reader(here, Topic::kStatus);
   ASSERT_TRUE(receive(reader, taken));
   forgetful.look();
   EXPECT_TRUE(forgetful.alive().empty()) << "matched, and silent since";
 
-  status.phase("stopped");
-  statuses.write(status);
+  status.phase(msg::PHASE_STOPPED);
+  EXPECT_TRUE(statuses.write(status));
   EXPECT_TRUE(eventually([&] {
     roster.look();
     return roster.alive().empty();
@@ -199,8 +201,8 @@ TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
   Reader<msg::NodeStatus> reader(viewer, Topic::kStatus);
   Participant sim(member("status", "sim"));
   std::optional<node::StatusPublisher> publisher;
-  std::atomic<const char*> phase = "running";
-  publisher.emplace(sim, "sim_node", 77, [&phase](msg::NodeStatus& status) {
+  std::atomic<msg::NodePhase> phase = msg::PHASE_RUNNING;
+  publisher.emplace(sim, msg::KIND_SIM_NODE, 77, [&phase](msg::NodeStatus& status) {
     status.phase(phase.load());
     status.ticks(status.ticks() + 500);
   });
@@ -208,19 +210,21 @@ TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
   msg::NodeStatus status;
   ASSERT_TRUE(receive(reader, status));
   EXPECT_EQ(status.node(), "sim");
-  EXPECT_EQ(status.kind(), "sim_node");
+  EXPECT_EQ(status.kind(), msg::KIND_SIM_NODE);
+  EXPECT_EQ(status.wire_version(), msg::WIRE_VERSION);
   EXPECT_EQ(status.epoch(), 77u);
-  EXPECT_EQ(status.phase(), "running");
+  EXPECT_EQ(status.phase(), msg::PHASE_RUNNING);
   EXPECT_GT(status.memory_bytes(), 1e6);
   const std::uint64_t first = status.sequence_number();
   ASSERT_TRUE(receive(reader, status));
   EXPECT_GT(status.sequence_number(), first);
   EXPECT_GT(status.reached_rate_hz(), 0.0);
 
-  phase = "stopped";
+  phase = msg::PHASE_STOPPED;
   publisher.reset();
 
-  ASSERT_TRUE(eventually([&] { return reader.take(status) && status.phase() == "stopped"; }));
+  ASSERT_TRUE(
+      eventually([&] { return reader.take(status) && status.phase() == msg::PHASE_STOPPED; }));
 }
 
 TEST(Dds, SaysThatAProcessWasStartedWithAnotherLaunchFile) {
@@ -238,7 +242,7 @@ TEST(Dds, SaysThatAProcessWasStartedWithAnotherLaunchFile) {
   EXPECT_NE(device.mismatch().find("names a hot standby"), std::string::npos) << device.mismatch();
   EXPECT_EQ(neighbour.mismatch(), "");
 
-  const node::StatusPublisher publisher(sim, "sim_node", 77, [](msg::NodeStatus&) {});
+  const node::StatusPublisher publisher(sim, msg::KIND_SIM_NODE, 77, [](msg::NodeStatus&) {});
   Reader<msg::NodeStatus> reports(device, Topic::kStatus);
   msg::NodeStatus status;
   ASSERT_TRUE(receive(reports, status));
@@ -259,6 +263,65 @@ TEST(Dds, SaysThatAProcessHasAnotherClock) {
   EXPECT_TRUE(eventually([&] { return !sim.mismatch().empty(); }));
   EXPECT_NE(sim.mismatch().find("another clock"), std::string::npos) << sim.mismatch();
   EXPECT_TRUE(eventually([&] { return reliable.matched_count() == 1; })) << "the same clock";
+}
+
+TEST(Dds, ReadsNothingOfAnotherVersionOfTheWireAndNamesBoth) {
+  ParticipantConfig newer = member("versions", "keyboard");
+  newer.wire_version = msg::WIRE_VERSION + 6;
+  Participant sim(member("versions", "sim"));
+  Participant pedal(member("versions", "pedal"));
+  auto keyboard = std::make_unique<Participant>(newer);
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions);
+  Writer<msg::GesturePositions> same(pedal, Topic::kPositions);
+  auto other = std::make_unique<Writer<msg::GesturePositions>>(*keyboard, Topic::kPositions);
+  ASSERT_TRUE(eventually([&] { return same.matched_count() == 1 && other->matched_count() == 1; }));
+
+  msg::GesturePositions received;
+  std::uint64_t number = 0;
+  EXPECT_TRUE(eventually([&] {
+    msg::GesturePositions of_other = sample_of(1, ++number);
+    msg::GesturePositions of_same = sample_of(2, number);
+    EXPECT_TRUE(other->write(of_other));
+    EXPECT_TRUE(same.write(of_same));
+    while (reader.take(received)) EXPECT_EQ(received.device_id(), 2u) << "sample " << number;
+    return received.sample() > 100;
+  }));
+  const std::string refusal =
+      "'versions/keyboard' speaks version " + std::to_string(newer.wire_version) +
+      " of the wire and this process version " + std::to_string(msg::WIRE_VERSION) +
+      ": its messages are refused, and no force flows; start all nodes of a session from the same "
+      "Cordis";
+  EXPECT_EQ(sim.mismatch(), refusal);
+
+  const node::StatusPublisher publisher(sim, msg::KIND_SIM_NODE, 77, [](msg::NodeStatus&) {});
+  Reader<msg::NodeStatus> reports(pedal, Topic::kStatus);
+  msg::NodeStatus status;
+  ASSERT_TRUE(receive(reports, status));
+  EXPECT_EQ(status.text(), refusal);
+
+  other.reset();
+  keyboard.reset();
+  EXPECT_TRUE(eventually([&] { return sim.mismatch().empty(); })) << sim.mismatch();
+}
+
+TEST(WireVersion, OfAProcessStandsInItsUserData) {
+  const std::string before = "process 1b2c 4026531836 4711 99";
+  EXPECT_EQ(marked_wire_version(before + wire_version_mark(12)), 12u);
+  EXPECT_EQ(marked_wire_version(before), 0u) << "older than all versions";
+  EXPECT_EQ(marked_wire_version(before + " wire x"), 0u);
+  EXPECT_EQ(marked_wire_version(""), std::nullopt) << "another program";
+}
+
+TEST(Writer, SaysThatDdsDidNotTakeAMessage) {
+  Participant sim(member("unwritten", "sim"));
+  Writer<msg::GestureForces> writer(sim, Topic::kForces);
+  msg::GestureForces forces;
+  for (std::uint32_t device = 0; device < 64; ++device) {
+    forces.device_id(device);
+    ASSERT_TRUE(writer.write(forces)) << device;
+  }
+  forces.device_id(64);
+  EXPECT_FALSE(writer.write(forces)) << "a writer has room for 64 devices";
 }
 
 }  // namespace

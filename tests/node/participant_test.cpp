@@ -106,7 +106,7 @@ TEST(Participant, HearsAndIsHeardByAProcessThatItHasDropped) {
   Reader<msg::SceneDescription> scenes_there(there, Topic::kDescription);
   msg::SceneDescription description;
   description.name("said once");
-  scene.write(description);
+  EXPECT_TRUE(scene.write(description));
   ASSERT_TRUE(eventually([&] { return scenes_there.take(description); }));
   const auto other = speaker("returns", "other");
   std::uint64_t number = 0;
@@ -143,7 +143,7 @@ TEST(Participant, WritesAndReadsWhileItJoinsAnew) {
         continue;
       }
       answer.answered_sample(sample.sample());
-      answers.write(answer);
+      EXPECT_TRUE(answers.write(answer));
     }
   });
   std::thread loop([&] {
@@ -151,7 +151,7 @@ TEST(Participant, WritesAndReadsWhileItJoinsAnew) {
     msg::GestureForces answer;
     while (!ending) {
       sample.sample(sample.sample() + 1);
-      writer.write(sample);
+      EXPECT_TRUE(writer.write(sample));
       forces.wait(1ms);
       while (forces.take(answer)) ++exchanges;
     }

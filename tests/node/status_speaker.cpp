@@ -11,8 +11,8 @@ int main(int argc, char** argv) {
   using namespace cordis;
   if (argc != 4) return 2;
   dds::Participant participant({std::atoi(argv[1]), argv[2], argv[3]});
-  const node::StatusPublisher status(participant, "fake_node",
+  const node::StatusPublisher status(participant, msg::KIND_DEVICE_NODE,
                                      static_cast<std::uint64_t>(node::monotonic_nsec()),
-                                     [](msg::NodeStatus& said) { said.phase("running"); });
+                                     [](msg::NodeStatus& said) { said.phase(msg::PHASE_RUNNING); });
   for (;;) pause();
 }

@@ -65,7 +65,7 @@ class CommandExecutorTest : public ::testing::Test {
     if (loop_.joinable()) loop_.join();
   }
 
-  node::Answer execute(const std::string& verb, const std::string& argument = "") {
+  node::Answer execute(msg::ControlVerb verb, const std::string& argument = "") {
     msg::ControlCommand command;
     command.verb(verb);
     command.argument(argument);
@@ -94,26 +94,26 @@ class CommandExecutorTest : public ::testing::Test {
 };
 
 TEST_F(CommandExecutorTest, PausesAndResumes) {
-  const node::Answer paused = execute("pause");
+  const node::Answer paused = execute(msg::VERB_PAUSE);
   EXPECT_TRUE(paused.accepted);
   EXPECT_EQ(paused.text.find("paused at step "), 0u) << paused.text;
-  EXPECT_EQ(execute("pause").text.find("was paused already at step "), 0u);
-  EXPECT_EQ(execute("resume").text.find("goes on at step "), 0u);
-  EXPECT_EQ(execute("resume").text.find("was running already at step "), 0u);
+  EXPECT_EQ(execute(msg::VERB_PAUSE).text.find("was paused already at step "), 0u);
+  EXPECT_EQ(execute(msg::VERB_RESUME).text.find("goes on at step "), 0u);
+  EXPECT_EQ(execute(msg::VERB_RESUME).text.find("was running already at step "), 0u);
 }
 
 TEST_F(CommandExecutorTest, AnswersWhenTheSingleStepsAreDone) {
-  execute("pause");
-  execute("reset");
-  EXPECT_EQ(execute("step").text, "paused at step 1");
-  EXPECT_EQ(execute("step", "9").text, "paused at step 10");
+  execute(msg::VERB_PAUSE);
+  execute(msg::VERB_RESET);
+  EXPECT_EQ(execute(msg::VERB_STEP).text, "paused at step 1");
+  EXPECT_EQ(execute(msg::VERB_STEP, "9").text, "paused at step 10");
   end_loop();
   EXPECT_EQ(runner_.simulation().world().step_count(), 10u);
 }
 
 TEST_F(CommandExecutorTest, BeginsTheSceneAnew) {
-  execute("pause");
-  const node::Answer answer = execute("reset");
+  execute(msg::VERB_PAUSE);
+  const node::Answer answer = execute(msg::VERB_RESET);
   EXPECT_TRUE(answer.accepted);
   EXPECT_EQ(answer.text.find("'swing' restarts, paused; the scene before ended at step "), 0u)
       << answer.text;
@@ -123,10 +123,10 @@ TEST_F(CommandExecutorTest, BeginsTheSceneAnew) {
 }
 
 TEST_F(CommandExecutorTest, LoadsAnotherSceneAndTellsOfIt) {
-  const node::Answer answer = execute("load", "other.yaml");
+  const node::Answer answer = execute(msg::VERB_LOAD, "other.yaml");
   EXPECT_TRUE(answer.accepted);
   EXPECT_EQ(answer.text.find("'other' begins; the scene before ended at step "), 0u) << answer.text;
-  execute("reset");
+  execute(msg::VERB_RESET);
   end_loop();
   EXPECT_EQ(runner_.simulation().scene().name, "other");
   EXPECT_EQ(runner_.stage().frames.shape().version, 3u);
@@ -134,12 +134,12 @@ TEST_F(CommandExecutorTest, LoadsAnotherSceneAndTellsOfIt) {
 }
 
 TEST_F(CommandExecutorTest, SetsParametersOfALiaisonWhoseLinksAreMergedWithOthers) {
-  ASSERT_TRUE(execute("load", "merged.yaml").accepted);
+  ASSERT_TRUE(execute(msg::VERB_LOAD, "merged.yaml").accepted);
 
-  const node::Answer answer = execute("set", "{rubber.stiffness_n_per_m: 11}");
+  const node::Answer answer = execute(msg::VERB_SET, "{rubber.stiffness_n_per_m: 11}");
 
   EXPECT_TRUE(answer.accepted) << answer.text;
-  EXPECT_TRUE(execute("set", "{spring.stiffness_n_per_m: 90}").accepted);
+  EXPECT_TRUE(execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 90}").accepted);
   end_loop();
   const engine::NetworkDescription& network = runner_.simulation().scene().network;
   ASSERT_EQ(network.links.size(), 1u);
@@ -150,13 +150,13 @@ TEST_F(CommandExecutorTest, SetsParametersOfALiaisonWhoseLinksAreMergedWithOther
 
 TEST_F(CommandExecutorTest, SetsParametersOfALiaisonInTheRunningScene) {
   const node::Answer answer =
-      execute("set", "{spring.stiffness_n_per_m: 250, spring.viscosity_n_s_per_m: 0.5}");
+      execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 250, spring.viscosity_n_s_per_m: 0.5}");
   EXPECT_TRUE(answer.accepted) << answer.text;
   EXPECT_EQ(
       answer.text.find("spring.stiffness_n_per_m = 250, spring.viscosity_n_s_per_m = 0.5 at step "),
       0u)
       << answer.text;
-  execute("set", "{spring.stiffness_n_per_m: 300}");
+  execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 300}");
   end_loop();
   for (const engine::Link& link : runner_.simulation().world().network().description().links) {
     EXPECT_EQ(link.stiffness, 300.0);
@@ -168,32 +168,33 @@ TEST_F(CommandExecutorTest, SetsParametersOfALiaisonInTheRunningScene) {
 }
 
 TEST_F(CommandExecutorTest, SetsAllOrNothing) {
-  const node::Answer answer = execute("set", "{spring.stiffness_n_per_m: 250, sprig.mass_kg: 1}");
+  const node::Answer answer =
+      execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 250, sprig.mass_kg: 1}");
   EXPECT_FALSE(answer.accepted);
   EXPECT_NE(answer.text.find("did you mean 'spring'?"), std::string::npos) << answer.text;
-  EXPECT_FALSE(execute("set", "{spring.stifness_n_per_m: 250}").accepted);
-  EXPECT_FALSE(execute("set", "{spring.stiffness_n_per_m: -5}").accepted);
-  EXPECT_TRUE(execute("set", "{spring.viscosity_n_s_per_m: 0.2}").accepted);
+  EXPECT_FALSE(execute(msg::VERB_SET, "{spring.stifness_n_per_m: 250}").accepted);
+  EXPECT_FALSE(execute(msg::VERB_SET, "{spring.stiffness_n_per_m: -5}").accepted);
+  EXPECT_TRUE(execute(msg::VERB_SET, "{spring.viscosity_n_s_per_m: 0.2}").accepted);
   end_loop();
   EXPECT_EQ(runner_.simulation().world().network().description().links[0].stiffness, 100.0);
 }
 
 TEST_F(CommandExecutorTest, RefusesAValueWithWhichTheSceneDiverges) {
-  const node::Answer answer = execute("set", "{spring.stiffness_n_per_m: 1.0e+9}");
+  const node::Answer answer = execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 1.0e+9}");
   EXPECT_FALSE(answer.accepted);
   EXPECT_EQ(answer.text.find("the values stay as they are\n"), 0u) << answer.text;
   EXPECT_NE(answer.text.find("at 4000 Hz the scene is unstable"), std::string::npos) << answer.text;
-  EXPECT_TRUE(execute("set", "{spring.viscosity_n_s_per_m: 0.2}").accepted);
+  EXPECT_TRUE(execute(msg::VERB_SET, "{spring.viscosity_n_s_per_m: 0.2}").accepted);
   end_loop();
   EXPECT_EQ(runner_.simulation().world().network().description().links[0].stiffness, 100.0);
 }
 
 TEST_F(CommandExecutorTest, RefusesToForceWhatHasNoStates) {
-  EXPECT_EQ(execute("state", "[spring, broken]").text, "'spring' has no states");
+  EXPECT_EQ(execute(msg::VERB_STATE, "[spring, broken]").text, "'spring' has no states");
 }
 
 TEST_F(CommandExecutorTest, RefusesASceneWithErrorsAndGoesOn) {
-  const node::Answer answer = execute("load", "bad.yaml");
+  const node::Answer answer = execute(msg::VERB_LOAD, "bad.yaml");
   EXPECT_FALSE(answer.accepted);
   EXPECT_EQ(answer.text.find("'bad.yaml' cannot be played ("), 0u) << answer.text;
   EXPECT_NE(answer.text.find("bad.yaml:1:9: error"), std::string::npos) << answer.text;
@@ -203,13 +204,13 @@ TEST_F(CommandExecutorTest, RefusesASceneWithErrorsAndGoesOn) {
 }
 
 TEST_F(CommandExecutorTest, RefusesWhatItDoesNotUnderstand) {
-  EXPECT_FALSE(execute("jump").accepted);
-  EXPECT_FALSE(execute("step", "-1").accepted);
+  EXPECT_FALSE(execute(static_cast<msg::ControlVerb>(99)).accepted);
+  EXPECT_FALSE(execute(msg::VERB_STEP, "-1").accepted);
 }
 
 TEST_F(CommandExecutorTest, SaysSoWhenTheLoopHasEnded) {
   end_loop();
-  for (const char* verb : {"pause", "step", "reset"}) {
+  for (const msg::ControlVerb verb : {msg::VERB_PAUSE, msg::VERB_STEP, msg::VERB_RESET}) {
     const node::Answer answer = execute(verb);
     EXPECT_FALSE(answer.accepted) << verb;
     EXPECT_EQ(answer.text, "too late, the simulation is ending") << verb;

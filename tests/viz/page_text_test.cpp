@@ -16,10 +16,10 @@ using Json = nlohmann::json;
 
 constexpr std::int64_t kNow = 50'000'000'000;
 
-ReportedNode node_in(const std::string& phase, std::int64_t seconds_ago) {
+ReportedNode node_in(msg::NodePhase phase, std::int64_t seconds_ago) {
   ReportedNode node;
   node.status.node("sim");
-  node.status.kind("sim_node");
+  node.status.kind(msg::KIND_SIM_NODE);
   node.status.phase(phase);
   node.received_nsec = kNow - seconds_ago * 1'000'000'000;
   return node;
@@ -30,15 +30,15 @@ std::string state_of(const ReportedNode& node) {
 }
 
 TEST(PageText, CallsANodeLostThatIsNoLongerHeardUnlessItSaidThatItStops) {
-  EXPECT_EQ(state_of(node_in("running", 0)), "running");
-  EXPECT_EQ(state_of(node_in("waiting", 1)), "waiting");
-  EXPECT_EQ(state_of(node_in("running", 2)), "lost");
-  EXPECT_EQ(state_of(node_in("stopped", 100)), "stopped");
-  EXPECT_EQ(state_of(node_in("failed", 100)), "failed");
+  EXPECT_EQ(state_of(node_in(msg::PHASE_RUNNING, 0)), "running");
+  EXPECT_EQ(state_of(node_in(msg::PHASE_WAITING, 1)), "waiting");
+  EXPECT_EQ(state_of(node_in(msg::PHASE_RUNNING, 2)), "lost");
+  EXPECT_EQ(state_of(node_in(msg::PHASE_STOPPED, 100)), "stopped");
+  EXPECT_EQ(state_of(node_in(msg::PHASE_FAILED, 100)), "failed");
 }
 
 TEST(PageText, SurvivesTextsThatAreNoUtf8AndNumbersThatAreNone) {
-  ReportedNode node = node_in("running", 0);
+  ReportedNode node = node_in(msg::PHASE_RUNNING, 0);
   node.status.node("a\xff\"b" + std::string(10'000, 'x'));
   node.status.energy_j(std::numeric_limits<double>::quiet_NaN());
 
@@ -92,7 +92,7 @@ TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
   event.link(1);
   event.mat_b(2);
   event.to_state(1);
-  event.quantity(1);
+  event.quantity(msg::QUANTITY_ELONGATION);
   event.value(0.002);
   event.energy_j(std::nan(""));
   events.newest.push_back(event);
@@ -107,7 +107,7 @@ TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
 
   EXPECT_EQ(json["events"]["newest"][0],
             Json::parse(R"({"step": 120, "link": 1, "mat_a": 0, "mat_b": 2, "state_machine": 0,
-                            "from": 0, "to": 1, "quantity": 1, "value": 0.002, "energy_j": null})"));
+                            "from": 0, "to": 1, "quantity": "elongation", "unit": "m", "value": 0.002, "energy_j": null})"));
   EXPECT_EQ(json["nodes"][0]["changes"], Json::parse(R"([{"liaison": "rosin", "changes": 9}])"));
   EXPECT_EQ(json["nodes"][0]["lost_events"], 3);
 }
@@ -125,7 +125,7 @@ TEST(PageText, TellsRepliesToThePages) {
 }
 
 TEST(PageCommand, IsReadFromItsMessage) {
-  EXPECT_EQ(read_page_command(R"({"type": "command", "verb": "pause"})")->verb, "pause");
+  EXPECT_EQ(read_page_command(R"({"type": "command", "verb": "pause"})")->verb, msg::VERB_PAUSE);
   EXPECT_EQ(read_page_command(R"({"type": "command", "verb": "step"})")->steps, 1u);
   EXPECT_EQ(read_page_command(R"({"type": "command", "verb": "step", "steps": 25})")->steps, 25u);
 }

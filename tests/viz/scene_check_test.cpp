@@ -76,7 +76,7 @@ TEST(SceneCheck, FindsFramesThatDoNotFitTheirDescription) {
 TEST(SceneCheck, FindsEventsOfWhatDoesNotExist) {
   msg::SceneEvents events;
   events.event().resize(2);
-  events.event()[1].link(kNoLink);
+  events.event()[1].link(msg::NO_INDEX);
   events.event()[1].mat_b(2);
   EXPECT_EQ(fault_of(events, row_of_three()), "");
 

@@ -21,8 +21,8 @@ msg::NodeStatus status_of(std::uint32_t node_id, const std::string& name) {
   msg::NodeStatus status;
   status.node_id(node_id);
   status.node(name);
-  status.kind("sim_node");
-  status.phase("running");
+  status.kind(msg::KIND_SIM_NODE);
+  status.phase(msg::PHASE_RUNNING);
   return status;
 }
 

@@ -206,12 +206,12 @@ class Publisher {
       if (frame_.link_state().size() > kIdleLink) frame_.link_state()[kIdleLink] = 128 + 1;
     }
     frame_.time_nsec(node::monotonic_nsec());
-    frame_writer_.write(frame_);
+    static_cast<void>(frame_writer_.write(frame_));
   }
 
   void publish_bad_frame() {
     frame_.position_m().pop_back();
-    frame_writer_.write(frame_);
+    static_cast<void>(frame_writer_.write(frame_));
   }
 
   void publish_signals(std::uint64_t batch, std::uint64_t first_step) {
@@ -228,7 +228,7 @@ class Publisher {
       const double force = -90.0 * y + 0.15 * std::sin(2.0 * std::numbers::pi * 140.0 * t);
       signals_.value().insert(signals_.value().end(), {y, force, 0.012 * std::exp(-0.02 * t)});
     }
-    signal_writer_.write(signals_);
+    static_cast<void>(signal_writer_.write(signals_));
   }
 
  private:
@@ -249,11 +249,11 @@ int publish(const Options& options) {
   if (options.amplitude_m > 0.0) scene.amplitude_m = options.amplitude_m;
   name_parts(scene, options.scene, epoch);
   dds::Writer<msg::SceneDescription> description_writer(sim, dds::Topic::kDescription);
-  description_writer.write(scene.description);
+  static_cast<void>(description_writer.write(scene.description));
 
   std::atomic<std::uint64_t> step{0};
   const auto speak = [&step, epoch](msg::NodeStatus& status) {
-    status.phase(node::stop_requested() ? "stopped" : "running");
+    status.phase(node::stop_requested() ? msg::PHASE_STOPPED : msg::PHASE_RUNNING);
     status.target_rate_hz(kStepRateHz);
     status.ticks((static_cast<std::uint64_t>(node::monotonic_nsec()) - epoch) / 1000000);
     status.step(step);
@@ -268,8 +268,8 @@ int publish(const Options& options) {
     status.largest_partners(7);
     status.certified_partners(12);
   };
-  const node::StatusPublisher sim_status(sim, "sim_node", epoch, speak);
-  const node::StatusPublisher keyboard_status(keyboard, "device_node", epoch,
+  const node::StatusPublisher sim_status(sim, msg::KIND_SIM_NODE, epoch, speak);
+  const node::StatusPublisher keyboard_status(keyboard, msg::KIND_DEVICE_NODE, epoch,
                                               [&](msg::NodeStatus& status) {
                                                 speak(status);
                                                 status.latency_count(step);

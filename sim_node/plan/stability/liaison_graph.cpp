@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "sim_node/plan/stability/law_value.h"
 #include "sim_node/plan/stability/partner_bound.h"
 
 namespace cordis::plan {
@@ -24,14 +23,14 @@ double smallest_radius(const NetworkDescription& network, const std::vector<std:
   return smallest;
 }
 
-/// The largest slope of Lennard-Jones from its touch distance to its cut, along or across [N/m].
-double slope_beyond(const engine::Law& law, double touch, double range) {
+/// The largest slope of Lennard-Jones from its touch distance to its cutoff, along or across [N/m].
+double slope_beyond(const engine::LennardJones& law, double touch, double range) {
   constexpr int kSamples = 200;
-  const double end = law.cut > 0.0 ? std::min(law.cut, range) : range;
+  const double end = law.cutoff > 0.0 ? std::min(law.cutoff, range) : range;
   double largest = 0.0;
   for (int i = 0; i <= kSamples; ++i) {
     const double distance = touch + (end - touch) * i / kSamples;
-    largest = std::max(largest, elastic_pull(law, distance, distance) / distance);
+    largest = std::max(largest, elastic_pull(law, {distance, distance}) / distance);
   }
   return largest;
 }
@@ -58,7 +57,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
   const double touch = engine::touch_distance(state_machine);
   if (touch >= set.range) return;
-  const engine::Law& law = state_machine.states.front().elasticity;
+  const auto& law = std::get<engine::LennardJones>(state_machine.states.front().elasticity);
   side.stiffness = slope_beyond(law, touch, set.range);
   side.counted = false;
   for (double& most : side.possible) {

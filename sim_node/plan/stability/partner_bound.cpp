@@ -26,7 +26,7 @@ bool only_pushes(const engine::StateMachine& state_machine) {
   return std::none_of(state_machine.states.begin(), state_machine.states.end(),
                       [](const engine::LinkState& state) {
                         return state.pulls || state.viscosity > 0.0 ||
-                               state.dissipation.kind != engine::Law::Kind::kNone;
+                               !is_none(state.dissipation);
                       });
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "node/config/max_axes.h"
 #include "node/config/name_hash.h"
 #include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/matter/source.h"
@@ -183,7 +184,7 @@ void Assembly::read_port(const Value::Entry& entry) {
   port.place = entry.key_place;
   port.device = reader.required_text("device");
   port.device_id = config::name_hash(port.device);
-  for (const long axis : reader.required_integers("axes", 0, long{kMaxAxes} - 1))
+  for (const long axis : reader.required_integers("axes", 0, config::kMaxAxes - 1))
     port.axes.push_back(static_cast<std::uint32_t>(axis));
   const bool is_mass = reader.required_choice("role", {"mass", "liaison"}) != "liaison";
   port.role = is_mass ? Role::kMass : Role::kLiaison;

@@ -3,38 +3,18 @@
 import { count, joined, withUnit } from './format.ts';
 import type { Description, LinkEvent, LiaisonChanges } from './protocol.ts';
 
-const NO_LINK = 0xffffffff; // a pair of a set liaison
-
-// By number, as idl/README.md lists them.
-const QUANTITIES: [string, string][] = [
-  ['distance', 'm'],
-  ['elongation', 'm'],
-  ['speed', 'm/s'],
-  ['speed x', 'm/s'],
-  ['speed y', 'm/s'],
-  ['speed z', 'm/s'],
-  ['slip', 'm/s'],
-  ['force', 'N'],
-  ['impulse', 'N s'],
-  ['age', 's'],
-  ['rest', 'm'],
-  ['mass a', 'kg'],
-  ['mass b', 'kg'],
-];
-
 /** One line for a person: 1.250 s  rosin[3]  hooked → unhooked  elongation 2.1 mm  −3.2 µJ */
 export function eventLine(event: LinkEvent, description: Description | null): string {
   const time = (event.step / (description?.step_rate_hz ?? 1)).toFixed(3);
   const state_machine = description?.state_machines[event.state_machine];
   const state = (index: number) => state_machine?.states[index] ?? `state ${index}`;
-  const [quantity, unit] = QUANTITIES[event.quantity] ?? ['', ''];
-  const why = quantity === '' ? 'forced' : `${quantity} ${joined(withUnit(event.value, unit))}`;
+  const why = event.quantity === '' ? 'forced' : `${event.quantity} ${joined(withUnit(event.value, event.unit))}`;
   const energy = event.energy_j ? `  ${joined(withUnit(event.energy_j, 'J'))}` : '';
   return `${time} s  ${nameOf(event, description)}  ${state(event.from)} → ${state(event.to)}  ${why}${energy}`;
 }
 
 function nameOf(event: LinkEvent, description: Description | null): string {
-  if (event.link === NO_LINK) {
+  if (event.link === null) {
     const liaison = description?.state_machines[event.state_machine]?.name ?? 'pair';
     return `${liaison}(${matName(event.mat_a, description)}, ${matName(event.mat_b, description)})`;
   }

@@ -1,7 +1,7 @@
 // viz_node/web/page/mat_material.ts -- the matter: one vertex per MAT, drawn as a sphere by
 // intersecting it with the ray of each pixel.
 import * as THREE from 'three';
-import { KIND_FIXED } from './protocol.ts';
+import { MAT_FIXED } from './wire.ts';
 
 const SHOWN_FIXED_POINT = 3;
 const SHOWN_TOOL = 4;
@@ -174,7 +174,7 @@ export function sceneUniforms(): SceneUniforms {
 
 /** Kinds as the shader tells them apart: a fixed point without a radius is no ball. */
 export function shownKinds(kinds: Uint8Array, radii: Float32Array, tools: number[]): Uint8Array {
-  const shown = kinds.map((kind, i) => (kind === KIND_FIXED && radii[i] === 0 ? SHOWN_FIXED_POINT : kind));
+  const shown = kinds.map((kind, i) => (kind === MAT_FIXED && radii[i] === 0 ? SHOWN_FIXED_POINT : kind));
   for (const tool of tools) shown[tool] = SHOWN_TOOL;
   return shown;
 }

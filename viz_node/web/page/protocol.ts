@@ -20,7 +20,7 @@ export interface Frame {
   matCount: number;
   dropped: number;
   positions: Float32Array<ArrayBuffer>; // x, y, z of each MAT [m]
-  linkStates: Uint8Array<ArrayBuffer>; // per link, + LINK_IS_IDLE, or empty
+  linkStates: Uint8Array<ArrayBuffer>; // per link, + LINK_IS_IDLE of wire.ts, or empty
 }
 
 export interface Signals {
@@ -42,15 +42,8 @@ export interface Topology {
   linkCount: number;
   radii: Float32Array<ArrayBuffer>; // [m]
   linkEnds: Uint32Array<ArrayBuffer>; // two per link
-  kinds: Uint8Array<ArrayBuffer>; // KIND_*
+  kinds: Uint8Array<ArrayBuffer>; // MAT_*
 }
-
-/** Added to the state of a link that does nothing in it: apart, broken. */
-export const LINK_IS_IDLE = 128;
-
-export const KIND_MASS = 0;
-export const KIND_FIXED = 1;
-export const KIND_PORT = 2;
 
 export interface NamedRange {
   name: string;
@@ -107,7 +100,7 @@ export interface NodeState {
   name: string;
   kind: string;
   epoch: string;
-  state: string; // starting, waiting, running, paused, lost, stopped, failed
+  state: string; // a word of NodePhase, idl/control.idl
   text: string;
   received_s: number;
   target_rate_hz: Figure;
@@ -150,13 +143,14 @@ export interface Reply {
 
 export interface LinkEvent {
   step: number;
-  link: number; // 4294967295: a pair of a set liaison
+  link: number | null; // null: a pair of a set liaison
   mat_a: number;
   mat_b: number;
   state_machine: number;
   from: number;
   to: number;
-  quantity: number;
+  quantity: string; // that triggered it; empty: the state was forced from outside
+  unit: string; // of value
   value: Figure;
   energy_j: Figure;
 }

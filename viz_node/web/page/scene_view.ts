@@ -3,7 +3,8 @@
 import * as THREE from 'three';
 import { Ground } from './ground.ts';
 import { linkMaterials, matMaterial, materialOfState, sceneUniforms, shownKinds } from './mat_material.ts';
-import { LINK_IS_IDLE, type Frame, type Topology } from './protocol.ts';
+import type { Frame, Topology } from './protocol.ts';
+import { LINK_IS_IDLE } from './wire.ts';
 import type { Quality } from './quality.ts';
 import { CameraRig, type Pose } from './camera_rig.ts';
 

@@ -1,0 +1,8 @@
+// viz_node/web/page/wire.ts -- numbers of the messages between processes that reach the page as
+// they are: those of idl/scene.idl, under the same names. A test keeps them equal.
+
+export const LINK_IS_IDLE = 128;
+
+export const MAT_MASS = 0;
+export const MAT_FIXED = 1;
+export const MAT_PORT = 2;
