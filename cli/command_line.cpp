@@ -11,6 +11,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "cli/exit_code.h"
+#include "node/config/nearest_word.h"
 #include "node/config/problem.h"
 
 namespace cordis::cli {

@@ -16,6 +16,7 @@
 #include <spdlog/sinks/sink.h>
 #include <unistd.h>
 
+#include "node/config/nearest_word.h"
 #include "node/config/problem.h"
 #include "node/line_output.h"
 #include "node/log_queue.h"

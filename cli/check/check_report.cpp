@@ -1,11 +1,12 @@
 // cli/check/check_report.cpp -- the report of `cordis check`, for a person and for a program.
+#include "cli/check/check_report.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/check/scene_check.h"
 #include "node/config/count_text.h"
 
 namespace cordis::cli {

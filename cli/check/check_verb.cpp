@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "cli/check/check_report.h"
 #include "cli/check/scene_check.h"
 #include "cli/exit_code.h"
 #include "cli/number.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "node/config/value.h"
+#include "node/config/yaml_reader.h"
 #include "sim_node/checks/device_check.h"
 #include "sim_node/checks/planned_scene.h"
 #include "sim_node/checks/port_check.h"

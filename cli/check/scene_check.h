@@ -79,9 +79,4 @@ struct SceneCheck {
 /// a sim_node.
 SceneCheck check_scene(const CheckOptions& options);
 
-/// Lines for a person.
-std::string text_of(const SceneCheck& check);
-/// The check as JSON for a program; keys carry their unit.
-std::string json_of(const SceneCheck& check);
-
 }  // namespace cordis::cli

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/command_line.h"
+#include "node/config/nearest_word.h"
 #include "node/config/problem.h"
 #include "node/control_verbs.h"
 

@@ -47,7 +47,4 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
 /// at higher rates, among those at `lowest_hz` or above; nullptr when there is none.
 const LabRun* cheapest_within(const LabReport& report, double tolerance, double lowest_hz);
 
-/// A table for a person.
-std::string text_of(const LabReport& report);
-
 }  // namespace cordis::cli

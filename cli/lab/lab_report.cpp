@@ -1,9 +1,10 @@
 // cli/lab/lab_report.cpp -- the table of `cordis lab`.
+#include "cli/lab/lab_report.h"
+
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "cli/lab/lab.h"
 #include "node/config/count_text.h"
 #include "sim_node/scene/naming.h"
 

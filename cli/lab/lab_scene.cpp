@@ -5,6 +5,7 @@
 
 #include "cli/lab/offline_session.h"
 #include "node/config/value.h"
+#include "node/config/yaml_reader.h"
 #include "sim_node/checks/planned_scene.h"
 
 namespace cordis::cli {

@@ -8,6 +8,7 @@
 #include "cli/exit_code.h"
 #include "cli/lab/lab.h"
 #include "cli/lab/lab_chart.h"
+#include "cli/lab/lab_report.h"
 #include "cli/number.h"
 #include "cli/verbs.h"
 

@@ -7,6 +7,7 @@
 
 #include "cli/command_line.h"
 #include "cli/duration.h"
+#include "node/config/nearest_word.h"
 
 namespace cordis::cli {
 namespace {

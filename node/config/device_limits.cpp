@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "node/config/file_kind.h"
+#include "node/config/yaml_reader.h"
 
 namespace cordis::config {
 

@@ -8,6 +8,8 @@
 #include "node/config/file_kind.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
+#include "node/config/nearest_word.h"
+#include "node/config/yaml_reader.h"
 
 namespace cordis::config {
 

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "node/config/nearest_word.h"
+
 namespace cordis::config {
 
 namespace {

@@ -1,4 +1,6 @@
 // node/config/nearest_word.cpp
+#include "node/config/nearest_word.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>

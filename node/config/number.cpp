@@ -1,12 +1,12 @@
 // node/config/number.cpp
+#include "node/config/number.h"
+
 #include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <string_view>
 #include <system_error>
-
-#include "node/config/mapping_reader.h"
 
 namespace cordis::config {
 

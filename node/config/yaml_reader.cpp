@@ -1,5 +1,7 @@
 // node/config/yaml_reader.cpp -- reads YAML by the events of yaml-cpp, which (unlike its nodes)
 // tell quoted from plain scalars, and builds Values.
+#include "node/config/yaml_reader.h"
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -10,6 +12,7 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include "node/config/nearest_word.h"
 #include "node/config/regular_file.h"
 #include "node/config/source_text.h"
 #include "node/config/tree_builder.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "node/config/mapping_reader.h"
+#include "node/config/nearest_word.h"
 #include "sim_node/checks/port_check.h"
 
 namespace cordis::sim {

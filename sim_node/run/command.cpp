@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "node/config/mapping_reader.h"
+#include "node/config/yaml_reader.h"
 #include "node/control_verbs.h"
 
 namespace cordis::sim {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "node/config/count_text.h"
+#include "node/config/nearest_word.h"
 #include "node/config/problem.h"
 #include "sim_node/scene/selection.h"
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "node/config/nearest_word.h"
 #include "sim_node/scene/liaisons/liaison.h"
 
 namespace cordis::scene {

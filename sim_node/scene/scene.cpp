@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "node/config/file_kind.h"
+#include "node/config/yaml_reader.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/naming.h"

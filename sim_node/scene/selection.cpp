@@ -5,6 +5,8 @@
 #include <charconv>
 #include <unordered_set>
 
+#include "node/config/nearest_word.h"
+
 namespace cordis::scene {
 
 namespace {

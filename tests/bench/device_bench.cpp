@@ -13,6 +13,7 @@
 #include "device_node/drivers/kfb1.h"
 #include "device_node/exchange.h"
 #include "device_node/firmware/kfb1.h"
+#include "node/config/yaml_reader.h"
 #include "node/latency.h"
 #include "node/paced_loop.h"
 #include "node/time.h"

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "cli/lab/lab_chart.h"
+#include "cli/lab/lab_report.h"
 
 namespace cordis::cli {
 namespace {

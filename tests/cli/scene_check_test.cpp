@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "cli/check/check_report.h"
 #include "cli/exit_code.h"
 #include "cli/verbs.h"
 #include "tests/cli/captured_run.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "node/config/name_hash.h"
+#include "node/config/nearest_word.h"
 #include "node/config/value.h"
 
 namespace cordis::config {

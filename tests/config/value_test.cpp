@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "node/config/yaml_reader.h"
+
 namespace cordis::config {
 namespace {
 

@@ -1,4 +1,6 @@
 // tests/config/yaml_reader_test.cpp
+#include "node/config/yaml_reader.h"
+
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -8,6 +8,7 @@
 
 #include "device_node/drivers/driver_table.h"
 #include "node/config/name_hash.h"
+#include "node/config/yaml_reader.h"
 
 namespace cordis::device {
 namespace {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "device_node/device_config.h"
+#include "node/config/yaml_reader.h"
 
 namespace cordis::device {
 namespace {

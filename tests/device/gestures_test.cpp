@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "device_node/drivers/mock.h"
+#include "node/config/yaml_reader.h"
 
 namespace cordis::device {
 namespace {

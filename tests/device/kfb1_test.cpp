@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "device_node/drivers/kfb1.h"
+#include "node/config/yaml_reader.h"
 #include "tests/device/kfb1_board.h"
 #include "tests/device/wired.h"
 

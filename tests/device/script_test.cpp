@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "node/config/value.h"
+#include "node/config/yaml_reader.h"
 
 namespace cordis::device {
 namespace {

@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "node/config/yaml_reader.h"
+
 namespace cordis::device {
 namespace {
 

@@ -12,6 +12,7 @@
 
 #include "device_node/drivers/driver_table.h"
 #include "device_node/drivers/hardware.h"
+#include "node/config/yaml_reader.h"
 #include "node/paced_loop.h"
 #include "tests/device/plug.h"
 #include "tests/support/captured_log.h"

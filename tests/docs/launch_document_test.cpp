@@ -13,6 +13,7 @@
 
 #include "device_node/device_config.h"
 #include "node/config/launch.h"
+#include "node/config/yaml_reader.h"
 #include "sim_node/sim_config.h"
 #include "viz_node/viz_config.h"
 

@@ -68,9 +68,9 @@ function actionsOf(session, draw) {
   };
 }
 
-/** Three frames more are drawn, or come while a person holds the picture. */
+/** Three frames more are drawn, or come while the view is frozen. */
 async function goesOn(page) {
-  const name = (await viz(page, 'held')) ? 'framesReceived' : 'framesDrawn';
+  const name = (await viz(page, 'frozen')) ? 'framesReceived' : 'framesDrawn';
   const begin = await viz(page, name);
   await until(`${name} grows by 3`, async () => (await viz(page, name)) >= begin + 3);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "node/config/yaml_reader.h"
 #include "tests/scene/bad_scene.h"
 
 namespace cordis::scene {

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "node/config/yaml_reader.h"
 #include "sim_node/engine/world.h"
 #include "tests/scene/scene_text.h"
 

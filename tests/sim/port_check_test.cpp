@@ -9,6 +9,7 @@
 
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
+#include "node/config/yaml_reader.h"
 #include "sim_node/devices/refused_devices.h"
 
 namespace cordis::sim {

@@ -146,7 +146,7 @@ const cases = {
     assert.match(await textOf(page, '.plot:first-child .series b'), /^-?\d.*m$/);
   },
 
-  'keys turn the camera, colour by speed, hold the picture': async ({ page }) => {
+  'keys turn the camera, colour by speed, freeze the view': async ({ page }) => {
     const camera = (what, fits) => until(what, async () => fits(await viz(page, 'camera')));
     await page.keyboard.press('3');
     await camera('it looks from the top', ({ preset }) => preset === 'top');
@@ -169,11 +169,11 @@ const cases = {
     await page.keyboard.press('c');
 
     await page.keyboard.press(' ');
-    await banner(page, 'picture held');
-    const held = await viz(page, 'framesDrawn');
+    await banner(page, 'view frozen');
+    const frozen = await viz(page, 'framesDrawn');
     const came = await viz(page, 'framesReceived');
     await until('frames still come', async () => (await viz(page, 'framesReceived')) > came + 5);
-    assert.equal(await viz(page, 'framesDrawn'), held);
+    assert.equal(await viz(page, 'framesDrawn'), frozen);
     await page.keyboard.press(' ');
     await drawn(page, 3);
   },

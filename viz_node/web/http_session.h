@@ -26,8 +26,8 @@ inline constexpr const char* kContentPolicy =
 /// One HTTP connection, until it ends or becomes a Client.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(tcp::socket&& socket, ServerState& hub, const StaticPages& pages)
-      : stream_(std::move(socket)), seat_(hub), hub_(hub), pages_(pages) {}
+  HttpSession(tcp::socket&& socket, ServerState& state, const StaticPages& pages)
+      : stream_(std::move(socket)), slot_(state), state_(state), pages_(pages) {}
 
   void read() {
     parser_.emplace();
@@ -56,10 +56,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                                      .host = field(http::field::host),
                                      .origin = field(http::field::origin),
                                      .upgrade = upgrade},
-                                    hub_.loopback_only);
+                                    state_.loopback_only);
     if (refusal) return reply(refusal->status, "text/plain; charset=utf-8", refusal->text);
     if (upgrade) {
-      std::make_shared<WebSocketSession>(std::move(stream_), std::move(seat_), hub_)
+      std::make_shared<WebSocketSession>(std::move(stream_), std::move(slot_), state_)
           ->start(http::request<http::empty_body>(request));
       return;
     }
@@ -99,8 +99,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   beast::tcp_stream stream_;
-  ConnectionSlot seat_;
-  ServerState& hub_;
+  ConnectionSlot slot_;
+  ServerState& state_;
   const StaticPages& pages_;
   beast::flat_buffer buffer_{kLongestRequest};
   std::array<char, 1024> discarded_{};

@@ -25,11 +25,11 @@ class SendQueue {
     std::array<asio::const_buffer, 3> parts;  ///< stay until next() is called again
   };
 
-  explicit SendQueue(ServerState& hub) : hub_(hub) {}
+  explicit SendQueue(ServerState& state) : state_(state) {}
 
   /// The next thing that is due, which counts as sent; nothing when the page has it all.
   std::optional<Message> next() {
-    if (!std::exchange(hello_sent_, true)) return text(hub_.hello);
+    if (!std::exchange(hello_sent_, true)) return text(state_.hello);
     if (auto scene = next_of_scene()) return scene;
     if (auto status = next_status()) return status;
     frame_first_ = !frame_first_;  // in turn: on a slow line neither starves the other
@@ -47,7 +47,7 @@ class SendQueue {
       kept_scene_ = std::exchange(topology_due_, nullptr);
       return Message{false, {asio::buffer(kept_scene_->topology)}};
     }
-    auto scene = hub_.mirror.scene();
+    auto scene = state_.mirror.scene();
     if (scene == nullptr || scene->scene == scene_) return {};
     scene_ = scene->scene;
     credit_.reset();
@@ -56,21 +56,21 @@ class SendQueue {
   }
 
   std::optional<Message> next_status() {
-    if (hub_.status == nullptr || status_number_ == hub_.status_number) return {};
-    status_number_ = hub_.status_number;
-    kept_status_ = hub_.status;
+    if (state_.status == nullptr || status_number_ == state_.status_number) return {};
+    status_number_ = state_.status_number;
+    kept_status_ = state_.status;
     return text(*kept_status_);
   }
 
   std::optional<Message> next_signals() {
-    kept_signals_ = hub_.mirror.signals_after(signals_number_);
+    kept_signals_ = state_.mirror.signals_after(signals_number_);
     if (kept_signals_ == nullptr) return {};
     signals_number_ = kept_signals_->number;
     return Message{false, {asio::buffer(kept_signals_->bytes)}};
   }
 
   std::optional<Message> next_frame() {
-    kept_frame_ = hub_.mirror.frame();
+    kept_frame_ = state_.mirror.frame();
     if (kept_frame_ == nullptr || kept_frame_->scene != scene_) return {};
     const std::int64_t now_nsec = node::monotonic_nsec();
     if (!credit_.may_send(kept_frame_->sequence, now_nsec)) return {};
@@ -93,7 +93,7 @@ class SendQueue {
                     asio::buffer(frame.link_state())}};
   }
 
-  ServerState& hub_;
+  ServerState& state_;
   ClientCredit credit_;
   bool hello_sent_ = false;
   bool frame_first_ = false;

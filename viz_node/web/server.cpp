@@ -85,12 +85,12 @@ std::string url_of(const tcp::endpoint& endpoint) {
 struct WebServer::Impl {
   Impl(const ServerConfig& config, SceneMirror& mirror,
        std::function<void(const PageCommand&)> execute)
-      : pages(config.folder), hub(mirror, std::move(execute)) {
+      : pages(config.folder), state(mirror, std::move(execute)) {
     listen(acceptor, config);
     const tcp::endpoint endpoint = acceptor.local_endpoint();
     url = url_of(endpoint);
-    hub.loopback_only = endpoint.address().is_loopback();
-    hub.hello = hello_text(config.session, config.node);
+    state.loopback_only = endpoint.address().is_loopback();
+    state.hello = hello_text(config.session, config.node);
   }
 
   void accept() {
@@ -103,13 +103,13 @@ struct WebServer::Impl {
       accept();        // first: whatever becomes of this one, others may come
       ErrorCode none;  // a socket that takes no option still works
       socket.set_option(tcp::no_delay(true), none);
-      if (hub.connections < kMaxConnections)
-        std::make_shared<HttpSession>(std::move(socket), hub, pages)->read();
+      if (state.connections < kMaxConnections)
+        std::make_shared<HttpSession>(std::move(socket), state, pages)->read();
     });
   }
 
   void pump_all() {
-    const std::vector<WebSocketSession*> now(hub.clients.begin(), hub.clients.end());
+    const std::vector<WebSocketSession*> now(state.clients.begin(), state.clients.end());
     for (WebSocketSession* client : now) client->pump();
   }
 
@@ -119,9 +119,9 @@ struct WebServer::Impl {
     tick.async_wait([this](ErrorCode error) {
       if (!error) report_status();
     });
-    hub.status = std::make_shared<const std::string>(hub.mirror.status(node::monotonic_nsec()));
-    ++hub.status_number;
-    hub.closures.report(node::monotonic_nsec());
+    state.status = std::make_shared<const std::string>(state.mirror.status(node::monotonic_nsec()));
+    ++state.status_number;
+    state.closures.report(node::monotonic_nsec());
     pump_all();
   }
 
@@ -140,14 +140,14 @@ struct WebServer::Impl {
       try {
         context.run();
       } catch (const std::exception& error) {
-        if (hub.closures.record(node::monotonic_nsec()))
+        if (state.closures.record(node::monotonic_nsec()))
           spdlog::error("the web server closed a connection: {}", error.what());
       }
     }
   }
 
   StaticPages pages;
-  ServerState hub;
+  ServerState state;
   std::string url;
   std::atomic<bool> awake{false};
   asio::io_context context{1};
@@ -167,7 +167,7 @@ WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror,
 }
 
 WebServer::~WebServer() {
-  impl_->hub.mirror.on_change({});
+  impl_->state.mirror.on_change({});
   impl_->context.stop();
   impl_->thread.join();
 }
@@ -181,8 +181,8 @@ bool WebServer::page_built() const noexcept {
 }
 
 ServerFigures WebServer::figures() const {
-  const std::lock_guard lock(impl_->hub.latency_mutex);
-  const node::LatencyHistogram& latency = impl_->hub.latency;
+  const std::lock_guard lock(impl_->state.latency_mutex);
+  const node::LatencyHistogram& latency = impl_->state.latency;
   return {.drawn = latency.count(),
           .latency_p50_s = latency.quantile_nsec(0.5) * 1e-9,
           .latency_p99_s = latency.quantile_nsec(0.99) * 1e-9,

@@ -56,15 +56,15 @@ struct ServerState {
 /// Counts a connection for as long as it lives, as HTTP or as WebSocket.
 class ConnectionSlot {
  public:
-  explicit ConnectionSlot(ServerState& hub) noexcept : hub_(&hub) { ++hub_->connections; }
-  ConnectionSlot(ConnectionSlot&& other) noexcept : hub_(std::exchange(other.hub_, nullptr)) {}
+  explicit ConnectionSlot(ServerState& state) noexcept : state_(&state) { ++state_->connections; }
+  ConnectionSlot(ConnectionSlot&& other) noexcept : state_(std::exchange(other.state_, nullptr)) {}
   ConnectionSlot& operator=(ConnectionSlot&&) = delete;
   ~ConnectionSlot() {
-    if (hub_ != nullptr) --hub_->connections;
+    if (state_ != nullptr) --state_->connections;
   }
 
  private:
-  ServerState* hub_;
+  ServerState* state_;
 };
 
 }  // namespace cordis::viz

@@ -23,11 +23,11 @@ inline constexpr std::size_t kLongestFromClient = 1024;  // [bytes]
 /// commands.
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
-  WebSocketSession(beast::tcp_stream&& stream, ConnectionSlot&& seat, ServerState& hub)
-      : stream_(std::move(stream)), seat_(std::move(seat)), hub_(hub) {}
+  WebSocketSession(beast::tcp_stream&& stream, ConnectionSlot&& slot, ServerState& state)
+      : stream_(std::move(stream)), slot_(std::move(slot)), state_(state) {}
   ~WebSocketSession() {
-    hub_.clients.erase(this);
-    if (joined_) spdlog::debug("a page left, {} frames passed it by", feed_.credit().dropped());
+    state_.clients.erase(this);
+    if (joined_) spdlog::debug("a page left, {} frames passed it by", queue_.credit().dropped());
   }
   WebSocketSession(const WebSocketSession&) = delete;
   WebSocketSession& operator=(const WebSocketSession&) = delete;
@@ -41,7 +41,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     stream_.async_accept(request, [self = shared_from_this()](ErrorCode error) {
       if (error) return;
       self->joined_ = true;
-      self->hub_.clients.insert(self.get());
+      self->state_.clients.insert(self.get());
       self->read();
       self->pump();
     });
@@ -52,9 +52,9 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   void pump() noexcept {
     try {
       if (writing_) return;
-      if (const auto message = feed_.next()) send(*message);
+      if (const auto message = queue_.next()) send(*message);
     } catch (const std::exception& error) {
-      if (hub_.closures.record(node::monotonic_nsec()))
+      if (state_.closures.record(node::monotonic_nsec()))
         spdlog::warn("closed the connection to a page: {}", error.what());
       leave();
     }
@@ -84,26 +84,26 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     incoming_.consume(incoming_.size());
     const auto word = read_acknowledgement(text);
     if (!word) {
-      if (const auto command = read_page_command(text)) hub_.execute(*command);
+      if (const auto command = read_page_command(text)) state_.execute(*command);
       return;
     }
-    const auto taken_nsec = feed_.credit().acknowledge(word->sequence);
+    const auto taken_nsec = queue_.credit().acknowledge(word->sequence);
     if (taken_nsec && word->drawn) {
-      const std::lock_guard lock(hub_.latency_mutex);
-      hub_.latency.record(node::monotonic_nsec() - *taken_nsec);
+      const std::lock_guard lock(state_.latency_mutex);
+      state_.latency.record(node::monotonic_nsec() - *taken_nsec);
     }
     pump();
   }
 
   void leave() {
-    hub_.clients.erase(this);
+    state_.clients.erase(this);
     beast::get_lowest_layer(stream_).close();
   }
 
   websocket::stream<beast::tcp_stream> stream_;
-  ConnectionSlot seat_;
-  ServerState& hub_;
-  SendQueue feed_{hub_};
+  ConnectionSlot slot_;
+  ServerState& state_;
+  SendQueue queue_{state_};
   beast::flat_buffer incoming_;
   bool joined_ = false;
   bool writing_ = false;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "node/config/nearest_word.h"
 #include "sim_node/scene/language/quantity.h"
 
 namespace cordis::scene {

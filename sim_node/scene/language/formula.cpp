@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "node/config/nearest_word.h"
 #include "sim_node/engine/expressions/elementary_functions.h"
 #include "sim_node/scene/language/quantity.h"
 

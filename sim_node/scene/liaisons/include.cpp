@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "node/config/yaml_reader.h"
+
 namespace cordis::scene {
 
 namespace {

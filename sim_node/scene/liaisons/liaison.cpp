@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "node/config/nearest_word.h"
 #include "sim_node/scene/liaisons/include.h"
 #include "sim_node/scene/selection.h"
 

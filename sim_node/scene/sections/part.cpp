@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "node/config/mapping_reader.h"
+#include "node/config/nearest_word.h"
 #include "sim_node/scene/selection.h"
 
 namespace cordis::scene {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "node/config/mapping_reader.h"
+#include "node/config/nearest_word.h"
 
 namespace cordis::scene {
 

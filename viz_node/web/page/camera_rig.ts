@@ -1,15 +1,15 @@
-// viz_node/web/page/camera_rig.ts -- the eye: orbit, pan and zoom by mouse, presets and fit by key;
+// viz_node/web/page/camera_rig.ts -- the camera: orbit, pan and zoom by mouse, presets and fit by key;
 // orthographic for flat scenes.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 export type Preset = 'front' | 'side' | 'top' | 'free';
 
-/** Where the eye stands and how: enough to stand there again. */
+/** Where the camera stands and how: enough to stand there again. */
 export interface Pose {
   orthographic: boolean;
   target: THREE.Vector3;
-  offset: THREE.Vector3; // of the eye from the target
+  offset: THREE.Vector3; // of the camera from the target
   metresPerPixel: number;
   moved: boolean; // by a person
 }
@@ -64,7 +64,7 @@ export class CameraRig {
     return this.controls.target;
   }
 
-  /** The preset that the eye looks along now; 'free' when it is none. */
+  /** The preset that the camera looks along now; 'free' when it is none. */
   get preset(): Preset {
     const direction = this.camera.position.clone().sub(this.target).normalize();
     const presets = Object.keys(DIRECTIONS) as Preset[];
@@ -83,7 +83,7 @@ export class CameraRig {
     this.look(this.first, box);
   }
 
-  /** Steps back when the scene has outgrown the picture. */
+  /** Steps back when the scene has outgrown the view. */
   follow(box: THREE.Box3): void {
     if (this.moved || this.sees(box)) return;
     const grown = box.clone().union(this.home);
@@ -197,7 +197,7 @@ export class CameraRig {
     camera.updateProjectionMatrix();
   }
 
-  /** Near and far planes for a scene of this size, wherever the eye goes. */
+  /** Near and far planes for a scene of this size, wherever the camera goes. */
   private setDepth(): void {
     const extent = Math.max(this.home.getSize(new THREE.Vector3()).length(), 1e-6);
     this.perspectiveCamera.near = extent / 200;

@@ -12,7 +12,7 @@ const GONE = ['lost', 'stopped', 'failed'];
 /** What the page itself measures. */
 export interface Measured {
   connected: boolean;
-  held: boolean; // a person stopped the picture
+  frozen: boolean; // a person froze the view
   simulatedS: number;
   realTimeFactor: number;
   lagS: number;
@@ -182,7 +182,7 @@ export class Hud {
       return [amiss.map((n) => `${n.name} is ${n.state}`).join(', '), amiss.map(fate).join(' ') + (device ? ' Its forces are zero meanwhile.' : ''), 'warn'];
     }
     if (this.alive('sim_node')?.state === 'paused') return ['paused', 'The scene is paused, and the devices are let go of.', 'warn'];
-    if (measured.held) return ['picture held', 'The simulation goes on. Space lets the picture go on too.', 'warn'];
+    if (measured.frozen) return ['view frozen', 'The simulation goes on. Space lets the view go on too.', 'warn'];
     return ['', '', ''];
   }
 }

@@ -36,13 +36,13 @@ const MAT_VERTEX = /* glsl */ `
 
   void main() {
     int k = int(kind + 0.5);
-    vec4 eye = modelViewMatrix * vec4(position, 1.0);
-    gl_Position = projectionMatrix * eye;
+    vec4 view_position = modelViewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * view_position;
     float pixels = pixels_per_unit / gl_Position.w;
     size = max(radius, min_pixels[k == 4 ? 0 : k] / pixels);
     // A square where a punctual MAT is fixed; a sphere with a halo where a hand is.
     shape = k == 3 ? 1 : (k == 2 ? 2 : 0);
-    centre = eye.xyz;
+    centre = view_position.xyz;
     gl_PointSize = 2.0 * size * pixels * (shape == 2 ? 1.9 : 1.0) * MARGIN;
     colour = k == 0 ? vec3(0.42, 0.72, 0.98) : (k == 2 || k == 4 ? vec3(1.0, 0.68, 0.26) : vec3(0.60, 0.65, 0.72));
   #ifndef SPHERES
@@ -98,7 +98,7 @@ const MAT_FRAGMENT = /* glsl */ `
       }
     }
     #ifdef SPHERES
-      // From the eye through the pixel to the sphere; its distance from the axis of the ray by subtraction of vectors,
+      // From the camera through the pixel to the sphere; its distance from the axis of the ray by subtraction of vectors,
       // which stays exact for small spheres far away.
       vec3 on_plane = centre + vec3(at * size, 0.0);
       vec3 along = orthographic ? vec3(0.0, 0.0, -1.0) : normalize(on_plane);

@@ -34,7 +34,7 @@ export class Page {
   lastFrame: Frame | null = null; // drawn
   dropped = 0;
   lagS = Number.NaN;
-  held = false;
+  frozen = false;
 
   private readonly stage = find('#stage');
   private readonly plots = new Plots(find('#plots'));
@@ -46,7 +46,7 @@ export class Page {
   private pending: Frame | null = null;
   private pendingIsLate = false; // it came, or waited, while nobody could see the page
   private frameMs = Number.NaN; // when the newest frame came
-  private pose: Pose | null = null; // of the eye, for the next view
+  private pose: Pose | null = null; // of the camera, for the next view
   private drawAsked = false;
   private speeds = false;
   private plotsMs = 0;
@@ -178,7 +178,7 @@ export class Page {
     const frame = this.pending;
     this.pending = null;
     try {
-      if (frame !== null && this.view !== null && !this.held) this.view.show(frame);
+      if (frame !== null && this.view !== null && !this.frozen) this.view.show(frame);
       this.view?.draw();
     } catch (error) {
       this.note(error);
@@ -190,9 +190,9 @@ export class Page {
   }
 
   private finish(frame: Frame): void {
-    const drawn = this.view !== null && !this.held && !this.pendingIsLate;
+    const drawn = this.view !== null && !this.frozen && !this.pendingIsLate;
     this.connection.acknowledge(drawn ? frame.sequence : 0);
-    if (this.view === null || this.held) return;
+    if (this.view === null || this.frozen) return;
     ++this.framesDrawn;
     this.lastFrame = frame;
     this.pendingIsLate = false;
@@ -203,7 +203,7 @@ export class Page {
 
   private drawPlots(): void {
     const now = performance.now();
-    if (!this.plotsDirty || this.held || now - this.plotsMs < PLOTS_PERIOD_MS) return;
+    if (!this.plotsDirty || this.frozen || now - this.plotsMs < PLOTS_PERIOD_MS) return;
     this.plotsMs = now;
     this.plotsDirty = false;
     this.plots.draw();
@@ -225,7 +225,7 @@ export class Page {
   private refresh(): void {
     this.hud.refresh({
       connected: this.connection.isOpen,
-      held: this.held,
+      frozen: this.frozen,
       simulatedS: this.lastFrame?.simulatedS ?? Number.NaN,
       realTimeFactor: this.factor.value,
       lagS: this.lagS,
@@ -244,7 +244,7 @@ export class Page {
       o: () => this.view?.rig.toggleProjection(),
       g: () => this.view?.toggleGround(),
       c: () => this.colourBySpeed(!this.speeds),
-      ' ': () => (this.held = !this.held),
+      ' ': () => (this.frozen = !this.frozen),
       s: () => void this.savePicture(),
     };
     window.addEventListener('keydown', (event) => {
@@ -276,10 +276,10 @@ export class Page {
   }
 
   private async savePicture(): Promise<void> {
-    const picture = await this.view?.picture();
-    if (!picture) return;
+    const image = await this.view?.image();
+    if (!image) return;
     const link = document.createElement('a');
-    link.href = URL.createObjectURL(picture);
+    link.href = URL.createObjectURL(image);
     link.download = `${this.description?.name ?? 'cordis'}_${(this.lastFrame?.simulatedS ?? 0).toFixed(2)}s.png`;
     link.click();
     URL.revokeObjectURL(link.href);

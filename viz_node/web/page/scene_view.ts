@@ -1,4 +1,4 @@
-// viz_node/web/page/scene_view.ts -- the picture of the scene. Positions go from the message
+// viz_node/web/page/scene_view.ts -- the scene, drawn. Positions go from the message
 // straight into a GPU buffer that matter and links share.
 import * as THREE from 'three';
 import { Ground } from './ground.ts';
@@ -40,7 +40,7 @@ export class SceneView {
     private readonly tools: number[],
     private readonly space: number,
     readonly quality: Quality,
-    private readonly pose: Pose | null, // where the eye stood before, if it shall stay
+    private readonly pose: Pose | null, // where the camera stood before, if it shall stay
     private readonly changed: () => void,
     private readonly contextLost: (lost: boolean) => void, // the browser took the graphics away, or gave them back
   ) {
@@ -194,7 +194,7 @@ export class SceneView {
     return [...colour.slice(0, 3)];
   }
 
-  picture(): Promise<Blob | null> {
+  image(): Promise<Blob | null> {
     this.draw();
     return new Promise((resolve) => this.renderer.domElement.toBlob(resolve));
   }

@@ -4,7 +4,7 @@ import type { NodeState, Reply } from './protocol.ts';
 
 export interface Viz {
   readonly connected: boolean;
-  readonly held: boolean; // by a person
+  readonly frozen: boolean; // by a person
   readonly framesReceived: number;
   readonly framesDrawn: number;
   readonly lastFrame: { sequence: number; frame: number; step: number; simulatedS: number; matCount: number } | null;
@@ -36,8 +36,8 @@ export function exposeViz(page: Page): void {
     get connected() {
       return page.connection.isOpen;
     },
-    get held() {
-      return page.held;
+    get frozen() {
+      return page.frozen;
     },
     get framesReceived() {
       return page.framesReceived;
