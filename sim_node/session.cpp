@@ -331,12 +331,13 @@ void Session::record_state() {
   runner_.stage().limits.look(simulation.world());
   shown_.energy = simulation.world().energy();
   shown_.limit_number = runner_.stage().limits.largest();
-  shown_.partners = simulation.partners().nearest().value_or(PartnersSeen{});
+  shown_.partners = simulation.partners().nearest().value_or(PartnersSeen{0, 0, msg::NO_INDEX});
   if (!shown_.partners.is_passed()) {
     shown_.crowding.clear();
-  } else if (shown_.crowding.empty()) {
+  } else if (shown_.partners.largest != partners_shown_) {
     shown_.crowding = crowding_text(simulation.scene(), shown_.partners);
   }
+  partners_shown_ = shown_.partners.largest;
   shown_.step = simulation.world().step_count();
   shown_.state_hash = simulation.world().state_hash();
   shown_.version = runner_.stage().frames.shape().version;

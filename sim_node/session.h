@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "idl/scene.h"
 #include "node/command_listener.h"
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
@@ -88,7 +89,8 @@ class Session {
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
   node::RepeatedEvent crowding_{"a mass of a set touched still more others"};
   std::uint32_t partners_reported_ = 0;  // of this scene
-  std::uint64_t unwritten_ = 0;        // answers that DDS did not take
+  std::uint32_t partners_shown_ = 0;
+  std::uint64_t unwritten_ = 0;  // answers that DDS did not take
   node::RepeatedEvent absences_{"has been waiting long, with no device_node alive"};
   node::RepeatedEvent silences_{
       "has been waiting long for a sample of a device_node that is alive"};
@@ -97,7 +99,7 @@ class Session {
   struct StatusSnapshot {
     engine::Energy energy;
     double limit_number = 0.0;
-    PartnersSeen partners;
+    PartnersSeen partners{0, 0, msg::NO_INDEX};
     std::uint64_t step = 0;
     std::uint64_t state_hash = 0;
     std::uint64_t version = 0;  // of the scene

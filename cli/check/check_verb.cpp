@@ -75,7 +75,7 @@ void add_check_verb(CommandLine& line) {
       "Stable means that the step is below the limit in every pose and every combination of\n"
       "states (docs/stability.md). A scene with `accuracy` and without a rate gets its rate here.\n"
       "What `cordis run` would refuse or warn of stands below the report, in the same words.\n"
-      "Exit code: 0 `cordis run` plays it, 2 it refuses it.\n\n"
+      "Exit code: 0 `cordis run` plays it, 1 a check failed itself, 2 `cordis run` refuses it.\n\n"
       "Examples:\n"
       "  cordis check launch_configs/plasticine.yaml\n"
       "  cordis check launch_configs/scenes/plucked_string.yaml\n"

@@ -52,7 +52,7 @@ config::Launch launch_of(const CtlWords& words) {
   return launch;
 }
 
-/// Of several sessions of one name, keeps the one that the launch file began.
+/// Keeps, among several sessions of one name, the one that the launch file began.
 void prefer_launch_file(std::vector<node::SessionRecord>& sessions, const std::string& file) {
   const auto is_of_file = [&](const node::SessionRecord& record) {
     std::error_code gone;

@@ -168,16 +168,24 @@ std::string processor_name() {
   return "unknown processor";
 }
 
-/// What a reader of the chart needs, without a quotation mark of gnuplot.
-std::string caption_of(const LabReport& report) {
+/// Text for gnuplot as it stands: between single quotes nothing but these means anything.
+std::string quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
+  return quoted + "'";
+}
+
+/// What a reader of the chart needs: the scene, and the machine.
+std::string captions(const LabReport& report) {
   const scene::Scene& scene = report.lab.scene;
-  std::string text =
-      fmt::format("{} ({}), {:.4g} s; rms amplitude {:.3g} m; {}.\\n{}, {}, Cordis {}", scene.name,
-                  scene::size_text(scene), report.reference.sampling.duration(),
-                  report.reference.amplitude, report.reference.made_by, processor_name(),
+  const std::string what = fmt::format(
+      "{} ({}), {:.4g} s; rms amplitude {:.3g} m; {}", scene.name, scene::size_text(scene),
+      report.reference.sampling.duration(), report.reference.amplitude, report.reference.made_by);
+  const std::string where =
+      fmt::format("{}, {}, Cordis {}", processor_name(),
                   engine::to_string(engine::best_vector_width()), CORDIS_VERSION);
-  std::replace(text.begin(), text.end(), '"', '\'');
-  return text;
+  constexpr const char* kLabel = "set label {} {} at screen 0.5, {} center noenhanced\n";
+  return fmt::format(kLabel, 1, quoted(what), 0.065) + fmt::format(kLabel, 2, quoted(where), 0.03);
 }
 
 std::string script_of(const LabReport& report) {
@@ -197,8 +205,7 @@ std::string script_of(const LabReport& report) {
          "set lmargin at screen 0.08\nset rmargin at screen 0.41\n"
          "set key at screen 0.5, 0.165 center center\n"
          "set ylabel 'rms position error / amplitude [1]'\n" +
-         fmt::format("set label 1 \"{}\" at screen 0.5, 0.065 center noenhanced\n",
-                     caption_of(report)) +
+         captions(report) +
          panel(report, "column(3)", "force evaluations per simulated second [1/s]", true) +
          "unset label\nunset key\nunset ylabel\nset lmargin at screen 0.56\nset rmargin at screen "
          "0.89\n" +

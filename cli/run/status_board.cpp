@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "idl/scene.h"
 #include "node/config/count_text.h"
 
 namespace cordis::cli {
@@ -53,7 +54,7 @@ Row row_of(const std::string& node, const msg::NodeStatus* status) {
 
 /// The partners of a mass of a set; nothing without sets.
 std::string partners_of(const msg::NodeStatus& status) {
-  if (status.largest_partners() == 0 && status.certified_partners() == 0) return {};
+  if (status.certified_partners() == msg::NO_INDEX) return {};
   const bool passed = status.largest_partners() > status.certified_partners();
   return fmt::format("a mass of a set touched {} at once, certified up to {}{}\n",
                      config::count_text(status.largest_partners(), "other"),

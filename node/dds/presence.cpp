@@ -200,7 +200,7 @@ void Presence::on_participant_discovery(fast::DomainParticipant*,
   if (returned) on_return_();
 }
 
-/// Of a process of the session, before any message of it can come.
+/// Judges the version of a process of the session, before any message of it can come.
 void Presence::judge_discovered(const ParticipantPrefix& participant) {
   std::optional<std::uint32_t> version;
   {

@@ -113,13 +113,6 @@ bool Reader<Message>::take(Message& message) noexcept {
 }
 
 template <class Message>
-bool Reader<Message>::take_newest(Message& message) noexcept {
-  bool any = false;
-  while (take(message)) any = true;
-  return any;
-}
-
-template <class Message>
 bool Reader<Message>::wait(std::chrono::nanoseconds at_most) noexcept {
   std::unique_lock lock(impl_->mutex);
   impl_->arrived.wait_for(lock, at_most, [this] { return impl_->pending || impl_->interrupted; });

@@ -22,12 +22,9 @@ class Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  /// The oldest message not yet taken into `message`; false when there is none. Never blocks.
+  /// The oldest message not yet taken into `message`; false when there is none: what is in it then
+  /// means nothing. Never blocks.
   [[nodiscard]] bool take(Message& message) noexcept;
-
-  /// Drains to the newest message; false when there was none. Never blocks.
-  /// Messages of all writers and keys count as one stream: use take() where they must not.
-  [[nodiscard]] bool take_newest(Message& message) noexcept;
 
   /// Waits until a message arrives, or was there already, at most so long; false when none is
   /// there. Also ends when interrupt() is called.

@@ -6,7 +6,7 @@
 namespace cordis::dds {
 namespace {
 
-/// Of the force loop: in lockstep every message counts, otherwise the newest alone.
+/// QoS of the force loop: in lockstep every message counts, otherwise the newest alone.
 TopicQos gesture_qos(const std::string& name, bool lockstep, bool standbys) noexcept {
   return {.name = name.c_str(),
           .reliable = lockstep,

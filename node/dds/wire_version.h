@@ -26,8 +26,8 @@ std::string wire_version_refusal(const std::string& peer, std::uint32_t theirs, 
 void record_wire_version(const ParticipantPrefix& participant, std::uint32_t version);
 void forget_wire_version(const ParticipantPrefix& participant) noexcept;
 
-/// True if a participant speaks another version than `ours`. Real time: one atomic read while all
-/// speak msg::WIRE_VERSION.
+/// True if a participant is recorded with another version than `ours`. One that speaks
+/// msg::WIRE_VERSION is never recorded. Real time: one atomic read while all do.
 bool has_other_wire_version(const ParticipantPrefix& participant, std::uint32_t ours) noexcept;
 
 }  // namespace cordis::dds

@@ -13,9 +13,11 @@
 namespace cordis::sim {
 namespace {
 
-/// True if `a` is nearer to its number than `b`.
+/// True if `a` is nearer to its number, or farther beyond it, than `b`. A number that is passed is
+/// nearer than every other, for the share largest / (certified + 1) is at least 1 there alone.
 bool is_nearer(const PartnersSeen& a, const PartnersSeen& b) noexcept {
-  return std::uint64_t{a.largest} * b.certified > std::uint64_t{b.largest} * a.certified;
+  return std::uint64_t{a.largest} * (std::uint64_t{b.certified} + 1) >
+         std::uint64_t{b.largest} * (std::uint64_t{a.certified} + 1);
 }
 
 }  // namespace

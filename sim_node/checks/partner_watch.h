@@ -31,8 +31,8 @@ class PartnerWatch {
   /// sizes that touch many others; no allocation.
   void look(const engine::World& world) noexcept;
 
-  /// Of the set that has come nearest to its number, or farthest beyond it; none where geometry guarantees
-  /// the numbers of all sets.
+  /// The set that has come nearest to its number, or farthest beyond it; none where geometry
+  /// guarantees the numbers of all sets.
   std::optional<PartnersSeen> nearest() const noexcept;
 
  private:

@@ -215,6 +215,7 @@ std::size_t World::max_values_of_state() const noexcept {
 }
 
 bool World::take_over(const World& before, std::vector<double>& room) noexcept {
+  const FloatMode mode;
   room.clear();
   before.state_->serialize(Archive::saving(room));
   const bool same_mats = network().mat_count() == before.network().mat_count();

@@ -95,7 +95,7 @@ class World {
   /// The largest numbers of partners in the last step, or at the start. Real time: O(1).
   /// Precondition: the set exists.
   PartnerCount largest_partners(std::size_t set) const noexcept;
-  /// Of one member, numbered from those of the first set on; 0 for what has none. Real time: O(1).
+  /// Partners of one member, numbered from those of the first set on; 0 for what has none. Real time: O(1).
   /// Precondition: the set and the member exist.
   std::uint32_t partners_of(std::size_t set, std::size_t member) const noexcept;
 

@@ -121,6 +121,20 @@ TEST_F(Lab, WritesATableAndAScriptForItsChart) {
   EXPECT_NE(text_of(report).find("blew up"), std::string::npos);
 }
 
+TEST_F(Lab, TheNameOfASceneIsTextForGnuplot) {
+  const std::string made = place_ + ".made";
+  std::ifstream in(options_.file);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  text.replace(text.find("name: bob"), 9, "name: \"bo'b `touch " + made + "` \\\\\"");
+  std::ofstream(options_.file) << text;
+
+  draw_chart(run(), options_.folder);
+
+  EXPECT_NE(read("chart.gp").find("'bo''b `touch " + made + "` \\ (2 MATs"), std::string::npos)
+      << read("chart.gp");
+  EXPECT_FALSE(std::filesystem::exists(made)) << "a shell was run";
+}
+
 TEST_F(Lab, NoNameCoversAnotherBesideTheCurves) {
   draw_chart(run(), options_.folder);
   const std::string script = read("chart.gp");

@@ -66,6 +66,24 @@ TEST(PartnerWatch, SeesInItsStepThatMorePartnersCameThanCertified) {
   EXPECT_GT(stage->limits.largest(), 4.0);
 }
 
+TEST(PartnerWatch, SeesOneThatIsTooManyWhereNoneIsCertified) {
+  const auto stage = stage_of(gathering_text("100000"));
+  Simulation& simulation = stage->simulation;
+  const auto at_first = simulation.partners().nearest();
+  ASSERT_TRUE(at_first.has_value());
+  ASSERT_EQ(at_first->certified, 0u) << "at 1000 Hz a single contact is too stiff";
+  EXPECT_FALSE(at_first->is_passed());
+
+  EventRoom events(1);
+  bool touched = false;
+  for (int tick = 0; tick < 5000 && !touched; ++tick) {
+    simulation.advance(1, events);
+    touched = simulation.world().largest_partners(0).of_p > 0;
+  }
+  ASSERT_TRUE(touched);
+  EXPECT_TRUE(simulation.partners().nearest()->is_passed());
+}
+
 TEST(PartnerWatch, LooksWithoutAllocation) {
   const auto stage = stage_of(gathering_text("150"));
   EventRoom events(1);

@@ -40,7 +40,8 @@ class Growth {
     after_ = 1.0;
     return true;
   }
-  bool grows() const { return after_ > before_; }
+  /// What has faded to the smallest numbers of a double, which a world takes as 0, does not.
+  bool grows() const { return after_ > before_ && after_ > 1e-250; }
 
  private:
   int steps_;

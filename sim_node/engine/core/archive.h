@@ -14,9 +14,9 @@
 
 namespace cordis::engine {
 
-/// What a class shows its state to. Its one function serialize(Archive&) names each value, always in
-/// the same order; the task of the archive decides what becomes of them. A saved state is a row of
-/// doubles, exact for whole numbers up to 2^53.
+/// What a class shows its state to. Its one function serialize(Archive&) names each value, always
+/// in the same order; the task of the archive decides what becomes of them. A saved state is a row
+/// of doubles, exact for whole numbers up to 2^53.
 ///
 /// A row is checked before it is restored, with the same walk: nothing has changed when it is
 /// refused. A row that is too short is never read beyond its end.

@@ -63,8 +63,8 @@ struct StateMachine {
 };
 
 /// The distance below which a pair of a set counts as partners [m]: infinite, for every pair that
-/// exerts a force, except for Lennard-Jones alone. That law is stiff below its inflection, (26/7)^(1/6)
-/// diameters, and beyond it its slopes are below 0.4 % of those in its well.
+/// exerts a force, except for Lennard-Jones alone. That law is stiff below its inflection,
+/// (26/7)^(1/6) diameters, and beyond it its slopes are below 0.4 % of those in its well.
 double touch_distance(const StateMachine& state_machine) noexcept;
 
 /// The most states a state machine may have.

@@ -18,8 +18,8 @@ namespace cordis::engine {
 /// while 4 M - dt^2 K - 4 dt Z > 0.
 ///
 /// Where linear links or the medium are too viscous for that (damps_implicitly), ImplicitDamping
-/// solves them, and 3.852 M - dt^2 K > 0 is enough. Where the viscosity of state links is (friction,
-/// bows), they are solved one by one (StiffFriction), with the same limit. Sets are always
+/// solves them, and 3.852 M - dt^2 K > 0 is enough. Where the viscosity of state links is
+/// (friction, bows), they are solved one by one (StiffFriction), with the same limit. Sets are always
 /// extrapolated.
 ///
 /// Ports are given, so their velocity is that of the last period; Maxwell elements answer to the

@@ -270,6 +270,7 @@ void WorldState::restore_with_table(const Snapshot& snapshot) {
     swap_table(table_of_snapshot, links_of_snapshot);
     Archive restoring = Archive::restoring(own_sets);
     sets.serialize(restoring, table);
+    if (freezing) freezing->restored(outside);
     throw std::invalid_argument(kNotOfThisState);
   }
   if (freezing) freezing->adopt(description(), table.state_machines());

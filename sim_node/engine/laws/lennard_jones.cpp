@@ -36,7 +36,7 @@ double LennardJones::potential(double distance, double /*elongation*/) const noe
   return cutoff > 0.0 ? at(size) - at(cutoff) : at(size);
 }
 
-/// Of a pair that approaches with the energy E, in units of the well depth: the turning point is at
+/// The slope of a pair that approaches with the energy E, in units of the well depth: the turning point is at
 /// (s/r)^6 = u = (1 + sqrt(1 + E)) / 2, and the law is stiffest there.
 LawSlope LennardJones::largest_slope(const LawRange& range) const noexcept {
   if (well_depth <= 0.0) return {};

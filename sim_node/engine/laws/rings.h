@@ -9,8 +9,8 @@
 
 namespace cordis::engine {
 
-/// Pushes apart with stiffness * (radius - d) while the distance d < radius; pulls together when the
-/// stiffness is below 0.
+/// Pushes apart with stiffness * (radius - d) while the distance d < radius; pulls together when
+/// the stiffness is below 0.
 struct Ring {
   double stiffness = 0.0;  ///< [N/m]
   double radius = 0.0;     ///< [m], > 0

@@ -51,7 +51,7 @@ class NeighbourList {
   std::size_t build_count() const noexcept { return build_count_; }
   /// How many pairs it found when it was last made, whether or not there was room for them.
   std::size_t entry_count() const noexcept { return start_[count_p_]; }
-  /// Of one member: how many others were nearer than range + skin then.
+  /// The number of others that were nearer than range + skin to one member then.
   std::uint32_t pair_count(std::size_t member) const noexcept {
     const std::size_t later = member < count_p_ ? start_[member + 1] - start_[member] : 0;
     return found_count_[member] + static_cast<std::uint32_t>(later);

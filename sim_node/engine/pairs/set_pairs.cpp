@@ -353,7 +353,10 @@ void SetPairs::visit_bound_pairs(const StateTable& table, VisitBoundPair visit, 
 
 /// The elastic forces stay: their work up to step 0 belongs to the energy stored there.
 void SetPairs::start() noexcept {
-  for (std::size_t i = 0; i < viscous_.size(); ++i) force_[i] -= viscous_[i];
+  constexpr std::size_t kPartners = 3;  // of the 4 values of a column: no force
+  for (std::size_t i = 0; i < viscous_.size(); ++i) {
+    if (i % 4 != kPartners) force_[i] -= viscous_[i];
+  }
   std::fill(viscous_.begin(), viscous_.end(), 0.0);
 }
 

@@ -74,10 +74,12 @@ class SetPairs {
   /// The most since the last forget_partners(). Of what rests, as it came to rest.
   PartnerCount largest_partners() const noexcept { return largest_partners_; }
   void forget_partners() noexcept { largest_partners_ = {}; }
-  /// Of one member when the last forces were computed, those of P first.
+  /// Partners of one member when the last forces were computed, those of P first.
   std::uint32_t partners_of(std::size_t member) const noexcept {
     CORDIS_ASSERT(member < column_.size());
-    return static_cast<std::uint32_t>(force_[4 * member + 3]);
+    const double most = static_cast<double>(column_.size());
+    const double partners = force_[4 * member + 3];  // of a snapshot: any number
+    return partners > 0.0 ? static_cast<std::uint32_t>(std::min(partners, most)) : 0;
   }
 
   /// Forgets the viscous forces of the last call: those before step 0 take no work.

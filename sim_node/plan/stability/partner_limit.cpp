@@ -64,6 +64,10 @@ class Partners {
         low *= 0.5;
       }
     }
+    if (low <= kSmallest && !stable(low)) {
+      for (const std::size_t set : sets) factor_[set] = 0.0;
+      return;
+    }
     while (high > kFinest * low) {
       const double middle = std::sqrt(low * high);
       (stable(middle) ? low : high) = middle;
@@ -121,6 +125,7 @@ std::vector<PartnerLimit> partner_limits(const NetworkDescription& network,
       limits.push_back({crowd.set, crowd.at_start, {}, {}, 0, 0});
     }
     PartnerLimit& limit = limits.back();
+    bool is_first = limit.is_guaranteed();
     for (std::size_t m = 0; m < crowd.members.size(); ++m) {
       constexpr double kRounding = 1e-9;
       const double possible = crowd.possible[m];
@@ -132,12 +137,12 @@ std::vector<PartnerLimit> partner_limits(const NetworkDescription& network,
       const bool is_mass = network.mats[crowd.members[m]].kind == engine::MatKind::kMass;
       const bool guaranteed = certified >= possible || !is_mass;
       limit.certified.push_back(static_cast<std::uint32_t>(certified));
-      const bool is_first = limit.is_guaranteed();
       limit.guaranteed.push_back(guaranteed ? 1 : 0);
       if (guaranteed) continue;
       limit.least =
           is_first ? limit.certified.back() : std::min(limit.least, limit.certified.back());
       limit.most = std::max(limit.most, limit.certified.back());
+      is_first = false;
     }
   }
   return limits;

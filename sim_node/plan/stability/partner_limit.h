@@ -15,8 +15,8 @@ namespace cordis::plan {
 struct PartnerLimit {
   std::uint32_t set = 0;       ///< index in NetworkDescription::sets
   std::uint32_t at_start = 0;  ///< the most partners of any mass at the start
-  /// By member, those of the first set first: stable in every pose and state in which no member
-  /// has more partners at once.
+  /// Partners of each member, those of the first set first: stable in every pose and state in which
+  /// no member has more at once.
   std::vector<std::uint32_t> certified;
   /// By member: no pose whatever has more, or it is no mass.
   std::vector<std::uint8_t> guaranteed;
@@ -30,7 +30,7 @@ struct PartnerLimit {
   }
 };
 
-/// Of all sets: the numbers that the graph has times the largest factors, to 1 %, with which a row
+/// The limits of all sets: the numbers that the graph has times the largest factors, to 1 %, with which a row
 /// bound of the step stays below 4. All sets are raised together by half, then one after the other.
 /// Not below the numbers of the graph where `holds`, for then these are certified. O(liaisons).
 /// @param graph  without weights, of this network

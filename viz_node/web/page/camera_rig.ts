@@ -1,5 +1,5 @@
-// viz_node/web/page/camera_rig.ts -- the camera: orbit, pan and zoom by mouse, presets and fit by key;
-// orthographic for flat scenes.
+// viz_node/web/page/camera_rig.ts -- the camera: orbit, pan and zoom by mouse, presets and fit by
+// key; orthographic for flat scenes.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 

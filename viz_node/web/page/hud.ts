@@ -128,8 +128,8 @@ export class Hud {
     const limit = sim?.largest_limit_number;
     set('limit', typeof limit === 'number' ? `${threeDigits(limit)} of 4` : NONE, typeof limit === 'number' && limit >= 4 ? 'warn' : '');
     const partners = sim?.largest_partners ?? 0;
-    const certified = sim?.certified_partners ?? 0;
-    set('partners', partners + certified > 0 ? `${partners} of ${certified}` : NONE, partners > certified ? 'warn' : '');
+    const certified = sim?.certified_partners ?? null;
+    set('partners', certified !== null ? `${partners} of ${certified}` : NONE, certified !== null && partners > certified ? 'warn' : '');
   }
 
   private writeNodes(nodes: NodeState[]): void {

@@ -120,7 +120,7 @@ export interface NodeState {
   dissipated_j: Figure; // taken by viscosity
   largest_limit_number: Figure; // K' + 2 Z' seen: below 4 nothing diverges
   largest_partners: number; // most others that a mass of a set has touched at once
-  certified_partners: number; // up to which the step is certified; 0 where nothing is to be watched
+  certified_partners: number | null; // up to which the step is certified; null where nothing is watched
   port_energy_j: Figure; // of a device: given to the hand, net
   passivity_ticks: number;
   step: number;
