@@ -100,5 +100,29 @@ TEST(Links, BearTheNameGivenOrThatOfTheirLiaison) {
   EXPECT_EQ(scene.links[1].count, 2u);
 }
 
+TEST(Links, WarnOfEndsThatCoincideUnderARestLength) {
+  const auto problems_of = [](int space, const std::string& links) {
+    config::Problems problems;
+    const std::string zero = space == 1 ? "[0, 0, 1]" : "[[0, 0], [0, 0], [1, 0]]";
+    load_scene_text(scene_head(space) + std::string(kLiaisons) +
+                        "matter:\n  a: {kind: mass, mass_kg: 1, at_m: " + zero + "}\nlinks:\n" +
+                        links,
+                    "t", problems);
+    return problems.text();
+  };
+  const std::string apart = "  - {liaison: s, between: [\"a[0]\", \"a[1]\"], rest_m: 0.1}\n";
+
+  const std::string report = problems_of(2, apart);
+
+  EXPECT_NE(report.find("warning: 'a[0]' and 'a[1]' start at the same point, so their link has no "
+                        "direction and exerts no force"),
+            std::string::npos)
+      << report;
+  EXPECT_NE(report.find("move one of them"), std::string::npos) << report;
+  EXPECT_EQ(problems_of(1, apart), "");
+  EXPECT_EQ(problems_of(2, "  - {liaison: s, between: [\"a[0]\", \"a[1]\"]}\n"), "");
+  EXPECT_EQ(problems_of(2, "  - {liaison: s, between: [\"a[0]\", \"a[2]\"], rest_m: 0.1}\n"), "");
+}
+
 }  // namespace
 }  // namespace cordis::scene

@@ -108,6 +108,8 @@ class Assembly {
   /// problem.
   bool join(const Selection& from, const Selection& to, const LinkLaw& law,
             const config::Place& place);
+  /// Warns of the first of these links whose ends coincide and that has a rest length.
+  void warn_of_coincident_ends(const LinkLists& added, const config::Place& place);
 
   /// Remembers the links of a kind that have been added since there were `before`.
   void add_group(const std::string& name, LinkKind kind, const LinkCounts& before,

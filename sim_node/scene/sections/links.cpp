@@ -94,8 +94,34 @@ bool Assembly::join(const Selection& from, const Selection& to, const LinkLaw& l
     added.join_alone(law, a, b, mats[a].position, mats[b].position, scene_.space(),
                      radius_of(a) + radius_of(b));
   }
+  warn_of_coincident_ends(added, place);
   append(added, 0);
   return true;
+}
+
+/// Where the ends coincide in 2-D and 3-D, a rest length has no direction. One warning stands for all
+/// pairs of a link of the scene.
+void Assembly::warn_of_coincident_ends(const LinkLists& added, const config::Place& place) {
+  if (scene_.space() == 1) return;
+  const auto look_in = [&](const auto& links, const auto& pulls_at_once) {
+    for (const auto& link : links) {
+      const auto& mats = scene_.network.mats;
+      const bool coincide = mats[link.mat_a].position == mats[link.mat_b].position;
+      if (!coincide || link.rest_length == 0.0 || !pulls_at_once(link)) continue;
+      const std::string quote = "'";
+      const std::string a = quote + names_.word_of(link.mat_a, false) + quote;
+      const std::string b = quote + names_.word_of(link.mat_b, false) + quote;
+      problems_.warning(place,
+                        a + " and " + b +
+                            " start at the same point, so their link has no direction and exerts "
+                            "no force, although its rest length is not 0",
+                        "move one of them a little to the side on which it shall be");
+      return true;
+    }
+    return false;
+  };
+  if (look_in(added.links, [](const engine::Link& link) { return link.stiffness != 0.0; })) return;
+  (void)look_in(added.state_links, [](const engine::StateLink&) { return true; });
 }
 
 void Assembly::add_group(const std::string& name, LinkKind kind, const LinkCounts& before,
