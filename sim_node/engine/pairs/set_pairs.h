@@ -1,6 +1,7 @@
 // sim_node/engine/pairs/set_pairs.h -- the pairs of one set liaison, in motion.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -77,7 +78,7 @@ class SetPairs {
   /// Of one member when the last forces were computed, those of P first.
   std::uint32_t partners_of(std::size_t member) const noexcept {
     CORDIS_ASSERT(member < column_.size());
-    return static_cast<std::uint32_t>(force_[4 * member + 3]);
+    return static_cast<std::uint32_t>(std::ceil(force_[4 * member + 3]));
   }
 
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
@@ -121,6 +122,7 @@ class SetPairs {
   std::vector<double> radius_;         // of each member [m]; empty when the rest length is given
   double rest_length_;                 // [m]
   double range_;                       // [m]
+  PartnerShare share_;
   Path path_ = Path::kAnyStateMachine;
   LinearPair linear_;
   LennardJonesPair lennard_jones_;
