@@ -24,7 +24,9 @@ struct Stability {
   double step = 0.0;               ///< of the network [s]
   std::vector<PartnerLimit> sets;  ///< how many partners it is stable with, one of each set
 
-  bool holds() const noexcept { return step < certified.step; }
+  std::optional<Doubt> doubt;  ///< what keeps every step from being certain
+
+  bool holds() const noexcept { return step < certified.step && !doubt; }
   bool diverges() const noexcept { return step > diverging_step; }
   /// 1 - (step / certified)^2: the part of the largest stiffness that may still be added.
   double margin() const noexcept;

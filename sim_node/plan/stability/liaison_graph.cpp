@@ -35,6 +35,11 @@ double slope_beyond(const engine::LennardJones& law, double touch, double range)
   return largest;
 }
 
+void note(const Slope& slope, LiaisonId liaison, LiaisonGraph& graph) {
+  graph.bounded = graph.bounded && slope.bounded;
+  if (slope.doubt != nullptr && !graph.doubt) graph.doubt = {liaison, slope.doubt};
+}
+
 /// One side of a set: its touching pairs, and those beyond.
 void add_side(const NetworkDescription& network, std::uint32_t index, const Slope& slope,
               const PartnerBounds& bounds, bool of_p, LiaisonGraph& graph) {
@@ -75,8 +80,9 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
                           ? set.rest_length
                           : smallest_radius(network, set.set_p) + smallest_radius(network, others);
   const Slope slope =
-      largest_slope(network.state_machines[set.state_machine], rest, network.dimension, reach);
-  graph.bounded = graph.bounded && slope.bounded;
+      largest_slope(network.state_machines[set.state_machine], rest, network.dimension,
+                    reach_between(reach, network, set.set_p, others));
+  note(slope, {LiaisonKind::kSet, index}, graph);
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);
   if (!set.set_q.empty()) add_side(network, index, slope, bounds, /*of_p=*/false, graph);
@@ -115,9 +121,10 @@ LiaisonGraph liaison_graph(const NetworkDescription& network) {
   const Reach reach = reach_of(network);
   index = 0;
   for (const engine::StateLink& link : network.state_links) {
-    const Slope slope = largest_slope(network.state_machines[link.state_machine], link.rest_length,
-                                      network.dimension, reach);
-    graph.bounded = graph.bounded && slope.bounded;
+    const Slope slope =
+        largest_slope(network.state_machines[link.state_machine], link.rest_length,
+                      network.dimension, reach_between(reach, network, {link.mat_a}, {link.mat_b}));
+    note(slope, {LiaisonKind::kStateLink, index}, graph);
     graph.joints.push_back({link.mat_a,
                             link.mat_b,
                             slope.stiffness,
