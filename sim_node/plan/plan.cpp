@@ -168,8 +168,7 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   if (stability.certified.step > stability.diverging_step * (1.0 + kRounding)) {
     stability.certified.step = stability.diverging_step;
     if (!stability.doubt) {
-      stability.doubt = {stability.certified.liaison.value_or(LiaisonId{}),
-                         "the two limits of the step exclude each other"};
+      stability.doubt = {stability.certified.liaison.value_or(LiaisonId{}), kLimitsCross};
     }
   }
   return stability;

@@ -13,6 +13,10 @@
 
 namespace cordis::plan {
 
+/// The doubt of a scene whose certified step is found above the one that diverges: an error of the
+/// program, after which nothing is certified.
+inline constexpr const char* kLimitsCross = "the two limits of the step exclude each other";
+
 /// What is surely stable, what surely diverges.
 struct Stability {
   /// Stable in every pose and every combination of states, with so many partners as `sets` says.

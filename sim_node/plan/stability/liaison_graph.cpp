@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim_node/plan/stability/partner_bound.h"
+#include "sim_node/plan/stability/start_pairs.h"
 
 namespace cordis::plan {
 namespace {
@@ -79,9 +80,18 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const double rest = set.rest_length >= 0.0
                           ? set.rest_length
                           : smallest_radius(network, set.set_p) + smallest_radius(network, others);
-  const Slope slope =
-      largest_slope(network.state_machines[set.state_machine], rest, network.dimension,
-                    reach_between(reach, network, set.set_p, others));
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  Reach here = reach_between(reach, network, set.set_p, others);
+  const StartPairs near(network, set);
+  double stored = 0.0;  // in the pair that stores the most
+  for (const StartPair& pair : near.pairs()) {
+    const double own =
+        rest_length_of(network, set, mat_of(set, pair.member_a), mat_of(set, pair.member_b));
+    stored = std::max(stored, stored_in(state_machine, own, pair.distance));
+  }
+  here.energy += stored;
+  here.brought += stored;
+  const Slope slope = largest_slope(state_machine, rest, network.dimension, here);
   note(slope, {LiaisonKind::kSet, index}, graph);
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);

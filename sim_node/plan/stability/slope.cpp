@@ -32,7 +32,8 @@ double energy_at(const Reach& reach) {
   const double inverse = (reach.mass_a.high > 0.0 ? 1.0 / reach.mass_a.high : 0.0) +
                          (reach.mass_b.high > 0.0 ? 1.0 / reach.mass_b.high : 0.0);
   const double meeting = inverse > 0.0 ? 2.0 * reach.speed * reach.speed / inverse : 0.0;
-  return reach.brought + meeting;
+  constexpr double kSpare = 1.01;  // for the sum over the pull
+  return kSpare * (reach.brought + meeting);
 }
 
 /// How far one way a state is stretched by the energy of the reach [m], its pull summed up; infinite
@@ -191,20 +192,23 @@ double energy_brought(const engine::NetworkDescription& network) {
   }
   for (const engine::StateLink& link : network.state_links) {
     const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
-    const engine::LinkState& state = state_machine.states[state_machine.start];
     const double distance = length(link.mat_a, link.mat_b);
-    const double e = distance - link.rest_length;
-    const double pull = state.stiffness * e + elastic_pull(state.elasticity, {distance, e});
-    if (!acts_at(state, pull)) continue;
-    // An expression has no closed form: no less than its present pull over the elongation.
-    const double stored = stores_energy(state.elasticity) ? potential(state.elasticity, distance, e)
-                                                          : std::abs(pull * e);
-    energy += 0.5 * state.stiffness * e * e + std::max(stored, 0.0);
+    energy += stored_in(state_machine, link.rest_length, distance);
   }
   return energy + weight * (highest - lowest).norm();
 }
 
 }  // namespace
+
+double stored_in(const engine::StateMachine& state_machine, double rest_length, double distance) {
+  const engine::LinkState& state = state_machine.states[state_machine.start];
+  const double e = distance - rest_length;
+  const double pull = elastic_pull(state.elasticity, {distance, e});
+  if (!acts_at(state, state.stiffness * e + pull)) return 0.0;
+  const double in_law = stores_energy(state.elasticity) ? potential(state.elasticity, distance, e)
+                                                        : std::abs(pull * e);
+  return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
+}
 
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach) {
@@ -284,6 +288,9 @@ Reach reach_between(Reach reach, const engine::NetworkDescription& network,
     }
     return range;
   };
+  if (mats_a.size() == 1 && mats_b.size() == 1) {
+    reach.energy = std::max(reach.energy, reach.brought);
+  }
   reach.mass_a = masses(mats_a);
   reach.mass_b = masses(mats_b);
   return reach;

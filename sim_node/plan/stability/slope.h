@@ -36,6 +36,10 @@ struct Slope {
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach);
 
+/// What a liaison stores at a distance in the state of its start [J], 0 where it does not act; of an
+/// expression, which has no closed form, the product of its pull and elongation.
+double stored_in(const engine::StateMachine& state_machine, double rest_length, double distance);
+
 /// The tangent of a liaison at one distance of its ends and no speed, in the stiffest of its
 /// states.
 struct Tangent {
