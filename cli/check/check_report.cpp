@@ -85,9 +85,8 @@ std::string stability_text(const SceneCheck& check) {
               : "\n";
   if (!stability.bounded) {
     text +=
-        "            a law has no largest slope: certified while no link is longer than twice its "
-        "length at\n            the start, and no pair meets faster than the fastest two at the "
-        "start\n";
+        "            a law has no largest slope: certified for the energy and speeds of the start, "
+        "\n            and for a hand of 1 m/s\n";
   }
   for (const plan::PartnerLimit& set : stability.sets) text += partners_text(check, set);
   return text + limit_text(check);
