@@ -68,6 +68,11 @@ std::string stability_text(const SceneCheck& check) {
   } else if (stability.diverges()) {
     text = fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
                        check.rate_above(1.0 / stability.certified.step));
+  } else if (stability.doubt) {
+    text = fmt::format(
+        "stability   not certain: {}: {};\n            energy and K' + 2 Z' are watched during "
+        "the run\n",
+        scene::call_liaison(check.scene, stability.doubt->liaison).name, stability.doubt->why);
   } else {
     text = fmt::format(
         "stability   not certain: stable in some poses or states alone; a rate_hz of {:.0f} is "
@@ -81,9 +86,8 @@ std::string stability_text(const SceneCheck& check) {
               : "\n";
   if (!stability.bounded) {
     text +=
-        "            a law has no largest slope: certified while no link is longer than twice its "
-        "length at\n            the start, and no pair meets faster than the fastest two at the "
-        "start\n";
+        "            a law has no largest slope: certified for the energy and speeds of the start, "
+        "\n            and for a hand of 1 m/s\n";
   }
   for (const plan::PartnerLimit& set : stability.sets) text += partners_text(check, set);
   return text + limit_text(check);

@@ -70,8 +70,9 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
                       weight[link.mat_a] + weight[link.mat_b]});
     const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
     for (std::size_t state = 0; state < state_machine.states.size(); ++state) {
-      const plan::Slope slope = plan::largest_slope(only(state_machine, state), link.rest_length,
-                                                    network.dimension, reach);
+      const plan::Slope slope =
+          plan::largest_slope(only(state_machine, state), link.rest_length, network.dimension,
+                              reach_between(reach, network, {link.mat_a}, {link.mat_b}));
       slopes_.push_back(number(weights.stiffness * slope.stiffness, viscosity * slope.viscosity));
     }
   }

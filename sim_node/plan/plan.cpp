@@ -13,6 +13,8 @@
 namespace cordis::plan {
 namespace {
 
+constexpr double kCertainContact = 1.0;  // K'
+
 double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mats) {
   double most = 0.0;  // of 1 / m
   for (const std::uint32_t mat : mats) most = std::max(most, graph.inverse_mass[mat]);
@@ -103,6 +105,41 @@ bool comes_and_goes(const engine::NetworkDescription& network, LiaisonId liaison
   return false;
 }
 
+/// True if a liaison with states, or of sets, lets go by being clamped.
+bool is_clamped(const engine::NetworkDescription& network, LiaisonId liaison) {
+  const std::uint32_t state_machine = liaison.kind == LiaisonKind::kSet
+                                          ? network.sets[liaison.index].state_machine
+                                          : network.state_links[liaison.index].state_machine;
+  const auto& states = network.state_machines[state_machine].states;
+  return std::any_of(states.begin(), states.end(),
+                     [](const engine::LinkState& state) { return !state.pulls || !state.pushes; });
+}
+
+/// @param clamped  only those that let go by being clamped
+std::optional<ContactGain> worst_contact_among(const engine::NetworkDescription& network,
+                                               const LiaisonGraph& graph, bool clamped) {
+  std::optional<ContactGain> worst;
+  const auto consider = [&](LiaisonId liaison, double stiffness, double inverse_mass) {
+    const double normalised = stiffness * inverse_mass * network.step * network.step;
+    if (worst && normalised <= worst->stiffness) return;
+    const double gain = normalised < 4.0 ? normalised / (4.0 - normalised)
+                                         : std::numeric_limits<double>::infinity();
+    worst = {liaison, normalised, gain};
+  };
+  for (const Edge& joint : graph.joints) {
+    if (!comes_and_goes(network, joint.liaison)) continue;
+    if (clamped && !is_clamped(network, joint.liaison)) continue;
+    consider(joint.liaison, joint.stiffness,
+             graph.inverse_mass[joint.mat_a] + graph.inverse_mass[joint.mat_b]);
+  }
+  for (const ContactBound& crowd : graph.crowds) {
+    if (clamped && !is_clamped(network, {LiaisonKind::kSet, crowd.set})) continue;
+    consider({LiaisonKind::kSet, crowd.set}, crowd.stiffness,
+             lightest(graph, crowd.members) + lightest(graph, crowd.others));
+  }
+  return worst;
+}
+
 }  // namespace
 
 double Stability::margin() const noexcept {
@@ -121,6 +158,19 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   stability.bounded = graph.bounded;
   stability.step = network.step;
   stability.sets = partner_limits(network, graph, stability.holds());
+  stability.doubt = graph.doubt;
+  const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
+  if (!stability.doubt && contact && contact->stiffness > kCertainContact) {
+    stability.doubt = {contact->liaison, "each touch of it may gain energy, for its K' is above 1"};
+  }
+  // The two limits are found in ways that have nothing in common: where they cross one is wrong.
+  constexpr double kRounding = 1e-6;
+  if (stability.certified.step > stability.diverging_step * (1.0 + kRounding)) {
+    stability.certified.step = stability.diverging_step;
+    if (!stability.doubt) {
+      stability.doubt = {stability.certified.liaison.value_or(LiaisonId{}), kLimitsCross};
+    }
+  }
   return stability;
 }
 
@@ -151,24 +201,7 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
 
 std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& network,
                                             const LiaisonGraph& graph) {
-  std::optional<ContactGain> worst;
-  const auto consider = [&](LiaisonId liaison, double stiffness, double inverse_mass) {
-    const double normalised = stiffness * inverse_mass * network.step * network.step;
-    if (worst && normalised <= worst->stiffness) return;
-    const double gain = normalised < 4.0 ? normalised / (4.0 - normalised)
-                                         : std::numeric_limits<double>::infinity();
-    worst = {liaison, normalised, gain};
-  };
-  for (const Edge& joint : graph.joints) {
-    if (!comes_and_goes(network, joint.liaison)) continue;
-    consider(joint.liaison, joint.stiffness,
-             graph.inverse_mass[joint.mat_a] + graph.inverse_mass[joint.mat_b]);
-  }
-  for (const ContactBound& crowd : graph.crowds) {
-    consider({LiaisonKind::kSet, crowd.set}, crowd.stiffness,
-             lightest(graph, crowd.members) + lightest(graph, crowd.others));
-  }
-  return worst;
+  return worst_contact_among(network, graph, /*clamped=*/false);
 }
 
 Plan plan_of(const engine::NetworkDescription& network, double band_hz) {

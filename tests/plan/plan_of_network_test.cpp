@@ -1,14 +1,19 @@
 // tests/plan/plan_of_network_test.cpp
 #include <cmath>
+#include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "sim_node/plan/plan.h"
+#include "tests/engine/programs.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {
 namespace {
 
+using engine::Operation;
+using engine::Quantity;
 using plan::Plan;
 using plan::plan_of;
 
@@ -45,6 +50,153 @@ TEST(Plan, SaysWhatASwitchingMayGain) {
   ASSERT_TRUE(plan.worst_contact.has_value());
   EXPECT_NEAR(plan.worst_contact->stiffness, 0.04, 1e-12);
   EXPECT_NEAR(plan.worst_contact->worst, 1.0 / 0.99 - 1.0, 1e-12);  // 1 / (1 - K'/4) - 1
+}
+
+/// A mass this far from a fixed point, with a law between them.
+NetworkDescription mass_on_law(int dimension, double weight, const Vec3& at, const Vec3& velocity,
+                               engine::StateMachine law, double rest) {
+  NetworkDescription scene;
+  scene.dimension = dimension;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3::Zero()), mass(weight, at)};
+  scene.mats[1].velocity = velocity;
+  scene.state_machines.push_back(std::move(law));
+  scene.state_links = {{0, 1, 0, rest}};
+  return scene;
+}
+
+TEST(Plan, DoesNotCallAHammerUnstableThatIsStillAwayFromItsString) {
+  engine::StateMachine felt = state_machine(0.0, engine::Power{3e8, 2.5});
+  felt.states[0].pulls = false;
+  NetworkDescription scene = mass_on_law(1, 0.009, Vec3(0.04, 0, 0), Vec3(-1.5, 0, 0), felt, 0.0);
+  scene.step = 1.0 / 44100.0;
+
+  const plan::Stability stability = plan_of(scene, 10.0).stability;
+
+  EXPECT_FALSE(stability.diverges());
+  EXPECT_TRUE(stability.holds());
+}
+
+TEST(Plan, IsNotCertainOfAContactThatGainsEnergyAtEachTouch) {
+  engine::StateMachine thread = state_machine(2500.0);
+  thread.states[0].pushes = false;
+  const auto stability_at = [&](double stiffness) {
+    thread.states[0].stiffness = stiffness;
+    return plan_of(mass_on_law(2, 0.001, Vec3(0.2, 0, 0), Vec3::Zero(), thread, 0.2), 10.0)
+        .stability;
+  };
+  const plan::Stability stiff = stability_at(2500.0);  // K' = 2.5
+  EXPECT_FALSE(stiff.holds());
+  EXPECT_FALSE(stiff.diverges());
+  ASSERT_TRUE(stiff.doubt.has_value());
+  EXPECT_EQ(stiff.doubt->liaison.index, 0u);
+  EXPECT_TRUE(stability_at(500.0).holds());
+}
+
+TEST(Plan, IsNotCertainOfAnOrbitAboutARingThatPulls) {
+  const engine::StateMachine law = state_machine(0.0, engine::Rings{{{-800.0, 0.12}}});
+  EXPECT_FALSE(plan_of(mass_on_law(2, 0.002, Vec3(0.06, 0.002, 0), Vec3(0, 0.1, 0), law, 0.0), 10.0)
+                   .stability.holds());
+  EXPECT_TRUE(plan_of(mass_on_law(1, 0.002, Vec3(0.06, 0, 0), Vec3::Zero(), law, 0.0), 10.0)
+                  .stability.holds());
+}
+
+TEST(Plan, SeesTheViscosityThatAnExpressionHasInItsElasticity) {
+  const Term pull = 90.0 * q(Quantity::kElongation) + 4.0 * q(Quantity::kSpeed);
+  const plan::Stability stability =
+      plan_of(mass_on_law(2, 0.001, Vec3(0.1, 0, 0), Vec3(0.2, 0, 0),
+                          state_machine(0.0, expression_law(pull)), 0.1),
+              10.0)
+          .stability;
+  EXPECT_TRUE(stability.diverges());  // Z' = 4
+}
+
+/// A random law of any kind, gentle to wild.
+engine::StateMachine random_state_machine(std::mt19937& random) {
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  const Term d = q(Quantity::kDistance);
+  const Term e = q(Quantity::kElongation);
+  const Term v = q(Quantity::kSpeed);
+  engine::Law law;
+  switch (random() % 6) {
+    case 0:
+      law = engine::Table({-0.2, between(-0.1, 0.0), 0.1},
+                          {between(-9.0, 3.0), 0.0, between(0.0, 9.0)});
+      break;
+    case 1:
+      law = engine::Power{between(-5.0, 300.0), 0.5 * static_cast<double>(random() % 9)};
+      break;
+    case 2:
+      law = engine::LennardJones{between(0.0, 0.1), between(0.05, 0.3)};
+      break;
+    case 3:
+      law = engine::Rings{{{between(-50.0, 200.0), 0.1}, {between(-50.0, 90.0), 0.4}}};
+      break;
+    case 4:
+      law = expression_law(between(-20.0, 90.0) * e + between(-500.0, 500.0) * e * e * e +
+                           between(-0.1, 0.3) * v + one(Operation::kTanh, between(-9.0, 9.0) * e) +
+                           between(0.0, 5.0) * q(Quantity::kMassB) * d);
+      break;
+    default:
+      break;
+  }
+  engine::StateMachine made = state_machine(random() % 2 == 0 ? between(0.0, 200.0) : 0.0, law);
+  made.states[0].viscosity = random() % 3 == 0 ? between(0.0, 0.5) : 0.0;
+  made.states[0].pulls = random() % 3 != 0;
+  made.states[0].pushes = !made.states[0].pulls || random() % 4 != 0;
+  return made;
+}
+
+NetworkDescription random_scene(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  NetworkDescription scene;
+  scene.dimension = 1 + static_cast<int>(random() % 3);
+  scene.step = 1e-3;
+  const auto place = [&] {
+    return Vec3(between(-0.3, 0.3), scene.dimension > 1 ? between(-0.3, 0.3) : 0.0,
+                scene.dimension > 2 ? between(-0.3, 0.3) : 0.0);
+  };
+  scene.mats.push_back(fixed(place()));
+  for (int i = 0; i < 5; ++i) {
+    scene.mats.push_back(mass(between(0.001, 0.1), place()));
+    scene.mats.back().velocity = 3.0 * place();
+  }
+  for (std::uint32_t l = 0; l < 6; ++l) {
+    scene.state_machines.push_back(random_state_machine(random));
+    const auto a = static_cast<std::uint32_t>(random() % 6);
+    const auto b = static_cast<std::uint32_t>((a + 1 + random() % 5) % 6);
+    scene.state_links.push_back(
+        {a, b, l, scene.dimension == 1 ? between(-0.1, 0.4) : between(0.0, 0.4)});
+  }
+  if (random() % 2 == 0) {
+    engine::SetLiaison set;
+    set.state_machine = static_cast<std::uint32_t>(random() % 6);
+    set.set_p = {1, 2, 3, 4, 5};
+    set.rest_length = set.range = 0.2;
+    scene.sets.push_back(set);
+  }
+  return scene;
+}
+
+TEST(Plan, NeverCertifiesWhatSurelyDiverges) {
+  const unsigned first = std::random_device{}() % 1000000;
+  int certain = 0;
+  for (unsigned seed = first; seed < first + 300; ++seed) {
+    const NetworkDescription scene = random_scene(seed);
+    const plan::Stability stability = plan_of(scene, 10.0).stability;
+    EXPECT_FALSE(stability.holds() && stability.diverges()) << "seed " << seed;
+    const bool crosses = stability.doubt && stability.doubt->why == plan::kLimitsCross;
+    EXPECT_FALSE(crosses) << "seed " << seed << ", " << scene.dimension << "-D, at link "
+                          << stability.certified.liaison->index << " of kind "
+                          << static_cast<int>(stability.certified.liaison->kind);
+    certain += stability.doubt ? 0 : 1;
+  }
+  EXPECT_GT(certain, 10);
 }
 
 }  // namespace

@@ -49,13 +49,96 @@ TEST(Slope, OfAPullThatLastsIsAlsoAcrossTheLink) {
   EXPECT_LE(largest_slope(state_machine(0.0, law), 0.1, 1, {}).stiffness, 101.0);
 }
 
-TEST(Slope, OfAPowerIsThatAtTheReach) {
+TEST(Slope, OfAPowerIsThatWhereItHasTakenUpTheEnergyThereIs) {
+  // 1e5 e^2.5 / 2.5 = 0.4 J at e = 0.01 m.
   const engine::Power law{1e5, 1.5};
+  Reach reach{5.0, 0.0, 0.0};
+  reach.brought = 0.4;
 
-  const Slope slope = largest_slope(state_machine(0.0, law), 0.01, 1, Reach{0.01, 1.0, 0.0});
+  const Slope slope = largest_slope(state_machine(0.0, law), 0.0, 1, reach);
 
-  EXPECT_NEAR(slope.stiffness, 1e5 * 1.5 * 0.1, 1e-9);
+  const double e = std::pow(1e-5, 0.4);
+  EXPECT_NEAR(slope.stiffness, 1e5 * 1.5 * std::sqrt(e), 0.03 * slope.stiffness);
+  EXPECT_GE(slope.stiffness, 1e5 * 1.5 * std::sqrt(e));
   EXPECT_FALSE(slope.bounded);
+  EXPECT_EQ(slope.doubt, nullptr);
+}
+
+TEST(Slope, IsInDoubtOfWhatPullsWhereItsEndsMeetAndTurns) {
+  const engine::Rings orbit{{{-50.0, 0.2}}};
+  const engine::Table rope{{0.0, 0.1}, {2.0, 3.0}};
+  const engine::Power constant{4.0, 0.0};
+  for (const Law& law : {Law(orbit), Law(rope), Law(constant)}) {
+    EXPECT_NE(largest_slope(state_machine(0.0, law), 0.0, 2, Reach{0.3}).doubt, nullptr)
+        << law.index();
+  }
+  EXPECT_NE(largest_slope(state_machine(40.0), -0.02, 3, Reach{0.3}).doubt, nullptr);
+  // A chord never turns; what pushes at 0, or never pulls, never pulls its ends about each other.
+  EXPECT_EQ(largest_slope(state_machine(0.0, orbit), 0.0, 1, Reach{0.3}).doubt, nullptr);
+  EXPECT_EQ(largest_slope(state_machine(40.0), 0.02, 3, Reach{0.3}).doubt, nullptr);
+  EXPECT_EQ(largest_slope(contact(40.0), -0.02, 3, Reach{0.3}).doubt, nullptr);
+}
+
+TEST(Slope, OfAnExpressionCountsItsSpeedAsViscosity) {
+  const Term e = q(Quantity::kElongation);
+  const Term v = q(Quantity::kSpeed);
+  const Slope slope =
+      largest_slope(state_machine(0.0, expression_law(80.0 * e + 3.0 * v)), 0.0, 1, Reach{});
+
+  EXPECT_DOUBLE_EQ(slope.stiffness, 80.0) << "at rest, where nothing has any reach";
+  EXPECT_DOUBLE_EQ(slope.viscosity, 3.0);
+  EXPECT_TRUE(slope.bounded);
+}
+
+TEST(Slope, OfAnExpressionKnowsTheMassesOfItsEnds) {
+  const Term law = 1e4 * q(Quantity::kMassB) * q(Quantity::kElongation);
+  Reach reach;
+  reach.mass_b = {0.01, 0.02};
+  EXPECT_DOUBLE_EQ(largest_slope(state_machine(0.0, expression_law(law)), 0.0, 1, reach).stiffness,
+                   200.0);
+}
+
+TEST(Slope, OfAnExpressionThatJumpsOrGrowsBeyondAllEnergyIsInDoubt) {
+  const Term d = q(Quantity::kDistance);
+  const Term e = q(Quantity::kElongation);
+  for (const Term& law : {one(Operation::kSign, e), 1.0 / d}) {
+    EXPECT_NE(largest_slope(state_machine(0.0, expression_law(law)), 0.0, 1, Reach{0.1}).doubt,
+              nullptr);
+  }
+  EXPECT_EQ(largest_slope(state_machine(0.0, expression_law(one(Operation::kTanh, e))), 0.0, 1,
+                          Reach{0.1})
+                .doubt,
+            nullptr);
+}
+
+TEST(Enclosure, IsNeverBelowTheSlopeAtAnyPlace) {
+  const Term d = q(Quantity::kDistance);
+  const Term v = q(Quantity::kSpeed);
+  const std::vector<Term> laws{d * d * d - 2.0 * d, one(Operation::kSin, 3.0 * d) * v,
+                               one(Operation::kTanh, d * v), one(Operation::kAbs, d - 0.3) * 5.0,
+                               one(Operation::kExp, d) / (2.0 + d)};
+  for (std::size_t l = 0; l < laws.size(); ++l) {
+    const engine::Law law = expression_law(laws[l]);
+    const auto& program = std::get<engine::Expression>(law).program;
+    plan::LinkBox box{{0.1, 1.1}, {-2.0, 1.5}, 0.0, {}, {}};
+    const plan::SteepestSlopes most = plan::steepest_slopes(program, box);
+    double steepest = 0.0;
+    double viscous = 0.0;
+    constexpr double kNear = 1e-6;
+    for (int i = 0; i < 60; ++i) {
+      for (int j = 0; j < 60; ++j) {
+        const double at = 0.1 + i / 60.0;
+        const double speed = -2.0 + 3.5 * j / 60.0;
+        const auto pull = [&](double x, double y) { return elastic_pull(law, {x, x, y}); };
+        steepest = std::max(steepest, (pull(at + kNear, speed) - pull(at, speed)) / kNear);
+        viscous = std::max(viscous, (pull(at, speed + kNear) - pull(at, speed)) / kNear);
+      }
+    }
+    EXPECT_GE(most.over_distance, steepest - 1e-4) << l;
+    EXPECT_LE(most.over_distance, 1.2 * steepest + 1e-4) << l;
+    EXPECT_GE(most.over_speed, viscous - 1e-4) << l;
+    EXPECT_LE(most.over_speed, 1.2 * viscous + 1e-4) << l;
+  }
 }
 
 TEST(Slope, OfRingsIsThatOfTheirSteepestSum) {

@@ -27,19 +27,37 @@ double Rings::potential(double distance, double /*elongation*/) const noexcept {
   return sum;
 }
 
-LawSlope Rings::largest_slope(const LawRange& range) const noexcept {
-  LawSlope slope;
-  for (const Ring& inner : rings) {  // just inside this ring
-    double stiffness = 0.0;
+/// Along a piece between two radii the slope is constant, and pull / distance is monotone.
+double Rings::slope_beyond(double distance, bool turns) const noexcept {
+  double largest = 0.0;
+  const auto consider_across = [&](double at) {
     double pull = 0.0;
+    for (const Ring& ring : rings) pull -= ring.stiffness * std::max(ring.radius - at, 0.0);
+    if (pull > 0.0) largest = std::max(largest, pull / at);
+  };
+  if (turns) consider_across(distance);
+  for (const Ring& inner : rings) {  // just inside this ring
+    if (inner.radius <= distance) continue;
+    double stiffness = 0.0;
     for (const Ring& ring : rings) {
       if (ring.radius >= inner.radius) stiffness += ring.stiffness;
-      if (ring.radius > inner.radius) pull -= ring.stiffness * (ring.radius - inner.radius);
     }
-    slope.value = std::max(slope.value, stiffness);
-    if (range.turns) slope.value = std::max(slope.value, pull / inner.radius);
+    largest = std::max(largest, stiffness);
+    if (turns) consider_across(inner.radius);
   }
-  return slope;
+  return largest;
+}
+
+LawSlope Rings::largest_slope(const LawRange& range) const noexcept {
+  const double slope = slope_beyond(0.0, range.turns);
+  if (std::isfinite(slope)) return {slope, true};
+  // Rings that pull at the distance 0 turn ever faster there. Nearer than a hundredth of the
+  // smallest radius they are not followed.
+  constexpr double kNearest = 0.01;
+  double smallest = rings.front().radius;
+  for (const Ring& ring : rings) smallest = std::min(smallest, ring.radius);
+  return {std::max(slope_beyond(kNearest * smallest, range.turns), slope_beyond(0.0, false)),
+          false};
 }
 
 double Rings::smallest_slope(double /*elongation*/) const noexcept {

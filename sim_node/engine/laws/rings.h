@@ -27,6 +27,9 @@ struct Rings {
   LawSlope largest_slope(const LawRange& range) const noexcept;
   double smallest_slope(double elongation) const noexcept;
   double range() const noexcept;
+  /// The largest slope at this distance and beyond, along the link and, if it turns, across [N/m];
+  /// infinite at 0 for rings that pull there.
+  double slope_beyond(double distance, bool turns) const noexcept;
 
   struct Term {
     const Ring* rings;

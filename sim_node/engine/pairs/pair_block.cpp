@@ -42,7 +42,7 @@ std::size_t PairBlock::padded_count() const noexcept {
 }
 
 PairRows PairBlock::rows() noexcept {
-  return {row_at(0), column_a_.data(), count_, first_, last_, start_.data()};
+  return {row_at(0), column_a_.data(), count_, first_, last_, start_.data(), {}};
 }
 
 PairRow PairBlock::row_at(std::size_t pair) noexcept {

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "sim_node/engine/core/vector_width.h"
+#include "sim_node/engine/description/partner_share.h"
 
 namespace cordis::engine {
 
@@ -67,6 +68,7 @@ struct PairRows {
   std::size_t first = 0;               // row
   std::size_t last = 0;                // one past the last
   const std::size_t* start = nullptr;  // of row a: start[a - first]; one past the last too
+  PartnerShare share;                  // how much each pair counts for
 };
 
 /// Members and their neighbours: row a has those from neighbour[start[a] - origin] on to
@@ -95,8 +97,8 @@ using GatherPairs = std::size_t (*)(const MemberColumns& members, std::size_t a,
 /// Finds length, inverse and elongation increment of all pairs.
 using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows) noexcept;
 
-/// Adds factor * (vector from a to b) to member a and takes it from member b, for each pair. Adds 1
-/// to the fourth value of both where the factor is not 0: the partners of a member.
+/// Adds factor * (vector from a to b) to member a and takes it from member b, for each pair. Adds
+/// its share to the fourth value of both where the factor is not 0: the partners of a member.
 using SpreadRows = void (*)(const PairRows& rows, const double* factor, double* force) noexcept;
 
 /// A contact: pull = K e + Z / dt * elongation increment, within min_pull and max_pull.

@@ -205,14 +205,17 @@ static_assert(sizeof(kLaneNumber) == kPairBatch * sizeof(double));
 /// As `spread`, of pairs that begin anywhere, and of the first `count` lanes alone: what else
 /// stands in the lanes belongs to other rows, and gets nothing.
 template <class Lanes>
-void spread_some(const PairRow& row, std::size_t i, std::size_t count, const double* factors,
+void spread_some(const PairRows& rows, std::size_t i, std::size_t count, const double* factors,
                  double* force, RowSum<Lanes>& sum, std::size_t part) noexcept {
   using Row = typename Lanes::Row;
+  const PairRow& row = rows.pairs;
   const Row factor = Lanes::load_any(factors + i);
   typename Lanes::Row3 pull{Lanes::load_any(row.x + i) * factor,
                             Lanes::load_any(row.y + i) * factor,
                             Lanes::load_any(row.z + i) * factor};
-  Row partner = less_one<Lanes>(Lanes::not_equal(factor, Lanes::zero()));
+  const auto near = Lanes::less(Lanes::load_any(row.length + i), Lanes::every(rows.share.near));
+  const Row share = Lanes::select(near, Lanes::every(-1.0), Lanes::every(-rows.share.beyond));
+  Row partner = Lanes::select(Lanes::not_equal(factor, Lanes::zero()), share, Lanes::zero());
   if (count < Lanes::kWidth) {
     const auto own =
         Lanes::less(Lanes::load(kLaneNumber), Lanes::every(static_cast<double>(count)));
@@ -230,7 +233,6 @@ void spread_some(const PairRow& row, std::size_t i, std::size_t count, const dou
 
 template <class Lanes>
 void spread_rows(const PairRows& rows, const double* factor, double* force) noexcept {
-  const PairRow row = rows.pairs;
   for (std::size_t a = rows.first; a < rows.last; ++a) {
     const std::size_t end = rows.start[a - rows.first + 1];
     RowSum<Lanes> sum = no_force<Lanes>();
@@ -239,7 +241,7 @@ void spread_rows(const PairRows& rows, const double* factor, double* force) noex
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
         const std::size_t at = i + part * Lanes::kWidth;
         if (at >= end) break;
-        spread_some<Lanes>(row, at, end - at, factor, force, sum, part);
+        spread_some<Lanes>(rows, at, end - at, factor, force, sum, part);
       }
     }
     give<Lanes>(sum, force + 4 * a);

@@ -57,6 +57,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       count_p_(description.sets[index].set_p.size()),
       rest_length_(description.sets[index].rest_length),
       range_(description.sets[index].range),
+      share_(partner_share(description, description.sets[index])),
       neighbours_(description.sets[index].set_p.size(), description.sets[index].set_q.size(),
                   description.dimension, range_,
                   list_capacity(description, description.sets[index], kernel), kernel),
@@ -205,7 +206,8 @@ void SetPairs::find_rest_lengths() noexcept {
 void SetPairs::step_block(const PairStep& step) noexcept {
   block_.pad(members());
   find_rest_lengths();
-  const PairRows rows = block_.rows();
+  PairRows rows = block_.rows();
+  rows.share = share_;
   kernel_.measure_pairs(members(), rows);
   if (path_ == Path::kLinear) {
     kernel_.linear_pairs(linear_, rows.pairs, rows.count, block_.rest_length(), block_.factor(),
@@ -255,7 +257,7 @@ std::uint32_t SetPairs::largest_among(std::size_t first, std::size_t last) const
   for (std::size_t m = first; m < last; ++m) {
     largest = std::max(largest, is_mass_[m] * force_[4 * m + 3]);
   }
-  return static_cast<std::uint32_t>(largest);
+  return static_cast<std::uint32_t>(std::ceil(largest));
 }
 
 StepEnergy SetPairs::give_forces(const ForceColumns& columns) const noexcept {

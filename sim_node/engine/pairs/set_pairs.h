@@ -1,6 +1,7 @@
 // sim_node/engine/pairs/set_pairs.h -- the pairs of one set liaison, in motion.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -79,7 +80,7 @@ class SetPairs {
     CORDIS_ASSERT(member < column_.size());
     const double most = static_cast<double>(column_.size());
     const double partners = force_[4 * member + 3];  // of a snapshot: any number
-    return partners > 0.0 ? static_cast<std::uint32_t>(std::min(partners, most)) : 0;
+    return partners > 0.0 ? static_cast<std::uint32_t>(std::ceil(std::min(partners, most))) : 0;
   }
 
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
@@ -123,6 +124,7 @@ class SetPairs {
   std::vector<double> radius_;         // of each member [m]; empty when the rest length is given
   double rest_length_;                 // [m]
   double range_;                       // [m]
+  PartnerShare share_;
   Path path_ = Path::kAnyStateMachine;
   LinearPair linear_;
   LennardJonesPair lennard_jones_;

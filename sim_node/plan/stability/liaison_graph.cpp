@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim_node/plan/stability/partner_bound.h"
+#include "sim_node/plan/stability/start_pairs.h"
 
 namespace cordis::plan {
 namespace {
@@ -33,6 +34,11 @@ double slope_beyond(const engine::LennardJones& law, double touch, double range)
     largest = std::max(largest, elastic_pull(law, {distance, distance}) / distance);
   }
   return largest;
+}
+
+void note(const Slope& slope, LiaisonId liaison, LiaisonGraph& graph) {
+  graph.bounded = graph.bounded && slope.bounded;
+  if (slope.doubt != nullptr && !graph.doubt) graph.doubt = {liaison, slope.doubt};
 }
 
 /// One side of a set: its touching pairs, and those beyond.
@@ -74,9 +80,19 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const double rest = set.rest_length >= 0.0
                           ? set.rest_length
                           : smallest_radius(network, set.set_p) + smallest_radius(network, others);
-  const Slope slope =
-      largest_slope(network.state_machines[set.state_machine], rest, network.dimension, reach);
-  graph.bounded = graph.bounded && slope.bounded;
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  Reach here = reach_between(reach, network, set.set_p, others);
+  const StartPairs near(network, set);
+  double stored = 0.0;  // in the pair that stores the most
+  for (const StartPair& pair : near.pairs()) {
+    const double own =
+        rest_length_of(network, set, mat_of(set, pair.member_a), mat_of(set, pair.member_b));
+    stored = std::max(stored, stored_in(state_machine, own, pair.distance));
+  }
+  here.energy += stored;
+  here.brought += stored;
+  const Slope slope = largest_slope(state_machine, rest, network.dimension, here);
+  note(slope, {LiaisonKind::kSet, index}, graph);
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);
   if (!set.set_q.empty()) add_side(network, index, slope, bounds, /*of_p=*/false, graph);
@@ -115,9 +131,10 @@ LiaisonGraph liaison_graph(const NetworkDescription& network) {
   const Reach reach = reach_of(network);
   index = 0;
   for (const engine::StateLink& link : network.state_links) {
-    const Slope slope = largest_slope(network.state_machines[link.state_machine], link.rest_length,
-                                      network.dimension, reach);
-    graph.bounded = graph.bounded && slope.bounded;
+    const Slope slope =
+        largest_slope(network.state_machines[link.state_machine], link.rest_length,
+                      network.dimension, reach_between(reach, network, {link.mat_a}, {link.mat_b}));
+    note(slope, {LiaisonKind::kStateLink, index}, graph);
     graph.joints.push_back({link.mat_a,
                             link.mat_b,
                             slope.stiffness,

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "sim_node/engine/core/liaison_id.h"
@@ -13,6 +15,12 @@ namespace cordis::plan {
 
 using engine::LiaisonId;
 using engine::LiaisonKind;
+
+/// What keeps a step from being certain, whatever its length.
+struct Doubt {
+  LiaisonId liaison;
+  std::string why;  ///< for a person, as part of a sentence about the liaison
+};
 
 /// A liaison between two MATs with the largest slopes it can have.
 struct Edge {
@@ -51,6 +59,7 @@ struct LiaisonGraph {
   std::vector<ContactBound> crowds;
   double medium_viscosity = 0.0;  ///< on every mass [N s/m]
   bool bounded = true;            ///< false: a law has no largest slope of its own; see Reach
+  std::optional<Doubt> doubt;     ///< a liaison that nothing bounds
 
   /// The stiffness of Maxwell elements depends on the step: 2 Z tanh(K dt / 2 Z) / dt, at most K.
   void set_step(const engine::NetworkDescription& network, double step);

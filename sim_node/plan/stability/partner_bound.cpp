@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sim_node/engine/description/partner_share.h"
 #include "sim_node/plan/stability/start_pairs.h"
 
 namespace cordis::plan {
@@ -25,8 +26,7 @@ constexpr double kMaxVisits = 3e7;  // of cells by points
 bool only_pushes(const engine::StateMachine& state_machine) {
   return std::none_of(state_machine.states.begin(), state_machine.states.end(),
                       [](const engine::LinkState& state) {
-                        return state.pulls || state.viscosity > 0.0 ||
-                               !is_none(state.dissipation);
+                        return state.pulls || state.viscosity > 0.0 || !is_none(state.dissipation);
                       });
 }
 
@@ -38,15 +38,19 @@ std::vector<std::uint32_t> counts_at_start(const NetworkDescription& network,
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
   const bool pushes = only_pushes(state_machine);
   const double touch = engine::touch_distance(state_machine);
-  std::vector<std::uint32_t> counts(set.set_p.size() + set.set_q.size(), 0U);
+  const engine::PartnerShare share = partner_share(network, set);
+  std::vector<double> counts(set.set_p.size() + set.set_q.size(), 0.0);
   for (const StartPair& pair : near.pairs()) {
     const double rest =
         rest_length_of(network, set, mat_of(set, pair.member_a), mat_of(set, pair.member_b));
     if (pair.distance >= (pushes ? std::min(touch, rest) : touch)) continue;
-    ++counts[pair.member_a];
-    ++counts[pair.member_b];
+    const double one = pair.distance < share.near ? 1.0 : share.beyond;
+    counts[pair.member_a] += one;
+    counts[pair.member_b] += one;
   }
-  return counts;
+  std::vector<std::uint32_t> whole;
+  for (const double count : counts) whole.push_back(static_cast<std::uint32_t>(std::ceil(count)));
+  return whole;
 }
 
 double radius_of(const NetworkDescription& network, std::uint32_t mat) {

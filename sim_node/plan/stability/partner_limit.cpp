@@ -16,6 +16,7 @@ using engine::NetworkDescription;
 constexpr double kLimit = 4.0 * (1.0 - 1e-9);
 constexpr double kFinest = 1.01;     // of a factor
 constexpr double kLargest = 1024.0;  // of a factor
+constexpr int kRounds = 3;           // of giving the sets what is left
 constexpr double kSmallest = 1.0 / kLargest;
 
 /// The numbers of partners of a graph, raised set by set.
@@ -75,8 +76,8 @@ class Partners {
     for (const std::size_t set : sets) factor_[set] = low;
   }
 
-  /// Half of what all sets can grow by together; the rest goes to one set after the other, first to
-  /// the one that can grow the most by itself.
+  /// Half of what all sets can grow by together; of the rest one set after the other takes half of
+  /// what it can, in some rounds, first the one that can grow the most by itself; then all of it.
   const std::vector<double>& find_factors() {
     std::vector<std::size_t> sets;
     for (std::size_t set = 0; set < grows_.size(); ++set) {
@@ -94,6 +95,13 @@ class Partners {
     }
     std::sort(sets.begin(), sets.end(),
               [&](std::size_t a, std::size_t b) { return alone[a] > alone[b]; });
+    for (int round = 0; round < kRounds; ++round) {
+      for (const std::size_t set : sets) {
+        const double before = factor_[set];
+        find_factor({set});
+        factor_[set] = std::sqrt(before * factor_[set]);
+      }
+    }
     for (const std::size_t set : sets) find_factor({set});
     return factor_;
   }

@@ -3,27 +3,224 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cordis::plan {
 namespace {
 
 constexpr double kMinSpeed = 1.0;  // [m/s]
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+constexpr const char* kPullsWhereEndsMeet =
+    "it still pulls where its ends meet, and turns there without a limit";
+constexpr const char* kJumps = "its force jumps";
+constexpr const char* kNoLargestSlope = "no largest slope of its expression is known";
+constexpr const char* kConfinesNothing = "its expression grows steeper, and no energy confines it";
+
+bool is_jump(const engine::Law& law) {
+  constexpr double kWell = 1.1224;  // 2^(1/6): nearer than this the balls push each other
+  if (const auto* power = std::get_if<engine::Power>(&law)) {
+    return power->coefficient > 0.0 && power->exponent < 1.0;
+  }
+  const auto* balls = std::get_if<engine::LennardJones>(&law);
+  return balls != nullptr && balls->cutoff > 0.0 && balls->cutoff < kWell * balls->diameter;
+}
+
+/// The most energy that a liaison can take up [J]: all there is, or two MATs meeting at the speed
+/// of the reach.
+double energy_at(const Reach& reach) {
+  const double inverse = (reach.mass_a.high > 0.0 ? 1.0 / reach.mass_a.high : 0.0) +
+                         (reach.mass_b.high > 0.0 ? 1.0 / reach.mass_b.high : 0.0);
+  const double meeting = inverse > 0.0 ? 2.0 * reach.speed * reach.speed / inverse : 0.0;
+  constexpr double kSpare = 1.01;  // for the sum over the pull
+  return kSpare * (reach.brought + meeting);
+}
+
+/// How far one way a state is stretched by the energy of the reach [m], its pull summed up; infinite
+/// when a thousand times the length of its start does not take it up.
+double stretch_of(const engine::LinkState& state, double rest_length, double energy, double sign,
+                  double scale, double last) {
+  constexpr double kGrowth = 1.05;
+  constexpr double kFarthest = 1e3;
+  const auto pull = [&](double at) {
+    const double e = sign * at;
+    return sign * (state.stiffness * e + elastic_pull(state.elasticity, {e + rest_length, e}));
+  };
+  double stored = 0.0;
+  double before = 0.0;
+  for (double at = 1e-9 * scale; at < kFarthest * scale; at *= kGrowth) {
+    const double reached = std::min(at, last);
+    stored += 0.5 * (pull(before) + pull(reached)) * (reached - before);
+    if (stored >= energy || reached >= last) return reached;
+    before = reached;
+  }
+  return kNoLimit;
+}
+
+struct Stretch {
+  double longer = 0.0;   // [m]
+  double shorter = 0.0;  // [m]
+  bool confined = true;
+};
+
+Stretch stretch_within(const engine::LinkState& state, double rest_length, bool turns,
+                       const Reach& reach) {
+  constexpr double kSmallest = 1e-3;  // [m]
+  const double scale = std::max({reach.elongation, std::abs(rest_length), kSmallest});
+  const double energy = energy_at(reach);
+  Stretch stretch;
+  const double nearest = turns ? std::max(rest_length, 0.0) : kNoLimit;
+  stretch.longer = stretch_of(state, rest_length, energy, 1.0, scale, kNoLimit);
+  stretch.shorter = stretch_of(state, rest_length, energy, -1.0, scale, nearest);
+  for (double* way : {&stretch.longer, &stretch.shorter}) {
+    stretch.confined = stretch.confined && std::isfinite(*way);
+    if (!std::isfinite(*way) || reach.held)
+      *way = std::max(scale, std::isfinite(*way) ? *way : 0.0);
+  }
+  return stretch;
+}
+
+/// Adds the slopes of an expression over the distances and speeds that can be reached.
+void add_expression(const engine::Program& program, const Stretch& stretch, double rest_length,
+                    bool turns, const Reach& reach, Slope& slope) {
+  constexpr double kFar = 1e9;  // [m], [m/s]
+  constexpr double kSame = 1.05;
+  const double lightest = std::max(reach.mass_a.high, reach.mass_b.high) > 0.0
+                              ? std::min(reach.mass_a.low > 0.0 ? reach.mass_a.low : kNoLimit,
+                                         reach.mass_b.low > 0.0 ? reach.mass_b.low : kNoLimit)
+                              : kNoLimit;
+  const double speed = 2.0 * reach.speed + std::sqrt(2.0 * reach.brought / lightest);
+  LinkBox box{{rest_length - stretch.shorter, rest_length + stretch.longer},
+              {-speed, speed},
+              rest_length,
+              reach.mass_a,
+              reach.mass_b};
+  if (turns) box.distance.low = std::max(box.distance.low, 0.0);
+  const SteepestSlopes near = steepest_slopes(program, box);
+  box.distance = {turns ? 0.0 : -kFar, kFar};
+  box.speed = {-kFar, kFar};
+  const SteepestSlopes far = steepest_slopes(program, box);
+  const auto same = [](double of_far, double of_near) { return of_far <= kSame * of_near; };
+  if (!std::isfinite(near.over_distance) || !std::isfinite(near.over_speed)) {
+    slope.bounded = false;
+    slope.doubt = kNoLargestSlope;
+    return;
+  }
+  slope.stiffness += near.over_distance;
+  slope.viscosity += near.over_speed;
+  if (same(far.over_distance, near.over_distance) && same(far.over_speed, near.over_speed)) return;
+  slope.bounded = false;
+  if (!stretch.confined) slope.doubt = kConfinesNothing;
+}
+
+/// What an expression without a largest slope has where it is looked at.
+double sampled(const engine::Law& law, const engine::LawRange& range) {
+  return engine::largest_slope(law, range).value;
+}
+
+Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, const Reach& reach) {
+  const auto* elastic = std::get_if<engine::Expression>(&state.elasticity);
+  const auto* viscous = std::get_if<engine::Expression>(&state.dissipation);
+  Slope slope{state.stiffness, state.viscosity};
+  Stretch stretch;
+  const bool is_power = std::holds_alternative<engine::Power>(state.elasticity);
+  if (elastic != nullptr || viscous != nullptr || is_power) {
+    stretch = stretch_within(state, rest_length, turns, reach);
+  }
+  engine::LawRange spring{reach.elongation, rest_length, reach.energy};
+  spring.turns = turns;
+  if (is_power) spring.argument = std::max(stretch.longer, stretch.shorter);
+  engine::LawRange damper{reach.speed, rest_length};
+  damper.viscous = true;
+  if (elastic != nullptr) {
+    add_expression(elastic->program, stretch, rest_length, turns, reach, slope);
+    if (slope.doubt != nullptr) slope.stiffness += sampled(state.elasticity, spring);
+  } else {
+    const engine::LawSlope law = engine::largest_slope(state.elasticity, spring);
+    slope.stiffness += law.value;
+    slope.bounded = slope.bounded && law.bounded;
+    if (is_jump(state.elasticity)) slope.doubt = kJumps;
+  }
+  if (viscous != nullptr) {
+    const bool was_sure = slope.doubt == nullptr;
+    add_expression(viscous->program, stretch, rest_length, turns, reach, slope);
+    if (was_sure && slope.doubt != nullptr) slope.viscosity += sampled(state.dissipation, damper);
+  } else {
+    const engine::LawSlope law = engine::largest_slope(state.dissipation, damper);
+    slope.viscosity += law.value;
+    slope.bounded = slope.bounded && law.bounded;
+  }
+  if (turns && state.pulls) {
+    const double nearest = 1e-9 * std::max({reach.elongation, std::abs(rest_length), 1e-6});
+    const double pull = state.stiffness * (nearest - rest_length) +
+                        elastic_pull(state.elasticity, {nearest, nearest - rest_length});
+    constexpr double kRounding = 1.001;
+    if (pull > kRounding * slope.stiffness * nearest) {
+      slope.bounded = false;
+      slope.doubt = kPullsWhereEndsMeet;
+    }
+  }
+  return slope;
+}
+
+/// True if the law of a state has a tangent there: it is neither let go of nor at its limit.
+bool acts_at(const engine::LinkState& state, double pull) {
+  return (state.pulls || pull < 0.0) && (state.pushes || pull > 0.0) &&
+         std::abs(pull) < state.force_limit;
+}
+
+/// Kinetic, stored and what falling through the scene brings [J].
+double energy_brought(const engine::NetworkDescription& network) {
+  double energy = 0.0;
+  engine::Vec3 lowest = network.mats.front().position;
+  engine::Vec3 highest = lowest;
+  double weight = 0.0;
+  for (const engine::Mat& mat : network.mats) {
+    lowest = lowest.cwiseMin(mat.position);
+    highest = highest.cwiseMax(mat.position);
+    if (mat.kind != engine::MatKind::kMass) continue;
+    energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
+    weight += mat.mass * network.gravity_on(mat).norm();
+  }
+  const auto length = [&](std::uint32_t a, std::uint32_t b) {
+    const engine::Vec3 along = network.mats[b].position - network.mats[a].position;
+    return network.dimension == 1 ? along.x() : along.norm();
+  };
+  for (const engine::Link& link : network.links) {
+    const double e = length(link.mat_a, link.mat_b) - link.rest_length;
+    energy += 0.5 * link.stiffness * e * e;
+  }
+  for (const engine::StateLink& link : network.state_links) {
+    const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
+    const double distance = length(link.mat_a, link.mat_b);
+    energy += stored_in(state_machine, link.rest_length, distance);
+  }
+  return energy + weight * (highest - lowest).norm();
+}
 
 }  // namespace
 
+double stored_in(const engine::StateMachine& state_machine, double rest_length, double distance) {
+  const engine::LinkState& state = state_machine.states[state_machine.start];
+  const double e = distance - rest_length;
+  const double pull = elastic_pull(state.elasticity, {distance, e});
+  if (!acts_at(state, state.stiffness * e + pull)) return 0.0;
+  const double in_law = stores_energy(state.elasticity) ? potential(state.elasticity, distance, e)
+                                                        : std::abs(pull * e);
+  return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
+}
+
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach) {
-  engine::LawRange elastic{reach.elongation, rest_length, reach.energy};
-  elastic.turns = dimension > 1;
-  engine::LawRange viscous{reach.speed, rest_length};
-  viscous.viscous = true;
   Slope largest;
   for (const engine::LinkState& state : state_machine.states) {
-    const engine::LawSlope spring = engine::largest_slope(state.elasticity, elastic);
-    const engine::LawSlope damper = engine::largest_slope(state.dissipation, viscous);
-    largest.stiffness = std::max(largest.stiffness, state.stiffness + spring.value);
-    largest.viscosity = std::max(largest.viscosity, state.viscosity + damper.value);
-    largest.bounded = largest.bounded && spring.bounded && damper.bounded;
+    const Slope slope = slope_of(state, rest_length, dimension > 1, reach);
+    largest.stiffness = std::max(largest.stiffness, slope.stiffness);
+    largest.viscosity = std::max(largest.viscosity, slope.viscosity);
+    largest.bounded = largest.bounded && slope.bounded;
+    // Of several states each holds only where its exits let it: what one pulls beyond is no doubt.
+    const bool may_end = !state_machine.is_stateless() && slope.doubt == kPullsWhereEndsMeet;
+    if (largest.doubt == nullptr && !may_end) largest.doubt = slope.doubt;
   }
   return largest;
 }
@@ -41,10 +238,14 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_
       return elastic_pull(state.elasticity, {e + rest_length, e});
     };
     const auto viscous = [&](double speed) {
-      return viscous_pull(state.dissipation, {distance, 0.0, speed});
+      return viscous_pull(state.dissipation, {distance, elongation, speed}) +
+             elastic_pull(state.elasticity, {distance, elongation, speed});
     };
-    stiffest.stiffness = std::max(stiffest.stiffness, state.stiffness + rise(elastic, elongation));
-    stiffest.viscosity = std::max(stiffest.viscosity, state.viscosity + rise(viscous, 0.0));
+    const bool acts = acts_at(state, state.stiffness * elongation + elastic(elongation));
+    stiffest.stiffness =
+        std::max(stiffest.stiffness, state.stiffness + (acts ? rise(elastic, elongation) : 0.0));
+    stiffest.viscosity =
+        std::max(stiffest.viscosity, state.viscosity + (acts ? rise(viscous, 0.0) : 0.0));
   }
   const engine::LinkState& first = state_machine.states.front();
   if (state_machine.is_stateless()) {
@@ -70,6 +271,28 @@ Reach reach_of(const engine::NetworkDescription& network) {
     reach.speed = std::max(reach.speed, mat.velocity.norm());
     reach.energy = std::max(reach.energy, mat.mass * mat.velocity.squaredNorm());
   }
+  reach.brought = energy_brought(network);
+  return reach;
+}
+
+Reach reach_between(Reach reach, const engine::NetworkDescription& network,
+                    const std::vector<std::uint32_t>& mats_a,
+                    const std::vector<std::uint32_t>& mats_b) {
+  const auto masses = [&](const std::vector<std::uint32_t>& mats) {
+    Interval range{kNoLimit, 0.0};
+    for (const std::uint32_t mat : mats) {
+      const bool is_mass = network.mats[mat].kind == engine::MatKind::kMass;
+      const double mass = is_mass ? network.mats[mat].mass : 0.0;
+      range = {std::min(range.low, mass), std::max(range.high, mass)};
+      reach.held = reach.held || network.mats[mat].kind == engine::MatKind::kPort;
+    }
+    return range;
+  };
+  if (mats_a.size() == 1 && mats_b.size() == 1) {
+    reach.energy = std::max(reach.energy, reach.brought);
+  }
+  reach.mass_a = masses(mats_a);
+  reach.mass_b = masses(mats_b);
   return reach;
 }
 

@@ -1,7 +1,11 @@
 // sim_node/plan/stability/slope.h -- how stiff and how viscous a liaison can become.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "sim_node/engine/description/network.h"
+#include "sim_node/plan/stability/program_enclosure.h"
 
 namespace cordis::plan {
 
@@ -10,6 +14,10 @@ struct Reach {
   double elongation = 0.0;  ///< of a link, either way [m]
   double speed = 0.0;       ///< of the growth of a link [m/s]
   double energy = 0.0;      ///< with which two MATs approach each other [J]
+  double brought = 0.0;  ///< kinetic and stored at the start, and by falling through the scene [J]
+  Interval mass_a = {};  ///< of the ends of the liaison [kg]; 0 for what is no mass
+  Interval mass_b = {};
+  bool held = false;  ///< a port holds an end, so that no energy limits the elongation
 };
 
 /// The largest slopes of a liaison: no tangent of its force is above them, whatever the pose and
@@ -18,6 +26,8 @@ struct Slope {
   double stiffness = 0.0;  ///< [N/m]
   double viscosity = 0.0;  ///< [N s/m]
   bool bounded = true;     ///< false: they hold within the Reach alone
+  /// Why nothing bounds them, not even the Reach; null: something does.
+  const char* doubt = nullptr;
 };
 
 /// Over all states of a state machine. [Luc90 III.2.3 b formalism to modify the liaison]
@@ -25,6 +35,10 @@ struct Slope {
 /// @param dimension    of the network: in 1 dimension a link never turns
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach);
+
+/// What a liaison stores at a distance in the state of its start [J], 0 where it does not act; of an
+/// expression, which has no closed form, the product of its pull and elongation.
+double stored_in(const engine::StateMachine& state_machine, double rest_length, double distance);
 
 /// The tangent of a liaison at one distance of its ends and no speed, in the stiffest of its
 /// states.
@@ -38,7 +52,12 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_
                          double distance);
 
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the
-/// fastest MAT, at least 1 m/s; two such MATs meeting.
+/// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.
 Reach reach_of(const engine::NetworkDescription& network);
+
+/// Of a liaison between one of some MATs and one of others.
+Reach reach_between(Reach reach, const engine::NetworkDescription& network,
+                    const std::vector<std::uint32_t>& mats_a,
+                    const std::vector<std::uint32_t>& mats_b);
 
 }  // namespace cordis::plan

@@ -1,0 +1,373 @@
+// sim_node/plan/stability/program_enclosure.cpp
+#include "sim_node/plan/stability/program_enclosure.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <vector>
+
+namespace cordis::plan {
+namespace {
+
+using engine::Instruction;
+using engine::Operation;
+using engine::Quantity;
+
+constexpr Interval kAny{-std::numeric_limits<double>::infinity(),
+                        std::numeric_limits<double>::infinity()};
+constexpr std::size_t kVariables = 2;  // distance, speed
+
+double size_of(const Interval& u) {
+  return std::max(std::abs(u.low), std::abs(u.high));
+}
+bool holds_zero(const Interval& u) {
+  return u.low <= 0.0 && u.high >= 0.0;
+}
+bool is_point(const Interval& u) {
+  return u.low == u.high;
+}
+Interval checked(double low, double high) {
+  return std::isnan(low) || std::isnan(high) ? kAny : Interval{low, high};
+}
+Interval hull(const Interval& u, const Interval& v) {
+  return {std::min(u.low, v.low), std::max(u.high, v.high)};
+}
+Interval operator+(const Interval& u, const Interval& v) {
+  return checked(u.low + v.low, u.high + v.high);
+}
+Interval operator-(const Interval& u) {
+  return {-u.high, -u.low};
+}
+Interval operator-(const Interval& u, const Interval& v) {
+  return u + -v;
+}
+/// Ends that are infinite stand for numbers without a bound: 0 times them is 0.
+double product(double u, double v) {
+  return u == 0.0 || v == 0.0 ? 0.0 : u * v;
+}
+Interval operator*(const Interval& u, const Interval& v) {
+  const auto [low, high] = std::minmax({product(u.low, v.low), product(u.low, v.high),
+                                        product(u.high, v.low), product(u.high, v.high)});
+  return checked(low, high);
+}
+/// Precondition: it does not hold 0.
+Interval inverse(const Interval& u) {
+  return {1.0 / u.high, 1.0 / u.low};
+}
+
+/// Value and derivatives in a box.
+struct Enclosed {
+  Interval value;
+  std::array<Interval, kVariables> slope{};
+  bool jumps = false;  // a truth or a sign that is not decided in the box
+};
+
+const Enclosed kUnknown{kAny, {kAny, kAny}};
+
+/// f of u, with what f' lies within.
+Enclosed chain(const Enclosed& u, const Interval& value, const Interval& derivative) {
+  Enclosed f{value};
+  for (std::size_t i = 0; i < kVariables; ++i) f.slope[i] = derivative * u.slope[i];
+  return f;
+}
+
+Interval whole_power(const Interval& u, int exponent) {
+  const double low = std::pow(u.low, exponent);
+  const double high = std::pow(u.high, exponent);
+  if (exponent % 2 == 0 && holds_zero(u)) return checked(0.0, std::max(low, high));
+  return checked(std::min(low, high), std::max(low, high));
+}
+
+/// The values of a function with |f'| <= 1 and |f| <= 1.
+template <class Function>
+Interval of_wave(const Interval& u, Function f) {
+  const double half = 0.5 * (u.high - u.low);
+  if (!(half < 2.0)) return {-1.0, 1.0};
+  const double middle = f(u.low + half);
+  return {std::max(-1.0, middle - half), std::min(1.0, middle + half)};
+}
+
+class Evaluation {
+ public:
+  explicit Evaluation(const LinkBox& box) : box_(box) {}
+
+  Enclosed of(const engine::Program& program) {
+    std::vector<Enclosed> stack;
+    for (const Instruction& instruction : program.code) {
+      const std::size_t taken = engine::operand_count(instruction.operation);
+      const Enclosed result = apply(instruction, stack.data() + (stack.size() - taken));
+      stack.resize(stack.size() - taken);
+      stack.push_back(result);
+      if (stack.back().jumps) continue;
+      if (!std::isfinite(size_of(stack.back().value)) && box_is_finite()) stack.back() = kUnknown;
+    }
+    return stack.front().jumps ? Enclosed{stack.front().value, {kAny, kAny}} : stack.front();
+  }
+
+ private:
+  bool box_is_finite() const {
+    return std::isfinite(size_of(box_.distance)) && std::isfinite(size_of(box_.speed));
+  }
+
+  Enclosed quantity(Quantity which) const {
+    const Interval one{1.0, 1.0};
+    switch (which) {
+      case Quantity::kDistance:
+        return {box_.distance, {one, {}}};
+      case Quantity::kElongation:
+        return {box_.distance - Interval{box_.rest_length, box_.rest_length}, {one, {}}};
+      case Quantity::kSpeed:
+        return {box_.speed, {Interval{}, one}};
+      case Quantity::kMassA:
+        return {box_.mass_a};
+      case Quantity::kMassB:
+        return {box_.mass_b};
+      default:
+        return kUnknown;
+    }
+  }
+
+  /// How much a value may change within the box, with some to spare.
+  double change_of(const Enclosed& u) const {
+    constexpr double kSpare = 4.0;
+    return kSpare * (product(box_.distance.high - box_.distance.low, size_of(u.slope[0])) +
+                     product(box_.speed.high - box_.speed.low, size_of(u.slope[1])));
+  }
+
+  /// One of two in a box in which it is not decided which: as steep as either where they meet, for
+  /// what is no more apart than its slopes make it.
+  Enclosed either(const Enclosed& u, const Enclosed& v) const {
+    Enclosed both{hull(u.value, v.value)};
+    const double apart = size_of(u.value - v.value);
+    const bool meet = apart <= change_of(u) + change_of(v);
+    for (std::size_t i = 0; i < kVariables; ++i) {
+      both.slope[i] = meet ? hull(u.slope[i], v.slope[i]) : kAny;
+    }
+    return both;
+  }
+
+  Enclosed multiply(const Enclosed& u, const Enclosed& v) const {
+    if (u.jumps && v.jumps) return {u.value * v.value, {}, true};
+    if (v.jumps) return multiply(v, u);
+    if (u.jumps) {
+      const Enclosed at_low = chain(v, Interval{u.value.low, u.value.low} * v.value,
+                                    Interval{u.value.low, u.value.low});
+      const Enclosed at_high = chain(v, Interval{u.value.high, u.value.high} * v.value,
+                                     Interval{u.value.high, u.value.high});
+      return either(at_low, at_high);
+    }
+    Enclosed f{u.value * v.value};
+    for (std::size_t i = 0; i < kVariables; ++i) {
+      f.slope[i] = u.value * v.slope[i] + u.slope[i] * v.value;
+    }
+    return f;
+  }
+
+  static Enclosed truth(bool certainly, bool certainly_not) {
+    if (certainly) return {{1.0, 1.0}};
+    if (certainly_not) return {{0.0, 0.0}};
+    return {{0.0, 1.0}, {}, true};
+  }
+
+  static Enclosed power(const Enclosed& u, const Enclosed& v) {
+    const double n = v.value.low;
+    if (!is_point(v.value) || u.value.low < 0.0) return kUnknown;
+    if (n == 0.0) return {{1.0, 1.0}};
+    const auto at = [&](double exponent) {
+      const double low = std::pow(u.value.low, exponent);
+      const double high = std::pow(u.value.high, exponent);
+      return checked(std::min(low, high), std::max(low, high));
+    };
+    return chain(u, at(n), Interval{n, n} * at(n - 1.0));
+  }
+
+  Enclosed one(const Instruction& instruction, const Enclosed& u) const {
+    const Interval& x = u.value;
+    switch (instruction.operation) {
+      case Operation::kNegate: {
+        Enclosed f = chain(u, -x, {-1.0, -1.0});
+        f.jumps = u.jumps;
+        return f;
+      }
+      case Operation::kNot:
+        return truth(x.low == 0.0 && x.high == 0.0, x.low > 0.0 || x.high < 0.0);
+      default:
+        break;
+    }
+    if (u.jumps) return kUnknown;
+    switch (instruction.operation) {
+      case Operation::kAbs:
+        if (x.low >= 0.0) return u;
+        if (x.high <= 0.0) return chain(u, -x, {-1.0, -1.0});
+        return chain(u, {0.0, size_of(x)}, {-1.0, 1.0});
+      case Operation::kSqrt:
+        if (x.low < 0.0) return kUnknown;
+        return chain(u, {std::sqrt(x.low), std::sqrt(x.high)},
+                     {0.5 / std::sqrt(x.high), 0.5 / std::sqrt(x.low)});
+      case Operation::kSign:
+        if (x.low > 0.0) return {{1.0, 1.0}};
+        if (x.high < 0.0) return {{-1.0, -1.0}};
+        return {{-1.0, 1.0}, {}, true};
+      case Operation::kExp: {
+        const Interval e{std::exp(x.low), std::exp(x.high)};
+        return chain(u, e, e);
+      }
+      case Operation::kLog:
+        if (x.low <= 0.0) return kUnknown;
+        return chain(u, {std::log(x.low), std::log(x.high)}, inverse(x));
+      case Operation::kSin:
+        return chain(u, of_wave(x, [](double v) { return std::sin(v); }),
+                     of_wave(x, [](double v) { return std::cos(v); }));
+      case Operation::kCos:
+        return chain(u, of_wave(x, [](double v) { return std::cos(v); }),
+                     of_wave(x, [](double v) { return -std::sin(v); }));
+      case Operation::kTanh: {
+        const Interval t{std::tanh(x.low), std::tanh(x.high)};
+        const Interval square = whole_power(t, 2);
+        return chain(u, t, {1.0 - square.high, 1.0 - square.low});
+      }
+      case Operation::kWholePower: {
+        const int n = static_cast<int>(instruction.constant);
+        if (n == 0) return {{1.0, 1.0}};
+        if (n < 0 && holds_zero(x)) return kUnknown;
+        const double factor = n;
+        return chain(u, whole_power(x, n), Interval{factor, factor} * whole_power(x, n - 1));
+      }
+      default:
+        return kUnknown;  // rising and falling, of which no law is made
+    }
+  }
+
+  Enclosed apply(const Instruction& instruction, const Enclosed* of) const {
+    const std::size_t count = engine::operand_count(instruction.operation);
+    if (instruction.operation == Operation::kConstant) {
+      return {{instruction.constant, instruction.constant}};
+    }
+    if (instruction.operation == Operation::kQuantity) return quantity(instruction.quantity);
+    if (count == 1) return one(instruction, of[0]);
+    if (instruction.operation == Operation::kSelect) {
+      const Interval& which = of[0].value;
+      if (!holds_zero(which)) return of[1];
+      if (is_point(which)) return of[2];
+      return of[1].jumps || of[2].jumps ? kUnknown : either(of[1], of[2]);
+    }
+    return two(instruction.operation, of[0], of[1]);
+  }
+
+  Enclosed two(Operation operation, const Enclosed& u, const Enclosed& v) const {
+    const Interval& x = u.value;
+    const Interval& y = v.value;
+    const bool x_holds = !holds_zero(x);
+    const bool y_holds = !holds_zero(y);
+    const bool x_fails = holds_zero(x) && is_point(x);
+    const bool y_fails = holds_zero(y) && is_point(y);
+    switch (operation) {
+      case Operation::kLess:
+        return truth(x.high < y.low, x.low >= y.high);
+      case Operation::kLessOrEqual:
+        return truth(x.high <= y.low, x.low > y.high);
+      case Operation::kGreater:
+        return truth(x.low > y.high, x.high <= y.low);
+      case Operation::kGreaterOrEqual:
+        return truth(x.low >= y.high, x.high < y.low);
+      case Operation::kEqual:
+        return truth(is_point(x) && is_point(y) && x.low == y.low,
+                     x.high < y.low || x.low > y.high);
+      case Operation::kNotEqual:
+        return truth(x.high < y.low || x.low > y.high,
+                     is_point(x) && is_point(y) && x.low == y.low);
+      case Operation::kAnd:
+        return truth(x_holds && y_holds, x_fails || y_fails);
+      case Operation::kOr:
+        return truth(x_holds || y_holds, x_fails && y_fails);
+      case Operation::kMultiply:
+        return multiply(u, v);
+      default:
+        break;
+    }
+    if (u.jumps || v.jumps) return kUnknown;
+    switch (operation) {
+      case Operation::kMin:
+        if (x.high <= y.low) return u;
+        if (y.high <= x.low) return v;
+        return joined(u, v, {std::min(x.low, y.low), std::min(x.high, y.high)});
+      case Operation::kMax:
+        if (x.low >= y.high) return u;
+        if (y.low >= x.high) return v;
+        return joined(u, v, {std::max(x.low, y.low), std::max(x.high, y.high)});
+      case Operation::kAdd:
+        return {x + y, {u.slope[0] + v.slope[0], u.slope[1] + v.slope[1]}};
+      case Operation::kSubtract:
+        return {x - y, {u.slope[0] - v.slope[0], u.slope[1] - v.slope[1]}};
+      case Operation::kDivide: {
+        if (holds_zero(y)) return kUnknown;
+        const Interval part = inverse(y);
+        return multiply(u, chain(v, part, -(part * part)));
+      }
+      case Operation::kPower:
+        return power(u, v);
+      default:
+        return kUnknown;
+    }
+  }
+
+  static Enclosed joined(const Enclosed& u, const Enclosed& v, const Interval& value) {
+    return {value, {hull(u.slope[0], v.slope[0]), hull(u.slope[1], v.slope[1])}};
+  }
+
+  const LinkBox& box_;
+};
+
+/// The largest of one slope over the box.
+double steepest(const engine::Program& program, const LinkBox& whole, std::size_t variable) {
+  struct Piece {
+    LinkBox box;
+    double most;
+    bool operator<(const Piece& other) const { return most < other.most; }
+  };
+  constexpr int kBisections = 2000;
+  constexpr double kNearEnough = 1.02;
+  const auto piece = [&](const LinkBox& box) {
+    return Piece{box, std::max(0.0, Evaluation(box).of(program).slope[variable].high)};
+  };
+  std::priority_queue<Piece> pieces;
+  pieces.push(piece(whole));
+  double reached = 0.0;  // at places: no bound is below it
+  const double distance = whole.distance.high - whole.distance.low;
+  const double speed = whole.speed.high - whole.speed.low;
+  for (int n = 0; n < kBisections && pieces.top().most > kNearEnough * reached; ++n) {
+    Piece top = pieces.top();
+    LinkBox place = top.box;
+    place.distance.low = place.distance.high = 0.5 * (top.box.distance.low + top.box.distance.high);
+    place.speed.low = place.speed.high = 0.5 * (top.box.speed.low + top.box.speed.high);
+    const double here = Evaluation(place).of(program).slope[variable].high;
+    if (std::isfinite(here)) reached = std::max(reached, here);
+    const bool over_distance = (top.box.distance.high - top.box.distance.low) * speed >=
+                               (top.box.speed.high - top.box.speed.low) * distance;
+    const Interval& wide = over_distance ? top.box.distance : top.box.speed;
+    const double middle = 0.5 * (wide.low + wide.high);
+    if (!(middle > wide.low && middle < wide.high)) break;
+    pieces.pop();
+    LinkBox lower = top.box;
+    LinkBox upper = top.box;
+    (over_distance ? lower.distance : lower.speed).high = middle;
+    (over_distance ? upper.distance : upper.speed).low = middle;
+    pieces.push(piece(lower));
+    pieces.push(piece(upper));
+  }
+  return pieces.top().most;
+}
+
+}  // namespace
+
+SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box) {
+  return {steepest(program, box, 0), steepest(program, box, 1)};
+}
+
+Interval values_of(const engine::Program& program, const LinkBox& box) {
+  return Evaluation(box).of(program).value;
+}
+
+}  // namespace cordis::plan
