@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -25,6 +26,7 @@
 #include "sim_node/run/command_executor.h"
 #include "sim_node/run/request.h"
 #include "sim_node/run/runner.h"
+#include "sim_node/run/shadow_world.h"
 #include "sim_node/sim_config.h"
 
 namespace cordis::sim {
@@ -56,8 +58,13 @@ class Session {
   void receive();
   bool receive_lockstep();  ///< false when a sample is still missing
   void report_wait(const DeviceExchange& device);
-  /// One turn of the player, and what follows from it. @return whether a tick is complete
+  /// One turn of the player, and what follows from it: play() and show(). @return whether a tick
+  /// is complete
   bool advance();
+  bool play();
+  void show(bool complete);
+  void change_shadow();
+  void look_at_shadow();
   void answer(DeviceExchange& device);
   void answer_all();
   void offer_frame();
@@ -74,6 +81,8 @@ class Session {
   dds::Participant participant_;       // for all but the force loop
   dds::Participant loop_participant_;  // for the force loop, which waits for no other thread
   Runner runner_;
+  std::mutex shadow_mutex_;  // held for the copy of a pointer; the loop takes it to change scenes
+  std::shared_ptr<ShadowWorld> shadow_;  // of the stage that is played
   RequestMailbox mailbox_;
   dds::Reader<msg::GesturePositions> position_reader_;
   dds::Reader<msg::GestureForces> force_reader_;
@@ -88,18 +97,18 @@ class Session {
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
   node::RepeatedEvent crowding_{"a mass of a set touched still more others"};
   std::uint32_t partners_reported_ = 0;  // of this scene
-  std::uint64_t unwritten_ = 0;        // answers that DDS did not take
+  bool loops_ = false;                   // the loop has begun, and has not ended
+  std::uint64_t unwritten_ = 0;          // answers that DDS did not take
   node::RepeatedEvent absences_{"has been waiting long, with no device_node alive"};
   node::RepeatedEvent silences_{
       "has been waiting long for a sample of a device_node that is alive"};
 
   // What the loop reports to the status thread.
   struct StatusSnapshot {
-    engine::Energy energy;
+    WorldLook of_world;
+    bool loops = false;  // when all this was recorded
     double limit_number = 0.0;
     PartnersSeen partners;
-    std::uint64_t step = 0;
-    std::uint64_t state_hash = 0;
     std::uint64_t version = 0;  // of the scene
     ChangeCounter::Counts changes{};
     std::string failure;   // why the scene diverged

@@ -35,6 +35,10 @@ const Network& World::network() const noexcept {
   return *state_->network;
 }
 
+const std::shared_ptr<const Network>& World::shared_network() const noexcept {
+  return state_->network;
+}
+
 VectorWidth World::vector_width() const noexcept {
   return state_->width;
 }
@@ -212,6 +216,20 @@ void World::restore(const Snapshot& snapshot) {
 
 std::size_t World::max_values_of_state() const noexcept {
   return state_->serialize(Archive::measuring()).size();
+}
+
+void World::copy_state(std::vector<double>& room) const noexcept {
+  const FloatMode mode;
+  room.clear();
+  state_->serialize(Archive::saving(room));
+}
+
+bool World::take_state(std::span<const double> copy, std::uint64_t step_count) {
+  const FloatMode mode;
+  if (!state_->matches(copy)) return false;
+  state_->take(copy);
+  state_->step_count = step_count;
+  return true;
 }
 
 bool World::take_over(const World& before, std::vector<double>& room) noexcept {
