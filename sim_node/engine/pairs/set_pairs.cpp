@@ -324,7 +324,9 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
     for (std::size_t a = 0; a < states.row_count(); ++a) {
       for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
         const PairState& pair = states.state(i);
-        sum += table.stored_energy(pair.state, distance(a, pair.column / 4), pair.rest_length);
+        const std::size_t b = pair.column / 4;
+        sum += table.stored_energy(pair.state, distance(a, b), pair.rest_length,
+                                   state_machines_.masses_of(a, b));
       }
     }
     return sum;
@@ -336,8 +338,12 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
       const std::size_t count = gather(rows, a);
       const PairRow row = block_.next_row();
       for (std::size_t i = 0; i < count; ++i) {
-        sum +=
-            table.stored_energy(start, std::sqrt(row.square[i]), rest_of.of(a, row.column[i] / 4));
+        const std::size_t b = row.column[i] / 4;
+        const EndMasses mass = state_machines_.masses_of(a, b);
+        const double rest_length = rest_of.of(a, b);
+        // Beyond the range there is no force: there the potential is 0.
+        sum += table.stored_energy(start, std::sqrt(row.square[i]), rest_length, mass) -
+               table.stored_energy(start, range_, rest_length, mass);
       }
     }
   }
