@@ -354,6 +354,7 @@ void Session::record_state() {
   }
   if (clock != config::Clock::kRealtime || !loops_) shown_.of_world = look_at(simulation.world());
   shown_.loops = loops_;
+  shown_.troubles = simulation.troubles();
   shown_.version = runner_.stage().frames.shape().version;
   shown_.changes = runner_.stage().changes.count(simulation.world());
 }
@@ -406,6 +407,11 @@ void Session::fill(msg::NodeStatus& status) {
   if (!shown_.failure.empty()) status.text(shown_.failure);
   status.energy_j(energy.total());
   status.energy_drift(energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0);
+  status.integration_error_j(energy.integration_error());
+  report_integration_error(energy);
+  status.overflowed_steps(shown_.troubles.overflowed_steps);
+  status.forgotten_pairs(shown_.troubles.forgotten_pairs);
+  status.refused_inputs(shown_.troubles.refused_inputs);
   status.switching_energy_j(energy.switching);
   status.port_work_j(energy.port_work);
   status.dissipated_j(energy.dissipated);
@@ -422,6 +428,21 @@ void Session::fill(msg::NodeStatus& status) {
     status.changes().back().liaison(liaisons_[i]);
     status.changes().back().changes(shown_.changes[i]);
   }
+}
+
+/// Warns when the steps have made or taken more than a hundredth of the largest energy.
+void Session::report_integration_error(const engine::Energy& energy) {
+  constexpr double kLargestShare = 0.01;
+  const std::int64_t now = node::monotonic_nsec();
+  integration_errors_.report(now);
+  const double error = energy.integration_error();
+  const bool passed = std::abs(error) > kLargestShare * energy.largest;
+  const bool was_passed = std::exchange(error_is_passed_, passed);
+  if (!passed || was_passed || !integration_errors_.record(now)) return;
+  spdlog::warn(
+      "the steps have {} {:.3g} J that no account explains, above 1 % of the largest energy "
+      "({:.3g} J): the step is too long for a liaison. A higher step rate helps",
+      error > 0.0 ? "made" : "taken", std::abs(error), energy.largest);
 }
 
 void Session::publish_scene(const scene::Scene& scene, std::uint64_t version) {

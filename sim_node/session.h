@@ -72,6 +72,7 @@ class Session {
   void record_state();
   bool finished() const noexcept;
   void fill(msg::NodeStatus& status);
+  void report_integration_error(const engine::Energy& energy);
   void publish_scene(const scene::Scene& scene, std::uint64_t version);
   void set_phase(msg::NodePhase phase) noexcept;
   void listen_to_devices();
@@ -107,6 +108,7 @@ class Session {
   struct StatusSnapshot {
     WorldLook of_world;
     bool loops = false;  // when all this was recorded
+    StepTroubles troubles;
     double limit_number = 0.0;
     PartnersSeen partners;
     std::uint64_t version = 0;  // of the scene
@@ -118,7 +120,9 @@ class Session {
   StatusSnapshot shown_;
   std::vector<std::string> liaisons_;  // names of those whose changes are shown
   std::uint64_t liaisons_version_ = 0;
-  bool passivity_reported_ = false;  // of the status thread
+  bool passivity_reported_ = false;  // of the status thread, as the next two
+  node::RepeatedEvent integration_errors_{"the steps made or took energy again"};
+  bool error_is_passed_ = false;
   std::atomic<msg::NodePhase> phase_{msg::PHASE_STARTING};
   std::atomic<std::uint64_t> ticks_{0};
   node::LateTicks late_ticks_;

@@ -25,6 +25,7 @@ World::World(std::shared_ptr<const Network> network, VectorWidth width) {
   const FloatMode mode;
   state_ = std::make_unique<WorldState>(std::move(network), width);
   state_->scheme->start(*state_);
+  make_room();
 }
 
 World::~World() = default;
@@ -60,6 +61,10 @@ void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
 StepReport World::step() noexcept {
   const FloatMode mode;
   return state_->step();
+}
+
+void World::make_room() noexcept {
+  state_->sets.make_room();
 }
 
 void World::force_state(std::uint32_t state_link, std::uint32_t state) noexcept {
@@ -226,6 +231,7 @@ void World::copy_state(std::vector<double>& room) const noexcept {
 
 bool World::take_state(std::span<const double> copy, std::uint64_t step_count) {
   const FloatMode mode;
+  state_->sets.make_room_of(copy.size());
   if (!state_->matches(copy)) return false;
   state_->take(copy);
   state_->step_count = step_count;
@@ -235,6 +241,7 @@ bool World::take_state(std::span<const double> copy, std::uint64_t step_count) {
 bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   room.clear();
   before.state_->serialize(Archive::saving(room));
+  state_->sets.make_room_of(room.size());
   const bool same_mats = network().mat_count() == before.network().mat_count();
   const bool same_sets =
       network().description().sets.size() == before.network().description().sets.size();

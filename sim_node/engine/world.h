@@ -60,6 +60,11 @@ class World {
   /// One step. Real time: O(MATs + links), no allocation, never throws.
   StepReport step() noexcept;
 
+  /// Makes room for the states of more pairs of sets: for all that may come into range in the next
+  /// steps. A call after every step that wants it keeps all bonds. Allocates; without memory the
+  /// room stays as it is.
+  void make_room() noexcept;
+
   std::uint64_t step_count() const noexcept;        ///< steps done since step 0
   Vec3 position(std::uint32_t mat) const noexcept;  ///< x(n) [m]
   /// (x(n) - x(n-1)) / dt; of the integrators of second order that of the moment of x(n). [m/s]
@@ -100,7 +105,7 @@ class World {
   /// Precondition: the set and the member exist.
   std::uint32_t partners_of(std::size_t set, std::size_t member) const noexcept;
 
-  /// Goes on where another world is, of a network that differs in the parameters of links alone:
+  /// Goes on where another world is (with as much room made for bonds), of a network that differs in the parameters of links alone:
   /// motion, states, ports, account and counts are taken over, and what the energy of the links
   /// changes by counts as switching. Real time: O(MATs + links + pairs), no allocation.
   /// @param room  its capacity is at least max_values_of_state(); what is in it is overwritten

@@ -15,6 +15,11 @@ ShadowWorld::ShadowWorld(std::shared_ptr<const engine::Network> network) noexcep
 
 void ShadowWorld::hand_over(const engine::World& world) noexcept {
   if (copy_.load(std::memory_order_acquire) != Copy::kAsked) return;
+  value_count_ = world.max_values_of_state();
+  if (value_count_ > room_.capacity()) {
+    copy_.store(Copy::kTooLarge, std::memory_order_release);
+    return;
+  }
   world.copy_state(room_);
   step_ = world.step_count();
   copy_.store(Copy::kThere, std::memory_order_release);
@@ -28,7 +33,12 @@ std::optional<WorldLook> ShadowWorld::look(std::chrono::milliseconds patience) {
   if (copy_.load(std::memory_order_acquire) == Copy::kNone)
     copy_.store(Copy::kAsked, std::memory_order_release);
   const auto limit = std::chrono::steady_clock::now() + patience;
-  while (copy_.load(std::memory_order_acquire) != Copy::kThere) {
+  for (Copy copy = copy_.load(std::memory_order_acquire); copy != Copy::kThere;
+       copy = copy_.load(std::memory_order_acquire)) {
+    if (copy == Copy::kTooLarge) {
+      room_.assign(value_count_, 0.0);
+      copy_.store(Copy::kAsked, std::memory_order_release);
+    }
     if (std::chrono::steady_clock::now() >= limit) return std::nullopt;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -36,11 +36,12 @@ class ShadowWorld {
   std::optional<WorldLook> look(std::chrono::milliseconds patience);
 
  private:
-  enum class Copy : std::uint8_t { kNone, kAsked, kThere };
+  enum class Copy : std::uint8_t { kNone, kAsked, kTooLarge, kThere };
 
   std::shared_ptr<const engine::Network> network_;
   std::unique_ptr<engine::World> world_;  // made by the first look
   std::vector<double> room_;              // of the loop while a copy is asked for
+  std::size_t value_count_ = 0;           // likewise; of a state that is too large for the room
   std::uint64_t step_ = 0;                // likewise
   std::atomic<Copy> copy_{Copy::kNone};
 };

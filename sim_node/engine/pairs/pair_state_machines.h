@@ -62,6 +62,11 @@ class PairStateMachines {
     if (remembers(step)) forgotten_ += static_cast<std::uint32_t>(states_.keep_rows(first, last));
   }
 
+  /// Makes room for so many pairs. Allocates; without memory the room stays as it is.
+  void make_room(std::size_t capacity) noexcept {
+    if (states_.make_room(capacity)) capacity_ = states_.capacity();
+  }
+
   bool has_states() const noexcept { return !stateless_; }
   const PairStates& states() const noexcept { return states_; }
   PairStates& states() noexcept { return states_; }
