@@ -432,11 +432,10 @@ void Session::fill(msg::NodeStatus& status) {
 
 /// Warns when the steps have made or taken more than a hundredth of the largest energy.
 void Session::report_integration_error(const engine::Energy& energy) {
-  constexpr double kLargestShare = 0.01;
   const std::int64_t now = node::monotonic_nsec();
   integration_errors_.report(now);
   const double error = energy.integration_error();
-  const bool passed = std::abs(error) > kLargestShare * energy.largest;
+  const bool passed = is_error_large(energy);
   const bool was_passed = std::exchange(error_is_passed_, passed);
   if (!passed || was_passed || !integration_errors_.record(now)) return;
   spdlog::warn(

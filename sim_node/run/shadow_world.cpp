@@ -1,6 +1,7 @@
 // sim_node/run/shadow_world.cpp
 #include "sim_node/run/shadow_world.h"
 
+#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -8,6 +9,13 @@ namespace cordis::sim {
 
 WorldLook look_at(const engine::World& world) noexcept {
   return {world.energy(), world.step_count(), world.state_hash()};
+}
+
+bool is_error_large(const engine::Energy& energy) noexcept {
+  constexpr double kLargestShare = 0.01;
+  constexpr double kRounding = 1e-20;  // [J]
+  const double error = std::abs(energy.integration_error());
+  return error > kLargestShare * energy.largest && error > kRounding;
 }
 
 ShadowWorld::ShadowWorld(std::shared_ptr<const engine::Network> network) noexcept

@@ -22,6 +22,10 @@ struct WorldLook {
 /// Real time: O(MATs + links + pairs), no allocation; much longer than a copy of the state.
 WorldLook look_at(const engine::World& world) noexcept;
 
+/// True when the steps have made or taken more than 1 % of the largest energy. What a scene at rest
+/// makes by rounding, below 1e-20 J, does not count.
+bool is_error_large(const engine::Energy& energy) noexcept;
+
 /// A second world of a network, for a thread that looks at the first one now and then. The loop
 /// that moves the first one copies its state, and only when the other thread has asked.
 class ShadowWorld {
