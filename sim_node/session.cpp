@@ -31,6 +31,7 @@ constexpr auto kLockstepPatience =
     50ms;                    // how long a wait for a sample may keep the loop from seeing a stop
 constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene is paused
 constexpr std::uint64_t kRestsPerFrame = 8;
+constexpr auto kLookPatience = 10ms;               // of the status thread for a copy of the world
 constexpr auto kLongestWait = 1s;                  // for a device that joins
 constexpr std::int64_t kLongWait = 2'000'000'000;  // of a scene in lockstep for a sample [ns]
 constexpr std::int64_t kWaitIsReported = std::numeric_limits<std::int64_t>::max();
@@ -45,6 +46,7 @@ Session::Session(const node::NodeStart& start, SimConfig config)
       runner_(std::make_unique<LoadedScene>(
                   std::make_shared<const scene::Scene>(std::move(config.scene)), start.epoch, 1),
               start.launch.clock == config::Clock::kLockstep),
+      shadow_(runner_.stage().shadow),
       position_reader_(loop_participant_, dds::Topic::kPositions),
       force_reader_(loop_participant_, dds::Topic::kForces),
       position_writer_(loop_participant_, dds::Topic::kPositions),
@@ -100,6 +102,7 @@ int Session::run() {
   device_listener_ = std::thread([this] { listen_to_devices(); });
   commands_.start();
 
+  loops_ = true;
   switch (start_.launch.clock) {
     case config::Clock::kRealtime:
       run_realtime();
@@ -112,6 +115,7 @@ int Session::run() {
       break;
   }
   mailbox_.close();
+  loops_ = false;
   record_state();
   const Simulation& simulation = runner_.simulation();
   if (simulation.failed()) {
@@ -144,9 +148,11 @@ void Session::run_realtime() {
     if (loop.rate_hz() != runner_.simulation().scene().gesture_rate_hz)
       loop = node::PacedLoop(runner_.simulation().scene().gesture_rate_hz, kPhase);
     receive();
-    if (plays) advance();
+    const bool complete = plays && play();
     if (runner_.simulation().misses_a_device()) late_ticks_.count_silent();
-    answer_all();
+    answer_all();  // first: the hand waits for it, and the display does not
+    if (plays) show(complete);
+    runner_.stage().shadow->hand_over(runner_.simulation().world());
   }
 }
 
@@ -180,6 +186,7 @@ bool Session::execute() {
   }
   runner_.execute(*request);
   mailbox_.report_steps_left(runner_.steps_left());
+  if (new_stage) change_shadow();  // before the giver frees the stage before
   mailbox_.executed();
   if (new_stage) offer_frame();
   record_state();
@@ -247,8 +254,18 @@ void Session::report_wait(const DeviceExchange& device) {
 }
 
 bool Session::advance() {
+  const bool complete = play();
+  show(complete);
+  return complete;
+}
+
+bool Session::play() {
   const bool complete = runner_.advance();
   mailbox_.report_steps_left(runner_.steps_left());
+  return complete;
+}
+
+void Session::show(bool complete) {
   const Simulation& simulation = runner_.simulation();
   LoadedScene& stage = runner_.stage();
   report_partners();
@@ -261,7 +278,6 @@ bool Session::advance() {
   const bool waits = start_.launch.clock != config::Clock::kRealtime;
   const bool many_events = stage.frames.events().is_half_full() && (waits || !frames_.is_busy());
   if (due || many_events) offer_frame();
-  return complete;
 }
 
 /// Says at once that a mass touches more others than the step is certified for.
@@ -329,7 +345,6 @@ void Session::record_state() {
   const std::unique_lock lock(shown_mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
   runner_.stage().limits.look(simulation.world());
-  shown_.energy = simulation.world().energy();
   shown_.limit_number = runner_.stage().limits.largest();
   shown_.partners = simulation.partners().nearest().value_or(PartnersSeen{0, 0, msg::NO_INDEX});
   if (!shown_.partners.is_passed()) {
@@ -338,10 +353,29 @@ void Session::record_state() {
     shown_.crowding = crowding_text(simulation.scene(), shown_.partners);
   }
   partners_shown_ = shown_.partners.largest;
-  shown_.step = simulation.world().step_count();
-  shown_.state_hash = simulation.world().state_hash();
+  if (clock != config::Clock::kRealtime || !loops_) shown_.of_world = look_at(simulation.world());
+  shown_.loops = loops_;
+  shown_.troubles = simulation.troubles();
   shown_.version = runner_.stage().frames.shape().version;
   shown_.changes = runner_.stage().changes.count(simulation.world());
+}
+
+/// The status thread looks at the new scene from now on.
+void Session::change_shadow() {
+  const std::lock_guard lock(shadow_mutex_);
+  shadow_ = runner_.stage().shadow;
+}
+
+/// Real time: the status thread finds energy and state hash, of a copy of the world.
+void Session::look_at_shadow() {
+  std::shared_ptr<ShadowWorld> shadow;
+  {
+    const std::lock_guard lock(shadow_mutex_);
+    shadow = shadow_;
+  }
+  const std::optional<WorldLook> look = shadow->look(kLookPatience);
+  const std::lock_guard lock(shown_mutex_);
+  if (look && shown_.loops) shown_.of_world = *look;
 }
 
 bool Session::finished() const noexcept {
@@ -367,20 +401,26 @@ void Session::fill(msg::NodeStatus& status) {
         "for the viscosity of its port or its samples are late: the port is damped");
   }
 
+  if (start_.launch.clock == config::Clock::kRealtime) look_at_shadow();
   const std::lock_guard lock(shown_mutex_);
+  const engine::Energy& energy = shown_.of_world.energy;
   if (status.text().empty()) status.text(shown_.crowding);
   if (!shown_.failure.empty()) status.text(shown_.failure);
-  status.energy_j(shown_.energy.total());
-  status.energy_drift(shown_.energy.largest > 0.0 ? shown_.energy.residual() / shown_.energy.largest
-                                                  : 0.0);
-  status.switching_energy_j(shown_.energy.switching);
-  status.port_work_j(shown_.energy.port_work);
-  status.dissipated_j(shown_.energy.dissipated);
+  status.energy_j(energy.total());
+  status.energy_drift(energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0);
+  status.integration_error_j(energy.integration_error());
+  report_integration_error(energy);
+  status.overflowed_steps(shown_.troubles.overflowed_steps);
+  status.forgotten_pairs(shown_.troubles.forgotten_pairs);
+  status.refused_inputs(shown_.troubles.refused_inputs);
+  status.switching_energy_j(energy.switching);
+  status.port_work_j(energy.port_work);
+  status.dissipated_j(energy.dissipated);
   status.largest_limit_number(shown_.limit_number);
   status.largest_partners(shown_.partners.largest);
   status.certified_partners(shown_.partners.certified);
-  status.step(shown_.step);
-  status.state_hash(shown_.state_hash);
+  status.step(shown_.of_world.step);
+  status.state_hash(shown_.of_world.state_hash);
   status.lost_events(frames_.lost_events());
   status.changes().clear();
   if (shown_.version != liaisons_version_) return;  // the scene was changed this very moment
@@ -389,6 +429,20 @@ void Session::fill(msg::NodeStatus& status) {
     status.changes().back().liaison(liaisons_[i]);
     status.changes().back().changes(shown_.changes[i]);
   }
+}
+
+/// Warns when the steps have made or taken more than a hundredth of the largest energy.
+void Session::report_integration_error(const engine::Energy& energy) {
+  const std::int64_t now = node::monotonic_nsec();
+  integration_errors_.report(now);
+  const double error = energy.integration_error();
+  const bool passed = is_error_large(energy);
+  const bool was_passed = std::exchange(error_is_passed_, passed);
+  if (!passed || was_passed || !integration_errors_.record(now)) return;
+  spdlog::warn(
+      "the steps have {} {:.3g} J that no account explains, above 1 % of the largest energy "
+      "({:.3g} J): the step is too long for a liaison. A higher step rate helps",
+      error > 0.0 ? "made" : "taken", std::abs(error), energy.largest);
 }
 
 void Session::publish_scene(const scene::Scene& scene, std::uint64_t version) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -26,6 +27,7 @@
 #include "sim_node/run/command_executor.h"
 #include "sim_node/run/request.h"
 #include "sim_node/run/runner.h"
+#include "sim_node/run/shadow_world.h"
 #include "sim_node/sim_config.h"
 
 namespace cordis::sim {
@@ -57,8 +59,13 @@ class Session {
   void receive();
   bool receive_lockstep();  ///< false when a sample is still missing
   void report_wait(const DeviceExchange& device);
-  /// One turn of the player, and what follows from it. @return whether a tick is complete
+  /// One turn of the player, and what follows from it: play() and show(). @return whether a tick
+  /// is complete
   bool advance();
+  bool play();
+  void show(bool complete);
+  void change_shadow();
+  void look_at_shadow();
   void answer(DeviceExchange& device);
   void answer_all();
   void offer_frame();
@@ -66,6 +73,7 @@ class Session {
   void record_state();
   bool finished() const noexcept;
   void fill(msg::NodeStatus& status);
+  void report_integration_error(const engine::Energy& energy);
   void publish_scene(const scene::Scene& scene, std::uint64_t version);
   void set_phase(msg::NodePhase phase) noexcept;
   void listen_to_devices();
@@ -75,6 +83,8 @@ class Session {
   dds::Participant participant_;       // for all but the force loop
   dds::Participant loop_participant_;  // for the force loop, which waits for no other thread
   Runner runner_;
+  std::mutex shadow_mutex_;  // held for the copy of a pointer; the loop takes it to change scenes
+  std::shared_ptr<ShadowWorld> shadow_;  // of the stage that is played
   RequestMailbox mailbox_;
   dds::Reader<msg::GesturePositions> position_reader_;
   dds::Reader<msg::GestureForces> force_reader_;
@@ -90,6 +100,7 @@ class Session {
   node::RepeatedEvent crowding_{"a mass of a set touched still more others"};
   std::uint32_t partners_reported_ = 0;  // of this scene
   std::uint32_t partners_shown_ = 0;
+  bool loops_ = false;           // the loop has begun, and has not ended
   std::uint64_t unwritten_ = 0;  // answers that DDS did not take
   node::RepeatedEvent absences_{"has been waiting long, with no device_node alive"};
   node::RepeatedEvent silences_{
@@ -97,11 +108,11 @@ class Session {
 
   // What the loop reports to the status thread.
   struct StatusSnapshot {
-    engine::Energy energy;
+    WorldLook of_world;
+    bool loops = false;  // when all this was recorded
+    StepTroubles troubles;
     double limit_number = 0.0;
     PartnersSeen partners{0, 0, msg::NO_INDEX};
-    std::uint64_t step = 0;
-    std::uint64_t state_hash = 0;
     std::uint64_t version = 0;  // of the scene
     ChangeCounter::Counts changes{};
     std::string failure;   // why the scene diverged
@@ -111,7 +122,9 @@ class Session {
   StatusSnapshot shown_;
   std::vector<std::string> liaisons_;  // names of those whose changes are shown
   std::uint64_t liaisons_version_ = 0;
-  bool passivity_reported_ = false;  // of the status thread
+  bool passivity_reported_ = false;  // of the status thread, as the next two
+  node::RepeatedEvent integration_errors_{"the steps made or took energy again"};
+  bool error_is_passed_ = false;
   std::atomic<msg::NodePhase> phase_{msg::PHASE_STARTING};
   std::atomic<std::uint64_t> ticks_{0};
   node::LateTicks late_ticks_;

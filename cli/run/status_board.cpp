@@ -79,7 +79,14 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
         "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
         status.energy_j(), status.port_work_j(), status.switching_energy_j(), status.dissipated_j(),
         status.largest_limit_number());
+    text += fmt::format("integration error {:.3g} J\n", status.integration_error_j());
     text += partners_of(status);
+    const auto tell = [&text](std::uint64_t count, const char* what) {
+      if (count > 0) text += fmt::format("{}: {}\n", what, count);
+    };
+    tell(status.overflowed_steps(), "steps with more pairs in range than room, slow");
+    tell(status.forgotten_pairs(), "states of pairs FORGOTTEN for lack of memory");
+    tell(status.refused_inputs(), "positions and forces refused, not finite");
     text += fmt::format("state hash {:016x} after {}\n", status.state_hash(),
                         config::count_text(status.step(), "step"));
   }

@@ -25,6 +25,7 @@ World::World(std::shared_ptr<const Network> network, VectorWidth width) {
   const FloatMode mode;
   state_ = std::make_unique<WorldState>(std::move(network), width);
   state_->scheme->start(*state_);
+  make_room();
 }
 
 World::~World() = default;
@@ -33,6 +34,10 @@ World& World::operator=(World&&) noexcept = default;
 
 const Network& World::network() const noexcept {
   return *state_->network;
+}
+
+const std::shared_ptr<const Network>& World::shared_network() const noexcept {
+  return state_->network;
 }
 
 VectorWidth World::vector_width() const noexcept {
@@ -56,6 +61,10 @@ void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
 StepReport World::step() noexcept {
   const FloatMode mode;
   return state_->step();
+}
+
+void World::make_room() noexcept {
+  state_->sets.make_room();
 }
 
 void World::force_state(std::uint32_t state_link, std::uint32_t state) noexcept {
@@ -214,10 +223,26 @@ std::size_t World::max_values_of_state() const noexcept {
   return state_->serialize(Archive::measuring()).size();
 }
 
+void World::copy_state(std::vector<double>& room) const noexcept {
+  const FloatMode mode;
+  room.clear();
+  state_->serialize(Archive::saving(room));
+}
+
+bool World::take_state(std::span<const double> copy, std::uint64_t step_count) {
+  const FloatMode mode;
+  state_->sets.make_room_of(copy.size());
+  if (!state_->matches(copy)) return false;
+  state_->take(copy);
+  state_->step_count = step_count;
+  return true;
+}
+
 bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   const FloatMode mode;
   room.clear();
   before.state_->serialize(Archive::saving(room));
+  state_->sets.make_room_of(room.size());
   const bool same_mats = network().mat_count() == before.network().mat_count();
   const bool same_sets =
       network().description().sets.size() == before.network().description().sets.size();

@@ -32,6 +32,7 @@ class World {
   World& operator=(World&&) noexcept;
 
   const Network& network() const noexcept;
+  const std::shared_ptr<const Network>& shared_network() const noexcept;
   VectorWidth vector_width() const noexcept;
 
   /// Sets the position that a port mass takes at the beginning of the next step, before the forces
@@ -58,6 +59,11 @@ class World {
 
   /// One step. Real time: O(MATs + links), no allocation, never throws.
   StepReport step() noexcept;
+
+  /// Makes room for the states of more pairs of sets: for all that may come into range in the next
+  /// steps. A call after every step that wants it keeps all bonds. Allocates; without memory the
+  /// room stays as it is.
+  void make_room() noexcept;
 
   std::uint64_t step_count() const noexcept;        ///< steps done since step 0
   Vec3 position(std::uint32_t mat) const noexcept;  ///< x(n) [m]
@@ -99,7 +105,7 @@ class World {
   /// Precondition: the set and the member exist.
   std::uint32_t partners_of(std::size_t set, std::size_t member) const noexcept;
 
-  /// Goes on where another world is, of a network that differs in the parameters of links alone:
+  /// Goes on where another world is (with as much room made for bonds), of a network that differs in the parameters of links alone:
   /// motion, states, ports, account and counts are taken over, and what the energy of the links
   /// changes by counts as switching. Real time: O(MATs + links + pairs), no allocation.
   /// @param room  its capacity is at least max_values_of_state(); what is in it is overwritten
@@ -107,6 +113,14 @@ class World {
   [[nodiscard]] bool take_over(const World& before, std::vector<double>& room) noexcept;
   /// How many values the state of a world may have.
   [[nodiscard]] std::size_t max_values_of_state() const noexcept;
+
+  /// Copies the state into room whose capacity is at least max_values_of_state(); what is in it is
+  /// overwritten. Real time: O(MATs + links + pairs), no allocation.
+  void copy_state(std::vector<double>& room) const noexcept;
+  /// Goes on from a state that a world of the same network has copied, with the same state
+  /// machines. Not in real time. @param step_count  of that world
+  /// @return false when it does not fit; then this world is as it was.
+  [[nodiscard]] bool take_state(std::span<const double> copy, std::uint64_t step_count);
 
   Energy energy() const noexcept;  ///< Real time: O(MATs + links), no allocation
   /// Energy::dissipated but for what the forces of the last step have still to take [J]. Real time:

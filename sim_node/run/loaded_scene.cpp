@@ -36,6 +36,7 @@ LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_
       frames(shape_of(simulation, version)),
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
+      shadow(std::make_shared<ShadowWorld>(simulation.world().shared_network())),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}
 
 }  // namespace cordis::sim

@@ -7,6 +7,7 @@
 #include "sim_node/checks/limit_watch.h"
 #include "sim_node/run/change_counter.h"
 #include "sim_node/run/frame_store.h"
+#include "sim_node/run/shadow_world.h"
 #include "sim_node/run/simulation.h"
 
 namespace cordis::sim {
@@ -22,6 +23,7 @@ struct LoadedScene {
   FrameStore frames;
   ChangeCounter changes;
   LimitWatch limits;
+  std::shared_ptr<ShadowWorld> shadow;
   std::uint64_t ticks_per_frame;
 };
 

@@ -54,6 +54,7 @@ bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room)
     DeviceExchange* now = find(device.device_id());
     if (now != nullptr) now->take_over(device, /*at_once=*/true);
   }
+  troubles_ = before.troubles_;
   steps_in_tick_ = before.steps_in_tick_;
   tick_count_ = before.tick_count_;
   return true;
@@ -71,6 +72,10 @@ bool Simulation::advance(int steps, EventRoom& events) noexcept {
     const engine::StepReport report = world_.step();
     events.add(world_.events(), report.lost_events);
     partners_.look(world_);
+    troubles_.overflowed_steps += report.overflowed_sets > 0 ? 1U : 0U;
+    troubles_.forgotten_pairs += report.forgotten_pairs;
+    troubles_.refused_inputs += report.refused_inputs;
+    if (report.wants_room) world_.make_room();
     if (report.non_finite_mats > 0) {
       failed_ = true;
       return false;

@@ -14,6 +14,13 @@
 
 namespace cordis::sim {
 
+/// What went wrong in the steps so far.
+struct StepTroubles {
+  std::uint64_t overflowed_steps = 0;  ///< with StepReport::overflowed_sets
+  std::uint64_t forgotten_pairs = 0;   ///< sum of StepReport::forgotten_pairs
+  std::uint64_t refused_inputs = 0;    ///< sum of StepReport::refused_inputs
+};
+
 /// A scene, its world and the exchanges with its devices. A tick is one gesture period:
 /// steps_per_tick() steps of the world between a sample of the devices and the answer to it. [Luc90
 /// V.1 Force feedback gestual transducers] Nothing here knows of DDS, threads or clocks.
@@ -27,7 +34,8 @@ class Simulation {
   /// @return false when the scenes do not fit; then nothing has changed. Real time as take_over().
   bool go_on_from(const Simulation& before, std::vector<double>& room) noexcept;
 
-  /// Does the next steps of a tick, at most so many. Real time: allocates nothing, does not throw.
+  /// Does the next steps of a tick, at most so many. Real time: does not throw, and allocates
+  /// nothing but room for more bonds, between two steps.
   /// Does nothing once failed(). @param events  where the changes of state go
   /// @return whether the tick is complete.
   bool advance(int steps, EventRoom& events) noexcept;
@@ -58,6 +66,8 @@ class Simulation {
   /// How many others a mass of a set has touched, over all steps.
   const PartnerWatch& partners() const noexcept { return partners_; }
 
+  const StepTroubles& troubles() const noexcept { return troubles_; }
+
   /// The scene diverged: a position is no longer finite. Its forces must not be used any more.
   bool failed() const noexcept { return failed_; }
   /// Which MAT left the finite numbers first, when, and which liaison is to blame; empty while
@@ -68,6 +78,7 @@ class Simulation {
   std::shared_ptr<const scene::Scene> scene_;
   engine::World world_;
   PartnerWatch partners_;
+  StepTroubles troubles_;
   std::vector<DeviceExchange> devices_;
   int steps_per_tick_;
   int steps_in_tick_ = 0;  // done in the present tick

@@ -4,10 +4,12 @@
 //
 // usage: engine_bench --benchmark_repetitions=9 --benchmark_report_aggregates_only=true
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
@@ -170,6 +172,31 @@ void step_of_modes(benchmark::State& state) {
       kModes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(step_of_modes)->ArgName("driven")->DenseRange(0, 3);
+
+/// What a loop of 50,000 masses has to do for a status, beside a step. 0: energy and state hash;
+/// 1: a copy of the state, of which another thread finds both. Between two of them a step is done.
+void what_a_status_takes(benchmark::State& state) {
+  NetworkDescription net = grid(3, false, 224);  // 50,176 masses
+  World world(std::make_shared<const Network>(net));
+  std::vector<double> room(world.max_values_of_state());
+  double longest_s = 0.0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    world.step();
+    state.ResumeTiming();
+    const auto begin = std::chrono::steady_clock::now();
+    if (state.range(0) == 0) {
+      benchmark::DoNotOptimize(world.energy());
+      benchmark::DoNotOptimize(world.state_hash());
+    } else {
+      world.copy_state(room);
+    }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    longest_s = std::max(longest_s, taken.count());
+  }
+  state.counters["longest"] = longest_s;
+}
+BENCHMARK(what_a_status_takes)->ArgName("copy")->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -79,6 +79,10 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   sim.port_work_j(0.03);
   sim.switching_energy_j(-0.0005);
   sim.dissipated_j(0.017);
+  sim.integration_error_j(-0.00025);
+  sim.overflowed_steps(3);
+  sim.forgotten_pairs(17);
+  sim.refused_inputs(5);
   sim.largest_limit_number(1.75);
   sim.largest_partners(7);
   sim.certified_partners(12);
@@ -108,7 +112,11 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
       "view      no status was received\n"
       "energy 0.0125 J: 0.03 J through the ports, -0.0005 J by changes of state, 0.017 J taken by "
       "viscosity; largest K' + 2 Z' 1.75 of 4\n"
+      "integration error -0.00025 J\n"
       "a mass of a set touched 7 others at once, certified up to 12\n"
+      "steps with more pairs in range than room, slow: 3\n"
+      "states of pairs FORGOTTEN for lack of memory: 17\n"
+      "positions and forces refused, not finite: 5\n"
       "state hash 0123456789abcdef after 10000 steps\n"
       "keyboard gave the hand -0.002 J, damped in 7 ticks\n");
 }

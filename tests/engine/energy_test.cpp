@@ -1,5 +1,6 @@
 // tests/engine/energy_test.cpp -- the account closes.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -243,6 +244,94 @@ TEST(Energy, TakenByLimitsClampsAndFunctionsCountsAsDissipated) {
   clamped.viscosity = 3.0;
   clamped.pulls = false;
   after_swinging(clamped, 1e-3);
+}
+
+/// Seven stars of the masses 1 to 7 in a plane, which pull each other by an expression.
+/// [Hairer, Norsett, Wanner: Solving Ordinary Differential Equations I, II.10]
+NetworkDescription pleiades(double step, bool as_set) {
+  constexpr int kStars = 7;
+  constexpr std::array<double, kStars> kX = {3, 3, -1, -3, 2, -2, 2};
+  constexpr std::array<double, kStars> kY = {3, -3, 2, 0, 0, -4, 4};
+  constexpr std::array<double, kStars> kVx = {0, 0, 0, 0, 0, 1.75, -1.5};
+  constexpr std::array<double, kStars> kVy = {0, 0, 0, -1.25, 1, 0, 0};
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = step;
+  const Term d = q(Quantity::kDistance);
+  LinkState gravity;
+  gravity.elasticity = expression_law(q(Quantity::kMassA) * q(Quantity::kMassB) / (d * d));
+  scene.state_machines = {Behaving().state(gravity).state_machine};
+  engine::SetLiaison all;
+  all.range = 1e3;
+  for (std::uint32_t i = 0; i < kStars; ++i) {
+    scene.mats.push_back(mass(i + 1.0, Vec3(kX[i], kY[i], 0), Vec3(kVx[i], kVy[i], 0)));
+    all.set_p.push_back(i);
+    for (std::uint32_t j = 0; j < i && !as_set; ++j) scene.state_links.push_back({j, i, 0, 0.0});
+  }
+  if (as_set) scene.sets = {all};
+  return scene;
+}
+
+TEST(Energy, OfStarsThatPullByAnExpressionIsKept) {
+  for (const bool as_set : {false, true}) {
+    for (const auto integrator :
+         {engine::IntegratorKind::kCordis, engine::IntegratorKind::kLeapfrog}) {
+      NetworkDescription scene = pleiades(1e-4, as_set);
+      scene.integrator = integrator;
+      World world = make_world(scene);
+      for (int n = 0; n < 30'000; ++n) {
+        world.step();
+        if (n % 100 != 0) continue;
+        const Energy energy = world.energy();
+        ASSERT_EQ(energy.dissipated, 0.0);
+        ASSERT_NEAR(energy.total(), energy.initial, 1e-3 * energy.largest) << "step " << n;
+        ASSERT_LT(std::abs(energy.integration_error()), 1e-3 * energy.largest) << "step " << n;
+      }
+      EXPECT_GT(world.energy().kinetic, 60.0) << "they meet";
+    }
+  }
+}
+
+TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsPull) {
+  const Term e = q(Quantity::kElongation);
+  LinkState state;
+  state.stiffness = 5.0;
+  state.elasticity = expression_law(30.0 * e + 4000.0 * e * e * e);
+  state.force_limit = 2.0;
+  const double largest = after_swinging(state, 1e-4).largest;
+  EXPECT_LT(std::abs(after_swinging(state, 1e-4).elastic_error), 1e-3 * largest);
+  state.pushes = false;
+  EXPECT_LT(std::abs(after_swinging(state, 1e-4).elastic_error), 1e-3 * largest);
+}
+
+/// A ball on a floor that can only push, at K' = K dt^2 / m.
+Energy after_bouncing(double number, int step_count) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.gravity = Vec3(-9.81, 0, 0);
+  scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(0.1, 0, 0))};
+  LinkState floor;
+  floor.stiffness = number / (scene.step * scene.step);
+  floor.pulls = false;
+  scene.state_machines = {Behaving().state(floor).state_machine};
+  scene.state_links = {{0, 1, 0, 0.01}};
+  World world = make_world(scene);
+  Energy worst;
+  for (int n = 0; n < step_count; ++n) {
+    world.step();
+    const Energy energy = world.energy();
+    EXPECT_LT(std::abs(energy.residual()), 1e-9 * energy.largest) << "the account closes";
+    if (std::abs(energy.integration_error()) > std::abs(worst.integration_error())) worst = energy;
+  }
+  return worst;
+}
+
+TEST(Energy, OwnsUpToWhatAContactMakesWhoseStepIsTooLong) {
+  const Energy wrong = after_bouncing(3.0, 5'000);
+  EXPECT_GT(std::abs(wrong.integration_error()), 0.1 * wrong.largest);
+  const Energy right = after_bouncing(0.001, 5'000);
+  EXPECT_LT(std::abs(right.integration_error()), 0.01 * right.largest);
 }
 
 }  // namespace

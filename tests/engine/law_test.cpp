@@ -95,7 +95,7 @@ TEST(Law, IsTheSlopeOfItsPotential) {
   with_random_laws([](const Law& law, std::mt19937& random) {
     constexpr double kStep = 1e-5;
     const double rest_length = between(random, 0.5, 1.0);
-    const auto energy = [&](double e) { return potential(law, rest_length + e, e); };
+    const auto energy = [&](double e) { return potential(law, {rest_length + e, e}); };
     const auto pull = [&](double e) { return elastic_pull(law, {rest_length + e, e}); };
     for (int i = 0; i < 20; ++i) {
       const double e = between(random, -0.45, 1.0);

@@ -293,5 +293,54 @@ TEST(SetStates, StepWithoutAllocating) {
   EXPECT_GT(world.change_count(0, kFree, kBound), 0U);
 }
 
+/// A cube of balls that fly together; all meet after 100 steps, and stick where they come near.
+NetworkDescription balls_that_fly_together(std::uint32_t side, double spacing) {
+  NetworkDescription scene;
+  scene.step = 1e-3;
+  engine::SetLiaison set;
+  set.rest_length = 0.1;
+  set.range = 0.1;
+  const double middle = 0.5 * (side - 1);
+  for (std::uint32_t i = 0; i < side * side * side; ++i) {
+    const Vec3 at =
+        spacing * Vec3(i % side - middle, i / side % side - middle, i / side / side - middle);
+    scene.mats.push_back(mass(0.001, at, -at / (100 * scene.step)));
+    set.set_p.push_back(i);
+  }
+  scene.state_machines = {sticking(1e-6, 0.0, 1e3)};
+  scene.sets = {set};
+  return scene;
+}
+
+TEST(SetStates, NeverForgetABondThoughAllPairsBindAtOnce) {
+  World world = make_world(balls_that_fly_together(9, 0.001));
+  const engine::StepReport report = world.step();
+  EXPECT_EQ(report.forgotten_pairs, 0u);
+  EXPECT_EQ(world.bound_pairs(0).size(), std::size_t{729 * 728 / 2});
+}
+
+TEST(SetStates, MakeRoomBetweenStepsForAllBonds) {
+  const NetworkDescription scene = balls_that_fly_together(9, 0.05);
+  World world = make_world(scene);
+  std::uint32_t growths = 0;
+  for (int n = 0; n < 110; ++n) {
+    const engine::StepReport report = world.step();
+    ASSERT_EQ(report.forgotten_pairs, 0u) << "step " << n;
+    if (!report.wants_room) continue;
+    ++growths;
+    world.make_room();
+  }
+  EXPECT_GT(growths, 0u);
+  EXPECT_EQ(world.bound_pairs(0).size(), std::size_t{729 * 728 / 2});
+
+  World again = make_world(scene);
+  again.restore(world.snapshot());
+  EXPECT_EQ(again.state_hash(), world.state_hash()) << "room is made for what was saved";
+  World other = make_world(scene);
+  std::vector<double> room;
+  EXPECT_TRUE(other.take_over(world, room));
+  EXPECT_EQ(other.bound_pairs(0).size(), world.bound_pairs(0).size());
+}
+
 }  // namespace
 }  // namespace cordis::test

@@ -95,6 +95,8 @@ StepReport WorldState::step() noexcept {
   ++step_count;
   report.non_finite_mats = moved.non_finite_mats;
   report.overflowed_sets = sets.overflowed_count();
+  report.forgotten_pairs = sets.forgotten_count();
+  report.wants_room = sets.want_room();
   report.lost_events = log.lost();
   return report;
 }
@@ -248,6 +250,7 @@ void WorldState::restore(const Snapshot& snapshot) {
   if (snapshot.network != network->fingerprint()) {
     throw std::invalid_argument("the snapshot is of another network");
   }
+  sets.make_room_of(snapshot.state.size());
   if (!snapshot.state_machines.empty() || replaced) {
     restore_with_table(snapshot);
   } else if (matches(snapshot.state)) {

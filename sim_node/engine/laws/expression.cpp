@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim_node/engine/core/require.h"
+#include "sim_node/engine/laws/quadrature.h"
 #include "sim_node/engine/laws/scalar_pull.h"
 
 namespace cordis::engine {
@@ -30,6 +31,23 @@ void Expression::check(const std::string& name) const {
     require(instruction.operation != Operation::kQuantity || is_known_to_laws(instruction.quantity),
             what + ": quantity", "distance, elongation, speed, or the mass of an end");
   }
+}
+
+double Expression::distance_of_no_potential(const LawPoint& link) const noexcept {
+  if (asks_for(program, Quantity::kElongation)) return link.distance - link.elongation;
+  LinkQuantities at_zero{};
+  at_zero[static_cast<std::size_t>(Quantity::kMassA)] = link.mass_a;
+  at_zero[static_cast<std::size_t>(Quantity::kMassB)] = link.mass_b;
+  if (std::isfinite(value_of(program, at_zero))) return 0.0;
+  return link.distance < 0.0 ? -1.0 : 1.0;
+}
+
+double Expression::potential(const LawPoint& link) const noexcept {
+  const double rest_length = link.distance - link.elongation;
+  const auto pull = [&](double at) {
+    return scalar_pull(*this, {at, at - rest_length, 0.0, link.mass_a, link.mass_b}, at);
+  };
+  return integral_over_distance(pull, distance_of_no_potential(link), link.distance);
 }
 
 /// The largest rise between two samples.

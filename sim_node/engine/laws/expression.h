@@ -23,7 +23,14 @@ struct Expression {
   static constexpr bool kStoresEnergy = false;
 
   void check(const std::string& name) const;
-  double potential(double /*distance*/, double /*elongation*/) const noexcept { return 0.0; }
+  /// True when the pull is the slope of a potential: it does not ask for the speed.
+  bool is_potential() const noexcept { return !asks_for(program, Quantity::kSpeed); }
+  /// By quadrature: 0 at the elongation 0; when that is not asked for, at the distance 0, or at 1 m
+  /// of a law that has no value there [J].
+  /// Precondition: is_potential().
+  double potential(const LawPoint& link) const noexcept;
+  /// The distance at which that is 0 [m].
+  double distance_of_no_potential(const LawPoint& link) const noexcept;
   LawSlope largest_slope(const LawRange& range) const noexcept;
   double smallest_slope(double /*elongation*/) const noexcept { return 0.0; }
   double range() const noexcept { return 0.0; }

@@ -1,6 +1,8 @@
 // sim_node/engine/laws/law.cpp
 #include "sim_node/engine/laws/law.h"
 
+#include <type_traits>
+
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/laws/scalar_pull.h"
 
@@ -32,8 +34,20 @@ double viscous_pull(const Law& law, const LawPoint& link) noexcept {
   return std::visit([&](const auto& of) { return scalar_pull(of, link, link.speed); }, law);
 }
 
-double potential(const Law& law, double distance, double elongation) noexcept {
-  return std::visit([&](const auto& of) { return of.potential(distance, elongation); }, law);
+double potential(const Law& law, const LawPoint& link) noexcept {
+  const auto of_type = [&]<class Type>(const Type& of) {
+    if constexpr (std::is_same_v<Type, Expression>) {
+      return of.is_potential() ? of.potential(link) : 0.0;
+    } else {
+      return of.potential(link.distance, link.elongation);
+    }
+  };
+  return std::visit(of_type, law);
+}
+
+const Expression* potential_expression(const Law& law) noexcept {
+  const auto* expression = std::get_if<Expression>(&law);
+  return expression != nullptr && expression->is_potential() ? expression : nullptr;
 }
 
 LawSlope largest_slope(const Law& law, const LawRange& range) noexcept {

@@ -58,9 +58,11 @@ double elastic_pull(const Law& law, const LawPoint& link) noexcept;
 double viscous_pull(const Law& law, const LawPoint& link) noexcept;
 
 /// Energy [J] whose slope over the distance is the pull of the law: 0 at the elongation 0 for a
-/// table or a power, 0 at its cutoff (or far away) for Lennard-Jones, 0 outside all rings, and 0
-/// for an expression, of which there is no closed form.
-double potential(const Law& law, double distance, double elongation) noexcept;
+/// table or a power, 0 at its cutoff (or far away) for Lennard-Jones, 0 outside all rings;
+/// Expression::potential() for an expression, and 0 if it has none.
+double potential(const Law& law, const LawPoint& link) noexcept;
+/// An expression that has a potential, else null.
+const Expression* potential_expression(const Law& law) noexcept;
 
 LawSlope largest_slope(const Law& law, const LawRange& range) noexcept;
 /// What an elasticity pulls at an elongation as small as this one, over it, where it is least

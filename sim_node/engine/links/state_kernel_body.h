@@ -140,17 +140,14 @@ class StateMachineLoop {
     const Row viscosity = Lanes::every(state.viscosity_over_dt);
     Batch::each(
         pull, [&](Row e, Row g) { return e + viscosity * g; }, elastic, elongation_increment);
-    if (!stores_energy) LawLoop<Lanes>::add(state.elasticity, of, pull);
+    if (!stores_energy) add_expression(state.elasticity, of, pull, elastic);
     of.argument = speed;
     LawLoop<Lanes>::add(state.dissipation, of, pull);
 
-    if (state.limited) {
-      const Row least = Lanes::every(state.min_pull);
-      const Row most = Lanes::every(state.max_pull);
-      Batch::each(
-          pull, [&](Row p) { return Lanes::minimum(most, Lanes::maximum(least, p)); }, pull);
-    }
-    if (state.one_sided) {
+    if (state.limited) limit(state, pull);
+    if (state.elasticity.is_potential && state.limited) {
+      limit(state, elastic);
+    } else if (state.one_sided) {
       alignas(64) double elongation[Batch::kRows];
       const Row least = Lanes::every(state.min_elongation);
       const Row most = Lanes::every(state.max_elongation);
@@ -163,6 +160,28 @@ class StateMachineLoop {
       }
     }
     keep(group, pull, elastic);
+  }
+
+  /// Adds what an expression pulls; to the part that stores energy if it has a potential.
+  static void add_expression(const LawTerm& law, const LawArguments& of, double* pull,
+                             double* elastic) noexcept {
+    if (!law.is_potential) {
+      LawLoop<Lanes>::add(law, of, pull);
+      return;
+    }
+    alignas(64) double value[Batch::kRows];
+    Batch::fill(value, -0.0);  // which changes no sum, not even 0
+    LawLoop<Lanes>::add(law, of, value);
+    const auto sum = [](Row p, Row v) { return p + v; };
+    Batch::each(pull, sum, pull, value);
+    Batch::each(elastic, sum, elastic, value);
+  }
+
+  static void limit(const StateTerm& state, double* pull) noexcept {
+    const Row least = Lanes::every(state.min_pull);
+    const Row most = Lanes::every(state.max_pull);
+    Batch::each(
+        pull, [&](Row p) { return Lanes::minimum(most, Lanes::maximum(least, p)); }, pull);
   }
 
   LawArguments arguments(const double* argument, const double* speed) const noexcept {

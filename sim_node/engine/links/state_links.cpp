@@ -179,7 +179,8 @@ double StateLinkArray::distance_at_last_call(const MatArray& mats,
 double StateLinkArray::stored_energy(const StateTable& table, const MatArray& mats) const noexcept {
   double sum = 0.0;
   for (std::size_t l = 0; l < link_count_; ++l) {
-    sum += table.stored_energy(state_[l], distance_at_last_call(mats, l), rest_length_[l]);
+    sum += table.stored_energy(state_[l], distance_at_last_call(mats, l), rest_length_[l],
+                               {mass_a_[l], mass_b_[l]});
   }
   return sum;
 }

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "sim_node/engine/core/assert.h"
+#include "sim_node/engine/laws/quadrature.h"
+#include "sim_node/engine/laws/scalar_pull.h"
 
 namespace cordis::engine {
 namespace {
@@ -34,7 +36,9 @@ namespace {
 ReadyLaw ready(const Law& law) {
   const auto make = [&law](const auto& of) -> ReadyLaw {
     const auto term = std::make_shared<const decltype(of.term())>(of.term());
-    return {{static_cast<std::uint32_t>(law.index()), of.kStoresEnergy, term.get()}, term};
+    return {{static_cast<std::uint32_t>(law.index()), of.kStoresEnergy,
+             potential_expression(law) != nullptr, term.get()},
+            term};
   };
   return std::visit(make, law);
 }
@@ -178,22 +182,43 @@ std::uint32_t StateTable::slot_count() const noexcept {
   return content_->slot_count;
 }
 
-double StateTable::stored_energy(StateIndex index, double distance,
-                                 double rest_length) const noexcept {
+double StateTable::stored_energy(StateIndex index, double distance, double rest_length,
+                                 const EndMasses& mass) const noexcept {
   const StateTerm& term = content_->terms[index];
+  if (term.elasticity.is_potential && term.limited) {
+    return limited_energy(index, {distance, distance - rest_length, 0.0, mass.a, mass.b});
+  }
   const double elongation =
       std::min(term.max_elongation, std::max(term.min_elongation, distance - rest_length));
   const double linear = 0.5 * term.stiffness * elongation * elongation;
   if (term.elasticity.type == 0) return linear;
-  return linear + potential(state(index).elasticity, distance, elongation);
+  return linear + potential(state(index).elasticity, {distance, elongation, 0.0, mass.a, mass.b});
+}
+
+/// Of an expression whose pull has limits: the integral of the pull within them [J].
+double StateTable::limited_energy(StateIndex index, const LawPoint& link) const noexcept {
+  const StateTerm& term = content_->terms[index];
+  const Expression& law = *potential_expression(state(index).elasticity);
+  const double rest_length = link.distance - link.elongation;
+  const auto pull = [&](double at) {
+    const LawPoint point{at, at - rest_length, 0.0, link.mass_a, link.mass_b};
+    const double whole = term.stiffness * point.elongation + scalar_pull(law, point, at);
+    return std::min(term.max_pull, std::max(term.min_pull, whole));
+  };
+  return integral_over_distance(pull, law.distance_of_no_potential(link), link.distance);
 }
 
 double StateTable::change_energy(const StateMachineRows& rows, std::size_t row) const noexcept {
   const double part = content_->part_of_work;
   const double distance = rows.quantity[static_cast<std::size_t>(Quantity::kDistance)][row];
-  const double after = stored_energy(rows.state[row], distance, rows.rest_length[row]) -
+  const auto mass_of = [&](Quantity end) {
+    const double* masses = rows.quantity[static_cast<std::size_t>(end)];
+    return masses == nullptr ? 0.0 : masses[row];
+  };
+  const EndMasses mass{mass_of(Quantity::kMassA), mass_of(Quantity::kMassB)};
+  const double after = stored_energy(rows.state[row], distance, rows.rest_length[row], mass) -
                        part * rows.elastic[row] * rows.elongation_increment[row];
-  const double before = stored_energy(rows.from[row], distance, rows.rest_before[row]) -
+  const double before = stored_energy(rows.from[row], distance, rows.rest_before[row], mass) -
                         part * rows.elastic_before[row] * rows.elongation_increment[row];
   return after - before;
 }

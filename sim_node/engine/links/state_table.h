@@ -11,6 +11,12 @@
 
 namespace cordis::engine {
 
+/// Masses of the ends of a link [kg]; 0 unless a mass.
+struct EndMasses {
+  double a = 0.0;
+  double b = 0.0;
+};
+
 /// All states of all state machines in one row, in order: StateIndex of state s of state machine b
 /// is first_state(b) + s. After the last stands a state of no force and no exit, for padding.
 class StateTable {
@@ -40,10 +46,11 @@ class StateTable {
   bool needs(Quantity quantity) const noexcept;
   std::uint32_t slot_count() const noexcept;  ///< one more than the largest slot used
 
-  /// Energy [J] that a row stores in a state: closed form of the linear part and of the law, 0 for
-  /// an expression. In a state that does not pull (push) only what the spring and a power law store
+  /// Energy [J] that a row stores in a state: closed form of the linear part and of the law; by
+  /// quadrature, within the limits of the pull, of an expression that has a potential, and 0 of another. In a state that does not pull (push) only what the spring and a power law store
   /// while they push (pull). Lennard-Jones: 0 at its cutoff.
-  double stored_energy(StateIndex state, double distance, double rest_length) const noexcept;
+  double stored_energy(StateIndex state, double distance, double rest_length,
+                       const EndMasses& mass) const noexcept;
   /// What a change adds to the stored energy as the account keeps it: after minus before. In the
   /// middle of the last period that is stored energy less half of the elastic work of the period.
   double change_energy(const StateMachineRows& rows, std::size_t row) const noexcept;
@@ -55,6 +62,8 @@ class StateTable {
   void replace(std::uint32_t index, const StateMachine& state_machine);
 
  private:
+  double limited_energy(StateIndex index, const LawPoint& link) const noexcept;
+
   struct Content;
   std::unique_ptr<Content> content_;
 };

@@ -62,6 +62,11 @@ class PairStateMachines {
     if (remembers(step)) forgotten_ += static_cast<std::uint32_t>(states_.keep_rows(first, last));
   }
 
+  /// Makes room for so many pairs. Allocates; without memory the room stays as it is.
+  void make_room(std::size_t capacity) noexcept {
+    if (states_.make_room(capacity)) capacity_ = states_.capacity();
+  }
+
   bool has_states() const noexcept { return !stateless_; }
   const PairStates& states() const noexcept { return states_; }
   PairStates& states() noexcept { return states_; }
@@ -76,6 +81,8 @@ class PairStateMachines {
       }
     }
   }
+  /// Of two members. Precondition: they exist.
+  EndMasses masses_of(std::size_t a, std::size_t b) const noexcept { return {mass_[a], mass_[b]}; }
   double switching() const noexcept { return switching_; }  ///< by the changes of this step [J]
   /// Pairs of this step that could not be remembered, for lack of room.
   std::uint32_t forgotten() const noexcept { return forgotten_; }

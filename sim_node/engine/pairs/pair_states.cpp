@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <span>
 #include <utility>
 
@@ -46,6 +47,23 @@ std::size_t PairStates::keep_rows(std::size_t first, std::size_t last) noexcept 
     written_.start[row + 1] = to + std::min(read_.start[row + 1] - from, kept);
   }
   return wanted - kept;
+}
+
+bool PairStates::make_room(std::size_t capacity) noexcept {
+  if (capacity <= this->capacity()) return false;
+  try {
+    for (Table* table : {&read_, &written_}) {
+      table->states.reserve(capacity);
+      table->memory.reserve(capacity * slot_count_);
+    }
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+  for (Table* table : {&read_, &written_}) {
+    table->states.resize(capacity);
+    table->memory.resize(capacity * slot_count_, kNoValue);
+  }
+  return true;
 }
 
 void PairStates::change_slots(std::uint32_t slot_count) {

@@ -23,7 +23,7 @@ struct PairState {
 
 /// The pairs that are in range or in another state than that of the start, row by row, each row
 /// by the later member. A step reads the rows of the last one and writes its own beside them; there
-/// is room for a number of pairs fixed at construction.
+/// is room for a number of pairs that make_room() enlarges between two steps.
 class PairStates {
  public:
   PairStates(std::size_t row_count, std::size_t capacity, std::uint32_t slot_count);
@@ -53,6 +53,12 @@ class PairStates {
   std::size_t begin(std::size_t row) const noexcept { return written_.start[row]; }
   std::size_t end(std::size_t row) const noexcept { return written_.start[row + 1]; }
   const PairState& state(std::size_t index) const noexcept { return written_.states[index]; }
+  /// There is room for so many.
+  std::size_t capacity() const noexcept { return written_.states.size(); }
+  /// Makes room for more. Allocates. @return false when there is room, or no memory
+  bool make_room(std::size_t capacity) noexcept;
+  /// Of a saved state, at least.
+  static constexpr std::size_t kValuesPerPair = 6;
   std::size_t count() const noexcept { return written_.count; }
   std::size_t row_count() const noexcept { return written_.start.size() - 1; }
   /// True if a step has been written.

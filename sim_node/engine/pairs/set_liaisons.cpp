@@ -71,6 +71,28 @@ std::uint32_t SetLiaisons::overflowed_count() const noexcept {
   return count;
 }
 
+std::uint32_t SetLiaisons::forgotten_count() const noexcept {
+  std::uint32_t count = 0;
+  for (const SetPairs& set : sets_) count += set.forgotten_count();
+  return count;
+}
+
+bool SetLiaisons::want_room() const noexcept {
+  bool wanted = false;
+  for (const SetPairs& set : sets_) wanted = wanted || set.wants_room();
+  return wanted;
+}
+
+void SetLiaisons::make_room() noexcept {
+  for (SetPairs& set : sets_) {
+    if (set.wants_room()) set.make_room();
+  }
+}
+
+void SetLiaisons::make_room_of(std::size_t value_count) noexcept {
+  for (SetPairs& set : sets_) set.make_room_of(value_count);
+}
+
 void SetLiaisons::forget_partners() noexcept {
   for (SetPairs& set : sets_) set.forget_partners();
 }

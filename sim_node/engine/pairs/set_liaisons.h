@@ -40,6 +40,10 @@ class SetLiaisons {
   void start() noexcept;
   void adopt(const StateTable& table);
   std::uint32_t overflowed_count() const noexcept;
+  std::uint32_t forgotten_count() const noexcept;
+  bool want_room() const noexcept;
+  void make_room() noexcept;
+  void make_room_of(std::size_t value_count) noexcept;
   void forget_partners() noexcept;
   void serialize(Archive& archive, const StateTable& table);
 

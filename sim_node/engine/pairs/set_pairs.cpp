@@ -55,6 +55,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
     : kernel_(kernel),
       state_machine_(description.sets[index].state_machine),
       count_p_(description.sets[index].set_p.size()),
+      all_pairs_(all_pairs(description.sets[index])),
       rest_length_(description.sets[index].rest_length),
       range_(description.sets[index].range),
       share_(partner_share(description, description.sets[index])),
@@ -326,7 +327,9 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
     for (std::size_t a = 0; a < states.row_count(); ++a) {
       for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
         const PairState& pair = states.state(i);
-        sum += table.stored_energy(pair.state, distance(a, pair.column / 4), pair.rest_length);
+        const std::size_t b = pair.column / 4;
+        sum += table.stored_energy(pair.state, distance(a, b), pair.rest_length,
+                                   state_machines_.masses_of(a, b));
       }
     }
     return sum;
@@ -338,8 +341,14 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
       const std::size_t count = gather(rows, a);
       const PairRow row = block_.next_row();
       for (std::size_t i = 0; i < count; ++i) {
-        sum +=
-            table.stored_energy(start, std::sqrt(row.square[i]), rest_of.of(a, row.column[i] / 4));
+        const std::size_t b = row.column[i] / 4;
+        const EndMasses mass = state_machines_.masses_of(a, b);
+        const double rest_length = rest_of.of(a, b);
+        sum += table.stored_energy(start, std::sqrt(row.square[i]), rest_length, mass);
+        // Beyond the range there is no force, and the potential is 0; that of Lennard-Jones is 0
+        // far away.
+        if (path_ != Path::kLennardJones)
+          sum -= table.stored_energy(start, range_, rest_length, mass);
       }
     }
   }
@@ -360,6 +369,28 @@ void SetPairs::start() noexcept {
     if (i % 4 != kPartners) force_[i] -= viscous_[i];
   }
   std::fill(viscous_.begin(), viscous_.end(), 0.0);
+}
+
+/// Room for the pairs remembered and for all that are listed, which may bind in the next step.
+std::size_t SetPairs::wanted_room() const noexcept {
+  if (!state_machines_.has_states()) return 0;
+  const std::size_t remembered = state_machines_.states().count();
+  const std::size_t listed = neighbours_.is_whole() ? neighbours_.entry_count() : remembered;
+  return std::min(all_pairs_, remembered + listed + listed / 4);
+}
+
+bool SetPairs::wants_room() const noexcept {
+  return wanted_room() > state_machines_.states().capacity();
+}
+
+void SetPairs::make_room() noexcept {
+  const std::size_t twice = 2 * state_machines_.states().capacity();
+  state_machines_.make_room(std::min(all_pairs_, std::max(wanted_room(), twice)));
+}
+
+void SetPairs::make_room_of(std::size_t value_count) noexcept {
+  if (!state_machines_.has_states()) return;
+  state_machines_.make_room(std::min(all_pairs_, value_count / PairStates::kValuesPerPair));
 }
 
 bool SetPairs::is_overflowed() const noexcept {

@@ -88,6 +88,13 @@ class SetPairs {
 
   /// True if the pairs found no room in the neighbour list in the last step, or to be remembered.
   bool is_overflowed() const noexcept;
+  std::uint32_t forgotten_count() const noexcept { return state_machines_.forgotten(); }
+  /// True if the pairs of the neighbour list could bind and find no room beside those bound.
+  bool wants_room() const noexcept;
+  /// Makes that room, twice the present one at least. Allocates; without memory it stays.
+  void make_room() noexcept;
+  /// Makes room for all bonds that so many values of a saved state can hold. Allocates.
+  void make_room_of(std::size_t value_count) noexcept;
   NeighbourList& neighbours() noexcept { return neighbours_; }
 
   /// Its length depends on the pairs that have states.
@@ -103,6 +110,7 @@ class SetPairs {
   }
   /// Precondition: the neighbour list is whole.
   PairsOfSet pairs() noexcept;
+  std::size_t wanted_room() const noexcept;
   void clear_forces() noexcept;
   void step_active_rows(const PairStep& step) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) const noexcept;
@@ -119,6 +127,7 @@ class SetPairs {
   const PairKernel& kernel_;
   std::uint32_t state_machine_;
   std::size_t count_p_;
+  std::size_t all_pairs_;
   std::vector<std::uint32_t> column_;  // of the MAT of each member
   std::vector<double> is_mass_;        // of each member: 1 or 0
   std::vector<double> radius_;         // of each member [m]; empty when the rest length is given

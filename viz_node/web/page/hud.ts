@@ -120,7 +120,7 @@ export class Hud {
   private writeEnergy(sim: NodeState | undefined): void {
     set('energy', joined(withUnit(sim?.energy_j, 'J')));
     const drift = sim?.energy_drift;
-    set('energy-more', typeof drift === 'number' ? `drift ${plain(drift)}` : '');
+    set('energy-more', typeof drift === 'number' ? `drift ${plain(drift)}, error ${joined(withUnit(sim?.integration_error_j, 'J'))}` : '');
     element('account').hidden = sim === undefined;
     set('by-ports', joined(withUnit(sim?.port_work_j, 'J')));
     set('by-switching', joined(withUnit(sim?.switching_energy_j, 'J')));

@@ -115,12 +115,16 @@ export interface NodeState {
   latency_max_s: Figure;
   energy_j: Figure;
   energy_drift: Figure;
+  integration_error_j: Figure; // what the steps have put in, and no account explains
   switching_energy_j: Figure; // brought in by changes of state and of parameters, net
   port_work_j: Figure; // brought in through the ports, net
   dissipated_j: Figure; // taken by viscosity
   largest_limit_number: Figure; // K' + 2 Z' seen: below 4 nothing diverges
   largest_partners: number; // most others that a mass of a set has touched at once
   certified_partners: number | null; // up to which the step is certified; null where nothing is watched
+  overflowed_steps: number; // in which a set had more pairs than room
+  forgotten_pairs: number; // states lost for lack of memory
+  refused_inputs: number; // not finite
   port_energy_j: Figure; // of a device: given to the hand, net
   passivity_ticks: number;
   step: number;

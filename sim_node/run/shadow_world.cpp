@@ -1,0 +1,59 @@
+// sim_node/run/shadow_world.cpp
+#include "sim_node/run/shadow_world.h"
+
+#include <cmath>
+#include <thread>
+#include <utility>
+
+namespace cordis::sim {
+
+WorldLook look_at(const engine::World& world) noexcept {
+  return {world.energy(), world.step_count(), world.state_hash()};
+}
+
+bool is_error_large(const engine::Energy& energy) noexcept {
+  constexpr double kLargestShare = 0.01;
+  constexpr double kRounding = 1e-20;  // [J]
+  const double error = std::abs(energy.integration_error());
+  return error > kLargestShare * energy.largest && error > kRounding;
+}
+
+ShadowWorld::ShadowWorld(std::shared_ptr<const engine::Network> network) noexcept
+    : network_(std::move(network)) {}
+
+void ShadowWorld::hand_over(const engine::World& world) noexcept {
+  if (copy_.load(std::memory_order_acquire) != Copy::kAsked) return;
+  value_count_ = world.max_values_of_state();
+  if (value_count_ > room_.capacity()) {
+    copy_.store(Copy::kTooLarge, std::memory_order_release);
+    return;
+  }
+  world.copy_state(room_);
+  step_ = world.step_count();
+  copy_.store(Copy::kThere, std::memory_order_release);
+}
+
+std::optional<WorldLook> ShadowWorld::look(std::chrono::milliseconds patience) {
+  if (!world_) {
+    world_ = std::make_unique<engine::World>(network_);
+    room_.assign(world_->max_values_of_state(), 0.0);  // touches every page before the loop does
+  }
+  if (copy_.load(std::memory_order_acquire) == Copy::kNone)
+    copy_.store(Copy::kAsked, std::memory_order_release);
+  const auto limit = std::chrono::steady_clock::now() + patience;
+  for (Copy copy = copy_.load(std::memory_order_acquire); copy != Copy::kThere;
+       copy = copy_.load(std::memory_order_acquire)) {
+    if (copy == Copy::kTooLarge) {
+      room_.assign(value_count_, 0.0);
+      copy_.store(Copy::kAsked, std::memory_order_release);
+    }
+    if (std::chrono::steady_clock::now() >= limit) return std::nullopt;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const bool fits = world_->take_state(room_, step_);
+  copy_.store(Copy::kNone, std::memory_order_release);
+  if (!fits) return std::nullopt;
+  return look_at(*world_);
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,42 @@
+// tests/gallery/integration_error_test.cpp -- the steps of every launch file make and take next to
+// nothing: none warns in 6 s.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/run/shadow_world.h"
+#include "tests/gallery/stage.h"
+
+namespace cordis::test {
+namespace {
+
+std::vector<std::string> launch_files() {
+  std::vector<std::string> names;
+  const std::string folder = std::string(CORDIS_SOURCE_DIR) + "/launch_configs";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class IntegrationError : public testing::TestWithParam<std::string> {};
+
+TEST_P(IntegrationError, IsBelowAHundredthOfTheLargestEnergy) {
+  Stage stage(GetParam() + ".yaml");
+  for (int half_seconds = 1; half_seconds <= 12; ++half_seconds) {
+    stage.play_until(0.5 * half_seconds);
+    const engine::Energy energy = stage.world().energy();
+    EXPECT_FALSE(sim::is_error_large(energy))
+        << energy.integration_error() << " of " << energy.largest << " J";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(LaunchFiles, IntegrationError, testing::ValuesIn(launch_files()),
+                         [](const auto& name) { return name.param; });
+
+}  // namespace
+}  // namespace cordis::test

@@ -1,0 +1,91 @@
+// tests/sim/shadow_world_test.cpp
+#include "sim_node/run/shadow_world.h"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/loaded_scenes.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/eventually.h"
+
+namespace cordis::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A lattice that falls, whose near masses bind each other: a set, states, gravity and viscosity.
+std::string lattice_text() {
+  return R"(
+cordis: 1
+name: lattice
+space: 3
+step: {rate_hz: 4000, gesture_rate_hz: 1000}
+matter:
+  grains: {kind: lattice, structure: cubic, counts: [3, 3, 3], corner_m: [0, 0, 0], spacing_m: 0.01, mass_kg: 0.001}
+liaisons:
+  bond:
+    start: free
+    states:
+      free: {exits: [{to: held, when: age_s > 0.2}]}
+      held: {stiffness_n_per_m: 1, viscosity_n_s_per_m: 0.001, exits: [{to: free, when: elongation_m > 1}]}
+links:
+  - {liaison: bond, within: grains, rest_m: 0.011, range_m: 0.03, name: bonds}
+)";
+}
+
+void expect_same(const WorldLook& look, const WorldLook& own) {
+  EXPECT_EQ(look.step, own.step);
+  EXPECT_EQ(look.state_hash, own.state_hash);
+  EXPECT_EQ(look.energy.total(), own.energy.total());
+  EXPECT_EQ(look.energy.dissipated, own.energy.dissipated);
+  EXPECT_EQ(look.energy.residual(), own.energy.residual());
+  EXPECT_EQ(look.energy.largest, own.energy.largest);
+}
+
+/// A loop and a thread that looks, a turn of the one after the other; `text` in motion.
+void expect_to_see_what_the_world_is(const std::string& text) {
+  Simulation simulation(scene_of(text), kEpochOfSim);
+  EventRoom events(64);
+  ShadowWorld shadow(simulation.world().shared_network());
+  EXPECT_FALSE(shadow.look(0ms)) << "nothing was handed over";
+  for (int n = 0; n < 5; ++n) {
+    for (int tick = 0; tick < 100; ++tick) simulation.advance(simulation.steps_per_tick(), events);
+    const WorldLook own = look_at(simulation.world());
+    const test::AllocationGuard guard;
+    shadow.hand_over(simulation.world());
+    EXPECT_EQ(guard.count(), 0u);
+    simulation.advance(simulation.steps_per_tick(), events);
+    shadow.hand_over(simulation.world());  // nobody has asked again
+
+    const std::optional<WorldLook> look = shadow.look(0ms);
+    ASSERT_TRUE(look);
+    expect_same(*look, own);
+    EXPECT_FALSE(shadow.look(0ms));
+  }
+}
+
+TEST(ShadowWorld, SeesWhatTheWorldIs) {
+  expect_to_see_what_the_world_is(swing_text());
+}
+
+TEST(ShadowWorld, SeesSetsAndStates) {
+  expect_to_see_what_the_world_is(lattice_text());
+}
+
+TEST(ShadowWorld, WaitsForTheLoop) {
+  Simulation simulation(scene_of(swing_text()), kEpochOfSim);
+  ShadowWorld shadow(simulation.world().shared_network());
+  std::atomic<bool> ends = false;
+  std::thread loop([&] {
+    while (!ends) shadow.hand_over(simulation.world());
+  });
+  const std::optional<WorldLook> look = shadow.look(60'000ms);
+  ends = true;
+  loop.join();
+  ASSERT_TRUE(look);
+  expect_same(*look, look_at(simulation.world()));
+}
+
+}  // namespace
+}  // namespace cordis::sim
