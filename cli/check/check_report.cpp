@@ -68,11 +68,12 @@ std::string stability_text(const SceneCheck& check) {
   } else if (stability.diverges()) {
     text = fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
                        check.rate_above(1.0 / stability.certified.step));
-  } else if (stability.doubt) {
+  } else if (stability.uncertainty) {
     text = fmt::format(
         "stability   not certain: {}: {};\n            energy and K' + 2 Z' are watched during "
         "the run\n",
-        scene::call_liaison(check.scene, stability.doubt->liaison).name, stability.doubt->why);
+        scene::call_liaison(check.scene, stability.uncertainty->liaison).name,
+        stability.uncertainty->why);
   } else {
     text = fmt::format(
         "stability   not certain: stable in some poses or states alone; a rate_hz of {:.0f} is "

@@ -28,12 +28,12 @@ void check_stability(const scene::Scene& scene, bool force, config::Problems& pr
       liaison.name + " at the mass " + scene::call_mat(scene, bound.mat).name + " sets the limit";
   const std::string hint =
       "a rate_hz of " + std::to_string(std::lround(stable_rate)) + " is stable in all of them";
-  if (!stability.diverges() && stability.doubt) {
-    const scene::Called doubtful = scene::call_liaison(scene, stability.doubt->liaison);
-    problems.warning(doubtful.place,
+  if (!stability.diverges() && stability.uncertainty) {
+    const scene::Called uncertain = scene::call_liaison(scene, stability.uncertainty->liaison);
+    problems.warning(uncertain.place,
                      "at " + std::to_string(rate) +
-                         " Hz it is not certain that the scene is stable: " + doubtful.name + ": " +
-                         stability.doubt->why,
+                         " Hz it is not certain that the scene is stable: " + uncertain.name +
+                         ": " + stability.uncertainty->why,
                      "energy and K' + 2 Z' are watched during the run");
   } else if (!stability.diverges()) {
     problems.warning(liaison.place,

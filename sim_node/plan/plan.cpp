@@ -158,17 +158,18 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   stability.bounded = graph.bounded;
   stability.step = network.step;
   stability.sets = partner_limits(network, graph, stability.holds());
-  stability.doubt = graph.doubt;
+  stability.uncertainty = graph.uncertainty;
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
-  if (!stability.doubt && contact && contact->stiffness > kCertainContact) {
-    stability.doubt = {contact->liaison, "each touch of it may gain energy, for its K' is above 1"};
+  if (!stability.uncertainty && contact && contact->stiffness > kCertainContact) {
+    stability.uncertainty = {contact->liaison,
+                             "each touch of it may gain energy, for its K' is above 1"};
   }
   // The two limits are found in ways that have nothing in common: where they cross one is wrong.
   constexpr double kRounding = 1e-6;
   if (stability.certified.step > stability.diverging_step * (1.0 + kRounding)) {
     stability.certified.step = stability.diverging_step;
-    if (!stability.doubt) {
-      stability.doubt = {stability.certified.liaison.value_or(LiaisonId{}), kLimitsCross};
+    if (!stability.uncertainty) {
+      stability.uncertainty = {stability.certified.liaison.value_or(LiaisonId{}), kLimitsCross};
     }
   }
   return stability;

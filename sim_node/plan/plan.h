@@ -13,7 +13,7 @@
 
 namespace cordis::plan {
 
-/// The doubt of a scene whose certified step is found above the one that diverges: an error of the
+/// The uncertainty of a scene whose certified step is found above the one that diverges: an error of the
 /// program, after which nothing is certified.
 inline constexpr const char* kLimitsCross = "the two limits of the step exclude each other";
 
@@ -28,9 +28,9 @@ struct Stability {
   double step = 0.0;               ///< of the network [s]
   std::vector<PartnerLimit> sets;  ///< how many partners it is stable with, one of each set
 
-  std::optional<Doubt> doubt;  ///< what keeps every step from being certain
+  std::optional<Uncertainty> uncertainty;  ///< what keeps every step from being certain
 
-  bool holds() const noexcept { return step < certified.step && !doubt; }
+  bool holds() const noexcept { return step < certified.step && !uncertainty; }
   bool diverges() const noexcept { return step > diverging_step; }
   /// 1 - (step / certified)^2: the part of the largest stiffness that may still be added.
   double margin() const noexcept;

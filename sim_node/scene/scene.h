@@ -66,7 +66,8 @@ struct Port {
   std::uint32_t tool =
       0;  ///< the MAT that the scene touches: that at the port, or the tool coupled to it
   engine::Vec3 rest = engine::Vec3::Zero();  ///< position of the MAT when all axes are at 0 [m]
-  std::vector<std::uint32_t> axes;  ///< of the device, each below config::kMaxAxes, none twice in a scene
+  std::vector<std::uint32_t>
+      axes;  ///< of the device, each below config::kMaxAxes, none twice in a scene
   std::vector<engine::Vec3> directions;  ///< per axis, unit length, linearly independent
   PortNeeds needs;
   config::Place place;  ///< of the port in the scene file

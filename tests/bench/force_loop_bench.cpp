@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "node/status_words.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/status_watch.h"
 
@@ -47,15 +48,15 @@ bool lockstep() {
                       nodes(", duration_s: " + std::to_string(kSimulatedSeconds), false), "bench");
   StatusWatch status(session.participant());
   session.start("device_node", "keyboard");
-  if (!status.wait_for_phase("keyboard", msg::PHASE_WAITING)) return false;
+  if (!status.wait_for_phase("keyboard", cordis::msg::PHASE_WAITING)) return false;
   const auto start = std::chrono::steady_clock::now();
   cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
   if (sim.wait(120s) != 0) return false;
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   const bool is_seen = status.wait_for("keyboard", [](const NodeStatus& status_now) {
-    return status_now.phase() == msg::PHASE_LOST;
+    return status_now.phase() == cordis::msg::PHASE_LOST;
   }) && status.wait_for("sim", [](const NodeStatus& status_now) {
-    return status_now.phase() == msg::PHASE_STOPPED;
+    return status_now.phase() == cordis::msg::PHASE_STOPPED;
   });
   const NodeStatus& simulated = status.of("sim");
   std::printf("lockstep, 40 masses, 4 steps per exchange, %d s simulated\n", kSimulatedSeconds);
@@ -90,8 +91,9 @@ bool realtime(std::chrono::seconds duration) {
   cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
   if (sim.wait(std::chrono::duration_cast<std::chrono::milliseconds>(duration) + 60s) != 0)
     return false;
-  const bool is_seen = status.wait_for(
-      "sim", [](const NodeStatus& status_now) { return status_now.phase() == msg::PHASE_STOPPED; });
+  const bool is_seen = status.wait_for("sim", [](const NodeStatus& status_now) {
+    return status_now.phase() == cordis::msg::PHASE_STOPPED;
+  });
   std::printf("realtime, 1 kHz, %lld s, with viz_node and %llu frames drawn by a page\n",
               static_cast<long long>(duration.count()),
               static_cast<unsigned long long>(status.of("view").latency_count()));

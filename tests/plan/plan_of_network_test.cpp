@@ -88,8 +88,8 @@ TEST(Plan, IsNotCertainOfAContactThatGainsEnergyAtEachTouch) {
   const plan::Stability stiff = stability_at(2500.0);  // K' = 2.5
   EXPECT_FALSE(stiff.holds());
   EXPECT_FALSE(stiff.diverges());
-  ASSERT_TRUE(stiff.doubt.has_value());
-  EXPECT_EQ(stiff.doubt->liaison.index, 0u);
+  ASSERT_TRUE(stiff.uncertainty.has_value());
+  EXPECT_EQ(stiff.uncertainty->liaison.index, 0u);
   EXPECT_TRUE(stability_at(500.0).holds());
 }
 
@@ -190,11 +190,11 @@ TEST(Plan, NeverCertifiesWhatSurelyDiverges) {
     const NetworkDescription scene = random_scene(seed);
     const plan::Stability stability = plan_of(scene, 10.0).stability;
     EXPECT_FALSE(stability.holds() && stability.diverges()) << "seed " << seed;
-    const bool crosses = stability.doubt && stability.doubt->why == plan::kLimitsCross;
+    const bool crosses = stability.uncertainty && stability.uncertainty->why == plan::kLimitsCross;
     EXPECT_FALSE(crosses) << "seed " << seed << ", " << scene.dimension << "-D, at link "
                           << stability.certified.liaison->index << " of kind "
                           << static_cast<int>(stability.certified.liaison->kind);
-    certain += stability.doubt ? 0 : 1;
+    certain += stability.uncertainty ? 0 : 1;
   }
   EXPECT_GT(certain, 10);
 }

@@ -61,22 +61,22 @@ TEST(Slope, OfAPowerIsThatWhereItHasTakenUpTheEnergyThereIs) {
   EXPECT_NEAR(slope.stiffness, 1e5 * 1.5 * std::sqrt(e), 0.03 * slope.stiffness);
   EXPECT_GE(slope.stiffness, 1e5 * 1.5 * std::sqrt(e));
   EXPECT_FALSE(slope.bounded);
-  EXPECT_EQ(slope.doubt, nullptr);
+  EXPECT_EQ(slope.uncertainty, nullptr);
 }
 
-TEST(Slope, IsInDoubtOfWhatPullsWhereItsEndsMeetAndTurns) {
+TEST(Slope, IsInUncertaintyOfWhatPullsWhereItsEndsMeetAndTurns) {
   const engine::Rings orbit{{{-50.0, 0.2}}};
   const engine::Table rope{{0.0, 0.1}, {2.0, 3.0}};
   const engine::Power constant{4.0, 0.0};
   for (const Law& law : {Law(orbit), Law(rope), Law(constant)}) {
-    EXPECT_NE(largest_slope(state_machine(0.0, law), 0.0, 2, Reach{0.3}).doubt, nullptr)
+    EXPECT_NE(largest_slope(state_machine(0.0, law), 0.0, 2, Reach{0.3}).uncertainty, nullptr)
         << law.index();
   }
-  EXPECT_NE(largest_slope(state_machine(40.0), -0.02, 3, Reach{0.3}).doubt, nullptr);
+  EXPECT_NE(largest_slope(state_machine(40.0), -0.02, 3, Reach{0.3}).uncertainty, nullptr);
   // A chord never turns; what pushes at 0, or never pulls, never pulls its ends about each other.
-  EXPECT_EQ(largest_slope(state_machine(0.0, orbit), 0.0, 1, Reach{0.3}).doubt, nullptr);
-  EXPECT_EQ(largest_slope(state_machine(40.0), 0.02, 3, Reach{0.3}).doubt, nullptr);
-  EXPECT_EQ(largest_slope(contact(40.0), -0.02, 3, Reach{0.3}).doubt, nullptr);
+  EXPECT_EQ(largest_slope(state_machine(0.0, orbit), 0.0, 1, Reach{0.3}).uncertainty, nullptr);
+  EXPECT_EQ(largest_slope(state_machine(40.0), 0.02, 3, Reach{0.3}).uncertainty, nullptr);
+  EXPECT_EQ(largest_slope(contact(40.0), -0.02, 3, Reach{0.3}).uncertainty, nullptr);
 }
 
 TEST(Slope, OfAnExpressionCountsItsSpeedAsViscosity) {
@@ -98,16 +98,17 @@ TEST(Slope, OfAnExpressionKnowsTheMassesOfItsEnds) {
                    200.0);
 }
 
-TEST(Slope, OfAnExpressionThatJumpsOrGrowsBeyondAllEnergyIsInDoubt) {
+TEST(Slope, OfAnExpressionThatJumpsOrGrowsBeyondAllEnergyIsInUncertainty) {
   const Term d = q(Quantity::kDistance);
   const Term e = q(Quantity::kElongation);
   for (const Term& law : {one(Operation::kSign, e), 1.0 / d}) {
-    EXPECT_NE(largest_slope(state_machine(0.0, expression_law(law)), 0.0, 1, Reach{0.1}).doubt,
-              nullptr);
+    EXPECT_NE(
+        largest_slope(state_machine(0.0, expression_law(law)), 0.0, 1, Reach{0.1}).uncertainty,
+        nullptr);
   }
   EXPECT_EQ(largest_slope(state_machine(0.0, expression_law(one(Operation::kTanh, e))), 0.0, 1,
                           Reach{0.1})
-                .doubt,
+                .uncertainty,
             nullptr);
 }
 

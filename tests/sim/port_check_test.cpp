@@ -171,7 +171,7 @@ TEST(PortCheck, TakesADeclaredLimitAtItsWord) {
             std::string::npos);
 }
 
-TEST(PortCheck, DoubtsASetThatMayMeetTheDeviceManyTimesAtOnce) {
+TEST(PortCheck, UncertaintysASetThatMayMeetTheDeviceManyTimesAtOnce) {
   PortDemand demand;
   demand.port = "finger";
   demand.device = "thimble";
@@ -185,7 +185,7 @@ TEST(PortCheck, DoubtsASetThatMayMeetTheDeviceManyTimesAtOnce) {
       << verdict.uncertainty;
 }
 
-TEST(PortCheck, DoubtsAPortOfRoleLiaisonWhoseViscosityIsLittleForAFingertip) {
+TEST(PortCheck, UncertaintysAPortOfRoleLiaisonWhoseViscosityIsLittleForAFingertip) {
   PortDemand demand;
   demand.port = "bow";
   demand.device = "keyboard";

@@ -79,8 +79,8 @@ void check_state_machine(const StateMachine& state_machine, const std::string& n
 double touch_distance(const StateMachine& state_machine) noexcept {
   const LinkState& state = state_machine.states.front();
   const bool is_bare = state_machine.is_stateless() && state.stiffness == 0.0 &&
-                       state.viscosity == 0.0 && is_none(state.dissipation) &&
-                       state.pulls && state.pushes && std::isinf(state.force_limit);
+                       state.viscosity == 0.0 && is_none(state.dissipation) && state.pulls &&
+                       state.pushes && std::isinf(state.force_limit);
   const auto* law = std::get_if<LennardJones>(&state.elasticity);
   if (!is_bare || law == nullptr) return std::numeric_limits<double>::infinity();
   return law->diameter * std::pow(26.0 / 7.0, 1.0 / 6.0);

@@ -38,7 +38,8 @@ double slope_beyond(const engine::LennardJones& law, double touch, double range)
 
 void note(const Slope& slope, LiaisonId liaison, LiaisonGraph& graph) {
   graph.bounded = graph.bounded && slope.bounded;
-  if (slope.doubt != nullptr && !graph.doubt) graph.doubt = {liaison, slope.doubt};
+  if (slope.uncertainty != nullptr && !graph.uncertainty)
+    graph.uncertainty = {liaison, slope.uncertainty};
 }
 
 /// One side of a set: its touching pairs, and those beyond.

@@ -17,7 +17,7 @@ using engine::LiaisonId;
 using engine::LiaisonKind;
 
 /// What keeps a step from being certain, whatever its length.
-struct Doubt {
+struct Uncertainty {
   LiaisonId liaison;
   std::string why;  ///< for a person, as part of a sentence about the liaison
 };
@@ -59,7 +59,7 @@ struct LiaisonGraph {
   std::vector<ContactBound> crowds;
   double medium_viscosity = 0.0;  ///< on every mass [N s/m]
   bool bounded = true;            ///< false: a law has no largest slope of its own; see Reach
-  std::optional<Doubt> doubt;     ///< a liaison that nothing bounds
+  std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds
 
   /// The stiffness of Maxwell elements depends on the step: 2 Z tanh(K dt / 2 Z) / dt, at most K.
   void set_step(const engine::NetworkDescription& network, double step);

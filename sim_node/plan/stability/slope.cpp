@@ -103,14 +103,14 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   const auto same = [](double of_far, double of_near) { return of_far <= kSame * of_near; };
   if (!std::isfinite(near.over_distance) || !std::isfinite(near.over_speed)) {
     slope.bounded = false;
-    slope.doubt = kNoLargestSlope;
+    slope.uncertainty = kNoLargestSlope;
     return;
   }
   slope.stiffness += near.over_distance;
   slope.viscosity += near.over_speed;
   if (same(far.over_distance, near.over_distance) && same(far.over_speed, near.over_speed)) return;
   slope.bounded = false;
-  if (!stretch.confined) slope.doubt = kConfinesNothing;
+  if (!stretch.confined) slope.uncertainty = kConfinesNothing;
 }
 
 /// What an expression without a largest slope has where it is looked at.
@@ -134,17 +134,18 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   damper.viscous = true;
   if (elastic != nullptr) {
     add_expression(elastic->program, stretch, rest_length, turns, reach, slope);
-    if (slope.doubt != nullptr) slope.stiffness += sampled(state.elasticity, spring);
+    if (slope.uncertainty != nullptr) slope.stiffness += sampled(state.elasticity, spring);
   } else {
     const engine::LawSlope law = engine::largest_slope(state.elasticity, spring);
     slope.stiffness += law.value;
     slope.bounded = slope.bounded && law.bounded;
-    if (is_jump(state.elasticity)) slope.doubt = kJumps;
+    if (is_jump(state.elasticity)) slope.uncertainty = kJumps;
   }
   if (viscous != nullptr) {
-    const bool was_sure = slope.doubt == nullptr;
+    const bool was_sure = slope.uncertainty == nullptr;
     add_expression(viscous->program, stretch, rest_length, turns, reach, slope);
-    if (was_sure && slope.doubt != nullptr) slope.viscosity += sampled(state.dissipation, damper);
+    if (was_sure && slope.uncertainty != nullptr)
+      slope.viscosity += sampled(state.dissipation, damper);
   } else {
     const engine::LawSlope law = engine::largest_slope(state.dissipation, damper);
     slope.viscosity += law.value;
@@ -157,7 +158,7 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     constexpr double kRounding = 1.001;
     if (pull > kRounding * slope.stiffness * nearest) {
       slope.bounded = false;
-      slope.doubt = kPullsWhereEndsMeet;
+      slope.uncertainty = kPullsWhereEndsMeet;
     }
   }
   return slope;
@@ -205,7 +206,7 @@ double stored_in(const engine::StateMachine& state_machine, double rest_length, 
   const double e = distance - rest_length;
   const double pull = elastic_pull(state.elasticity, {distance, e});
   if (!acts_at(state, state.stiffness * e + pull)) return 0.0;
-  const double in_law = stores_energy(state.elasticity) ? potential(state.elasticity, distance, e)
+  const double in_law = stores_energy(state.elasticity) ? potential(state.elasticity, {distance, e})
                                                         : std::abs(pull * e);
   return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
 }
@@ -218,9 +219,9 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.bounded = largest.bounded && slope.bounded;
-    // Of several states each holds only where its exits let it: what one pulls beyond is no doubt.
-    const bool may_end = !state_machine.is_stateless() && slope.doubt == kPullsWhereEndsMeet;
-    if (largest.doubt == nullptr && !may_end) largest.doubt = slope.doubt;
+    // Of several states each holds only where its exits let it: what one pulls beyond is no uncertainty.
+    const bool may_end = !state_machine.is_stateless() && slope.uncertainty == kPullsWhereEndsMeet;
+    if (largest.uncertainty == nullptr && !may_end) largest.uncertainty = slope.uncertainty;
   }
   return largest;
 }

@@ -27,7 +27,7 @@ struct Slope {
   double viscosity = 0.0;  ///< [N s/m]
   bool bounded = true;     ///< false: they hold within the Reach alone
   /// Why nothing bounds them, not even the Reach; null: something does.
-  const char* doubt = nullptr;
+  const char* uncertainty = nullptr;
 };
 
 /// Over all states of a state machine. [Luc90 III.2.3 b formalism to modify the liaison]
