@@ -77,6 +77,9 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
     {"viz_node/", {"viz_node/", "node/", "idl/"}},
     {"cli/lab/",  // plays a session in one process
      {"cli/", "node/", "idl/", "sim_node/", "device_node/"}},
+    {"cli/check/",  // judges a launch file as sim_node does
+     {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/", "sim_node/checks/",
+      "sim_node/sim_config.h", "sim_node/engine/core/"}},
     {"cli/",
      {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/", "sim_node/engine/core/"}},
 };

@@ -174,12 +174,15 @@ TEST(Partners, MakeTheRateOfACrowdHighEnough) {
   EXPECT_TRUE(plan_of(chosen, 20.0).stability.holds());
   World world = make_world(chosen);
   const double before = world.energy().total();
-  double most = before;
+  double most = before;  // below 0: the pairs would be free beyond their range
+  double swing = 0.0;
   for (int n = 0; n < 5000; ++n) {
     world.step();
-    most = std::max(most, world.energy().kinetic + world.energy().elastic);
+    const engine::Energy energy = world.energy();
+    most = std::max(most, energy.kinetic + energy.elastic);
+    swing = std::max(swing, energy.kinetic);
   }
-  EXPECT_LE(most, 1.1 * before);
+  EXPECT_LE(most, before + 0.1 * swing);
 }
 
 TEST(StartTangent, OfASetIsTheTrueLimitOfALinearOne) {

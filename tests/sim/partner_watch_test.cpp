@@ -177,7 +177,9 @@ TEST(SetsByChance, StayBoundedJustBelowTheirCertifiedStep) {
     NetworkDescription scene = random_set(seed);
     scene.step = 0.98 * plan::plan_of(scene, 10.0).stability.certified.step;
     if (!std::isfinite(scene.step)) continue;
-    ASSERT_TRUE(plan::plan_of(scene, 10.0).stability.holds()) << "seed " << seed;
+    const plan::Stability stability = plan::plan_of(scene, 10.0).stability;
+    if (stability.uncertainty) continue;  // such as contacts of K' > 1
+    ASSERT_TRUE(stability.holds()) << "seed " << seed;
     PartnerWatch watch(scene);
     World world(std::make_shared<const engine::Network>(scene));
     const double start = world.energy().kinetic + world.energy().elastic;
@@ -190,7 +192,7 @@ TEST(SetsByChance, StayBoundedJustBelowTheirCertifiedStep) {
       if (n == 20000) ++held;
     }
   }
-  EXPECT_GE(held, 30);
+  EXPECT_GE(held, 30) << held;
 }
 
 TEST(SetsByChance, GrowTenfoldJustBeyondTheStepThatSurelyDiverges) {
