@@ -94,7 +94,7 @@ const cases = {
       'latency-max': /^1\.90\sms$/,
       'latency-device': /keyboard/,
       energy: /^12\.0\smJ$/,
-      'energy-more': /^drift 2\.5e-9$/,
+      'energy-more': /^drift 2\.5e-9, error 2(\.0+)?\s?µJ$/,
       'by-ports': /^3\.00\smJ$/,
       'by-switching': /^250\sµJ$/,
       'by-viscosity': /^1\.20\smJ$/,
@@ -226,7 +226,7 @@ const cases = {
     await page.screenshot({ path: join(out, 'page_grid.png') });
   },
 
-  'what grows out of the picture is followed, until a person moves the eye': async (session) => {
+  'what grows out of the view is followed, until a person moves the camera': async (session) => {
     const { page } = session;
     await session.source.end('SIGKILL');
     session.source = session.scene('--amplitude', '0.5'); // at first all of it is above 0, half a second later below

@@ -261,6 +261,7 @@ int publish(const Options& options) {
     status.dropped(7);
     status.energy_j(0.012);
     status.energy_drift(2.5e-9);
+    status.integration_error_j(2e-6);
     status.port_work_j(3e-3);
     status.switching_energy_j(250e-6);
     status.dissipated_j(1.2e-3);
