@@ -73,6 +73,7 @@ Session::Session(const node::NodeStart& start, SimConfig config)
         const auto before = executor_.scene();
         node::Answer answer = executor_.execute(command);
         if (executor_.scene() != before) refused_.play(*executor_.scene());
+        change_shadow();
         return answer;
       }) {}
 
@@ -186,7 +187,6 @@ bool Session::execute() {
   }
   runner_.execute(*request);
   mailbox_.report_steps_left(runner_.steps_left());
-  if (new_stage) change_shadow();  // before the giver frees the stage before
   mailbox_.executed();
   if (new_stage) offer_frame();
   record_state();
@@ -360,7 +360,8 @@ void Session::record_state() {
   shown_.changes = runner_.stage().changes.count(simulation.world());
 }
 
-/// The status thread looks at the new scene from now on.
+/// After a command, in its thread: the status thread looks at the stage that is played now. The
+/// loop changes stages only while a command waits for it.
 void Session::change_shadow() {
   const std::lock_guard lock(shadow_mutex_);
   shadow_ = runner_.stage().shadow;

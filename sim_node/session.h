@@ -83,7 +83,7 @@ class Session {
   dds::Participant participant_;       // for all but the force loop
   dds::Participant loop_participant_;  // for the force loop, which waits for no other thread
   Runner runner_;
-  std::mutex shadow_mutex_;  // held for the copy of a pointer; the loop takes it to change scenes
+  std::mutex shadow_mutex_;              // of the threads of commands and of the status
   std::shared_ptr<ShadowWorld> shadow_;  // of the stage that is played
   RequestMailbox mailbox_;
   dds::Reader<msg::GesturePositions> position_reader_;
