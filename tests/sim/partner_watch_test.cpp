@@ -10,6 +10,7 @@
 #include "tests/engine/scenes.h"
 #include "tests/sim/loaded_scenes.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::sim {
 namespace {
@@ -171,9 +172,11 @@ double excess(const NetworkDescription& scene, const World& world, double start)
   return (energy.kinetic + energy.elastic) / (start + fallen + 1e-12);
 }
 
+constexpr auto kSeeds = static_cast<unsigned>(test::rounds(60));
+
 TEST(SetsByChance, StayBoundedJustBelowTheirCertifiedStep) {
   int held = 0;
-  for (unsigned seed = 1; seed <= 60; ++seed) {
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     NetworkDescription scene = random_set(seed);
     scene.step = 0.98 * plan::plan_of(scene, 10.0).stability.certified.step;
     if (!std::isfinite(scene.step)) continue;
@@ -192,12 +195,12 @@ TEST(SetsByChance, StayBoundedJustBelowTheirCertifiedStep) {
       if (n == 20000) ++held;
     }
   }
-  EXPECT_GE(held, 30) << held;
+  EXPECT_GE(held, static_cast<int>(kSeeds / 2));
 }
 
 TEST(SetsByChance, GrowTenfoldJustBeyondTheStepThatSurelyDiverges) {
   int grown = 0;
-  for (unsigned seed = 1; seed <= 60; ++seed) {
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     NetworkDescription scene = random_set(seed);
     if (!scene.state_machines[0].states[0].pulls) continue;
     const plan::Stability stability = plan::plan_of(scene, 10.0).stability;
@@ -228,7 +231,7 @@ TEST(SetsByChance, GrowTenfoldJustBeyondTheStepThatSurelyDiverges) {
     EXPECT_GT(most, 10.0 * before) << "seed " << seed;
     ++grown;
   }
-  EXPECT_GE(grown, 10);
+  EXPECT_GE(grown, test::rounds(10));
 }
 
 }  // namespace
