@@ -85,7 +85,7 @@ void StatusPublisher::report_rejoin() {
   const std::uint64_t count = participant_.rejoin_count();
   if (count == std::exchange(rejoin_count_, count)) return;
   if (rejoins_.record(monotonic_nsec()))
-    spdlog::warn("a process that DDS had dropped is there again; this node has joined again");
+    spdlog::warn("a process that DDS had dropped has come back; this node has joined again");
 }
 
 void StatusPublisher::publish() {

@@ -346,13 +346,15 @@ void Session::record_state() {
   if (!lock.owns_lock()) return;
   runner_.stage().limits.look(simulation.world());
   shown_.limit_number = runner_.stage().limits.largest();
-  shown_.partners = simulation.partners().nearest().value_or(PartnersSeen{0, 0, msg::NO_INDEX});
-  if (!shown_.partners.is_passed()) {
+  const PartnersSeen partners =
+      simulation.partners().nearest().value_or(PartnersSeen{0, 0, msg::NO_INDEX});
+  if (!partners.is_passed()) {
     shown_.crowding.clear();
-  } else if (shown_.partners.largest != partners_shown_) {
-    shown_.crowding = crowding_text(simulation.scene(), shown_.partners);
+  } else if (partners != shown_.partners ||
+             shown_.version != runner_.stage().frames.shape().version) {
+    shown_.crowding = crowding_text(simulation.scene(), partners);
   }
-  partners_shown_ = shown_.partners.largest;
+  shown_.partners = partners;
   if (clock != config::Clock::kRealtime || !loops_) shown_.of_world = look_at(simulation.world());
   shown_.loops = loops_;
   shown_.troubles = simulation.troubles();

@@ -49,8 +49,8 @@ class Session {
   void run_lockstep();
   void run_asap();
 
-  /// Obeys the order that waits, if any. @return false when the order is another stage, and the
-  /// scene has to stay paused until all that happened in it is told
+  /// Executes the request that waits, if any. @return false when it brings another scene, and this
+  /// one stays paused until its frames and events are published
   bool execute();
   /// Executes requests without real time, and waits a while when the scene is paused.
   /// @return whether it moves
@@ -99,9 +99,8 @@ class Session {
   std::int64_t waits_since_nsec_ = 0;  // in lockstep, for a sample; 0: it does not
   node::RepeatedEvent crowding_{"a mass of a set touched still more others"};
   std::uint32_t partners_reported_ = 0;  // of this scene
-  std::uint32_t partners_shown_ = 0;
-  bool loops_ = false;           // the loop has begun, and has not ended
-  std::uint64_t unwritten_ = 0;  // answers that DDS did not take
+  bool loops_ = false;                   // the loop has begun, and has not ended
+  std::uint64_t unwritten_ = 0;          // answers that DDS did not take
   node::RepeatedEvent absences_{"has been waiting long, with no device_node alive"};
   node::RepeatedEvent silences_{
       "has been waiting long for a sample of a device_node that is alive"};

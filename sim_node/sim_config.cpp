@@ -45,32 +45,26 @@ bool is_of_cordis(const std::filesystem::path& file) {
   return false;
 }
 
-SceneReference read_section(const config::LaunchNode& node, double& duration_s,
-                            config::Problems& problems) {
-  SceneReference reference;
-  config::MappingReader reader(node.section, "node '" + node.name + "'", problems);
-  reference.file = reader.required_text("scene");
-  duration_s = reader.optional_number("duration_s", 0.0, config::Range::not_negative());
-  reference.force = reader.optional_truth("force", false);
-  reference.place = reader.place_of("scene");
-  reader.finish();
-  return reference;
-}
-
 }  // namespace
 
-SceneReference scene_reference_of(const config::LaunchNode& node, config::Problems& problems) {
-  double ignored = 0.0;
-  return read_section(node, ignored, problems);
+SimSection read_sim_section(const config::LaunchNode& node, config::Problems& problems) {
+  SimSection section;
+  config::MappingReader reader(node.section, "node '" + node.name + "'", problems);
+  section.scene_file = reader.required_text("scene");
+  section.duration_s = reader.optional_number("duration_s", 0.0, config::Range::not_negative());
+  section.force = reader.optional_truth("force", false);
+  section.scene_place = reader.place_of("scene");
+  reader.finish();
+  return section;
 }
 
 SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,
                           config::Problems& problems) {
-  SimConfig sim;
-  const SceneReference reference = read_section(node, sim.duration_s, problems);
-  sim.force = reference.force;
-  if (reference.file.empty()) return sim;
-  sim.scene = load_checked_scene(launch, reference.file, reference.place, sim.force, problems);
+  const SimSection section = read_sim_section(node, problems);
+  SimConfig sim{section.duration_s, section.force, {}};
+  if (section.scene_file.empty()) return sim;
+  sim.scene =
+      load_checked_scene(launch, section.scene_file, section.scene_place, sim.force, problems);
   return sim;
 }
 

@@ -7,24 +7,27 @@
 namespace cordis::sim {
 
 /// The keys of a sim_node's section in a launch file.
-struct SimConfig {
-  double duration_s =
-      0.0;  ///< `duration_s`: simulated time after which the node ends by itself [s]; 0 = never
+struct SimSection {
+  std::string scene_file;     ///< `scene`: as a person wrote it; relative to the launch file
+  config::Place scene_place;  ///< of that path
+  /// `duration_s`: simulated time after which the node ends by itself [s]; 0 = never
+  double duration_s = 0.0;
   bool force = false;  ///< `force`: a scene that is surely unstable runs all the same
-  scene::Scene scene;  ///< `scene`: what the file of that name says
 };
 
-/// The scene that a sim_node's section names.
-struct SceneReference {
-  std::string file;  ///< as a person wrote it; relative to the launch file
-  config::Place place;
-  bool force = false;
+/// Reads the section alone, not the scene. What is wrong becomes a problem.
+SimSection read_sim_section(const config::LaunchNode& node, config::Problems& problems);
+
+/// What a sim_node runs.
+struct SimConfig {
+  double duration_s = 0.0;  ///< of the section
+  bool force = false;       ///< of the section
+  scene::Scene scene;       ///< what the file of the section says
 };
-SceneReference scene_reference_of(const config::LaunchNode& node, config::Problems& problems);
 
 /// Reads the section and the scene, checks every port against the device files of the same launch,
-/// and the stability of the scene. All that is wrong becomes a
-/// problem; the result is usable when there is none.
+/// and the stability of the scene. All that is wrong becomes a problem; the result is usable when
+/// there is none.
 SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,
                           config::Problems& problems);
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "node/config/file_kind.h"
 #include "node/config/value.h"
 #include "node/config/yaml_reader.h"
 #include "sim_node/checks/device_check.h"
@@ -62,7 +63,7 @@ std::optional<config::Launch> launch_of(const CheckOptions& options) {
   config::Problems problems;
   const config::Value root = config::load_file(options.file, problems);
   problems.throw_if_any();
-  if (!root.find("nodes").exists()) {
+  if (!config::is_launch_file(root)) {
     if (!options.overrides.empty())
       throw std::runtime_error("'" + options.overrides[0] + "' changes a launch file, and " +
                                options.file + " is a scene");
@@ -101,12 +102,11 @@ SceneCheck check_scene(const CheckOptions& options) {
   config::Place referrer;
   bool force = options.force;
   if (launch) {
-    const sim::SceneReference reference =
-        sim::scene_reference_of(sim_node_of(*launch), check.problems);
+    const sim::SimSection section = sim::read_sim_section(sim_node_of(*launch), check.problems);
     check.problems.throw_if_any();
-    scene_file = launch->resolve(reference.file).string();
-    referrer = reference.place;
-    force = force || reference.force;
+    scene_file = launch->resolve(section.scene_file).string();
+    referrer = section.scene_place;
+    force = force || section.force;
     check.delay_periods = sim::delay_periods_of(launch->clock);
   }
   sim::PlannedScene planned = sim::plan_scene(scene_file, referrer, check.problems);

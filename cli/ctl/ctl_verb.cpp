@@ -94,7 +94,7 @@ std::runtime_error silence(const CtlWords& words, const Address& address, const 
     return std::runtime_error(words.node + " has left " + where + " before it answered");
   const std::string mismatch = line.mismatch();
   if (!addressed_is_there && !mismatch.empty())
-    return std::runtime_error("nobody answers in " + where + ": " + mismatch);
+    return std::runtime_error("no node answers in " + where + ": " + mismatch);
   if (present.empty())
     return std::runtime_error("nobody is in " + where + ": start it with `cordis run`" +
                               (words.domain.empty() ? ", or name its --domain" : ""));

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cli/lab/offline_session.h"
+#include "node/config/file_kind.h"
 #include "node/config/value.h"
 #include "node/config/yaml_reader.h"
 #include "sim_node/checks/planned_scene.h"
@@ -49,7 +50,7 @@ LabScene load_lab_scene(const std::string& file, double duration_s) {
   const config::Value root = config::load_file(file, problems);
   problems.throw_if_any();
   LabScene lab;
-  if (root.find("nodes").exists()) {
+  if (config::is_launch_file(root)) {
     OfflineSession stage(file);
     lab.duration_s = duration_of(stage.scene(), duration_s);
     record(stage, lab);

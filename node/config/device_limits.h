@@ -47,8 +47,8 @@ Value device_mapping(const Launch& launch, const LaunchNode& node, Problems& pro
 /// Reads these keys, and marks them as known; the reader's owner reads the others.
 [[nodiscard]] DeviceLimits read_device_limits(MappingReader& reader);
 
-/// Which device a node plays. Of several nodes that play one, the strongest that is there is
-/// received.
+/// Which device a node plays. When several nodes play one device, the strongest one
+/// that runs is received.
 struct PlayedDevice {
   std::string name;   ///< `standby_for`: the name of the node itself when it is not given
   int strength = 10;  ///< `strength`: 5 for a node that plays another's device; 1..1000

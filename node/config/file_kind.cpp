@@ -34,11 +34,18 @@ std::string scene_of(const Value& launch) {
   return {};
 }
 
+const KindWords& words_of(FileKind kind) {
+  return *std::ranges::find(kKinds, kind, &KindWords::kind);
+}
+
 }  // namespace
 
+bool is_launch_file(const Value& root) {
+  return root.find(words_of(FileKind::kLaunch).mark).exists();
+}
+
 bool is_file_of(FileKind wanted, const Value& root, Problems& problems) {
-  const auto is_wanted = [&](const KindWords& words) { return words.kind == wanted; };
-  const KindWords& right = *std::ranges::find_if(kKinds, is_wanted);
+  const KindWords& right = words_of(wanted);
   if (root.find(right.mark).exists()) return true;
   // A scene without matter still has its space.
   if (wanted == FileKind::kScene && root.find("space").exists()) return true;

@@ -11,4 +11,7 @@ enum class FileKind { kLaunch, kScene, kDevice, kParts };
 /// `matter` of a scene, `axes` of a device file; else one problem that says what it is.
 bool is_file_of(FileKind wanted, const Value& root, Problems& problems);
 
+/// True if a file has what a launch file alone has: `nodes`.
+bool is_launch_file(const Value& root);
+
 }  // namespace cordis::config

@@ -18,7 +18,7 @@ struct OtherVersions {
   std::atomic<bool> any{false};
 };
 
-/// A process has several participants, and each of them hears of a peer on its own.
+/// Shared by all participants of the process, each of which discovers a peer by itself.
 OtherVersions& other_versions() {
   static OtherVersions others;
   return others;

@@ -19,6 +19,7 @@ struct PartnersSeen {
   std::uint32_t certified = 0;  ///< the number that it may have
 
   bool is_passed() const noexcept { return largest > certified; }
+  bool operator==(const PartnersSeen&) const = default;
 };
 
 /// Holds the partners of every step against plan::partner_limits(), of which the certificate of the

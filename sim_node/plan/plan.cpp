@@ -84,7 +84,7 @@ Stability stability_of_modes(const engine::NetworkDescription& network, const Li
   return stability;
 }
 
-/// True if a liaison of this state machine is there at some times and not at others.
+/// True if a liaison of this state machine acts at some times and not at others.
 bool switches(const engine::StateMachine& state_machine) {
   for (const engine::LinkState& state : state_machine.states) {
     if (!state.pulls || !state.pushes) return true;

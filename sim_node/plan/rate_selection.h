@@ -21,7 +21,7 @@ struct RateSelection {
 /// Cost of a step of an integrator, in evaluations of all forces of `cordis`: about. A
 /// step of `implicit` factorises and solves (docs/integrators.md).
 double cost_of_a_step(const std::string& integrator);
-/// The same at this rate, where `leapfrog` may have to solve its dampers.
+/// Cost at this rate, where `leapfrog` may have to solve its dampers.
 double cost_of_a_step(engine::NetworkDescription network, const RateSelection& choice);
 
 /// The cheapest of the integrators for what is asked. By the formulas of choose_rate; with over_s,

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -85,24 +84,6 @@ class Folder {
  private:
   std::filesystem::path path_;
 };
-
-/// The node of the launcher that was started with `--name NAME`; 0 when there is none.
-pid_t process_of(const ChildProcess& launcher, const std::string& name) {
-  const std::string id = std::to_string(launcher.id());
-  for (const auto& task : std::filesystem::directory_iterator("/proc/" + id + "/task")) {
-    std::ifstream children(task.path() / "children");
-    pid_t child = 0;
-    while (children >> child) {
-      std::ifstream file("/proc/" + std::to_string(child) + "/cmdline");
-      std::ostringstream text;
-      text << file.rdbuf();
-      const std::string words = std::string(1, '\0') + text.str();
-      const std::string wanted = std::string("\0--name\0", 8) + name + std::string(1, '\0');
-      if (words.find(wanted) != std::string::npos) return child;
-    }
-  }
-  return 0;
-}
 
 /// What the nodes say of themselves, as another process of the session receives it.
 class Statuses {

@@ -1,7 +1,5 @@
 // tests/gallery/golden_test.cpp -- every launch file, step for step as ever, with its energy
 // accounted for.
-#include <algorithm>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -12,16 +10,6 @@ namespace cordis::test {
 namespace {
 
 constexpr std::uint64_t kSteps = 10'000;
-
-std::vector<std::string> launch_files() {
-  std::vector<std::string> names;
-  const std::string folder = std::string(CORDIS_SOURCE_DIR) + "/launch_configs";
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 class Gallery : public testing::TestWithParam<std::string> {};
 

@@ -1,9 +1,6 @@
 // tests/gallery/integration_error_test.cpp -- the steps of every launch file make and take next to
 // nothing: none warns in 6 s.
-#include <algorithm>
-#include <filesystem>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -12,16 +9,6 @@
 
 namespace cordis::test {
 namespace {
-
-std::vector<std::string> launch_files() {
-  std::vector<std::string> names;
-  const std::string folder = std::string(CORDIS_SOURCE_DIR) + "/launch_configs";
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 class IntegrationError : public testing::TestWithParam<std::string> {};
 

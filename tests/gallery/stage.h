@@ -1,6 +1,7 @@
 // tests/gallery/stage.h -- a launch file of the gallery, played in one process.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -22,6 +23,17 @@ class Stage : public cli::OfflineSession {
       : cli::OfflineSession(std::string(CORDIS_SOURCE_DIR) + "/launch_configs/" + launch_file,
                             overrides) {}
 };
+
+/// The launch files of the gallery, without ending, in order.
+inline std::vector<std::string> launch_files() {
+  std::vector<std::string> names;
+  const std::string folder = std::string(CORDIS_SOURCE_DIR) + "/launch_configs";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 /// A scene of the gallery with words in the place of others, in a file that goes with it.
 class ChangedScene {

@@ -270,16 +270,7 @@ links:
 
 /// Presses after 10,000 periods, when the reader of the test has long been found.
 std::string late_key() {
-  return R"(cordis: 1
-axes: 1
-travel_m: 0.04
-rest: top
-rate_hz: 1000
-driver: script
-script:
-  interpolation: linear
-  positions:
-    - {at_s: 0, m: 0}
+  return std::string(kScriptedKey) + R"(    - {at_s: 0, m: 0}
     - {at_s: 10, m: 0}
     - {at_s: 10.2, m: -0.02}
 )";

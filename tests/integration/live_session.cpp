@@ -2,44 +2,16 @@
 #include "tests/integration/live_session.h"
 
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 
 #include "tests/support/test_domain.h"
 
 namespace cordis::test {
-namespace {
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-}  // namespace
-
 using namespace std::chrono_literals;
 
 std::string program_path(const std::string& program) {
   return std::string(CORDIS_PROGRAM_DIR) + "/" + program;
-}
-
-pid_t process_of(const ChildProcess& launcher, const std::string& node) {
-  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    const std::string number = entry.path().filename();
-    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
-    const std::string stat = text_of(entry.path() / "stat");
-    const std::size_t name_end = stat.rfind(')');
-    int parent = 0;
-    if (name_end == std::string::npos ||
-        std::sscanf(stat.c_str() + name_end, ") %*c %d", &parent) != 1 || parent != launcher.id())
-      continue;
-    const std::string words = text_of(entry.path() / "cmdline");
-    if (words.find(std::string("--name\0", 7) + node + '\0') != std::string::npos)
-      return std::stoi(number);
-  }
-  return 0;
 }
 
 LiveSession::LiveSession(const std::string& clock, const std::string& nodes,

@@ -47,9 +47,6 @@ class LiveSession {
   std::unique_ptr<dds::Participant> participant_;
 };
 
-/// The process of a node that this launcher has started; 0 when there is none.
-pid_t process_of(const ChildProcess& launcher, const std::string& node);
-
 /// Path of an executable of this build.
 std::string program_path(const std::string& program);
 

@@ -43,9 +43,8 @@ links:
 )";
 }
 
-/// A scripted key that moves to a position, or pushes with a force, and stays.
-inline std::string steady_key(double position_m, double force_n) {
-  return R"(cordis: 1
+/// A scripted key, up to its positions.
+inline const char* const kScriptedKey = R"(cordis: 1
 axes: 1
 travel_m: 0.04
 rest: top
@@ -54,7 +53,11 @@ driver: script
 script:
   interpolation: linear
   positions:
-    - {at_s: 0, m: 0}
+)";
+
+/// A scripted key that moves to a position, or pushes with a force, and stays.
+inline std::string steady_key(double position_m, double force_n) {
+  return std::string(kScriptedKey) + R"(    - {at_s: 0, m: 0}
     - {at_s: 0.2, m: )" +
          std::to_string(position_m) +
          "}\n  forces:\n    - {at_s: 0, n: 0}\n    - {at_s: 0.2, n: " + std::to_string(force_n) +

@@ -6,6 +6,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -28,6 +31,11 @@ std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
   return text;
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace
@@ -137,6 +145,23 @@ std::string ChildProcess::output() const {
 
 void ChildProcess::print() const {
   std::fprintf(stderr, "---- output of %s\n%s\n", command_.c_str(), output().c_str());
+}
+
+pid_t process_of(const ChildProcess& launcher, const std::string& name) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string number = entry.path().filename();
+    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string stat = text_of(entry.path() / "stat");
+    const std::size_t name_end = stat.rfind(')');
+    int parent = 0;
+    if (name_end == std::string::npos ||
+        std::sscanf(stat.c_str() + name_end, ") %*c %d", &parent) != 1 || parent != launcher.id())
+      continue;
+    const std::string words = text_of(entry.path() / "cmdline");
+    if (words.find(std::string("--name\0", 7) + name + '\0') != std::string::npos)
+      return std::stoi(number);
+  }
+  return 0;
 }
 
 }  // namespace cordis::test

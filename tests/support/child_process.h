@@ -60,4 +60,7 @@ class ChildProcess {
   std::thread reader_;
 };
 
+/// The node that this launcher has started with `--name NAME`; 0 when there is none.
+pid_t process_of(const ChildProcess& launcher, const std::string& name);
+
 }  // namespace cordis::test

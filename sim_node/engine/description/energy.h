@@ -11,7 +11,7 @@ namespace cordis::engine {
 /// keeps its account: a force f(n) changes the kinetic energy of the half-step velocities by
 /// exactly f(n) . (x(n+1) - x(n-1)) / 2, and dissipated and port_work are these exact works.
 ///
-/// Of linear links in 1 dimension, elastic is the product that the scheme keeps,
+/// For linear links in 1 dimension, elastic is the product that the scheme keeps,
 /// K e(n) e(n-1) / 2, which changes by exactly the work of the springs. Of all other links, elastic
 /// is what they stored at first, and the exact works of their elastic forces and the energies of
 /// their changes of state since. So no residual is left but rounding, for every law and every step

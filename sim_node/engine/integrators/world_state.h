@@ -33,7 +33,7 @@ struct WorldState {
   const NetworkDescription& description() const noexcept { return network->description(); }
   StepReport step() noexcept;
   void restore(const Snapshot& snapshot);
-  /// The same where the state machines are not those of the network, or have not been.
+  /// Restores a snapshot whose state machines, or the present ones, are not those of the network.
   void restore_with_table(const Snapshot& snapshot);
   void replace_state_machine(std::uint32_t index, const StateMachine& state_machine);
 
@@ -90,7 +90,7 @@ struct WorldState {
     }
     return energy_at_full_step(kinetic);
   }
-  /// The same with the kinetic energy [J] given.
+  /// The account at that moment, from the kinetic energy [J].
   Energy energy_at_full_step(double kinetic) noexcept {
     double gravity = 0.0;
     for (std::uint32_t i = 0; i < mats.count(); ++i) {

@@ -54,7 +54,7 @@ void check_dissipation(const Law& law, const std::string& name);
 /// The pull [N] of the elasticity of one link, with the bits that the kernels find. Precondition:
 /// checked.
 double elastic_pull(const Law& law, const LawPoint& link) noexcept;
-/// The same of a dissipation.
+/// The pull [N] of a dissipation.
 double viscous_pull(const Law& law, const LawPoint& link) noexcept;
 
 /// Energy [J] whose slope over the distance is the pull of the law: 0 at the elongation 0 for a

@@ -25,7 +25,7 @@ struct LawPoint {
   double mass_b = 0.0;
 };
 
-/// The same of the rows of a LaneBatch.
+/// The links of a LaneBatch, as a law sees them: one row for each quantity.
 struct LawArguments {
   const double* argument;  ///< the elongation of an elasticity, the speed of a dissipation
   const double* distance;

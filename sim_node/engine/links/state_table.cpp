@@ -195,7 +195,7 @@ double StateTable::stored_energy(StateIndex index, double distance, double rest_
   return linear + potential(state(index).elasticity, {distance, elongation, 0.0, mass.a, mass.b});
 }
 
-/// Of an expression whose pull has limits: the integral of the pull within them [J].
+/// Energy of an expression whose pull has limits: the integral of the limited pull [J].
 double StateTable::limited_energy(StateIndex index, const LawPoint& link) const noexcept {
   const StateTerm& term = content_->terms[index];
   const Expression& law = *potential_expression(state(index).elasticity);

@@ -81,7 +81,7 @@ class PairStateMachines {
       }
     }
   }
-  /// Of two members. Precondition: they exist.
+  /// Masses of two members. Precondition: they exist.
   EndMasses masses_of(std::size_t a, std::size_t b) const noexcept { return {mass_[a], mass_[b]}; }
   double switching() const noexcept { return switching_; }  ///< by the changes of this step [J]
   /// Pairs of this step that could not be remembered, for lack of room.

@@ -57,7 +57,7 @@ class PairStates {
   std::size_t capacity() const noexcept { return written_.states.size(); }
   /// Makes room for more. Allocates. @return false when there is room, or no memory
   bool make_room(std::size_t capacity) noexcept;
-  /// Of a saved state, at least.
+  /// The least number of values that a saved pair state takes.
   static constexpr std::size_t kValuesPerPair = 6;
   std::size_t count() const noexcept { return written_.count; }
   std::size_t row_count() const noexcept { return written_.start.size() - 1; }

@@ -139,7 +139,7 @@ double max_neighbours(int dimension, double own, double other) {
   return std::floor(2.0 / (1.0 - std::cos(half_angle)) + kRounding);
 }
 
-/// With q = reach / spacing >= 1. On a line, q on either side. In the plane, Oler's inequality: a
+/// q = reach / spacing >= 1. On a line, q on either side. In the plane, Oler's inequality: a
 /// convex set of area A and perimeter P holds at most 2 A / sqrt(3) + P / 2 + 1 points at distances
 /// of 1 (Oler 1961, Acta Mathematica 105). In space, disjoint balls of diameter 1 about the points
 /// fill a ball of diameter 2 q + 1: (2 q + 1)^3 with the one in the middle. For q below the golden

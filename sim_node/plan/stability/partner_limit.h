@@ -11,7 +11,7 @@
 
 namespace cordis::plan {
 
-/// Of one set, at the step of its network.
+/// The numbers of partners of one set, at the step of its network.
 struct PartnerLimit {
   std::uint32_t set = 0;       ///< index in NetworkDescription::sets
   std::uint32_t at_start = 0;  ///< the most partners of any mass at the start

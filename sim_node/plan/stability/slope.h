@@ -55,7 +55,7 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_
 /// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.
 Reach reach_of(const engine::NetworkDescription& network);
 
-/// Of a liaison between one of some MATs and one of others.
+/// The reach of a liaison between one of some MATs and one of others.
 Reach reach_between(Reach reach, const engine::NetworkDescription& network,
                     const std::vector<std::uint32_t>& mats_a,
                     const std::vector<std::uint32_t>& mats_b);
