@@ -151,6 +151,11 @@ void Verb::required_word(const std::string& placeholder, std::string& value,
   impl_->required.emplace_back(placeholder, &value);
 }
 
+void Verb::optional_word(const std::string& placeholder, std::string& value,
+                         const std::string& help) {
+  impl_->app->add_option(placeholder, value, help)->option_text(" ");
+}
+
 void Verb::more_words(const std::string& placeholder, std::vector<std::string>& value,
                       const std::string& help) {
   impl_->app->add_option(placeholder, value, help)->option_text("...");

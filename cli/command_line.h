@@ -38,6 +38,8 @@ class Verb {
             std::vector<std::string>& value, const std::string& help);
   /// A word without a name that must be there.
   void required_word(const std::string& placeholder, std::string& value, const std::string& help);
+  /// A word without a name that may be absent.
+  void optional_word(const std::string& placeholder, std::string& value, const std::string& help);
   /// All further words without a name.
   void more_words(const std::string& placeholder, std::vector<std::string>& value,
                   const std::string& help);

@@ -11,9 +11,13 @@ set(engine_headers
   description/energy.h description/integrator_kind.h description/network.h description/state_machine.h
   description/world_records.h
   expressions/instruction.h expressions/program.h expressions/program_term.h
-  laws/expression.h laws/law.h laws/law_term.h laws/lennard_jones.h laws/power.h laws/rings.h laws/table.h
+  laws/law.h laws/law_field.h laws/law_term.h
   links/link_event.h
   world.h)
+get_property(laws GLOBAL PROPERTY cordis_laws)
+foreach(law ${laws})
+  list(APPEND engine_headers laws/${law}.h)
+endforeach()
 foreach(header ${engine_headers})
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/sim_node/engine/${header}
@@ -39,9 +43,10 @@ install(FILES
 
 # The programs find each other in one folder, and the page in share/cordis/page beside it.
 if(NOT CORDIS_UNIT_TESTS_ONLY)
-  install(TARGETS cordis sim_node device_node viz_node RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS cordis sim_node device_node viz_node record_node RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(DIRECTORY ${CMAKE_BINARY_DIR}/share/cordis/page DESTINATION share/cordis OPTIONAL)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/launch_configs DESTINATION share/cordis)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/idl DESTINATION share/cordis
     FILES_MATCHING PATTERN "*.idl" PATTERN "*.md" PATTERN "*.xml")
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION share/cordis)
 endif()

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <thread>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -25,6 +26,7 @@ constexpr auto kLookAround = milliseconds(100);        // for a scene, while the
 constexpr double kLooksPerSecond = 50.0;               // after the guardian
 constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
+constexpr double kLongestPoll = 300e-6;                // for an answer, in a period [s]
 constexpr auto kLongSilence = std::chrono::seconds(2);  // after which its cause is looked for
 
 /// CLOCK_BOOTTIME [ns]: CLOCK_MONOTONIC stops while the machine sleeps.
@@ -64,7 +66,7 @@ Device::Device(LoadedDevice device, dds::Participant& participant, dds::Particip
         status.target_rate_hz(clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz);
       }) {}
 
-void Device::live() {
+void Device::run() {
   spdlog::info("{}, waiting for a scene that plays '{}'", what_it_is(config_), config_.name);
   describe();
   while (!node::stop_requested()) {
@@ -82,34 +84,17 @@ void Device::live() {
   meter_.set_phase(Phase::kStopped);
 }
 
-/// Tells everyone what the device is and what it supports.
+/// Publishes what the device is and what it supports.
 void Device::describe() {
-  msg::DeviceDescription description;
-  const config::DeviceLimits& limits = config_.limits;
-  description.device_id(config_.device_id);
-  description.device(config_.name);
-  description.driver(config_.driver);
+  msg::DeviceDescription description = description_of(config_);
   description.epoch(series_.epoch);
-  description.coordinate_count(static_cast<std::uint32_t>(limits.coordinate_count));
-  description.rate_hz(limits.rate_hz);
-  description.lowest_m(limits.lowest_m);
-  description.highest_m(limits.highest_m);
-  description.key_pitch_m(limits.key_pitch_m);
-  description.force_limit_n(limits.force_limit_n);
-  description.moving_mass_kg(limits.coordinate_mass_kg());
-  description.viscosity_n_s_per_m(limits.coordinate_viscosity_n_s_per_m());
-  description.stiffness_limit_n_per_m(limits.stiffness_limit_n_per_m);
-  description.damping_limit_n_s_per_m(limits.damping_limit_n_s_per_m);
-  description.delay_periods(static_cast<std::uint32_t>(limits.delay_periods));
-  description.travel_m(limits.coordinate_travel_m);
-  description.force_n(limits.coordinate_force_n);
   description.plays_mass(driver_->can_play(Role::kMass));
   description.plays_liaison(driver_->can_play(Role::kLiaison));
   if (!description_.write(description))
     spdlog::error("DDS did not take the description of '{}'", config_.name);
 }
 
-/// Tells once that the scene, if there is one, does not play the device.
+/// Reports once that the scene, if there is one, does not play the device.
 void Device::record_unused() {
   if (!part_.is_present || meter_.phase() == Phase::kUnused) return;
   meter_.set_phase(Phase::kUnused);
@@ -118,11 +103,22 @@ void Device::record_unused() {
 
 /// Plays one role until it changes or a stop is requested.
 void Device::play(Role role) {
-  const auto channel = make_dds_channel(for_loop_, role, config_.device_id, config_.strength);
-  if (clock_ == config::Clock::kRealtime) ask_for_realtime();
   const bool lockstep = clock_ == config::Clock::kLockstep;
-  Exchange exchange(config_, role, series_, lockstep, *driver_, *channel, meter_,
-                    &node::monotonic_nsec, &since_boot_nsec);
+  const bool may_poll =
+      !lockstep && driver_->changes_within_period() && std::thread::hardware_concurrency() > 1;
+  const double poll_s = std::min(kLongestPoll, Exchange::kAnswerShare / config_.layout.rate_hz);
+  const auto channel = make_dds_channel(for_loop_, role, config_.device_id, config_.strength,
+                                        may_poll ? std::llround(poll_s * 1e9) : 0);
+  if (clock_ == config::Clock::kRealtime) ask_for_realtime();
+  Exchange exchange({.config = config_,
+                     .driver = *driver_,
+                     .channel = *channel,
+                     .meter = meter_,
+                     .role = role,
+                     .series = series_,
+                     .lockstep = lockstep,
+                     .clock = &node::monotonic_nsec,
+                     .since_boot = &since_boot_nsec});
   phases_.start();
   if (lockstep) {
     play_in_lockstep(exchange);
@@ -145,14 +141,13 @@ void Device::ask_for_realtime() {
 void Device::play_paced(Exchange& exchange) {
   node::PacedLoop pace(config_.layout.rate_hz);
   while (has_part() && !node::stop_requested()) {
-    exchange.send_sample();
     pace.wait();
     meter_.late_ticks().count(pace.late_cause());
-    exchange.receive();
-    exchange.live();
+    exchange.play_period();
     if (exchange.misses_the_scene()) meter_.late_ticks().count_silent();
     record_phase(exchange);
     keep_guardian();
+    exchange.use_late_answer(pace.next_nsec());
   }
 }
 
@@ -162,7 +157,7 @@ void Device::play_in_lockstep(Exchange& exchange) {
   while (has_part() && !node::stop_requested()) {
     exchange.send_sample();
     if (!exchange.await_answer(watchdog) && !keep_asking(exchange)) return;
-    exchange.live();
+    exchange.step();
     record_phase(exchange);
     keep_guardian();
   }
@@ -176,13 +171,13 @@ bool Device::keep_asking(Exchange& exchange) {
   while (!exchange.await_answer(kRepeatAfter)) {
     if (node::stop_requested() || !has_part()) return false;
     silent += kRepeatAfter;
-    roster_.look();
+    roster_.update();
     if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
       meter_.set_phase(Phase::kLost);
       record_phase(exchange);
     }
     const bool never_answered = meter_.phase() == Phase::kWaiting;
-    if (silent >= kLongSilence && never_answered && !std::exchange(silence_told_, true)) {
+    if (silent >= kLongSilence && never_answered && !std::exchange(silence_reported_, true)) {
       const std::string alive = roster_.name_of(msg::KIND_SIM_NODE);
       spdlog::warn("no answer to the first sample for {} s: {}", kLongSilence.count(),
                    alive.empty() ? "no sim_node of the session is alive"
@@ -200,7 +195,7 @@ void Device::leave(Exchange& exchange) {
   exchange.leave();
   while (!exchange.has_left()) {
     pace.wait();
-    exchange.live();
+    exchange.play_period();
   }
 }
 

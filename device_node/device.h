@@ -1,4 +1,4 @@
-// device_node/device.h -- one device in a session, from the first scene to the wish to stop.
+// device_node/device.h -- one device in a session, from the first scene to the request to stop.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ class Device {
          config::Clock clock, std::uint64_t epoch);
 
   /// Returns after a stop. The calling thread becomes the loop thread. @throws as the constructor.
-  void live();
+  void run();
 
  private:
   void describe();
@@ -56,7 +56,7 @@ class Device {
   LoopMeter meter_;
   PhaseLog phases_;
   bool realtime_asked_ = false;
-  bool silence_told_ = false;
+  bool silence_reported_ = false;
   SceneWatch scenes_;             // its thread reads what stands above
   node::StatusPublisher status_;  // likewise
 };

@@ -85,7 +85,7 @@ void check_watchdog(config::MappingReader& reader, const ForceGuardSettings& gua
   }
 }
 
-/// What the device is known to be made of, and what follows from it for the energy monitor.
+/// What the device is known to be made of, and what follows from it for the passivity observer.
 void read_passivity(config::MappingReader& reader, const config::DeviceLimits& limits,
                     ForceGuardSettings& force, config::Problems& problems) {
   PassivitySettings& passivity = force.passivity;
@@ -198,6 +198,30 @@ std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig
 }
 
 }  // namespace
+
+msg::DeviceDescription description_of(const DeviceConfig& config) {
+  msg::DeviceDescription description;
+  const config::DeviceLimits& limits = config.limits;
+  description.device_id(config.device_id);
+  description.device(config.name);
+  description.driver(config.driver);
+  description.coordinate_count(static_cast<std::uint32_t>(limits.coordinate_count));
+  description.rate_hz(limits.rate_hz);
+  if (limits.coordinates_are_alike()) {
+    description.lowest_m(limits.coordinate_lowest_m[0]);
+    description.highest_m(limits.coordinate_highest_m[0]);
+  }
+  description.key_pitch_m(limits.key_pitch_m);
+  description.force_limit_n(limits.force_limit_n);
+  description.moving_mass_kg(limits.coordinate_mass_kg());
+  description.viscosity_n_s_per_m(limits.coordinate_viscosity_n_s_per_m());
+  description.stiffness_limit_n_per_m(limits.stiffness_limit_n_per_m);
+  description.damping_limit_n_s_per_m(limits.damping_limit_n_s_per_m);
+  description.delay_periods(static_cast<std::uint32_t>(limits.delay_periods));
+  description.travel_m(limits.coordinate_travel_m);
+  description.force_n(limits.coordinate_force_n);
+  return description;
+}
 
 std::string what_it_is(const DeviceConfig& config) {
   const int count = config.layout.count;

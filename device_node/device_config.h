@@ -10,6 +10,7 @@
 #include "device_node/force_guard.h"
 #include "device_node/position_guard.h"
 #include "device_node/traced_driver.h"
+#include "idl/gesture.h"
 #include "node/config/device_limits.h"
 #include "node/config/launch.h"
 
@@ -29,6 +30,9 @@ struct DeviceConfig {
   TraceSettings trace;
   std::string driver;  ///< its name in the driver table
 };
+
+/// What the device says of itself on the wire, but for its epoch and the roles that its driver has.
+msg::DeviceDescription description_of(const DeviceConfig& config);
 
 /// In words: how many axes or keys, how wide a keyboard is, and who drives it.
 std::string what_it_is(const DeviceConfig& config);

@@ -23,7 +23,7 @@ void solve(std::vector<std::vector<double>>& gram, std::vector<std::vector<doubl
       if (std::abs(gram[r][k]) > std::abs(gram[pivot][k])) pivot = r;
     }
     if (!(std::abs(gram[pivot][k]) > kSmallestPivot * largest)) {
-      throw std::invalid_argument("the coordinates of the end-piece depend on each other");
+      throw std::invalid_argument("the coordinates of the end-effector map depend on each other");
     }
     std::swap(gram[k], gram[pivot]);
     std::swap(right[k], right[pivot]);
@@ -52,12 +52,14 @@ EndPiece::EndPiece(const std::vector<std::vector<double>>& map, int axis_count)
     : coordinate_count_(static_cast<int>(map.size())), axis_count_(axis_count), identity_(false) {
   const auto axes = static_cast<std::size_t>(axis_count);
   if (map.empty() || map.size() > kMaxCoordinates || map.size() > axes) {
-    throw std::invalid_argument("an end-piece has 1 to 12 coordinates, and no more than axes");
+    throw std::invalid_argument(
+        "an end-effector map has 1 to 12 coordinates, and no more than axes");
   }
   std::vector<std::vector<double>> gram(map.size(), std::vector<double>(map.size(), 0.0));
   for (std::size_t r = 0; r < map.size(); ++r) {
     if (map[r].size() != axes) {
-      throw std::invalid_argument("each coordinate of an end-piece needs one number per axis");
+      throw std::invalid_argument(
+          "each coordinate of an end-effector map needs one number per axis");
     }
     for (std::size_t c = 0; c < map.size(); ++c) {
       for (std::size_t a = 0; a < axes && map[c].size() == axes; ++a) {

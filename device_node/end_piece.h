@@ -8,7 +8,8 @@
 
 namespace cordis::device {
 
-inline constexpr int kMaxCoordinates = 12;  ///< degrees of freedom of a handle with an end-piece
+inline constexpr int kMaxCoordinates =
+    12;  ///< degrees of freedom of a handle with an end-effector map
 
 /// The morphology of a device as a linear map: coordinates of the handle q = A x, with x the
 /// positions of the axes. Forces go the other way, f = A^T F, so that the power F dq = f dx is the
@@ -16,7 +17,7 @@ inline constexpr int kMaxCoordinates = 12;  ///< degrees of freedom of a handle 
 /// A+ = A^T (A A^T)^-1, and its forces are F = (A+)^T f.
 ///
 /// The coordinates are the axes when there is no map. Source: [Luc90 V.1 Force feedback gestual
-/// transducers], the end-pieces fixed on the slices of the keyboard.
+/// transducers], the end-effector maps fixed on the slices of the keyboard.
 class EndPiece {
  public:
   /// The axes themselves.

@@ -8,31 +8,32 @@ namespace cordis::device {
 namespace {
 
 // Limits of a stall of the loop itself, safely below the watchdog of 20 ms that boards have.
-constexpr double kStandstill = 0.018;       // [s]
-constexpr double kStandstillPeriods = 1.9;  // of a slow device
+constexpr double kStall = 0.018;  // [s]
+// Two commands of a slow device are apart by one period and a half at most: one follows an answer at
+// the beginning of a period, the next waits for kAnswerShare of its own.
+constexpr double kStallPeriods = 1.9;
 
 }  // namespace
 
-Exchange::Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep,
-                   Driver& driver, GestureChannel& channel, LoopMeter& meter, ClockFunction clock,
-                   ClockFunction since_boot)
-    : config_(config),
-      role_(role),
-      lockstep_(lockstep),
-      driver_(driver),
-      channel_(channel),
-      meter_(meter),
-      clock_(clock),
-      since_boot_(since_boot != nullptr ? since_boot : clock),
-      force_guard_(config.force_guard),
-      position_guard_(config.position_guard),
-      late_(static_cast<std::size_t>(config.limits.delay_periods) + 1),
-      first_sample_(series.last_sample + 1),
-      begun_nsec_(clock()),
-      lived_nsec_(since_boot_()) {
-  sample_.epoch = series.epoch;
-  sample_.sample = series.last_sample;
-  sample_.axis_count = static_cast<std::uint32_t>(config.end_piece.coordinate_count());
+Exchange::Exchange(const Setup& setup)
+    : config_(setup.config),
+      role_(setup.role),
+      lockstep_(setup.lockstep),
+      driver_(setup.driver),
+      channel_(setup.channel),
+      meter_(setup.meter),
+      clock_(setup.clock),
+      since_boot_(setup.since_boot != nullptr ? setup.since_boot : setup.clock),
+      force_guard_(config_.force_guard),
+      position_guard_(config_.position_guard),
+      late_(static_cast<std::size_t>(config_.limits.delay_periods) + 1),
+      first_sample_(setup.series.last_sample + 1),
+      begun_nsec_(clock_()),
+      stepped_nsec_(since_boot_()),
+      sensed_nsec_(begun_nsec_) {
+  sample_.epoch = setup.series.epoch;
+  sample_.sample = setup.series.last_sample;
+  sample_.axis_count = static_cast<std::uint32_t>(config_.end_piece.coordinate_count());
   meter_.set_phase(Phase::kWaiting);
   driver_.start(role_);
   present_ = driver_.read(sensed_) && all_finite(sensed_, kMaxAxes);
@@ -47,12 +48,12 @@ Exchange::~Exchange() {
 void Exchange::send_sample() noexcept {
   if (!present_ && !lockstep_) return;
   ++sample_.sample;
-  sample_.answered_epoch = applied_.epoch;
-  sample_.answered_sample = applied_.sample;
-  sample_.answered_time_nsec = applied_.time_nsec;
+  sample_.answered_epoch = commanded_answer_.epoch;
+  sample_.answered_sample = commanded_answer_.sample;
+  sample_.answered_time_nsec = commanded_answer_.time_nsec;
   sample_.value = role_ == Role::kMass ? config_.end_piece.coordinates_of(sensed_)
                                        : config_.end_piece.coordinate_forces_of(sensed_);
-  sample_.time_nsec = clock_();
+  sample_.time_nsec = driver_.changes_within_period() && !lockstep_ ? sensed_nsec_ : clock_();
   if (!channel_.send(sample_)) meter_.count_dropped();
 }
 
@@ -114,8 +115,10 @@ void Exchange::accept(const GestureMessage& answer) noexcept {
   if (!any_answer_ || answer.answered_sample > used_.answered_sample) {
     unapplied_ = true;
     unanswered_periods_ = 0;
+    meter_.record_answer(any_answer_ ? answer.answered_sample - used_.answered_sample : 1);
   }
   any_answer_ = true;
+  unfelt_ = true;
   used_ = answer;
   late_[answer.answered_sample % late_.size()] = answer;
   // The ring holds the delay and one more: the next to be replaced is the oldest.
@@ -133,10 +136,10 @@ double Exchange::age_s() const noexcept {
   return static_cast<double>(clock_() - used_.answered_time_nsec) * 1e-9;
 }
 
-bool Exchange::stood_still() noexcept {
+bool Exchange::has_stalled() noexcept {
   const std::int64_t now = since_boot_();
-  const auto since_s = static_cast<double>(now - std::exchange(lived_nsec_, now)) * 1e-9;
-  return !lockstep_ && since_s > std::max(kStandstill, kStandstillPeriods / config_.layout.rate_hz);
+  const auto since_s = static_cast<double>(now - std::exchange(stepped_nsec_, now)) * 1e-9;
+  return !lockstep_ && since_s > std::max(kStall, kStallPeriods / config_.layout.rate_hz);
 }
 
 /// Work of a hand that was carried, its force known before and after: f dx, exact for one that is a
@@ -153,31 +156,134 @@ void Exchange::add_work(const AxisValues& force_before_n, const AxisValues& carr
   is_carried_ = true;
 }
 
-void Exchange::live() noexcept {
-  const bool leaving = leaving_age_s_ > 0.0;
-  if (leaving) {
+/// The age of the newest answer as the guards count it; also counts the time since leave().
+double Exchange::age_for_guard() noexcept {
+  if (leaving_age_s_ > 0.0) {
     leaving_s_ += 1.0 / config_.layout.rate_hz;
     leaving_age_s_ += 1.0 / config_.layout.rate_hz;
   }
-  const double least = stood_still() ? config_.force_guard.watchdog_s : leaving_age_s_;
-  const double age = std::max(age_s(), least);
-  const AxisValues& commanded =
-      role_ == Role::kMass ? force_guard_.tick(age, sensed_) : position_guard_.tick(age);
-  driver_.record_age(age);
-  const bool written = driver_.write(commanded);
-  if (std::exchange(unapplied_, false)) meter_.record_latency(clock_() - used_.answered_time_nsec);
+  const double least = has_stalled() ? config_.force_guard.watchdog_s : leaving_age_s_;
+  return std::max(age_s(), least);
+}
+
+/// How long ago the command before went to motors that take one at any time.
+double Exchange::since_command_s() noexcept {
+  const std::int64_t now = clock_();
+  const std::int64_t before = std::exchange(commanded_nsec_, now);
+  return is_commanded_ ? static_cast<double>(now - before) * 1e-9 : ForceGuard::kWholePeriod;
+}
+
+/// What the guard makes of the newest answer. @param share  of the period that is over
+const AxisValues& Exchange::command(double age_s, double share, double since_s) noexcept {
+  commanded_ = role_ == Role::kMass ? force_guard_.tick(age_s, sensed_, share, since_s)
+                                    : position_guard_.tick(age_s, since_s);
+  is_commanded_ = true;
+  commanded_answer_ = applied_;
+  driver_.record_age(age_s);
+  return commanded_;
+}
+
+/// The newest answer is at the motors now.
+void Exchange::record_application() noexcept {
+  if (!std::exchange(unfelt_, false)) return;
+  const std::int64_t delay_nsec = clock_() - used_.answered_time_nsec;
+  if (!lockstep_) sample_.answer_delay_s = static_cast<double>(delay_nsec) * 1e-9;
+  if (std::exchange(unapplied_, false)) meter_.record_latency(delay_nsec);
+}
+
+/// Reads the sensors at the end of a period. @return false when they say nothing
+bool Exchange::sense() noexcept {
   const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);
   if (!sensed) sensed_ = last_sensed_;  // a hand does not jump
-  if (role_ == Role::kLiaison) add_work(last_sensed_, commanded);
+  if (role_ == Role::kLiaison && is_commanded_) add_work(last_sensed_, commanded_);
   last_sensed_ = sensed_;
+  return sensed;
+}
+
+void Exchange::end_tick(double age_s) noexcept {
   meter_.count_tick();
   const PassivityObserver& monitor = force_guard_.energy();
   meter_.record_energy(role_ == Role::kMass ? monitor.given_j() : -sample_.work_j,
                        role_ == Role::kMass && monitor.is_damping());
-
-  present_ = written && sensed;
   if (!present_) force_guard_.let_go();  // a device that comes back is ramped up again
-  if (!leaving) record_phase(any_answer_ && age < config_.force_guard.watchdog_s);
+  if (leaving_age_s_ <= 0.0) record_phase(any_answer_ && age_s < config_.force_guard.watchdog_s);
+}
+
+void Exchange::step() noexcept {
+  const double age = age_for_guard();
+  written_ = driver_.write(command(age, 0.0, ForceGuard::kWholePeriod));
+  record_application();
+  const bool sensed = sense();
+  present_ = written_ && sensed;
+  end_tick(age);
+}
+
+/// The driver has lived through the period before; what its sensors say now is sent at once.
+void Exchange::begin_period() noexcept {
+  sensed_nsec_ = clock_();
+  const bool alive = driver_.begin_period();
+  const bool sensed = sense();
+  present_ = written_ && alive && sensed;
+  if (leaving_age_s_ <= 0.0) send_sample();
+}
+
+void Exchange::play_period() noexcept {
+  const bool leaving = leaving_age_s_ > 0.0;
+  if (!leaving) receive();
+  if (!driver_.changes_within_period()) {
+    step();
+    if (!leaving) send_sample();
+    return;
+  }
+  begin_period();
+  is_ticked_ = false;
+  const double wait_s = kAnswerShare / config_.layout.rate_hz;
+  const std::int64_t until = sensed_nsec_ + static_cast<std::int64_t>(wait_s * 1e9);
+  if (unapplied_) apply();  // it came too late for the period before
+  if (!leaving) apply_answers_until(until);
+  if (!is_ticked_) apply();
+  end_tick(ticked_age_s_);
+}
+
+void Exchange::use_late_answer(std::int64_t until_nsec) noexcept {
+  // Of a period that is half over too little is left to go to a position.
+  const bool is_used = driver_.changes_within_period() && role_ == Role::kMass && present_ &&
+                       leaving_age_s_ <= 0.0 && meter_.phase() == Phase::kRunning;
+  if (is_used) apply_answers_until(until_nsec);
+}
+
+/// Hands on each new answer as soon as it comes, until the sample sent last is answered.
+void Exchange::apply_answers_until(std::int64_t nsec) noexcept {
+  GestureMessage answer;
+  while (!is_answered()) {
+    const std::int64_t left = std::max<std::int64_t>(nsec - clock_(), 0);
+    if (!channel_.receive(answer, std::chrono::nanoseconds(left))) return;
+    if (consider(answer)) apply();
+  }
+}
+
+/// The newest answer, or what is left of it, goes through the guard to the motors.
+void Exchange::apply() noexcept {
+  const double share = share_now();
+  const double since_s = since_command_s();
+  if (!std::exchange(is_ticked_, true)) {
+    ticked_age_s_ = age_for_guard();
+    written_ = driver_.change_command(command(ticked_age_s_, share, since_s), share);
+  } else {
+    ticked_age_s_ = age_s();
+    commanded_ = role_ == Role::kMass ? force_guard_.tick_again(ticked_age_s_, share, since_s)
+                                      : position_guard_.tick_again(ticked_age_s_, since_s);
+    commanded_answer_ = applied_;
+    driver_.record_age(ticked_age_s_);
+    written_ = driver_.change_command(commanded_, share) && written_;
+  }
+  record_application();
+}
+
+/// How much of the period is over that began with the newest reading, 0..1.
+double Exchange::share_now() const noexcept {
+  const auto since_s = static_cast<double>(clock_() - sensed_nsec_) * 1e-9;
+  return std::clamp(since_s * config_.layout.rate_hz, 0.0, 1.0);
 }
 
 void Exchange::record_phase(bool in_time) noexcept {

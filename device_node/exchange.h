@@ -11,13 +11,18 @@
 
 namespace cordis::device {
 
-/// The force loop of a device in one role, without its pace. One period is
-///   send_sample();  receive() or await_answer();  live();
-/// in the realtime clock with a sleep before receive(), in lockstep with await_answer() until the
-/// very sample has its answer. Then live() guards what was answered, hands it to the driver, lets
-/// the driver live for a period and reads its sensors for the next sample.
+/// The force loop of a device in one role, without its pace. In lockstep one period is
+///   send_sample();  await_answer() until the very sample is answered;  step();
+/// where step() guards what was answered, hands it to the driver, lets the driver act for a period
+/// and reads its sensors for the next sample.
 ///
-/// Between the axes and the wire stands the end-piece of the device; the guard stands behind it, at
+/// In real time one period is play_period(), at its beginning, and use_late_answer(), for its rest.
+/// When the driver changes its command within a period, the sensors are read and sent at once, and
+/// each answer goes to the motors as soon as it comes. For kAnswerShare of the period the motors wait
+/// for that to the very sample; then the guard does what it does without one. A position that comes
+/// later waits for the next period. Of other drivers a period is step() with the newest answer, and then send_sample().
+///
+/// Between the axes and the wire stands the end-effector map of the device; the guard stands behind it, at
 /// the motors. In lockstep `delay_periods` of the device lets every answer be felt so much later,
 /// as over a slow wire, and samples echo what is felt; the age of what goes to the guard is counted
 /// in samples, and nothing depends on wall time. Otherwise the age counts from the moment the
@@ -35,17 +40,29 @@ class Exchange {
     std::uint64_t last_sample = 0;  ///< number of the last sample sent before
   };
 
-  /// Starts the driver in the role. What is referred to must outlive the exchange.
-  /// @param since_boot  a clock that goes on while the machine sleeps; nullptr: `clock`, which
-  /// stops
-  Exchange(const DeviceConfig& config, Role role, Series series, bool lockstep, Driver& driver,
-           GestureChannel& channel, LoopMeter& meter, ClockFunction clock,
-           ClockFunction since_boot = nullptr);
+  /// What an exchange works with and on. All that is referred to must outlive the exchange.
+  struct Setup {
+    const DeviceConfig& config;
+    Driver& driver;
+    GestureChannel& channel;
+    LoopMeter& meter;
+    Role role = Role::kMass;
+    Series series{};
+    bool lockstep = false;
+    ClockFunction clock;
+    /// A clock that goes on while the machine sleeps; nullptr: `clock`, which stops.
+    ClockFunction since_boot = nullptr;
+  };
+
+  /// Starts the driver in the role.
+  explicit Exchange(const Setup& setup);
 
   /// Stops the driver.
   ~Exchange();
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
+
+  static constexpr double kAnswerShare = 0.5;  ///< of a period, in which the motors wait
 
   /// The newest readings, under the next number; nothing while the driver has no device, so that
   /// another node may play it. In lockstep the last ones then, since a scene waits for them.
@@ -61,6 +78,14 @@ class Exchange {
   /// answer or call; true when it is answered.
   bool await_answer(std::chrono::nanoseconds silence) noexcept;
 
+  /// Real time: plays a period from its beginning on, until its answer is at the motors, or
+  /// kAnswerShare of it are over.
+  void play_period() noexcept;
+
+  /// Real time, after play_period(): hands the motors an answer that comes before that moment, if
+  /// the driver takes it. Returns when no other can come. @param until_nsec  CLOCK_MONOTONIC
+  void use_late_answer(std::int64_t until_nsec) noexcept;
+
   /// In lockstep, when await_answer() has been in vain: motors off, if there are any.
   void let_go() noexcept;
 
@@ -68,7 +93,7 @@ class Exchange {
   /// running while answers come, standby while they go to another node, lost when they are older
   /// than the watchdog or the driver has no device, disconnected when its motors have been let go
   /// of outside this loop.
-  void live() noexcept;
+  void step() noexcept;
 
   bool has_device() const noexcept { return present_; }  ///< whether the driver has one
   /// True if the scene has fallen silent: it answered this exchange, for longer than the watchdog
@@ -78,7 +103,7 @@ class Exchange {
   bool has_motors() const noexcept { return driver_.has_motors(); }
 
   /// The part is over: motors are not switched off in the middle of a force. From now on nothing is
-  /// taken any more, and with every live() the last answer fades as an old one does, over
+  /// taken any more, and with every step() the last answer fades as an old one does, over
   /// limit / slew; but not for longer than 0.5 s, for a stop is a stop.
   void leave() noexcept;
   bool has_left() const noexcept {
@@ -90,10 +115,24 @@ class Exchange {
  private:
   static constexpr double kLongestLeave = 0.5;  // [s]
 
+  void begin_period() noexcept;
+  void apply_answers_until(std::int64_t nsec) noexcept;
+  void apply() noexcept;
+  bool is_answered() const noexcept {
+    return any_answer_ && used_.answered_sample == sample_.sample;
+  }
+  double share_now() const noexcept;
+  double age_for_guard() noexcept;
+  double since_command_s() noexcept;
+  const AxisValues& command(double age_s, double share, double since_s) noexcept;
+  void record_application() noexcept;
+  bool sense() noexcept;
+  void end_tick(double age_s) noexcept;
+
   bool consider(const GestureMessage& answer) noexcept;
   void accept(const GestureMessage& answer) noexcept;
   double age_s() const noexcept;
-  bool stood_still() noexcept;
+  bool has_stalled() noexcept;
   void add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept;
   void record_phase(bool in_time) noexcept;
 
@@ -110,6 +149,12 @@ class Exchange {
   GestureMessage sample_;                 // the sample sent last
   GestureMessage used_;                   // the newest good answer
   GestureMessage applied_;                // that which goes to the motors: older with a delay
+  GestureMessage commanded_answer_;       // that which the newest command follows from
+  AxisValues commanded_{};                // the newest command
+  bool is_commanded_ = false;             // there has been any
+  bool written_ = true;                   // the driver has taken it
+  bool is_ticked_ = false;                // real time: the guard has ticked in this period
+  double ticked_age_s_ = 0.0;             // of the answer that it was given [s]
   AxisValues sensed_{};                   // for the next sample
   AxisValues last_sensed_{};              // all finite
   std::vector<GestureMessage> late_;      // the last answers, by the sample they answer
@@ -119,14 +164,17 @@ class Exchange {
   std::int64_t begun_nsec_;               // when it began
   std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came
   bool other_answered_ = false;           // ever
-  std::int64_t lived_nsec_;               // when live() was called last
+  std::int64_t stepped_nsec_;             // when a command was found last
+  std::int64_t sensed_nsec_;              // when the sensors were read last
+  std::int64_t commanded_nsec_ = 0;       // when the motors got a command within a period
   double leaving_s_ = 0.0;                // since leave()
   double leaving_age_s_ = 0.0;            // that the last answer is given; 0: it has its own
   bool present_ = false;                  // the driver has its device
   bool any_answer_ = false;
   bool misses_scene_ = false;
   std::int64_t unanswered_periods_ = 0;  // since an answer to a new sample
-  bool unapplied_ = false;               // the newest answer has not been handed to the driver yet
+  bool unfelt_ = false;                  // the newest answer has not been handed to the driver yet
+  bool unapplied_ = false;               // and it is the first to its sample
 };
 
 }  // namespace cordis::device

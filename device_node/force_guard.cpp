@@ -2,6 +2,7 @@
 #include "device_node/force_guard.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -20,6 +21,8 @@ ForceGuard::ForceGuard(const ForceGuardSettings& settings)
 void ForceGuard::start() noexcept {
   wanted_.fill(0.0);
   output_.fill(0.0);
+  held_.fill(0.0);
+  rest_.fill(0.0);
   any_accepted_ = false;
   let_go_ = false;
   ticks_alive_ = 0;
@@ -49,34 +52,56 @@ double ForceGuard::within_power(double force_n, double speed_m_per_s) const noex
   return power > settings_.power_w ? settings_.power_w / speed_m_per_s : force_n;
 }
 
-const AxisValues& ForceGuard::tick(double age_s, const AxisValues& position_m) noexcept {
+/// Share of the wanted forces in a tick of the ramp.
+double ForceGuard::share_after(std::uint64_t ticks) const noexcept {
+  const double grown_s = static_cast<double>(ticks) * settings_.period_s;
+  return grown_s < settings_.ramp_s ? grown_s / settings_.ramp_s : 1.0;
+}
+
+const AxisValues& ForceGuard::tick(double age_s, const AxisValues& position_m, double share,
+                                   double since_s) noexcept {
   if (std::exchange(let_go_, false)) return output_;
   if (!any_accepted_ || !(age_s < settings_.watchdog_s)) {
     start();
     return output_;
   }
-  energy_.observe(output_, position_m);
-  const auto share_after = [this](std::uint64_t ticks) {
-    const double grown_s = static_cast<double>(ticks) * settings_.period_s;
-    return grown_s < settings_.ramp_s ? grown_s / settings_.ramp_s : 1.0;
-  };
-  const double share = share_after(ticks_alive_ + 1);
-  const double share_before = ticks_alive_ == 0 ? 0.0 : share_after(ticks_alive_);
-  if (share > share_before) energy_.allow_for_ramp(wanted_, share - share_before);
+  energy_.observe(held_, position_m);
+  const double grown = share_after(ticks_alive_ + 1);
+  const double grown_before = ticks_alive_ == 0 ? 0.0 : share_after(ticks_alive_);
+  if (grown > grown_before) energy_.allow_for_ramp(wanted_, grown - grown_before);
   ++ticks_alive_;
+  held_ = output_;
+  changed_.fill(0.0);
+  change(age_s, share, since_s);
+  return output_;
+}
+
+const AxisValues& ForceGuard::tick_again(double age_s, double share, double since_s) noexcept {
+  if (ticks_alive_ > 0 && age_s < settings_.watchdog_s) change(age_s, share, since_s);
+  return output_;
+}
+
+void ForceGuard::change(double age_s, double share, double since_s) noexcept {
   // What can still be brought to 0 at the slew rate before the watchdog bites.
   const double fading_n = settings_.slew_n_per_s * (settings_.watchdog_s - age_s);
   const double limit_n = std::min(settings_.limit_n, fading_n);
+  const double grown = share_after(ticks_alive_);
 
   for (std::size_t a = 0; a < output_.size(); ++a) {
     const double speed = energy_.speed_m_per_s(a);
-    const double damped = share * wanted_[a] - energy_.damping_n(a);
+    const double damped = grown * wanted_[a] - energy_.damping_n(a);
     const double wanted =
         within_power(std::clamp(damped, -settings_.limit_n, settings_.limit_n), speed);
-    const double change = std::clamp(wanted - output_[a], -largest_change_n_, largest_change_n_);
-    output_[a] = std::clamp(output_[a] + change, -limit_n, limit_n);
+    const double before = output_[a];
+    rest_[a] = std::min(rest_[a] + settings_.slew_n_per_s * since_s, largest_change_n_);
+    const double most = std::max(std::min(rest_[a], largest_change_n_ - changed_[a]), 0.0);
+    const double step = std::clamp(wanted - before, -most, most);
+    output_[a] = std::clamp(before + step, -limit_n, limit_n);
+    const double changed = std::abs(output_[a] - before);
+    changed_[a] += changed;
+    rest_[a] = std::max(rest_[a] - changed, 0.0);
+    held_[a] = share > 0.0 ? held_[a] + (1.0 - share) * (output_[a] - before) : output_[a];
   }
-  return output_;
 }
 
 }  // namespace cordis::device

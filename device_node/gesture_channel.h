@@ -19,6 +19,7 @@ struct GestureMessage {
   std::uint32_t axis_count = 0;         ///< valid entries of value
   AxisValues value{};                   ///< positions [m] or forces [N]
   double work_j = 0.0;                  ///< of forces: that the hand has given in the epoch
+  double answer_delay_s = 0.0;          ///< of the newest applied answer; 0: none yet
 };
 
 /// Both directions of the force loop of one device.

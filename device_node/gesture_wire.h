@@ -44,6 +44,7 @@ void put(const GestureMessage& from, std::uint32_t device_id, Message& to) noexc
   to.axis_count(from.axis_count);
   values_of(to) = from.value;
   put_work(from.work_j, to);
+  to.answer_delay_s(from.answer_delay_s);
 }
 
 /// Entries past the axis count become 0. @param from  msg::GesturePositions or msg::GestureForces

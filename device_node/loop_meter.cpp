@@ -44,6 +44,11 @@ void LoopMeter::record_energy(double given_j, bool damping) noexcept {
   if (damping) passivity_ticks_.fetch_add(1, std::memory_order_relaxed);
 }
 
+void LoopMeter::record_answer(std::uint64_t step) noexcept {
+  link_samples_.fetch_add(step, std::memory_order_relaxed);
+  link_unanswered_.fetch_add(step - 1, std::memory_order_relaxed);
+}
+
 void LoopMeter::publish_latency() noexcept {
   latency_count_.store(latency_.count(), std::memory_order_relaxed);
   latency_p50_s_.store(latency_.quantile_nsec(0.5) * 1e-9, std::memory_order_relaxed);
@@ -61,6 +66,8 @@ void LoopMeter::fill(msg::NodeStatus& status) const {
   status.dropped(dropped());
   status.port_energy_j(given_j_.load(std::memory_order_relaxed));
   status.passivity_ticks(passivity_ticks_.load(std::memory_order_relaxed));
+  status.link_samples(link_samples_.load(std::memory_order_relaxed));
+  status.link_unanswered(link_unanswered_.load(std::memory_order_relaxed));
   status.latency_count(latency_count_.load(std::memory_order_relaxed));
   status.latency_p50_s(latency_p50_s_.load(std::memory_order_relaxed));
   status.latency_p99_s(latency_p99_s_.load(std::memory_order_relaxed));

@@ -1,4 +1,4 @@
-// device_node/loop_meter.h -- what the loop of a device counts, for node/status to tell.
+// device_node/loop_meter.h -- what the loop of a device counts, for node/status.
 #pragma once
 
 #include <atomic>
@@ -37,6 +37,10 @@ class LoopMeter {
   /// From the sending of a sample to the arrival of its answer.
   void record_latency(std::int64_t nsec) noexcept { latency_.record(nsec); }
 
+  /// An answer has come to the sample `step` numbers after the one answered before: those between
+  /// them have none. @param step  1 for the first answer
+  void record_answer(std::uint64_t step) noexcept;
+
   /// Makes the latencies recorded so far visible to fill(); every 256th tick does so by itself.
   void publish_latency() noexcept;
 
@@ -54,6 +58,8 @@ class LoopMeter {
   std::atomic<double> given_j_{0.0};
   std::atomic<std::uint64_t> passivity_ticks_{0};
   node::LatencyHistogram latency_;  // of the loop thread alone
+  std::atomic<std::uint64_t> link_samples_{0};
+  std::atomic<std::uint64_t> link_unanswered_{0};
   std::atomic<std::uint64_t> latency_count_{0};
   std::atomic<double> latency_p50_s_{0.0};
   std::atomic<double> latency_p99_s_{0.0};

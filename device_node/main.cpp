@@ -39,7 +39,7 @@ void warn_of_board(const std::string& driver, BoardWatchdog watchdog) {
                                        : "it is unknown whether the board has a watchdog");
 }
 
-/// Kills a node that has not ended so long after the wish to stop: when its launcher is dead,
+/// Kills a node that has not ended so long after the request to stop: when its launcher is dead,
 /// no other process does it.
 void limit_stop() {
   constexpr std::chrono::seconds kLongestStop{10};
@@ -80,7 +80,7 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
       });
   commands.start();
   cordis::device::Device(std::move(device), participant, for_loop, start.launch.clock, start.epoch)
-      .live();
+      .run();
   return 0;
 }
 

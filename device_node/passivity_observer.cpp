@@ -12,7 +12,7 @@ PassivityObserver::PassivityObserver(const PassivitySettings& settings) : settin
   const bool valid = settings.mass_kg > 0.0 && settings.viscosity_n_s_per_m >= 0.0 &&
                      settings.budget_j >= 0.0 && settings.tank_j > 0.0 && settings.travel_m > 0.0 &&
                      settings.period_s > 0.0;
-  if (!valid) throw std::invalid_argument("a setting of the energy monitor is out of range");
+  if (!valid) throw std::invalid_argument("a setting of the passivity observer is out of range");
 }
 
 void PassivityObserver::start() noexcept {

@@ -22,7 +22,11 @@ struct PassivitySettings {
 /// Energy monitor and, for a device of role mass, capped passivity controller.
 ///
 /// A force held over a period gives the hand exactly f[n] (x[n+1] - x[n]); of that the viscosity b
-/// of the device takes at least b (x[n+1] - x[n])^2 / T. The sum of the differences,
+/// of the device takes at least b (x[n+1] - x[n])^2 / T. A force that changes from f0 to f1 at the
+/// part s of the period counts as its mean, s f0 + (1 - s) f1: the motion between two samples is
+/// taken as straight. What that leaves out is at most |f1 - f0| s (1 - s) / 2 times the bend
+/// T^2 |x''|; it has no mean for motions slower than half the rate of the samples, and of what a
+/// hand does at that rate itself no observer of samples knows. The sum of the differences,
 ///     W = sum of f dx - b dx^2 / T  over all axes,
 /// never rises above 0 when scene and delay together are passive for every hand, that is, in the
 /// linear case, up to K = b / (T/2 + d T). A loop whose W has exceeded the budget makes energy, and
@@ -42,7 +46,8 @@ class PassivityObserver {
 
   void start() noexcept;  ///< an empty account; the next position is the first
 
-  /// A period has passed in which `held_n` was held, and the axes are now at `position_m`.
+  /// A period has passed in which `held_n` was held in the mean, and the axes are now at
+  /// `position_m`.
   void observe(const AxisValues& held_n, const AxisValues& position_m) noexcept;
 
   /// The share of the forces `wanted_n` grows by `share`, 0..1.

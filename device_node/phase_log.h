@@ -1,4 +1,4 @@
-// device_node/phase_log.h -- tells a person how a device stands with the scene.
+// device_node/phase_log.h -- logs how a device stands with the scene.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class PhaseLog {
   /// CLOCK_MONOTONIC. @return whether it has changed
   bool note(Phase phase, bool has_device, std::int64_t now_nsec) noexcept;
 
-  /// Tells what has repeated itself. To be called at least now and then.
+  /// Reports what has repeated itself. To be called at least now and then.
   void report(std::int64_t now_nsec) noexcept;
 
  private:

@@ -17,6 +17,7 @@ PositionGuard::PositionGuard(const PositionGuardSettings& settings) : settings_(
 void PositionGuard::start() noexcept {
   output_.fill(std::clamp(0.0, settings_.lowest_m, settings_.highest_m));
   beyond_.fill(0.0);
+  rest_.fill(0.0);
   any_accepted_ = false;
   ticks_alive_ = 0;
 }
@@ -33,23 +34,39 @@ bool PositionGuard::accept(const AxisValues& wanted_m) noexcept {
   return false;
 }
 
-const AxisValues& PositionGuard::tick(double age_s) noexcept {
+const AxisValues& PositionGuard::tick(double age_s, double since_s) noexcept {
   if (!any_accepted_ || !(age_s < settings_.watchdog_s)) {
     any_accepted_ = false;
     ticks_alive_ = 0;
     return output_;
   }
   ++ticks_alive_;
+  moved_.fill(0.0);
+  move(since_s);
+  return output_;
+}
+
+const AxisValues& PositionGuard::tick_again(double age_s, double since_s) noexcept {
+  if (ticks_alive_ > 0 && age_s < settings_.watchdog_s) move(since_s);
+  return output_;
+}
+
+void PositionGuard::move(double since_s) noexcept {
   const double grown_s = static_cast<double>(ticks_alive_) * settings_.period_s;
   const double share = grown_s < settings_.ramp_s ? grown_s / settings_.ramp_s : 1.0;
-  const double largest_move_m = share * settings_.speed_m_per_s * settings_.period_s;
+  const double speed_m_per_s = share * settings_.speed_m_per_s;
+  const double largest_move_m = speed_m_per_s * settings_.period_s;
 
   for (std::size_t a = 0; a < output_.size(); ++a) {
     const double wanted = std::clamp(wanted_[a], settings_.lowest_m, settings_.highest_m);
-    output_[a] += std::clamp(wanted - output_[a], -largest_move_m, largest_move_m);
+    rest_[a] = std::min(rest_[a] + speed_m_per_s * since_s, largest_move_m);
+    const double most = std::max(std::min(rest_[a], largest_move_m - moved_[a]), 0.0);
+    const double move = std::clamp(wanted - output_[a], -most, most);
+    output_[a] += move;
+    moved_[a] += std::abs(move);
+    rest_[a] = std::max(rest_[a] - std::abs(move), 0.0);
     beyond_[a] = wanted_[a] - wanted;
   }
-  return output_;
 }
 
 }  // namespace cordis::device

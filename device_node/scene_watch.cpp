@@ -89,7 +89,7 @@ void SceneWatch::take(const msg::SceneDescription& scene) {
   part_.store(packed(now), std::memory_order_release);
 }
 
-/// Remembers why a description is refused, and tells it when it is another reason. @param why
+/// Remembers why a description is refused, and reports it when it is another reason. @param why
 /// empty: it is not
 void SceneWatch::refuse(const std::string& why) {
   const std::lock_guard lock(refusal_mutex_);

@@ -18,7 +18,7 @@ namespace cordis::device {
 
 /// Takes scene/description in a thread of its own, decodes it there, and hands the part of the
 /// device to the loop without a lock. A description that wants what no device or this one does not
-/// have is refused and told: the part before it stays.
+/// have is refused and reported: the part before it stays.
 class SceneWatch {
  public:
   /// What the newest scene wants of the device.
@@ -60,7 +60,7 @@ class SceneWatch {
   node::RepeatedEvent refusals_{"other descriptions of scenes were refused", spdlog::level::err};
   std::string questionable_;          // of the thread
   std::atomic<std::uint64_t> part_;   // packed
-  mutable std::mutex refusal_mutex_;  // of the thread and who tells the status
+  mutable std::mutex refusal_mutex_;  // of the thread and who reports the status
   std::string refusal_;
   std::atomic<bool> ending_{false};
   std::thread thread_;

@@ -62,6 +62,11 @@ bool TracedDriver::write(const AxisValues& commanded) noexcept {
   return driver_->write(commanded);
 }
 
+bool TracedDriver::change_command(const AxisValues& commanded, double share) noexcept {
+  begin_row(commanded);
+  return driver_->change_command(commanded, share);
+}
+
 /// Motors off counts as a command of nothing.
 void TracedDriver::stop() noexcept {
   driver_->stop();

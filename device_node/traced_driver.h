@@ -17,7 +17,7 @@ struct TraceSettings {
 
 /// Any driver, with its last samples kept in memory and written as CSV when the device ends:
 ///   time_nsec,commanded_0,...,sensed_0,...
-/// one line per write() to the driver: when it was (CLOCK_MONOTONIC), what it was given, what its
+/// one line per write() or change_command() to the driver: when it was (CLOCK_MONOTONIC), what it was given, what its
 /// sensors then said. Real time: a copy of two rows per period.
 class TracedDriver final : public Driver {
  public:
@@ -29,6 +29,9 @@ class TracedDriver final : public Driver {
   bool read(AxisValues& sensed) noexcept override;
   void record_age(double age_s) noexcept override { driver_->record_age(age_s); }
   bool write(const AxisValues& commanded) noexcept override;
+  bool changes_within_period() const noexcept override { return driver_->changes_within_period(); }
+  bool begin_period() noexcept override { return driver_->begin_period(); }
+  bool change_command(const AxisValues& commanded, double share) noexcept override;
   bool has_motors() const noexcept override { return driver_->has_motors(); }
   BoardWatchdog board_watchdog() const noexcept override { return driver_->board_watchdog(); }
   bool is_let_go() const noexcept override { return driver_->is_let_go(); }

@@ -11,22 +11,24 @@
 namespace cordis::node {
 namespace {
 
-constexpr auto kLongestWait = std::chrono::seconds(1);
+constexpr std::chrono::milliseconds kLongestWait{1000};
+constexpr std::chrono::milliseconds kLookAtWork{10};
 constexpr auto kLastReply = std::chrono::milliseconds(200);
 
 }  // namespace
 
-CommandListener::CommandListener(dds::Participant& participant, msg::NodeKind kind, Execute execute)
+CommandListener::CommandListener(dds::Participant& participant, msg::NodeKind kind, Execute execute,
+                                 FindWork find_work)
     : reader_(participant, dds::Topic::kCommand),
       writer_(participant, dds::Topic::kReply),
-      server_(participant.config().node, kind, std::move(execute)) {}
+      server_(participant.config().node, kind, std::move(execute), std::move(find_work)) {}
 
 CommandListener::~CommandListener() {
   ending_ = true;
   reader_.interrupt();
   if (!thread_.joinable()) return;
   thread_.join();
-  writer_.wait_until_acknowledged(kLastReply);  // the last reply tells what the node ended with
+  writer_.wait_until_acknowledged(kLastReply);  // the last reply reports what the node ended with
 }
 
 void CommandListener::start() {
@@ -40,7 +42,8 @@ void CommandListener::loop() {
       // A reply that cannot be written is asked for again.
       if (auto reply = server_.take(command)) static_cast<void>(writer_.write(*reply));
     }
-    if (!ending_) reader_.wait(kLongestWait);
+    if (auto reply = server_.take_finished()) static_cast<void>(writer_.write(*reply));
+    if (!ending_) reader_.wait(server_.is_working() ? kLookAtWork : kLongestWait);
   }
 }
 

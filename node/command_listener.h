@@ -12,11 +12,12 @@
 
 namespace cordis::node {
 
-/// Obeys and answers the commands for a node, one after the other, in a thread of its own. Create
-/// it before raising the priority of any thread.
+/// Executes and answers the commands for a node, one after the other, in a thread of its own; the long
+/// part of a command has another one. Create it before raising the priority of any thread.
 class CommandListener {
  public:
-  CommandListener(dds::Participant& participant, msg::NodeKind kind, Execute execute);
+  CommandListener(dds::Participant& participant, msg::NodeKind kind, Execute execute,
+                  FindWork find_work = {});
   /// Waits until the command being executed, if any, is done.
   ~CommandListener();
   CommandListener(const CommandListener&) = delete;

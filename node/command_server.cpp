@@ -2,15 +2,21 @@
 #include "node/command_server.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <utility>
 
+#include "node/control_verbs.h"
 #include "node/status_words.h"
 
 namespace cordis::node {
 
-CommandServer::CommandServer(std::string node, msg::NodeKind kind, Execute execute)
-    : node_(std::move(node)), kind_(kind), execute_(std::move(execute)) {}
+CommandServer::CommandServer(std::string node, msg::NodeKind kind, Execute execute,
+                             FindWork find_work)
+    : node_(std::move(node)),
+      kind_(kind),
+      execute_(std::move(execute)),
+      find_work_(std::move(find_work)) {}
 
 std::optional<msg::ControlReply> CommandServer::take(const msg::ControlCommand& command) {
   const std::string& target = command.target();
@@ -21,9 +27,33 @@ std::optional<msg::ControlReply> CommandServer::take(const msg::ControlCommand& 
   });
   if (known != given_.end()) return *known;
 
+  Work work = find_work_ ? find_work_(command) : Work{};
+  if (!work) return reply_to(command, [&] { return execute_(command); });
+  if (is_working()) {
+    if (command.command_id() == long_command_.command_id() &&
+        command.sender() == long_command_.sender())
+      return std::nullopt;
+    return reply_to(command, [&] {
+      return Answer{false, std::string("a '") + word_of(long_command_.verb()) +
+                               "' is still under way; send this one after its reply"};
+    });
+  }
+  long_command_ = command;
+  work_ = std::async(std::launch::async, std::move(work));
+  return std::nullopt;
+}
+
+std::optional<msg::ControlReply> CommandServer::take_finished() {
+  if (!is_working() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return std::nullopt;
+  return reply_to(long_command_, [this] { return work_.get()(); });
+}
+
+msg::ControlReply CommandServer::reply_to(const msg::ControlCommand& command,
+                                          const std::function<Answer()>& execute) {
   Answer answer;
   try {
-    answer = execute_(command);
+    answer = execute();
   } catch (const std::exception& failure) {
     answer = {false, failure.what()};
   }

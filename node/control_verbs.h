@@ -1,4 +1,4 @@
-// node/control_verbs.h -- the verbs of control/command that a sim_node executes, in words.
+// node/control_verbs.h -- the verbs of control/command for a sim_node or a player, in words.
 #pragma once
 
 #include <string>
@@ -26,6 +26,9 @@ inline const std::vector<ControlVerb>& control_verbs() {
       {msg::VERB_SET, "set", "NAME.PARAMETER=VALUE ...",
        "Change parameters of liaisons or named links"},
       {msg::VERB_STATE, "state", "LINKS STATE", "Put links into a state"},
+      {msg::VERB_GET, "get", "NAME[.PARAMETER] ...", "Say what parameters are now"},
+      {msg::VERB_SEEK, "seek", "TIME", "Go to this time of a take that is played"},
+      {msg::VERB_RATE, "rate", "RATE", "Play a take so many times as fast as it was recorded"},
   };
   return kVerbs;
 }

@@ -10,7 +10,7 @@ namespace cordis::node {
 // a port does so while it has the name cordis/domain/N, which one process has at a time: whoever
 // looks for a free domain sees all of a change or nothing.
 
-/// Takes a domain that nobody uses: no program of this host, of whatever vendor and user, has a
+/// Takes a domain that is free: no program of this host, of whatever vendor and user, has a
 /// unicast port of it (7400 + 250 domain + 10 and above) on any address.
 /// @return a file descriptor that holds the domain until it is closed; -1 when somebody uses it
 [[nodiscard]] int lock_domain(int domain) noexcept;

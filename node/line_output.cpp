@@ -35,7 +35,7 @@ void LineOutput::line(std::string_view text) {
   }
   if (dropped_ > 0) {
     waiting_ += "... " + config::count_text(dropped_, "line is", "lines are") +
-                " missing here: nobody read them in time\n";
+                " missing here: they were not read in time\n";
     dropped_ = 0;
   }
   waiting_ += text;
@@ -53,7 +53,7 @@ bool LineOutput::write_some(int patience_msec) {
   if (waiting_.empty() || poll(&file, 1, patience_msec) != 1) return false;
   const ssize_t count = write(file_, waiting_.data(), std::min(waiting_.size(), kPortion));
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return false;
-  // Nobody will ever read again: forget it all.
+  // No process will ever read again: forget it all.
   waiting_.erase(0, count < 0 ? waiting_.size() : static_cast<std::size_t>(count));
   return true;
 }

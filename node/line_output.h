@@ -8,7 +8,7 @@
 
 namespace cordis::node {
 
-/// A file that takes whole lines. A terminal that is stopped or a pipe that nobody reads must not
+/// A file that takes whole lines. A terminal that is stopped or a pipe that is not read must not
 /// stop who writes: what cannot be written waits, and past `max_waiting` lines are dropped and
 /// counted.
 class LineOutput {

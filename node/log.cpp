@@ -28,7 +28,7 @@ constexpr std::size_t kMaxWaiting = 65536;  // [bytes]
 constexpr std::size_t kLongestLine = 4096;  // [bytes]
 
 /// stderr, coloured on a terminal. A thread of its own formats and writes: who logs takes no lock
-/// and waits for nobody, neither for who reads nor for another thread that logs.
+/// and waits neither for who reads nor for another thread that logs.
 class ErrorSink : public spdlog::sinks::sink {
  public:
   ErrorSink(std::string name, bool coloured)

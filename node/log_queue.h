@@ -28,7 +28,7 @@ struct LogLine {
 };
 
 /// A queue with room for kRoom lines. Any thread pushes, one thread pops. A push takes no lock and
-/// waits for nobody, and a thread that is stopped in the middle of one holds up only the pop. It
+/// never waits, and a thread that is stopped in the middle of one holds up only the pop. It
 /// allocates only for a line longer than LogLine::kShort.
 class LogQueue {
  public:

@@ -11,6 +11,7 @@
 #include "node/inherited_priority.h"
 #include "node/log.h"
 #include "node/runtime_folder.h"
+#include "node/session_network.h"
 #include "node/session_registry.h"
 #include "node/stop.h"
 #include "node/time.h"
@@ -100,9 +101,14 @@ void join_session(NodeStart& start, std::optional<SessionRegistration>& registra
                          SessionRequest{launch.session,
                                         launch.domain,
                                         std::filesystem::absolute(launch.file).string(),
-                                        {start.node->name}});
+                                        {start.node->name},
+                                        /*is_player=*/false,
+                                        simulates(start.node->program),
+                                        start.network});
     if (!launch.domain)
       spdlog::info("session '{}' in DDS domain {}", launch.session, registration->domain());
+    const std::string warning = exposure_warning(start.network, registration->domain());
+    if (!warning.empty()) spdlog::warn("{}", warning);
   }
   start.domain = registration ? registration->domain() : *launch.domain;
 }
@@ -114,8 +120,10 @@ void print_problems(const std::vector<config::Problem>& problems) {
 }  // namespace
 
 dds::ParticipantConfig NodeStart::config() const {
-  return {domain, launch.session, node->name, launch.clock == config::Clock::kLockstep,
-          launch.has_standbys()};
+  dds::ParticipantConfig config{domain, launch.session, node->name,
+                                launch.clock == config::Clock::kLockstep, launch.has_standbys()};
+  config.network = network;
+  return config;
 }
 
 dds::Participant NodeStart::join_for_force_loop() const {
@@ -139,6 +147,8 @@ int node_main(int argc, char** argv, const std::string& kind,
     start.launch = config::load_launch(arguments.launch_file, arguments.overrides, problems);
     problems.throw_if_any();
     start.node = choose(start.launch, kind, arguments.name);
+    start.network = network_of(start.launch, problems);
+    problems.throw_if_any();
     start.check_only = arguments.check_only;
     start.epoch = static_cast<std::uint64_t>(monotonic_nsec());
     install_log(start.node->name);

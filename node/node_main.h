@@ -5,6 +5,7 @@
 #include <string>
 
 #include "node/config/launch.h"
+#include "node/dds/network.h"
 #include "node/dds/participant.h"
 
 namespace cordis::node {
@@ -15,6 +16,7 @@ struct NodeStart {
   const config::LaunchNode* node = nullptr;  ///< its own entry in launch.nodes
   bool check_only = false;                   ///< --check: read and check everything, then end
   int domain = 0;                            ///< DDS domain of the session
+  dds::Network network{};                    ///< what `network:` means on this host
   std::uint64_t epoch = 0;  ///< identifies this life of the process: its start time [ns]
 
   dds::ParticipantConfig config() const;

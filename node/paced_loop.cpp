@@ -9,19 +9,10 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
+#include "node/processor_time.h"
 #include "node/time.h"
 
 namespace cordis::node {
-namespace {
-
-/// Processor time of the calling thread [ns].
-std::int64_t processor_nsec() noexcept {
-  timespec used{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
-  return static_cast<std::int64_t>(used.tv_sec) * 1'000'000'000 + used.tv_nsec;
-}
-
-}  // namespace
 
 RealtimeGrant make_realtime(int priority) noexcept {
   RealtimeGrant grant;
@@ -52,11 +43,10 @@ std::uint64_t PacedLoop::wait() noexcept {
   }
   ++deadline_index_;
   const std::int64_t due = deadline(deadline_index_);
-  const timespec wake{due / 1'000'000'000, due % 1'000'000'000};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr);
+  sleep_until(due);
 
   const std::int64_t late = monotonic_nsec() - due;
-  const std::int64_t used = processor_nsec();  // nothing of it while it slept
+  const std::int64_t used = thread_processor_nsec();  // nothing of it while it slept
   const std::int64_t computed = is_first ? 0 : used - woken_processor_nsec_;
   woken_processor_nsec_ = used;
   lateness_.record(late);

@@ -46,6 +46,8 @@ class PacedLoop {
   /// next one by itself; every other delay is the machine's. Time in which the tick waits counts as
   /// the machine's too.
   LateCause late_cause() const noexcept { return late_cause_; }
+  /// The next deadline [ns]; after a wait().
+  std::int64_t next_nsec() const noexcept { return deadline(deadline_index_ + 1); }
   double rate_hz() const noexcept { return rate_hz_; }
   const LatencyHistogram& lateness() const noexcept {
     return lateness_;

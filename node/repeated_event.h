@@ -9,8 +9,8 @@
 namespace cordis::node {
 
 /// Events of one kind. The caller logs the first in words of its own; those that follow are
-/// counted, and told in one line at the end of 5 s: `WHAT: 37 more times in 5 s, the worst 12.3
-/// ms`. One that comes after 5 s without any is a first one again. The destructor tells the rest.
+/// counted, and reported in one line at the end of 5 s: `WHAT: 37 more times in 5 s, the worst 12.3
+/// ms`. One that comes after 5 s without any is a first one again. The destructor reports the rest.
 ///
 /// Real time: record() and report() take no lock, and with a `what` of up to 120 bytes they
 /// allocate nothing. One thread at a time.
@@ -29,7 +29,7 @@ class RepeatedEvent {
   /// has no figure. @return whether the caller logs it
   [[nodiscard]] bool record(std::int64_t now_nsec, double figure_s = 0.0) noexcept;
 
-  /// Tells what was counted, once 5 s are over. To be called at least now and then.
+  /// Reports what was counted, once 5 s are over. To be called at least now and then.
   void report(std::int64_t now_nsec) noexcept;
 
  private:

@@ -5,7 +5,7 @@
 
 namespace cordis::node {
 
-void Roster::look() {
+void Roster::update() {
   while (reader_.take(taken_)) nodes_[taken_.node()] = {taken_, Clock::now()};
 }
 

@@ -23,7 +23,7 @@ class Roster {
 
   /// Takes what has been said since. Whoever asks below calls this several times a second from
   /// `lately` before, for a status counts from when it is taken.
-  void look();
+  void update();
 
   /// The newest status of each node that is alive, by name.
   std::vector<msg::NodeStatus> alive() const;

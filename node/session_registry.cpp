@@ -15,6 +15,7 @@
 #include "node/dds/process_identity.h"
 #include "node/domain_lock.h"
 #include "node/runtime_folder.h"
+#include "node/session_network.h"
 
 namespace cordis::node {
 namespace {
@@ -51,7 +52,13 @@ SessionRecord read_record(const fs::path& path) {
     if (word == "session") words >> record.session;
     if (word == "domain") words >> record.domain;
     if (word == "launch_file") std::getline(words, record.launch_file);
+    if (word == "network") {
+      std::string network;
+      std::getline(words, network);
+      record.network = network_of_line(network);
+    }
     if (word == "member") record.members.push_back(read_member(words));
+    if (word == "player" && !record.members.empty()) record.members.back().is_player = true;
     if (word == "identity" && !record.members.empty())
       std::getline(words, record.members.back().identity);
   }
@@ -67,10 +74,11 @@ void write_record(const fs::path& folder, const SessionRecord& record) {
   std::ofstream file(draft, std::ios::trunc);
   file << "session " << record.session << "\ndomain " << record.domain << "\nlaunch_file "
        << launch_file << '\n';
+  if (!record.network.is_loopback()) file << "network " << network_line(record.network) << '\n';
   for (const SessionMember& member : record.members) {
     file << "member " << member.process;
     for (const std::string& node : member.nodes) file << ' ' << node;
-    file << "\nidentity " << member.identity << '\n';
+    file << "\nidentity " << member.identity << (member.is_player ? "\nplayer\n" : "\n");
   }
   file.close();
   if (!file) throw std::runtime_error("cannot write " + draft.string());
@@ -100,7 +108,7 @@ struct HeldDomain {
   int file;  // holds it
 };
 
-/// Domain 0 comes last: other DDS programs use it unless they are told otherwise.
+/// Domain 0 comes last: other DDS programs use it unless they are set otherwise.
 HeldDomain lock_free_domain(const std::vector<SessionRecord>& records) {
   std::set<int> taken;
   for (const SessionRecord& record : records) taken.insert(record.domain);
@@ -140,6 +148,16 @@ HeldDomain domain_for(const SessionRequest& request, const std::vector<SessionRe
   return lock_free_domain(records);
 }
 
+/// A session that is to be new must not reach the nodes of one that runs.
+void refuse_running(const SessionRequest& request, const std::vector<SessionRecord>& records) {
+  std::vector<SessionRecord> same = of_name(records, request.session);
+  if (request.domain)
+    std::erase_if(same,
+                  [&](const SessionRecord& found) { return found.domain != *request.domain; });
+  if (!same.empty())
+    throw SessionRuns("session '" + request.session + "' runs in DDS " + domains_text(same));
+}
+
 void refuse_same_nodes(const SessionRecord& record, const std::vector<std::string>& nodes) {
   for (const SessionMember& member : record.members) {
     for (const std::string& node : nodes) {
@@ -150,6 +168,26 @@ void refuse_same_nodes(const SessionRecord& record, const std::vector<std::strin
                                "); stop it, or give this one session=NAME");
     }
   }
+}
+
+/// The hand and the scene of a take would meet those of the nodes.
+void refuse_beside_a_player(const SessionRecord& record) {
+  const auto player = std::find_if(record.members.begin(), record.members.end(),
+                                   [](const SessionMember& member) { return member.is_player; });
+  if (player == record.members.end()) return;
+  throw std::runtime_error("session '" + record.session + "' in DDS domain " +
+                           std::to_string(record.domain) + " is a take that is played (process " +
+                           std::to_string(player->process) +
+                           "); stop it, or give this one session=NAME");
+}
+
+/// Processes with other addresses would not find each other.
+void refuse_other_network(const SessionRecord& record, const dds::Network& network) {
+  if (record.network.address == network.address) return;
+  throw std::runtime_error("session '" + record.session + "' runs in DDS domain " +
+                           std::to_string(record.domain) + " on " + record.network.address +
+                           " of this host, and this part of it would be on " + network.address +
+                           ": give all parts the same network");
 }
 
 }  // namespace
@@ -172,16 +210,19 @@ SessionRegistration::SessionRegistration(fs::path folder, const SessionRequest& 
     : folder_(std::move(folder)), session_(request.session) {
   const FolderLock lock(folder_);
   const std::vector<SessionRecord> records = read_records(folder_);
+  if (request.is_player) refuse_running(request, records);
   const auto [domain, held] = domain_for(request, records);
   domain_ = domain;
   lock_ = held;
-  SessionRecord record{session_, domain_, request.launch_file, {}};
+  SessionRecord record{session_, domain_, request.launch_file, {}, request.network};
   for (const SessionRecord& other : records) {
     if (other.session == session_ && other.domain == domain_) record = other;
   }
   try {
+    if (request.simulates) refuse_beside_a_player(record);
     refuse_same_nodes(record, request.nodes);
-    record.members.push_back({getpid(), dds::process_identity(), request.nodes});
+    refuse_other_network(record, request.network);
+    record.members.push_back({getpid(), dds::process_identity(), request.nodes, request.is_player});
     write_record(folder_, record);
   } catch (...) {
     if (lock_ >= 0) close(lock_);

@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <sys/types.h>
+
+#include "node/dds/network.h"
 
 namespace cordis::node {
 
@@ -17,6 +20,7 @@ struct SessionMember {
   pid_t process = 0;
   std::string identity;  ///< dds::process_identity(): numbers of processes are used again
   std::vector<std::string> nodes;
+  bool is_player = false;  ///< it plays a take
 };
 
 /// A session that runs, as its runtime file records it.
@@ -25,6 +29,7 @@ struct SessionRecord {
   int domain = 0;
   std::string launch_file;             ///< absolute; of the process that began the session
   std::vector<SessionMember> members;  ///< alive
+  dds::Network network{};              ///< of all its processes on this host
 };
 
 /// The sessions that run, in the order of their names. Removes the files of sessions whose
@@ -42,15 +47,30 @@ struct SessionRequest {
   std::optional<int> domain;  ///< absent: that of the running session of this name, else a free one
   std::string launch_file;
   std::vector<std::string> nodes;
+  bool is_player = false;  ///< plays a take: refused with SessionRuns where the session runs
+  bool simulates = false;  ///< has a sim_node or a device_node: refused where a take is played
+  dds::Network network{};
+};
+
+/// True if a node of this program writes what a take has of a session: scene, hand or answers.
+inline bool simulates(const std::string& program) {
+  return program == "sim_node" || program == "device_node";
+}
+
+/// A session of that name runs already.
+class SessionRuns : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 /// This process' entry in the registry, until the object or the process ends. No two sessions of
 /// this host are given one domain, also of other users and beside other DDS programs.
 class SessionRegistration {
  public:
-  /// @throws std::runtime_error when a node of the same name runs in the session already, when
-  /// sessions of this name run in several domains and the request names none, when no domain is
-  /// free, or when the folder cannot be used.
+  /// @throws std::runtime_error when a node of the same name runs in the session already, when the
+  /// session speaks through another address of this host, when sessions of this name run in several
+  /// domains and the request names none, when no domain is free, when the folder cannot be used, or
+  /// as `simulates` says. SessionRuns as `is_player` says.
   SessionRegistration(std::filesystem::path folder, const SessionRequest& request);
   ~SessionRegistration();
   SessionRegistration(const SessionRegistration&) = delete;

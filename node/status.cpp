@@ -1,7 +1,9 @@
 // node/status.cpp
 #include "node/status.h"
 
+#include <array>
 #include <cstdio>
+#include <string>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -17,6 +19,13 @@ constexpr auto kPeriod = std::chrono::milliseconds(500);
 constexpr auto kLastStatus = std::chrono::milliseconds(300);
 // So long it may take until those who look on have found a node.
 constexpr auto kFound = std::chrono::milliseconds(500);
+
+std::string host_text(const dds::Network& network) {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) name[0] = '\0';
+  const std::string host = name.data();
+  return network.is_loopback() ? host : host + " (" + network.address + ")";
+}
 
 double resident_bytes() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
@@ -42,6 +51,7 @@ StatusPublisher::StatusPublisher(dds::Participant& participant, msg::NodeKind ki
   const std::string& name = participant.config().node;
   status_.node_id(config::name_hash(name));
   status_.node(name);
+  status_.host(host_text(participant.config().network));
   status_.kind(kind);
   status_.epoch(epoch);
   thread_ = std::thread([this] { loop(); });
@@ -96,7 +106,7 @@ void StatusPublisher::publish() {
   report_rejoin();
   mismatches_.report(now);
   rejoins_.report(now);
-  rate_.look(now, status_.ticks());
+  rate_.update(now, status_.ticks());
   status_.reached_rate_hz(rate_.reached_hz());
   status_.mean_rate_hz(rate_.mean_hz());
   status_.sequence_number(status_.sequence_number() + 1);

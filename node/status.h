@@ -48,7 +48,7 @@ class StatusPublisher {
   std::string mismatch_;
   RepeatedEvent mismatches_{"this node did not fit other processes of the session"};
   RepeatedEvent rejoins_{"processes that DDS had dropped were there again"};
-  std::uint64_t rejoin_count_ = 0;  // told
+  std::uint64_t rejoin_count_ = 0;  // reported
   dds::Writer<msg::NodeStatus> writer_;
   Fill fill_;
   msg::NodeStatus status_;

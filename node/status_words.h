@@ -5,7 +5,7 @@
 
 namespace cordis::node {
 
-/// "sim_node", "device_node" or "viz_node"; "unknown" for a number that is none.
+/// "sim_node", "device_node", "viz_node", "record_node" or "player"; "unknown" for a number that is none.
 constexpr const char* word_of(msg::NodeKind kind) noexcept {
   switch (kind) {
     case msg::KIND_SIM_NODE:
@@ -14,6 +14,10 @@ constexpr const char* word_of(msg::NodeKind kind) noexcept {
       return "device_node";
     case msg::KIND_VIZ_NODE:
       return "viz_node";
+    case msg::KIND_RECORD_NODE:
+      return "record_node";
+    case msg::KIND_PLAYER:
+      return "player";
   }
   return "unknown";
 }

@@ -1,11 +1,11 @@
-// node/stop.h -- the wish to stop, from a signal or from the node itself.
+// node/stop.h -- the request to stop, from a signal or from the node itself.
 #pragma once
 
 #include <chrono>
 
 namespace cordis::node {
 
-/// SIGINT, SIGTERM and SIGHUP, unless that is ignored, become a wish to stop that every thread can
+/// SIGINT, SIGTERM and SIGHUP, unless that is ignored, become a request to stop that every thread can
 /// ask for and wait on: a motor must not be left alone when a terminal is closed. SIGPIPE is
 /// ignored. Call once at the beginning of main, before any thread exists.
 void install_stop_signals();

@@ -14,7 +14,7 @@ double TickRate::rate(const Look& from, const Look& to) noexcept {
          (static_cast<double>(to.nsec - from.nsec) * 1e-9);
 }
 
-void TickRate::look(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
+void TickRate::update(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
   const Look now{now_nsec, ticks};
   if (first_.ticks == 0) {
     if (ticks > 0 && now.nsec > first_.nsec) mean_hz_ = rate(first_, now);

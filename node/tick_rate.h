@@ -11,7 +11,7 @@ class TickRate {
  public:
   explicit TickRate(std::int64_t now_nsec) noexcept : first_{now_nsec, 0}, last_(first_) {}
 
-  void look(std::int64_t now_nsec, std::uint64_t ticks) noexcept;
+  void update(std::int64_t now_nsec, std::uint64_t ticks) noexcept;
 
   double reached_hz() const noexcept { return reached_hz_; }  ///< lately
   double mean_hz() const noexcept { return mean_hz_; }        ///< since the ticks began

@@ -1,8 +1,22 @@
 // sim_node/frame_publisher.cpp
 #include "sim_node/frame_publisher.h"
 
+#include <algorithm>
+#include <chrono>
+
+#include "node/stop.h"
+#include "sim_node/engine/core/state_hash.h"
+
 namespace cordis::sim {
 namespace {
+
+constexpr std::chrono::milliseconds kLastBatch{500};  // for readers to take it
+constexpr std::chrono::milliseconds kLookForReader{2};
+constexpr std::uint64_t kBatchesAhead = 8;  // of a reader that gets them all, of 32 that DDS keeps
+constexpr std::chrono::milliseconds kLongestPause{1000};  // of a scene whose reader takes nothing
+// Of a scene beside a reader that has stopped. Fast DDS does not name the reader that is behind: one
+// that lives has acknowledged within two heartbeats of scene/signals.
+constexpr std::chrono::milliseconds kPauseBesideStopped{100};
 
 static_assert(static_cast<int>(engine::Quantity::kDistance) == msg::QUANTITY_DISTANCE);
 static_assert(static_cast<int>(engine::Quantity::kElongation) == msg::QUANTITY_ELONGATION);
@@ -23,8 +37,10 @@ static_assert(kLinkIsIdle == msg::LINK_IS_IDLE);
 
 }  // namespace
 
-FramePublisher::FramePublisher(dds::Participant& participant, std::uint64_t epoch)
-    : frame_writer_(participant, dds::Topic::kFrame),
+FramePublisher::FramePublisher(dds::Participant& participant, std::uint64_t epoch,
+                               InputPublisher& inputs)
+    : inputs_(inputs),
+      frame_writer_(participant, dds::Topic::kFrame),
       signal_writer_(participant, dds::Topic::kSignals),
       event_writer_(participant, dds::Topic::kEvents) {
   frame_.epoch(epoch);
@@ -37,28 +53,54 @@ FramePublisher::~FramePublisher() {
   ending_.store(true);
   wake_.release();
   thread_.join();
+  signal_writer_.wait_until_acknowledged(kLastBatch);
+  event_writer_.wait_until_acknowledged(kLastBatch);
 }
 
-bool FramePublisher::offer(FrameStore& store, const engine::World& world, double simulated_s,
-                           std::int64_t now_nsec, std::int64_t action_nsec) noexcept {
+bool FramePublisher::wait_for_signal_reader(const std::string& node, bool is_paced,
+                                            std::chrono::milliseconds at_most) {
+  const auto end = std::chrono::steady_clock::now() + at_most;
+  while (!signal_writer_.has_reader_of(node)) {
+    if (node::wait_for_stop(kLookForReader) || std::chrono::steady_clock::now() > end) return false;
+  }
+  is_paced_ = is_paced;
+  return true;
+}
+
+void FramePublisher::write_signals() {
+  count(signal_writer_.write(signals_));
+  if (!is_paced_ || signals_.batch() % kBatchesAhead != 0) return;
+  const auto at_most = has_stopped_reader_ ? kPauseBesideStopped : kLongestPause;
+  has_stopped_reader_ = !signal_writer_.wait_until_acknowledged(at_most);
+}
+
+bool FramePublisher::submit(FrameStore& store, const engine::World& world, double simulated_s,
+                            std::int64_t now_nsec, std::int64_t action_nsec) noexcept {
   if (is_busy()) {
     frames_left_out_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
   store.turn(world, simulated_s, now_nsec, action_nsec);
-  offered_ = &store;
+  submitted_ = &store;
   busy_.store(true, std::memory_order_release);
   wake_.release();
   return true;
 }
 
+void FramePublisher::wake_early() noexcept {
+  if (!woken_early_.exchange(true, std::memory_order_acq_rel)) wake_.release();
+}
+
 void FramePublisher::loop() {
   for (;;) {
     wake_.acquire();
+    woken_early_.store(false, std::memory_order_release);
+    count(inputs_.publish());  // before the frame that they lead to
     if (busy_.load(std::memory_order_acquire)) {
-      publish_frame(offered_->shape(), offered_->published());
-      publish_signals(offered_->shape(), offered_->published());
-      publish_events(offered_->shape(), offered_->published().events);
+      publish_frame(submitted_->shape(), submitted_->published());
+      publish_signals(submitted_->shape(), submitted_->published());
+      publish_step_signals(submitted_->shape(), submitted_->published());
+      publish_events(submitted_->shape(), submitted_->published().events);
       busy_.store(false, std::memory_order_release);
       busy_.notify_one();
     }
@@ -83,6 +125,7 @@ void FramePublisher::publish_frame(const FrameShape& shape, const FrameBuffer& b
   frame_.time_nsec(buffer.time_nsec);
   frame_.action_time_nsec(buffer.action_time_nsec);
   frame_.simulated_s(buffer.simulated_s);
+  frame_.position_hash(engine::hash_of(buffer.positions));
   count(frame_writer_.write(frame_));
 }
 
@@ -95,9 +138,40 @@ void FramePublisher::publish_signals(const FrameShape& shape, const FrameBuffer&
   signals_.stride_steps(shape.stride_steps);
   signals_.first_step(buffer.first_step);
   signals_.dropped_rows(buffer.dropped_rows);
+  signals_.rate(msg::RATE_GESTURE);
+  signals_.row_step().clear();
+  if (!shape.has_even_rows) {
+    signals_.row_step().assign(
+        buffer.row_steps.begin(),
+        buffer.row_steps.begin() + static_cast<std::ptrdiff_t>(buffer.row_count));
+  }
   const auto values = static_cast<std::ptrdiff_t>(buffer.row_count * shape.signal_count);
   signals_.value().assign(buffer.rows.begin(), buffer.rows.begin() + values);
-  count(signal_writer_.write(signals_));
+  write_signals();
+}
+
+void FramePublisher::publish_step_signals(const FrameShape& shape, const FrameBuffer& buffer) {
+  constexpr std::size_t kMaxValues = 4096;  // a message then fits into one datagram
+  const std::size_t columns = shape.step_signal_count;
+  if (columns == 0 || (buffer.step_row_count == 0 && buffer.dropped_step_rows == 0)) return;
+  const std::size_t rows_at_once = std::max<std::size_t>(1, kMaxValues / columns);
+  signals_.version(shape.version);
+  signals_.rate(msg::RATE_STEP);
+  signals_.signal_count(static_cast<std::uint32_t>(columns));
+  signals_.stride_steps(1);
+  signals_.row_step().clear();
+  signals_.dropped_rows(buffer.dropped_step_rows);
+  std::size_t row = 0;
+  do {
+    const std::size_t rows = std::min(rows_at_once, buffer.step_row_count - row);
+    const double* values = buffer.step_rows.data() + row * columns;
+    signals_.batch(signals_.batch() + 1);
+    signals_.first_step(buffer.first_step_row + row);
+    signals_.value().assign(values, values + rows * columns);
+    write_signals();
+    signals_.dropped_rows(0);
+    row += rows;
+  } while (row < buffer.step_row_count);
 }
 
 void FramePublisher::publish_events(const FrameShape& shape, const EventRoom& room) {

@@ -32,8 +32,8 @@ std::filesystem::path below(const std::filesystem::path& folder, const std::stri
   return end == folder.end() && rest != file.end() ? file : std::filesystem::path();
 }
 
-/// True if a file says that it is written for Cordis, or cannot be read, which the reader tells.
-/// What is wrong in another file would tell what stands in it.
+/// True if a file says that it is written for Cordis, or cannot be read, which the reader reports.
+/// What is wrong in another file would report what stands in it.
 bool is_of_cordis(const std::filesystem::path& file) {
   const config::FileBytes read = config::read_regular_file(file.string(), kMaxSceneBytes);
   if (!read.reason.empty()) return true;
@@ -53,6 +53,9 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
   section.scene_file = reader.required_text("scene");
   section.duration_s = reader.optional_number("duration_s", 0.0, config::Range::not_negative());
   section.force = reader.optional_truth("force", false);
+  section.delay_quantile =
+      reader.optional_number("delay_quantile", 0.95, config::Range::between(0.5, 1.0));
+  section.signals_for = reader.optional_text("signals_for", "");
   section.scene_place = reader.place_of("scene");
   reader.finish();
   return section;
@@ -61,10 +64,13 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
 SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,
                           config::Problems& problems) {
   const SimSection section = read_sim_section(node, problems);
-  SimConfig sim{section.duration_s, section.force, {}};
+  SimConfig sim{
+      section.duration_s, section.force, section.delay_quantile, section.signals_for, {}, {}};
   if (section.scene_file.empty()) return sim;
   sim.scene =
       load_checked_scene(launch, section.scene_file, section.scene_place, sim.force, problems);
+  sim.source = {sim.scene.file, problems.sources(), engine::to_string(sim.scene.network.integrator),
+                sim.scene.step_rate_hz};
   return sim;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "node/config/launch.h"
+#include "sim_node/run/request_source.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
@@ -13,6 +14,11 @@ struct SimSection {
   /// `duration_s`: simulated time after which the node ends by itself [s]; 0 = never
   double duration_s = 0.0;
   bool force = false;  ///< `force`: a scene that is surely unstable runs all the same
+  /// `delay_quantile`: the share of the answers to a device that come within the delay for which
+  /// its limits are computed
+  double delay_quantile = 0.95;
+  /// `signals_for`: the node that gets every row of scene/signals; empty: none waits
+  std::string signals_for;
 };
 
 /// Reads the section alone, not the scene. What is wrong becomes a problem.
@@ -20,9 +26,12 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
 
 /// What a sim_node runs.
 struct SimConfig {
-  double duration_s = 0.0;  ///< of the section
-  bool force = false;       ///< of the section
-  scene::Scene scene;       ///< what the file of the section says
+  double duration_s = 0.0;       ///< of the section
+  bool force = false;            ///< of the section
+  double delay_quantile = 0.95;  ///< of the section
+  std::string signals_for;       ///< of the section
+  scene::Scene scene;            ///< what the file of the section says
+  SceneSource source;            ///< of it
 };
 
 /// Reads the section and the scene, checks every port against the device files of the same launch,

@@ -60,6 +60,17 @@ std::array<std::uint8_t, kFrameHeaderBytes> encode(const FrameHeader& header) no
   return bytes;
 }
 
+namespace {
+
+/// Steps from one row to the next, in the mean.
+double stride_of(const msg::SceneSignals& signals) noexcept {
+  const std::vector<std::uint32_t>& steps = signals.row_step();
+  if (steps.size() < 2 || steps.back() <= steps.front()) return signals.stride_steps();
+  return static_cast<double>(steps.back() - steps.front()) / static_cast<double>(steps.size() - 1);
+}
+
+}  // namespace
+
 std::string encode_signals(const msg::SceneSignals& signals, std::uint32_t scene,
                            double step_rate_hz) {
   const std::uint32_t columns = signals.signal_count();
@@ -73,8 +84,24 @@ std::string encode_signals(const msg::SceneSignals& signals, std::uint32_t scene
       .put(std::uint32_t{signals.dropped_rows()})
       .put(std::uint64_t{signals.first_step()})
       .put(static_cast<double>(signals.first_step()) / step_rate_hz)
-      .put(static_cast<double>(signals.stride_steps()) / step_rate_hz);
+      .put(stride_of(signals) / step_rate_hz);
   for (const double value : signals.value()) packer.put(static_cast<float>(value));
+  return bytes;
+}
+
+std::string encode_sound(const msg::SceneSound& sound, std::uint32_t scene) {
+  const std::uint32_t sounds = sound.sound_count();
+  std::string bytes(kSoundHeaderBytes + sound.value().size() * sizeof(float), '\0');
+  Packer(bytes.data())
+      .put_prefix(MessageType::kSound, kSoundHeaderBytes)
+      .put(scene)
+      .put(sounds)
+      .put(static_cast<std::uint32_t>(sound.value().size() / sounds))
+      .put(std::uint32_t{sound.dropped_steps()})
+      .put(std::uint64_t{sound.first_step()})
+      .put(double{sound.step_rate_hz()})
+      .put(std::int64_t{sound.time_nsec()})
+      .put_all(sound.value());
   return bytes;
 }
 

@@ -15,8 +15,9 @@ inline constexpr std::uint8_t kProtocolVersion = 1;
 inline constexpr std::size_t kFrameHeaderBytes = 72;
 inline constexpr std::size_t kSignalsHeaderBytes = 48;
 inline constexpr std::size_t kTopologyHeaderBytes = 24;
+inline constexpr std::size_t kSoundHeaderBytes = 48;
 
-enum class MessageType : std::uint8_t { kFrame = 1, kSignals = 2, kTopology = 3 };
+enum class MessageType : std::uint8_t { kFrame = 1, kSignals = 2, kTopology = 3, kSound = 4 };
 
 /// What stands before the positions of a frame. Positions and link states follow as they came over
 /// DDS.
@@ -39,6 +40,9 @@ std::array<std::uint8_t, kFrameHeaderBytes> encode(const FrameHeader& header) no
 /// (scene_check.h).
 std::string encode_signals(const msg::SceneSignals& signals, std::uint32_t scene,
                            double step_rate_hz);
+
+/// A block of sound: header, then steps x sounds float32. The block has been checked.
+std::string encode_sound(const msg::SceneSound& sound, std::uint32_t scene);
 
 /// What a page needs once per scene: radii, link ends, kinds. The description has been checked.
 std::string encode_topology(const msg::SceneDescription& description, std::uint32_t scene);

@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kLongestText = 300;  // of a text that another process wrote
 constexpr std::size_t kMaxStates = 64;     // of a liaison, and liaisons whose changes are counted
-constexpr std::size_t kMaxNames = 2000;    // names of matter, links and ports that a page is told
+constexpr std::size_t kMaxNames = 2000;    // names of matter, links and ports that a page receives
 
 std::string clipped(const std::string& text) {
   return text.substr(0, kLongestText);
@@ -91,6 +91,7 @@ std::string state_of(const ReportedNode& node, std::int64_t now_nsec) {
 Json node_json(const ReportedNode& node, std::int64_t now_nsec) {
   const msg::NodeStatus& s = node.status;
   return {{"name", clipped(s.node())},
+          {"host", clipped(s.host())},
           {"kind", node::word_of(s.kind())},
           {"epoch", std::to_string(s.epoch())},
           {"state", state_of(node, now_nsec)},
@@ -106,13 +107,15 @@ Json node_json(const ReportedNode& node, std::int64_t now_nsec) {
           {"latency_p50_s", s.latency_p50_s()},
           {"latency_p99_s", s.latency_p99_s()},
           {"latency_max_s", s.latency_max_s()},
+          {"link_samples", s.link_samples()},
+          {"link_unanswered", s.link_unanswered()},
           {"energy_j", s.energy_j()},
           {"energy_drift", s.energy_drift()},
           {"integration_error_j", s.integration_error_j()},
           {"switching_energy_j", s.switching_energy_j()},
           {"port_work_j", s.port_work_j()},
           {"dissipated_j", s.dissipated_j()},
-          {"largest_limit_number", s.largest_limit_number()},
+          {"largest_stability_number", s.largest_stability_number()},
           {"largest_partners", s.largest_partners()},
           {"certified_partners",
            s.certified_partners() == msg::NO_INDEX ? Json(nullptr) : Json(s.certified_partners())},
@@ -167,7 +170,7 @@ QuantityWords words_of(msg::EventQuantity quantity) noexcept {
   return {"", ""};
 }
 
-Json events_json(const HeardEvents& events) {
+Json events_json(const ReceivedEvents& events) {
   Json newest = Json::array();
   for (const auto& event : events.newest) {
     const QuantityWords quantity = words_of(event.quantity());
@@ -186,7 +189,7 @@ Json events_json(const HeardEvents& events) {
   return {{"total", events.total}, {"lost", events.lost}, {"newest", std::move(newest)}};
 }
 
-Json replies_json(const HeardReplies& replies) {
+Json replies_json(const ReceivedReplies& replies) {
   Json list = Json::array();
   for (const msg::ControlReply& reply : replies) {
     list.push_back({{"number", reply.command_id()},
@@ -197,10 +200,15 @@ Json replies_json(const HeardReplies& replies) {
   return list;
 }
 
+/// True if a verb has a number as its argument.
+bool has_value(msg::ControlVerb verb) noexcept {
+  return verb == msg::VERB_SEEK || verb == msg::VERB_RATE;
+}
+
 /// True if a verb reads no file and changes no scene.
 bool is_for_pages(msg::ControlVerb verb) noexcept {
   return verb == msg::VERB_PAUSE || verb == msg::VERB_RESUME || verb == msg::VERB_STEP ||
-         verb == msg::VERB_RESET;
+         verb == msg::VERB_RESET || has_value(verb);
 }
 
 }  // namespace
@@ -215,7 +223,10 @@ std::string hello_text(const std::string& session, const std::string& node) {
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene) {
   Json signals = Json::array();
   for (const auto& signal : description.signals()) {
-    signals.push_back({{"name", clipped(signal.name())}, {"unit", clipped(signal.unit())}});
+    signals.push_back({{"name", clipped(signal.name())},
+                       {"unit", clipped(signal.unit())},
+                       {"sound", signal.sound()},
+                       {"full_scale", signal.full_scale()}});
   }
   return written({{"type", "description"},
                   {"scene", scene},
@@ -236,8 +247,8 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"signals", std::move(signals)}});
 }
 
-std::string status_text(const std::vector<ReportedNode>& nodes, const HeardEvents& events,
-                        const HeardReplies& replies, const MirrorFigures& figures,
+std::string status_text(const std::vector<ReportedNode>& nodes, const ReceivedEvents& events,
+                        const ReceivedReplies& replies, const MirrorFigures& figures,
                         std::uint32_t scene, std::int64_t now_nsec) {
   Json list = Json::array();
   for (const ReportedNode& node : nodes) list.push_back(node_json(node, now_nsec));
@@ -263,6 +274,13 @@ std::optional<Acknowledgement> read_acknowledgement(std::string_view text) {
   return Acknowledgement{static_cast<std::uint32_t>(number), drawn.get<bool>()};
 }
 
+std::optional<bool> read_sound_request(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || json.value("type", Json()) != "sound") return std::nullopt;
+  const Json on = json.value("on", Json());
+  return on.is_boolean() ? std::optional(on.get<bool>()) : std::nullopt;
+}
+
 std::optional<PageCommand> read_page_command(std::string_view text) {
   const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || json.value("type", Json()) != "command") return std::nullopt;
@@ -271,7 +289,10 @@ std::optional<PageCommand> read_page_command(std::string_view text) {
   if (!verb.is_string() || !steps.is_number_unsigned()) return std::nullopt;
   const node::ControlVerb* known = node::find_control_verb(verb.get<std::string>());
   if (known == nullptr || !is_for_pages(known->verb)) return std::nullopt;
-  return PageCommand{known->verb, steps.get<std::uint64_t>()};
+  const Json value = json.value("value", Json());
+  if (has_value(known->verb) && !value.is_number()) return std::nullopt;
+  return PageCommand{known->verb, steps.get<std::uint64_t>(),
+                     value.is_number() ? value.get<double>() : 0.0};
 }
 
 }  // namespace cordis::viz

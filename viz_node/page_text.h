@@ -20,7 +20,7 @@ struct ReportedNode {
 };
 
 /// Changes of link states, as far as a page shows them.
-struct HeardEvents {
+struct ReceivedEvents {
   std::uint64_t total = 0;  ///< since the scene was described
   std::uint64_t lost = 0;
   std::deque<msg::LinkEvent> newest;  ///< at most kEventsShown, oldest first
@@ -28,7 +28,7 @@ struct HeardEvents {
 inline constexpr std::size_t kEventsShown = 12;
 
 /// Replies to what the pages wanted, newest last.
-using HeardReplies = std::deque<msg::ControlReply>;
+using ReceivedReplies = std::deque<msg::ControlReply>;
 inline constexpr std::size_t kRepliesShown = 4;
 
 /// What viz_node says about its own work.
@@ -45,8 +45,8 @@ inline constexpr std::int64_t kLostAfterNsec = 1'600'000'000;
 
 std::string hello_text(const std::string& session, const std::string& node);
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene);
-std::string status_text(const std::vector<ReportedNode>& nodes, const HeardEvents& events,
-                        const HeardReplies& replies, const MirrorFigures& figures,
+std::string status_text(const std::vector<ReportedNode>& nodes, const ReceivedEvents& events,
+                        const ReceivedReplies& replies, const MirrorFigures& figures,
                         std::uint32_t scene, std::int64_t now_nsec);
 
 /// A page's word that it is done with all frames up to `sequence`; `drawn` when it has drawn that
@@ -59,13 +59,18 @@ struct Acknowledgement {
 /// Reads `{"type": "ack", "sequence": 12, "drawn": true}`; nothing when `text` is anything else.
 std::optional<Acknowledgement> read_acknowledgement(std::string_view text);
 
+/// Reads `{"type": "sound", "on": true}`: whether the page listens; nothing when `text` is anything
+/// else.
+std::optional<bool> read_sound_request(std::string_view text);
+
 /// What a page wants of the simulation.
 struct PageCommand {
-  msg::ControlVerb verb = msg::VERB_PAUSE;  ///< or resume, step, reset
+  msg::ControlVerb verb = msg::VERB_PAUSE;  ///< or resume, step, reset, seek, rate
   std::uint64_t steps = 1;                  ///< of step
+  double value = 0.0;                       ///< of seek: the time of the take [s]; of rate
 };
 
-/// Reads `{"type": "command", "verb": "step", "steps": 10}`; nothing when `text` is anything else,
+/// Reads `{"type": "command", "verb": "step", "steps": 10}`, or `"verb": "seek", "value": 2.5`; nothing when `text` is anything else,
 /// or wants what a page may not: files stay out of its reach.
 std::optional<PageCommand> read_page_command(std::string_view text);
 

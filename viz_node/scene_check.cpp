@@ -86,7 +86,22 @@ std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescripti
   if (signals.value().size() % columns != 0 || signals.value().size() > kMaxBatchValues)
     return std::to_string(signals.value().size()) + " values in a batch of " +
            std::to_string(columns) + " signals";
+  if (!signals.row_step().empty() && signals.row_step().size() != signals.value().size() / columns)
+    return count_fault("steps of rows in a batch of signals", signals.row_step().size(),
+                       signals.value().size() / columns);
   if (signals.stride_steps() == 0) return "a batch of signals with no steps between its rows";
+  return {};
+}
+
+std::string fault_of(const msg::SceneSound& sound, const msg::SceneDescription& description) {
+  const auto sounds = static_cast<std::size_t>(std::ranges::count_if(
+      description.signals(), [](const msg::SignalDescription& signal) { return signal.sound(); }));
+  if (sound.sound_count() != sounds || sounds == 0)
+    return count_fault("sounds in a block", sound.sound_count(), sounds);
+  if (sound.value().size() % sounds != 0 || sound.value().size() > kMaxBatchValues)
+    return std::to_string(sound.value().size()) + " values in a block of " +
+           std::to_string(sounds) + " sounds";
+  if (!is_rate(sound.step_rate_hz())) return "a block of sound without a rate";
   return {};
 }
 

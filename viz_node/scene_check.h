@@ -27,6 +27,10 @@ std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& 
 /// finite: a signal may have none for a while.
 std::string fault_of(const msg::SceneSignals& signals, const msg::SceneDescription& description);
 
+/// A block of sound is fit when it holds whole steps of the sounds of `description` at a positive
+/// rate. Values need not be finite: what is not is silence.
+std::string fault_of(const msg::SceneSound& sound, const msg::SceneDescription& description);
+
 /// Events are sound when they name links and MATs of `description`.
 std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription& description);
 

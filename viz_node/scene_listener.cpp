@@ -6,6 +6,7 @@
 #include <exception>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -18,6 +19,12 @@ namespace cordis::viz {
 namespace {
 
 constexpr auto kLongestWait = std::chrono::seconds(1);
+
+/// The clock of another host says nothing here: such a frame is as old as its stay on this one.
+void take_time_of_arrival(msg::SceneFrame& frame) noexcept {
+  frame.time_nsec(node::monotonic_nsec());
+  frame.action_time_nsec(0);
+}
 
 /// A reader and the thread that follows it.
 template <class Message>
@@ -46,6 +53,9 @@ class Follower {
         refusals_.report(node::monotonic_nsec());
         if (!any) continue;
         while (!ending_ && reader_.take(message)) {
+          if constexpr (std::is_same_v<Message, msg::SceneFrame>) {
+            if (!reader_.is_of_this_host()) take_time_of_arrival(message);
+          }
           const std::string fault = fault_of(message, use);
           message = Message();
           if (!fault.empty() && refusals_.record(node::monotonic_nsec()))
@@ -79,6 +89,7 @@ struct SceneListener::Impl {
       : description(participant, dds::Topic::kDescription),
         frame(participant, dds::Topic::kFrame),
         signals(participant, dds::Topic::kSignals),
+        sound(participant, dds::Topic::kSound),
         events(participant, dds::Topic::kEvents),
         status(participant, dds::Topic::kStatus),
         reply(participant, dds::Topic::kReply) {}
@@ -86,6 +97,7 @@ struct SceneListener::Impl {
   Follower<msg::SceneDescription> description;
   Follower<msg::SceneFrame> frame;
   Follower<msg::SceneSignals> signals;
+  Follower<msg::SceneSound> sound;
   Follower<msg::SceneEvents> events;
   Follower<msg::NodeStatus> status;
   Follower<msg::ControlReply> reply;
@@ -101,6 +113,8 @@ SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
   });
   impl_->signals.follow(
       [&mirror](msg::SceneSignals&& message) { return mirror.take(std::move(message)); });
+  impl_->sound.follow(
+      [&mirror](msg::SceneSound&& message) { return mirror.take(std::move(message)); });
   impl_->events.follow(
       [&mirror](msg::SceneEvents&& message) { return mirror.take(std::move(message)); });
   impl_->status.follow([&mirror](msg::NodeStatus&& message) {

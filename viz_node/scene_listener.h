@@ -9,7 +9,7 @@
 
 namespace cordis::viz {
 
-/// Reads scene/description, scene/frame, scene/signals, scene/events, node/status and the replies
+/// Reads scene/description, scene/frame, scene/signals, scene/sound, scene/events, node/status and the replies
 /// to the pages, one thread per topic, so that a large frame does not hold up a status. Says in the
 /// log what it refuses, once per reason.
 class SceneListener {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "node/status_words.h"
 #include "viz_node/frame_encoder.h"
 #include "viz_node/scene_check.h"
 
@@ -14,6 +15,7 @@ namespace {
 // seconds.
 constexpr std::size_t kBatchesKept = 64;
 constexpr std::size_t kBatchBytesKept = 16u << 20;
+constexpr std::size_t kSoundKept = 64;  // blocks of 8 ms
 constexpr std::size_t kMaxNodes = 64;
 constexpr std::uint64_t kMaxOlder = 64;      // versions of a scene that may come late
 constexpr std::uint64_t kMaxLost = 100'000;  // frames between two that came: an hour of 25 Hz
@@ -26,6 +28,14 @@ bool is_of_another_scene(const Message& message, const msg::SceneDescription& de
 }
 
 }  // namespace
+
+/// A take may jump back to the scene that was played before; the lock is held.
+bool SceneMirror::is_take_played() const {
+  return std::ranges::any_of(nodes_, [](const auto& entry) {
+    const msg::NodeStatus& status = entry.second.status;
+    return status.kind() == msg::KIND_PLAYER && !node::has_ended(status.phase());
+  });
+}
 
 std::string SceneMirror::refuse(std::string fault) {
   const std::lock_guard lock(mutex_);
@@ -43,9 +53,9 @@ std::string SceneMirror::take(msg::SceneDescription&& description) {
   {
     const std::lock_guard lock(mutex_);
     const bool same_epoch = description_ != nullptr && description_->epoch() == description.epoch();
-    // Late, and not one of a number that nobody could have reached.
+    // Late, and not one of a number that no scene could have reached.
     const std::uint64_t older = same_epoch ? description_->version() - description.version() : 0;
-    if (older > 0 && older <= kMaxOlder) return {};
+    if (older > 0 && older <= kMaxOlder && !is_take_played()) return {};
     last_frame_number_ = 0;  // frames before a description are passed over, not lost
     figures_.frame_rate_hz = description.frame_rate_hz();
     description_ = std::make_shared<const msg::SceneDescription>(std::move(description));
@@ -53,6 +63,7 @@ std::string SceneMirror::take(msg::SceneDescription&& description) {
     frame_.reset();
     signals_.clear();
     signals_bytes_ = 0;
+    sound_.clear();
     events_ = {};
   }
   if (changed_) changed_();
@@ -96,16 +107,24 @@ std::string SceneMirror::take(msg::SceneFrame&& frame, std::int64_t now_nsec) {
   return {};
 }
 
-void SceneMirror::keep(std::shared_ptr<const ShownSignals> batch) {
-  signals_bytes_ += batch->bytes.size();
-  signals_.push_back(std::move(batch));
+void SceneMirror::keep_signals(std::string bytes) {
+  signals_bytes_ += bytes.size();
+  signals_.push_back(
+      std::make_shared<const ShownSignals>(ShownSignals{++batch_count_, std::move(bytes)}));
   while (signals_.size() > kBatchesKept || signals_bytes_ > kBatchBytesKept) {
     signals_bytes_ -= signals_.front()->bytes.size();
     signals_.pop_front();
   }
 }
 
-std::string SceneMirror::take(msg::SceneSignals&& signals) {
+void SceneMirror::keep_sound(std::string bytes) {
+  sound_.push_back(
+      std::make_shared<const ShownSound>(ShownSound{++sound_count_, std::move(bytes)}));
+  if (sound_.size() > kSoundKept) sound_.pop_front();
+}
+
+template <class Message, class Encode, class Keep>
+std::string SceneMirror::take_part(const Message& message, Encode encode, Keep keep_it) {
   std::shared_ptr<const msg::SceneDescription> description;
   std::uint32_t scene = 0;
   {
@@ -114,19 +133,36 @@ std::string SceneMirror::take(msg::SceneSignals&& signals) {
     description = description_;
     scene = scene_->scene;
   }
-  if (is_of_another_scene(signals, *description)) return {};
-  std::string fault = fault_of(signals, *description);
+  if (is_of_another_scene(message, *description)) return {};
+  std::string fault = fault_of(message, *description);
   if (!fault.empty()) return refuse(std::move(fault));
-  auto shown = std::make_shared<ShownSignals>();
-  shown->bytes = encode_signals(signals, scene, description->step_rate_hz());
+  std::string bytes = encode(scene, *description);
   {
     const std::lock_guard lock(mutex_);
-    if (description != description_) return {};
-    shown->number = ++batch_count_;
-    keep(std::move(shown));
+    if (description != description_) return {};  // described again meanwhile
+    keep_it(std::move(bytes));
   }
   if (changed_) changed_();
   return {};
+}
+
+std::string SceneMirror::take(msg::SceneSignals&& signals) {
+  // A plot has a point per gesture; what is taken at every step stands there as well.
+  if (signals.rate() != msg::RATE_GESTURE) return {};
+  return take_part(
+      signals,
+      [&](std::uint32_t scene, const msg::SceneDescription& description) {
+        return encode_signals(signals, scene, description.step_rate_hz());
+      },
+      [this](std::string bytes) { keep_signals(std::move(bytes)); });
+}
+
+std::string SceneMirror::take(msg::SceneSound&& sound) {
+  if (listeners_.load(std::memory_order_relaxed) == 0) return {};
+  return take_part(
+      sound,
+      [&](std::uint32_t scene, const msg::SceneDescription&) { return encode_sound(sound, scene); },
+      [this](std::string bytes) { keep_sound(std::move(bytes)); });
 }
 
 std::string SceneMirror::take(msg::SceneEvents&& events) {
@@ -180,10 +216,22 @@ std::shared_ptr<const ShownSignals> SceneMirror::signals_after(std::uint64_t aft
   return found == signals_.end() ? nullptr : *found;
 }
 
+std::shared_ptr<const ShownSound> SceneMirror::sound_after(std::uint64_t after) const {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::ranges::upper_bound(sound_, after, {}, [](const auto& block) { return block->number; });
+  return found == sound_.end() ? nullptr : *found;
+}
+
+std::uint64_t SceneMirror::newest_sound() const {
+  const std::lock_guard lock(mutex_);
+  return sound_count_;
+}
+
 std::string SceneMirror::status(std::int64_t now_nsec) const {
   std::vector<ReportedNode> nodes;
-  HeardEvents events;
-  HeardReplies replies;
+  ReceivedEvents events;
+  ReceivedReplies replies;
   MirrorFigures figures;
   std::uint32_t scene = 0;
   {

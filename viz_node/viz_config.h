@@ -8,7 +8,7 @@
 
 namespace cordis::viz {
 
-/// Where the page is served, and how often it is told what moved.
+/// Where the page is served, and how often it receives what moved.
 struct VizConfig {
   std::string address =
       "127.0.0.1";        ///< IPv4 or IPv6 address to listen on; loopback keeps other machines out

@@ -155,12 +155,15 @@ std::string needs_text(const scene::PortNeeds& needs) {
   return "            needs a device of " + text + " along each of its axes\n";
 }
 
-std::string support_text(const DeviceAtPort& device) {
+std::string support_text(const sim::DeviceAtPort& device) {
   if (!device.supported_stiffness)
     return std::string("has no known viscosity or limit") +
            (device.is_supported ? "" : ", and lacks what the port needs");
   return fmt::format("supports {:.4g} N/m: {}", *device.supported_stiffness,
-                     device.is_supported ? "enough" : "see below");
+                     device.is_supported     ? "enough"
+                     : device.needed_delay_s ? "enough once its answers are measured to be fast, "
+                                               "see below"
+                                             : "see below");
 }
 
 std::string port_text(const SceneCheck& check, const PortCheck& port) {
@@ -182,7 +185,7 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
                 "{:.4g} N/m and {:.3g} N s/m; with any hand safe from {:.3g} N s/m of the device "
                 "on, at {:.4g} Hz and {} of delay\n",
                 port.load.stiffness, port.load.viscosity, port.min_device_viscosity, rate, delay);
-  for (const DeviceAtPort& device : port.devices) {
+  for (const sim::DeviceAtPort& device : port.devices) {
     text += fmt::format("            the device of {} {}\n", device.node, support_text(device));
   }
   return text + needs_text(port.port->needs);
@@ -199,7 +202,16 @@ std::string load_text(const SceneCheck& check) {
                   1e-3 * check.step_nsec,
                   check.scene.network.freeze_tolerance > 0.0 ? " with all masses awake" : "",
                   100.0 * check.load());
-  if (check.load() < 1.0) return text;
+  text +=
+      fmt::format("            the longest of {} takes {:.4g} us\n",
+                  config::count_text(check.measured_steps, "step"), 1e-3 * check.worst_step_nsec);
+  if (check.load() < 1.0) {
+    if (!check.makes_ticks_late()) return text;
+    return text + fmt::format(
+                      "            with it a tick takes longer than its period of {:.4g} ms: "
+                      "some ticks come late\n",
+                      1e3 / check.scene.gesture_rate_hz);
+  }
   const double rate = check.real_time_rate();
   const bool stable = check.is_certified_at(rate);
   text += fmt::format(
@@ -222,6 +234,16 @@ nlohmann::json alternatives_json(const SceneCheck& check) {
   if (check.choice && rate > 0.0) real_time["tolerance"] = check.tolerance_at(rate);
   return {{slow_clock_of(check), {{"times_slower", check.load()}}},
           {"realtime", std::move(real_time)}};
+}
+
+nlohmann::json load_json(const SceneCheck& check) {
+  nlohmann::json json{{"step_nsec", check.step_nsec},
+                      {"worst_step_nsec", check.worst_step_nsec},
+                      {"measured_steps", check.measured_steps},
+                      {"makes_ticks_late", check.makes_ticks_late()},
+                      {"share_of_real_time", check.load()}};
+  if (check.load() >= 1.0) json["alternatives"] = alternatives_json(check);
+  return json;
 }
 
 nlohmann::json finite(double value) {
@@ -261,10 +283,11 @@ nlohmann::json ports_json(const SceneCheck& check) {
       json["role"] = "liaison";
       json["largest_hand_stiffness_n_per_m"] = port.largest_hand_stiffness;
     }
-    for (const DeviceAtPort& device : port.devices) {
+    for (const sim::DeviceAtPort& device : port.devices) {
       nlohmann::json one{{"node", device.node}, {"supported", device.is_supported}};
       if (device.supported_stiffness)
         one["largest_stiffness_n_per_m"] = *device.supported_stiffness;
+      if (device.needed_delay_s) one["needed_answer_delay_s"] = *device.needed_delay_s;
       json["devices"].push_back(std::move(one));
     }
     const scene::PortNeeds& needs = port.port->needs;
@@ -291,15 +314,14 @@ nlohmann::json problems_json(const config::Problems& problems) {
   return list;
 }
 
-// What freezing does to positions, in tolerances: measured, docs/reductions.md.
-constexpr double kUsualError = 3.0;
+// The largest error of positions by freezing, in tolerances: measured, docs/reductions.md.
+constexpr double kLargestError = 20.0;
 
 std::string freezing_text(double tolerance) {
   if (tolerance == 0.0) return {};
   return fmt::format(
-      "frozen      what rests within {:.2g} m: positions off by about {:.2g} m; what swings slowly "
-      "or is pulled gently may be held off by far more\n",
-      tolerance, kUsualError * tolerance);
+      "frozen      what rests within {:.2g} m: at rest, positions off by at most {:.2g} m\n",
+      tolerance, kLargestError * tolerance);
 }
 
 nlohmann::json sets_json(const SceneCheck& check) {
@@ -347,34 +369,33 @@ std::string text_of(const SceneCheck& check) {
 std::string json_of(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
   const plan::BandEdge& edge = check.plan.band_edge;
-  nlohmann::json json{
-      {"scene", check.scene.name},
-      {"file", check.scene.file},
-      {"integrator", engine::to_string(check.scene.network.integrator)},
-      {"rate_hz", check.scene.step_rate_hz},
-      {"threads", 1},
-      {"stability",
-       {{"verdict", verdict(stability)},
-        {"step_s", stability.step},
-        {"certified_step_s", finite(stability.certified.step)},
-        {"diverging_step_s", finite(stability.diverging_step)},
-        {"margin", stability.margin()},
-        {"bounded_laws", stability.bounded},
-        {"sets", sets_json(check)}}},
-      {"accuracy",
-       {{"band_hz", edge.frequency_hz},
-        {"oscillates", edge.error.oscillates},
-        {"creeps", edge.error.creeps},
-        {"creep_error", edge.error.creep},
-        {"pitch_error", edge.error.pitch},
-        {"decay_error", edge.error.decay}}},
-      {"ports", ports_json(check)},
-      {"problems", problems_json(check.problems)},
-      {"reductions", reductions_json(check.scene.reductions)},
-      {"load", {{"step_nsec", check.step_nsec}, {"share_of_real_time", check.load()}}}};
+  nlohmann::json json{{"scene", check.scene.name},
+                      {"file", check.scene.file},
+                      {"integrator", engine::to_string(check.scene.network.integrator)},
+                      {"rate_hz", check.scene.step_rate_hz},
+                      {"threads", 1},
+                      {"stability",
+                       {{"verdict", verdict(stability)},
+                        {"step_s", stability.step},
+                        {"certified_step_s", finite(stability.certified.step)},
+                        {"diverging_step_s", finite(stability.diverging_step)},
+                        {"margin", stability.margin()},
+                        {"bounded_laws", stability.bounded},
+                        {"sets", sets_json(check)}}},
+                      {"accuracy",
+                       {{"band_hz", edge.frequency_hz},
+                        {"oscillates", edge.error.oscillates},
+                        {"creeps", edge.error.creeps},
+                        {"creep_error", edge.error.creep},
+                        {"pitch_error", edge.error.pitch},
+                        {"decay_error", edge.error.decay}}},
+                      {"ports", ports_json(check)},
+                      {"problems", problems_json(check.problems)},
+                      {"reductions", reductions_json(check.scene.reductions)},
+                      {"load", load_json(check)}};
   const double tolerance = check.scene.network.freeze_tolerance;
   if (tolerance > 0.0) {
-    json["freezing"] = {{"tolerance_m", tolerance}, {"usual_error_m", kUsualError * tolerance}};
+    json["freezing"] = {{"tolerance_m", tolerance}, {"largest_error_m", kLargestError * tolerance}};
   }
   if (std::isfinite(stability.certified.step)) {
     json["stability"]["limit"] = {
@@ -390,7 +411,6 @@ std::string json_of(const SceneCheck& check) {
         {"kept", check.keeps_accuracy()},         {"uncertainty", check.choice->uncertainty}};
     if (check.choice->error >= 0.0) json["asked"]["tried_out_error"] = check.choice->error;
   }
-  if (check.load() >= 1.0) json["load"]["alternatives"] = alternatives_json(check);
   if (check.plan.worst_contact) {
     json["worst_contact"] = {
         {"energy_gain", finite(check.plan.worst_contact->worst)},

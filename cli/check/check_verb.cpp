@@ -1,5 +1,6 @@
-// cli/check/check_verb.cpp -- cordis check: says before the run what it promises, and where it
-// would fail.
+// cli/check/check_verb.cpp
+#include "cli/check/check_verb.h"
+
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -7,13 +8,14 @@
 
 #include "cli/check/check_report.h"
 #include "cli/check/scene_check.h"
+#include "cli/check/take_report.h"
 #include "cli/exit_code.h"
 #include "cli/number.h"
 #include "cli/programs.h"
 #include "cli/run/node_check.h"
 #include "cli/run/run_plan.h"
 #include "cli/run/stop_signals.h"
-#include "cli/verbs.h"
+#include "cli/take_file.h"
 
 namespace cordis::cli {
 namespace {
@@ -60,10 +62,11 @@ void add_check_verb(CommandLine& line) {
   };
   auto words = std::make_shared<CheckWords>();
   CheckOptions& options = words->options;
-  Verb& verb = line.verb("check", "SCENE|LAUNCH [words] [options]",
-                         "Say what a scene promises before it runs, and where it would fail");
-  verb.required_word("SCENE|LAUNCH", options.file,
-                     "A scene, or a launch file: then with its devices and clock");
+  Verb& verb = line.verb("check", "SCENE|LAUNCH|TAKE [words] [options]",
+                         "Say what a scene promises before it runs, and where it would fail; or "
+                         "whether a take is whole");
+  verb.required_word("SCENE|LAUNCH|TAKE", options.file,
+                     "A scene; a launch file: then with its devices and clock; or a take");
   verb.more_words("words", options.overrides,
                   "Change a launch file, as for `cordis run`: name.key=value");
   verb.option("--json", "FILE", options.json_file, "Also write it for a program; - for stdout");
@@ -75,13 +78,17 @@ void add_check_verb(CommandLine& line) {
       "Stable means that the step is below the limit in every pose and every combination of\n"
       "states (docs/stability.md). A scene with `accuracy` and without a rate gets its rate here.\n"
       "What `cordis run` would refuse or warn of stands below the report, in the same words.\n"
-      "Exit code: 0 `cordis run` plays it, 1 a check failed itself, 2 `cordis run` refuses it.\n\n"
+      "Of a take every CRC, index and count is checked; it says at which byte what is wrong.\n"
+      "Exit code: 0 `cordis run` plays it, or the take is whole, 1 a check failed itself,\n"
+      "2 `cordis run` refuses it, or the take is damaged.\n\n"
       "Examples:\n"
       "  cordis check launch_configs/plasticine.yaml\n"
       "  cordis check launch_configs/scenes/plucked_string.yaml\n"
-      "  cordis check launch_configs/scenes/membrane.yaml --band 40\n");
+      "  cordis check launch_configs/scenes/membrane.yaml --band 40\n"
+      "  cordis check take.mcap\n");
   verb.action([words] {
     CheckOptions& asked = words->options;
+    if (is_take(asked.file)) return check_take_file(asked.file, asked.json_file);
     if (!words->band.empty()) asked.band_hz = parse_number("--band", words->band, 1e-3, 1e6);
     return run(asked);
   });

@@ -9,9 +9,7 @@
 #include "node/config/file_kind.h"
 #include "node/config/value.h"
 #include "node/config/yaml_reader.h"
-#include "sim_node/checks/device_check.h"
 #include "sim_node/checks/planned_scene.h"
-#include "sim_node/checks/port_check.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/plan/reference/load.h"
 #include "sim_node/plan/reference/trial_run.h"
@@ -24,7 +22,7 @@ PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
                      const scene::Port& port) {
   const scene::Scene& scene = check.scene;
   const plan::PortLoop loop{
-      1.0 / scene.gesture_rate_hz, check.delay_periods,
+      1.0 / scene.gesture_rate_hz, static_cast<double>(check.delay_periods),
       static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz))};
   PortCheck result;
   result.port = &port;
@@ -36,26 +34,6 @@ PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
         plan::largest_hand_stiffness(result.load, scene.network.mats[port.mat].mass, loop);
   }
   return result;
-}
-
-/// Adds what each device of the launch file is for each port that it may play.
-void add_devices(SceneCheck& check, const config::Launch& launch) {
-  const std::vector<sim::PortDemand> demands = sim::demands_of(check.scene);
-  for (const sim::LaunchedDevice& device : sim::launched_devices(launch)) {
-    if (!device.limits) continue;
-    for (std::size_t i = 0; i < demands.size(); ++i) {
-      const sim::PortDemand& demand = demands[i];
-      if (demand.device != device.plays) continue;
-      const sim::PortVerdict verdict = sim::verdict_on(demand, *device.limits, check.delay_periods);
-      DeviceAtPort at_port{device.node->name, {}, true};
-      at_port.is_supported =
-          verdict.lacks.empty() && verdict.refusal.empty() && verdict.uncertainty.empty();
-      if (demand.role == scene::Role::kMass)
-        at_port.supported_stiffness =
-            sim::supported_stiffness(demand, *device.limits, check.delay_periods);
-      check.ports[i].devices.push_back(std::move(at_port));
-    }
-  }
 }
 
 /// The launch file of these options; empty when their file is a scene.
@@ -70,6 +48,7 @@ std::optional<config::Launch> launch_of(const CheckOptions& options) {
     return {};
   }
   config::Launch launch = config::load_launch(options.file, options.overrides, problems);
+  config::check_domain(launch, problems);
   problems.throw_if_any();
   return launch;
 }
@@ -79,7 +58,7 @@ const config::LaunchNode& sim_node_of(const config::Launch& launch) {
       std::find_if(launch.nodes.begin(), launch.nodes.end(),
                    [](const config::LaunchNode& node) { return node.program == "sim_node"; });
   if (found == launch.nodes.end())
-    throw std::runtime_error(launch.file + " has no sim_node, whose scene could be judged");
+    throw std::runtime_error(launch.file + " has no sim_node, whose scene could be checked");
   return *found;
 }
 
@@ -113,7 +92,8 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.problems.throw_if_any();
   check.scene = std::move(planned.scene);
   check.choice = std::move(planned.rate);
-  if (launch) sim::check_devices(*launch, check.scene, check.problems);
+  std::vector<sim::DeviceAtPort> devices;
+  if (launch) devices = sim::check_devices(*launch, check.scene, check.problems);
   sim::check_stability(check.scene, force, check.problems);
 
   constexpr double kBand = 100.0;
@@ -127,8 +107,12 @@ SceneCheck check_scene(const CheckOptions& options) {
     for (const scene::Port& port : check.scene.ports)
       check.ports.push_back(check_port(check, graph, port));
   }
-  if (launch) add_devices(check, *launch);
-  check.step_nsec = plan::measure_step_nsec(network);
+  for (const sim::DeviceAtPort& device : devices)
+    check.ports[device.port].devices.push_back(device);
+  const plan::StepLoad load = plan::measure_steps(network);
+  check.step_nsec = load.median_nsec;
+  check.worst_step_nsec = load.worst_nsec;
+  check.measured_steps = load.step_count;
   return check;
 }
 

@@ -7,6 +7,7 @@
 
 #include "node/config/launch.h"
 #include "node/config/problem.h"
+#include "sim_node/checks/device_check.h"
 #include "sim_node/engine/core/assert.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/rate_selection.h"
@@ -25,20 +26,13 @@ struct CheckOptions {
   bool force = false;
 };
 
-/// A device of the launch file at a port.
-struct DeviceAtPort {
-  std::string node;
-  std::optional<double> supported_stiffness;  ///< role mass; empty: nothing is known [N/m]
-  bool is_supported = true;                   ///< for certain: else a problem says what is wrong
-};
-
 /// The loop through one port, in its role.
 struct PortCheck {
   const scene::Port* port = nullptr;
   plan::PortLoad load;
-  double min_device_viscosity = 0.0;    ///< role mass, for any hand: what it must have [N s/m]
-  double largest_hand_stiffness = 0.0;  ///< role liaison [N/m]
-  std::vector<DeviceAtPort> devices;    ///< of the launch file
+  double min_device_viscosity = 0.0;       ///< role mass, for any hand: what it must have [N s/m]
+  double largest_hand_stiffness = 0.0;     ///< role liaison [N/m]
+  std::vector<sim::DeviceAtPort> devices;  ///< of the launch file
 };
 
 struct SceneCheck {
@@ -50,10 +44,17 @@ struct SceneCheck {
   plan::Plan plan;
   std::optional<plan::RateSelection> choice;  ///< for the `accuracy` of the scene
   std::vector<PortCheck> ports;
-  double step_nsec = 0.0;  ///< measured on this machine
+  double step_nsec = 0.0;        ///< median, measured on this machine
+  double worst_step_nsec = 0.0;  ///< of the same trial
+  std::size_t measured_steps = 0;
 
   /// Wall time per simulated time.
   double load() const noexcept { return 1e-9 * step_nsec * scene.step_rate_hz; }
+  /// True if one worst step among the others of a tick makes it longer than the period of a gesture.
+  bool makes_ticks_late() const noexcept {
+    const double steps = scene.step_rate_hz / scene.gesture_rate_hz;
+    return 1e-9 * ((steps - 1.0) * step_nsec + worst_step_nsec) * scene.gesture_rate_hz > 1.0;
+  }
   /// The fastest rate of a scene that this machine keeps up with, a multiple of the gesture rate;
   /// 0 where one step takes longer than a gesture [1/s].
   double real_time_rate() const noexcept;

@@ -22,12 +22,15 @@ constexpr auto kLongestDiscovery = 2s;
 constexpr double kShareOfTimeout = 0.4;
 // A node that has been silent for longer does not live: nodes speak twice a second.
 constexpr auto kLately = 5s;
-constexpr auto kUsualDiscovery = 600ms;  // after which nobody is missed when all are addressed
+constexpr auto kUsualDiscovery = 600ms;  // after which no node is missed when all are addressed
 
 }  // namespace
 
-ControlLine::ControlLine(int domain, const std::string& session)
-    : participant_({domain, session, "cordis ctl", false}),
+ControlLine::ControlLine(const SessionAddress& address)
+    : participant_({.domain = address.domain,
+                    .session = address.session,
+                    .node = "cordis ctl",
+                    .network = address.network}),
       commands_(participant_, dds::Topic::kCommand),
       replies_(participant_, dds::Topic::kReply),
       roster_(participant_, kLately) {}
@@ -48,7 +51,7 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, msg::
   const auto began = Clock::now();
   auto send_at = began;
   for (auto now = began; now < began + at_most; now = Clock::now()) {
-    roster_.look();
+    roster_.update();
     const std::size_t addressed = addressed_count(target);
     if (addressed == 0 && now > began + longest_discovery) break;
     // A command sent before DDS has found a reader is lost.
@@ -73,14 +76,31 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, msg::
 
 std::vector<std::string> ControlLine::present() const {
   std::vector<std::string> names;
-  for (const msg::NodeStatus& status : roster_.alive()) names.push_back(status.node());
+  for (const msg::NodeStatus& status : listening()) names.push_back(status.node());
   return names;
 }
 
+std::vector<msg::NodeStatus> ControlLine::listening() const {
+  std::vector<msg::NodeStatus> alive = roster_.alive();
+  const auto is_player = [](const msg::NodeStatus& status) {
+    return status.kind() == msg::KIND_PLAYER;
+  };
+  // The sim_node and the devices of a take are played; none of them listens.
+  if (std::ranges::any_of(alive, is_player)) {
+    std::erase_if(alive,
+                  [](const msg::NodeStatus& status) { return status.kind() < msg::KIND_VIZ_NODE; });
+  }
+  return alive;
+}
+
 std::size_t ControlLine::addressed_count(const std::string& target) const {
-  const std::vector<msg::NodeStatus> alive = roster_.alive();
-  return static_cast<std::size_t>(std::ranges::count_if(alive, [&](const msg::NodeStatus& status) {
-    return target == "*" || target == status.node() || target == node::word_of(status.kind());
+  const std::vector<msg::NodeStatus> there = listening();
+  return static_cast<std::size_t>(std::ranges::count_if(there, [&](const msg::NodeStatus& status) {
+    // A player answers for the sim_node of its take.
+    const bool stands_in =
+        status.kind() == msg::KIND_PLAYER && target == node::word_of(msg::KIND_SIM_NODE);
+    return stands_in || target == "*" || target == status.node() ||
+           target == node::word_of(status.kind());
   }));
 }
 

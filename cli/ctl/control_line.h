@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/session_address.h"
 #include "idl/control.h"
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
@@ -17,7 +18,7 @@ namespace cordis::cli {
 class ControlLine {
  public:
   /// @throws std::runtime_error when DDS refuses.
-  ControlLine(int domain, const std::string& session);
+  explicit ControlLine(const SessionAddress& address);
 
   /// Sends a command until every addressed node that is there has answered, at most so long.
   /// @param target  a node, a kind of node, or "*"
@@ -25,7 +26,8 @@ class ControlLine {
   std::vector<msg::ControlReply> ask(const std::string& target, msg::ControlVerb verb,
                                      const std::string& argument, std::chrono::nanoseconds at_most);
 
-  /// The nodes that are alive: they have said something lately, and not that they stop.
+  /// The nodes that are alive: their last status is new, and not that they stop. Where a take
+  /// is played, the player and not the nodes in the take.
   std::vector<std::string> present() const;
   /// Which process of the session this one cannot speak with, and why; empty when there is none.
   std::string mismatch() const { return participant_.mismatch(); }
@@ -36,6 +38,9 @@ class ControlLine {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  /// The nodes that take commands.
+  std::vector<msg::NodeStatus> listening() const;
 
   dds::Participant participant_;
   dds::Writer<msg::ControlCommand> commands_;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/command_line.h"
+#include "cli/duration.h"
 #include "node/config/nearest_word.h"
 #include "node/config/problem.h"
 #include "node/control_verbs.h"
@@ -63,12 +64,18 @@ ControlWords read_control_words(const std::string& name, const std::vector<std::
   if ((needs_a_word && words.empty()) || (*verb.words == '\0' && !words.empty())) refuse(verb);
   if (words.empty()) return {verb.verb, ""};
   if (verb.verb == msg::VERB_SET) return {verb.verb, values_argument(words)};
+  if (verb.verb == msg::VERB_GET) {
+    std::string names;
+    for (const std::string& word : words) names += (names.empty() ? "[" : ", ") + quoted(word);
+    return {verb.verb, names + "]"};
+  }
   if (verb.verb == msg::VERB_STATE) {
     if (words.size() != 2) refuse(verb);
     return {verb.verb, fmt::format("[{}, {}]", quoted(words[0]), quoted(words[1]))};
   }
   if (words.size() > 1) refuse(verb);
-  if (verb.verb == msg::VERB_STEP) return {verb.verb, words.front()};
+  if (verb.verb == msg::VERB_SEEK) return {verb.verb, in_seconds(parse_offset(words.front()))};
+  if (verb.verb == msg::VERB_STEP || verb.verb == msg::VERB_RATE) return {verb.verb, words.front()};
   return {verb.verb, path_argument(words.front())};
 }
 

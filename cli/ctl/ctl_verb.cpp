@@ -1,18 +1,15 @@
-// cli/ctl/ctl_verb.cpp -- cordis ctl: changes a session while it runs.
+// cli/ctl/ctl_verb.cpp
+#include "cli/ctl/ctl_verb.h"
+
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <functional>
 #include <memory>
 
 #include "cli/ctl/control_line.h"
 #include "cli/ctl/control_words.h"
 #include "cli/duration.h"
 #include "cli/exit_code.h"
-#include "cli/verbs.h"
-#include "node/config/launch.h"
-#include "node/runtime_folder.h"
-#include "node/session_registry.h"
+#include "cli/session_address.h"
 
 namespace cordis::cli {
 namespace {
@@ -27,65 +24,14 @@ struct CtlWords {
   std::string timeout = "5s";
 };
 
-struct Address {
-  std::string session;
-  int domain = 0;
-};
-
-bool is_file(const std::string& word) {
-  return word.ends_with(".yaml") || word.ends_with(".yml") || word.find('/') != std::string::npos;
-}
-
-/// The session and, where the words name it, its domain. The options of the command line win, as
-/// they do for `cordis run`.
-config::Launch launch_of(const CtlWords& words) {
-  std::string text = "cordis: 1\nsession: " + words.session + "\nnodes: {sim: {node: sim_node}}\n";
-  std::vector<std::string> overrides;
-  if (!words.domain.empty()) overrides.push_back("domain=" + words.domain);
-  if (!words.session_name.empty()) overrides.push_back("session=" + words.session_name);
-  config::Problems problems;
-  config::Launch launch =
-      is_file(words.session)
-          ? config::load_launch(words.session, overrides, problems)
-          : config::load_launch_text(text, "session '" + words.session + "'", overrides, problems);
-  problems.throw_if_any();
-  return launch;
-}
-
-/// Keeps, among several sessions of one name, the one that the launch file began.
-void prefer_launch_file(std::vector<node::SessionRecord>& sessions, const std::string& file) {
-  const auto is_of_file = [&](const node::SessionRecord& record) {
-    std::error_code gone;
-    return std::filesystem::equivalent(record.launch_file, file, gone);
-  };
-  if (sessions.size() > 1 && std::count_if(sessions.begin(), sessions.end(), is_of_file) == 1)
-    std::erase_if(sessions, std::not_fn(is_of_file));
-}
-
-/// Where the session is: in the domain of the command line, else where it runs on this host, else
-/// in that of its launch file.
-Address address_of(const CtlWords& words) {
-  const config::Launch launch = launch_of(words);
-  if (!words.domain.empty()) return {launch.session, *launch.domain};
-  std::vector<node::SessionRecord> running = node::running_sessions(node::runtime_folder());
-  std::erase_if(running, [&](const auto& record) { return record.session != launch.session; });
-  if (is_file(words.session)) prefer_launch_file(running, words.session);
-  if (running.size() == 1) return {launch.session, running[0].domain};
-  if (running.size() > 1)
-    throw std::runtime_error("session '" + launch.session + "' runs in " +
-                             node::domains_text(running) + ": name one with --domain");
-  if (launch.domain) return {launch.session, *launch.domain};
-  throw std::runtime_error("no session '" + launch.session +
-                           "' runs on this host: start it with `cordis run`, or name its --domain");
-}
-
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
   return text;
 }
 
-std::runtime_error silence(const CtlWords& words, const Address& address, const ControlLine& line) {
+std::runtime_error silence(const CtlWords& words, const SessionAddress& address,
+                           const ControlLine& line) {
   const std::string where =
       "session '" + address.session + "' of domain " + std::to_string(address.domain);
   const std::vector<std::string> present = line.present();
@@ -96,7 +42,7 @@ std::runtime_error silence(const CtlWords& words, const Address& address, const 
   if (!addressed_is_there && !mismatch.empty())
     return std::runtime_error("no node answers in " + where + ": " + mismatch);
   if (present.empty())
-    return std::runtime_error("nobody is in " + where + ": start it with `cordis run`" +
+    return std::runtime_error("no node is in " + where + ": start it with `cordis run`" +
                               (words.domain.empty() ? ", or name its --domain" : ""));
   if (!addressed_is_there)
     return std::runtime_error("no " + words.node + " is in " + where + ", only " + listed(present));
@@ -107,8 +53,8 @@ std::runtime_error silence(const CtlWords& words, const Address& address, const 
 int ctl(const CtlWords& words) {
   const ControlWords command = read_control_words(words.verb, words.words);
   const auto timeout = parse_duration(words.timeout);
-  const Address address = address_of(words);
-  ControlLine line(address.domain, address.session);
+  const SessionAddress address = address_of(words.session, words.domain, words.session_name);
+  ControlLine line(address);
   const std::vector<msg::ControlReply> replies =
       line.ask(words.node, command.verb, command.argument, timeout);
   if (replies.empty()) throw silence(words, address, line);
@@ -144,7 +90,7 @@ void add_ctl_verb(CommandLine& line) {
   verb.option("--timeout", "TIME", words->timeout, "How long to wait for the reply (5s)");
   verb.examples("Commands:\n" + control_verb_list() +
                 "\nEach is done between two steps and answered in one sentence; docs/control.md\n"
-                "tells the details.\n"
+                "has the details.\n"
                 "Exit code: 0 done, 1 no answer, 2 refused or bad command line.\n\n"
                 "Examples:\n"
                 "  cordis ctl launch_configs/plucked_string.yaml pause\n"

@@ -1,9 +1,10 @@
 // cli/doctor/cpu_check.cpp
+#include "cli/doctor/cpu_check.h"
+
 #include <map>
 
 #include <fmt/format.h>
 
-#include "cli/doctor/checks.h"
 #include "node/config/count_text.h"
 
 namespace cordis::cli {
@@ -42,7 +43,7 @@ Finding check_steal(std::optional<double> stolen_share) {
   Finding finding{.key = "cpu.steal", .title = "steal time"};
   if (!stolen_share) {
     finding.values = {{"share", nullptr}};
-    finding.text = "not known: /proc/stat does not tell";
+    finding.text = "not known: /proc/stat does not say";
     return finding;
   }
   finding.values = {{"share", *stolen_share}};

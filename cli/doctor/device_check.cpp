@@ -1,10 +1,10 @@
 // cli/doctor/device_check.cpp
+#include "cli/doctor/device_check.h"
+
 #include <filesystem>
 
 #include <grp.h>
 #include <sys/stat.h>
-
-#include "cli/doctor/checks.h"
 
 namespace cordis::cli {
 namespace {

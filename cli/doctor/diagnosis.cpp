@@ -8,7 +8,13 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-#include "cli/doctor/checks.h"
+#include "cli/doctor/cpu_check.h"
+#include "cli/doctor/device_check.h"
+#include "cli/doctor/kernel_check.h"
+#include "cli/doctor/network_check.h"
+#include "cli/doctor/realtime_check.h"
+#include "cli/doctor/timer_check.h"
+#include "cli/doctor/version_check.h"
 #include "node/machine/processor_time.h"
 
 namespace cordis::cli {
@@ -56,6 +62,7 @@ std::vector<Finding> diagnose(const machine::SystemFiles& files, const Diagnosis
           check_loopback(),
           check_socket_buffers(),
           check_dds_ports(options.domain),
+          check_interface(options.interface, options.domain),
           check_page_port(options.page_port),
           check_devices(files, may_use)};
 }

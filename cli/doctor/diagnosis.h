@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 #include <vector>
 
 #include "cli/doctor/finding.h"
@@ -13,6 +14,7 @@ struct DiagnosisOptions {
   std::chrono::nanoseconds duration{std::chrono::seconds(3)};  ///< of the measurement
   int domain = 0;
   int page_port = 8080;
+  std::string interface {};  ///< name or address; empty: none is to be checked
 };
 
 /// Measures and checks. Takes a little longer than the duration.

@@ -1,4 +1,6 @@
-// cli/doctor/doctor_verb.cpp -- cordis doctor: whether a force loop works on this machine.
+// cli/doctor/doctor_verb.cpp
+#include "cli/doctor/doctor_verb.h"
+
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -11,13 +13,12 @@
 #include "cli/exit_code.h"
 #include "cli/number.h"
 #include "cli/run/console.h"
-#include "cli/verbs.h"
 
 namespace cordis::cli {
 namespace {
 
 struct DoctorWords {
-  DiagnosisOptions options;
+  std::string interface;
   std::string duration;
   std::string domain;
   std::string port;
@@ -32,6 +33,7 @@ DiagnosisOptions options_of(const DoctorWords& words) {
   if (!words.duration.empty()) options.duration = parse_duration(words.duration);
   if (!words.domain.empty())
     options.domain = parse_whole_number("--domain", words.domain, 0, kMaxDomain);
+  options.interface = words.interface;
   if (!words.port.empty())
     options.page_port = parse_whole_number("--port", words.port, 1, kMaxPort);
   return options;
@@ -56,6 +58,8 @@ void add_doctor_verb(CommandLine& line) {
                          "Check whether a force loop works on this machine, and what hinders it");
   verb.option("--duration", "TIME", words->duration, "How long to measure wake-ups [3s]");
   verb.option("--domain", "NUMBER", words->domain, "The DDS domain whose ports to check [0]");
+  verb.option("--interface", "NAME", words->interface,
+              "Check an interface for a session on several hosts: eth0 or its address");
   verb.option("--port", "NUMBER", words->port, "The port of the page to check [8080]");
   verb.flag("--json", words->json, "Print one JSON object");
   verb.flag("--no-color", words->no_color, "No colours, even on a terminal");
@@ -66,7 +70,7 @@ void add_doctor_verb(CommandLine& line) {
       "level (ok, warning, failure), text, advice, commands, values. Keys of the checks:\n"
       "versions, kernel.preemption, realtime.priority, realtime.memory, cpu.governor, cpu.steal,\n"
       "timer.resolution, timer.slack, timer.wakeups, network.loopback, network.buffers,\n"
-      "network.dds_ports, page.port, device.ports.\n"
+      "network.dds_ports, network.interface, page.port, device.ports.\n"
       "Exit code: 0 a force loop at 1 kHz works, 1 it cannot work, 2 bad command line.\n\n"
       "Examples:\n"
       "  cordis doctor\n"

@@ -1,7 +1,7 @@
 // cli/doctor/kernel_check.cpp
-#include <sstream>
+#include "cli/doctor/kernel_check.h"
 
-#include "cli/doctor/checks.h"
+#include <sstream>
 
 namespace cordis::cli {
 namespace {

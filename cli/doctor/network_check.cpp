@@ -1,15 +1,20 @@
 // cli/doctor/network_check.cpp
+#include "cli/doctor/network_check.h"
+
 #include <algorithm>
+#include <filesystem>
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <net/if.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "cli/doctor/checks.h"
 #include "node/dds/participant_ports.h"
+#include "node/session_network.h"
 
 namespace cordis::cli {
 namespace {
@@ -70,14 +75,25 @@ int granted_buffer(int option) {
   return bytes / 2;  // the kernel doubles it for its own book-keeping
 }
 
-/// Pairs of ports of a domain that are taken.
-int taken_pairs(int domain) {
+/// Pairs of ports of a domain that are taken, at an address of this host.
+int taken_pairs(int domain, int count = dds::kMaxParticipants,
+                const std::string& address = "127.0.0.1") {
   int taken = 0;
-  for (int index = 0; index < dds::kMaxParticipants; ++index) {
+  for (int index = 0; index < count; ++index) {
     const std::uint16_t port = dds::discovery_port(domain, index);
-    if (!dds::is_free(port) || !dds::is_free(static_cast<std::uint16_t>(port + 1))) ++taken;
+    if (!dds::is_free(port, address) ||
+        !dds::is_free(static_cast<std::uint16_t>(port + 1), address))
+      ++taken;
   }
   return taken;
+}
+
+/// 0 when the kernel does not say.
+int largest_packet_of(const std::string& interface) {
+  const Socket socket(SOCK_DGRAM);
+  ifreq request{};
+  fmt::format_to_n(request.ifr_name, sizeof request.ifr_name - 1, "{}", interface);
+  return ioctl(socket.file(), SIOCGIFMTU, &request) == 0 ? request.ifr_mtu : 0;
 }
 
 std::optional<int> free_domain(int other_than) {
@@ -119,7 +135,7 @@ Finding check_socket_buffers() {
   if (std::min(receive, send) >= kWantedBuffer) return finding;
   finding.level = Level::kWarning;
   finding.text += fmt::format(
-      ", of {} KiB wanted: large scenes lose pictures (net.core.rmem_max, net.core.wmem_max)",
+      ", of {} KiB wanted: large scenes lose frames (net.core.rmem_max, net.core.wmem_max)",
       kWantedBuffer / 1024);
   finding.advice = "allow larger ones; a line in /etc/sysctl.d keeps it";
   finding.commands = {
@@ -142,6 +158,63 @@ Finding check_dds_ports(int domain) {
   finding.values["free_domain"] = *other;
   finding.advice =
       fmt::format("if that is not a session of yours, use another: run with domain={}", *other);
+  return finding;
+}
+
+Finding check_interface(const std::string& wanted, int domain) {
+  constexpr int kMinPacket = 1428;  // the largest datagram of a session with its headers
+  Finding finding{.key = "network.interface", .title = "interface"};
+  const std::vector<node::HostInterface> interfaces = node::host_interfaces();
+  std::string names;
+  nlohmann::json all = nlohmann::json::array();
+  for (const node::HostInterface& one : interfaces) {
+    names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", one.name, one.address);
+    all.push_back({{"name", one.name}, {"address", one.address}});
+  }
+  finding.values = {{"interfaces", all}};
+  const auto found = std::ranges::find_if(interfaces, [&](const node::HostInterface& one) {
+    return one.name == wanted || one.address == wanted;
+  });
+  if (found == interfaces.end()) {
+    finding.text = names.empty() ? "none besides loopback: sessions stay on this host"
+                                 : "a session on several hosts may use " + names;
+    if (wanted.empty()) return finding;
+    finding.level = Level::kWarning;
+    finding.text = fmt::format("'{}' is no interface that is up with an IPv4 address", wanted);
+    finding.advice = names.empty() ? "bring it up" : "name one of " + names;
+    return finding;
+  }
+  const int packet = largest_packet_of(found->name);
+  const int taken = taken_pairs(domain, dds::kMaxRemoteParticipants, found->address);
+  const bool wireless = std::filesystem::exists("/sys/class/net/" + found->name + "/wireless");
+  finding.values.update({{"name", found->name},
+                         {"address", found->address},
+                         {"largest_packet_bytes", packet},
+                         {"wireless", wireless},
+                         {"link", found->has_link},
+                         {"domain", domain},
+                         {"taken", taken}});
+  finding.text =
+      fmt::format("{} ({}), ports of domain {} are free", found->name, found->address, domain);
+  if (taken > 0)
+    finding.text =
+        fmt::format("{} ({}), {} of {} pairs of ports of domain {} are taken", found->name,
+                    found->address, taken, dds::kMaxRemoteParticipants, domain);
+  if (taken > 0) finding.advice = "if that is not a session of yours, use another domain";
+  if (packet < kMinPacket) {
+    finding.text += fmt::format("; packets of {} bytes at most", packet);
+    finding.advice = "datagrams are sent in parts, and lost with any of them";
+    finding.commands = {fmt::format("sudo ip link set {} mtu 1500", found->name)};
+  }
+  if (!found->has_link) {
+    finding.text += "; no link";
+    finding.advice = "put its cable in: no session starts on it";
+  }
+  if (wireless) {
+    finding.text += "; wireless";
+    finding.advice = "use a cable: over the air samples are lost and late";
+  }
+  if (!finding.advice.empty()) finding.level = Level::kWarning;
   return finding;
 }
 

@@ -1,12 +1,12 @@
 // cli/doctor/realtime_check.cpp
+#include "cli/doctor/realtime_check.h"
+
 #include <thread>
 
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-
-#include "cli/doctor/checks.h"
 
 namespace cordis::cli {
 namespace {

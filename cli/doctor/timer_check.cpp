@@ -1,9 +1,10 @@
 // cli/doctor/timer_check.cpp
+#include "cli/doctor/timer_check.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "cli/doctor/checks.h"
 #include "node/config/count_text.h"
 
 namespace cordis::cli {

@@ -1,5 +1,6 @@
 // cli/doctor/version_check.cpp
-#include "cli/doctor/checks.h"
+#include "cli/doctor/version_check.h"
+
 #include "node/dds/library_version.h"
 
 namespace cordis::cli {

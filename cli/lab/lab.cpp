@@ -38,20 +38,20 @@ struct Attempt {
 };
 
 /// Leaves out the highest rates, as far as the time asks for it.
-std::string shorten(plan::RateSweep& ladder, double step_nsec, double integrators,
+std::string shorten(plan::RateSweep& sweep, double step_nsec, double integrators,
                     double longest_s) {
-  const double highest = ladder.rates_hz.back();
+  const double highest = sweep.rates_hz.back();
   double cost = 0.0;
-  for (const double rate : ladder.rates_hz) {
-    cost += 1e-9 * step_nsec * rate * ladder.sampling.duration() * integrators;
+  for (const double rate : sweep.rates_hz) {
+    cost += 1e-9 * step_nsec * rate * sweep.sampling.duration() * integrators;
   }
-  while (cost > longest_s && ladder.rates_hz.size() > 3) {
-    cost -= 1e-9 * step_nsec * ladder.rates_hz.back() * ladder.sampling.duration() * integrators;
-    ladder.rates_hz.pop_back();
+  while (cost > longest_s && sweep.rates_hz.size() > 3) {
+    cost -= 1e-9 * step_nsec * sweep.rates_hz.back() * sweep.sampling.duration() * integrators;
+    sweep.rates_hz.pop_back();
   }
-  if (ladder.rates_hz.back() == highest) return {};
+  if (sweep.rates_hz.back() == highest) return {};
   return fmt::format("rates from {:g} to {:g} Hz are left out: they take too long",
-                     2.0 * ladder.rates_hz.back(), highest);
+                     2.0 * sweep.rates_hz.back(), highest);
 }
 
 /// The time of a short run is that of the quickest of three.
@@ -100,9 +100,9 @@ void run_all(const LabScene& lab, const plan::Reference& reference,
 
 /// @throws std::runtime_error when there is none; of a scene in which nothing moves it says what
 /// its ports do.
-plan::Reference reference_of(const LabScene& lab, const plan::ReferenceOptions& wish) {
+plan::Reference reference_of(const LabScene& lab, const plan::ReferenceOptions& options) {
   try {
-    return plan::make_reference(lab.scene.network, lab.trajectory, wish);
+    return plan::make_reference(lab.scene.network, lab.trajectory, options);
   } catch (const plan::NothingMoves& still) {
     std::string text = still.what();
     for (const std::string& port : lab.ports) text += "; " + port;
@@ -110,13 +110,18 @@ plan::Reference reference_of(const LabScene& lab, const plan::ReferenceOptions& 
   }
 }
 
-std::vector<LabRun> sorted_runs(const std::vector<TrialResult>& results,
+std::vector<LabRun> sorted_runs(engine::NetworkDescription network,
+                                const std::vector<TrialResult>& results,
                                 const std::vector<std::string>& integrators) {
   std::vector<LabRun> runs;
   for (const std::string& integrator : integrators) {
     const std::size_t first = runs.size();
+    network.integrator = engine::integrator_named(integrator);
+    const plan::LiaisonGraph graph = plan::liaison_graph(network);
     for (const TrialResult& result : results) {
-      if (result.integrator == integrator) runs.push_back({result, false});
+      if (result.integrator != integrator) continue;
+      network.step = 1.0 / result.rate_hz;
+      runs.push_back({result, false, !plan::uncertainty_of(network, graph)});
     }
     std::sort(runs.begin() + static_cast<std::ptrdiff_t>(first), runs.end(),
               [](const LabRun& a, const LabRun& b) { return a.result.rate_hz < b.result.rate_hz; });
@@ -178,36 +183,36 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
     report.stability[integrator] = stability;
     if (std::isfinite(stability.diverging_step)) limit = std::max(limit, stability.diverging_step);
   }
-  plan::RateSweep ladder = plan::make_ladder(
+  plan::RateSweep sweep = plan::make_rate_sweep(
       limit > 0.0 ? 1.0 / limit : 0.0,
       {report.lab.duration_s, report.lab.scene.step_rate_hz, effort.highest_factor, effort.coarse});
   const std::string left_out =
-      shorten(ladder, plan::measure_step_nsec(network),
+      shorten(sweep, plan::measure_steps(network).median_nsec,
               static_cast<double>(integrators.size()) / options.jobs, effort.all_runs_s);
   if (!left_out.empty()) report.notes.push_back(left_out);
 
   LabStore store(options.folder,
-                 plan::key_of(network, report.lab.trajectory, ladder.sampling, effort.tolerance),
+                 plan::key_of(network, report.lab.trajectory, sweep.sampling, effort.tolerance),
                  options.again);
   if (!store.reference()) {
-    plan::ReferenceOptions wish{
-        ladder.sampling, effort.tolerance, effort.longest_s, ladder.rates_hz.back(),
+    plan::ReferenceOptions reference_options{
+        sweep.sampling, effort.tolerance, effort.longest_s, sweep.rates_hz.back(),
         [&progress](double done) {
           progress(fmt::format("the reference integrator: {:.0f} %", 100.0 * done));
         }};
-    store.keep(reference_of(report.lab, wish));
+    store.keep(reference_of(report.lab, reference_options));
   }
   report.reference = *store.reference();
 
   std::vector<Attempt> attempts;
   for (const std::string& integrator : integrators) {
-    for (const double rate : ladder.rates_hz) {
+    for (const double rate : sweep.rates_hz) {
       if (store.find(integrator, rate) == nullptr) attempts.push_back({integrator, rate});
     }
   }
   report.kept_runs = static_cast<int>(store.runs().size());
   run_all(report.lab, report.reference, attempts, options.jobs, store, progress);
-  report.runs = sorted_runs(store.runs(), integrators);
+  report.runs = sorted_runs(network, store.runs(), integrators);
   report.counts_instructions = plan::InstructionCounter().counts();
   return report;
 }

@@ -26,6 +26,7 @@ struct LabOptions {
 struct LabRun {
   plan::TrialResult result;
   bool on_front = false;  ///< none is cheaper in time and no less exact
+  bool certain = true;    ///< plan::uncertainty_of() has nothing against its rate
 };
 
 struct LabReport {
@@ -39,7 +40,7 @@ struct LabReport {
 };
 
 /// Does what is not there yet in the folder, and keeps every result there at once.
-/// @param progress  told in one line what is going on
+/// @param progress  receives in one line what is going on
 /// @throws config::ConfigError, std::runtime_error
 LabReport run_lab(const LabOptions& options, const std::function<void(std::string)>& progress);
 

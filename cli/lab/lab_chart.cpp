@@ -96,7 +96,7 @@ std::vector<EndLabel> end_labels(const LabReport& report, const Range& errors) {
   return labels;
 }
 
-/// A colour that the colour-blind tell from the others (Okabe and Ito).
+/// A colour that the colour-blind distinguish from the others (Okabe and Ito).
 const char* colour(int style) {
   constexpr std::array kColours{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9"};
   return kColours[static_cast<std::size_t>(style - 1) % kColours.size()];

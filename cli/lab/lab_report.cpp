@@ -22,17 +22,18 @@ std::string reference_text(const plan::Reference& reference) {
   text += fmt::format("            trusted to {:.1e} of the amplitude\n", reference.uncertainty);
   if (reference.compared == reference.sampling.count) return text;
   const double until = reference.sampling.time(reference.compared - 1);
+  const char* why = "the second one took too long: it ends";
+  if (reference.diverged) why = "two references of different tolerance part";
+  if (reference.chaotic) why = "CHAOTIC: what starts a millionth beside is a thousandth away";
   return text + fmt::format(
-                    "            {} at {:.4g} s: positions are compared up to there, then kinetic "
-                    "energy\n",
-                    reference.diverged ? "CHAOTIC: two references part"
-                                       : "the second one took too long: it ends",
-                    until);
+                    "            {} at {:.4g} s: positions are compared up to there, "
+                    "then kinetic energy\n",
+                    why, until);
 }
 
-const char* prediction(const plan::Stability& stability, double rate_hz) {
-  const double step = 1.0 / rate_hz;
-  if (step < stability.certified.step) return "stable";
+const char* prediction(const plan::Stability& stability, const LabRun& run) {
+  const double step = 1.0 / run.result.rate_hz;
+  if (step < stability.certified.step && run.certain) return "stable";
   return step > stability.diverging_step ? "unstable" : "not certain";
 }
 
@@ -50,7 +51,7 @@ std::string run_text(const LabReport& report, const LabRun& run) {
     text += fmt::format("{:>11.2e}{}", result.error, run.on_front ? " *" : "  ");
     if (late) text += fmt::format("{:>+11.2e}", result.energy_error);
   }
-  return text + "   " + prediction(report.stability.at(result.integrator), result.rate_hz) + "\n";
+  return text + "   " + prediction(report.stability.at(result.integrator), run) + "\n";
 }
 
 /// How the rate that the plan chose has done.
@@ -88,6 +89,10 @@ std::string text_of(const LabReport& report) {
   for (const auto& [integrator, stability] : report.stability) {
     text += fmt::format("predicted   {}: certified from {}, surely unstable below {}\n", integrator,
                         rate_of(stability.certified.step), rate_of(stability.diverging_step));
+    if (!stability.uncertainty) continue;
+    text += fmt::format("            not certain: {}: {}\n",
+                        scene::call_liaison(scene, stability.uncertainty->liaison).name,
+                        stability.uncertainty->why);
   }
   if (report.kept_runs > 0) {
     text += fmt::format(

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "cli/lab/offline_session.h"
+#include "cli/offline/offline_session.h"
 #include "node/config/file_kind.h"
 #include "node/config/value.h"
 #include "node/config/yaml_reader.h"
@@ -19,26 +19,26 @@ double duration_of(const scene::Scene& scene, double asked_s) {
 }
 
 /// Plays the launch file once, and keeps what its devices did.
-void record(OfflineSession& stage, LabScene& lab) {
-  lab.scene = scene::Scene(stage.scene());
+void record(OfflineSession& session, LabScene& lab) {
+  lab.scene = scene::Scene(session.scene());
   lab.trajectory.period = 1.0 / lab.scene.gesture_rate_hz;
   std::vector<const scene::Port*> played;
   for (const scene::Port& port : lab.scene.ports) {
-    if (!stage.plays(port)) {
+    if (!session.plays(port)) {
       lab.ports.push_back(port.name + " rests: '" + port.device + "' is no simulated device");
       continue;
     }
     const bool is_force = port.role == scene::Role::kLiaison;
     lab.ports.push_back(port.name + " is played by '" + port.device + "' (" +
-                        stage.driver_of(port) + "), as in one run at the scene's own rate");
+                        session.driver_of(port) + "), as in one run at the scene's own rate");
     played.push_back(&port);
     lab.trajectory.channels.push_back({port.mat, is_force, {}});
     if (!is_force) lab.trajectory.channels.back().value.push_back(port.rest);
   }
   if (played.empty()) return;
-  stage.play_until(lab.duration_s, [&] {
+  session.play_until(lab.duration_s, [&] {
     for (std::size_t p = 0; p < played.size(); ++p) {
-      lab.trajectory.channels[p].value.push_back(stage.given(*played[p]));
+      lab.trajectory.channels[p].value.push_back(session.given(*played[p]));
     }
   });
 }
@@ -51,9 +51,9 @@ LabScene load_lab_scene(const std::string& file, double duration_s) {
   problems.throw_if_any();
   LabScene lab;
   if (config::is_launch_file(root)) {
-    OfflineSession stage(file);
-    lab.duration_s = duration_of(stage.scene(), duration_s);
-    record(stage, lab);
+    OfflineSession session(file);
+    lab.duration_s = duration_of(session.scene(), duration_s);
+    record(session, lab);
     return lab;
   }
   lab.scene = sim::plan_scene(file, {}, problems).scene;

@@ -59,6 +59,7 @@ void each_field(File& file, Of& reference, Step step) {
   step(file, reference.amplitude);
   step(file, reference.compared);
   step(file, reference.diverged);
+  step(file, reference.chaotic);
   step(file, reference.uncertainty);
   step(file, reference.by_reference);
   step(file, reference.evaluations);

@@ -11,7 +11,7 @@
 
 namespace cordis::cli {
 
-/// Runs and reference of one question, told from others by a key; what the folder holds of another
+/// Runs and reference of one question, distinguished from others by a key; what the folder holds of another
 /// question is replaced. The runs stand in runs.csv, the reference in reference.bin.
 class LabStore {
  public:

@@ -1,8 +1,8 @@
-// cli/lab/lab_verb.cpp -- cordis lab: charts what accuracy costs.
+// cli/lab/lab_verb.cpp
+#include "cli/lab/lab_verb.h"
+
 #include <cstdio>
 #include <memory>
-
-#include <unistd.h>
 
 #include "cli/duration.h"
 #include "cli/exit_code.h"
@@ -10,7 +10,7 @@
 #include "cli/lab/lab_chart.h"
 #include "cli/lab/lab_report.h"
 #include "cli/number.h"
-#include "cli/verbs.h"
+#include "cli/progress_line.h"
 
 namespace cordis::cli {
 namespace {
@@ -21,29 +21,12 @@ struct LabWords {
   std::string jobs = "1";
 };
 
-/// One line that is written over again and again; nothing where nobody looks.
-class ProgressLine {
- public:
-  void show(const std::string& text) {
-    if (!is_terminal_) return;
-    std::fprintf(stderr, "\r%-70s", text.c_str());
-    std::fflush(stderr);
-    shown_ = true;
-  }
-  ~ProgressLine() {
-    if (shown_) std::fprintf(stderr, "\r%-70s\r", "");
-  }
-
- private:
-  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
-  bool shown_ = false;
-};
-
 int run(LabOptions options) {
   LabReport report;
   {
     ProgressLine line;
     report = run_lab(options, [&line](const std::string& text) { line.show(text); });
+    line.clear();
   }
   std::fputs(text_of(report).c_str(), stdout);
   std::puts(draw_chart(report, options.folder).c_str());
@@ -76,7 +59,7 @@ void add_lab_verb(CommandLine& line) {
     LabOptions& asked = words->options;
     if (asked.folder.empty()) asked.folder = "lab";
     if (!words->duration.empty()) {
-      asked.duration_s = std::chrono::duration<double>(parse_duration(words->duration)).count();
+      asked.duration_s = seconds_of(parse_duration(words->duration));
     }
     asked.jobs = parse_whole_number("--jobs", words->jobs, 1, 64);
     return run(asked);

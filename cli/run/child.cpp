@@ -52,7 +52,7 @@ struct Pipe {
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // sockets of the launcher are its own
   execv(arguments[0], arguments);
   const int reason = errno;
-  [[maybe_unused]] const ssize_t written = write(report, &reason, sizeof reason);
+  [[maybe_unused]] const ssize_t written = ::write(report, &reason, sizeof reason);
   _exit(127);
 }
 
@@ -122,7 +122,7 @@ std::optional<Ending> Child::ending() noexcept {
       info.si_pid == 0) {
     return ending_;
   }
-  kill();  // before it is reaped: as long as it is not, nobody else can have its number
+  kill();  // before it is reaped: as long as it is not, no other process can have its number
   waitpid(id_, nullptr, 0);
   if (info.si_code == CLD_EXITED) {
     ending_ = Ending{.code = info.si_status};

@@ -48,10 +48,10 @@ class NodeLife {
   void read_output();
   /// Looks whether the process has ended. @param stopping  whether all are to end: then it does not
   /// start again
-  /// @return true once per end; restart_at() tells whether it starts again.
+  /// @return true once per end; restart_at() reports whether it starts again.
   bool take_end(Time now, bool stopping);
   /// Starts the process again. @return true when it runs; else take_end()'s rules hold for the
-  /// failed start, and restart_at() and ending() tell what follows.
+  /// failed start, and restart_at() and ending() report what follows.
   bool restart(Time now);
   /// A process that waits to be started again is over.
   void cancel_restart() noexcept { restart_at_.reset(); }

@@ -17,9 +17,10 @@ struct Role {
   int start_place;
   int stop_stage;
 };
-// A device stops first, so that the hand is released before the scene is gone.
-constexpr std::array<Role, 3> kRoles{
-    {{"sim_node", 0, 2}, {"device_node", 1, 0}, {"viz_node", 2, 1}}};
+// A device stops first, so that the hand is released before the scene is gone. A recorder
+// starts first and stops last; what is said before it has found a writer is not recorded.
+constexpr std::array<Role, 4> kRoles{
+    {{"record_node", 0, 3}, {"sim_node", 1, 2}, {"device_node", 2, 0}, {"viz_node", 3, 1}}};
 
 const Role& role_of(const std::string& program) {
   for (const Role& role : kRoles) {
@@ -61,6 +62,9 @@ RunPlan plan_run(const config::Launch& launch, const RunOptions& options,
   for (const config::LaunchNode& node : launch.nodes) {
     if (!is_wanted(node.name, options.only)) continue;
     plan.nodes.push_back({node.name, node.program, node.required, node.respawn});
+    const bool wants_signals = !options.signals_file.empty() || !options.summary_file.empty();
+    if (wants_signals && node.program == "sim_node")
+      words.push_back(node.name + ".signals_for=" + kLauncherNode);
     if (options.duration && node.program == "sim_node" &&
         launch.clock != config::Clock::kRealtime) {
       words.push_back(node.name + ".duration_s=" + in_seconds(*options.duration));

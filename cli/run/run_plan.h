@@ -12,6 +12,9 @@
 
 namespace cordis::cli {
 
+/// The name under which `cordis run` takes part in its session.
+inline constexpr const char* kLauncherNode = "cordis";
+
 /// What a person asked for.
 struct RunOptions {
   std::string launch_file;
@@ -19,6 +22,8 @@ struct RunOptions {
   std::optional<std::chrono::nanoseconds> duration;  ///< how long to run; until stopped when absent
   std::vector<std::string> only;                     ///< names of the nodes to start; empty = all
   std::string log_directory;                         ///< empty = no files
+  std::string signals_file;                          ///< empty = none
+  std::string summary_file;                          ///< empty = none
   bool dry_run = false;
   bool no_color = false;
 };
@@ -32,14 +37,16 @@ struct PlannedNode {
 };
 
 struct RunPlan {
-  std::vector<PlannedNode> nodes;  ///< in the order of their start: sim, devices, displays
+  std::vector<PlannedNode>
+      nodes;  ///< in the order of their start: recorder, sim, devices, displays
   /// Wall time from the moment all nodes run until they are stopped; absent when sim_node ends by
   /// itself or never.
   std::optional<std::chrono::nanoseconds> wall_duration;
 };
 
 /// Makes the plan. In a lockstep or asap session a duration is simulated time: it becomes a word
-/// for sim_node, which then ends by itself.
+/// for sim_node, which then ends by itself. Where signals are written,
+/// sim_node begins when this process reads them.
 /// @param programs  folder of the executables
 /// @throws UsageError when `only` names a node that the launch does not have.
 RunPlan plan_run(const config::Launch& launch, const RunOptions& options,

@@ -1,4 +1,7 @@
-// cli/run/run_verb.cpp -- cordis run: starts the nodes of a launch file and ends them together.
+// cli/run/run_verb.cpp
+#include "cli/run/run_verb.h"
+
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -9,8 +12,8 @@
 #include "cli/programs.h"
 #include "cli/run/node_check.h"
 #include "cli/run/session.h"
-#include "cli/verbs.h"
 #include "node/runtime_folder.h"
+#include "node/session_network.h"
 #include "node/session_registry.h"
 
 namespace cordis::cli {
@@ -26,6 +29,14 @@ config::Launch read_launch(const RunOptions& options) {
   return launch;
 }
 
+/// What the launch file means on this host. @throws ConfigError
+dds::Network network_on_this_host(const config::Launch& launch) {
+  config::Problems problems;
+  dds::Network network = node::network_of(launch, problems);
+  problems.throw_if_any();
+  return network;
+}
+
 int run(const RunOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   setenv("CORDIS_LAUNCHED", "1", /*replace=*/1);
@@ -36,18 +47,34 @@ int run(const RunOptions& options) {
     for (const PlannedNode& node : plan.nodes) std::puts(shell_line(node.command.words).c_str());
     return kSuccess;
   }
+  const bool simulates = std::ranges::any_of(
+      plan.nodes, [](const PlannedNode& node) { return node::simulates(node.program); });
+  const dds::Network network = network_on_this_host(launch);
   node::SessionRegistration registration(
-      node::runtime_folder(), {launch.session, launch.domain,
-                               std::filesystem::absolute(launch.file).string(), names_of(plan)});
+      node::runtime_folder(), {.session = launch.session,
+                               .domain = launch.domain,
+                               .launch_file = std::filesystem::absolute(launch.file).string(),
+                               .nodes = names_of(plan),
+                               .simulates = simulates,
+                               .network = network});
   if (!launch.domain) name_domain(plan, registration.domain());
   if (const std::optional<int> refused = check_nodes(plan, signals)) return *refused;
-  return run_session(launch, plan, options, registration, signals);
+  return run_session(launch, plan, options, registration, network, signals);
 }
 
 struct RunWords {
   RunOptions options;
   std::string duration;
+  std::string record;
 };
+
+/// Words that make a record_node write this file, whatever the launch file says of one.
+void record_into(const std::string& file, RunOptions& options) {
+  std::string quoted = "'";
+  for (const char c : std::filesystem::absolute(file).string())
+    quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  options.overrides.push_back("record.out=" + quoted + "'");
+}
 
 }  // namespace
 
@@ -60,15 +87,23 @@ void add_run_verb(CommandLine& line) {
   verb.more_words("NAME.key=value", options.overrides, "Replace a value of the file, for one run");
   verb.option("--duration", "TIME", words->duration, "End after so long: 500ms, 10s, 2min, 1h");
   verb.list("--only", "NAME,...", options.only, "Start these nodes alone");
+  verb.option("--record", "FILE", words->record, "Record the session into this file (MCAP)");
   verb.flag("--dry-run", options.dry_run, "Print the commands instead of starting them");
   verb.option("--log-dir", "DIR", options.log_directory,
               "Also write what each node says into DIR/NAME.log");
+  verb.option("--signals", "FILE", options.signals_file,
+              "Also write the signals of the scene into a table, a row per gesture period");
+  verb.option("--summary", "FILE", options.summary_file,
+              "Also write least, largest, mean and last value of each signal, as JSON");
   verb.flag("--no-color", options.no_color, "No colours, even on a terminal");
   verb.examples(
       "--duration is simulated time in a lockstep or asap session; in a realtime session\n"
       "it counts from the moment all nodes run.\n"
       "Each session has a DDS domain of its own on its host, which the first line names;\n"
       "domain=N chooses one, which a session on several hosts needs.\n"
+      "--signals and --summary take what comes over DDS, from the first row on; in lockstep and\n"
+      "asap every row comes, else those that do not are counted. For more than signals: `cordis\n"
+      "simulate`, or a recording.\n"
       "Ctrl-C stops the devices first, the scene last; a second one kills.\n"
       "A node that dies starts again after 0.2, 1, 5 s, at most 5 times in a minute, unless the\n"
       "launch file says 'respawn: false'. In a lockstep or asap session only a viz_node does.\n"
@@ -82,6 +117,7 @@ void add_run_verb(CommandLine& line) {
       "  cordis run launch_configs/plucked_string.yaml clock=lockstep --duration 10s --only "
       "sim,keyboard\n");
   verb.action([words] {
+    if (!words->record.empty()) record_into(words->record, words->options);
     if (!words->duration.empty()) words->options.duration = parse_duration(words->duration);
     return run(words->options);
   });

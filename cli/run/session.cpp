@@ -5,16 +5,21 @@
 #include <chrono>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/run/machine_watch.h"
 #include "cli/run/node_output.h"
+#include "cli/run/other_nodes.h"
 #include "cli/run/respawn_policy.h"
+#include "cli/run/signal_log.h"
 #include "cli/run/status_board.h"
 #include "node/config/count_text.h"
 #include "node/dds/reader.h"
 #include "node/machine/timer_watch.h"
+#include "node/session_network.h"
+#include "node/status_words.h"
 #include "node/time.h"
 
 namespace cordis::cli {
@@ -23,24 +28,51 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kLongestStart{5};
 
+/// Nodes of the launch file that other launchers start.
+std::vector<OtherNode> others_of(const config::Launch& launch, const RunPlan& plan) {
+  const std::vector<std::string> own = names_of(plan);
+  std::vector<OtherNode> others;
+  for (const config::LaunchNode& node : launch.nodes) {
+    if (std::find(own.begin(), own.end(), node.name) == own.end())
+      others.push_back({node.name, node.required});
+  }
+  return others;
+}
+
+/// The launch file and the words that change it: another launcher needs the same.
+std::string launch_words(const config::Launch& launch, const RunOptions& options) {
+  std::vector<std::string> words{launch.file};
+  words.insert(words.end(), options.overrides.begin(), options.overrides.end());
+  return shell_line(words);
+}
+
 class Session : public Watcher {
  public:
   Session(const config::Launch& launch, const RunPlan& plan, const RunOptions& options,
-          node::SessionRegistration& registration)
+          node::SessionRegistration& registration, const dds::Network& network)
       : plan_(plan),
         registration_(registration),
         output_(names_of(plan), options.log_directory, options.no_color),
+        others_(others_of(launch, plan), launch_words(launch, options), Clock::now()),
         board_(static_cast<std::uint64_t>(node::monotonic_nsec())),
-        participant_({registration.domain(), launch.session, "cordis",
-                      launch.clock == config::Clock::kLockstep}),
+        participant_({.domain = registration.domain(),
+                      .session = launch.session,
+                      .node = kLauncherNode,
+                      .lockstep = launch.clock == config::Clock::kLockstep,
+                      .network = network}),
         statuses_(participant_, dds::Topic::kStatus),
         present_(plan.nodes.size(), true),
         killed_(plan.nodes.size(), false),
         restarts_(plan.nodes.size(), 0),
         started_(Clock::now()) {
     if (launch.clock == config::Clock::kRealtime) timers_.emplace();
+    if (!options.signals_file.empty() || !options.summary_file.empty())
+      signals_.emplace(participant_, options.signals_file, options.summary_file);
     output_.say("session '" + launch.session + "' in DDS domain " +
-                std::to_string(registration.domain()));
+                std::to_string(registration.domain()) +
+                (network.is_loopback() ? "" : " on " + network.address));
+    const std::string warning = node::exposure_warning(network, registration.domain());
+    if (!warning.empty()) output_.say("warning: " + warning);
   }
 
   void line(std::size_t process, Stream stream, std::string_view text) override {
@@ -88,6 +120,7 @@ class Session : public Watcher {
 
   bool tick() override {
     take_statuses();
+    for (const std::string& sentence : others_.update(Clock::now())) output_.say(sentence);
     const std::string reason = machine_.sentence_when_repeated(board_.late_ticks());
     if (!reason.empty()) output_.say(reason);
     output_.flush();
@@ -113,6 +146,11 @@ class Session : public Watcher {
       if (restarts_[i] > 0)
         output_.print(names[i] + " was started again " + config::count_text(restarts_[i], "time"));
     }
+    if (signals_) {
+      output_.print(signals_->finish());
+      if (!signals_->is_whole() && result_ == kSuccess) result_ = kFailure;
+      if (!signals_->is_whole() && failure_ == kSuccess) failure_ = kFailure;
+    }
     return stopped_ ? result_ : failure_;
   }
 
@@ -132,8 +170,27 @@ class Session : public Watcher {
   void take_statuses() {
     msg::NodeStatus status;
     while (statuses_.take(status)) {
+      const std::optional<std::string> news = others_.take(status, Clock::now());
+      if (news && !stopped_) output_.say(*news);
+      if (!is_planned(status.node())) continue;
+      if (!statuses_.is_of_this_host()) {
+        report_twin(status);
+        continue;
+      }
       if (board_.put(status) && status.kind() == msg::KIND_VIZ_NODE) show_page(status);
     }
+  }
+
+  /// On one host the registry of sessions refuses a node that runs already.
+  void report_twin(const msg::NodeStatus& status) {
+    if (node::has_ended(status.phase()) || !twins_.insert(status.node()).second) return;
+    output_.say("warning: " + status.host() + " runs a node named '" + status.node() +
+                "' as well: stop one of the two, or start each with --only");
+  }
+
+  bool is_planned(const std::string& node) const {
+    return std::any_of(plan_.nodes.begin(), plan_.nodes.end(),
+                       [&](const PlannedNode& planned) { return planned.name == node; });
   }
 
   void show_page(const msg::NodeStatus& status) {
@@ -145,7 +202,7 @@ class Session : public Watcher {
   }
 
   /// True if nothing more is to be waited for: a device that the scene does not play stays unused,
-  /// and a scene without any other waits for nobody of this launch.
+  /// and a scene without any other waits for no node of this launch.
   bool all_run() const {
     bool sim_waits = false;
     bool device_is_played = false;
@@ -178,12 +235,15 @@ class Session : public Watcher {
   const RunPlan& plan_;
   node::SessionRegistration& registration_;
   NodeOutput output_;
+  OtherNodes others_;
   StatusBoard board_;
   std::optional<machine::TimerWatch> timers_;  // in realtime: elsewhere no tick is late
   MachineWatch machine_{[this] { return timers_ ? timers_->figures() : machine::TimerFigures{}; }};
   dds::Participant participant_;
   dds::Reader<msg::NodeStatus> statuses_;
+  std::optional<SignalLog> signals_;
   std::map<std::string, std::string> pages_;  // address shown, by node
+  std::set<std::string> twins_;               // nodes that another host runs as well
   std::vector<bool> present_;                 // runs, or starts again
   std::vector<bool> killed_;
   std::vector<std::uint64_t> restarts_;
@@ -197,8 +257,9 @@ class Session : public Watcher {
 }  // namespace
 
 int run_session(const config::Launch& launch, const RunPlan& plan, const RunOptions& options,
-                node::SessionRegistration& registration, StopSignals& signals) {
-  Session session(launch, plan, options, registration);
+                node::SessionRegistration& registration, const dds::Network& network,
+                StopSignals& signals) {
+  Session session(launch, plan, options, registration, network);
   std::vector<Command> commands;
   for (const PlannedNode& node : plan.nodes) {
     commands.push_back(node.command);

@@ -3,6 +3,7 @@
 
 #include "cli/run/run_plan.h"
 #include "cli/run/stop_signals.h"
+#include "node/dds/network.h"
 #include "node/session_registry.h"
 
 namespace cordis::cli {
@@ -16,6 +17,7 @@ namespace cordis::cli {
 /// @throws std::runtime_error when DDS refuses, a program cannot be started or a log cannot be
 /// written.
 int run_session(const config::Launch& launch, const RunPlan& plan, const RunOptions& options,
-                node::SessionRegistration& registration, StopSignals& signals);
+                node::SessionRegistration& registration, const dds::Network& network,
+                StopSignals& signals);
 
 }  // namespace cordis::cli

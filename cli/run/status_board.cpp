@@ -67,26 +67,34 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   std::string text;
   if (status.phase() == msg::PHASE_FAILED && !status.text().empty()) {
     text += fmt::format("{} failed: {}\n", node, status.text());
+  } else if (status.kind() == msg::KIND_SIM_NODE && !status.text().empty()) {
+    text += fmt::format("{}: {}\n", node, status.text());
   }
   if (status.kind() == msg::KIND_DEVICE_NODE &&
       (status.port_energy_j() != 0.0 || status.passivity_ticks() > 0)) {
     text += fmt::format("{} gave the hand {:.3g} J, damped in {}\n", node, status.port_energy_j(),
                         config::count_text(status.passivity_ticks(), "tick"));
   }
+  if (status.link_unanswered() > 0) {
+    text += fmt::format("{}: {:.2f} % of {} without an answer of their own\n", node,
+                        100.0 * static_cast<double>(status.link_unanswered()) /
+                            static_cast<double>(status.link_samples()),
+                        config::count_text(status.link_samples(), "sample"));
+  }
   if (status.kind() == msg::KIND_SIM_NODE) {
     text += fmt::format(
         "energy {:.3g} J: {:.3g} J through the ports, {:.3g} J by changes of state, {:.3g} J taken "
         "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
         status.energy_j(), status.port_work_j(), status.switching_energy_j(), status.dissipated_j(),
-        status.largest_limit_number());
+        status.largest_stability_number());
     text += fmt::format("integration error {:.3g} J\n", status.integration_error_j());
     text += partners_of(status);
-    const auto tell = [&text](std::uint64_t count, const char* what) {
+    const auto report = [&text](std::uint64_t count, const char* what) {
       if (count > 0) text += fmt::format("{}: {}\n", what, count);
     };
-    tell(status.overflowed_steps(), "steps with more pairs in range than room, slow");
-    tell(status.forgotten_pairs(), "states of pairs FORGOTTEN for lack of memory");
-    tell(status.refused_inputs(), "positions and forces refused, not finite");
+    report(status.overflowed_steps(), "steps with more pairs in range than room, slow");
+    report(status.forgotten_pairs(), "states of pairs FORGOTTEN for lack of memory");
+    report(status.refused_inputs(), "positions and forces refused, not finite");
     text += fmt::format("state hash {:016x} after {}\n", status.state_hash(),
                         config::count_text(status.step(), "step"));
   }

@@ -12,7 +12,7 @@ namespace cordis::cli {
 /// within kLongestStop, because every stage leaves kShareOfLater to each of those that follow.
 /// In a hurry all are killed at once, except processes that drive motors: those are asked, and
 /// killed after kLastFade.
-/// Knows time only by what it is told.
+/// Knows time only by what it is given.
 class StopPlan {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -37,7 +37,7 @@ class StopPlan {
   void hurry(Time now) noexcept;
   bool hurried() const noexcept { return hurried_.has_value(); }
 
-  /// What is to be done now, given which processes still run. Each action is told once.
+  /// What is to be done now, given which processes still run. Each action is reported once.
   std::vector<Action> due(Time now, const std::vector<bool>& running);
 
   /// When due() will have something to say even if no process ends meanwhile.

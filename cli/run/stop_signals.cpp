@@ -29,10 +29,10 @@ StopSignals::~StopSignals() {
 }
 
 bool StopSignals::take() noexcept {
-  bool wish = false;
+  bool requested = false;
   signalfd_siginfo info{};
-  while (read(file_, &info, sizeof info) == sizeof info) wish |= info.ssi_signo != SIGCHLD;
-  return wish;
+  while (read(file_, &info, sizeof info) == sizeof info) requested |= info.ssi_signo != SIGCHLD;
+  return requested;
 }
 
 }  // namespace cordis::cli

@@ -1,4 +1,4 @@
-// cli/run/stop_signals.h -- the wish of a person, or of the system, that a run ends.
+// cli/run/stop_signals.h -- the request of a person, or of the system, that a run ends.
 #pragma once
 
 #include <csignal>
@@ -20,7 +20,7 @@ class StopSignals {
   /// For poll(): readable when a signal waits.
   int file() const noexcept { return file_; }
 
-  /// Takes all that wait. @return whether one of them was a wish to stop.
+  /// Takes all that wait. @return whether one of them was a request to stop.
   bool take() noexcept;
 
  private:

@@ -102,7 +102,7 @@ class Supervision {
     }
   }
 
-  /// Nobody starts again once all are to stop.
+  /// No process starts again once all are to stop.
   void restart_who_is_due() {
     const auto now = Clock::now();
     for (std::size_t i = 0; i < lives_.size(); ++i) {

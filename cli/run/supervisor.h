@@ -1,4 +1,4 @@
-// cli/run/supervisor.h -- runs a group of processes: starts them, listens to them, stops them in
+// cli/run/supervisor.h -- runs a group of processes: starts them, reads their output, stops them in
 // order.
 #pragma once
 
@@ -20,7 +20,7 @@ struct Command {
   bool respawn = false;            ///< whether it starts again when it dies, as NodeLife says
 };
 
-/// Is told what happens to the processes, which are numbered as the commands were, and decides when
+/// Receives what happens to the processes, which are numbered as the commands were, and decides when
 /// they stop.
 class Watcher {
  public:

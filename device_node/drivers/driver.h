@@ -45,6 +45,23 @@ class Driver {
   /// here, and no other clock moves it. False when the device does not answer.
   [[nodiscard]] virtual bool write(const AxisValues& commanded) noexcept = 0;
 
+  /// True if the motors take another command within a period: then, in real time, each period begins
+  /// with begin_period() and read(), and change_command() follows when the answer comes. False: a
+  /// period is one write(), followed by read(), as in lockstep.
+  virtual bool changes_within_period() const noexcept { return false; }
+
+  /// The period before is over, and the next one begins. A simulated device lives to the end of the
+  /// one before. False when the device does not answer.
+  [[nodiscard]] virtual bool begin_period() noexcept { return true; }
+
+  /// The motors hold this from now on, beyond the end of the period. A simulated device has lived
+  /// until now under the command before. False when the device does not answer.
+  /// @param share  of the present period that is over, 0..1
+  [[nodiscard]] virtual bool change_command(const AxisValues& /*commanded*/,
+                                            double /*share*/) noexcept {
+    return true;
+  }
+
   /// True if it drives motors of this world. For a simulated device no time passes while a scene in
   /// lockstep is silent or over; a hand at a real one lives on.
   virtual bool has_motors() const noexcept { return false; }

@@ -63,7 +63,7 @@ class Guardian::Life {
   Life(int socket, Shared& shared, std::chrono::nanoseconds stall_limit)
       : socket_(socket), shared_(shared), stall_nsec_(stall_limit.count()) {}
 
-  [[noreturn]] void live() noexcept {
+  [[noreturn]] void run() noexcept {
     settle();
     for (;;) {
       pollfd on{socket_, POLLIN, 0};
@@ -175,7 +175,7 @@ bool Guardian::start() noexcept {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return false;
   id_ = fork();
-  if (id_ == 0) Life(ends[1], *shared_, stall_limit_).live();
+  if (id_ == 0) Life(ends[1], *shared_, stall_limit_).run();
   close(ends[1]);
   if (id_ < 0) {
     close(ends[0]);

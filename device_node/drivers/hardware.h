@@ -71,7 +71,7 @@ class Hardware : public Driver {
     kNothing,
     kGreeted,    ///< the device is the right one
     kWrong,      ///< it is not: the wire is closed
-    kSample,     ///< a sample that answers the newest request, as far as can be told
+    kSample,     ///< a sample that answers the newest request, as far as can be known
     kOldSample,  ///< one that answers an earlier request
     kLetGo,      ///< the board has let go of its motors, and may go on to
     kLetGoOnce,  ///< it has, and takes forces again
@@ -84,7 +84,7 @@ class Hardware : public Driver {
   virtual void begin() noexcept = 0;
   /// Writes what the device is asked first; 0: it need not say what it is.
   virtual std::size_t greet(Message& message) noexcept = 0;
-  /// Writes what a device that has greeted is told once; 0: nothing.
+  /// Writes what a device that has greeted receives once; 0: nothing.
   virtual std::size_t configure(Message&) noexcept { return 0; }
   /// Writes what takes the force from the motors wherever in a message the device is. Always the
   /// same bytes.
@@ -92,7 +92,7 @@ class Hardware : public Driver {
   /// Writes the request that carries forces [N].
   virtual std::size_t request(const AxisValues& force_n, Message& message) noexcept = 0;
   virtual Received receive(std::uint8_t byte) noexcept = 0;
-  /// In every period: tells what has repeated itself. @param now_nsec  CLOCK_MONOTONIC
+  /// In every period: reports what has repeated itself. @param now_nsec  CLOCK_MONOTONIC
   virtual void report_repeats(std::int64_t /*now_nsec*/) noexcept {}
   /// It has listened, and nothing has come at all.
   virtual void fall_silent() noexcept {}

@@ -199,10 +199,10 @@ Hardware::Received Kfb1::take_info(Bytes payload) noexcept {
   return Received::kGreeted;
 }
 
-/// Tells where the device is not what its file promises to scenes. A device that is stronger than
-/// the file says is told to stay within it.
+/// Reports where the device is not what its file promises to scenes. A device that is stronger than
+/// the file says is asked to stay within it.
 void Kfb1::compare_with_file() noexcept {
-  constexpr double kUnit = 1e-6;  // in which it tells its travel [m]
+  constexpr double kUnit = 1e-6;  // in which it reports its travel [m]
   const double travel_m = layout().highest_m - layout().lowest_m;
   const bool other_travel = std::abs(travel_m_ - travel_m) > kUnit;
   const bool less_force = force_n_ < layout().force_limit_n;

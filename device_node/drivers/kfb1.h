@@ -10,7 +10,7 @@ namespace cordis::device {
 
 /// KFB1: COBS frames with a checksum; each FORCE is answered by one STATE with its number. The
 /// driver asks what the device is, refuses one with another number of keys, says in the log where
-/// its travel or its force is not that of the device file, and tells it the rate and the largest
+/// its travel or its force is not that of the device file, and sends it the rate and the largest
 /// force of the device file; again after a restart of the board, which its time shows. EVENTs are
 /// logged; at an emergency stop, an overheated motor or its watchdog the board has let go.
 class Kfb1 final : public Hardware {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace cordis::device {
 namespace {
@@ -71,12 +72,17 @@ bool Mock::can_play(Role) const noexcept {
 void Mock::start(Role role) noexcept {
   role_ = role;
   period_index_ = 0;
+  is_in_period_ = false;
+  lived_ = 0.0;
+  command_.fill(0.0);
   for (Axis& axis : axes_) {
     axis.key.start();
     axis.position_sensor.start();
     axis.force_sensor.start();
     if (axis.hand) axis.hand->start();
   }
+  if (role == Role::kMass) return;
+  for (std::size_t a = 0; a < axes_.size(); ++a) command_[a] = axes_[a].key.position_m();
 }
 
 double Mock::force_of_hand(const Axis& axis) const noexcept {
@@ -97,23 +103,68 @@ bool Mock::read(AxisValues& sensed) noexcept {
 }
 
 bool Mock::write(const AxisValues& commanded) noexcept {
-  for (std::size_t a = 0; a < axes_.size(); ++a) live(axes_[a], commanded[a]);
+  take_command(commanded);
+  live_until(sub_steps_);
+  lived_ = 0.0;
   ++period_index_;
   return true;
 }
 
-void Mock::live(Axis& axis, double commanded) noexcept {
+bool Mock::begin_period() noexcept {
+  if (std::exchange(is_in_period_, true)) {
+    live_until(sub_steps_);
+    ++period_index_;
+  }
+  lived_ = 0.0;
+  take_command(command_);
+  return true;
+}
+
+bool Mock::change_command(const AxisValues& commanded, double share) noexcept {
+  live_until(std::clamp(share, 0.0, 1.0) * sub_steps_);
+  take_command(commanded);
+  return true;
+}
+
+void Mock::take_command(const AxisValues& commanded) noexcept {
+  command_ = commanded;
+  commanded_at_ = lived_;
+  for (Axis& axis : axes_) axis.from_m = axis.key.position_m();
+}
+
+/// Lives on in the present period, in whole sub-steps where it can.
+void Mock::live_until(double sub_step) noexcept {
+  constexpr double kNothing = 1e-9;  // of a sub-step
+  while (sub_step - lived_ > kNothing) {
+    const double next = std::min(std::floor(lived_ + kNothing) + 1.0, sub_step);
+    for (std::size_t a = 0; a < axes_.size(); ++a) step(axes_[a], command_[a], lived_, next);
+    lived_ = next;
+  }
+}
+
+/// @param from, to  the part of the period, at most a sub-step [sub-steps]
+void Mock::step(Axis& axis, double commanded, double from, double to) noexcept {
   const double begin_s = static_cast<double>(period_index_) / layout_.rate_hz - axis.delay_s;
-  const double from_m = axis.key.position_m();
-  for (int s = 0; s < sub_steps_; ++s) {
-    const double push = force_of_hand(axis);
-    if (role_ == Role::kMass) {
-      axis.key.advance(sub_step_s_, commanded, push);
-    } else {
-      const double share = static_cast<double>(s + 1) / sub_steps_;
-      axis.key.carry_to(from_m + (commanded - from_m) * share, sub_step_s_);
-    }
-    if (axis.hand) axis.hand->advance(begin_s + s * sub_step_s_, sub_step_s_, -push);
+  const double h_s = (to - from) * sub_step_s_;
+  const double push = force_of_hand(axis);
+  if (role_ == Role::kMass) {
+    axis.key.advance(h_s, commanded, push);
+  } else {
+    const double share = (to - commanded_at_) / (sub_steps_ - commanded_at_);
+    axis.key.carry_to(axis.from_m + (commanded - axis.from_m) * share, h_s);
+  }
+  if (axis.hand) axis.hand->advance(begin_s + from * sub_step_s_, h_s, -push);
+}
+
+std::unique_ptr<Driver> make_mock(const config::Value& section, const AxisLayout& layout,
+                                  config::Problems& problems) {
+  const MockSettings settings = read_mock_settings(section, layout, problems);
+  if (problems.has_errors()) return nullptr;
+  try {
+    return std::make_unique<Mock>(settings, layout);
+  } catch (const std::invalid_argument& error) {
+    problems.error(section.place(), "mock: " + std::string(error.what()));
+    return nullptr;
   }
 }
 

@@ -6,24 +6,9 @@
 #include <vector>
 
 #include "device_node/drivers/driver.h"
-#include "device_node/drivers/hand.h"
-#include "device_node/drivers/mock_key.h"
-#include "device_node/drivers/sensor.h"
-#include "node/config/value.h"
+#include "device_node/drivers/mock_settings.h"
 
 namespace cordis::device {
-
-/// What a simulated keyboard is made of.
-struct MockSettings {
-  KeySettings key;    ///< of every key; its ends of travel are those of the layout
-  HandSettings hand;  ///< of every hand
-  std::vector<Trajectory> gesture = {Trajectory()};  ///< target of the hands: one, or one each
-  std::vector<int> played;                           ///< axes that have a hand on them
-  double stagger_s = 0.0;          ///< each hand begins so much later than the one before
-  SensorSettings position_sensor;  ///< [m]
-  SensorSettings force_sensor;     ///< [N]
-  std::uint64_t seed = 1;          ///< of their noise
-};
 
 /// Keys with mechanics of their own, each moved by a simulated hand or by the force it is given
 /// alone.
@@ -31,7 +16,9 @@ struct MockSettings {
 /// Role mass: the motor pushes the key with the force it is given; the hand feels it.
 /// Role liaison: the motor carries the key to the position it is given; the sensor measures the
 /// hand's force.
-/// Depends on what it is given and on nothing else: same forces, same positions, to the last bit,
+/// In real time a force acts from the moment on at which it is given; a position is reached at the
+/// end of the period in which it is given.
+/// Depends on what it is given, and when in a period, and on nothing else: same forces, same positions, to the last bit,
 /// the noise of its sensors included.
 class Mock final : public Driver {
  public:
@@ -43,6 +30,9 @@ class Mock final : public Driver {
   void start(Role role) noexcept override;
   bool read(AxisValues& sensed) noexcept override;
   bool write(const AxisValues& commanded) noexcept override;
+  bool changes_within_period() const noexcept override { return true; }
+  bool begin_period() noexcept override;
+  bool change_command(const AxisValues& commanded, double share) noexcept override;
   void stop() noexcept override {}  // its motors hold for one period at most
 
   int sub_steps() const noexcept { return sub_steps_; }  ///< per period
@@ -54,22 +44,29 @@ class Mock final : public Driver {
     Sensor position_sensor;
     Sensor force_sensor;
     double delay_s = 0.0;
+    double from_m = 0.0;  // role liaison: where it is carried from
   };
 
   double sense(Axis& axis) const noexcept;
-  void live(Axis& axis, double commanded) noexcept;
+  void take_command(const AxisValues& commanded) noexcept;
+  void live_until(double sub_step) noexcept;
+  void step(Axis& axis, double commanded, double from, double to) noexcept;
   double force_of_hand(const Axis& axis) const noexcept;
 
   AxisLayout layout_;
   int sub_steps_ = 1;
   double sub_step_s_ = 0.0;
   Role role_ = Role::kMass;
-  std::uint64_t period_index_ = 0;  // periods lived since start()
+  std::uint64_t period_index_ = 0;  // periods since start()
+  bool is_in_period_ = false;       // in real time
+  double lived_ = 0.0;              // of the present period [sub-steps]
+  double commanded_at_ = 0.0;       // when the command came [sub-steps]
+  AxisValues command_{};
   std::vector<Axis> axes_;
 };
 
-/// Reads the mapping `mock:` of a device file. Every key has a default; without `hand:` nobody
-/// touches the keys. Empty when the mapping has errors.
+/// Reads the mapping `mock:` of a device file. Every key has a default; without `hand:` no
+/// hand touches the keys. Empty when the mapping has errors.
 std::unique_ptr<Driver> make_mock(const config::Value& section, const AxisLayout& layout,
                                   config::Problems& problems);
 

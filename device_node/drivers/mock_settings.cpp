@@ -1,11 +1,11 @@
-// device_node/drivers/mock_settings.cpp -- the mapping `mock:` of a device file.
+// device_node/drivers/mock_settings.cpp
+#include "device_node/drivers/mock_settings.h"
+
 #include <algorithm>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "device_node/drivers/gestures.h"
-#include "device_node/drivers/mock.h"
 #include "node/config/mapping_reader.h"
 
 namespace cordis::device {
@@ -96,8 +96,8 @@ void read_sensor(const config::Value& mapping, MockSettings& settings, Problems&
 
 }  // namespace
 
-std::unique_ptr<Driver> make_mock(const config::Value& section, const AxisLayout& layout,
-                                  Problems& problems) {
+MockSettings read_mock_settings(const config::Value& section, const AxisLayout& layout,
+                                Problems& problems) {
   config::MappingReader reader(section, "mock", problems);
   MockSettings settings;
   settings.key = read_key(reader.optional_mapping("key"), problems);
@@ -105,13 +105,7 @@ std::unique_ptr<Driver> make_mock(const config::Value& section, const AxisLayout
   const config::Value hand = reader.optional_mapping("hand");
   if (hand.exists()) read_hand(hand, layout, settings, problems);
   reader.finish();
-  if (problems.has_errors()) return nullptr;
-  try {
-    return std::make_unique<Mock>(settings, layout);
-  } catch (const std::invalid_argument& error) {
-    problems.error(section.place(), "mock: " + std::string(error.what()));
-    return nullptr;
-  }
+  return settings;
 }
 
 }  // namespace cordis::device

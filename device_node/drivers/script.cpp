@@ -18,6 +18,7 @@ bool Script::can_play(Role role) const noexcept {
 void Script::start(Role role) noexcept {
   role_ = role;
   period_index_ = 0;
+  is_in_period_ = false;
 }
 
 bool Script::read(AxisValues& sensed) noexcept {
@@ -30,6 +31,11 @@ bool Script::read(AxisValues& sensed) noexcept {
 
 bool Script::write(const AxisValues&) noexcept {
   ++period_index_;
+  return true;
+}
+
+bool Script::begin_period() noexcept {
+  if (std::exchange(is_in_period_, true)) ++period_index_;
   return true;
 }
 

@@ -22,6 +22,9 @@ class Script final : public Driver {
   void start(Role role) noexcept override;
   bool read(AxisValues& sensed) noexcept override;
   bool write(const AxisValues& commanded) noexcept override;
+  bool changes_within_period() const noexcept override { return true; }
+  bool begin_period() noexcept override;
+  bool change_command(const AxisValues&, double) noexcept override { return true; }
   void stop() noexcept override {}  // it has no motor
 
  private:
@@ -30,6 +33,7 @@ class Script final : public Driver {
   double rate_hz_;
   Role role_ = Role::kMass;
   std::uint64_t period_index_ = 0;  // periods lived since start()
+  bool is_in_period_ = false;       // in real time
 };
 
 /// Reads the mapping `script:` of a device file. Empty when it has errors.

@@ -14,7 +14,7 @@
 namespace cordis::device {
 
 /// A way to a device, which is this process' own while it is open: two that took turns would pull a
-/// motor to and fro. Nothing here waits longer than it is told, allocates or throws; opening may
+/// motor to and fro. Nothing here waits longer than it is asked to, allocates or throws; opening may
 /// take the kernel some 100 us. While it is open, the guardian of this process has it as well.
 class Wire {
  public:

@@ -36,18 +36,18 @@ enum kfb1_event_code {
   KFB1_WATCHDOG = 4 /* sent by kfb1_tick */
 };
 
-/* What a board is, and how it is asked and told. */
+/* What a board is, and how it is asked and answered. */
 struct kfb1_board {
-  uint8_t keys;        /* 1..16 */
-  uint32_t travel_um;  /* of every key */
-  uint32_t force_mn;   /* largest force of a motor */
-  uint16_t rate_hz;    /* highest rate of exchanges */
+  uint8_t keys;       /* 1..16 */
+  uint32_t travel_um; /* of every key */
+  uint32_t force_mn;  /* largest force of a motor */
+  uint16_t rate_hz;   /* highest rate of exchanges */
   uint32_t serial;
-  int16_t (*position)(uint8_t key);            /* -32767 lower end .. 32767 upper end */
-  void (*force)(uint8_t key, int16_t force);   /* -32767..32767 of force_mn, up positive */
-  uint16_t (*touched)(void);                   /* one bit per key */
+  int16_t (*position)(uint8_t key);          /* -32767 lower end .. 32767 upper end */
+  void (*force)(uint8_t key, int16_t force); /* -32767..32767 of force_mn, up positive */
+  uint16_t (*touched)(void);                 /* one bit per key */
   uint32_t (*time_us)(void);
-  void (*send)(const uint8_t *bytes, uint8_t count);
+  void (*send)(const uint8_t* bytes, uint8_t count);
 };
 
 struct kfb1 {
@@ -55,26 +55,26 @@ struct kfb1 {
   uint8_t frame[KFB1_LARGEST_FRAME]; /* bytes since the last 0 */
   uint8_t length;
   uint8_t too_long;
-  uint8_t driven;       /* a FORCE other than 0 has come within the watchdog time */
+  uint8_t driven; /* a FORCE other than 0 has come within the watchdog time */
   uint32_t last_force_us;
-  int16_t limit;        /* of forces, as CONFIG set it */
+  int16_t limit; /* of forces, as CONFIG set it */
 };
 
-void kfb1_start(struct kfb1 *device, const struct kfb1_board *board);
+void kfb1_start(struct kfb1* device, const struct kfb1_board* board);
 
 /* For every byte that arrives. */
-void kfb1_byte(struct kfb1 *device, uint8_t byte);
+void kfb1_byte(struct kfb1* device, uint8_t byte);
 
 /* At least once a millisecond: the watchdog. */
-void kfb1_tick(struct kfb1 *device);
+void kfb1_tick(struct kfb1* device);
 
 /* Sends an EVENT. While the cause lasts, call it every 50 ms or sooner, and give no force. */
-void kfb1_event(struct kfb1 *device, uint8_t code);
+void kfb1_event(struct kfb1* device, uint8_t code);
 
 /* What both sides need; the host has its own. */
-uint16_t kfb1_crc(const uint8_t *bytes, uint8_t count);               /* CRC-16/CCITT-FALSE */
-uint8_t kfb1_encode(const uint8_t *in, uint8_t count, uint8_t *out);  /* COBS, with the 0; length */
-uint8_t kfb1_decode(const uint8_t *in, uint8_t count, uint8_t *out);  /* without the 0; 0: bad */
+uint16_t kfb1_crc(const uint8_t* bytes, uint8_t count);              /* CRC-16/CCITT-FALSE */
+uint8_t kfb1_encode(const uint8_t* in, uint8_t count, uint8_t* out); /* COBS, with the 0; length */
+uint8_t kfb1_decode(const uint8_t* in, uint8_t count, uint8_t* out); /* without the 0; 0: bad */
 
 #ifdef __cplusplus
 }

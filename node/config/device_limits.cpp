@@ -30,7 +30,7 @@ namespace {
 
 using Map = std::vector<std::vector<double>>;
 
-/// One row per coordinate; none without an end-piece. Faults in it are told by the device itself.
+/// One row per coordinate; none without an end-effector map. Faults in it are reported by the device itself.
 Map read_map(MappingReader& reader) {
   Problems reported_elsewhere;
   Map map;
@@ -81,6 +81,15 @@ void set_reach(DeviceLimits& limits, const Map& map) {
 
 }  // namespace
 
+bool DeviceLimits::coordinates_are_alike() const noexcept {
+  for (int c = 1; c < coordinate_count; ++c) {
+    const auto other = static_cast<std::size_t>(c);
+    if (coordinate_lowest_m[other] != coordinate_lowest_m[0]) return false;
+    if (coordinate_highest_m[other] != coordinate_highest_m[0]) return false;
+  }
+  return true;
+}
+
 DeviceLimits read_device_limits(MappingReader& reader) {
   constexpr int kMaxDelay = 16;
   DeviceLimits limits;
@@ -114,11 +123,11 @@ DeviceLimits read_device_limits(MappingReader& reader) {
 
 PlayedDevice read_played_device(MappingReader& reader, const std::string& node) {
   constexpr int kOwn = 10;
-  constexpr int kOfAnother = 5;
+  constexpr int kStandbyStrength = 5;
   PlayedDevice played;
   played.name = reader.optional_text("standby_for", node);
   played.strength = static_cast<int>(
-      reader.optional_integer("strength", played.name == node ? kOwn : kOfAnother, 1, 1000));
+      reader.optional_integer("strength", played.name == node ? kOwn : kStandbyStrength, 1, 1000));
   return played;
 }
 

@@ -12,8 +12,8 @@ namespace cordis::config {
 /// The part of a device file that a scene is held against. SI units.
 struct DeviceLimits {
   int axis_count = 1;
-  int coordinate_count = 1;  ///< of the handle: the axes, or what an end-piece makes of them
-  /// At least the largest eigenvalue of A A^T, A being the map of the end-piece: by so much a
+  int coordinate_count = 1;  ///< of the handle: the axes, or what an end-effector map makes of them
+  /// At least the largest eigenvalue of A A^T, A being the end-effector map: by so much a
   /// coordinate of the handle may be lighter than an axis, and have less viscosity.
   double inertia_ratio = 1.0;
   double rate_hz = 1000.0;
@@ -32,6 +32,9 @@ struct DeviceLimits {
   double stiffness_limit_n_per_m = 0.0;  ///< as declared; 0: what follows from the viscosity
   double damping_limit_n_s_per_m = 0.0;  ///< as declared; 0: likewise
   int delay_periods = 0;                 ///< that the device adds on purpose
+
+  /// True if all coordinates have the same travel from their rest.
+  bool coordinates_are_alike() const noexcept;
 
   /// What a hand that moves the handle along any of its coordinates has for certain.
   double coordinate_mass_kg() const noexcept { return moving_mass_kg / inertia_ratio; }

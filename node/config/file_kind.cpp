@@ -50,10 +50,10 @@ bool is_file_of(FileKind wanted, const Value& root, Problems& problems) {
   // A scene without matter still has its space.
   if (wanted == FileKind::kScene && root.find("space").exists()) return true;
   for (const KindWords& words : kKinds) {
-    const auto telling = std::ranges::find(root.entries(), words.mark, &Value::Entry::key);
-    if (telling == root.entries().end()) continue;
+    const auto mark = std::ranges::find(root.entries(), words.mark, &Value::Entry::key);
+    if (mark == root.entries().end()) continue;
     std::string hint = wanted == FileKind::kScene ? scene_of(root) : std::string();
-    problems.error(telling->key_place,
+    problems.error(mark->key_place,
                    std::string("this is ") + words.name + ", and " + right.name + " is wanted",
                    hint.empty() ? words.use : hint);
     return false;

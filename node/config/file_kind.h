@@ -7,7 +7,7 @@ namespace cordis::config {
 
 enum class FileKind { kLaunch, kScene, kDevice, kParts };
 
-/// True if a file may be of the kind that is wanted, as its keys tell: `nodes` of a launch file,
+/// True if a file may be of the kind that is wanted, by its keys: `nodes` of a launch file,
 /// `matter` of a scene, `axes` of a device file; else one problem that says what it is.
 bool is_file_of(FileKind wanted, const Value& root, Problems& problems);
 

@@ -16,9 +16,12 @@ namespace cordis::config {
 namespace {
 
 constexpr std::size_t kLongestName = 64;
+constexpr const char* kRecordKey = "record";
+constexpr const char* kNetworkKey = "network";
 
 const std::vector<std::string>& programs() {
-  static const std::vector<std::string> kPrograms{"sim_node", "device_node", "viz_node"};
+  static const std::vector<std::string> kPrograms{"sim_node", "device_node", "viz_node",
+                                                  "record_node"};
   return kPrograms;
 }
 
@@ -55,8 +58,11 @@ std::vector<std::string> path_of_override(const Value& root, const std::string& 
 
   std::vector<std::string> names;
   for (const Value::Entry& node : root.find("nodes").entries()) names.push_back(node.key);
+  const bool is_node = std::find(names.begin(), names.end(), first) != names.end();
+  if ((first == kRecordKey || first == kNetworkKey) && !is_node) return path;
   if (std::find(names.begin(), names.end(), first) == names.end()) {
     if (path.size() == 1) names.insert(names.end(), {"clock", "domain", "session"});
+    if (path.size() > 1) names.insert(names.end(), {kNetworkKey, kRecordKey});
     problems.error(place, "no node is named '" + first + "'", did_you_mean(first, names));
     return {};
   }
@@ -99,8 +105,8 @@ std::string read_session(MappingReader& reader, const std::filesystem::path& pat
 Clock read_clock(MappingReader& reader) {
   const std::string clock =
       reader.optional_choice("clock", "realtime", {"realtime", "lockstep", "asap"});
-  if (clock == "lockstep") return Clock::kLockstep;
-  return clock == "asap" ? Clock::kAsap : Clock::kRealtime;
+  if (clock == clock_word(Clock::kLockstep)) return Clock::kLockstep;
+  return clock == clock_word(Clock::kAsap) ? Clock::kAsap : Clock::kRealtime;
 }
 
 bool is_of_launcher(const std::string& key) {
@@ -120,7 +126,8 @@ LaunchNode read_node(const Value::Entry& entry, Clock clock, Problems& problems)
   const bool sound = reader.ok();
   node.program = reader.required_choice("node", programs());
   if (!reader.ok()) node.program.clear();
-  const bool only_shows = node.program == "viz_node";
+  // What it does changes no result.
+  const bool only_shows = node.program == "viz_node" || node.program == "record_node";
   node.required = reader.optional_truth("required", !only_shows);
   node.respawn = reader.optional_truth("respawn", only_shows || clock == Clock::kRealtime);
 
@@ -130,6 +137,16 @@ LaunchNode read_node(const Value::Entry& entry, Clock clock, Problems& problems)
   }
   if (sound) node.section = Value::mapping(std::move(rest), entry.value.place());
   return node;
+}
+
+/// `record:` at the top of a file: a record_node named `record`, as its mapping or the name of its
+/// file alone.
+Value::Entry recorder_entry(const Value& record) {
+  std::vector<Value::Entry> keys;
+  keys.push_back({"node", record.place(), Value::scalar("record_node", record.place())});
+  if (record.kind() == Value::Kind::kScalar) keys.push_back({"out", record.place(), record});
+  for (const Value::Entry& key : record.entries()) keys.push_back(key);
+  return {kRecordKey, record.place(), Value::mapping(std::move(keys), record.place())};
 }
 
 /// What only shows when all nodes are seen together.
@@ -165,18 +182,47 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
   launch.session = read_session(reader, path);
   if (reader.has("domain"))
     launch.domain = static_cast<int>(reader.optional_integer("domain", 0, 0, kHighestDomain));
+  static_cast<void>(reader.optional_value(kNetworkKey));  // known, for the hint of a slip
+  if (reader.has(kNetworkKey)) {
+    const Value network = reader.required_mapping(kNetworkKey);
+    if (network.exists()) launch.network = read_network(network, problems);
+  }
   launch.clock = read_clock(reader);
   const Value nodes = reader.required_mapping("nodes");
   for (const Value::Entry& entry : nodes.entries())
     launch.nodes.push_back(read_node(entry, launch.clock, problems));
   if (nodes.exists() && nodes.entries().empty())
     reader.error_at("nodes", "a launch file needs at least one node");
+  if (reader.has(kRecordKey)) {
+    const Value record = reader.optional_value(kRecordKey);
+    if (record.kind() == Value::Kind::kSequence) {
+      reader.error_at(kRecordKey, "record must be the name of a file or a mapping, got a sequence",
+                      "record: {out: takes/{session}-{time}.mcap}");
+    } else if (nodes.find(kRecordKey).exists()) {
+      reader.error_at(kRecordKey, "'record' is a node of this file already",
+                      "say what it records there");
+    } else {
+      launch.nodes.push_back(read_node(recorder_entry(record), launch.clock, problems));
+    }
+  }
   check_nodes(launch.nodes, problems);
   reader.finish();
   return launch;
 }
 
 }  // namespace
+
+const char* clock_word(Clock clock) noexcept {
+  switch (clock) {
+    case Clock::kRealtime:
+      return "realtime";
+    case Clock::kLockstep:
+      return "lockstep";
+    case Clock::kAsap:
+      return "asap";
+  }
+  return "";
+}
 
 const std::vector<std::string>& launcher_keys() {
   static const std::vector<std::string> kKeys{"node", "required", "respawn"};
@@ -197,6 +243,12 @@ const LaunchNode* Launch::find(const std::string& name) const noexcept {
 
 std::filesystem::path Launch::resolve(const std::string& path) const {
   return directory / path;
+}
+
+void check_domain(const Launch& launch, Problems& problems) {
+  if (launch.network && !launch.domain)
+    problems.error(launch.network->place,
+                   "a session on several hosts needs 'domain', the same one on each", "domain: 7");
 }
 
 Launch load_launch(const std::string& path, const std::vector<std::string>& overrides,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "node/config/network.h"
 #include "node/config/value.h"
 
 namespace cordis::config {
@@ -20,10 +21,13 @@ enum class Clock {
   kAsap       ///< sim_node steps as fast as it can, without devices
 };
 
+/// The clock as a launch file spells it: "realtime", "lockstep" or "asap".
+const char* clock_word(Clock clock) noexcept;
+
 /// One node of a launch file: a process.
 struct LaunchNode {
   std::string name;  ///< unique within the session; also the name of the device for a device_node
-  std::string program;   ///< sim_node, device_node or viz_node
+  std::string program;   ///< sim_node, device_node, viz_node or record_node
   bool required = true;  ///< whether the session ends when this node ends for good
   bool respawn = true;   ///< whether the launcher starts it again when it dies
   Value section;         ///< its mapping without launcher_keys(); the node reads it itself
@@ -40,6 +44,7 @@ struct Launch {
   std::filesystem::path directory;  ///< relative paths in the file start here
   std::string session;              ///< name of the session; DDS partition
   std::optional<int> domain;        ///< DDS domain, 0..101, where the file or a word names one
+  std::optional<NetworkSection> network;  ///< absent: the session stays on this host
   Clock clock = Clock::kRealtime;
   std::vector<LaunchNode> nodes;  ///< in the order of the file
 
@@ -54,13 +59,14 @@ struct Launch {
 
 /// Reads a launch file. Every fault is a problem: unknown keys and programs, a domain beyond
 /// 0..101, a session name that is not of 1 to 64 letters, digits, '_' and '-', no node, two
-/// sim_nodes, names with the same name_hash. Without `session:` the session bears the name of the
+/// sim_nodes, names with the same name_hash. Without `session:` the session has the name of the
 /// file. The sections of the nodes are not looked into. Without `required:` every node but a
-/// viz_node is required. Without `respawn:` every node starts again when it dies; in a lockstep or
-/// asap session, whose result must not depend on a restart, a viz_node alone.
+/// viz_node and a record_node is required. Without `respawn:` every node starts again when it dies;
+/// in a lockstep or asap session, whose result must not depend on a restart, those two alone.
+/// `record:` stands for a record_node named `record`.
 /// @param overrides  words `name.key=value` (key of a node, may be nested: hand.mass_kg) and
-///                   `clock=`, `domain=`, `session=` for the session itself, each value in YAML;
-///                   a word that fits nothing is a problem.
+///                   `clock=`, `domain=`, `session=`, `record=`, `network.key=` for the session
+///                   itself, each value in YAML; a word that fits nothing is a problem.
 /// @return what could be read; to be used only when `problems` has no errors.
 [[nodiscard]] Launch load_launch(const std::string& path, const std::vector<std::string>& overrides,
                                  Problems& problems);
@@ -69,5 +75,9 @@ struct Launch {
 [[nodiscard]] Launch load_launch_text(const std::string& text, const std::string& name,
                                       const std::vector<std::string>& overrides,
                                       Problems& problems);
+
+/// A problem for a `network` without a `domain`. Who begins a session or checks a file asks; who
+/// looks for a session that runs has its domain from the registry.
+void check_domain(const Launch& launch, Problems& problems);
 
 }  // namespace cordis::config

@@ -114,6 +114,17 @@ void Problems::add(Problem problem) {
   problems_.push_back(std::move(problem));
 }
 
+std::vector<SourceFile> Problems::sources() const {
+  std::vector<SourceFile> files;
+  for (const auto& [file, lines] : sources_) {
+    std::string text;
+    for (const std::string& line : lines) text.append(line).append("\n");
+    if (!text.empty()) text.pop_back();  // the last line has no end
+    files.push_back({file, std::move(text)});
+  }
+  return files;
+}
+
 void Problems::remember_source(const std::string& file, const std::string& text) {
   std::vector<std::string> lines;
   for (std::size_t start = 0; start <= text.size();) {

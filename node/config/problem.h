@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -31,6 +32,12 @@ struct Problem {
   std::string text() const;
 };
 
+/// The text of a file, without carriage returns.
+struct SourceFile {
+  std::string path;
+  std::string text;
+};
+
 /// Thrown once a file has been read to its end, with everything that is wrong in it. what() is the
 /// text of all.
 class ConfigError : public std::runtime_error {
@@ -54,6 +61,16 @@ class Problems {
   /// Remembers the text of a file, so that problems in it show their line.
   void remember_source(const std::string& file, const std::string& text);
 
+  /// All that has been remembered, in the order in which it was read first.
+  std::vector<SourceFile> sources() const;
+
+  /// From now on load_file() reads these files, under these paths alone, and none of the disk.
+  void read_from(std::vector<SourceFile> files) { given_ = std::move(files); }
+  /// nullptr: files are those of the disk.
+  const std::vector<SourceFile>* given_files() const noexcept {
+    return given_ ? &*given_ : nullptr;
+  }
+
   bool has_errors() const noexcept { return error_count_ > 0; }
   /// True if no more of them will be shown: then a hint is not worth the time of finding it.
   bool is_full() const noexcept { return problems_.size() >= kMaxProblems; }
@@ -76,6 +93,7 @@ class Problems {
 
   std::vector<Problem> problems_;
   std::vector<std::pair<std::string, std::vector<std::string>>> sources_;  // file, its lines
+  std::optional<std::vector<SourceFile>> given_;
   std::size_t error_count_ = 0;
   std::size_t left_out_ = 0;
 };

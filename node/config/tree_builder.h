@@ -1,4 +1,4 @@
-// node/config/tree_builder.h -- Values of the events by which yaml-cpp tells a document.
+// node/config/tree_builder.h -- Values of the events by which yaml-cpp describes a document.
 #pragma once
 
 #include <cstddef>

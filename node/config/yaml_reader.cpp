@@ -1,5 +1,5 @@
 // node/config/yaml_reader.cpp -- reads YAML by the events of yaml-cpp, which (unlike its nodes)
-// tell quoted from plain scalars, and builds Values.
+// distinguish quoted from plain scalars, and builds Values.
 #include "node/config/yaml_reader.h"
 
 #include <algorithm>
@@ -127,13 +127,24 @@ std::string hint_for_missing_file(const std::filesystem::path& path) {
   return did_you_mean(path.filename().string(), names);
 }
 
+/// A file of the disk, or of those that the problems were given instead.
+FileBytes bytes_of(const std::string& path, const Problems& problems) {
+  const std::vector<SourceFile>* given = problems.given_files();
+  if (given == nullptr) return read_regular_file(path, kMaxBytes);
+  for (const SourceFile& file : *given) {
+    if (file.path == path) return {file.text, {}};
+  }
+  return {{}, "it is not among the files that were recorded"};
+}
+
 }  // namespace
 
 Value load_file(const std::string& path, Problems& problems, const Place& referrer) {
-  const auto [bytes, reason] = read_regular_file(path, kMaxBytes);
+  const auto [bytes, reason] = bytes_of(path, problems);
   if (!reason.empty()) {
     std::error_code failure;
-    const bool missing = !std::filesystem::exists(path, failure);
+    const bool missing =
+        problems.given_files() == nullptr && !std::filesystem::exists(path, failure);
     const std::string hint = missing ? hint_for_missing_file(path) : std::string{};
     if (referrer.file.empty()) {
       problems.error({path, 0, 0}, "cannot be read: " + reason, hint);

@@ -34,15 +34,16 @@ constexpr std::size_t kKeyPrefix = 48;
 
 }  // namespace
 
-bool send_departure(const ParticipantPrefix& participant, std::uint16_t port) noexcept {
+bool send_departure(const ParticipantPrefix& participant, std::uint16_t port,
+                    const std::string& address) noexcept {
   std::array<std::uint8_t, kDatagram.size()> datagram = kDatagram;
   std::ranges::copy(participant, datagram.begin() + kSourcePrefix);
   std::ranges::copy(participant, datagram.begin() + kKeyPrefix);
   const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (file < 0) return false;
-  const sockaddr_in address = udp_address(port);
+  const sockaddr_in place = udp_address(port, ipv4_of(address));
   const auto sent = sendto(file, datagram.data(), datagram.size(), MSG_DONTWAIT,
-                           reinterpret_cast<const sockaddr*>(&address), sizeof address);
+                           reinterpret_cast<const sockaddr*>(&place), sizeof place);
   close(file);
   return sent == static_cast<ssize_t>(datagram.size());
 }

@@ -3,6 +3,7 @@
 
 #include "idl/controlPubSubTypes.h"
 #include "idl/gesturePubSubTypes.h"
+#include "idl/inputsPubSubTypes.h"
 #include "idl/scenePubSubTypes.h"
 
 namespace cordis::dds {
@@ -35,8 +36,16 @@ struct TypeOf<msg::SceneSignals> {
   using Type = msg::SceneSignalsPubSubType;
 };
 template <>
+struct TypeOf<msg::SceneSound> {
+  using Type = msg::SceneSoundPubSubType;
+};
+template <>
 struct TypeOf<msg::SceneEvents> {
   using Type = msg::SceneEventsPubSubType;
+};
+template <>
+struct TypeOf<msg::SceneInputs> {
+  using Type = msg::SceneInputsPubSubType;
 };
 template <>
 struct TypeOf<msg::ControlCommand> {

@@ -31,6 +31,14 @@ std::vector<Peer> Participant::peers() const {
   return impl_->peers();
 }
 
+std::vector<FoundWriter> Participant::writers() const {
+  return impl_->writers();
+}
+
+bool Participant::has_peers_elsewhere() const noexcept {
+  return impl_->has_peers_elsewhere();
+}
+
 std::string Participant::mismatch() const {
   return impl_->mismatch();
 }
@@ -61,6 +69,11 @@ std::vector<Peer> Participant::Impl::peers() const {
   return presence_->peers();
 }
 
+std::vector<FoundWriter> Participant::Impl::writers() const {
+  const std::lock_guard lock(mutex_);
+  return presence_->writers();
+}
+
 std::string Participant::Impl::mismatch() const {
   const std::lock_guard lock(mutex_);
   return presence_->mismatch();
@@ -79,7 +92,7 @@ void Participant::Impl::add(Endpoint& endpoint) {
 }
 
 std::unique_ptr<Presence> Participant::Impl::make_presence() {
-  return std::make_unique<Presence>(config_, [this] {
+  return std::make_unique<Presence>(config_, peers_elsewhere_, [this] {
     {
       const std::lock_guard lock(watch_mutex_);
       somebody_returned_ = true;
@@ -97,7 +110,7 @@ void Participant::Impl::watch() noexcept {
     const bool returned = std::exchange(somebody_returned_, false);
     lock.unlock();
     const bool done = !returned || rejoin();
-    if (!returned) presence_->drop_ended_processes();
+    if (!returned) presence_->drop_who_is_gone();
     lock.lock();
     if (!done) woken_.wait_for(lock, kLookForEndedProcesses, [this] { return ending_; });
     if (!done) somebody_returned_ = true;

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "idl/control.h"
+#include "node/dds/network.h"
 
 namespace cordis::dds {
 
@@ -19,6 +21,8 @@ struct ParticipantConfig {
   bool lockstep = false;  ///< quality of service of the gesture topics
   bool standbys = false;  ///< likewise; the same for all processes of a session
   std::uint32_t wire_version = msg::WIRE_VERSION;  ///< that it speaks; another one in tests alone
+  bool every_partition = false;  ///< its readers receive from all sessions and all other programs
+  Network network{};             ///< the same for all processes of a session on one host
 };
 
 /// What all that a participant owns begins with, in DDS.
@@ -29,15 +33,44 @@ struct Peer {
   std::string name;  ///< of a Cordis process: SESSION/NODE
   ParticipantPrefix prefix{};
   std::string process;               ///< as process_identity(); of other programs what they say
-  std::uint16_t discovery_port = 0;  ///< of 127.0.0.1; 0: it is elsewhere
+  std::uint16_t discovery_port = 0;  ///< at the address of this participant; 0: it is elsewhere
+
+  /// True if it is on this host, where its process can be looked up.
+  bool is_here() const noexcept { return discovery_port != 0; }
 };
 
-/// A DDS participant on UDP over 127.0.0.1, found and finding others by unicast alone. At most 64
-/// share a domain of a host; a process may have several.
+/// Looks, one per second, after which a participant of another host that says nothing is dropped.
+inline constexpr int kForgottenAfterLooks = 60;
+
+/// A writer of another participant, by its GUID in DDS.
+using WriterId = std::array<std::uint8_t, 16>;
+
+/// A topic as a writer offers it. Two that differ in anything here do not share readers.
+struct RawTopic {
+  std::string name;
+  std::string type;  ///< name of its type in DDS: cordis::msg::SceneFrame
+  bool keyed = false;
+  bool reliable = false;
+  bool transient_local = false;
+  bool exclusive = false;
+  auto operator<=>(const RawTopic&) const = default;  // NOLINT(modernize-use-nullptr)
+};
+
+/// A writer of another participant.
+struct FoundWriter {
+  WriterId id{};
+  RawTopic topic;
+  std::vector<std::string> partitions;
+};
+
+/// A DDS participant on UDP: without a network over 127.0.0.1 alone, with one through one address of
+/// this host. Finds others by unicast, where the network does not say otherwise. At most 64 share a
+/// domain of a host, 32 of a session on several hosts; a process may have several.
 ///
-/// No silence makes a participant drop another: who is there is said by node/status and by the age
-/// of samples. It drops those that leave, and within about a second those whose process has ended
-/// without leaving.
+/// Who is there is said by node/status and by the age of samples. A participant drops those that
+/// leave, and within about a second those of this host whose process has ended without leaving: no
+/// silence makes it drop one of them. Of another host it drops those that have been silent for
+/// kForgottenAfterLooks seconds, for there it cannot look at processes.
 /// When one that was dropped is there again, as the same, the two would stay deaf to each other:
 /// the participant then joins again as another one. Readers and writers stay as they are; samples
 /// under way are lost.
@@ -62,8 +95,15 @@ class Participant {
   /// some until they are dropped.
   std::vector<Peer> peers() const;
 
+  /// True if a participant of the session is on another host, whose clock is not that of this one.
+  /// Real time.
+  bool has_peers_elsewhere() const noexcept;
+
   /// Drops a participant at once, for a caller that knows that its process has ended.
   void drop(const Peer& peer) noexcept;
+
+  /// The writers of other participants from which it can receive.
+  std::vector<FoundWriter> writers() const;
 
   /// How often it has joined again.
   std::uint64_t rejoin_count() const noexcept;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -10,6 +11,9 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 
 #include "node/dds/participant.h"
 #include "node/dds/presence.h"
@@ -37,7 +41,9 @@ struct Participant::Impl {
 
   const ParticipantConfig& config() const noexcept { return config_; }
   std::vector<Peer> peers() const;
+  std::vector<FoundWriter> writers() const;
   std::string mismatch() const;
+  bool has_peers_elsewhere() const noexcept { return peers_elsewhere_ > 0; }
   std::uint64_t rejoin_count() const noexcept { return rejoin_count_; }
   void drop(const Peer& peer) const noexcept;
 
@@ -63,6 +69,7 @@ struct Participant::Impl {
   bool ending_ = false;
   std::condition_variable woken_;
 
+  std::atomic<int> peers_elsewhere_{0};
   mutable std::mutex mutex_;  // of the next two
   std::vector<Endpoint*> endpoints_;
   std::unique_ptr<Presence> presence_;
@@ -94,6 +101,28 @@ void apply(const TopicQos& row, Qos& qos) {
   qos.resource_limits().max_samples_per_instance = row.history_depth;
   qos.resource_limits().max_samples = 64 * row.history_depth;
   qos.resource_limits().allocated_samples = row.history_depth;
+}
+
+/// What a writer of a row is made with.
+inline fast::DataWriterQos writer_qos_of(const TopicQos& row) {
+  using eprosima::fastrtps::Duration_t;
+  fast::DataWriterQos qos;
+  apply(row, qos);
+  qos.publish_mode().kind =
+      row.asynchronous ? fast::ASYNCHRONOUS_PUBLISH_MODE : fast::SYNCHRONOUS_PUBLISH_MODE;
+  qos.reliable_writer_qos().times.heartbeatPeriod =
+      Duration_t(0, static_cast<std::uint32_t>(row.heartbeat_msec) * 1'000'000u);
+  // A reader that does not take must never hold the writer: with keep-last the oldest sample is
+  // overwritten.
+  qos.reliability().max_blocking_time = Duration_t(0, 1'000'000u);
+  return qos;
+}
+
+inline bool wait_for_acknowledgments(fast::DataWriter& writer, std::chrono::milliseconds at_most) {
+  const auto msec = at_most.count();
+  const eprosima::fastrtps::Duration_t limit(static_cast<std::int32_t>(msec / 1000),
+                                             static_cast<std::uint32_t>(msec % 1000) * 1'000'000u);
+  return writer.wait_for_acknowledgments(limit) == ReturnCode_t::RETCODE_OK;
 }
 
 }  // namespace cordis::dds

@@ -1,6 +1,7 @@
 // node/dds/participant_ports.cpp
 #include "node/dds/participant_ports.h"
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdio>
 #include <stdexcept>
@@ -39,32 +40,50 @@ int try_to_hold(std::uint16_t port) noexcept {
 
 }  // namespace
 
-std::uint16_t discovery_port(int domain, int index) noexcept {
-  return static_cast<std::uint16_t>(kFirstPort + kPortsPerDomain * domain + kFirstDiscovery +
-                                    2 * index);
+std::uint16_t multicast_port(int domain) noexcept {
+  return static_cast<std::uint16_t>(kFirstPort + kPortsPerDomain * domain);
 }
 
-bool is_free(std::uint16_t port) noexcept {
+std::uint16_t discovery_port(int domain, int index) noexcept {
+  return static_cast<std::uint16_t>(multicast_port(domain) + kFirstDiscovery + 2 * index);
+}
+
+bool has_address(const std::string& address) noexcept {
+  const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (file < 0) return true;
+  const sockaddr_in place = udp_address(0, ipv4_of(address));  // any port
+  const bool bound = bind(file, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
+  const bool absent = !bound && errno == EADDRNOTAVAIL;
+  close(file);
+  return !absent;
+}
+
+bool is_free(std::uint16_t port, const std::string& address) noexcept {
   const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (file < 0) return false;
-  const sockaddr_in address = udp_address(port);
-  const bool free = bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const sockaddr_in place = udp_address(port, ipv4_of(address));
+  const bool free = bind(file, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
   close(file);
   return free;
 }
 
-ParticipantPorts::ParticipantPorts(int domain) {
-  for (int index = 0; index < kMaxParticipants; ++index) {
+ParticipantPorts::ParticipantPorts(int domain, const std::string& address) {
+  // A participant with a higher number would be looked for by no other host.
+  const int count = address == "127.0.0.1" ? kMaxParticipants : kMaxRemoteParticipants;
+  for (int index = 0; index < count; ++index) {
     discovery_ = discovery_port(domain, index);
     lock_ = try_to_hold(discovery_);
     if (lock_ < 0) continue;
-    if (is_free(discovery_) && is_free(samples())) return;
+    if (is_free(discovery_, address) && is_free(samples(), address)) return;
     close(lock_);
   }
+  if (!has_address(address))
+    throw std::runtime_error(address +
+                             " is no address of this host any more: its interface has lost it");
   throw std::runtime_error("DDS domain " + std::to_string(domain) + " of this host is full: all " +
-                           std::to_string(kMaxParticipants) + " pairs of UDP ports, 127.0.0.1:" +
+                           std::to_string(count) + " pairs of UDP ports, " + address + ":" +
                            std::to_string(discovery_port(domain, 0)) + " to " +
-                           std::to_string(discovery_port(domain, kMaxParticipants - 1) + 1) +
+                           std::to_string(discovery_port(domain, count - 1) + 1) +
                            ", are taken; end processes of it, or take another one with domain=N");
 }
 

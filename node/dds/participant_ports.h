@@ -3,26 +3,35 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace cordis::dds {
 
-/// Participants of one domain that a host has room for. Each announces itself to that many ports,
-/// for nothing is multicast.
+/// Participants of one domain that a host has room for. Each announces itself to that many ports of
+/// its own host.
 inline constexpr int kMaxParticipants = 64;
+
+/// Participants of one domain of a host that other hosts look for: each announces itself to that
+/// many ports of each peer.
+inline constexpr int kMaxRemoteParticipants = 32;
+
+/// The first port of a domain, on which a host is reached by multicast [DDSI 9.6.1.1].
+std::uint16_t multicast_port(int domain) noexcept;
 
 /// The port of a domain on which participant `index`, 0..kMaxParticipants - 1, is discovered [DDSI
 /// 9.6.1.1]; the next one takes its samples.
 std::uint16_t discovery_port(int domain, int index) noexcept;
 
-/// True if no socket is bound to 127.0.0.1:port.
-[[nodiscard]] bool is_free(std::uint16_t port) noexcept;
+/// True if this host can bind a socket to address:port.
+/// @param address  IPv4, of this host
+[[nodiscard]] bool is_free(std::uint16_t port, const std::string& address = "127.0.0.1") noexcept;
 
-/// A pair of ports of 127.0.0.1 that is free, held against all other participants of the host for
-/// the life of this object.
+/// A pair of ports of an address of this host that is free, held against all other participants of
+/// the host for the life of this object.
 class ParticipantPorts {
  public:
   /// @throws std::runtime_error when all pairs of the domain are taken.
-  explicit ParticipantPorts(int domain);
+  ParticipantPorts(int domain, const std::string& address);
   ~ParticipantPorts();
   ParticipantPorts(const ParticipantPorts&) = delete;
   ParticipantPorts& operator=(const ParticipantPorts&) = delete;

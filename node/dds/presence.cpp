@@ -8,6 +8,7 @@
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
+#include <fastdds/rtps/attributes/ServerAttributes.h>
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -22,12 +23,46 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace {
 
 constexpr std::uint32_t kSocketBufferBytes = 4u << 20;
+// Below what an Ethernet frame holds, in a tunnel too: a larger datagram is lost with any of its
+// parts.
+constexpr std::uint32_t kLargestDatagramBytes = 1400;
+constexpr int kLateAnnouncementLooks = 5;               // [s] longer than any datagram is under way
+constexpr const char* kDiscoveryGroup = "239.255.0.1";  // [DDSI 9.6.1.4]
+constexpr const char* kServerPrefix =
+    "44.53.00.5f.45.50.52.4f.53.49.4d.41";  // `fastdds discovery -i 0`
 
-rtps::Locator_t loopback(std::uint16_t port) {
+rtps::Locator_t locator_of(const std::string& address, std::uint16_t port) {
   rtps::Locator_t locator;
-  rtps::IPLocator::setIPv4(locator, 127, 0, 0, 1);
+  rtps::IPLocator::setIPv4(locator, address);
   locator.port = port;
   return locator;
+}
+
+/// Sets where a participant announces itself, and where it receives the announcements of others.
+void set_discovery(const ParticipantConfig& config, const ParticipantPorts& ports,
+                   rtps::BuiltinAttributes& builtin) {
+  const Network& network = config.network;
+  builtin.metatrafficUnicastLocatorList.push_back(locator_of(network.address, ports.discovery()));
+  if (!network.server.empty()) {
+    builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::CLIENT;
+    rtps::RemoteServerAttributes server;
+    server.ReadguidPrefix(kServerPrefix);
+    server.metatrafficUnicastLocatorList.push_back(locator_of(network.server, network.server_port));
+    builtin.discovery_config.m_DiscoveryServers.push_back(server);
+    return;
+  }
+  const int here = network.is_loopback() ? kMaxParticipants : kMaxRemoteParticipants;
+  for (int index = 0; index < here; ++index)
+    builtin.initialPeersList.push_back(
+        locator_of(network.address, discovery_port(config.domain, index)));
+  for (const std::string& peer : network.peers) {
+    for (int index = 0; index < kMaxRemoteParticipants; ++index)
+      builtin.initialPeersList.push_back(locator_of(peer, discovery_port(config.domain, index)));
+  }
+  if (!network.multicast) return;
+  const rtps::Locator_t group = locator_of(kDiscoveryGroup, multicast_port(config.domain));
+  builtin.metatrafficMulticastLocatorList.push_back(group);
+  builtin.initialPeersList.push_back(group);
 }
 
 fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
@@ -38,23 +73,22 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
   const std::string identity = process_identity() + wire_version_mark(config.wire_version);
   qos.user_data().setValue({identity.begin(), identity.end()});
 
-  // UDP on 127.0.0.1 alone: as fast as shared memory here, and no process blocks when another is
-  // killed.
+  // UDP on one address alone. On 127.0.0.1 it is as fast as shared memory, and no process blocks
+  // when another is killed.
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList.emplace_back("127.0.0.1");
+  udp->interfaceWhiteList.emplace_back(config.network.address);
   udp->sendBufferSize = kSocketBufferBytes;
   udp->receiveBufferSize = kSocketBufferBytes;
+  if (!config.network.is_loopback()) udp->maxMessageSize = kLargestDatagramBytes;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
 
-  // No socket takes multicast, so no datagram of the network reaches a session. Others are found
-  // where they can be.
+  // On loopback no socket takes multicast, so no datagram of the network reaches a session. Others
+  // are found where they can be.
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.metatrafficUnicastLocatorList.push_back(loopback(ports.discovery()));
-  qos.wire_protocol().default_unicast_locator_list.push_back(loopback(ports.samples()));
-  for (int index = 0; index < kMaxParticipants; ++index) {
-    builtin.initialPeersList.push_back(loopback(discovery_port(config.domain, index)));
-  }
+  set_discovery(config, ports, builtin);
+  qos.wire_protocol().default_unicast_locator_list.push_back(
+      locator_of(config.network.address, ports.samples()));
 
   // A participant that does not answer for a while may be a process that is stopped. When one of
   // two drops the other and not the other way round, they may stay deaf to each other for good, and
@@ -81,39 +115,67 @@ rtps::GUID_t guid_of(const ParticipantPrefix& prefix) {
   return guid;
 }
 
-std::uint16_t discovery_port_of(const rtps::ParticipantProxyData& found) {
+/// The port of a participant that has the address of this host; 0 if it has another.
+std::uint16_t discovery_port_of(const rtps::ParticipantProxyData& found,
+                                const std::string& own_address) {
   for (const rtps::Locator_t& locator : found.metatraffic_locators.unicast) {
-    if (rtps::IPLocator::isLocal(locator)) return static_cast<std::uint16_t>(locator.port);
+    if (rtps::IPLocator::toIPv4string(locator) == own_address)
+      return static_cast<std::uint16_t>(locator.port);
   }
   return 0;
 }
 
-bool has_ended(const Peer& peer) noexcept {
+/// Two hosts may have processes of the same identity, as copies of one virtual machine do: only a
+/// process that has the address of this host is looked up here.
+bool has_ended(const Peer& peer, const std::string& own_address) noexcept {
+  if (!peer.is_here()) return false;
   const ProcessState state = state_of(peer.process);
   // A program of others says nothing of its process, but its port is free when it has ended.
-  const bool silent = state == ProcessState::kUnknown && peer.discovery_port != 0;
-  return state == ProcessState::kEnded || (silent && is_free(peer.discovery_port));
+  const bool silent = state == ProcessState::kUnknown;
+  return state == ProcessState::kEnded || (silent && is_free(peer.discovery_port, own_address));
 }
 
 }  // namespace
 
-Presence::Presence(const ParticipantConfig& config, std::function<void()> on_return)
-    : config_(config), on_return_(std::move(on_return)), ports_(config.domain) {
+WriterId writer_id(const rtps::GUID_t& guid) {
+  WriterId id;
+  std::copy_n(guid.guidPrefix.value, 12, id.begin());
+  std::copy_n(guid.entityId.value, 4, id.begin() + 12);
+  return id;
+}
+
+Presence::Presence(const ParticipantConfig& config, std::atomic<int>& peers_elsewhere,
+                   std::function<void()> on_return)
+    : config_(config),
+      peers_elsewhere_(peers_elsewhere),
+      on_return_(std::move(on_return)),
+      ports_(config.domain, config.network.address) {
   fast::Log::SetVerbosity(fast::Log::Kind::Error);
   // A deadline that a device has missed when it went is no error.
   fast::Log::SetErrorStringFilter(std::regex("^(?!Could not set next deadline)"));
   participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(config.domain), participant_qos(config, ports_), this,
       fast::StatusMask::none());
-  if (participant_ == nullptr) {
-    throw std::runtime_error("DDS could not join domain " + std::to_string(config.domain) +
-                             " on 127.0.0.1 (is the loopback interface up?)");
+  // Without its interface Fast DDS makes a participant that has no sockets.
+  const bool is_bound =
+      participant_ != nullptr && !is_free(ports_.discovery(), config.network.address);
+  if (participant_ != nullptr && !is_bound)
+    fast::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+  if (!is_bound) {
+    throw std::runtime_error("DDS could not join domain " + std::to_string(config.domain) + " on " +
+                             config.network.address + " (is the interface up?)");
   }
   fast::PublisherQos publisher_qos;
   publisher_qos.partition().push_back(config.session.c_str());
   publisher_ = participant_->create_publisher(publisher_qos);
   fast::SubscriberQos subscriber_qos;
-  subscriber_qos.partition().push_back(config.session.c_str());
+  if (config.every_partition) {
+    // "*" fits every name of a partition, and not those who write outside of all.
+    subscriber_qos.partition().push_back("");
+    subscriber_qos.partition().push_back("*");
+  } else {
+    subscriber_qos.partition().push_back(config.session.c_str());
+  }
   subscriber_ = participant_->create_subscriber(subscriber_qos);
   if (publisher_ == nullptr || subscriber_ == nullptr) {
     fast::DomainParticipantFactory::get_instance()->delete_participant(participant_);
@@ -128,21 +190,48 @@ Presence::~Presence() {
 }
 
 fast::Topic* Presence::topic(const TopicQos& row, fast::TypeSupport type) {
-  if (auto* known = dynamic_cast<fast::Topic*>(participant_->lookup_topicdescription(row.name))) {
-    return known;
+  return topic(std::string(row.name), std::move(type));
+}
+
+fast::Topic* Presence::topic(const std::string& name, fast::TypeSupport type) {
+  if (auto* known = dynamic_cast<fast::Topic*>(participant_->lookup_topicdescription(name))) {
+    if (known->get_type_name() == type.get_type_name()) return known;
+    throw std::runtime_error("topic " + name + " has type " + known->get_type_name() +
+                             " here and not " + type.get_type_name());
   }
   type.register_type(participant_);
-  fast::Topic* made =
-      participant_->create_topic(row.name, type.get_type_name(), fast::TOPIC_QOS_DEFAULT);
-  if (made == nullptr) throw std::runtime_error(std::string("DDS refused the topic ") + row.name);
-  return made;
+  fast::Topic* created =
+      participant_->create_topic(name, type.get_type_name(), fast::TOPIC_QOS_DEFAULT);
+  if (created == nullptr) throw std::runtime_error("DDS refused the topic " + name);
+  return created;
 }
 
 std::vector<Peer> Presence::peers() const {
   const std::lock_guard lock(mutex_);
   std::vector<Peer> peers;
-  for (const auto& [prefix, peer] : peers_) peers.push_back(peer);
+  for (const auto& [prefix, known] : peers_) peers.push_back(known.peer);
   return peers;
+}
+
+bool Presence::is_here(const ParticipantPrefix& participant) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = peers_.find(participant);
+  return found == peers_.end() || found->second.peer.is_here();
+}
+
+std::vector<FoundWriter> Presence::writers() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<FoundWriter> writers;
+  for (const auto& [guid, writer] : writers_) writers.push_back(writer);
+  return writers;
+}
+
+std::optional<FoundWriter> Presence::writer(const WriterId& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::ranges::find_if(writers_, [&](const auto& writer) { return writer.second.id == id; });
+  if (found == writers_.end()) return std::nullopt;
+  return found->second;
 }
 
 std::string Presence::mismatch() const {
@@ -150,28 +239,59 @@ std::string Presence::mismatch() const {
   return mismatches_.empty() ? std::string() : mismatches_.begin()->second;
 }
 
-void Presence::judge(const ParticipantPrefix& participant, std::uint32_t wire_version) {
+void Presence::evaluate(const ParticipantPrefix& participant, std::uint32_t wire_version) {
   record_wire_version(participant, wire_version);
   if (wire_version == config_.wire_version) return;
   const std::lock_guard lock(mutex_);
   const auto peer = peers_.find(participant);
-  const std::string name = peer == peers_.end() ? "another program" : peer->second.name;
+  const std::string name = peer == peers_.end() ? "another program" : peer->second.peer.name;
   mismatches_[guid_of(participant)] =
       wire_version_refusal(name, wire_version, config_.wire_version);
 }
 
-void Presence::drop_ended_processes() noexcept {
+void Presence::drop_who_is_gone() noexcept {
   try {
     for (const Peer& peer : peers()) {
-      if (has_ended(peer)) drop(peer);
+      if (has_ended(peer, config_.network.address)) drop(peer);
     }
+    if (!config_.network.is_loopback()) look_at_those_elsewhere();
   } catch (...) {  // out of memory: the next time
   }
 }
 
 void Presence::drop(const Peer& peer) noexcept {
   // What cannot be sent is sent again: the peer is still there at the next look.
-  static_cast<void>(send_departure(peer.prefix, ports_.discovery()));
+  static_cast<void>(send_departure(peer.prefix, ports_.discovery(), config_.network.address));
+}
+
+/// Counts how long each participant of another host has been silent, and drops it at last. One that
+/// was dropped before and speaks again has returned: a single announcement that came late, behind
+/// the farewell, is none.
+void Presence::look_at_those_elsewhere() {
+  std::vector<Peer> silent;
+  bool returned = false;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [prefix, known] : peers_) {
+      if (known.peer.is_here()) continue;
+      const auto last = known.record->last_received_message_tm();
+      const bool speaks = last != std::exchange(known.last_message, last);
+      known.silent_looks = speaks ? 0 : known.silent_looks + 1;
+      if (speaks && std::exchange(known.has_returned, false)) returned = true;
+      const int limit = known.has_returned ? kLateAnnouncementLooks : kForgottenAfterLooks;
+      if (known.silent_looks >= limit) silent.push_back(known.peer);
+    }
+  }
+  for (const Peer& peer : silent) drop(peer);
+  if (returned) on_return_();
+}
+
+/// The lock must be held.
+void Presence::count_elsewhere() {
+  peers_elsewhere_ = static_cast<int>(std::ranges::count_if(peers_, [this](const auto& entry) {
+    const Peer& peer = entry.second.peer;
+    return !peer.is_here() && peer.name.starts_with(config_.session + "/");
+  }));
 }
 
 void Presence::on_participant_discovery(fast::DomainParticipant*,
@@ -183,41 +303,74 @@ void Presence::on_participant_discovery(fast::DomainParticipant*,
     const std::lock_guard lock(mutex_);
     if (found.status == Info::REMOVED_PARTICIPANT || found.status == Info::DROPPED_PARTICIPANT) {
       peers_.erase(prefix);
+      count_elsewhere();
       dropped_.insert(prefix);
       mismatches_.erase(guid_of(prefix));
+      std::erase_if(writers_,
+                    [&](const auto& writer) { return prefix_of(writer.first) == prefix; });
       forget_wire_version(prefix);
       return;
     }
     const std::vector<rtps::octet> process = found.info.m_userData;
-    peers_[prefix] = {found.info.m_participantName.to_string(), prefix,
-                      std::string(process.begin(), process.end()), discovery_port_of(found.info)};
+    Known& known = peers_[prefix];
+    known.peer = {found.info.m_participantName.to_string(), prefix,
+                  std::string(process.begin(), process.end()),
+                  discovery_port_of(found.info, config_.network.address)};
+    known.record = &found.info;  // it stays where it is until the participant is dropped
+    count_elsewhere();
     // Others, of other programs, announce leases that end. What is handed over is the record of
     // Fast DDS itself: with this its timer does nothing, and so aborts nothing.
     const_cast<rtps::ParticipantProxyData&>(found.info).should_check_lease_duration = false;
     returned = found.status == Info::DISCOVERED_PARTICIPANT && dropped_.contains(prefix);
+    if (returned && !known.peer.is_here()) {
+      known.has_returned = true;
+      known.last_message = found.info.last_received_message_tm();
+      returned = false;
+    }
   }
-  judge_discovered(prefix);
+  evaluate_discovered(prefix);
   if (returned) on_return_();
 }
 
 /// Judges the version of a process of the session, before any message of it can come.
-void Presence::judge_discovered(const ParticipantPrefix& participant) {
+void Presence::evaluate_discovered(const ParticipantPrefix& participant) {
   std::optional<std::uint32_t> version;
   {
     const std::lock_guard lock(mutex_);
-    const Peer& peer = peers_[participant];
+    const Peer& peer = peers_[participant].peer;
     if (peer.name.starts_with(config_.session + "/")) version = marked_wire_version(peer.process);
   }
-  if (version) judge(participant, *version);
+  if (version) evaluate(participant, *version);
 }
 
 void Presence::on_publisher_discovery(fast::DomainParticipant*, rtps::WriterDiscoveryInfo&& found) {
+  remember(found.info, found.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
   compare(found.info, true, found.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
 }
 
 void Presence::on_subscriber_discovery(fast::DomainParticipant*,
                                        rtps::ReaderDiscoveryInfo&& found) {
   compare(found.info, false, found.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);
+}
+
+/// Notes a writer of a partition from which this participant receives.
+void Presence::remember(const rtps::WriterProxyData& writer, bool gone) {
+  const std::lock_guard lock(mutex_);
+  writers_.erase(writer.guid());
+  std::vector<std::string> partitions = writer.m_qos.m_partition.names();
+  const bool is_received =
+      config_.every_partition || std::ranges::find(partitions, config_.session) != partitions.end();
+  if (gone || !is_received) return;
+  FoundWriter& found = writers_[writer.guid()];
+  found.id = writer_id(writer.guid());
+  found.topic = {
+      .name = writer.topicName().to_string(),
+      .type = writer.typeName().to_string(),
+      .keyed = writer.topicKind() == rtps::WITH_KEY,
+      .reliable = writer.m_qos.m_reliability.kind == fast::RELIABLE_RELIABILITY_QOS,
+      .transient_local = writer.m_qos.m_durability.kind >= fast::TRANSIENT_LOCAL_DURABILITY_QOS,
+      .exclusive = writer.m_qos.m_ownership.kind == fast::EXCLUSIVE_OWNERSHIP_QOS};
+  found.partitions = std::move(partitions);
 }
 
 /// DDS would be silent about what does not fit.

@@ -2,9 +2,12 @@
 // node/dds alone.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -25,13 +28,17 @@ namespace cordis::dds {
 
 namespace fast = eprosima::fastdds::dds;
 
+WriterId writer_id(const eprosima::fastrtps::rtps::GUID_t& guid);
+
 /// A DDS participant with publisher and subscriber, and what it knows of the others of its domain.
 class Presence final : public fast::DomainParticipantListener {
  public:
+  /// @param peers_elsewhere  set to the number of participants of the session on other hosts
   /// @param on_return  called from a thread of DDS when a participant that was dropped is there
   /// again. The two do not receive each other then: see Participant.
   /// @throws std::runtime_error when DDS refuses.
-  Presence(const ParticipantConfig& config, std::function<void()> on_return);
+  Presence(const ParticipantConfig& config, std::atomic<int>& peers_elsewhere,
+           std::function<void()> on_return);
   /// Deletes all readers and writers too.
   ~Presence() override;
   Presence(const Presence&) = delete;
@@ -43,19 +50,30 @@ class Presence final : public fast::DomainParticipantListener {
   /// The topic of the table, made at its first use. `type` is registered when its name is new.
   fast::Topic* topic(const TopicQos& row, fast::TypeSupport type);
 
+  /// The topic of any type, made at its first use.
+  /// @throws std::runtime_error when this participant uses its name with another type.
+  fast::Topic* topic(const std::string& name, fast::TypeSupport type);
+
   std::vector<Peer> peers() const;
+  std::vector<FoundWriter> writers() const;
+  /// Nothing when it is not known (any more).
+  std::optional<FoundWriter> writer(const WriterId& id) const;
   std::string mismatch() const;
+  /// True unless the participant is known to be on another host. Takes a lock.
+  bool is_here(const ParticipantPrefix& participant) const;
 
   /// A participant of the session has said that it speaks this version of the wire.
-  void judge(const ParticipantPrefix& participant, std::uint32_t wire_version);
+  void evaluate(const ParticipantPrefix& participant, std::uint32_t wire_version);
   /// True if messages of a participant are refused. Real time.
   bool refuses(const ParticipantPrefix& participant) const noexcept {
     return has_other_wire_version(participant, config_.wire_version);
   }
 
   /// Drops each participant whose process has ended without leaving: it would cost its share of
-  /// every message, for DDS itself forgets nobody.
-  void drop_ended_processes() noexcept;
+  /// every message, for DDS itself forgets no process. Of another host: that has been silent for
+  /// kForgottenAfterLooks calls. Called once a second: a process that has itself been stopped makes
+  /// no calls, and so holds no other for silent.
+  void drop_who_is_gone() noexcept;
   void drop(const Peer& peer) noexcept;
 
   void on_participant_discovery(
@@ -69,11 +87,24 @@ class Presence final : public fast::DomainParticipantListener {
  private:
   using Guid = eprosima::fastrtps::rtps::GUID_t;
 
-  void judge_discovered(const ParticipantPrefix& participant);
+  /// A participant, and what Fast DDS records of it.
+  struct Known {
+    Peer peer;
+    const eprosima::fastrtps::rtps::ParticipantProxyData* record = nullptr;
+    std::chrono::steady_clock::time_point last_message;  // as of the last look
+    int silent_looks = 0;
+    bool has_returned = false;  // dropped before, and not yet known to speak
+  };
+
+  void look_at_those_elsewhere();
+  void count_elsewhere();
+  void evaluate_discovered(const ParticipantPrefix& participant);
   template <class Endpoint>
   void compare(const Endpoint& endpoint, bool writes, bool gone);
+  void remember(const eprosima::fastrtps::rtps::WriterProxyData& writer, bool gone);
 
   ParticipantConfig config_;
+  std::atomic<int>& peers_elsewhere_;
   std::function<void()> on_return_;
   ParticipantPorts ports_;
   fast::DomainParticipant* participant_ = nullptr;
@@ -81,9 +112,10 @@ class Presence final : public fast::DomainParticipantListener {
   fast::Subscriber* subscriber_ = nullptr;
 
   mutable std::mutex mutex_;
-  std::map<ParticipantPrefix, Peer> peers_;
+  std::map<ParticipantPrefix, Known> peers_;
   std::set<ParticipantPrefix> dropped_;     // at some time
   std::map<Guid, std::string> mismatches_;  // what is wrong with an endpoint
+  std::map<Guid, FoundWriter> writers_;     // of other participants
 };
 
 }  // namespace cordis::dds

@@ -2,10 +2,12 @@
 #include "node/dds/reader.h"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fastdds/dds/core/status/SubscriptionMatchedStatus.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -21,17 +23,34 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 template <class Message>
 struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
-  Impl(Participant::Impl& joined, Topic topic)
+  Impl(Participant::Impl& joined, Topic topic, Arrival* announced)
       : participant(joined),
-        row(qos_of(topic, joined.config().lockstep, joined.config().standbys)) {}
+        row(qos_of(topic, joined.config().lockstep, joined.config().standbys)),
+        arrival(announced),
+        mailbox(announced != nullptr ? kMailboxRoom * row.history_depth : 0) {}
 
   Participant::Impl& participant;
   const TopicQos row;
+  Arrival* const arrival;
+
+  /// A message that has been taken out of DDS, and who wrote it.
+  struct Letter {
+    Message message;
+    rtps::GUID_t writer;
+  };
+
+  // With an arrival: what has been taken out of DDS, oldest first from mailbox_first on. Of a topic
+  // of which the newest message counts alone, it holds one of each device and writer.
+  static constexpr std::size_t kMailboxRoom = 64;  // devices
+  std::mutex mailbox_mutex;
+  std::vector<Letter> mailbox;
+  std::size_t mailbox_first = 0;
+  std::size_t mailbox_count = 0;
 
   std::mutex in_use;  // held by whoever uses the reader; free but while it changes over
   fast::DataReader* reader = nullptr;
   fast::Subscriber* subscriber = nullptr;
-  Presence* presence = nullptr;
+  std::atomic<Presence*> presence{nullptr};
 
   fast::DataReader* prepared = nullptr;
   fast::Subscriber* next_subscriber = nullptr;
@@ -48,6 +67,8 @@ struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
     apply(row, qos);
     next_subscriber = &joined.subscriber();
     next_presence = &joined;
+    Presence* none = nullptr;
+    presence.compare_exchange_strong(none, &joined);  // messages may come before change_over()
     prepared =
         next_subscriber->create_datareader(topic, qos, this, fast::StatusMask::data_available());
     if (prepared == nullptr) {
@@ -62,32 +83,97 @@ struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
     presence = next_presence;
   }
 
-  /// True if a message is of a writer that speaks another version of the wire.
-  bool is_refused(const Message& message, const fast::SampleInfo& info) const {
-    const rtps::GUID_t writer = rtps::iHandle2GUID(info.publication_handle);
+  ParticipantPrefix last_writer{};  // of the message taken last; of the thread that takes
+
+  static ParticipantPrefix prefix_of(const rtps::GUID_t& writer) noexcept {
     ParticipantPrefix prefix;
     std::copy_n(writer.guidPrefix.value, prefix.size(), prefix.begin());
+    return prefix;
+  }
+
+  /// True if a message is of a writer that speaks another version of the wire.
+  bool is_refused(const Message& message, const rtps::GUID_t& writer) {
+    const ParticipantPrefix prefix = prefix_of(writer);
     if constexpr (requires { message.wire_version(); }) {
+      Presence* const joined = presence;
       const std::uint32_t version = message.wire_version();
-      if (version != participant.config().wire_version) presence->judge(prefix, version);
-      return version != participant.config().wire_version || presence->refuses(prefix);
+      if (version != participant.config().wire_version) joined->evaluate(prefix, version);
+      return version != participant.config().wire_version || joined->refuses(prefix);
     } else {
-      return presence->refuses(prefix);
+      return has_other_wire_version(prefix, participant.config().wire_version);
     }
   }
 
-  void on_data_available(fast::DataReader*) override {
+  void on_data_available(fast::DataReader* available) override {
+    if (arrival != nullptr) {
+      collect(*available);
+      arrival->announce();
+    }
     {
       const std::lock_guard lock(mutex);
       pending = true;
     }
     arrived.notify_one();
   }
+
+  /// Takes out of DDS what there is. The thread that DDS receives with holds locks of DDS while it
+  /// is here: a loop that it wakes must not need them.
+  void collect(fast::DataReader& available) noexcept {
+    Letter letter;
+    while (take_from(available, letter.message, letter.writer)) {
+      // What this node writes on the same topic is not for it.
+      if (letter.writer.guidPrefix == available.guid().guidPrefix) continue;
+      const std::lock_guard lock(mailbox_mutex);
+      if (Letter* const before = older_than(letter)) {
+        *before = letter;
+        continue;
+      }
+      mailbox[(mailbox_first + mailbox_count) % mailbox.size()] = letter;
+      const bool is_full = mailbox_count == mailbox.size();  // then the oldest has been replaced
+      mailbox_first = (mailbox_first + (is_full ? 1 : 0)) % mailbox.size();
+      mailbox_count += is_full ? 0 : 1;
+    }
+  }
+
+  /// The message that a newer one of the same device and writer replaces; nullptr when every message
+  /// counts, or when there is none.
+  Letter* older_than(const Letter& letter) noexcept {
+    if constexpr (requires { letter.message.device_id(); }) {
+      for (std::size_t i = 0; !row.reliable && i < mailbox_count; ++i) {
+        Letter& one = mailbox[(mailbox_first + i) % mailbox.size()];
+        const bool is_same_device = one.message.device_id() == letter.message.device_id();
+        if (is_same_device && one.writer == letter.writer) return &one;
+      }
+    }
+    return nullptr;
+  }
+
+  bool take_collected(Message& message) noexcept {
+    const std::lock_guard lock(mailbox_mutex);
+    if (mailbox_count == 0) return false;
+    message = mailbox[mailbox_first].message;
+    last_writer = prefix_of(mailbox[mailbox_first].writer);
+    mailbox_first = (mailbox_first + 1) % mailbox.size();
+    --mailbox_count;
+    return true;
+  }
+
+  bool take_from(fast::DataReader& from, Message& message, rtps::GUID_t& writer) noexcept {
+    try {
+      fast::SampleInfo info;
+      while (from.take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
+        writer = rtps::iHandle2GUID(info.publication_handle);
+        if (info.valid_data && !is_refused(message, writer)) return true;
+      }
+    } catch (...) {  // a message too large to hold counts as none
+    }
+    return false;
+  }
 };
 
 template <class Message>
-Reader<Message>::Reader(Participant& participant, Topic topic)
-    : impl_(std::make_unique<Impl>(participant.impl(), topic)) {
+Reader<Message>::Reader(Participant& participant, Topic topic, Arrival* arrival)
+    : impl_(std::make_unique<Impl>(participant.impl(), topic, arrival)) {
   participant.impl().add(*impl_);
 }
 
@@ -101,15 +187,18 @@ Reader<Message>::~Reader() {
 
 template <class Message>
 bool Reader<Message>::take(Message& message) noexcept {
+  if (impl_->arrival != nullptr) return impl_->take_collected(message);
   const std::lock_guard lock(impl_->in_use);
-  try {
-    fast::SampleInfo info;
-    while (impl_->reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
-      if (info.valid_data && !impl_->is_refused(message, info)) return true;
-    }
-  } catch (...) {  // a message too large to hold counts as none
-  }
-  return false;
+  rtps::GUID_t writer;
+  if (!impl_->take_from(*impl_->reader, message, writer)) return false;
+  impl_->last_writer = Impl::prefix_of(writer);
+  return true;
+}
+
+template <class Message>
+bool Reader<Message>::is_of_this_host() const {
+  const std::lock_guard lock(impl_->in_use);
+  return impl_->presence.load()->is_here(impl_->last_writer);
 }
 
 template <class Message>
@@ -147,7 +236,9 @@ template class Reader<msg::DeviceDescription>;
 template class Reader<msg::SceneDescription>;
 template class Reader<msg::SceneFrame>;
 template class Reader<msg::SceneSignals>;
+template class Reader<msg::SceneSound>;
 template class Reader<msg::SceneEvents>;
+template class Reader<msg::SceneInputs>;
 template class Reader<msg::ControlCommand>;
 template class Reader<msg::ControlReply>;
 template class Reader<msg::NodeStatus>;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "node/dds/arrival.h"
 #include "node/dds/participant.h"
 #include "node/dds/topics.h"
 
@@ -16,8 +17,11 @@ namespace cordis::dds {
 template <class Message>
 class Reader {
  public:
+  /// @param arrival  receives word of every message, and outlives the reader; may be null. With it,
+  ///                 what the participant itself writes is left out, and in real time the newest
+  ///                 message of each device and writer stays until it is taken
   /// @throws std::runtime_error when DDS refuses.
-  Reader(Participant& participant, Topic topic);
+  Reader(Participant& participant, Topic topic, Arrival* arrival = nullptr);
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
@@ -25,6 +29,10 @@ class Reader {
   /// The oldest message not yet taken into `message`; false when there is none: what is in it then
   /// means nothing. Never blocks.
   [[nodiscard]] bool take(Message& message) noexcept;
+
+  /// True unless the message taken last came from another host, whose clock is not that of this one.
+  /// In the thread that takes. Takes a lock.
+  bool is_of_this_host() const;
 
   /// Waits until a message arrives, or was there already, at most so long; false when none is
   /// there. Also ends when interrupt() is called.

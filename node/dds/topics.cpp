@@ -17,12 +17,12 @@ TopicQos gesture_qos(const std::string& name, bool lockstep, bool standbys) noex
           .exclusive_for_msec = !lockstep && standbys ? 20 : 0};
 }
 
-/// The newest of each key, also for who joins late.
-TopicQos kept_qos(const std::string& name) noexcept {
+/// The newest of each key, also for who joins late. @param history_depth  so many
+TopicQos kept_qos(const std::string& name, int history_depth = 1) noexcept {
   return {.name = name.c_str(),
           .reliable = true,
           .transient_local = true,
-          .history_depth = 1,
+          .history_depth = history_depth,
           .asynchronous = false,
           .heartbeat_msec = 50};
 }
@@ -46,7 +46,8 @@ TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept {
     case Topic::kForces:
       return gesture_qos(msg::TOPIC_FORCES, lockstep, standbys);
     case Topic::kDevice:
-      return kept_qos(msg::TOPIC_DEVICE);
+      // Each of several nodes that play one device describes it, once.
+      return kept_qos(msg::TOPIC_DEVICE, 8);
     case Topic::kDescription:
       return kept_qos(msg::TOPIC_DESCRIPTION);
     case Topic::kFrame:
@@ -58,8 +59,17 @@ TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept {
               .heartbeat_msec = 20};
     case Topic::kSignals:
       return stream_qos(msg::TOPIC_SIGNALS, 32);
+    case Topic::kSound:  // half a second of blocks
+      return stream_qos(msg::TOPIC_SOUND, 64);
     case Topic::kEvents:
       return stream_qos(msg::TOPIC_EVENTS, 256);
+    case Topic::kInputs:  // who joins within the first seconds has them from the start
+      return {.name = msg::TOPIC_INPUTS.c_str(),
+              .reliable = true,
+              .transient_local = true,
+              .history_depth = 256,
+              .asynchronous = true,
+              .heartbeat_msec = 50};
     case Topic::kCommand:
       return stream_qos(msg::TOPIC_COMMAND, 32);
     case Topic::kReply:

@@ -14,7 +14,9 @@ enum class Topic : std::uint8_t {
   kDescription,  ///< scene/description   msg::SceneDescription
   kFrame,        ///< scene/frame         msg::SceneFrame
   kSignals,      ///< scene/signals       msg::SceneSignals
+  kSound,        ///< scene/sound         msg::SceneSound
   kEvents,       ///< scene/events        msg::SceneEvents
+  kInputs,       ///< scene/inputs        msg::SceneInputs
   kCommand,      ///< control/command     msg::ControlCommand
   kReply,        ///< control/reply       msg::ControlReply
   kStatus        ///< node/status         msg::NodeStatus

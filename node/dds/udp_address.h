@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
+#include <arpa/inet.h>
 #include <netinet/in.h>
 
 namespace cordis::dds {
@@ -14,6 +16,12 @@ inline sockaddr_in udp_address(std::uint16_t port, in_addr_t host = INADDR_LOOPB
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(host);
   return address;
+}
+
+/// An IPv4 address as people write it, in host order; INADDR_NONE if it is none.
+inline in_addr_t ipv4_of(const std::string& text) noexcept {
+  in_addr read{};
+  return inet_pton(AF_INET, text.c_str(), &read) == 1 ? ntohl(read.s_addr) : INADDR_NONE;
 }
 
 }  // namespace cordis::dds

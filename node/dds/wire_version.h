@@ -15,7 +15,7 @@ namespace cordis::dds {
 std::string wire_version_mark(std::uint32_t version);
 
 /// The version in the user data of a participant. 0: it is of Cordis and older than all versions;
-/// nothing: it is of another program, which is judged by the `wire_version` of its messages.
+/// nothing: it is of another program, which is evaluated by the `wire_version` of its messages.
 std::optional<std::uint32_t> marked_wire_version(std::string_view user_data) noexcept;
 
 /// The sentence that refuses a peer.

@@ -1,17 +1,44 @@
 // node/dds/writer.cpp
 #include "node/dds/writer.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fastdds/dds/core/status/PublicationMatchedStatus.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
 
 #include "node/dds/message_types.h"
 #include "node/dds/participant_impl.h"
 
 namespace cordis::dds {
+
+/// Which participants have a reader that a writer sends to.
+class ReaderOwners final : public fast::DataWriterListener {
+ public:
+  void on_publication_matched(fast::DataWriter*,
+                              const fast::PublicationMatchedStatus& info) override {
+    ParticipantPrefix prefix;
+    for (std::size_t i = 0; i < prefix.size(); ++i)
+      prefix[i] = info.last_subscription_handle.value[i];
+    const std::lock_guard lock(mutex_);
+    if (info.current_count_change > 0) owners_.insert(prefix);
+    if (info.current_count_change < 0) owners_.erase(prefix);
+  }
+  bool has(const ParticipantPrefix& prefix) const {
+    const std::lock_guard lock(mutex_);
+    return owners_.contains(prefix);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<ParticipantPrefix> owners_;
+};
 
 template <class Message>
 struct Writer<Message>::Impl final : Endpoint {
@@ -28,6 +55,7 @@ struct Writer<Message>::Impl final : Endpoint {
   fast::DataWriter* writer = nullptr;
   fast::Publisher* publisher = nullptr;
   std::unique_ptr<Message> kept;  // for late joiners: the last message
+  ReaderOwners owners;            // outlives the writer
 
   fast::DataWriter* prepared = nullptr;
   fast::Publisher* next_publisher = nullptr;
@@ -36,7 +64,8 @@ struct Writer<Message>::Impl final : Endpoint {
     fast::Topic* topic =
         presence.topic(row, fast::TypeSupport(new typename TypeOf<Message>::Type()));
     next_publisher = &presence.publisher();
-    prepared = next_publisher->create_datawriter(topic, qos());
+    prepared = next_publisher->create_datawriter(topic, qos(), &owners,
+                                                 fast::StatusMask::publication_matched());
     if (prepared == nullptr) {
       throw std::runtime_error(std::string("DDS refused to write ") + row.name);
     }
@@ -50,17 +79,8 @@ struct Writer<Message>::Impl final : Endpoint {
   }
 
   fast::DataWriterQos qos() const {
-    using eprosima::fastrtps::Duration_t;
-    fast::DataWriterQos qos;
-    apply(row, qos);
+    fast::DataWriterQos qos = writer_qos_of(row);
     qos.ownership_strength().value = static_cast<std::uint32_t>(strength);
-    qos.publish_mode().kind =
-        row.asynchronous ? fast::ASYNCHRONOUS_PUBLISH_MODE : fast::SYNCHRONOUS_PUBLISH_MODE;
-    qos.reliable_writer_qos().times.heartbeatPeriod =
-        Duration_t(0, static_cast<std::uint32_t>(row.heartbeat_msec) * 1'000'000u);
-    // A reader that does not take must never hold the writer: with keep-last the oldest sample is
-    // overwritten.
-    qos.reliability().max_blocking_time = Duration_t(0, 1'000'000u);
     return qos;
   }
 
@@ -116,12 +136,18 @@ int Writer<Message>::matched_count() const noexcept {
 }
 
 template <class Message>
+bool Writer<Message>::has_reader_of(const std::string& node) const {
+  const std::string name = impl_->participant.config().session + "/" + node;
+  const std::vector<Peer> peers = impl_->participant.peers();
+  return std::any_of(peers.begin(), peers.end(), [&](const Peer& peer) {
+    return peer.name == name && impl_->owners.has(peer.prefix);
+  });
+}
+
+template <class Message>
 bool Writer<Message>::wait_until_acknowledged(std::chrono::milliseconds at_most) noexcept {
   const std::lock_guard lock(impl_->in_use);
-  const auto msec = at_most.count();
-  const eprosima::fastrtps::Duration_t limit(static_cast<std::int32_t>(msec / 1000),
-                                             static_cast<std::uint32_t>(msec % 1000) * 1'000'000u);
-  return impl_->writer->wait_for_acknowledgments(limit) == ReturnCode_t::RETCODE_OK;
+  return wait_for_acknowledgments(*impl_->writer, at_most);
 }
 
 template class Writer<msg::GesturePositions>;
@@ -130,7 +156,9 @@ template class Writer<msg::DeviceDescription>;
 template class Writer<msg::SceneDescription>;
 template class Writer<msg::SceneFrame>;
 template class Writer<msg::SceneSignals>;
+template class Writer<msg::SceneSound>;
 template class Writer<msg::SceneEvents>;
+template class Writer<msg::SceneInputs>;
 template class Writer<msg::ControlCommand>;
 template class Writer<msg::ControlReply>;
 template class Writer<msg::NodeStatus>;

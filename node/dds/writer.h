@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <memory>
+#include <string>
 
 #include "node/dds/participant.h"
 #include "node/dds/topics.h"
@@ -25,6 +26,8 @@ class Writer {
   [[nodiscard]] bool write(Message& message) noexcept;
 
   int matched_count() const noexcept;  ///< readers there are now
+  /// True if a process of the session with this name of its node reads the topic.
+  bool has_reader_of(const std::string& node) const;
 
   /// Waits until all reliable readers have what was written, at most so long.
   bool wait_until_acknowledged(std::chrono::milliseconds at_most) noexcept;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node/config/device_limits.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/nearest_word.h"
 #include "sim_node/checks/port_check.h"
@@ -16,9 +17,16 @@ constexpr const char* kHowToSoften =
 constexpr const char* kHowToHaveIt = "a device that has it, or less in 'needs' of the port";
 constexpr const char* kHowToCalm = "viscosity at the port, or a softer hand";
 
+/// A device_node of a launch file, and what its device file promises.
+struct LaunchedDevice {
+  const config::LaunchNode* node = nullptr;
+  std::string plays;  // name of the device
+  std::optional<config::DeviceLimits> limits;
+};
+
 /// Warns that no node plays the device of a port.
-void warn_of_nobody(const config::Launch& launch, const std::vector<LaunchedDevice>& devices,
-                    const scene::Port& port, config::Problems& problems) {
+void warn_of_absence(const config::Launch& launch, const std::vector<LaunchedDevice>& devices,
+                     const scene::Port& port, config::Problems& problems) {
   std::vector<std::string> names;
   for (const LaunchedDevice& device : devices) names.push_back(device.plays);
   const std::string near = config::nearest_word(port.device, names);
@@ -53,23 +61,37 @@ void check_rate(const scene::Port& port, const config::DeviceLimits& limits, dou
                    "device file");
 }
 
-void check_demand(const PortDemand& demand, const config::DeviceLimits& limits, int delay_periods,
-                  config::Problems& problems) {
-  const PortVerdict verdict = verdict_on(demand, limits, delay_periods);
+DeviceAtPort check_demand(const PortDemand& demand, const LaunchedDevice& device,
+                          config::Clock clock, config::Problems& problems) {
+  const int delay_periods = delay_periods_of(clock);
+  const double rate_hz = device.limits->rate_hz;
+  const PortVerdict verdict = verdict_on(demand, *device.limits, delay_periods);
   for (const std::string& lack : verdict.lacks) {
     problems.error(demand.needs.place, lack, kHowToHaveIt);
   }
-  if (!verdict.refusal.empty()) problems.error(demand.place, verdict.refusal, kHowToSoften);
+  std::optional<double> needed;
+  if (!verdict.refusal.empty() && clock == config::Clock::kRealtime)
+    needed = largest_supported_delay(demand, *device.limits, delay_periods);
+  if (needed) {
+    problems.warning(demand.place,
+                     verdict.refusal + ". " + needed_answer_text(*needed, rate_hz, {}) +
+                         ", and the device is given no force before",
+                     kHowToSoften);
+  } else if (!verdict.refusal.empty()) {
+    problems.error(demand.place, verdict.refusal, kHowToSoften);
+  }
   const bool is_mass = demand.role == scene::Role::kMass;
   if (!verdict.uncertainty.empty()) {
     problems.warning(demand.place, verdict.uncertainty, is_mass ? kHowToSoften : kHowToCalm);
   }
-}
-
-}  // namespace
-
-int delay_periods_of(config::Clock clock) noexcept {
-  return clock == config::Clock::kLockstep ? 0 : 1;
+  DeviceAtPort result;
+  result.node = device.node->name;
+  result.is_supported =
+      verdict.lacks.empty() && verdict.refusal.empty() && verdict.uncertainty.empty();
+  if (needed) result.needed_delay_s = *needed / rate_hz;
+  if (is_mass)
+    result.supported_stiffness = supported_stiffness(demand, *device.limits, delay_periods);
+  return result;
 }
 
 std::vector<LaunchedDevice> launched_devices(const config::Launch& launch) {
@@ -87,8 +109,14 @@ std::vector<LaunchedDevice> launched_devices(const config::Launch& launch) {
   return devices;
 }
 
-void check_devices(const config::Launch& launch, const scene::Scene& scene,
-                   config::Problems& problems) {
+}  // namespace
+
+int delay_periods_of(config::Clock clock) noexcept {
+  return clock == config::Clock::kLockstep ? 0 : 1;
+}
+
+std::vector<DeviceAtPort> check_devices(const config::Launch& launch, const scene::Scene& scene,
+                                        config::Problems& problems) {
   const std::vector<LaunchedDevice> devices = launched_devices(launch);
   for (const scene::Port& port : scene.ports) {
     bool any = false;
@@ -99,14 +127,18 @@ void check_devices(const config::Launch& launch, const scene::Scene& scene,
       check_axes(port, *device.limits, problems);
       check_rate(port, *device.limits, scene.gesture_rate_hz, problems);
     }
-    if (!any) warn_of_nobody(launch, devices, port, problems);
+    if (!any) warn_of_absence(launch, devices, port, problems);
   }
-  for (const PortDemand& demand : demands_of(scene)) {
+  std::vector<DeviceAtPort> found;
+  const std::vector<PortDemand> demands = demands_of(scene);
+  for (std::size_t port = 0; port < demands.size(); ++port) {
     for (const LaunchedDevice& device : devices) {
-      if (device.plays != demand.device || !device.limits) continue;
-      check_demand(demand, *device.limits, delay_periods_of(launch.clock), problems);
+      if (device.plays != demands[port].device || !device.limits) continue;
+      found.push_back(check_demand(demands[port], device, launch.clock, problems));
+      found.back().port = port;
     }
   }
+  return found;
 }
 
 }  // namespace cordis::sim

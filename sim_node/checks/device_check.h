@@ -5,30 +5,31 @@
 #include <string>
 #include <vector>
 
-#include "node/config/device_limits.h"
 #include "node/config/launch.h"
 #include "node/config/problem.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
 
-/// A device_node of a launch file, and what its device file promises.
-struct LaunchedDevice {
-  const config::LaunchNode* node = nullptr;
-  std::string plays;  ///< name of the device
-  /// Empty when the device file has faults, which the node itself reports.
-  std::optional<config::DeviceLimits> limits;
+/// What a device of a launch file is for a port that it may play.
+struct DeviceAtPort {
+  std::size_t port = 0;                       ///< index in Scene::ports
+  std::string node;                           ///< its name in the launch file
+  bool is_supported = false;                  ///< for certain: else a problem says what is wrong
+  std::optional<double> supported_stiffness;  ///< role mass; empty: nothing is known [N/m]
+  std::optional<double> needed_delay_s;  ///< it is supported once its answers are measured so fast
 };
 
-/// All of a launch file, which outlives them.
-std::vector<LaunchedDevice> launched_devices(const config::Launch& launch);
-
-/// Age of the position that a force answers when it reaches the motor, in periods of the device.
+/// Age of the position that a force answers when it reaches the motor, in periods of the device: 0
+/// in lockstep. In real time it is measured; before that 1 is assumed.
 int delay_periods_of(config::Clock clock) noexcept;
 
 /// Holds every port of the scene against every node that may play its device: axes, rate, travel,
-/// and how stiff a port the device supports.
-void check_devices(const config::Launch& launch, const scene::Scene& scene,
-                   config::Problems& problems);
+/// and how stiff a port the device supports. A port that is too stiff for an answer a period late,
+/// and not for a faster one, is a warning in real time: until the answers are measured to be fast
+/// enough the device is given no force. A node whose device file has faults reports them itself.
+/// @return the others, port by port, in the order of the launch file
+std::vector<DeviceAtPort> check_devices(const config::Launch& launch, const scene::Scene& scene,
+                                        config::Problems& problems);
 
 }  // namespace cordis::sim

@@ -40,11 +40,11 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
     steady_[i] = number(0.0, graph.medium_viscosity) * weight[i];
   }
-  for (const plan::Edge& joint : graph.joints) {
-    if (joint.liaison.kind == plan::LiaisonKind::kStateLink) continue;
-    const double both = weight[joint.mat_a] + weight[joint.mat_b];
-    steady_[joint.mat_a] += number(joint.stiffness, joint.viscosity) * both;
-    steady_[joint.mat_b] += number(joint.stiffness, joint.viscosity) * both;
+  for (const plan::Edge& edge : graph.edges) {
+    if (edge.liaison.kind == plan::LiaisonKind::kStateLink) continue;
+    const double both = weight[edge.mat_a] + weight[edge.mat_b];
+    steady_[edge.mat_a] += number(edge.stiffness, edge.viscosity) * both;
+    steady_[edge.mat_b] += number(edge.stiffness, edge.viscosity) * both;
   }
   for (const plan::ContactBound& crowd : graph.crowds) {
     const double most = plan::largest_of_others(crowd, weight);
@@ -78,7 +78,7 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
   }
 }
 
-void LimitWatch::look(const engine::World& world) noexcept {
+void LimitWatch::update(const engine::World& world) noexcept {
   std::copy(steady_.begin(), steady_.end(), sum_.begin());
   for (std::uint32_t l = 0; l < links_.size(); ++l) {
     const StateLink& link = links_[l];

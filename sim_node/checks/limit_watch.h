@@ -21,7 +21,7 @@ class LimitWatch {
 
   /// Looks at the present states and partners. Real time: O(MATs + links + members of sets), no
   /// allocation.
-  void look(const engine::World& world) noexcept;
+  void update(const engine::World& world) noexcept;
   double largest() const noexcept { return largest_; }
 
  private:
@@ -42,7 +42,7 @@ class LimitWatch {
 
   std::vector<double> share_;   // per MAT: 1 / m over its weight, or 0
   std::vector<double> steady_;  // per MAT: sum over liaisons without states
-  std::vector<double> sum_;     // per MAT, at the last look
+  std::vector<double> sum_;     // per MAT, at the last update
   std::vector<StateLink> links_;
   std::vector<Member> members_;
   std::vector<double> slopes_;  // K dt^2 + 2 Z dt of the states of a state machine, for each link

@@ -47,14 +47,14 @@ PartnerWatch::PartnerWatch(const engine::NetworkDescription& network) {
   }
 }
 
-void PartnerWatch::look(const engine::World& world) noexcept {
+void PartnerWatch::update(const engine::World& world) noexcept {
   for (Half& half : halves_) {
     const engine::PartnerCount count = world.largest_partners(half.set);
-    look_at(half, half.first == 0 ? count.of_p : count.of_q, world);
+    update(half, half.first == 0 ? count.of_p : count.of_q, world);
   }
 }
 
-void PartnerWatch::look_at(Half& half, std::uint32_t largest, const engine::World& world) noexcept {
+void PartnerWatch::update(Half& half, std::uint32_t largest, const engine::World& world) noexcept {
   if (largest <= half.least) {
     const PartnersSeen now{half.set, largest, half.least};
     if (is_nearer(now, half.seen)) half.seen = now;
@@ -65,6 +65,19 @@ void PartnerWatch::look_at(Half& half, std::uint32_t largest, const engine::Worl
     const PartnersSeen now{half.set, world.partners_of(half.set, half.first + m),
                            half.certified[m]};
     if (is_nearer(now, half.seen)) half.seen = now;
+  }
+  passed_ = passed_ || half.seen.is_passed();
+}
+
+void PartnerWatch::take_over(const PartnerWatch& before) noexcept {
+  for (Half& half : halves_) {
+    for (const Half& other : before.halves_) {
+      if (other.set != half.set || other.first != half.first) continue;
+      // the mass that touched most may have been certified for more than the least
+      const PartnersSeen so_far{half.set, other.seen.largest,
+                                std::max(half.least, other.seen.certified)};
+      if (is_nearer(so_far, half.seen)) half.seen = so_far;
+    }
   }
 }
 

@@ -30,7 +30,13 @@ class PartnerWatch {
 
   /// Looks at the last step. Real time: O(sets), and O(members) of a set with balls of several
   /// sizes that touch many others; no allocation.
-  void look(const engine::World& world) noexcept;
+  void update(const engine::World& world) noexcept;
+
+  /// Goes on from the most that another watch of the same sets has seen. Real time: O(sets).
+  void take_over(const PartnerWatch& before) noexcept;
+
+  /// True once a mass has touched more others than is certified.
+  bool is_passed() const noexcept { return passed_; }
 
   /// The set that has come nearest to its number, or farthest beyond it; none where geometry
   /// guarantees the numbers of all sets.
@@ -44,9 +50,10 @@ class PartnerWatch {
     std::uint32_t least;
     PartnersSeen seen;
   };
-  void look_at(Half& half, std::uint32_t largest, const engine::World& world) noexcept;
+  void update(Half& half, std::uint32_t largest, const engine::World& world) noexcept;
 
   std::vector<Half> halves_;
+  bool passed_ = false;
 };
 
 /// For a person: which liaison, how many partners of how many, and what helps.

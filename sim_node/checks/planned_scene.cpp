@@ -3,8 +3,10 @@
 
 #include <utility>
 
-#include "sim_node/checks/rate_choice.h"
+#include "sim_node/checks/rate_check.h"
+#include "sim_node/checks/start_check.h"
 #include "sim_node/plan/reduction/reduce.h"
+#include "sim_node/scene/sections/scene_reader.h"
 
 namespace cordis::sim {
 
@@ -14,6 +16,7 @@ PlannedScene plan_scene(const std::string& file, const config::Place& referrer,
   if (problems.has_errors()) return planned;
   planned.scene = plan::reduce(std::move(planned.scene), problems);
   if (!problems.has_errors()) planned.rate = select_rate(planned.scene, problems);
+  if (!problems.has_errors()) check_start(planned.scene, problems);
   return planned;
 }
 

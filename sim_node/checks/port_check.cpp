@@ -1,15 +1,14 @@
 // sim_node/checks/port_check.cpp
 #include "sim_node/checks/port_check.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "node/config/count_text.h"
 #include "node/config/mapping_reader.h"
 
 namespace cordis::sim {
 namespace {
 
-using config::count_text;
 using config::number_text;
 
 constexpr double kFingertip = 2000.0;  // stiffness of one that presses [N/m]
@@ -30,9 +29,9 @@ double rounded_down(double number) {
 /// without viscosity.
 class ImpedanceLimits {
  public:
-  ImpedanceLimits(const config::DeviceLimits& limits, int delay_periods)
+  ImpedanceLimits(const config::DeviceLimits& limits, double delay_periods)
       : limits_(limits),
-        loop_{1.0 / limits.rate_hz, delay_periods + limits.delay_periods},
+        loop_{1.0 / limits.rate_hz, delay_periods + limits.delay_periods, 1},
         device_{limits.coordinate_mass_kg(), limits.coordinate_viscosity_n_s_per_m()} {}
 
   ImpedanceLimit stiffness(double port_viscosity) const {
@@ -53,8 +52,8 @@ class ImpedanceLimits {
   static ImpedanceLimit declared(double limit) { return {limit, "declares it"}; }
   std::string reason() const {
     return "with " + number_text(device_.mass) + " kg, " + number_text(device_.viscosity) +
-           " N s/m and a delay of " + count_text(static_cast<std::size_t>(loop_.delay), "period") +
-           " of " + number_text(loop_.period) + " s";
+           " N s/m and a delay of " + periods_text(loop_.delay) + " of " +
+           number_text(loop_.period) + " s";
   }
 
   const config::DeviceLimits& limits_;
@@ -64,7 +63,7 @@ class ImpedanceLimits {
 
 /// Empty when the device supports the load.
 std::string trouble(const PortDemand& demand, const plan::PortLoad& load, const std::string& is,
-                    const config::DeviceLimits& limits, int delay_periods) {
+                    const config::DeviceLimits& limits, double delay_periods) {
   const std::string port = "port '" + demand.port + "' " + is;
   const std::string device = ", and the device '" + demand.device + "' supports ";
   const ImpedanceLimits supported(limits, delay_periods);
@@ -115,7 +114,7 @@ std::vector<std::string> lacks_of(const PortDemand& demand, const config::Device
 
 /// Empty when a fingertip on the device does not make the port swing.
 std::string trouble_with_a_hand(const PortDemand& demand, const config::DeviceLimits& limits,
-                                int delay_periods) {
+                                double delay_periods) {
   const plan::PortLoop loop{1.0 / limits.rate_hz, delay_periods + limits.delay_periods,
                             demand.sub_steps};
   const double bearable = plan::largest_hand_stiffness(demand.least, demand.mass, loop);
@@ -124,8 +123,7 @@ std::string trouble_with_a_hand(const PortDemand& demand, const config::DeviceLi
          "' is stiffer than " + number_text(std::floor(bearable)) +
          " N/m, and a fingertip has 2000 N/m (with a mass of " + number_text(demand.mass) +
          " kg, " + number_text(demand.least.viscosity) + " N s/m and a delay of " +
-         count_text(static_cast<std::size_t>(loop.delay), "period") + " of " +
-         number_text(loop.period) + " s)";
+         periods_text(loop.delay) + " of " + number_text(loop.period) + " s)";
 }
 
 }  // namespace
@@ -144,7 +142,7 @@ std::vector<PortDemand> demands_of(const scene::Scene& scene) {
 }
 
 PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
-                       int delay_periods) {
+                       double delay_periods) {
   PortVerdict verdict;
   verdict.lacks = lacks_of(demand, limits);
   if (demand.role == scene::Role::kLiaison) {
@@ -158,8 +156,46 @@ PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& lim
   return verdict;
 }
 
+std::optional<double> largest_supported_delay(const PortDemand& demand,
+                                              const config::DeviceLimits& limits,
+                                              double delay_periods) {
+  const auto is_supported = [&](double delay) {
+    return trouble(demand, demand.least, "is", limits, delay).empty();
+  };
+  if (demand.role == scene::Role::kLiaison) return delay_periods;  // never refused
+  double low = kFastestAnswer * limits.rate_hz;
+  double high = delay_periods;
+  if (low >= high || !is_supported(low)) return {};
+  if (is_supported(high)) return high;
+  for (int i = 0; i < 10; ++i) {
+    const double middle = 0.5 * (low + high);
+    (is_supported(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+std::uint64_t enough_answers(double rate_hz) noexcept {
+  return static_cast<std::uint64_t>(std::clamp(2.0 * rate_hz, 20.0, 1000.0));
+}
+
+std::string needed_answer_text(double delay_periods, double rate_hz,
+                               std::optional<double> measured_s) {
+  const double needed_us = std::floor(1e6 * delay_periods / rate_hz);
+  const std::string needed = "It needs an answer within " + number_text(needed_us) + " us; ";
+  if (measured_s)
+    return needed + "its answers take " + number_text(std::ceil(1e6 * *measured_s)) + " us";
+  return needed + "one period is assumed until " + std::to_string(enough_answers(rate_hz)) +
+         " answers are measured";
+}
+
+std::string periods_text(double periods) {
+  const double rounded = std::round(1000.0 * periods) / 1000.0;
+  return number_text(rounded) + (rounded == 1.0 ? " period" : " periods");
+}
+
 std::optional<double> supported_stiffness(const PortDemand& demand,
-                                          const config::DeviceLimits& limits, int delay_periods) {
+                                          const config::DeviceLimits& limits,
+                                          double delay_periods) {
   const double most = ImpedanceLimits(limits, delay_periods).stiffness(demand.most.viscosity).most;
   return most > 0.0 ? std::optional(most) : std::nullopt;
 }

@@ -40,14 +40,35 @@ struct PortVerdict {
 /// Either role: the device has to have what the port needs. Role mass: the device alone has to stay
 /// still before the port. Nothing is said of a device whose viscosity and limits are unknown. Role
 /// liaison: every device supports every scene, but where the age of its forces makes a fingertip
-/// too stiff for the port the verdict is uncertain. Cost: about 1 ms.
-/// @param delay_periods  of the wire: 1 in real time, 0 in lockstep
+/// too stiff for the port the verdict is uncertain. Cost: 1 to 5 ms.
+/// @param delay_periods  from a sample to the motors: in real time what is measured, or 1; 0 in
+/// lockstep; >= 0
 PortVerdict verdict_on(const PortDemand& demand, const config::DeviceLimits& limits,
-                       int delay_periods);
+                       double delay_periods);
+
+/// The largest delay of at most `delay_periods` that the verdict does not refuse [periods]; empty
+/// where even kFastestAnswer is too long, or something else is refused. Cost: about 10 ms.
+std::optional<double> largest_supported_delay(const PortDemand& demand,
+                                              const config::DeviceLimits& limits,
+                                              double delay_periods);
+
+/// No answer of another process comes faster [s].
+inline constexpr double kFastestAnswer = 20e-6;
+
+/// Answers of a device after which their measured delay counts: 1000, or those of 2 s where that is
+/// fewer, at least 20.
+std::uint64_t enough_answers(double rate_hz) noexcept;
+
+/// Says within which delay a device is supported. @param measured_s  empty: not known yet
+std::string needed_answer_text(double delay_periods, double rate_hz,
+                               std::optional<double> measured_s);
+
+/// "0.12 periods", "1 period".
+std::string periods_text(double periods);
 
 /// The stiffest port of role mass that the device alone leaves at rest, with the viscosity that the
 /// port has at most [N/m]; empty where nothing is known of the device.
 std::optional<double> supported_stiffness(const PortDemand& demand,
-                                          const config::DeviceLimits& limits, int delay_periods);
+                                          const config::DeviceLimits& limits, double delay_periods);
 
 }  // namespace cordis::sim

@@ -66,9 +66,9 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
     strongest = number;
     liaison = id;
   };
-  for (const plan::Edge& joint : graph.joints) {
-    if (joint.mat_a != mat && joint.mat_b != mat) continue;
-    add(joint.liaison, joint.stiffness, joint.viscosity, weight[joint.mat_a] + weight[joint.mat_b]);
+  for (const plan::Edge& edge : graph.edges) {
+    if (edge.mat_a != mat && edge.mat_b != mat) continue;
+    add(edge.liaison, edge.stiffness, edge.viscosity, weight[edge.mat_a] + weight[edge.mat_b]);
   }
   for (const plan::ContactBound& crowd : graph.crowds) {
     const double most = plan::largest_of_others(crowd, weight);

@@ -9,7 +9,7 @@ namespace cordis::sim {
 /// One account for all the devices of role liaison of a scene.
 ///
 /// The forces f of a hand bring E = sum of f . (x(n+1) - x(n-1)) / 2 into the scene. The hand has
-/// given W, which its samples tell for the same positions, some periods later. The difference
+/// given W, which its samples report for the same positions, some periods later. The difference
 /// M = E - W is energy from nowhere: a hand of stiffness k that is d periods T late makes k d T v^2
 /// in every moment. The scene takes D, as its own account says, wherever, in whatever state and by
 /// whatever law its liaisons do. While a loop comes to rest, M is below D; when it swings for
@@ -47,7 +47,7 @@ class DelayEnergyObserver {
  private:
   RecentPeak moved_;      // [J]
   double account_ = 0.0;  // A [J]
-  double taken_ = 0.0;    // the largest D that was told [J]
+  double taken_ = 0.0;    // the largest D that was reported [J]
   bool makes_energy_ = false;
 };
 

@@ -21,7 +21,10 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
       rejoin_ticks_(std::max(1, static_cast<int>(std::lround(kRejoin * rate_hz)))),
       max_jump_(static_cast<std::uint64_t>(std::max(1L, std::lround(kMaxJump * rate_hz)))),
       rate_hz_(rate_hz),
-      silent_ticks_(lost_after_ticks_ + 1) {
+      silent_ticks_(lost_after_ticks_ + 1),
+      unheard_ticks_(lost_after_ticks_ + 1),
+      described_ticks_(std::max(3, static_cast<int>(std::lround(kDescribed * rate_hz)))),
+      undescribed_ticks_(described_ticks_) {
   for (const scene::Port& port : ports_) {
     for (const std::uint32_t axis : port.axes) axis_count_ = std::max(axis_count_, axis + 1);
   }
@@ -34,11 +37,15 @@ void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexc
   answers_ = before.answers_;
   refused_count_ = before.refused_count_;
   missed_count_ = before.missed_count_;
+  if (before.is_described())
+    undescribed_ticks_ = std::min(before.undescribed_ticks_, described_ticks_);
   if (role_ != before.role_) return;
   newest_ = before.newest_;
   has_new_ = before.has_new_;
   restarted_ = before.restarted_;
   is_supported_ = before.is_supported_;
+  refused_ticks_ = before.refused_ticks_;
+  restart_left_ = before.restart_left_;
   if (!at_once) return;
   from_ = before.from_;
   to_ = before.to_;
@@ -98,6 +105,7 @@ DeviceExchange::Reception DeviceExchange::receive(
   for (std::size_t axis = 0; axis < count; ++axis)
     newest_[axis] = std::clamp(values[axis], -most[axis], most[axis]);
   has_new_ = true;
+  ++new_count_;
   return Reception::kNew;
 }
 
@@ -114,11 +122,13 @@ DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& samp
   CORDIS_ASSERT(role_ == Role::kLiaison);
   const std::uint64_t before = missed_count_;
   const Reception reception = receive(sample, sample.force_n(), is_supported, reach.force_n);
-  if (reception == Reception::kNew) take_work(sample, reach, missed_count_ - before + 1);
+  if (reception != Reception::kNew) return reception;
+  if (travel_stops_) travel_stops_->set_reach(reach);
+  take_work(sample, reach, missed_count_ - before + 1);
   return reception;
 }
 
-/// No hand gives more than its largest force along the way of the fastest one; when a sample tells
+/// No hand gives more than its largest force along the way of the fastest one; when a sample reports
 /// so, the account of the passivity controller restarts. @param periods  since the sample before
 void DeviceExchange::take_work(const msg::GestureForces& sample, const DeviceReach& reach,
                                std::uint64_t periods) noexcept {
@@ -136,6 +146,15 @@ void DeviceExchange::begin_tick() noexcept {
   const bool gap = std::exchange(after_gap_, false);
   const bool stood_still = gap && even_ticks_ == rejoin_ticks_;
   even_ticks_ = gap ? 0 : std::min(even_ticks_ + 1, rejoin_ticks_);
+  restart_left_ = std::max(restart_left_ - 1, 0);
+  undescribed_ticks_ = std::min(undescribed_ticks_ + 1, described_ticks_);
+  const int restart_ticks = std::max(8, static_cast<int>(std::lround(kRestart * rate_hz_)));
+  if (has_new_ && !is_supported_) {
+    refused_ticks_ = std::min(refused_ticks_ + 1, restart_ticks + 1);
+  } else if (has_new_ && std::exchange(refused_ticks_, 0) > restart_ticks) {
+    restart_left_ = restart_ticks;
+  }
+  unheard_ticks_ = has_new_ ? 0 : std::min(unheard_ticks_, lost_after_ticks_) + 1;
   if (!is_supported_) {
     is_expected_ = false;
     silent_ticks_ = lost_after_ticks_ + 1;
@@ -165,15 +184,14 @@ void DeviceExchange::begin_tick() noexcept {
   rejoin_left_ = std::max(rejoin_left_ - 1, 0);
 }
 
-void DeviceExchange::play(engine::World& world, int number, int count) noexcept {
-  const double share = static_cast<double>(number) / static_cast<double>(count);
+void DeviceExchange::play(engine::World& world, int number, double share) noexcept {
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     const scene::Port& port = ports_[p];
     engine::Vec3 value = role_ == Role::kMass ? port.rest : engine::Vec3(engine::Vec3::Zero());
     for (std::size_t i = 0; i < port.axes.size(); ++i) {
       const std::size_t axis = port.axes[i];
       // A force is held over the period; a position is ramped.
-      const double now = role_ == Role::kMass && number < count
+      const double now = role_ == Role::kMass && share < 1.0
                              ? from_[axis] + share * (to_[axis] - from_[axis])
                              : to_[axis];
       value += now * port.directions[i];
@@ -182,8 +200,14 @@ void DeviceExchange::play(engine::World& world, int number, int count) noexcept 
       world.impose_position(port.mat, value);
       continue;
     }
-    if (passivity_controller_) value += passivity_controller_->damping_force(p, world, value);
-    world.set_external_force(port.mat, value);
+    engine::Vec3 added = engine::Vec3::Zero();
+    if (passivity_controller_) added = passivity_controller_->damping_force(p, world, value);
+    if (travel_stops_) {
+      // A stop takes more than the damper, and both together might be too much for the step.
+      const engine::Vec3 stop = travel_stops_->force(p, world);
+      if (!stop.isZero(0.0)) added = stop;
+    }
+    world.set_external_force(port.mat, value + added);
   }
   if (!passivity_controller_ || number != 1) return;
   if (std::exchange(new_work_, false)) passivity_controller_->start();

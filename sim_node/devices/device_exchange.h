@@ -12,6 +12,7 @@
 #include "idl/gesture.h"
 #include "sim_node/devices/device_reach.h"
 #include "sim_node/devices/passivity_controller.h"
+#include "sim_node/devices/travel_stops.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/scene.h"
 
@@ -24,9 +25,10 @@ constexpr std::size_t kMaxAxes = msg::MAX_AXES;
 /// The ports of one device: takes its samples, moves or pushes the MATs over the sub-steps, and
 /// makes the answers.
 ///
-/// A new position is reached in a ramp over the sub-steps of one period, and the answer holds the
-/// forces of the last sub-step, computed at the position of the sample itself: no virtual damping
-/// is lost, and no delay added. A device that was silent for kLostAfter is lost: its MATs hold
+/// A new position is reached in a ramp over one period, and the answer holds the forces of its last
+/// sub-step, computed at the position of the sample itself: no virtual damping is lost, and no delay
+/// added. When the period ends between two sub-steps, that position is short of the sample by the
+/// part of the ramp that is left, and the next sub-step is on the next ramp. A device that was silent for kLostAfter is lost: its MATs hold
 /// still, its forces count as 0, and it is given none. When it is received again, or another
 /// process is received in its place, that takes over gradually, within kRejoin, and so do the
 /// forces it is given: neither side jumps. Both are counted in ticks. Likewise after a gap as long
@@ -42,7 +44,9 @@ class DeviceExchange {
   static constexpr double kLostAfter = 0.02;  ///< [s]
   static constexpr double kRejoin = 0.1;      ///< [s]
   static constexpr double kMaxJump = 1.0;     ///< of the numbers of samples [s]
+  static constexpr double kRestart = 0.25;    ///< above the longest watchdog of a device [s]
   static constexpr double kFastest = 10.0;    ///< of a hand that gives work [m/s]
+  static constexpr double kDescribed = 1.0;   ///< [s]
 
   /// @param rate_hz  ticks per second
   /// @param epoch    of this sim_node; its messages carry it
@@ -51,6 +55,9 @@ class DeviceExchange {
 
   /// Role liaison: from now on its ports are damped when they make energy.
   void damp_with(PassivityController controller) { passivity_controller_ = std::move(controller); }
+
+  /// Role liaison: from now on its masses are stopped where the travel of the device ends.
+  void stop_with(TravelStops stops) { travel_stops_ = std::move(stops); }
 
   /// Goes on where the exchange of the same device was in the scene before, so that neither side
   /// takes a message twice or for one of another. The device takes over gradually as after a
@@ -74,11 +81,21 @@ class DeviceExchange {
   Reception receive(const msg::GestureForces& sample, bool is_supported = true,
                     const DeviceReach& reach = {}) noexcept;
 
+  /// Counts a sample that is not considered.
+  void refuse() noexcept { ++refused_count_; }
+
+  /// The sample taken last is of a process that has described itself.
+  void record_described() noexcept { undescribed_ticks_ = 0; }
+  /// True if a sample of such a process was taken within kDescribed: none of another process that
+  /// has not described itself takes its place.
+  bool is_described() const noexcept { return undescribed_ticks_ < described_ticks_; }
+
   /// Begins a tick: takes over the newest sample.
   void begin_tick() noexcept;
 
-  /// Imposes positions or forces for sub-step `number` of `count`, 1..count.
-  void play(engine::World& world, int number, int count) noexcept;
+  /// Imposes positions or forces for sub-step `number` of the tick, from 1.
+  /// @param share  of the period that is over at the sub-step, in (0, 1]
+  void play(engine::World& world, int number, double share) noexcept;
 
   /// The answer after the last sub-step. Forces: what the links do to the port, as far as the
   /// device has taken over. All forces are 0 when `safe` is false.
@@ -93,9 +110,19 @@ class DeviceExchange {
   Role role() const noexcept { return role_; }
   bool has_new_sample() const noexcept { return has_new_; }
   bool is_lost() const noexcept { return silent_ticks_ > lost_after_ticks_; }
+  /// True if no sample has come for kLostAfter, even if the device is not supported: one whose
+  /// answers are to be measured counts as lost, and is answered on arrival all the same.
+  bool is_silent() const noexcept { return unheard_ticks_ > lost_after_ticks_; }
+  /// True if the device was refused for longer than kRestart, and is supported now: no answer goes
+  /// to it for kRestart (or 8 periods), so that its guard starts again, with forces that grow from 0
+  /// and no energy in its account. One that was refused for a moment, because its description came
+  /// a little after its first sample, still has the ramp of its start.
+  bool is_restarting() const noexcept { return restart_left_ > 0; }
   /// True if a device was there, fell silent, and was not let go of.
   bool is_missed() const noexcept { return is_expected_ && is_lost(); }
   bool has_received() const noexcept { return received_epoch_ != 0; }
+  /// Samples received as Reception::kNew.
+  std::uint64_t new_count() const noexcept { return new_count_; }
   /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
   std::int64_t received_time_nsec() const noexcept { return received_time_nsec_; }
   std::uint64_t refused_count() const noexcept { return refused_count_; }
@@ -124,6 +151,7 @@ class DeviceExchange {
   std::vector<scene::Port> ports_;
   std::uint64_t epoch_;
   std::optional<PassivityController> passivity_controller_;
+  std::optional<TravelStops> travel_stops_;
 
   // The newest sample, and the numbers of the one that the last answer took into account.
   std::array<double, kMaxAxes> newest_{};
@@ -134,10 +162,11 @@ class DeviceExchange {
   double hand_work_ = 0.0;           // what the hand had given there [J]
   bool has_new_ = false;
   bool restarted_ = false;  // it is the first of another process, or its numbers restart
-  bool new_work_ = false;   // what it tells of its work does not follow from what it told before
+  bool new_work_ =
+      false;  // what it reports of its work does not follow from what it reported before
   bool after_gap_ = false;  // it is the first after a gap of kLostAfter
   bool is_supported_ = true;
-  bool is_expected_ = false;  // it was there in a tick, and nobody has let go of it since
+  bool is_expected_ = false;  // it was there in a tick, and it has not been let go of since
 
   std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick
   std::array<double, kMaxAxes> to_{};    // and at its end
@@ -148,11 +177,17 @@ class DeviceExchange {
   double rate_hz_;
   int older_in_a_row_ = 0;  // samples that came since one was taken
   int silent_ticks_;
+  int restart_left_ = 0;   // ticks without an answer
+  int refused_ticks_ = 0;  // with a sample, in a row
+  int unheard_ticks_;      // as silent_ticks_, of a device that is not supported too
+  int described_ticks_;    // in which a described process keeps its place
+  int undescribed_ticks_;  // since a sample of one, at most so many
   int rejoin_left_ = 0;
   int even_ticks_ = 0;  // since the last gap, at most rejoin_ticks_
 
-  std::uint32_t axis_count_ = 1;  // of the device, as its samples tell
+  std::uint32_t axis_count_ = 1;  // of the device, as its samples report
   std::uint64_t answers_ = 0;
+  std::uint64_t new_count_ = 0;
   std::uint64_t refused_count_ = 0;
   std::uint64_t missed_count_ = 0;
   msg::GestureForces forces_;

@@ -16,7 +16,7 @@ struct DeviceReach {
   static constexpr std::size_t kCoordinates = 16;
   static constexpr double kFarthest = 2.0;      ///< no hand reaches farther [m]
   static constexpr double kStrongest = 1000.0;  ///< and none is stronger [N]
-  /// Stops give, sensors err, and a coordinate of an end-piece supports more together with the
+  /// Stops give, sensors err, and a coordinate of an end-effector map supports more together with the
   /// others.
   static constexpr double kTravelShare = 1.25;
   static constexpr double kForceShare = 2.0;
@@ -24,14 +24,18 @@ struct DeviceReach {
   /// Reach of a device without a description.
   DeviceReach() noexcept {
     travel_m.fill(kFarthest);
+    lowest_m.fill(-kFarthest);
+    highest_m.fill(kFarthest);
     force_n.fill(kStrongest);
   }
 
   std::array<double, kCoordinates> travel_m{};  ///< from the rest, in either direction
-  std::array<double, kCoordinates> force_n{};   ///< of the hand, in either direction
+  std::array<double, kCoordinates> lowest_m{};  ///< ends of the travel, from the rest
+  std::array<double, kCoordinates> highest_m{};
+  std::array<double, kCoordinates> force_n{};  ///< of the hand, in either direction
 };
 
-/// What a device tells of its travel and its forces; a number of it that makes no sense, or says
+/// What a device reports of its travel and its forces; a number of it that makes no sense, or says
 /// more than a hand is capable of, leaves the bound of an unknown device.
 DeviceReach reach_of(const msg::DeviceDescription& description) noexcept;
 
@@ -39,8 +43,12 @@ DeviceReach reach_of(const msg::DeviceDescription& description) noexcept;
 /// any number reads, and neither waits for the other.
 class ReachTable {
  public:
-  /// The first description of an epoch is believed. The last kRows are kept.
+  /// The first description of an epoch is believed. Of more than kRows the one is forgotten that has
+  /// not been put or found for longest: a device that plays stays, however often others restart.
   void put(std::uint32_t device_id, std::uint64_t epoch, const DeviceReach& reach) noexcept;
+
+  /// True if the device has described its reach. Real time: no lock.
+  bool knows(std::uint32_t device_id, std::uint64_t epoch) const noexcept;
 
   /// Reach of a device; that of an unknown one before its description. Real time: no lock.
   DeviceReach find(std::uint32_t device_id, std::uint64_t epoch) const noexcept;
@@ -51,11 +59,14 @@ class ReachTable {
   struct Row {
     std::atomic<std::uint64_t> epoch{0};  ///< 0 while the row is empty or being written
     std::atomic<std::uint32_t> device_id{0};
+    mutable std::atomic<std::uint64_t> used{0};  ///< count of uses_ at its newest use
     std::array<std::atomic<double>, DeviceReach::kCoordinates> travel_m{};
+    std::array<std::atomic<double>, DeviceReach::kCoordinates> lowest_m{};
+    std::array<std::atomic<double>, DeviceReach::kCoordinates> highest_m{};
     std::array<std::atomic<double>, DeviceReach::kCoordinates> force_n{};
   };
   std::array<Row, kRows> rows_;
-  std::size_t next_ = 0;
+  mutable std::atomic<std::uint64_t> uses_{0};
 };
 
 }  // namespace cordis::sim

@@ -107,11 +107,12 @@ void PassivityController::receive(double work_j, std::uint64_t answered_sample,
   if (!known || !std::isfinite(work_j)) return;
   reports_work_ = reports_work_ || work_j != 0.0;
   const auto ticks_late = static_cast<double>(last_entered_ - answered_sample);
-  const double made = brought_at_answer_[answered_sample % kRoom] - work_j;
+  const double excess_j = brought_at_answer_[answered_sample % kRoom] - work_j;
   if (reports_work_ && static_cast<double>(ticks_) > settled_ticks_) {
-    evaluate(made - made_before_, uncertainty_j, dissipated_j, moved * std::max(ticks_late, 1.0));
+    evaluate(excess_j - excess_before_, uncertainty_j, dissipated_j,
+             moved * std::max(ticks_late, 1.0));
   }
-  made_before_ = made;
+  excess_before_ = excess_j;
 }
 
 void PassivityController::evaluate(double made_j, double uncertainty_j, double taken_j,

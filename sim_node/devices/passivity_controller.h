@@ -37,7 +37,7 @@ class PassivityController {
 
   void start() noexcept;  ///< the device is received again: nothing counts
 
-  /// The answer of this number tells the present positions.
+  /// The answer of this number reports the present positions.
   void record_answer(std::uint64_t sample) noexcept { newest_answer_ = sample; }
 
   /// Damping force of a port in the next step [N]. Between two steps, once for every port.
@@ -77,14 +77,14 @@ class PassivityController {
   double steps_per_tick_;
   double settled_ticks_;
   std::uint64_t ticks_ = 0;    // since the start
-  bool reports_work_ = false;  // the device tells its work
+  bool reports_work_ = false;  // the device reports its work
   bool is_damping_ = false;    // in this tick
   double brought_ = 0.0;       // E [J]
   double moved_ = 0.0;         // the largest |f . dx| of this tick [J]
   std::array<double, kRoom> brought_at_answer_{};
   std::uint64_t newest_answer_ = 0;
   std::uint64_t last_entered_ = 0;  // of the answers in at_answer_
-  double made_before_ = 0.0;        // M of the last sample [J]
+  double excess_before_ = 0.0;      // M of the last sample [J]
   double strict_ = 0.0;             // M since the loop makes energy, less what we took [J]
   std::uint64_t passivity_ticks_ = 0;
 };

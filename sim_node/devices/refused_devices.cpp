@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "node/config/number.h"
 #include "node/time.h"
 
 namespace cordis::sim {
@@ -41,71 +44,224 @@ config::DeviceLimits limits_of(const msg::DeviceDescription& description) {
 
 }  // namespace
 
-void RefusedDevices::play(const scene::Scene& scene) {
+void RefusedDevices::play(const scene::Scene& scene, std::int64_t now_nsec) {
   std::vector<PortDemand> demands = demands_of(scene);
   const std::lock_guard lock(mutex_);
   demands_ = std::move(demands);
-  evaluate();
+  for (Known& device : known_) device.verdict.reset();
+  evaluate(now_nsec);
 }
 
-bool RefusedDevices::receive(const msg::DeviceDescription& description) {
+bool RefusedDevices::receive(const msg::DeviceDescription& description, std::int64_t now_nsec) {
   if (!makes_sense(description)) return false;
   const std::lock_guard lock(mutex_);
   const auto is_same = [&description](const Known& device) {
     return device.device_id == description.device_id() && device.epoch == description.epoch();
   };
   if (std::ranges::any_of(known_, is_same)) return false;
-  if (known_.size() >= kMaxKnown) known_.pop_front();
-  known_.push_back({description.device_id(), description.epoch(),
-                    description.driver().substr(0, kLongestDriver), limits_of(description)});
-  evaluate();
+  Known device{description.device_id(),
+               description.epoch(),
+               description.driver().substr(0, kLongestDriver),
+               limits_of(description),
+               DelayInUse(delay_periods_),
+               std::nullopt,
+               std::nullopt,
+               true};
+  Row& row = known_.size() < kMaxKnown ? rows_[known_.size()]
+                                       : *std::ranges::min_element(rows_, {}, [](const Row& old) {
+                                           return old.newest_nsec.load(std::memory_order_relaxed);
+                                         });
+  row.is_refused.store(true);
+  row.newest_nsec.store(now_nsec);
+  row.epoch.store(description.epoch());
+  if (known_.size() < kMaxKnown) {
+    known_.push_back(std::move(device));
+  } else {
+    known_[static_cast<std::size_t>(&row - rows_.data())] = std::move(device);
+  }
+  if (delays_ != nullptr) delays_->add(description.epoch(), description.rate_hz(), now_nsec);
+  evaluate(now_nsec);
   return true;
 }
 
-/// All known devices again.
-void RefusedDevices::evaluate() {
-  std::string text;
-  std::size_t count = 0;
-  for (const Known& device : known_) {
-    std::string why;
-    for (const PortDemand& demand : demands_) {
-      if (demand.device_id != device.device_id) continue;
-      const PortVerdict verdict = verdict_on(demand, device.limits, delay_periods_);
-      std::vector<std::string> reasons = verdict.lacks;
-      if (!verdict.refusal.empty()) reasons.push_back(verdict.refusal);
-      for (const std::string& reason : reasons) why += (why.empty() ? "" : "; ") + reason;
+void RefusedDevices::measure(std::int64_t now_nsec) {
+  const std::lock_guard lock(mutex_);
+  bool any_changed = false;
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    Known& device = known_[i];
+    const bool is_there = now_nsec - newest_nsec(i) < AnswerDelays::kSilentNsec;
+    any_changed = std::exchange(device.is_there, is_there) != is_there || any_changed;
+    if (delays_ == nullptr) continue;
+    if (is_there) delays_->add(device.epoch, device.limits.rate_hz, now_nsec);
+    device.measured_s = delays_->delay_s(device.epoch, now_nsec);
+    const std::optional<double> measured =
+        device.measured_s ? std::optional(*device.measured_s * device.limits.rate_hz)
+                          : std::nullopt;
+    const DelayInUse before = device.delay;
+    if (!device.delay.update(measured, now_nsec)) continue;
+    any_changed = true;
+    report_delay(device, before, now_nsec);
+  }
+  if (any_changed) evaluate(now_nsec);
+  const std::lock_guard text_lock(text_mutex_);
+  for (DeviceLoop& loop : loops_) {
+    const auto device = std::ranges::find(known_, loop.epoch, &Known::epoch);
+    if (device != known_.end()) loop.answer_delay_s = device->measured_s;
+  }
+}
+
+/// One line when the delay of a device is known, and a warning when it has grown.
+void RefusedDevices::report_delay(const Known& device, const DelayInUse& before,
+                                  std::int64_t now_nsec) {
+  if (!device.measured_s || !device.is_there) return;
+  const double periods = device.delay.periods();
+  // A little more is no event for a person.
+  const bool grown = periods > DelayInUse::kAtAssumed ||
+                     (before.is_measured() && periods > 1.5 * before.periods());
+  if (!(grown ? delays_grown_ : delays_known_).record(now_nsec, *device.measured_s)) return;
+  spdlog::log(grown ? spdlog::level::warn : spdlog::level::info,
+              "{:.3g} % of the answers to the device '{}' take at most {:.0f} us: its limits are "
+              "those of a delay of {}",
+              100.0 * delays_->quantile(), name_of(device), 1e6 * *device.measured_s,
+              periods_text(periods));
+}
+
+std::string RefusedDevices::name_of(const Known& device) const {
+  for (const PortDemand& demand : demands_) {
+    if (demand.device_id == device.device_id) return demand.device;
+  }
+  return "driver " + device.driver;
+}
+
+/// A sentence per port that the device does not support, and what it supports at all of them.
+RefusedDevices::Verdict RefusedDevices::check(const Known& device) const {
+  const double periods = device.delay.periods();
+  Verdict result{periods, device.delay.is_measured(), {}, {}};
+  for (const PortDemand& demand : demands_) {
+    if (demand.device_id != device.device_id) continue;
+    const PortVerdict verdict = verdict_on(demand, device.limits, periods);
+    std::vector<std::string> reasons = verdict.lacks;
+    if (!verdict.refusal.empty()) {
+      const std::optional<double> needed =
+          delays_ == nullptr ? std::nullopt
+                             : largest_supported_delay(demand, device.limits, periods);
+      reasons.push_back(verdict.refusal);
+      if (needed) {
+        reasons.back() +=
+            ". " + needed_answer_text(*needed, device.limits.rate_hz, device.measured_s);
+      }
     }
-    if (why.empty() || count == kMaxRefused) continue;
-    refused_[count++].store(device.epoch, std::memory_order_relaxed);
+    for (const std::string& reason : reasons)
+      result.refusal += (result.refusal.empty() ? "" : "; ") + reason;
+    if (demand.role != scene::Role::kMass) continue;
+    const auto supported = supported_stiffness(demand, device.limits, periods);
+    if (supported)
+      result.supported_stiffness =
+          std::min(*supported, result.supported_stiffness.value_or(*supported));
+  }
+  return result;
+}
+
+/// What the devices of the scene measure and support. Of several processes of a device the one that
+/// has sent last.
+std::vector<DeviceLoop> RefusedDevices::find_loops(std::string& delay_text) const {
+  std::vector<DeviceLoop> loops;
+  std::vector<std::size_t> order;
+  for (std::size_t i = known_.size(); i-- > 0;) {
+    if (known_[i].is_there) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [this](std::size_t i) { return newest_nsec(i); });
+  for (const std::size_t i : order) {
+    const Known& device = known_[i];
+    const auto demand = std::ranges::find(demands_, device.device_id, &PortDemand::device_id);
+    if (demand == demands_.end()) continue;
+    const DeviceLoop loop{demand->device, device.epoch, device.measured_s,
+                          device.verdict->supported_stiffness};
+    const auto is_same = [&loop](const DeviceLoop& other) { return other.device == loop.device; };
+    if (std::ranges::any_of(loops, is_same)) continue;
+    if (device.measured_s && *device.measured_s * device.limits.rate_hz > DelayInUse::kAtAssumed) {
+      delay_text += (delay_text.empty() ? "" : "; ") +
+                    ("the answers to the device '" + loop.device) + "' take " +
+                    periods_text(device.delay.periods());
+      if (loop.supported_stiffness)
+        delay_text += ", and it supports " +
+                      config::number_text(std::floor(*loop.supported_stiffness)) + " N/m";
+    }
+    loops.push_back(loop);
+  }
+  return loops;
+}
+
+/// All known devices whose delay or scene has changed. The loop goes on with the verdicts before
+/// until each is replaced by the next.
+void RefusedDevices::evaluate(std::int64_t now_nsec) {
+  for (Known& device : known_) {
+    if (!device.verdict || device.verdict->periods != device.delay.periods() ||
+        device.verdict->is_measured != device.delay.is_measured())
+      device.verdict = check(device);
+  }
+  std::string text;
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    const Known& device = known_[i];
+    const std::string& why = device.verdict->refusal;
+    rows_[i].is_refused.store(!why.empty());
+    if (why.empty() || !device.is_there) continue;
     text += (text.empty() ? "" : "; ") + why + ": driver " + device.driver + " is given no force";
   }
-  for (; count < kMaxRefused; ++count) refused_[count].store(0, std::memory_order_relaxed);
-  const std::int64_t now = node::monotonic_nsec();
-  if (text != text_ && !text.empty() && refusals_.record(now)) spdlog::error("{}", text);
-  if (text != text_ && text.empty() && returns_.record(now))
+  std::string delay_text;
+  std::vector<DeviceLoop> loops = find_loops(delay_text);
+  if (text != text_ && !text.empty() && refusals_.record(now_nsec)) spdlog::error("{}", text);
+  if (text != text_ && text.empty() && returns_.record(now_nsec))
     spdlog::info("every device supports the scene again");
+  const std::lock_guard lock(text_mutex_);
   text_ = std::move(text);
+  delay_text_ = std::move(delay_text);
+  loops_ = std::move(loops);
 }
 
 void RefusedDevices::report_repeats() {
   const std::int64_t now = node::monotonic_nsec();
   const std::lock_guard lock(mutex_);
+  delays_grown_.report(now);
+  delays_known_.report(now);
   refusals_.report(now);
   returns_.report(now);
 }
 
-bool RefusedDevices::refuses(std::uint64_t epoch) const noexcept {
-  for (const auto& refused : refused_) {
-    const std::uint64_t candidate = refused.load(std::memory_order_relaxed);
-    if (candidate == epoch) return true;
-    if (candidate == 0) return false;
+bool RefusedDevices::refuses(std::uint64_t epoch, std::int64_t now_nsec) noexcept {
+  bool is_known = false;
+  bool is_refused = false;
+  for (Row& row : rows_) {
+    if (row.epoch.load() != epoch) continue;
+    is_known = true;
+    row.newest_nsec.store(now_nsec, std::memory_order_relaxed);
+    is_refused = is_refused || row.is_refused.load();
   }
-  return false;
+  return !is_known || is_refused;
 }
 
 std::string RefusedDevices::text() const {
-  const std::lock_guard lock(mutex_);
-  return text_;
+  const std::lock_guard lock(text_mutex_);
+  return text_.empty() ? delay_text_ : text_;
+}
+
+std::string RefusedDevices::loops_text() const {
+  const std::lock_guard lock(text_mutex_);
+  std::string text;
+  for (const DeviceLoop& loop : loops_) {
+    if (!loop.answer_delay_s) continue;
+    text += fmt::format("{}the device '{}' is answered within {:.0f} us", text.empty() ? "" : "; ",
+                        loop.device, 1e6 * *loop.answer_delay_s);
+    if (loop.supported_stiffness)
+      text += fmt::format(" and supports {:.4g} N/m", *loop.supported_stiffness);
+  }
+  return text;
+}
+
+std::vector<DeviceLoop> RefusedDevices::loops() const {
+  const std::lock_guard lock(text_mutex_);
+  return loops_;
 }
 
 }  // namespace cordis::sim

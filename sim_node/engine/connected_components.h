@@ -19,8 +19,8 @@ namespace cordis::engine {
 /// Counts pieces of matter: two members of a set belong to one piece when their pair is near, or
 /// bound, or when a chain of such pairs leads from one to the other. A pair is one of the set
 /// liaison: across its two sets, or within its one; of members that no liaison joins it is any two.
-/// [Luc90 IX Experimentation] tells of matter that shatters and regroups: this is the number it is
-/// told by.
+/// [Luc90 IX Experimentation] speaks of matter that shatters and regroups: this number
+/// measures it.
 class ConnectedComponents {
  public:
   /// @param set  index in NetworkDescription::sets

@@ -16,7 +16,7 @@ namespace {
 
 /// (x(n) - x(n-1)) / dt [m/s]
 Vec3 velocity_at_half_step(const WorldState& state, std::uint32_t mat) noexcept {
-  return (state.mats.position(mat) - state.mats.delayed(mat)) / state.network->step();
+  return state.mats.moved(mat) / state.network->step();
 }
 
 }  // namespace
@@ -104,9 +104,9 @@ double World::rest_length_of(std::uint32_t state_link) const noexcept {
   return state_->state_links.rest_length(state_link);
 }
 
-double World::pull_of(std::uint32_t state_link) const noexcept {
+double World::tension_of(std::uint32_t state_link) const noexcept {
   CORDIS_ASSERT(state_link < network().description().state_links.size());
-  return state_->state_links.pull(state_link);
+  return state_->state_links.tension(state_link);
 }
 
 std::uint64_t World::change_count(std::uint32_t state_machine, std::uint32_t from,
@@ -210,6 +210,7 @@ Snapshot World::snapshot() const {
   const FloatMode mode;
   Snapshot snapshot{state_->network->fingerprint(), state_->step_count, {}, {}};
   if (state_->replaced) snapshot.state_machines = state_->table.state_machines();
+  snapshot.state.reserve(max_values_of_state());
   state_->serialize(Archive::saving(snapshot.state));
   return snapshot;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <variant>
 
 #include "sim_node/engine/integrators/modal_block.h"
 #include "sim_node/plan/stability/limit_weights.h"
@@ -55,21 +56,21 @@ ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGra
   const engine::ModalBlock block(network);
   ModalLoad load;
   if (!graph.crowds.empty()) load.together = std::numeric_limits<double>::infinity();
-  for (const Edge& joint : graph.joints) {
-    const bool to_port = network.mats[joint.mat_a].kind == engine::MatKind::kPort ||
-                         network.mats[joint.mat_b].kind == engine::MatKind::kPort;
-    if (joint.liaison.kind == LiaisonKind::kLink && !to_port) continue;
-    const double at_a = block.alternating_compliance(joint.mat_a, joint.mat_a);
-    const double at_b = block.alternating_compliance(joint.mat_b, joint.mat_b);
-    const double between = block.alternating_compliance(joint.mat_a, joint.mat_b);
-    const double stiffness = joint.stiffness + 2.0 * joint.viscosity / network.step;
+  for (const Edge& edge : graph.edges) {
+    const bool to_port = network.mats[edge.mat_a].kind == engine::MatKind::kPort ||
+                         network.mats[edge.mat_b].kind == engine::MatKind::kPort;
+    if (edge.liaison.kind == LiaisonKind::kLink && !to_port) continue;
+    const double at_a = block.alternating_compliance(edge.mat_a, edge.mat_a);
+    const double at_b = block.alternating_compliance(edge.mat_b, edge.mat_b);
+    const double between = block.alternating_compliance(edge.mat_a, edge.mat_b);
+    const double stiffness = edge.stiffness + 2.0 * edge.viscosity / network.step;
     const double root = std::sqrt(at_a) + std::sqrt(at_b);
     load.together += stiffness * root * root;
     const double alone = stiffness * (at_a + at_b - 2.0 * between);
     if (alone < load.alone) continue;
     load.alone = alone;
-    load.worst.liaison = joint.liaison;
-    load.worst.mat = at_a > at_b ? joint.mat_a : joint.mat_b;
+    load.worst.liaison = edge.liaison;
+    load.worst.mat = at_a > at_b ? edge.mat_a : edge.mat_b;
   }
   return load;
 }
@@ -84,10 +85,15 @@ Stability stability_of_modes(const engine::NetworkDescription& network, const Li
   return stability;
 }
 
+/// True if a state acts at some distances and not at others.
+bool lets_go(const engine::LinkState& state) {
+  return !state.pulls || !state.pushes || std::holds_alternative<engine::Rings>(state.elasticity);
+}
+
 /// True if a liaison of this state machine acts at some times and not at others.
 bool switches(const engine::StateMachine& state_machine) {
   for (const engine::LinkState& state : state_machine.states) {
-    if (!state.pulls || !state.pushes) return true;
+    if (lets_go(state)) return true;
   }
   return state_machine.states.size() > 1;
 }
@@ -105,14 +111,13 @@ bool comes_and_goes(const engine::NetworkDescription& network, LiaisonId liaison
   return false;
 }
 
-/// True if a liaison with states, or of sets, lets go by being clamped.
+/// True if a liaison with states, or of sets, lets go by being clamped or out of its rings.
 bool is_clamped(const engine::NetworkDescription& network, LiaisonId liaison) {
   const std::uint32_t state_machine = liaison.kind == LiaisonKind::kSet
                                           ? network.sets[liaison.index].state_machine
                                           : network.state_links[liaison.index].state_machine;
   const auto& states = network.state_machines[state_machine].states;
-  return std::any_of(states.begin(), states.end(),
-                     [](const engine::LinkState& state) { return !state.pulls || !state.pushes; });
+  return std::any_of(states.begin(), states.end(), lets_go);
 }
 
 /// @param clamped  only those that let go by being clamped
@@ -126,11 +131,11 @@ std::optional<ContactGain> worst_contact_among(const engine::NetworkDescription&
                                          : std::numeric_limits<double>::infinity();
     worst = {liaison, normalised, gain};
   };
-  for (const Edge& joint : graph.joints) {
-    if (!comes_and_goes(network, joint.liaison)) continue;
-    if (clamped && !is_clamped(network, joint.liaison)) continue;
-    consider(joint.liaison, joint.stiffness,
-             graph.inverse_mass[joint.mat_a] + graph.inverse_mass[joint.mat_b]);
+  for (const Edge& edge : graph.edges) {
+    if (!comes_and_goes(network, edge.liaison)) continue;
+    if (clamped && !is_clamped(network, edge.liaison)) continue;
+    consider(edge.liaison, edge.stiffness,
+             graph.inverse_mass[edge.mat_a] + graph.inverse_mass[edge.mat_b]);
   }
   for (const ContactBound& crowd : graph.crowds) {
     if (clamped && !is_clamped(network, {LiaisonKind::kSet, crowd.set})) continue;
@@ -147,6 +152,14 @@ double Stability::margin() const noexcept {
   return 1.0 - share * share;
 }
 
+std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& network,
+                                          const LiaisonGraph& graph) {
+  if (graph.uncertainty) return graph.uncertainty;
+  const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
+  if (!contact || contact->stiffness <= kCertainContact) return {};
+  return Uncertainty{contact->liaison, "each touch of it may gain energy, for its K' is above 1"};
+}
+
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   Stability stability;
   if (network.integrator == engine::IntegratorKind::kModal) {
@@ -158,12 +171,7 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   stability.bounded = graph.bounded;
   stability.step = network.step;
   stability.sets = partner_limits(network, graph, stability.holds());
-  stability.uncertainty = graph.uncertainty;
-  const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
-  if (!stability.uncertainty && contact && contact->stiffness > kCertainContact) {
-    stability.uncertainty = {contact->liaison,
-                             "each touch of it may gain energy, for its K' is above 1"};
-  }
+  stability.uncertainty = uncertainty_of(network, graph);
   // The two limits are found in ways that have nothing in common: where they cross one is wrong.
   constexpr double kRounding = 1e-6;
   if (stability.certified.step > stability.diverging_step * (1.0 + kRounding)) {
@@ -183,9 +191,9 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   const double w = 2.0 * std::numbers::pi * frequency_hz;
   double ratio = 0.0;
   LiaisonGraph dampers = graph;
-  for (Edge& joint : dampers.joints) {
-    if (joint.viscosity > 0.0) ratio = std::max(ratio, joint.viscosity / joint.stiffness);
-    joint.stiffness = 0.0;
+  for (Edge& edge : dampers.edges) {
+    if (edge.viscosity > 0.0) ratio = std::max(ratio, edge.viscosity / edge.stiffness);
+    edge.stiffness = 0.0;
   }
   for (ContactBound& crowd : dampers.crowds) {
     if (crowd.viscosity > 0.0) ratio = std::max(ratio, crowd.viscosity / crowd.stiffness);

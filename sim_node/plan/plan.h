@@ -38,6 +38,10 @@ struct Stability {
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph);
 
+/// Stability::uncertainty alone, without the two limits. O(liaisons).
+std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& network,
+                                          const LiaisonGraph& graph);
+
 /// The errors of a vibration at the upper end of the band that matters, with at most this
 /// viscosity.
 struct BandEdge {

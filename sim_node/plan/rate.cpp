@@ -38,71 +38,71 @@ double largest_step(const BandEdge& edge, engine::IntegratorKind integrator, dou
 
 /// A pitch that is off by e puts a vibration off by the phase e w t, and its positions over the
 /// amplitude by as much; 1 / sqrt(3) of that in the mean square up to t.
-double pitch_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
-  if (wish.over_s == 0.0) return wish.tolerance;
+double pitch_tolerance(const BandEdge& edge, const AccuracyTarget& target) {
+  if (target.over_s == 0.0) return target.tolerance;
   const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
-  return std::sqrt(3.0) * wish.tolerance / (w * wish.over_s);
+  return std::sqrt(3.0) * target.tolerance / (w * target.over_s);
 }
 
 /// A rate s that is off by e puts e^(-s t) off by e s t e^(-s t), at most e / 2.718.
-double tolerance_of_rate(double rate, const AccuracyTarget& wish) {
-  if (wish.over_s == 0.0) return wish.tolerance;
-  const double lost = std::min(1.0, rate * wish.over_s);
-  return lost > 0.0 ? wish.tolerance / (lost * std::exp(-lost))
+double tolerance_of_rate(double rate, const AccuracyTarget& target) {
+  if (target.over_s == 0.0) return target.tolerance;
+  const double lost = std::min(1.0, rate * target.over_s);
+  return lost > 0.0 ? target.tolerance / (lost * std::exp(-lost))
                     : std::numeric_limits<double>::infinity();
 }
 
-double decay_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
-  return tolerance_of_rate(0.5 * edge.viscosity, wish);
+double decay_tolerance(const BandEdge& edge, const AccuracyTarget& target) {
+  return tolerance_of_rate(0.5 * edge.viscosity, target);
 }
 
-double creep_tolerance(const BandEdge& edge, const AccuracyTarget& wish) {
+double creep_tolerance(const BandEdge& edge, const AccuracyTarget& target) {
   const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
   const double rate = 0.5 * edge.viscosity;
-  if (rate < w) return wish.tolerance;
-  return tolerance_of_rate(w * w / (rate + std::sqrt(rate * rate - w * w)), wish);
+  if (rate < w) return target.tolerance;
+  return tolerance_of_rate(w * w / (rate + std::sqrt(rate * rate - w * w)), target);
 }
 
 }  // namespace
 
-RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyTarget& wish,
-                       double gesture_rate_hz) {
+FormulaRate rate_by_formula(const engine::NetworkDescription& network, const AccuracyTarget& target,
+                            double gesture_rate_hz) {
   engine::NetworkDescription per_gesture = network;
   per_gesture.step = 1.0 / gesture_rate_hz;
   const LiaisonGraph graph = liaison_graph(per_gesture);
 
   double step = per_gesture.step;
-  RateChoice choice;
+  FormulaRate formula;
   const auto consider = [&](double largest, RateReason reason) {
     if (largest >= step) return;
     step = largest;
-    choice.reason = reason;
+    formula.reason = reason;
   };
   consider(kPartOfTheCertifiedStep * certified_bound(per_gesture, graph).step,
            RateReason::kStability);
   if (const auto contact = worst_contact_of(per_gesture, graph)) {
-    const double most = 4.0 * wish.contact_energy / (1.0 + wish.contact_energy);
+    const double most = 4.0 * target.contact_energy / (1.0 + target.contact_energy);
     consider(per_gesture.step * std::sqrt(most / contact->stiffness), RateReason::kContact);
   }
-  const BandEdge edge = band_edge_of(per_gesture, graph, wish.band_hz);
+  const BandEdge edge = band_edge_of(per_gesture, graph, target.band_hz);
   const engine::IntegratorKind integrator = network.integrator;
   consider(largest_step(
-               edge, integrator, pitch_tolerance(edge, wish),
+               edge, integrator, pitch_tolerance(edge, target),
                [](const OscillatorError& e) { return e.pitch; }, &OscillatorError::oscillates),
            RateReason::kPitch);
   consider(largest_step(
-               edge, integrator, decay_tolerance(edge, wish),
+               edge, integrator, decay_tolerance(edge, target),
                [](const OscillatorError& e) { return e.decay; }, &OscillatorError::oscillates),
            RateReason::kDecay);
   consider(largest_step(
-               edge, integrator, creep_tolerance(edge, wish),
+               edge, integrator, creep_tolerance(edge, target),
                [](const OscillatorError& e) { return e.creep; }, &OscillatorError::creeps),
            RateReason::kCreep);
 
   constexpr double kRounding = 1e-9;
-  choice.needed_hz = 1.0 / step;
-  choice.rate_hz = std::ceil(choice.needed_hz / gesture_rate_hz - kRounding) * gesture_rate_hz;
-  return choice;
+  formula.needed_hz = 1.0 / step;
+  formula.rate_hz = std::ceil(formula.needed_hz / gesture_rate_hz - kRounding) * gesture_rate_hz;
+  return formula;
 }
 
 const char* to_string(RateReason reason) noexcept {

@@ -25,15 +25,15 @@ enum class RateReason : std::uint8_t {
   kCreep  ///< the slower mode there, where viscosity lets nothing swing
 };
 
-struct RateChoice {
+struct FormulaRate {
   double needed_hz = 0.0;  ///< the least that serves
   double rate_hz = 0.0;    ///< the next multiple of the gesture rate
   RateReason reason = RateReason::kGesture;
 };
 
 /// For the integrator of the network; its step does not matter. O(liaisons).
-RateChoice choose_rate(const engine::NetworkDescription& network, const AccuracyTarget& wish,
-                       double gesture_rate_hz);
+FormulaRate rate_by_formula(const engine::NetworkDescription& network, const AccuracyTarget& target,
+                            double gesture_rate_hz);
 
 /// For a person: "the pitch at the end of the band".
 const char* to_string(RateReason reason) noexcept;

@@ -4,37 +4,45 @@
 #include <optional>
 
 #include "sim_node/engine/integrators/integrator_limits.h"
+#include "sim_node/plan/plan.h"
 #include "sim_node/plan/rate_trial.h"
 #include "sim_node/plan/reference/trial_run.h"
 
 namespace cordis::plan {
 namespace {
 
-RateSelection choose_for(engine::NetworkDescription network, const AccuracyTarget& wish,
+RateSelection select_for(engine::NetworkDescription network, const AccuracyTarget& target,
                          double gesture_rate_hz, const std::string& integrator, bool has_ports) {
   network.integrator = engine::integrator_named(integrator);
-  const RateChoice formula = choose_rate(network, wish, gesture_rate_hz);
-  RateSelection choice{
+  const FormulaRate formula = rate_by_formula(network, target, gesture_rate_hz);
+  RateSelection selection{
       integrator, formula.rate_hz, formula.needed_hz, to_string(formula.reason), -1.0, {}};
-  if (wish.over_s == 0.0) return choice;
+  if (target.over_s == 0.0) return selection;
   if (has_ports) {
-    choice.uncertainty = "positions are promised for free vibrations alone: its ports are played";
-    return choice;
+    selection.uncertainty =
+        "positions are promised for free vibrations alone: its ports are played";
+    return selection;
   }
-  AccuracyTarget only_limits = wish;
+  AccuracyTarget only_limits = target;
   only_limits.tolerance = 1e9;
-  const RateChoice floor = choose_rate(network, only_limits, gesture_rate_hz);
-  const RateTrial trial =
-      find_rate(network, integrator, {wish.tolerance, wish.over_s, floor.rate_hz, gesture_rate_hz});
+  const FormulaRate floor = rate_by_formula(network, only_limits, gesture_rate_hz);
+  const RateTrial trial = find_rate(
+      network, integrator, {target.tolerance, target.over_s, floor.rate_hz, gesture_rate_hz});
   if (trial.rate_hz == 0.0) {
-    choice.uncertainty = "positions are not promised: " + trial.refusal;
-    return choice;
+    selection.uncertainty = "positions are not promised: " + trial.refusal;
+    return selection;
   }
-  choice.rate_hz = choice.needed_hz = trial.rate_hz;
-  choice.error = trial.error;
-  choice.because =
+  network.step = 1.0 / trial.rate_hz;
+  if (const auto uncertain = uncertainty_of(network, liaison_graph(network))) {
+    selection.uncertainty =
+        "positions are not promised: it is not certain that the scene is stable: " + uncertain->why;
+    return selection;
+  }
+  selection.rate_hz = selection.needed_hz = trial.rate_hz;
+  selection.error = trial.error;
+  selection.because =
       trial.rate_hz > floor.rate_hz ? "the positions, as tried out" : to_string(floor.reason);
-  return choice;
+  return selection;
 }
 
 }  // namespace
@@ -45,24 +53,24 @@ double cost_of_a_step(const std::string& integrator) {
   return factorises ? kFactorisation : evaluations_per_step(integrator);
 }
 
-double cost_of_a_step(engine::NetworkDescription network, const RateSelection& choice) {
+double cost_of_a_step(engine::NetworkDescription network, const RateSelection& selection) {
   constexpr double kSolves = 15.0;  // in 1 dimension, where it factorises once
-  network.integrator = engine::integrator_named(choice.integrator);
-  network.step = 1.0 / choice.rate_hz;
-  if (!engine::damps_implicitly(network)) return cost_of_a_step(choice.integrator);
+  network.integrator = engine::integrator_named(selection.integrator);
+  network.step = 1.0 / selection.rate_hz;
+  if (!engine::damps_implicitly(network)) return cost_of_a_step(selection.integrator);
   return network.dimension == 1 ? kSolves
                                 : cost_of_a_step(to_string(engine::IntegratorKind::kImplicit));
 }
 
-RateSelection choose(const engine::NetworkDescription& network, const AccuracyTarget& wish,
-                     double gesture_rate_hz, const std::vector<std::string>& integrators,
-                     bool has_ports) {
+RateSelection select_rate(const engine::NetworkDescription& network, const AccuracyTarget& target,
+                          double gesture_rate_hz, const std::vector<std::string>& integrators,
+                          bool has_ports) {
   std::optional<RateSelection> best;
-  const auto cost = [&network](const RateSelection& choice) {
-    return choice.rate_hz * cost_of_a_step(network, choice);
+  const auto cost = [&network](const RateSelection& selection) {
+    return selection.rate_hz * cost_of_a_step(network, selection);
   };
   for (const std::string& integrator : integrators) {
-    const RateSelection next = choose_for(network, wish, gesture_rate_hz, integrator, has_ports);
+    const RateSelection next = select_for(network, target, gesture_rate_hz, integrator, has_ports);
     const bool keeps_more = best && next.uncertainty.empty() && !best->uncertainty.empty();
     const bool keeps_less = best && !next.uncertainty.empty() && best->uncertainty.empty();
     if (!best || keeps_more || (!keeps_less && cost(next) < cost(*best))) best = next;

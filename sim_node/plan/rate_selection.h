@@ -22,14 +22,15 @@ struct RateSelection {
 /// step of `implicit` factorises and solves (docs/integrators.md).
 double cost_of_a_step(const std::string& integrator);
 /// Cost at this rate, where `leapfrog` may have to solve its dampers.
-double cost_of_a_step(engine::NetworkDescription network, const RateSelection& choice);
+double cost_of_a_step(engine::NetworkDescription network, const RateSelection& selection);
 
-/// The cheapest of the integrators for what is asked. By the formulas of choose_rate; with over_s,
+/// The cheapest of the integrators for what is asked. By the formulas of rate_by_formula; with over_s,
 /// a network that moves by itself is tried out (find_rate), within the limits of stability and of
-/// contacts. One whose ports are played is not: nobody knows the gesture beforehand.
+/// contacts. One whose ports are played is not: the gesture is unknown beforehand. Nor is a rate
+/// taken at which its stability is not certain: then the rate of the formulas stays.
 /// @param integrators  by name, at least one
-RateSelection choose(const engine::NetworkDescription& network, const AccuracyTarget& wish,
-                     double gesture_rate_hz, const std::vector<std::string>& integrators,
-                     bool has_ports);
+RateSelection select_rate(const engine::NetworkDescription& network, const AccuracyTarget& target,
+                          double gesture_rate_hz, const std::vector<std::string>& integrators,
+                          bool has_ports);
 
 }  // namespace cordis::plan

@@ -24,32 +24,32 @@ bool is_multiple(double value, double of) {
 
 }  // namespace
 
-RateSweep make_ladder(double limit_hz, const RateSweepOptions& wish) {
+RateSweep make_rate_sweep(double limit_hz, const RateSweepOptions& options) {
   constexpr double kLowest = 0.35;  // of the limit, half of the lowest rate
   constexpr double kNoLimit = 0.1;  // of the scene's own rate, likewise
-  double base = round_below(limit_hz > 0.0 ? kLowest * limit_hz : kNoLimit * wish.own_hz);
+  double base = round_below(limit_hz > 0.0 ? kLowest * limit_hz : kNoLimit * options.own_hz);
   const double lowest = 2.0 * base;
-  for (int finer = 0; finer < 9 && !is_multiple(wish.own_hz, base); ++finer) {
+  for (int finer = 0; finer < 9 && !is_multiple(options.own_hz, base); ++finer) {
     base = round_below(0.999 * base);
   }
-  const double highest = wish.highest_factor * std::max(limit_hz, lowest);
-  RateSweep ladder;
+  const double highest = options.highest_factor * std::max(limit_hz, lowest);
+  RateSweep sweep;
   for (double rate = 2.0 * base; rate <= highest; rate *= 2.0) {
-    if (rate >= 0.7 * lowest) ladder.rates_hz.push_back(rate);
-    const bool between = !wish.coarse && 1.5 * rate >= 0.7 * lowest && 1.5 * rate <= highest;
-    if (between) ladder.rates_hz.push_back(1.5 * rate);
+    if (rate >= 0.7 * lowest) sweep.rates_hz.push_back(rate);
+    const bool between = !options.coarse && 1.5 * rate >= 0.7 * lowest && 1.5 * rate <= highest;
+    if (between) sweep.rates_hz.push_back(1.5 * rate);
   }
   const auto is_there = [&](double rate) {
-    return std::find(ladder.rates_hz.begin(), ladder.rates_hz.end(), rate) != ladder.rates_hz.end();
+    return std::find(sweep.rates_hz.begin(), sweep.rates_hz.end(), rate) != sweep.rates_hz.end();
   };
-  if (is_multiple(wish.own_hz, base) && !is_there(wish.own_hz)) {
-    ladder.rates_hz.push_back(wish.own_hz);
-    std::sort(ladder.rates_hz.begin(), ladder.rates_hz.end());
+  if (is_multiple(options.own_hz, base) && !is_there(options.own_hz)) {
+    sweep.rates_hz.push_back(options.own_hz);
+    std::sort(sweep.rates_hz.begin(), sweep.rates_hz.end());
   }
-  const double periods = std::max(1.0, std::ceil(wish.duration * base - 1e-9));
-  const double stride = std::ceil(periods / wish.max_samples);
-  ladder.sampling = {stride / base, static_cast<int>(std::ceil(periods / stride))};
-  return ladder;
+  const double periods = std::max(1.0, std::ceil(options.duration * base - 1e-9));
+  const double stride = std::ceil(periods / options.max_samples);
+  sweep.sampling = {stride / base, static_cast<int>(std::ceil(periods / stride))};
+  return sweep;
 }
 
 }  // namespace cordis::plan

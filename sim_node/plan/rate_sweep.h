@@ -24,6 +24,6 @@ struct RateSweep {
 };
 
 /// @param limit_hz  below it a run diverges; 0 when it never does
-RateSweep make_ladder(double limit_hz, const RateSweepOptions& wish);
+RateSweep make_rate_sweep(double limit_hz, const RateSweepOptions& options);
 
 }  // namespace cordis::plan

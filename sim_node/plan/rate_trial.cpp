@@ -22,13 +22,13 @@ constexpr double kMargin = 0.85;  // of the tolerance, where a rate is interpola
 /// What one step costs.
 double work_of_a_step(const engine::NetworkDescription& network, const std::string& integrator) {
   constexpr double kContacts = 12.0;
-  constexpr double kOfItsOwn = 100.0;
+  constexpr double kOverhead = 100.0;
   std::size_t members = 0;
   for (const engine::SetLiaison& set : network.sets) {
     members += set.set_p.size() + set.set_q.size();
   }
   const double once =
-      kOfItsOwn +
+      kOverhead +
       static_cast<double>(network.mats.size() + network.links.size() +
                           2 * network.state_links.size() + network.maxwell_links.size()) +
       kContacts * static_cast<double>(members);
@@ -39,12 +39,12 @@ double work_of_a_step(const engine::NetworkDescription& network, const std::stri
 class SampledRuns {
  public:
   SampledRuns(const engine::NetworkDescription& network, const std::string& integrator,
-              const RateTrialOptions& wish)
+              const RateTrialOptions& options)
       : network_(network), integrator_(integrator) {
     constexpr double kMaxSamples = 100.0;
-    const double periods = std::max(1.0, std::round(wish.over_s * wish.unit_hz));
+    const double periods = std::max(1.0, std::round(options.over_s * options.unit_hz));
     const double stride = std::ceil(periods / kMaxSamples);
-    period_ = stride / wish.unit_hz;
+    period_ = stride / options.unit_hz;
     samples_ = static_cast<int>(std::ceil(periods / stride));
     for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
       if (network.mats[i].kind == engine::MatKind::kMass) masses_.push_back(i);
@@ -115,32 +115,33 @@ class SampledRuns {
 }  // namespace
 
 RateTrial find_rate(const engine::NetworkDescription& network, const std::string& integrator,
-                    const RateTrialOptions& wish) {
-  constexpr double kOfFirstOrder = 4.0 / 3.0;  // e(h) - e(h/4) is 3/4 of e(h), or more
+                    const RateTrialOptions& options) {
+  constexpr double kFirstOrderFactor = 4.0 / 3.0;  // e(h) - e(h/4) is 3/4 of e(h), or more
   RateTrial trial;
-  SampledRuns runs(network, integrator, wish);
-  double rate = wish.lowest_hz;
+  SampledRuns runs(network, integrator, options);
+  double rate = options.lowest_hz;
   double before = kInfinity;
   for (int doubling = 0; doubling < kMaxDoublings; ++doubling, rate *= 2.0) {
     if (!runs.can_afford(rate) || !runs.can_afford(4.0 * rate)) {
       trial.refusal = "it takes too long to try it out";
       return trial;
     }
-    const double error = kOfFirstOrder * runs.difference(rate, 4.0 * rate);
+    const double error = kFirstOrderFactor * runs.difference(rate, 4.0 * rate);
     if (std::isnan(error)) {
       trial.refusal = "nothing moves by itself";
       return trial;
     }
-    if (error <= wish.tolerance) {
+    if (error <= options.tolerance) {
       trial.rate_hz = rate;
       trial.error = error;
       if (std::isfinite(before)) {
         const double order = std::clamp(std::log2(before / error), 0.3, 4.0);
-        const double share = std::pow(before / (kMargin * wish.tolerance), 1.0 / order);
-        const double between = std::ceil(0.5 * rate * share / wish.unit_hz - 1e-9) * wish.unit_hz;
+        const double share = std::pow(before / (kMargin * options.tolerance), 1.0 / order);
+        const double between =
+            std::ceil(0.5 * rate * share / options.unit_hz - 1e-9) * options.unit_hz;
         const double there =
-            between < rate ? kOfFirstOrder * runs.difference(between, 4.0 * rate) : kInfinity;
-        if (there <= wish.tolerance) {
+            between < rate ? kFirstOrderFactor * runs.difference(between, 4.0 * rate) : kInfinity;
+        if (there <= options.tolerance) {
           trial.rate_hz = between;
           trial.error = there;
         }

@@ -25,6 +25,6 @@ struct RateTrial {
 /// show. Gives up where the errors do not fall (the motion is chaotic) and after a fixed amount of
 /// work: a second at most, on a machine as they are. The same choice on every machine.
 RateTrial find_rate(const engine::NetworkDescription& network, const std::string& integrator,
-                    const RateTrialOptions& wish);
+                    const RateTrialOptions& options);
 
 }  // namespace cordis::plan

@@ -1,6 +1,7 @@
 // sim_node/run/command.cpp
 #include "sim_node/run/command.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "node/config/mapping_reader.h"
@@ -48,6 +49,15 @@ std::vector<NewValue> read_values(const config::Value& argument, config::Problem
   return values;
 }
 
+std::vector<std::string> read_names(const config::Value& argument, config::Problems& problems) {
+  std::vector<std::string> names;
+  if (argument.kind() == config::Value::Kind::kScalar) names.push_back(argument.text());
+  for (const config::Value& item : argument.items()) names.push_back(item.text());
+  if (names.empty() || std::find(names.begin(), names.end(), std::string()) != names.end())
+    problems.error(argument.place(), "'get' needs NAME or NAME.PARAMETER");
+  return names;
+}
+
 void read_state(const config::Value& argument, Command& command, config::Problems& problems) {
   const std::vector<config::Value>& items = argument.items();
   if (items.size() != 2 || items[0].text().empty() || items[1].text().empty()) {
@@ -77,6 +87,9 @@ Command read_command(msg::ControlVerb verb, const std::string& argument) {
       break;
     case msg::VERB_SET:
       command.values = read_values(value, problems);
+      break;
+    case msg::VERB_GET:
+      command.names = read_names(value, problems);
       break;
     case msg::VERB_STATE:
       read_state(value, command, problems);

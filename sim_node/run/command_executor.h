@@ -10,51 +10,48 @@
 #include <vector>
 
 #include "node/command_server.h"
-#include "sim_node/run/command.h"
-#include "sim_node/run/request.h"
-#include "sim_node/scene/parameters.h"
-#include "sim_node/scene/scene.h"
+#include "sim_node/run/request_maker.h"
 
 namespace cordis::sim {
 
-/// The side of live change that may take its time: reads scenes, makes stages, and frees what the
-/// loop has done with. Lives in the thread of the commands.
+/// The side of live change that may take its time: reads and loads scenes, and frees what the loop
+/// has done with. Lives in the thread of the commands.
 class CommandExecutor {
  public:
   static constexpr std::chrono::milliseconds kPatience{1000};
 
   /// Reads the scene of a path; whatever is wrong becomes a problem.
   using Load = std::function<scene::Scene(const std::string& path, config::Problems& problems)>;
-  /// Holds a scene that differs in parameters from the one that is played against its limits.
-  using Check = std::function<void(const scene::Scene& scene, config::Problems& problems)>;
-  /// Tells the other processes of a scene that is played now.
+  using Check = RequestMaker::Check;
+  /// Publishes the description of the scene that is played now.
   using Publish = std::function<void(const scene::Scene& scene, std::uint64_t version)>;
 
   /// @param scene  the one that is played at first, version 1
   /// @param epoch  of this sim_node
-  CommandExecutor(RequestMailbox& orders, std::shared_ptr<const scene::Scene> scene,
+  CommandExecutor(RequestMailbox& mailbox, std::shared_ptr<const scene::Scene> scene,
                   std::uint64_t epoch, Load load, Check check, Publish publish);
 
   /// Returns when the loop has done what was wanted; of single steps that take longer than
   /// kPatience, when they have begun.
   node::Answer execute(const msg::ControlCommand& command);
 
+  /// The long part of `load`, which reads the scene; empty for any other command. Any thread may do
+  /// it; what remains is for the thread of the commands.
+  node::Work work_of(const msg::ControlCommand& command);
+
   /// The scene that is played, with the parameters as they have been set.
-  const std::shared_ptr<const scene::Scene>& scene() const noexcept { return scene_; }
+  const std::shared_ptr<const scene::Scene>& scene() const noexcept { return maker_.scene(); }
 
  private:
-  node::Answer restart(std::shared_ptr<const scene::Scene> scene, const std::string& done);
-  node::Answer step(std::uint64_t count);
-  node::Answer load(const std::string& path);
-  node::Answer set(const std::vector<NewValue>& values);
-  node::Answer force(const std::string& links, const std::string& state);
-  node::Answer give(Request& request, const std::string& done);
+  node::Answer play(const std::string& path, std::shared_ptr<const scene::Scene> scene,
+                    const config::Problems& problems);
+  /// Hands a request to the loop and says what came of it.
+  node::Answer submit(PreparedRequest prepared, RequestSource source);
+  node::Answer get(const std::vector<std::string>& names) const;
+  node::Answer answer_of(const PreparedRequest& prepared);
 
   RequestMailbox& mailbox_;
-  std::shared_ptr<const scene::Scene> scene_;  // with the parameters as they have been set
-  scene::Parameters parameters_;
-  std::uint64_t epoch_;
-  std::uint64_t version_ = 1;
+  RequestMaker maker_;
   Load load_;
   Check check_;
   Publish publish_;

@@ -16,6 +16,8 @@ static_assert(static_cast<int>(scene::Role::kLiaison) == msg::ROLE_LIAISON);
 static_assert(static_cast<int>(engine::MatKind::kMass) == msg::MAT_MASS);
 static_assert(static_cast<int>(engine::MatKind::kFixed) == msg::MAT_FIXED);
 static_assert(static_cast<int>(engine::MatKind::kPort) == msg::MAT_PORT);
+static_assert(static_cast<int>(scene::SignalRate::kGesture) == msg::RATE_GESTURE);
+static_assert(static_cast<int>(scene::SignalRate::kStep) == msg::RATE_STEP);
 static_assert(config::kMaxAxes == msg::MAX_AXES);
 static_assert(msg::MAT_PORT <= std::numeric_limits<std::uint8_t>::max());
 
@@ -83,7 +85,7 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
   description.epoch(epoch);
   description.version(version);
   description.name(scene.name);
-  const int space = scene.confinement ? scene.confinement->space : scene.space();
+  const int space = scene.subspace ? scene.subspace->space : scene.space();
   description.space(static_cast<std::uint32_t>(space));
   description.step_rate_hz(scene.step_rate_hz);
   description.gesture_rate_hz(scene.gesture_rate_hz);
@@ -98,6 +100,9 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
     msg::SignalDescription message;
     message.name(signal.name);
     message.unit(signal.unit);
+    message.rate(static_cast<msg::SignalRate>(signal.rate));
+    message.sound(signal.is_sound);
+    message.full_scale(signal.full_scale);
     description.signals().push_back(message);
   }
   return description;
@@ -111,10 +116,10 @@ std::size_t link_count_of(const scene::Scene& scene) noexcept {
 FrameLayout layout_of(const scene::Scene& scene) {
   FrameLayout layout;
   layout.dimension = scene.space();
-  if (const auto& confinement = scene.confinement) {
-    layout.axes = confinement->axes;
+  if (const auto& subspace = scene.subspace) {
+    layout.axes = subspace->axes;
     for (int axis = 0; axis < 3; ++axis) {
-      layout.origin[static_cast<std::size_t>(axis)] = static_cast<float>(confinement->origin[axis]);
+      layout.origin[static_cast<std::size_t>(axis)] = static_cast<float>(subspace->origin[axis]);
     }
   }
   for (const scene::LayoutPoint& point : scene.layout) {

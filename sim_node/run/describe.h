@@ -7,7 +7,7 @@
 
 namespace cordis::sim {
 
-/// The scene/description of a scene. @param version  tells one scene of the epoch from the next
+/// The scene/description of a scene. @param version  distinguishes one scene of the epoch from the next
 msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
                                std::uint64_t version);
 

@@ -32,12 +32,17 @@ void FrameLayout::show(std::size_t mat, const double* position, float* shown) co
 FrameStore::FrameStore(FrameShape shape)
     : shape_(std::move(shape)),
       row_capacity_(shape_.rows_per_frame * kFramesOfRows),
+      step_row_capacity_(
+          std::min(shape_.step_rows_per_frame * kFramesOfRows,
+                   kMaxStepValues / std::max<std::size_t>(1, shape_.step_signal_count))),
       discarded_row_(shape_.signal_count) {
   for (FrameBuffer& buffer : buffers_) {
     buffer.positions.resize(4 * shape_.mat_count);
     buffer.link_state.resize(shape_.link_count);
     buffer.events = EventRoom(shape_.state_link_count);
     buffer.rows.resize(row_capacity_ * shape_.signal_count);
+    buffer.row_steps.resize(row_capacity_);
+    buffer.step_rows.resize(step_row_capacity_ * shape_.step_signal_count);
   }
 }
 
@@ -48,12 +53,28 @@ double* FrameStore::next_row(std::uint64_t step) noexcept {
     return discarded_row_.data();
   }
   if (buffer.row_count == 0) buffer.first_step = step;
+  buffer.row_steps[buffer.row_count] = static_cast<std::uint32_t>(step - buffer.first_step);
   return buffer.rows.data() + shape_.signal_count * buffer.row_count++;
+}
+
+void FrameStore::add(const StepRows& rows) noexcept {
+  if (rows.count() == 0) return;
+  FrameBuffer& buffer = buffers_[filling_];
+  if (buffer.step_row_count == 0) buffer.first_step_row = rows.first_step();
+  // Once a row is dropped, so are all until the next buffer: the rows of a buffer follow each other.
+  const std::size_t room =
+      overflowed_step_rows_ > 0 ? 0 : step_row_capacity_ - buffer.step_row_count;
+  const std::size_t taken = std::min(rows.count(), room);
+  std::copy_n(rows.row(0), taken * rows.columns(),
+              buffer.step_rows.data() + buffer.step_row_count * rows.columns());
+  buffer.step_row_count += taken;
+  overflowed_step_rows_ += static_cast<std::uint32_t>(rows.count() - taken);
 }
 
 bool FrameStore::has_news() const noexcept {
   const FrameBuffer& buffer = buffers_[filling_];
-  return buffer.row_count > 0 || overflowed_rows_ > 0 || !buffer.events.is_empty();
+  return buffer.row_count > 0 || overflowed_rows_ > 0 || buffer.step_row_count > 0 ||
+         overflowed_step_rows_ > 0 || !buffer.events.is_empty();
 }
 
 void FrameStore::turn(const engine::World& world, double simulated_s, std::int64_t now_nsec,
@@ -73,6 +94,8 @@ void FrameStore::turn(const engine::World& world, double simulated_s, std::int64
 
   filling_ = 1 - filling_;
   buffers_[filling_].row_count = 0;
+  buffers_[filling_].step_row_count = 0;
+  buffers_[filling_].dropped_step_rows = std::exchange(overflowed_step_rows_, 0);
   buffers_[filling_].events.clear();
   buffers_[filling_].dropped_rows = std::exchange(overflowed_rows_, 0);
 }

@@ -1,4 +1,4 @@
-// sim_node/run/frame_store.h -- what the display is told of one scene, on its way out of the loop.
+// sim_node/run/frame_store.h -- what is published of one scene, on its way out of the loop.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 
 #include "sim_node/engine/world.h"
 #include "sim_node/run/event_room.h"
+#include "sim_node/run/step_rows.h"
 
 namespace cordis::sim {
 
@@ -28,8 +29,11 @@ struct FrameShape {
   std::uint64_t version = 1;  ///< of the description
   std::size_t mat_count = 0;
   std::size_t signal_count = 0;
-  std::size_t rows_per_frame = 1;  ///< rows of signals
-  std::uint32_t stride_steps = 1;  ///< between two rows
+  std::size_t rows_per_frame = 1;     ///< rows of signals
+  std::uint32_t stride_steps = 1;     ///< between two rows, the whole part
+  bool has_even_rows = true;          ///< false: a step more lies between some of them
+  std::size_t step_signal_count = 0;  ///< signals that are taken after each step
+  std::size_t step_rows_per_frame = 0;
   FrameLayout layout;
   std::size_t link_count = 0;        ///< of all kinds; 0 when no link has states
   std::size_t first_state_link = 0;  ///< number of the first one with states
@@ -47,8 +51,13 @@ struct FrameBuffer {
   EventRoom events;
   std::vector<double> rows;
   std::size_t row_count = 0;
-  std::uint64_t first_step = 0;    ///< of the first row
-  std::uint32_t dropped_rows = 0;  ///< before the first row
+  std::uint64_t first_step = 0;          ///< of the first row
+  std::uint32_t dropped_rows = 0;        ///< before the first row
+  std::vector<std::uint32_t> row_steps;  ///< per row: its step less first_step
+  std::vector<double> step_rows;         ///< of the signals that are taken after each step
+  std::size_t step_row_count = 0;
+  std::uint64_t first_step_row = 0;     ///< step of the first of them
+  std::uint32_t dropped_step_rows = 0;  ///< before the first of them
   std::uint64_t step = 0;
   std::int64_t time_nsec = 0;
   std::int64_t action_time_nsec = 0;  ///< of the newest device sample; 0: none
@@ -67,13 +76,20 @@ class FrameStore {
   /// buffer is full and the row is dropped.
   double* next_row(std::uint64_t step) noexcept;
 
+  /// Keeps the rows of a turn; those beyond the buffer are dropped.
+  void add(const StepRows& rows) noexcept;
+  /// True if rows of steps are better published before the next frame is due.
+  bool has_many_step_rows() const noexcept {
+    return 2 * buffers_[filling_].step_row_count > step_row_capacity_;
+  }
+
   /// Where the changes of state of the present tick go.
   EventRoom& events() noexcept { return buffers_[filling_].events; }
   /// True if there is something that no frame has published yet.
   bool has_news() const noexcept;
 
   /// Puts the present positions and states into the buffer being filled, which then is published(),
-  /// and begins to fill the other one. O(MATs + links). Precondition: nobody uses published().
+  /// and begins to fill the other one. O(MATs + links). Precondition: no thread uses published().
   void turn(const engine::World& world, double simulated_s, std::int64_t now_nsec,
             std::int64_t action_nsec = 0) noexcept;
 
@@ -83,11 +99,15 @@ class FrameStore {
   static constexpr std::size_t kFramesOfRows = 8;  // rows kept while frames are left out
 
   FrameShape shape_;
+  static constexpr std::size_t kMaxStepValues = std::size_t{1} << 20;
+
   std::size_t row_capacity_;
+  std::size_t step_row_capacity_;
   std::vector<double> discarded_row_;
   std::array<FrameBuffer, 2> buffers_;
   std::size_t filling_ = 0;
   std::uint32_t overflowed_rows_ = 0;  // rows that found the filling buffer full
+  std::uint32_t overflowed_step_rows_ = 0;
 };
 
 }  // namespace cordis::sim

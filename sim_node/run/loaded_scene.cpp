@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim_node/plan/plan.h"
 #include "sim_node/run/describe.h"
 
 namespace cordis::sim {
@@ -21,11 +22,23 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
           .mat_count = scene.network.mats.size(),
           .signal_count = scene.signals.count(),
           .rows_per_frame = ticks_per_frame_of(scene),
-          .stride_steps = static_cast<std::uint32_t>(simulation.steps_per_tick()),
+          .stride_steps = static_cast<std::uint32_t>(simulation.division().whole_steps()),
+          .has_even_rows = simulation.division().is_even(),
+          .step_signal_count = scene.signals.by_step().size(),
+          .step_rows_per_frame = ticks_per_frame_of(scene) * simulation.division().max_steps(),
           .layout = layout_of(scene),
           .link_count = scene.network.state_links.empty() ? 0 : link_count_of(scene),
           .first_state_link = scene.network.links.size(),
           .state_link_count = scene.network.state_links.size()};
+}
+
+bool is_certified(const scene::Scene& scene) {
+  return plan::stability_of(scene.network, plan::liaison_graph(scene.network)).holds();
+}
+
+double number_of_start(LimitWatch& limits, const engine::World& world) {
+  limits.update(world);
+  return limits.largest();
 }
 
 }  // namespace
@@ -34,9 +47,22 @@ LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_
                          std::uint64_t version)
     : simulation(std::move(scene), epoch),
       frames(shape_of(simulation, version)),
+      step_rows(simulation.scene().signals.by_step().size(), simulation.division().max_steps()),
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
+      is_certain(simulation.devices().empty() || is_certified(simulation.scene())),
+      watches_number(!is_certain && number_of_start(limits, simulation.world()) < 4.0),
       shadow(std::make_shared<ShadowWorld>(simulation.world().shared_network())),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}
+
+PassedBound LoadedScene::passed_bound(bool makes_energy) noexcept {
+  if (is_certain) return PassedBound::kNone;
+  if (watches_number) {
+    constexpr double kLimit = 4.0;
+    limits.update(simulation.world());
+    if (limits.largest() >= kLimit) return PassedBound::kNumber;
+  }
+  return makes_energy ? PassedBound::kEnergy : PassedBound::kNone;
+}
 
 }  // namespace cordis::sim

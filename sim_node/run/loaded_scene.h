@@ -1,4 +1,4 @@
-// sim_node/run/loaded_scene.h -- a scene ready to be played, made away from the loop.
+// sim_node/run/loaded_scene.h -- a scene ready to be played, built outside the loop.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include "sim_node/run/frame_store.h"
 #include "sim_node/run/shadow_world.h"
 #include "sim_node/run/simulation.h"
+#include "sim_node/run/step_rows.h"
 
 namespace cordis::sim {
 
@@ -19,10 +20,19 @@ struct LoadedScene {
   LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch,
               std::uint64_t version);
 
+  /// The bound beyond which a scene that is not certain lets go of its devices, if K' + 2 Z' or its
+  /// energy passes it now. What is certified ends with the partners alone, which the simulation
+  /// watches itself. Real time.
+  /// @param makes_energy  sim::makes_energy() of a moment of this scene
+  PassedBound passed_bound(bool makes_energy) noexcept;
+
   Simulation simulation;
   FrameStore frames;
+  StepRows step_rows;  ///< of the present turn
   ChangeCounter changes;
   LimitWatch limits;
+  bool is_certain;      ///< the step is certified, or there is no device to let go of
+  bool watches_number;  ///< K' + 2 Z' is below 4 at the start, and the step is not certified
   std::shared_ptr<ShadowWorld> shadow;
   std::uint64_t ticks_per_frame;
 };

@@ -8,9 +8,9 @@ constexpr auto kLookForTheEnd = std::chrono::milliseconds(20);
 
 }  // namespace
 
-bool RequestMailbox::give(Request& request) noexcept {
+bool RequestMailbox::submit(Request& request) noexcept {
   slot_.store(&request, std::memory_order_release);
-  given_.release();
+  submitted_.release();
   while (!done_.try_acquire_for(kLookForTheEnd)) {
     if (!is_closed()) continue;
     // The loop closes the mailbox after its last request, so whatever was executed shows by now.
@@ -24,12 +24,12 @@ bool RequestMailbox::give(Request& request) noexcept {
 void RequestMailbox::executed() noexcept {
   slot_.store(nullptr, std::memory_order_release);
   // May fail now and then, which costs one empty wait().
-  static_cast<void>(given_.try_acquire());
+  static_cast<void>(submitted_.try_acquire());
   done_.release();
 }
 
 void RequestMailbox::wait(std::chrono::milliseconds at_most) noexcept {
-  static_cast<void>(given_.try_acquire_for(at_most));
+  static_cast<void>(submitted_.try_acquire_for(at_most));
 }
 
 }  // namespace cordis::sim

@@ -9,18 +9,19 @@
 #include <vector>
 
 #include "sim_node/run/loaded_scene.h"
+#include "sim_node/run/request_source.h"
 
 namespace cordis::sim {
 
-/// Something to be done between two steps. All that costs time has been done when it is given, and
-/// what is to be freed goes back to the giver.
+/// Something to be done between two steps. All that costs time has been done when it is submitted,
+/// and what is to be freed goes back to the thread that submitted it.
 struct Request {
   enum class Kind : std::uint8_t {
     kPause,
     kResume,
     kStep,        ///< pause, then do `steps` steps
-    kRestart,     ///< play `stage` from its beginning
-    kExchange,    ///< go on in `stage`, the same scene with other parameters
+    kRestart,     ///< play `scene` from its beginning
+    kExchange,    ///< go on in `scene`, the same one with other parameters
     kForceStates  ///< put links into states
   };
   struct ForcedState {
@@ -29,16 +30,17 @@ struct Request {
   };
   Kind kind = Kind::kPause;
   std::uint64_t steps = 0;
-  std::unique_ptr<LoadedScene> stage;  ///< the new one; afterwards the one played before
+  std::unique_ptr<LoadedScene> scene;  ///< the new one; afterwards the one played before
   std::vector<double> room;            ///< of kExchange: max_values_of_state() of its world
   std::vector<ForcedState> forced;
+  std::shared_ptr<const RequestSource> source;  ///< the command that it comes from
 
-  bool changes_stage() const noexcept { return kind == Kind::kRestart || kind == Kind::kExchange; }
+  bool changes_scene() const noexcept { return kind == Kind::kRestart || kind == Kind::kExchange; }
 
   // What the loop has to say about it.
   std::uint64_t step = 0;   ///< steps done when it was executed, in the scene played then
   bool was_paused = false;  ///< before
-  bool done = true;         ///< false: kExchange found that the stage does not fit
+  bool done = true;         ///< false: kExchange found that the scene does not fit
 };
 
 /// Room for one request on its way from one thread to the loop.
@@ -46,17 +48,17 @@ class RequestMailbox {
  public:
   /// Submits a request and waits until it was executed. One thread at a time.
   /// @return false when the loop has ended, and the request was not executed
-  bool give(Request& request) noexcept;
+  bool submit(Request& request) noexcept;
 
-  /// Loop: the order that waits, or nullptr. Real time: takes no lock.
+  /// Loop: the request that waits, or nullptr. Real time: takes no lock.
   Request* waiting() const noexcept { return slot_.load(std::memory_order_acquire); }
   /// Loop: the waiting request was executed. Real time: wakes the other thread, waits for nothing.
   void executed() noexcept;
-  /// Loop without real time: waits until there is an order, at most so long.
+  /// Loop without real time: waits for a request, at most so long.
   void wait(std::chrono::milliseconds at_most) noexcept;
   /// Single steps still to be done after the last kStep; any thread.
   std::uint64_t steps_left() const noexcept { return steps_left_.load(std::memory_order_acquire); }
-  /// Loop: the same, told.
+  /// Loop: publishes that count.
   void report_steps_left(std::uint64_t count) noexcept {
     steps_left_.store(count, std::memory_order_release);
   }
@@ -69,7 +71,7 @@ class RequestMailbox {
   std::atomic<Request*> slot_{nullptr};
   std::atomic<std::uint64_t> steps_left_{0};
   std::atomic<bool> closed_{false};
-  std::counting_semaphore<> given_{0};
+  std::counting_semaphore<> submitted_{0};
   std::binary_semaphore done_{0};
 };
 

@@ -6,8 +6,8 @@
 
 namespace cordis::sim {
 
-Runner::Runner(std::unique_ptr<LoadedScene> stage, bool devices_wait) noexcept
-    : stage_(std::move(stage)), devices_wait_(devices_wait) {}
+Runner::Runner(std::unique_ptr<LoadedScene> scene, bool devices_wait) noexcept
+    : scene_(std::move(scene)), devices_wait_(devices_wait) {}
 
 void Runner::execute(Request& request) noexcept {
   request.step = simulation().world().step_count();
@@ -27,7 +27,7 @@ void Runner::execute(Request& request) noexcept {
       break;
     case Request::Kind::kRestart:
       steps_left_ = 0;
-      restart(request.stage);
+      restart(request.scene);
       break;
     case Request::Kind::kExchange:
       exchange(request);
@@ -39,18 +39,18 @@ void Runner::execute(Request& request) noexcept {
   }
 }
 
-void Runner::restart(std::unique_ptr<LoadedScene>& stage) noexcept {
+void Runner::restart(std::unique_ptr<LoadedScene>& next) noexcept {
   for (const DeviceExchange& before : simulation().devices()) {
-    DeviceExchange* now = stage->simulation.find(before.device_id());
+    DeviceExchange* now = next->simulation.find(before.device_id());
     if (now != nullptr) now->take_over(before, /*at_once=*/false);
   }
   played_before_s_ = played_s();
-  stage_.swap(stage);
+  scene_.swap(next);
 }
 
 void Runner::exchange(Request& request) noexcept {
-  request.done = request.stage->simulation.go_on_from(simulation(), request.room);
-  if (request.done) stage_.swap(request.stage);
+  request.done = request.scene->simulation.go_on_from(simulation(), request.room);
+  if (request.done) scene_.swap(request.scene);
 }
 
 bool Runner::advance() noexcept {
@@ -63,7 +63,7 @@ bool Runner::advance() noexcept {
     steps = std::min(steps, steps_left_);
     steps_left_ -= steps;
   }
-  return simulation().advance(static_cast<int>(steps), stage_->frames.events());
+  return simulation().advance(static_cast<int>(steps), scene_->frames.events(), &scene_->step_rows);
 }
 
 double Runner::played_s() const noexcept {

@@ -1,5 +1,5 @@
-// sim_node/run/runner.h -- the loop's side of live change: plays a stage, and executes orders
-// between two steps.
+// sim_node/run/runner.h -- the loop's side of live change: plays a scene, and executes
+// requests between two steps.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace cordis::sim {
 
-/// Plays a stage turn by turn, pauses, does single steps and changes over to another stage.
+/// Plays a scene turn by turn, pauses, does single steps and changes over to another scene.
 ///
 /// Time stops in a paused scene. Where the devices are the clock (lockstep) it stops
 /// for them too, and the pause leaves no trace in the result. Elsewhere the devices live on: they
@@ -20,10 +20,10 @@ namespace cordis::sim {
 class Runner {
  public:
   /// @param devices_wait  whether devices wait for the scene, as in lockstep
-  Runner(std::unique_ptr<LoadedScene> stage, bool devices_wait) noexcept;
+  Runner(std::unique_ptr<LoadedScene> scene, bool devices_wait) noexcept;
 
-  /// Does what the order wants; the step in progress, if any, is complete.
-  /// Precondition of kRestart and kExchange: nobody uses the frames of the present stage.
+  /// Does what the request wants; the step in progress, if any, is complete.
+  /// Precondition of kRestart and kExchange: no other thread uses the frames of the present scene.
   void execute(Request& request) noexcept;
 
   /// True if this turn of the loop has something to do.
@@ -33,22 +33,22 @@ class Runner {
   /// scene is paused. @return whether a tick is complete, and its answers are due.
   bool advance() noexcept;
 
-  LoadedScene& stage() noexcept { return *stage_; }
-  const Simulation& simulation() const noexcept { return stage_->simulation; }
-  Simulation& simulation() noexcept { return stage_->simulation; }
+  LoadedScene& loaded_scene() noexcept { return *scene_; }
+  const Simulation& simulation() const noexcept { return scene_->simulation; }
+  Simulation& simulation() noexcept { return scene_->simulation; }
   bool is_paused() const noexcept { return paused_; }
   std::uint64_t steps_left() const noexcept { return steps_left_; }  ///< single steps still wanted
-  double played_s() const noexcept;  ///< simulated time of all stages together [s]
+  double played_s() const noexcept;  ///< simulated time of all scenes together [s]
 
  private:
-  void restart(std::unique_ptr<LoadedScene>& stage) noexcept;
+  void restart(std::unique_ptr<LoadedScene>& next) noexcept;
   void exchange(Request& request) noexcept;
 
-  std::unique_ptr<LoadedScene> stage_;
+  std::unique_ptr<LoadedScene> scene_;
   bool devices_wait_;
   bool paused_ = false;
   std::uint64_t steps_left_ = 0;
-  double played_before_s_ = 0.0;  // by earlier stages
+  double played_before_s_ = 0.0;  // by earlier scenes
 };
 
 }  // namespace cordis::sim

@@ -7,19 +7,35 @@
 
 namespace cordis::sim {
 
-WorldLook look_at(const engine::World& world) noexcept {
+WorldFigures figures_of(const engine::World& world) noexcept {
   return {world.energy(), world.step_count(), world.state_hash()};
 }
 
-bool is_error_large(const engine::Energy& energy) noexcept {
-  constexpr double kLargestShare = 0.01;
+namespace {
+
+/// True if an error is above this share of the largest energy, and no rounding.
+bool is_above(double share, double error, const engine::Energy& energy) noexcept {
   constexpr double kRounding = 1e-20;  // [J]
-  const double error = std::abs(energy.integration_error());
-  return error > kLargestShare * energy.largest && error > kRounding;
+  return error > share * energy.largest && error > kRounding;
+}
+
+std::uint64_t next_id() noexcept {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+}  // namespace
+
+bool is_error_large(const engine::Energy& energy) noexcept {
+  return is_above(0.01, std::abs(energy.integration_error()), energy);
+}
+
+bool makes_energy(const engine::Energy& energy) noexcept {
+  return is_above(0.1, energy.integration_error(), energy);
 }
 
 ShadowWorld::ShadowWorld(std::shared_ptr<const engine::Network> network) noexcept
-    : network_(std::move(network)) {}
+    : id_(next_id()), network_(std::move(network)) {}
 
 void ShadowWorld::hand_over(const engine::World& world) noexcept {
   if (copy_.load(std::memory_order_acquire) != Copy::kAsked) return;
@@ -33,7 +49,7 @@ void ShadowWorld::hand_over(const engine::World& world) noexcept {
   copy_.store(Copy::kThere, std::memory_order_release);
 }
 
-std::optional<WorldLook> ShadowWorld::look(std::chrono::milliseconds patience) {
+std::optional<WorldFigures> ShadowWorld::read(std::chrono::milliseconds patience) {
   if (!world_) {
     world_ = std::make_unique<engine::World>(network_);
     room_.assign(world_->max_values_of_state(), 0.0);  // touches every page before the loop does
@@ -53,7 +69,7 @@ std::optional<WorldLook> ShadowWorld::look(std::chrono::milliseconds patience) {
   const bool fits = world_->take_state(room_, step_);
   copy_.store(Copy::kNone, std::memory_order_release);
   if (!fits) return std::nullopt;
-  return look_at(*world_);
+  return figures_of(*world_);
 }
 
 }  // namespace cordis::sim

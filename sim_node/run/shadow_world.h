@@ -12,38 +12,45 @@
 
 namespace cordis::sim {
 
-/// What a status tells of one moment of a world.
-struct WorldLook {
+/// What a status reports of one moment of a world.
+struct WorldFigures {
   engine::Energy energy;
   std::uint64_t step = 0;        ///< steps done
   std::uint64_t state_hash = 0;  ///< World::state_hash()
 };
 
 /// Real time: O(MATs + links + pairs), no allocation; much longer than a copy of the state.
-WorldLook look_at(const engine::World& world) noexcept;
+WorldFigures figures_of(const engine::World& world) noexcept;
 
 /// True when the steps have made or taken more than 1 % of the largest energy. What a scene at rest
 /// makes by rounding, below 1e-20 J, does not count.
 bool is_error_large(const engine::Energy& energy) noexcept;
 
-/// A second world of a network, for a thread that looks at the first one now and then. The loop
+/// True when the steps have made more than a tenth of the largest energy.
+bool makes_energy(const engine::Energy& energy) noexcept;
+
+/// A second world of a network, for a thread that reads the first one now and then. The loop
 /// that moves the first one copies its state, and only when the other thread has asked.
 class ShadowWorld {
  public:
   explicit ShadowWorld(std::shared_ptr<const engine::Network> network) noexcept;
 
+  /// From 1 on; differs from that of every other one in this process. Any thread.
+  std::uint64_t id() const noexcept { return id_; }
+
   /// The loop, between two steps: copies the state if it was asked for. Real time: no allocation.
   void hand_over(const engine::World& world) noexcept;
 
-  /// The other thread: asks for a copy and looks at it. Makes room the first time.
+  /// The other thread: asks for a copy and reads its figures. Makes room the first time.
   /// @param patience  wait for the loop at most; a copy that comes later serves the next call
-  std::optional<WorldLook> look(std::chrono::milliseconds patience);
+  std::optional<WorldFigures> read(std::chrono::milliseconds patience);
 
  private:
   enum class Copy : std::uint8_t { kNone, kAsked, kTooLarge, kThere };
 
+  std::uint64_t id_;
   std::shared_ptr<const engine::Network> network_;
-  std::unique_ptr<engine::World> world_;  // made by the first look
+  std::unique_ptr<engine::World> world_;  // made by the first read()
   std::vector<double> room_;              // of the loop while a copy is asked for
   std::size_t value_count_ = 0;           // likewise; of a state that is too large for the room
   std::uint64_t step_ = 0;                // likewise

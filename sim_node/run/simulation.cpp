@@ -32,8 +32,9 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
       id = port.device_id;
     }
     exchanges.emplace_back(device, id, role, ports, scene.gesture_rate_hz, epoch);
-    if (role == scene::Role::kLiaison)
-      exchanges.back().damp_with(PassivityController(scene, ports, account));
+    if (role != scene::Role::kLiaison) continue;
+    exchanges.back().damp_with(PassivityController(scene, ports, account));
+    exchanges.back().stop_with(TravelStops(scene, ports));
   }
   return exchanges;
 }
@@ -45,8 +46,7 @@ Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t 
       world_(std::make_shared<const engine::Network>(scene_->network)),
       partners_(scene_->network),
       devices_(exchanges_of(*scene_, epoch)),
-      steps_per_tick_(
-          static_cast<int>(std::lround(scene_->step_rate_hz / scene_->gesture_rate_hz))) {}
+      division_(scene_->step_rate_hz, scene_->gesture_rate_hz) {}
 
 bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room) noexcept {
   if (!world_.take_over(before.world_, room)) return false;
@@ -54,24 +54,32 @@ bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room)
     DeviceExchange* now = find(device.device_id());
     if (now != nullptr) now->take_over(device, /*at_once=*/true);
   }
+  partners_.take_over(before.partners_);
+  passed_bound_ = before.passed_bound_;
   troubles_ = before.troubles_;
+  division_ = before.division_;
   steps_in_tick_ = before.steps_in_tick_;
   tick_count_ = before.tick_count_;
   return true;
 }
 
-bool Simulation::advance(int steps, EventRoom& events) noexcept {
+bool Simulation::advance(int steps, EventRoom& events, StepRows* rows) noexcept {
   if (failed_) return false;
   if (is_between_ticks()) {
-    for (DeviceExchange& device : devices_) device.begin_tick();
+    for (DeviceExchange& device : devices_) {
+      if (passed_bound_ != PassedBound::kNone) device.let_go();
+      device.begin_tick();
+    }
   }
-  const int last = std::min(steps_in_tick_ + steps, steps_per_tick_);
+  const int last = std::min(steps_in_tick_ + steps, division_.steps());
   while (steps_in_tick_ < last) {
     ++steps_in_tick_;
-    for (DeviceExchange& device : devices_) device.play(world_, steps_in_tick_, steps_per_tick_);
+    const double share = division_.share(steps_in_tick_);
+    for (DeviceExchange& device : devices_) device.play(world_, steps_in_tick_, share);
     const engine::StepReport report = world_.step();
     events.add(world_.events(), report.lost_events);
-    partners_.look(world_);
+    partners_.update(world_);
+    if (partners_.is_passed()) let_devices_go(PassedBound::kPartners);
     troubles_.overflowed_steps += report.overflowed_sets > 0 ? 1U : 0U;
     troubles_.forgotten_pairs += report.forgotten_pairs;
     troubles_.refused_inputs += report.refused_inputs;
@@ -80,11 +88,21 @@ bool Simulation::advance(int steps, EventRoom& events) noexcept {
       failed_ = true;
       return false;
     }
+    if (rows != nullptr && rows->columns() > 0) {
+      scene_->signals.read_by_step(world_, rows->next(world_.step_count()));
+    }
   }
-  if (steps_in_tick_ < steps_per_tick_) return false;
+  if (steps_in_tick_ < division_.steps()) return false;
+  division_.next();
   steps_in_tick_ = 0;
   ++tick_count_;
   return true;
+}
+
+void Simulation::let_devices_go(PassedBound bound) noexcept {
+  if (keeps_devices_ || passed_bound_ != PassedBound::kNone) return;
+  passed_bound_ = bound;
+  for (DeviceExchange& device : devices_) device.let_go();
 }
 
 DeviceExchange* Simulation::find(std::uint32_t device_id) noexcept {

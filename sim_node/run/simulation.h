@@ -10,6 +10,8 @@
 #include "sim_node/devices/device_exchange.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/run/event_room.h"
+#include "sim_node/run/step_rows.h"
+#include "sim_node/run/tick_division.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
@@ -21,9 +23,12 @@ struct StepTroubles {
   std::uint64_t refused_inputs = 0;    ///< sum of StepReport::refused_inputs
 };
 
-/// A scene, its world and the exchanges with its devices. A tick is one gesture period:
-/// steps_per_tick() steps of the world between a sample of the devices and the answer to it. [Luc90
-/// V.1 Force feedback gestual transducers] Nothing here knows of DDS, threads or clocks.
+/// What a scene has passed beyond which its step is not certain to be stable.
+enum class PassedBound : std::uint8_t { kNone, kPartners, kNumber, kEnergy };
+
+/// A scene, its world and the exchanges with its devices. A tick is one gesture period: the steps of
+/// the world between a sample of the devices and the answer to it, as TickDivision counts them.
+/// [Luc90 V.1 Force feedback gestual transducers] Nothing here knows of DDS, threads or clocks.
 class Simulation {
  public:
   /// @param epoch  of this sim_node
@@ -37,8 +42,9 @@ class Simulation {
   /// Does the next steps of a tick, at most so many. Real time: does not throw, and allocates
   /// nothing but room for more bonds, between two steps.
   /// Does nothing once failed(). @param events  where the changes of state go
+  /// @param rows  where the signals of each step go; may be null
   /// @return whether the tick is complete.
-  bool advance(int steps, EventRoom& events) noexcept;
+  bool advance(int steps, EventRoom& events, StepRows* rows = nullptr) noexcept;
 
   /// @param row  room for one value per signal of the scene
   void read_signals(double* row) const noexcept { scene_->signals.read(world_, row); }
@@ -56,9 +62,11 @@ class Simulation {
   const std::shared_ptr<const scene::Scene>& shared_scene() const noexcept { return scene_; }
   const engine::World& world() const noexcept { return world_; }
   engine::World& world() noexcept { return world_; }
-  int steps_per_tick() const noexcept { return steps_per_tick_; }
-  /// Steps that the present tick still wants; steps_per_tick() between two ticks.
-  int steps_left_in_tick() const noexcept { return steps_per_tick_ - steps_in_tick_; }
+  /// Steps of the present tick; between two ticks of the next one.
+  int steps_of_tick() const noexcept { return division_.steps(); }
+  /// Steps that the present tick still wants; steps_of_tick() between two ticks.
+  int steps_left_in_tick() const noexcept { return division_.steps() - steps_in_tick_; }
+  const TickDivision& division() const noexcept { return division_; }
   bool is_between_ticks() const noexcept { return steps_in_tick_ == 0; }
   std::uint64_t tick_count() const noexcept { return tick_count_; }
   double simulated_s() const noexcept;
@@ -67,6 +75,15 @@ class Simulation {
   const PartnerWatch& partners() const noexcept { return partners_; }
 
   const StepTroubles& troubles() const noexcept { return troubles_; }
+
+  /// From now on no bound lets go of the devices.
+  void keep_devices() noexcept { keeps_devices_ = true; }
+  /// Lets go of all devices until the scene restarts or another one is loaded: they feel no force,
+  /// and their MATs hold still. The first reason stays. Partners beyond what is certified do so in
+  /// the step in which they come. Does nothing after keep_devices().
+  void let_devices_go(PassedBound bound) noexcept;
+  /// Why the devices were let go of.
+  PassedBound passed_bound() const noexcept { return passed_bound_; }
 
   /// The scene diverged: a position is no longer finite. Its forces must not be used any more.
   bool failed() const noexcept { return failed_; }
@@ -80,10 +97,12 @@ class Simulation {
   PartnerWatch partners_;
   StepTroubles troubles_;
   std::vector<DeviceExchange> devices_;
-  int steps_per_tick_;
+  TickDivision division_;
   int steps_in_tick_ = 0;  // done in the present tick
   std::uint64_t tick_count_ = 0;
   bool failed_ = false;
+  PassedBound passed_bound_ = PassedBound::kNone;
+  bool keeps_devices_ = false;
 };
 
 }  // namespace cordis::sim

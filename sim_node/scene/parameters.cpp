@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "node/config/nearest_word.h"
-#include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/language/formula.h"
+#include "sim_node/scene/liaisons/liaison_reader.h"
 
 namespace cordis::scene {
 
@@ -243,6 +244,87 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
   outcome.changes.insert(outcome.changes.end(), plain.begin(), plain.end());
   of_links_[name] = std::move(values);
   return outcome;
+}
+
+Parameters::Values Parameters::get(const std::string& what) const {
+  Values found;
+  const std::vector<std::string> known = names();
+  const auto is_known = [&](const std::string& name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  const std::size_t dot = what.rfind('.');
+  const std::string name = is_known(what) || dot == std::string::npos ? what : what.substr(0, dot);
+  if (!is_known(name)) {
+    found.problem = "no liaison and no links are named '" + name + "'";
+    found.hint = config::did_you_mean(name, known);
+    return found;
+  }
+  std::vector<std::string> words;
+  for (const auto& [parameter, value] : values_of(name)) {
+    words.push_back(parameter);
+    if (name == what || what == name + "." + parameter)
+      found.of.emplace_back(name + "." + parameter, value);
+  }
+  if (name != what && found.of.empty()) {
+    const Outcome unknown = unknown_parameter(name, what.substr(dot + 1), words);
+    found.problem = unknown.problem;
+    found.hint = unknown.hint;
+  }
+  return found;
+}
+
+std::vector<std::pair<std::string, double>> Parameters::values_of(const std::string& name) const {
+  const auto set_later = [](const auto& values, const std::string& key) {
+    const auto known = values.find(key);
+    return known == values.end() ? GivenParameters{} : known->second;
+  };
+  if (scene_->liaisons && scene_->liaisons->find(name) != nullptr)
+    return values_of_liaison(name, set_later(of_liaison_, name));
+
+  const GivenParameters own = set_later(of_links_, name);
+  for (const LinkGroup& group : scene_->link_groups) {
+    if (!is_of(group, name)) continue;
+    if (!group.liaison.empty()) {
+      return values_of_liaison(
+          group.liaison, merged(merged(set_later(of_liaison_, group.liaison), group.given), own));
+    }
+    const engine::NetworkDescription& network = scene_->network;
+    GivenParameters values{{kStiffness, network.links[group.first].stiffness},
+                           {kViscosity, network.links[group.first].viscosity}};
+    values = merged(std::move(values), own);
+    return {values.begin(), values.end()};
+  }
+  for (std::size_t s = 0; s < scene_->network.sets.size(); ++s) {
+    if (scene_->set_names[s] != name) continue;
+    for (const auto& [origin, index] : scene_->liaisons->pool().origins()) {
+      if (index != scene_->network.sets[s].state_machine) continue;
+      return values_of_liaison(
+          origin.liaison,
+          merged(merged(set_later(of_liaison_, origin.liaison), origin.given), own));
+    }
+  }
+  return {};
+}
+
+std::vector<std::pair<std::string, double>> Parameters::values_of_liaison(
+    const std::string& liaison, const GivenParameters& given) const {
+  const config::Value& definition = scene_->liaisons->find(liaison)->definition;
+  config::Problems problems;  // none: the scene has been read
+  const ParameterValues values(definition.find("parameters"), given, nullptr, liaison, problems);
+  std::vector<std::pair<std::string, double>> found;
+  for (const std::string& name : parameters_of(definition)) {
+    const auto own = given.find(name);
+    const std::optional<double> value = values.find(name);
+    if (value) {
+      found.emplace_back(name, *value);
+    } else if (own != given.end()) {
+      found.emplace_back(name, own->second);
+    } else {
+      found.emplace_back(name,
+                         read_formula(definition.find(name), name, 0.0, {}, values, problems));
+    }
+  }
+  return found;
 }
 
 std::vector<std::string> Parameters::names() const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim_node/scene/scene.h"
@@ -56,8 +57,23 @@ class Parameters {
   /// parameter by a formula follows. Nothing is set after a problem. Not in real time.
   [[nodiscard]] Outcome set(const std::string& name, const std::string& parameter, double value);
 
+  /// Parameters with their values, or why there are none.
+  struct Values {
+    std::vector<std::pair<std::string, double>> of;  ///< each with its whole name: finger.mass_kg
+    std::string problem;                             ///< as that of an Outcome
+    std::string hint;
+  };
+
+  /// The value of NAME.PARAMETER, or those of all parameters of NAME, as they are now. NAME is as
+  /// set() has it; of links that differ the first one counts.
+  [[nodiscard]] Values get(const std::string& what) const;
+
  private:
   struct Target;
+
+  std::vector<std::pair<std::string, double>> values_of(const std::string& name) const;
+  std::vector<std::pair<std::string, double>> values_of_liaison(const std::string& liaison,
+                                                                const GivenParameters& given) const;
 
   [[nodiscard]] Outcome set_of_liaison(const std::string& name, const std::string& parameter,
                                        double value);

@@ -113,7 +113,7 @@ struct Subspace {
 struct Scene {
   std::string name;
   std::string file;                 ///< path as it was given
-  double step_rate_hz = 0.0;        ///< an integer multiple of the gesture rate
+  double step_rate_hz = 0.0;        ///< at least the gesture rate
   bool rate_is_open = false;        ///< the file leaves the step rate to the plan; until it is set,
                                     ///< step_rate_hz is the gesture rate. See set_step()
   bool integrator_is_open = false;  ///< the file leaves the integrator to the plan
@@ -131,9 +131,9 @@ struct Scene {
   std::shared_ptr<const Liaisons> liaisons;
   std::vector<Port> ports;
   SignalReader signals;
-  std::vector<double> radius_m;         ///< per MAT, as it is drawn; 0 for a point
-  std::vector<LayoutPoint> layout;      ///< per MAT in a 1-D scene, else empty
-  std::optional<Subspace> confinement;  ///< by a reduction; then there is no layout
+  std::vector<double> radius_m;      ///< per MAT, as it is drawn; 0 for a point
+  std::vector<LayoutPoint> layout;   ///< per MAT in a 1-D scene, else empty
+  std::optional<Subspace> subspace;  ///< by a reduction; then there is no layout
   ReductionOptions reduce;
   std::vector<Reduction> reductions;   ///< that were made
   std::shared_ptr<const Scene> whole;  ///< before they were made; nullptr when none was
@@ -157,17 +157,5 @@ void check_network(const Scene& scene, const config::Place& integrator, const co
 
 /// Makes `links` again, from `link_groups`.
 void number_links(Scene& scene);
-
-/// Reads a scene file and all it includes. Whatever is wrong becomes a problem of its place, all in
-/// one go. The language is described in docs/language.md.
-/// @param referrer  where a person wrote the path, if in a file
-/// @return what could be read; to be used only when `problems` has no errors. Then engine::Network
-/// takes it.
-Scene load_scene(const std::string& path, config::Problems& problems,
-                 const config::Place& referrer = {});
-
-/// Reads the text of a scene in memory; `name` stands for its path, and includes start in its
-/// folder.
-Scene load_scene_text(const std::string& text, const std::string& name, config::Problems& problems);
 
 }  // namespace cordis::scene

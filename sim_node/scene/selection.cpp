@@ -156,8 +156,8 @@ class Picker {
   std::vector<const NameEntry*> children(const std::string& prefix) {
     const std::string name = prefix.substr(0, prefix.size() - (prefix.empty() ? 0 : 1));
     const std::vector<const NameEntry*> found = names_.children(name);
-    const bool told = !name.empty() && find(name, false) == nullptr;
-    if (found.empty() && !told && !names_.is_in_unsound(prefix)) {
+    const bool reported = !name.empty() && find(name, false) == nullptr;
+    if (found.empty() && !reported && !names_.is_in_unsound(prefix)) {
       problems_.error(value_.place(), "'" + name + "' is no part: it has no names in it",
                       "write " + name + " for all its MATs");
     }

@@ -1,100 +1,23 @@
-// sim_node/scene/selection.h -- the names of a scene, and the words that pick MATs or links by
-// them.
+// sim_node/scene/selection.h -- the words that pick MATs or links by their names.
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "node/config/value.h"
-#include "sim_node/scene/liaisons/link_law.h"
+#include "sim_node/scene/names.h"
 
 namespace cordis::scene {
 
-/// What a name of a scene stands for.
-enum class Named : std::uint8_t { kMatter, kPort, kLinks };
-
-/// A name and the consecutive MATs or links it stands for. What belongs to a part is called
-/// part.name, and a copy of a repeated part is called part[2].
-struct NameEntry {
-  std::string name;
-  Named kind = Named::kMatter;
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-  bool sound =
-      true;  ///< false: its description has a problem, so that nothing is said about its indices
-  config::Place place;
-  std::uint32_t copies = 0;  ///< of a repeated part: an index counts copies instead of MATs
-
-  std::uint32_t index_count() const noexcept { return copies == 0 ? count : copies; }
-  std::uint32_t per_index() const noexcept { return copies == 0 ? 1 : count / copies; }
-};
-
-/// MATs or links picked by a selection, in the order it tells them, none twice; never empty.
+/// MATs or links picked by a selection, in the order it lists them, none twice; never empty.
 struct Selection {
   Named kind = Named::kMatter;  ///< of the name that was written first
   std::vector<std::uint32_t> indices;
 
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(indices.size()); }
-};
-
-/// A link as a name tells it: its kind and its index among those of its kind in one word.
-constexpr std::uint32_t kLinkKindShift = 28;
-constexpr std::uint32_t link_word(LinkKind kind, std::uint32_t index) noexcept {
-  return (static_cast<std::uint32_t>(kind) << kLinkKindShift) | index;
-}
-constexpr LinkKind kind_of_link(std::uint32_t word) noexcept {
-  return static_cast<LinkKind>(word >> kLinkKindShift);
-}
-constexpr std::uint32_t index_of_link(std::uint32_t word) noexcept {
-  return word & ((1U << kLinkKindShift) - 1U);
-}
-
-/// The names of a scene. Matter, ports and named links share one list: no name stands for two
-/// things. While a part is read its scope is entered: names in it are those of the part.
-class Names {
- public:
-  /// Enters a scope as long as it lives.
-  class Scope {
-   public:
-    Scope(Names& names, const std::string& name) : names_(names), outer_(names.scope_) {
-      names_.scope_ += name + ".";
-    }
-    ~Scope() { names_.scope_ = outer_; }
-    Scope(const Scope&) = delete;
-    Scope& operator=(const Scope&) = delete;
-
-   private:
-    Names& names_;
-    std::string outer_;
-  };
-
-  /// Adds a name to the present scope; one that is taken is a problem of the entry's place.
-  void add(NameEntry entry, config::Problems& problems);
-
-  /// The name as it is called from outside of all parts.
-  std::string full(const std::string& name) const { return scope_ + name; }
-
-  /// An entry of the present scope; nullptr when there is none.
-  const NameEntry* find(const std::string& name) const noexcept;
-  /// What stands directly in the entry of this name, in the order of the indices; links do not.
-  std::vector<const NameEntry*> children(const std::string& name) const;
-  /// True if nothing has this name, but links have names that go on from it: those of a parallel
-  /// liaison.
-  bool is_before_links(const std::string& name) const noexcept;
-  /// True if the name belongs to a part whose description has a problem.
-  bool is_in_unsound(const std::string& name) const noexcept;
-  std::vector<std::string> words(bool with_links) const;  ///< for "did you mean"
-
-  /// A MAT or a link as a selection writes it: string[3].
-  std::string word_of(std::uint32_t index, bool is_link) const;
-
- private:
-  std::map<std::string, NameEntry> entries_;  // by full name
-  std::string scope_;
 };
 
 /// Consecutive indices, both ends included.
@@ -110,14 +33,10 @@ struct IndexRange {
 /// Reads `name`, `name[3]`, `name[2..5]` (both ends included, from 0), `part.name`, `part[1].name`,
 /// `part.*` (all matter in it), or a list of these. A repeated part without an index stands for all
 /// its copies. Whatever is wrong is a problem of the value's place, unless it follows from a
-/// problem told before.
+/// problem reported before.
 /// @param what        names the value in messages
 /// @param with_links  whether names of links may be picked, or MATs alone
 std::optional<Selection> select(const config::Value& value, const std::string& what,
                                 bool with_links, const Names& names, config::Problems& problems);
-
-/// True if a name may be given to something in a scene: letters, digits, '_' and '-', first a
-/// letter or '_'. If not, a problem of the place.
-bool check_name(const std::string& name, const config::Place& place, config::Problems& problems);
 
 }  // namespace cordis::scene

@@ -42,7 +42,7 @@ double value_of_state_link(const Signal& signal, const engine::World& world) noe
     case Quantity::kRestLength:
       return world.rest_length_of(signal.index);
     default:
-      return world.pull_of(signal.index);
+      return world.tension_of(signal.index);
   }
 }
 
@@ -146,7 +146,7 @@ double value_of_signal(const Signal& signal, const engine::World& world,
     case Quantity::kDistance:
     case Quantity::kElongation:
     case Quantity::kElongationRate:
-    case Quantity::kPull:
+    case Quantity::kTension:
     case Quantity::kState:
     case Quantity::kRestLength:
       return value_of_link(signal, world);
@@ -177,14 +177,24 @@ SignalReader::SignalReader(std::vector<Signal> signals, const engine::NetworkDes
     if (signal.near > 0.0) pieces_[s]->keep_near(signal.near);
   }
   mass_count_ = static_cast<double>(network.mass_count());
-  wants_energy_ = std::any_of(signals_.begin(), signals_.end(), [](const Signal& signal) {
-    return signal.quantity >= Quantity::kEnergy;
-  });
+  for (std::size_t s = 0; s < signals_.size(); ++s) {
+    const bool is_energy = signals_[s].quantity >= Quantity::kEnergy;
+    wants_energy_ = wants_energy_ || is_energy;
+    if (signals_[s].rate != SignalRate::kStep) continue;
+    wants_energy_by_step_ = wants_energy_by_step_ || is_energy;
+    if (signals_[s].is_sound) sounds_.push_back(by_step_.size());
+    by_step_.push_back(s);
+  }
 }
 
 void SignalReader::read(const engine::World& world, double* values) const noexcept {
   const engine::Energy energy = wants_energy_ ? world.energy() : engine::Energy{};
   for (std::size_t s = 0; s < signals_.size(); ++s) *values++ = value_of(s, world, energy);
+}
+
+void SignalReader::read_by_step(const engine::World& world, double* values) const noexcept {
+  const engine::Energy energy = wants_energy_by_step_ ? world.energy() : engine::Energy{};
+  for (const std::size_t s : by_step_) *values++ = value_of(s, world, energy);
 }
 
 double SignalReader::value_of(std::size_t index, const engine::World& world,

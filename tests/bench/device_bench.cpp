@@ -55,12 +55,17 @@ void device_tick(benchmark::State& state) {
   LoadedDevice device = read_device(file, "keyboard", problems);
   Echo echo;
   LoopMeter meter;
-  Exchange exchange(device.config, Role::kMass, {1, 0}, true, *device.driver, echo, meter,
-                    &node::monotonic_nsec);
+  Exchange exchange({.config = device.config,
+                     .driver = *device.driver,
+                     .channel = echo,
+                     .meter = meter,
+                     .series = {1, 0},
+                     .lockstep = true,
+                     .clock = &node::monotonic_nsec});
   for (auto _ : state) {
     exchange.send_sample();
     exchange.receive();
-    exchange.live();
+    exchange.step();
   }
 }
 BENCHMARK(device_tick)->Unit(benchmark::kMicrosecond);

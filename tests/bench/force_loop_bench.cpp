@@ -2,15 +2,27 @@
 // processes of their own.
 //
 // usage: force_loop_bench [seconds of the realtime part, 60]
-// Prints one table: lockstep exchanges per second and round trip, realtime overruns with the page
-// open in Chromium (where there is one), resident memory.
+//        force_loop_bench --rates [seconds of a run, 10] [FOLDER WIRE]
+// The first prints lockstep exchanges per second and round trip, realtime overruns with the page
+// open in Chromium (where there is one), resident memory. The second prints the delay from sensor to
+// motor and the processor time of each tick in real time, at 1, 2 and 4 kHz; with the folder of
+// another build's executables, and the WIRE_VERSION that they speak, those of both in turns.
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include <sys/types.h>
 
 #include "node/status_words.h"
 #include "tests/integration/live_session.h"
@@ -111,9 +123,148 @@ bool realtime(std::chrono::seconds duration) {
   return is_seen;
 }
 
+/// What a run in real time measured.
+struct Measured {
+  double p50_s = 0.0;
+  double p99_s = 0.0;
+  double max_s = 0.0;
+  double sim_cpu_s = 0.0;     // of a tick
+  double device_cpu_s = 0.0;  // of a tick
+  double late = 0.0;          // share of the ticks of both
+};
+
+/// Processor time of a process [s].
+double processor_s(pid_t process) {
+  double sum = 0.0;
+  const std::string tasks = "/proc/" + std::to_string(process) + "/task";
+  for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+    std::uint64_t nsec = 0;
+    std::ifstream(task.path() / "schedstat") >> nsec;
+    sum += static_cast<double>(nsec) * 1e-9;
+  }
+  return sum;
+}
+
+const char* const kKeyScene = R"(cordis: 1
+name: bench
+space: 1
+step: {rate_hz: %d, gesture_rate_hz: %d, integrator: cordis}
+liaisons: {wall: {kind: spring_damper, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.1}}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  string: {kind: string, count: 40, mass_kg: 0.1, from_m: [1], to_m: [2], ends: fixed, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.1}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}
+links:
+  - {liaison: wall, between: [key, ground]}
+)";
+
+std::string text_of(const char* format, int first, int second) {
+  std::array<char, 2048> text{};
+  std::snprintf(text.data(), text.size(), format, first, second);
+  return text.data();
+}
+
+/// A key and a string of 40 masses, four steps per period.
+std::optional<Measured> realtime_run(int rate_hz, std::chrono::seconds duration,
+                                     const cordis::test::Build& build) {
+  LiveSession session("realtime",
+                      "  sim: {node: sim_node, scene: scene.yaml}\n"
+                      "  keyboard: {node: device_node, device: key.yaml}\n",
+                      "bench", build);
+  session.add_file("scene.yaml", text_of(kKeyScene, 4 * rate_hz, rate_hz));
+  session.add_file(
+      "key.yaml",
+      "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nrate_hz: " + std::to_string(rate_hz) +
+          "\ndriver: mock\nmock: {hand: {moves: [{at_s: 0.5, in_s: 0.5, to_m: -0.02}]}}\n");
+  StatusWatch status(session.participant());
+  cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
+  cordis::test::ChildProcess& device = session.start("device_node", "keyboard");
+  const auto runs = [&](const char* name) {
+    return status.wait_for_phase(name, cordis::msg::PHASE_RUNNING);
+  };
+  if (!runs("sim") || !runs("keyboard")) {
+    std::fprintf(stderr, "%s%s", sim.output().c_str(), device.output().c_str());
+    return std::nullopt;
+  }
+  const auto figure = [&](const char* name, std::uint64_t above) -> const NodeStatus* {
+    const bool seen =
+        status.wait_for(name, [above](const NodeStatus& now) { return now.ticks() > above; });
+    return seen ? &status.of(name) : nullptr;
+  };
+  const NodeStatus* begin = figure("sim", static_cast<std::uint64_t>(rate_hz));
+  if (begin == nullptr) return std::nullopt;
+  const std::uint64_t ticks = begin->ticks();
+  const double sim_s = processor_s(sim.id());
+  const double device_s = processor_s(device.id());
+  const auto start = std::chrono::steady_clock::now();
+  std::this_thread::sleep_for(duration);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  const double periods = took.count() * rate_hz;
+  Measured measured;
+  measured.sim_cpu_s = (processor_s(sim.id()) - sim_s) / periods;
+  measured.device_cpu_s = (processor_s(device.id()) - device_s) / periods;
+  const NodeStatus* end = figure("sim", ticks + static_cast<std::uint64_t>(periods / 2));
+  const NodeStatus* key = figure("keyboard", static_cast<std::uint64_t>(periods / 2));
+  if (end == nullptr || key == nullptr) return std::nullopt;
+  measured.p50_s = key->latency_p50_s();
+  measured.p99_s = key->latency_p99_s();
+  measured.max_s = key->latency_max_s();
+  measured.late = static_cast<double>(end->overruns() + key->overruns()) /
+                  static_cast<double>(end->ticks() + key->ticks());
+  return measured;
+}
+
+void print_run(const char* name, int rate_hz, const Measured& run) {
+  std::printf(
+      "  %-6s %5d Hz  p50 %5.0f us  p99 %6.0f us  max %7.0f us  late %6.3f %%  "
+      "processor per tick: scene %5.1f us, device %5.1f us\n",
+      name, rate_hz, run.p50_s * 1e6, run.p99_s * 1e6, run.max_s * 1e6, 100.0 * run.late,
+      run.sim_cpu_s * 1e6, run.device_cpu_s * 1e6);
+  std::fflush(stdout);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// Runs at each rate; with another build in turns, three of each.
+bool rates(std::chrono::seconds duration, const cordis::test::Build& other) {
+  std::printf("realtime, one key and 40 masses, 4 steps per period, runs of %lld s\n",
+              static_cast<long long>(duration.count()));
+  for (const int rate_hz : {1000, 2000, 4000}) {
+    std::vector<double> ratios;
+    for (int turn = 0; turn < 3; ++turn) {
+      std::optional<Measured> beside;
+      if (!other.folder.empty()) {
+        beside = realtime_run(rate_hz, duration, other);
+        if (!beside) return false;
+        print_run("other", rate_hz, *beside);
+      }
+      const std::optional<Measured> ours = realtime_run(rate_hz, duration, {});
+      if (!ours) return false;
+      print_run("this", rate_hz, *ours);
+      if (beside) ratios.push_back(beside->p50_s / ours->p50_s);
+    }
+    if (!ratios.empty())
+      std::printf("  %d Hz: p50 of the other build is %.1f times that of this one\n", rate_hz,
+                  median(ratios));
+  }
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "--rates") == 0) {
+    cordis::test::Build other;
+    if (argc > 4) {
+      other.folder = argv[3];
+      other.wire_version = static_cast<std::uint32_t>(std::atoi(argv[4]));
+    }
+    return rates(std::chrono::seconds(argc > 2 ? std::atoi(argv[2]) : 10), other) ? 0 : 1;
+  }
   const int seconds = argc > 1 ? std::atoi(argv[1]) : 60;
   return lockstep() && realtime(std::chrono::seconds(seconds)) ? 0 : 1;
 }

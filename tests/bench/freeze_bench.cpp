@@ -112,10 +112,10 @@ void step_of_an_agglomerate(benchmark::State& state) {
   state.counters["awake"] = 1.0 - asleep / balls / static_cast<double>(state.iterations());
 }
 BENCHMARK(step_of_an_agglomerate)
-    ->ArgName("tolerance_um")
+    ->ArgName("tolerance_100nm")
     ->Arg(0)
-    ->Arg(1)
     ->Arg(5)
+    ->Arg(20)
     ->Unit(benchmark::kMillisecond)
     ->Iterations(300);
 

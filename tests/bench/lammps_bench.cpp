@@ -62,7 +62,7 @@ LammpsRun run_lammps(bool drop, bool opt) {
   LammpsRun run;
   if (std::FILE* output = popen(command.c_str(), "r")) {
     char line[512];
-    int steps = 0;  // of the loop that is being told of
+    int steps = 0;  // of the loop that is measured
     while (std::fgets(line, sizeof line, output) != nullptr) {
       double number = 0.0;
       long balls = 0;

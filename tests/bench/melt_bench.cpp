@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "sim_node/engine/world.h"
+#include "sim_node/plan/reference/thread_time.h"
 
 namespace {
 
@@ -24,8 +26,7 @@ using cordis::engine::World;
 /// Lennard-Jones with cut 2.5, dt 0.005, velocities of temperature 1.44. There it fills a periodic
 /// box; here it is a drop in free space, and the balls at its surface have fewer neighbours, so the
 /// counter `pairs_per_ball` stands beside the time (27.6 in the bulk).
-std::shared_ptr<const Network> melt() {
-  constexpr int kCells = 20;
+std::shared_ptr<const Network> melt(int cells = 20, double temperature = 1.44) {
   NetworkDescription network;
   network.step = 0.005;
   const double side = std::cbrt(4.0 / 0.8442);
@@ -35,12 +36,12 @@ std::shared_ptr<const Network> melt() {
     cordis::engine::Mat mat;
     mat.mass = 1.0;
     mat.position = 0.5 * side * Vec3(x, y, z);
-    mat.velocity = Vec3(uniform(), uniform(), uniform()) * std::sqrt(12.0 * 1.44);
+    mat.velocity = Vec3(uniform(), uniform(), uniform()) * std::sqrt(12.0 * temperature);
     network.mats.push_back(mat);
   };
-  for (int z = 0; z < 2 * kCells; ++z) {
-    for (int y = 0; y < 2 * kCells; ++y) {
-      for (int x = (y + z) % 2; x < 2 * kCells; x += 2) place(x, y, z);
+  for (int z = 0; z < 2 * cells; ++z) {
+    for (int y = 0; y < 2 * cells; ++y) {
+      for (int x = (y + z) % 2; x < 2 * cells; x += 2) place(x, y, z);
     }
   }
   cordis::engine::StateMachine state_machine;
@@ -85,5 +86,32 @@ BENCHMARK(step_of_a_melt)
     ->DenseRange(0, 2)
     ->Unit(benchmark::kMillisecond)
     ->Iterations(200);
+
+/// Median, 99th percentile and longest of 1,000 steps of the melt of 4 cells^3 balls [us]. Cold
+/// balls move slowly, and their neighbour list lasts long.
+void slowest_step_of_a_melt(benchmark::State& state) {
+  World world(melt(static_cast<int>(state.range(0)), 1e-3 * static_cast<double>(state.range(1))));
+  for (int n = 0; n < 100; ++n) world.step();
+  std::vector<double> times;
+  for (auto _ : state) {
+    const double from = cordis::plan::thread_nsec();
+    benchmark::DoNotOptimize(world.step());
+    times.push_back(1e-3 * (cordis::plan::thread_nsec() - from));
+  }
+  std::sort(times.begin(), times.end());
+  double sum = 0.0;
+  for (const double time : times) sum += time;
+  const double median = times[times.size() / 2];
+  state.counters["mean_us"] = sum / static_cast<double>(times.size());
+  state.counters["median_us"] = median;
+  state.counters["p99_us"] = times[times.size() * 99 / 100];
+  state.counters["worst_us"] = times.back();
+  state.counters["worst_over_median"] = times.back() / median;
+}
+BENCHMARK(slowest_step_of_a_melt)
+    ->ArgNames({"cells", "milli_t"})
+    ->ArgsProduct({{13, 23}, {1440, 14}})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1000);
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "cli/lab/offline_session.h"
+#include "cli/offline/offline_session.h"
 
 namespace {
 
@@ -20,8 +20,8 @@ const std::string kFolder = std::string(CORDIS_SOURCE_DIR) + "/launch_configs/";
 
 /// The counter `reserve` is simulated time over time.
 void one_gesture_period(benchmark::State& state, const std::string& launch_file) {
-  cordis::cli::OfflineSession stage(kFolder + launch_file);
-  for (auto _ : state) stage.play_until(stage.time_s() + kGesturePeriod);
+  cordis::cli::OfflineSession session(kFolder + launch_file);
+  for (auto _ : state) session.play_until(session.time_s() + kGesturePeriod);
   state.counters["reserve"] =
       benchmark::Counter(kGesturePeriod, benchmark::Counter::kIsIterationInvariantRate);
 }

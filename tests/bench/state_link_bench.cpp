@@ -108,7 +108,7 @@ std::shared_ptr<const Network> grid(int dimension, Kind kind) {
   network.step = 1e-3;
   if (kind != kLinear) network.state_machines = {collophane(kind), collophane(kind)};
   if (kind == kMixed) network.state_machines[1].start = 1;
-  const auto tie = [&](std::uint32_t a, std::uint32_t b) {
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
     const double rest = dimension == 1 ? 0.0 : 0.0099;
     if (kind == kLinear) {
       network.links.push_back({a, b, 100.0, 0.01, rest});
@@ -125,8 +125,8 @@ std::shared_ptr<const Network> grid(int dimension, Kind kind) {
                                     : Vec3(0.01 * column, 0.01 * row, 0.0);
       network.mats.push_back(mat);
       const std::uint32_t here = row * kLatticeSide + column;
-      if (column > 0) tie(here - 1, here);
-      if (row > 0) tie(here - kLatticeSide, here);
+      if (column > 0) join(here - 1, here);
+      if (row > 0) join(here - kLatticeSide, here);
     }
   }
   return std::make_shared<const Network>(network);

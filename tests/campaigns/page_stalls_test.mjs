@@ -1,5 +1,5 @@
 // tests/campaigns/page_stalls_test.mjs -- each node of a realtime session, with launcher and page,
-// stalls once for a long time; the same processes and the picture in Chromium go on afterwards.
+// stalls once for a long time; the same processes and the view in Chromium go on afterwards.
 //
 // CORDIS_STALL_S seconds each (3), CORDIS_STALL_SESSIONS sessions one after the other (1).
 import assert from 'node:assert/strict';
@@ -45,7 +45,7 @@ const stall = (name) => async ({ page, launcher }) => {
   process.kill(id, 'SIGCONT');
   const begin = Date.now();
   await goesOn(page);
-  console.log(`  ${name}: the picture goes on after ${Date.now() - begin} ms`);
+  console.log(`  ${name}: the view goes on after ${Date.now() - begin} ms`);
   assert.equal(processOf(launcher.id, name), id, `${name} is the same process`);
 };
 
@@ -58,7 +58,7 @@ async function start(session) {
 const cases = {};
 for (let i = 1; i <= SESSIONS; ++i) {
   const order = NODES.map((_, at) => NODES[(at + i) % NODES.length]);
-  for (const name of order) cases[`${i}: the picture goes on after a stall of ${name}`] = stall(name);
+  for (const name of order) cases[`${i}: the view goes on after a stall of ${name}`] = stall(name);
   cases[`${i}: nothing went wrong in the page, and Ctrl-C ends the session`] = async (session) => {
     const { page, pageErrors } = session;
     assert.deepEqual([await viz(page, 'errors'), pageErrors], [[], []]);

@@ -37,7 +37,7 @@ expect 'the output of a failed test is kept' "$(<"$place/out/run-2.log")" '*word
 expect 'the summary is kept' "$(<"$place/out/summary.txt")" "$output"
 
 call -n 1 -l loops:2 -- -R good
-expect 'a load runs beside, and its share is told' "$output" "1 runs, load loops:2: ctest -R good
+expect 'a load runs beside, and its share is reported' "$output" "1 runs, load loops:2: ctest -R good
 run 1 passed in * s: 100% tests passed, 0 tests failed out of 1
 took * % of the time in 2 threads for * s"
 expect 'all passed' "$code" 0
@@ -46,7 +46,7 @@ call -n 1 -- -R nothing
 expect 'a selection without tests is a failure' "$code" 1
 
 call -n 1 -l loops:many
-expect 'a load that cannot be is told' "$output" '*usage: busy_host *'
+expect 'a load that cannot be is reported' "$output" '*usage: busy_host *'
 expect 'before anything runs' "$code" 2
 
 ((failures == 0)) && printf 'all well\n'

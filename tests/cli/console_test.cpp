@@ -68,14 +68,14 @@ TEST(Console, NeverWaitsForAReaderAndSaysHowManyLinesAreMissing) {
   EXPECT_LT(shown, sent);
   console.line(Stream::kOut, "end");
   EXPECT_EQ(screen.look(), "... " + std::to_string(sent - shown) +
-                               " lines are missing here: nobody read them in time\nend\n");
+                               " lines are missing here: they were not read in time\nend\n");
 }
 
 TEST(Console, ForgetsAllWhenNobodyCanReadAnyMore) {
   Screen screen;
   Console console({screen.file(), screen.file()});
   screen.hide();
-  console.line(Stream::kOut, "to nobody");
+  console.line(Stream::kOut, "unread");
   console.flush();
   EXPECT_EQ(screen.look(), "");
 }

@@ -52,6 +52,14 @@ TEST(ControlWords, MakeAMappingOfNewValues) {
               "'" + std::string(word) + "' is not of the form NAME.PARAMETER=VALUE");
 }
 
+TEST(ControlWords, TakeATimeFromTheBeginningOfATakeOn) {
+  EXPECT_EQ(read_control_words("seek", {"0s"}).argument, "0");
+  EXPECT_EQ(read_control_words("seek", {"0"}).argument, "0");
+  EXPECT_EQ(read_control_words("seek", {"1500ms"}).argument, "1.5");
+  EXPECT_EQ(refusal_of("seek", {"-1s"}), "'-1s' is not a duration: it must be 0 or longer");
+  EXPECT_EQ(refusal_of("seek", {}), "write: seek TIME");
+}
+
 TEST(ControlWords, NameLinksAndTheirState) {
   EXPECT_EQ(read_control_words("state", {"rosin[3]", "unhooked"}).argument,
             "['rosin[3]', 'unhooked']");

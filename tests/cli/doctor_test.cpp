@@ -1,52 +1,35 @@
 // tests/cli/doctor_test.cpp -- what `cordis doctor` makes of a machine.
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
-#include "cli/doctor/checks.h"
+#include "cli/doctor/cpu_check.h"
+#include "cli/doctor/device_check.h"
 #include "cli/doctor/diagnosis.h"
+#include "cli/doctor/kernel_check.h"
+#include "cli/doctor/network_check.h"
+#include "cli/doctor/realtime_check.h"
 #include "cli/doctor/report.h"
+#include "cli/doctor/timer_check.h"
+#include "cli/doctor/version_check.h"
+#include "tests/support/fake_root.h"
 
 namespace cordis::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using machine::CoreWakeups;
-using machine::SystemFiles;
+using machine::FakeRoot;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-class FakeMachine {
- public:
-  FakeMachine()
-      : folder_(fs::path(testing::TempDir()) / ("cordis doctor " + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~FakeMachine() { fs::remove_all(folder_); }
-  FakeMachine(const FakeMachine&) = delete;
-  FakeMachine& operator=(const FakeMachine&) = delete;
-
-  void put(const std::string& path, const std::string& text) const {
-    fs::create_directories((folder_ / path).parent_path());
-    std::ofstream(folder_ / path) << text;
-  }
-  SystemFiles files() const { return SystemFiles(folder_); }
-
- private:
-  fs::path folder_;
-};
-
-std::string model_of(const FakeMachine& machine, const std::string& version) {
+std::string model_of(const FakeRoot& machine, const std::string& version) {
   return check_preemption(machine.files(), "6.1.0", version).values["model"];
 }
 
-TEST(Doctor, ReadsThePreemptionModelWhereverTheKernelTellsIt) {
-  const FakeMachine machine;
+TEST(Doctor, ReadsThePreemptionModelWhereverTheKernelReportsIt) {
+  const FakeRoot machine;
   EXPECT_EQ(model_of(machine, "#1 SMP Debian 6.1"), "unknown");
   EXPECT_EQ(model_of(machine, "#1 SMP PREEMPT_DYNAMIC Debian"), "unknown");
   EXPECT_EQ(model_of(machine, "#1 SMP PREEMPT Debian"), "full");
@@ -64,7 +47,7 @@ TEST(Doctor, ReadsThePreemptionModelWhereverTheKernelTellsIt) {
 }
 
 TEST(Doctor, WarnsOfAKernelThatIsNotPreempted) {
-  const FakeMachine machine;
+  const FakeRoot machine;
   machine.put("boot/config-6.1.0", "CONFIG_PREEMPT_NONE=y\n");
   const Finding fixed = check_preemption(machine.files(), "6.1.0", "#1 SMP");
   EXPECT_EQ(fixed.level, Level::kWarning);
@@ -85,7 +68,7 @@ TEST(Doctor, SaysHowToPermitRealtimePriorityAndLockedMemory) {
 }
 
 TEST(Doctor, CountsTheGovernorsOfTheCores) {
-  const FakeMachine machine;
+  const FakeRoot machine;
   EXPECT_EQ(check_governor(machine.files()).level, Level::kOk);
   machine.put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n");
   machine.put("sys/devices/system/cpu/cpufreq/nothing", "");
@@ -175,6 +158,24 @@ TEST(Doctor, NamesAFreePortWhenThatOfThePageIsTaken) {
   EXPECT_NE(finding.advice.find("view.port="), std::string::npos);
 }
 
+TEST(Doctor, ChecksAnInterfaceForASessionOnSeveralHosts) {
+  constexpr int kDomain = 100;
+  const Finding any = check_interface("", kDomain);
+  EXPECT_EQ(any.level, Level::kOk) << "no session needs one";
+  const Finding absent = check_interface("eth77x", kDomain);
+  EXPECT_EQ(absent.level, Level::kWarning);
+  EXPECT_NE(absent.text.find("'eth77x' is no interface"), std::string::npos);
+  EXPECT_NE(absent.advice, "");
+  for (const auto& one : any.values["interfaces"]) {
+    const auto name = one["name"].get<std::string>();
+    EXPECT_NE(any.text.find(name), std::string::npos);
+    const Finding found = check_interface(name, kDomain);
+    EXPECT_EQ(found.values["taken"], 0) << found.text;
+    EXPECT_GT(found.values["largest_packet_bytes"].get<int>(), 0);
+    EXPECT_EQ(check_interface(found.values["address"], kDomain).values["name"], name);
+  }
+}
+
 TEST(Doctor, CountsTheDdsPortsThatAreTaken) {
   constexpr int kDomain = 100;  // no test has it: those begin at 10 and end far below
   constexpr int kPort = 7400 + 250 * kDomain + 10;
@@ -188,16 +189,16 @@ TEST(Doctor, CountsTheDdsPortsThatAreTaken) {
 }
 
 TEST(Doctor, SaysWhoMayUseASerialLine) {
-  const FakeMachine machine;
-  const auto nobody = [](const std::string&) { return false; };
-  EXPECT_EQ(check_devices(machine.files(), nobody).text, "no device connected");
+  const FakeRoot machine;
+  const auto refused_all = [](const std::string&) { return false; };
+  EXPECT_EQ(check_devices(machine.files(), refused_all).text, "no device connected");
   machine.put("dev/ttyACM0", "");
   machine.put("dev/ttyUSB3", "");
   machine.put("dev/ttyS0", "");
   const Finding permitted = check_devices(machine.files(), [](const auto&) { return true; });
   EXPECT_EQ(permitted.level, Level::kOk);
   EXPECT_EQ(permitted.text, "/dev/ttyACM0, /dev/ttyUSB3: permitted");
-  const Finding refused = check_devices(machine.files(), nobody);
+  const Finding refused = check_devices(machine.files(), refused_all);
   EXPECT_EQ(refused.level, Level::kWarning);
   EXPECT_TRUE(refused.commands.at(0).starts_with("sudo usermod -aG "));
 }
@@ -209,22 +210,22 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-TEST(Doctor, WorksWhereTheKernelTellsNothing) {
-  const FakeMachine machine;
+TEST(Doctor, WorksWhereTheKernelReportsNothing) {
+  const FakeRoot machine;
   DiagnosisOptions options;
   options.duration = std::chrono::milliseconds(100);
   const std::vector<Finding> findings = diagnose(machine.files(), options);
-  const std::vector<std::string> keys{"versions",         "kernel.preemption", "realtime.priority",
-                                      "realtime.memory",  "cpu.governor",      "cpu.steal",
-                                      "timer.resolution", "timer.slack",       "timer.wakeups",
-                                      "network.loopback", "network.buffers",   "network.dds_ports",
-                                      "page.port",        "device.ports"};
+  const std::vector<std::string> keys{"versions",          "kernel.preemption", "realtime.priority",
+                                      "realtime.memory",   "cpu.governor",      "cpu.steal",
+                                      "timer.resolution",  "timer.slack",       "timer.wakeups",
+                                      "network.loopback",  "network.buffers",   "network.dds_ports",
+                                      "network.interface", "page.port",         "device.ports"};
   ASSERT_EQ(findings.size(), keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) EXPECT_EQ(findings[i].key, keys[i]);
 }
 
 TEST(DoctorReport, FitsAHundredColumns) {
-  const FakeMachine machine;
+  const FakeRoot machine;
   std::vector<Finding> findings{check_priority({false, false, "0", "8388608"}),
                                 check_memory_lock({false, false, "0", "8388608"}),
                                 check_wakeups({core_with(0, 30 * kMillisecond, false)}, 3.0),

@@ -25,7 +25,7 @@ done < <(cordis doctor --help | sed -n 's/^  \(cordis doctor.*\)$/\1/p' | grep -
 ((examples == 3)) || fail "examples found: $examples" ""
 
 keys=$(cordis doctor --json --duration 100ms | grep -o '"key": "[a-z._]*"' | cut -d'"' -f4)
-(($(wc -w <<<"$keys") == 14)) || fail 'the checks of the JSON' "$keys"
+(($(wc -w <<<"$keys") == 15)) || fail 'the checks of the JSON' "$keys"
 for key in $keys; do
   cordis doctor --help | grep -q "\b$key\b" || fail "the help does not name the key $key" ""
 done

@@ -26,6 +26,15 @@ TEST(Duration, RefusesEverythingElse) {
   }
 }
 
+TEST(Duration, OfAnOffsetMayBeZero) {
+  EXPECT_EQ(parse_offset("0"), nanoseconds(0));
+  EXPECT_EQ(parse_offset("0s"), nanoseconds(0));
+  EXPECT_EQ(parse_offset("0ms"), nanoseconds(0));
+  EXPECT_EQ(parse_offset("1.5s"), nanoseconds(1'500'000'000));
+  for (const char* text : {"", "-1s", "-0.5ms", "1", "0 s", "nans", "s", "10001h"})
+    EXPECT_THROW(parse_offset(text), UsageError) << text;
+}
+
 TEST(Duration, SaysWhatToWriteInstead) {
   try {
     parse_duration("10");

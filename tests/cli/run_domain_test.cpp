@@ -28,7 +28,7 @@ class RunDomain : public testing::Test {
   FakeSession session_;
 };
 
-TEST_F(RunDomain, IsClaimedToldAndPassedToTheNodes) {
+TEST_F(RunDomain, IsLockedReportedAndPassedToTheNodes) {
   session_.node("sim", "words;pid");
   const auto run = session_.start();
   ASSERT_TRUE(wait_for_all(*run)) << run->output();

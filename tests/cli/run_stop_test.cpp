@@ -49,7 +49,7 @@ TEST(RunStop, KillsAllAtTheSecondSignal) {
 
   run->signal(SIGINT);
   ASSERT_TRUE(run->wait_for_output("cordis | stopping; once more kills\n", kPatience));
-  EXPECT_TRUE(eventually([&] {  // what comes too soon is the same wish
+  EXPECT_TRUE(eventually([&] {  // what comes too soon is the same request
     run->signal(SIGINT);
     return run->output().find("cordis | killing all nodes;") != std::string::npos;
   }));
@@ -70,7 +70,7 @@ TEST(RunStop, TakesTheDoubleSignalOfTimeoutForOneRequest) {
   for (int i = 0; i < 5; ++i) run->signal(SIGTERM);
   const int code = end_of(*run);
 
-  // They are one wish within 300 ms.
+  // They are one request within 300 ms.
   const std::string reason = control.reason_to_skip(std::chrono::milliseconds(100));
   if (code != 0 && !reason.empty()) GTEST_SKIP() << reason;
   EXPECT_EQ(code, 0);

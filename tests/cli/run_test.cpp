@@ -165,6 +165,16 @@ TEST(Run, StartsOnlyTheNodesAskedFor) {
   EXPECT_FALSE(contains(run->output(), "view"));
 }
 
+TEST(Run, NamesTheWordsThatAnotherLauncherNeeds) {
+  FakeSession session;
+  session.node("sim", "run");
+  const auto run = session.start({"--only", "sim", "sim.title=a b"});
+
+  EXPECT_TRUE(run->wait_for_output(" 'sim.title=a b' --only ", kPatience));
+  run->signal(SIGINT);
+  EXPECT_EQ(end_of(*run), 0);
+}
+
 TEST(Run, ShowsThePageAndEndsWithATable) {
   FakeSession session;
   session.node("sim", "run");

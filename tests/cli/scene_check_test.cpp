@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "cli/check/check_report.h"
+#include "cli/check/check_verb.h"
 #include "cli/exit_code.h"
-#include "cli/verbs.h"
 #include "tests/cli/captured_run.h"
 
 namespace cordis::cli {
@@ -136,9 +136,29 @@ TEST_F(Checked, AProgramReadsTheSame) {
   // w dt = 2 pi 2 / 100: (w dt)^2 / 24
   EXPECT_NEAR(json["accuracy"]["pitch_error"].get<double>(), 6.58e-4, 3e-6);
   EXPECT_GT(json["load"]["step_nsec"].get<double>(), 0.0);
+  EXPECT_GE(json["load"]["worst_step_nsec"].get<double>(), json["load"]["step_nsec"].get<double>());
+  EXPECT_GE(json["load"]["measured_steps"].get<int>(), 100);
 }
 
-TEST_F(Checked, TellsTheReductionsInBothForms) {
+TEST_F(Checked, TellsTheLongestStepAndWhenItMakesTicksLate) {
+  write("100");
+  CheckOptions options;
+  options.file = path_;
+  SceneCheck check = check_scene(options);
+
+  check.step_nsec = 1e6;
+  check.worst_step_nsec = 2e6;
+  check.measured_steps = 500;
+  EXPECT_NE(text_of(check).find("the longest of 500 steps takes 2000 us\n"), std::string::npos)
+      << text_of(check);
+  EXPECT_EQ(text_of(check).find("late"), std::string::npos) << text_of(check);
+
+  check.worst_step_nsec = 2e9 / check.scene.gesture_rate_hz;
+  EXPECT_NE(text_of(check).find("some ticks come late\n"), std::string::npos) << text_of(check);
+  EXPECT_TRUE(nlohmann::json::parse(json_of(check))["load"]["makes_ticks_late"]);
+}
+
+TEST_F(Checked, ReportsTheReductionsInBothForms) {
   std::ofstream(path_) << R"(cordis: 1
 space: 2
 step: {rate_hz: 1000}
@@ -252,6 +272,26 @@ TEST_F(CheckedLaunch, ADeviceThatThePortIsTooStiffForIsRefusedAsByARun) {
   EXPECT_EQ(json["ports"][0]["devices"][0]["supported"], false);
 }
 
+TEST_F(CheckedLaunch, ADeviceThatNeedsAFasterAnswerThanAPeriodIsAWarningInRealTime) {
+  launch("realtime", "100");
+  const SceneCheck slow = check();
+  EXPECT_NE(text_of(slow).find("enough once its answers are measured to be fast"),
+            std::string::npos)
+      << text_of(slow);
+  EXPECT_FALSE(slow.problems.has_errors());
+  const nlohmann::json json = nlohmann::json::parse(json_of(slow));
+  EXPECT_EQ(json["problems"][0]["severity"], "warning");
+  const std::string message = json["problems"][0]["message"];
+  EXPECT_NE(message.find(" us; one period is assumed until 20 answers are measured"),
+            std::string::npos)
+      << message;
+  const nlohmann::json device = json["ports"][0]["devices"][0];
+  EXPECT_EQ(device["supported"], false);
+  EXPECT_GT(device["needed_answer_delay_s"], 0.01);
+  EXPECT_LT(device["needed_answer_delay_s"], 0.1);
+  EXPECT_FALSE(check({"clock=lockstep"}).problems.has_errors()) << "without delay it is supported";
+}
+
 TEST_F(CheckedLaunch, WordsChangeALaunchFileAlone) {
   launch("realtime", "200");
   EXPECT_THROW(check({"sim.scene=/nowhere.yaml"}), config::ConfigError);
@@ -288,7 +328,7 @@ TEST_F(Checked, WhatAPortNeedsOfItsDeviceIsSaid) {
   }
 }
 
-TEST_F(Checked, TooSlowForRealTimeIsToldWithBothAlternatives) {
+TEST_F(Checked, TooSlowForRealTimeIsReportedWithBothAlternatives) {
   write("100");
   CheckOptions options;
   options.file = path_;

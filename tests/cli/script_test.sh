@@ -65,7 +65,7 @@ PLACE=$(mktemp -d "${TMPDIR:-/tmp}/cordis script test XXXXXX")
 export PLACE
 trap 'rm -rf "$PLACE"' EXIT
 tree="$PLACE/a tree"
-mkdir -p "$tree"/{cmake,idl,include,node,sim_node,device_node,viz_node/web,cli} "$PLACE/tools"
+mkdir -p "$tree"/{cmake,idl,include,node,sim_node,device_node,viz_node/web,record_node,cli} "$PLACE/tools"
 cp "$1/cordis" "$1/packages.txt" "$tree"
 touch "$tree"/CMakeLists.txt "$tree/node/a.cpp"
 touch -d '1 hour ago' "$tree/CMakePresets.json" "$tree/viz_node/web/package-lock.json"
@@ -200,7 +200,7 @@ expect 'and is built then' "$(<"$PLACE/output")" "cordis: waiting for another ./
 cordis: building (release)*
 program: \[run\]"
 call ctl pause
-expect 'a source that changes while nobody builds does not keep ctl either' "$output" 'program: \[ctl\] \[pause\]'
+expect 'a source that changes while no build runs does not keep ctl either' "$output" 'program: \[ctl\] \[pause\]'
 call run
 flock "$held"
 call run

@@ -65,7 +65,7 @@ TEST(StatusBoard, AddsUpTheLateTicksOfAllNodes) {
   EXPECT_EQ(board.late_ticks().by_work, 2u);
 }
 
-TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
+TEST(StatusTable, ReportsRateOverrunsLatencyDriftAndState) {
   StatusBoard board(0);
   msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
   sim.target_rate_hz(1000);
@@ -83,7 +83,7 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
   sim.overflowed_steps(3);
   sim.forgotten_pairs(17);
   sim.refused_inputs(5);
-  sim.largest_limit_number(1.75);
+  sim.largest_stability_number(1.75);
   sim.largest_partners(7);
   sim.certified_partners(12);
   sim.step(10000);
@@ -121,7 +121,7 @@ TEST(StatusTable, TellsRateOverrunsLatencyDriftAndState) {
       "keyboard gave the hand -0.002 J, damped in 7 ticks\n");
 }
 
-TEST(StatusTable, TellsCausesInTheWordsOfTheNode) {
+TEST(StatusTable, ReportsCausesInTheWordsOfTheNode) {
   StatusBoard board(0);
   msg::NodeStatus key = status_of("key", msg::KIND_DEVICE_NODE, 1);
   key.target_rate_hz(1000);
@@ -132,7 +132,7 @@ TEST(StatusTable, TellsCausesInTheWordsOfTheNode) {
             std::string::npos);
 }
 
-TEST(StatusTable, TellsNoCausesOfANodeWithoutARate) {
+TEST(StatusTable, ReportsNoCausesOfANodeWithoutARate) {
   StatusBoard board(0);
   msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);  // as in lockstep and asap
   sim.ticks(1000);
@@ -164,7 +164,7 @@ TEST(StatusTable, CountsNoSilenceOfANodeThatIsStopped) {
             std::string::npos);
 }
 
-TEST(StatusTable, TellsWhyANodeFailed) {
+TEST(StatusTable, ReportsWhyANodeFailed) {
   StatusBoard board(0);
   msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
   sim.phase(msg::PHASE_FAILED);

@@ -37,12 +37,12 @@ TEST(Launch, ReadsSessionAndNodesInTheOrderOfTheFile) {
   EXPECT_EQ(keyboard->section.find("driver").text(), "mock");
   EXPECT_FALSE(keyboard->section.find("node").exists());
   EXPECT_FALSE(launch.find("view")->section.find("required").exists());
-  EXPECT_EQ(launch.find("nobody"), nullptr);
+  EXPECT_EQ(launch.find("absent"), nullptr);
   EXPECT_EQ(launch.resolve("devices/keyboard.yaml").string(), "some/where/devices/keyboard.yaml");
   EXPECT_EQ(launch.resolve("/devices/keyboard.yaml").string(), "/devices/keyboard.yaml");
 }
 
-TEST(Launch, TellsASceneFromALaunchFileInOneProblem) {
+TEST(Launch, DistinguishesASceneFromALaunchFileInOneProblem) {
   Problems problems;
 
   static_cast<void>(load_launch_text("cordis: 1\nname: bow\nspace: 1\nmatter: {a: {}}\nlinks: []\n",
@@ -151,6 +151,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"domain=102", "'domain' in launch file must be between 0 and 101, got 102", ""},
         BadOverride{"session=a b",
                     "the name of a session is 1 to 64 letters, digits, '_' and '-', got 'a b'", ""},
+        BadOverride{"netwrk.interface=eth0", "no node is named 'netwrk'",
+                    "did you mean 'network'?"},
         BadOverride{"sim=x", "expected a key of node 'sim'", "write sim.key=value"},
         BadOverride{"sim", "expected name.key=value", ""},
         BadOverride{"sim..x=1", "expected name.key=value, got 'sim..x=...'", ""},
@@ -158,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"sim.x=[1", "YAML syntax: expected ',' or ']'", "the '[' is still open"},
         BadOverride{"sim.node=sin_node",
                     "'node' in node 'sim' must be one of sim_node, device_node, viz_node, "
-                    "got 'sin_node'",
+                    "record_node, got 'sin_node'",
                     "did you mean 'sim_node'?"}));
 
 struct BadLaunch {
@@ -204,6 +206,9 @@ INSTANTIATE_TEST_SUITE_P(
                   ""},
         BadLaunch{"cordis: 1\nclok: asap\nnodes: {sim: {node: sim_node}}\n",
                   "l.yaml:2:1: error: unknown key 'clok' in launch file", "did you mean 'clock'?"},
+        BadLaunch{"cordis: 1\nnetwrk: {}\nnodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:2:1: error: unknown key 'netwrk' in launch file",
+                  "did you mean 'network'?"},
         BadLaunch{"cordis: 1\nnodes:\n  sim: {scene: x}\n",
                   "l.yaml:3:8: error: missing key 'node' in node 'sim'", ""},
         BadLaunch{"cordis: 1\nnodes:\n  sim: sim_node\n",
@@ -214,17 +219,118 @@ INSTANTIATE_TEST_SUITE_P(
                   ""},
         BadLaunch{"cordis: 1\nnodes:\n  view: {node: vis_node}\n",
                   "l.yaml:3:16: error: 'node' in node 'view' must be one of sim_node, device_node, "
-                  "viz_node, got 'vis_node'",
+                  "viz_node, record_node, got 'vis_node'",
                   "did you mean 'viz_node'?"},
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: sim_node}\n  b: {node: sim_node}\n",
                   "l.yaml:4:3: error: a session has one sim_node, and 'a' is one already",
                   "'a' is at line 3"},
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: sim_node}\n  a: {node: viz_node}\n",
                   "l.yaml:4:3: error: duplicate key 'a'", "first defined at line 3"},
+        BadLaunch{
+            "cordis: 1\ndomain: 7\nnetwork: eth0\nnodes: {sim: {node: sim_node}}\n",
+            "l.yaml:3:10: error: 'network' in launch file must be a mapping of keys, got 'eth0'",
+            ""},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.2], interfase: eth0}\nnodes: "
+                  "{sim: {node: sim_node}}\n",
+                  "l.yaml:3:30: error: unknown key 'interfase' in network",
+                  "did you mean 'interface'?"},
+        BadLaunch{
+            "cordis: 1\ndomain: 7\nnetwork: {interface: eth0}\nnodes: {sim: {node: sim_node}}\n",
+            "l.yaml:3:10: error: network names no other host: it needs 'peers', 'discovery_server' "
+            "or 'multicast: true'",
+            "peers: [192.168.5.1, 192.168.5.2], all hosts of the session"},
+        BadLaunch{
+            "cordis: 1\ndomain: 7\nnetwork: {multicast: true}\nnodes: {sim: {node: sim_node}}\n",
+            "l.yaml:3:10: error: network.multicast without 'peers' needs 'interface'",
+            "interface: eth0"},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {interface: lo, peers: [10.0.0.2]}\nnodes: {sim: "
+                  "{node: sim_node}}\n",
+                  "l.yaml:3:22: error: network.interface: lo is the loopback interface, which no "
+                  "other host reaches",
+                  "leave 'network:' out for a session on one host"},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {interface: 127.0.0.1, peers: "
+                  "[10.0.0.2]}\nnodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:3:22: error: network.interface: 127.0.0.1 is the loopback interface, "
+                  "which no other host reaches",
+                  "leave 'network:' out for a session on one host"},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {interface: 10.0.0, peers: [10.0.0.2]}\nnodes: "
+                  "{sim: {node: sim_node}}\n",
+                  "l.yaml:3:22: error: network.interface: '10.0.0' is neither an IPv4 address nor "
+                  "the name of an interface",
+                  ""},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.2, 127.0.0.1]}\nnodes: {sim: "
+                  "{node: sim_node}}\n",
+                  "l.yaml:3:29: error: network.peers: 127.0.0.1 is the loopback interface, which "
+                  "no other host reaches",
+                  "leave 'network:' out for a session on one host"},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.256]}\nnodes: {sim: {node: "
+                  "sim_node}}\n",
+                  "l.yaml:3:19: error: network.peers: '10.0.0.256' is neither an IPv4 address nor "
+                  "the name of a host",
+                  ""},
+        BadLaunch{
+            "cordis: 1\ndomain: 7\nnetwork: {peers: ['fe80::1']}\nnodes: {sim: {node: sim_node}}\n",
+            "l.yaml:3:19: error: network.peers: 'fe80::1' is neither an IPv4 address nor the name "
+            "of a host",
+            ""},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: []}\nnodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:3:18: error: network.peers names no host", ""},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {discovery_server: 10.0.0.2}\nnodes: {sim: "
+                  "{node: sim_node}}\n",
+                  "l.yaml:3:29: error: network.discovery_server is ADDRESS:PORT with a port of 1 "
+                  "to 65535, got '10.0.0.2'",
+                  "discovery_server: 192.168.5.1:11811"},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {discovery_server: '10.0.0.2:66000'}\nnodes: "
+                  "{sim: {node: sim_node}}\n",
+                  "l.yaml:3:29: error: network.discovery_server is ADDRESS:PORT with a port of 1 "
+                  "to 65535, got '10.0.0.2:66000'",
+                  "discovery_server: 192.168.5.1:11811"},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {discovery_server: '10.0.0.2:11811', multicast: "
+                  "true}\nnodes: {sim: {node: sim_node}}\n",
+                  "l.yaml:3:29: error: network.discovery_server finds all others by itself: no "
+                  "'peers' and no 'multicast' beside it",
+                  ""},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.2], multicast: yes}\nnodes: "
+                  "{sim: {node: sim_node}}\n",
+                  "l.yaml:3:41: error: 'multicast' in network must be true or false, got 'yes'",
+                  ""},
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, required: no}\n",
                   "l.yaml:3:33: error: 'required' in node 'a' must be true or false, got 'no'", ""},
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, respawn: 3}\n",
                   "l.yaml:3:32: error: 'respawn' in node 'a' must be true or false, got '3'", ""}));
+
+TEST(Launch, ReadsItsNetworkAndTakesOverridesOfIt) {
+  Problems problems;
+
+  const Launch launch = load_launch_text(
+      "cordis: 1\ndomain: 7\nnetwork: {peers: [studio.local, 10.0.0.2]}\n"
+      "nodes: {sim: {node: sim_node}}\n",
+      "l.yaml", {"network.interface=eth0", "network.multicast=true"}, problems);
+
+  ASSERT_EQ(problems.text(), "");
+  ASSERT_TRUE(launch.network);
+  EXPECT_EQ(launch.network->interface->text, "eth0");
+  EXPECT_EQ(launch.network->interface->place.file, "'network.interface=eth0' on the command line");
+  ASSERT_EQ(launch.network->peers.size(), 2u);
+  EXPECT_EQ(launch.network->peers[0].text, "studio.local");
+  EXPECT_EQ(launch.network->peers[1].place.column, 33);
+  EXPECT_TRUE(launch.network->multicast);
+  EXPECT_FALSE(launch.network->server);
+}
+
+TEST(Launch, HasNoNetworkUnlessItSaysSoOrTheCommandLineDoes) {
+  const std::string text = "cordis: 1\nnodes: {sim: {node: sim_node}}\n";
+  Problems problems;
+
+  EXPECT_FALSE(load_launch_text(text, "l.yaml", {}, problems).network);
+  const Launch launch = load_launch_text(
+      text, "l.yaml", {"domain=7", "network.discovery_server=10.0.0.9:11811"}, problems);
+
+  ASSERT_EQ(problems.text(), "");
+  ASSERT_TRUE(launch.network && launch.network->server);
+  EXPECT_EQ(launch.network->server->text, "10.0.0.9");
+  EXPECT_EQ(launch.network->server_port, 11811);
+}
 
 TEST(Launch, RefusesNodesWhoseNamesHaveTheSameHash) {
   // two names of letters with the same FNV-1a value

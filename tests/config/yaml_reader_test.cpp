@@ -34,7 +34,7 @@ TEST(LoadText, KnowsThePlaceOfEveryKeyAndValue) {
             "t:4:17");  // columns count characters, not bytes
 }
 
-TEST(LoadText, TellsQuotedScalarsFromPlainOnes) {
+TEST(LoadText, DistinguishesQuotedScalarsFromPlainOnes) {
   Problems problems;
 
   const Value root = load_text("[1, \"1\", '1']\n", "t", problems);
@@ -301,7 +301,7 @@ TEST_F(LoadFile, RefusesAFolderAndWhatNeverEnds) {
   EXPECT_FALSE(load_file("/dev/zero", problems).exists());
   const std::filesystem::path fifo = folder / "fifo.yaml";
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
-  EXPECT_FALSE(load_file(fifo.string(), problems).exists()) << "nobody writes to it";
+  EXPECT_FALSE(load_file(fifo.string(), problems).exists()) << "no process writes to it";
   EXPECT_EQ(problems.text(),
             folder.string() + ": error: cannot be read: it is a directory\n" +
                 "/dev/zero: error: cannot be read: it is a device, and a regular file is wanted\n" +

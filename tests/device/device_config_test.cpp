@@ -205,7 +205,7 @@ struct BadDevice {
 
 class DeviceProblem : public testing::TestWithParam<BadDevice> {};
 
-TEST_P(DeviceProblem, IsToldWithItsPlace) {
+TEST_P(DeviceProblem, IsReportedWithItsPlace) {
   const std::string problems = problems_of(GetParam().text);
   EXPECT_NE(problems.find(GetParam().problem), std::string::npos) << problems;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-constexpr std::uint64_t kRun = 77;
+constexpr std::uint64_t kEpoch = 77;
 constexpr std::uint64_t kSceneEpoch = 5;
 constexpr std::int64_t kPeriodNsec = 1'000'000;  // [ns]
 
@@ -88,10 +89,18 @@ DeviceConfig config_of_two_axes(double watchdog_s = 0.02) {
 }
 
 struct Rig {
-  explicit Rig(bool lockstep, Role role = Role::kMass, Exchange::Series series = {kRun, 0},
-               double watchdog_s = 0.02)
-      : config(config_of_two_axes(watchdog_s)),
-        exchange(config, role, series, lockstep, driver, channel, meter, &now, &since_boot) {}
+  explicit Rig(bool lockstep, Role role = Role::kMass, Exchange::Series series = {kEpoch, 0},
+               DeviceConfig device = config_of_two_axes())
+      : config(std::move(device)),
+        exchange({.config = config,
+                  .driver = driver,
+                  .channel = channel,
+                  .meter = meter,
+                  .role = role,
+                  .series = series,
+                  .lockstep = lockstep,
+                  .clock = &now,
+                  .since_boot = &since_boot}) {}
 
   /// The scene's answer to the sample sent last.
   GestureMessage answer(double value) {
@@ -115,7 +124,7 @@ struct Rig {
     if (answered) channel.waiting.push_back(answer(value));
     now_nsec += kPeriodNsec;
     exchange.receive();
-    exchange.live();
+    exchange.step();
     return driver.commands.back()[0];
   }
 
@@ -137,7 +146,7 @@ TEST(Exchange, NumbersItsSamplesAndEchoesTheAnswerInUse) {
 
   ASSERT_EQ(rig.channel.sent.size(), 3u);
   const GestureMessage& first = rig.channel.sent[0];
-  EXPECT_EQ(first.epoch, kRun);
+  EXPECT_EQ(first.epoch, kEpoch);
   EXPECT_EQ(first.sample, 1u);
   EXPECT_EQ(first.answered_epoch, 0u);
   EXPECT_EQ(first.answered_sample, 0u);
@@ -153,7 +162,7 @@ TEST(Exchange, NumbersItsSamplesAndEchoesTheAnswerInUse) {
 }
 
 TEST(Exchange, GoesOnWithTheNumbersOfItsProcess) {
-  Rig rig(false, Role::kLiaison, {kRun, 41});
+  Rig rig(false, Role::kLiaison, {kEpoch, 41});
 
   rig.exchange.send_sample();
 
@@ -181,18 +190,18 @@ TEST(Exchange, CarriesToPositionsInRoleLiaison) {
   EXPECT_NEAR(rig.period(true, -0.04), -0.003, 1e-15);  // 2 m/s
 }
 
-TEST(Exchange, TellsTheDriverHowOldItsCommandIs) {
+TEST(Exchange, GivesTheDriverTheAgeOfItsCommand) {
   now_nsec = 1'000'000'000;
   Rig rig(false, Role::kLiaison);
   rig.period(false);
-  EXPECT_GE(rig.driver.age, rig.config.force_guard.watchdog_s) << "nobody has ever commanded";
+  EXPECT_GE(rig.driver.age, rig.config.force_guard.watchdog_s) << "no force was ever commanded";
   rig.period(true, -0.001);
   EXPECT_NEAR(rig.driver.age, 0.001, 1e-12);
   for (int n = 0; n < 30; ++n) rig.period(false);
   EXPECT_NEAR(rig.driver.age, 0.031, 1e-12);
 }
 
-TEST(Exchange, TellsTheEnergyGivenToTheHandInBothRoles) {
+TEST(Exchange, ReportsTheEnergyGivenToTheHandInBothRoles) {
   const auto given_by = [](Role role, double answer) {
     Rig rig(false, role);
     for (int n = 0; n < 5; ++n) rig.period(true, answer);
@@ -270,7 +279,7 @@ TEST(Exchange, DropsWhatIsNotAnAnswerToIt) {
     const std::uint64_t before = rig.meter.dropped();
     rig.channel.waiting.push_back(message);
     rig.exchange.receive();
-    rig.exchange.live();
+    rig.exchange.step();
     EXPECT_EQ(rig.driver.commands.back()[0], 1.0);
     return rig.meter.dropped() - before;
   };
@@ -282,19 +291,19 @@ TEST(Exchange, DropsWhatIsNotAnAnswerToIt) {
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_time_nsec = now_nsec + 1; }), 1u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.sample = 101; }), 1u);
   // A scene that has not received this device yet, or that answers another node, is no fault.
-  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_epoch = kRun - 1; }), 0u);
+  EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_epoch = kEpoch - 1; }), 0u);
   EXPECT_EQ(dropped_by([](GestureMessage& m) { m.answered_epoch = m.answered_sample = 0; }), 0u);
 }
 
 TEST(Exchange, DoesNotTakeAnswersToAnEarlierRole) {
-  Rig rig(false, Role::kMass, {kRun, 10});
+  Rig rig(false, Role::kMass, {kEpoch, 10});
   rig.exchange.send_sample();
   GestureMessage late = rig.answer(9.0);
   late.answered_sample = 10;
 
   rig.channel.waiting.push_back(late);
   rig.exchange.receive();
-  rig.exchange.live();
+  rig.exchange.step();
 
   EXPECT_EQ(rig.driver.commands.back(), AxisValues{});
   EXPECT_EQ(rig.meter.dropped(), 1u);
@@ -311,7 +320,7 @@ TEST(Exchange, ANewRunOfTheSceneIsKnownByWhatItAnswers) {
 
     rig.channel.waiting.push_back(fresh);
     rig.exchange.receive();
-    rig.exchange.live();
+    rig.exchange.step();
 
     EXPECT_EQ(rig.driver.commands.back()[0], 2.0);
     EXPECT_EQ(rig.meter.dropped(), 0u);
@@ -327,7 +336,7 @@ TEST(Exchange, ANewRunOfTheSceneMayAnswerWhatAnEarlierOneHasAnswered) {
 
   rig.channel.waiting.push_back(fresh);
   rig.exchange.receive();
-  rig.exchange.live();
+  rig.exchange.step();
 
   EXPECT_EQ(rig.driver.commands.back()[0], 2.0);
 }
@@ -389,7 +398,7 @@ TEST(Exchange, InLockstepTakesTheAnswerToItsOwnSampleAlone) {
   const GestureMessage first = rig.answer(1.0);
   rig.channel.waiting.push_back(first);
   ASSERT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
-  rig.exchange.live();
+  rig.exchange.step();
   rig.exchange.send_sample();
 
   rig.channel.waiting.push_back(first);
@@ -398,7 +407,7 @@ TEST(Exchange, InLockstepTakesTheAnswerToItsOwnSampleAlone) {
   rig.channel.waiting.push_back(first);
   rig.channel.waiting.push_back(rig.answer(2.0));
   EXPECT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
-  rig.exchange.live();
+  rig.exchange.step();
   EXPECT_EQ(rig.driver.commands.back()[0], 2.0);
   EXPECT_EQ(rig.meter.dropped(), 2u);
 }
@@ -439,7 +448,7 @@ TEST(Exchange, InLockstepDoesNotDependOnTheClock) {
       now_nsec += nsec;
       rig.channel.waiting.push_back(rig.answer(std::sin(0.3 * n) * 30.0));
       EXPECT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
-      rig.exchange.live();
+      rig.exchange.step();
     }
     return rig.driver.commands;
   };
@@ -452,23 +461,13 @@ TEST(Exchange, FeelsEveryAnswerSoManyPeriodsLaterInLockstep) {
     now_nsec = 1000;
     DeviceConfig config = config_of_two_axes();
     config.limits.delay_periods = delay;
-    FakeDriver driver;
-    FakeChannel channel;
-    LoopMeter meter;
-    Exchange exchange(config, Role::kMass, {kRun, 0}, true, driver, channel, meter, &now);
+    Rig rig(true, Role::kMass, {kEpoch, 0}, config);
     for (int n = 1; n <= 8; ++n) {
-      exchange.send_sample();
-      GestureMessage answer;
-      answer.epoch = kSceneEpoch;
-      answer.sample = answer.answered_sample = channel.sent.back().sample;
-      answer.answered_time_nsec = channel.sent.back().time_nsec;
-      answer.answered_epoch = kRun;
-      answer.axis_count = 2;
-      answer.value[0] = 0.5 * n;
-      channel.waiting.push_back(answer);
-      ASSERT_TRUE(exchange.await_answer(nanoseconds(1)));
-      exchange.live();
-      EXPECT_DOUBLE_EQ(driver.commands.back()[0], std::max(0.0, 0.5 * (n - delay))) << delay;
+      rig.exchange.send_sample();
+      rig.channel.waiting.push_back(rig.answer(0.5 * n));
+      ASSERT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
+      rig.exchange.step();
+      EXPECT_DOUBLE_EQ(rig.driver.commands.back()[0], std::max(0.0, 0.5 * (n - delay))) << delay;
     }
   }
 }
@@ -477,27 +476,19 @@ TEST(Exchange, PutsTheEndPieceBetweenWireAndMotors) {
   now_nsec = 1000;
   DeviceConfig config = config_of_two_axes();
   config.end_piece = EndPiece({{0.5, 0.5}}, 2);
-  FakeDriver driver;
-  FakeChannel channel;
-  LoopMeter meter;
-  Exchange exchange(config, Role::kMass, {kRun, 0}, true, driver, channel, meter, &now);
-  exchange.send_sample();
-  GestureMessage answer;
-  answer.epoch = kSceneEpoch;
-  answer.sample = answer.answered_sample = 1;
-  answer.answered_time_nsec = channel.sent.back().time_nsec;
-  answer.answered_epoch = kRun;
+  Rig rig(true, Role::kMass, {kEpoch, 0}, config);
+  rig.exchange.send_sample();
+  GestureMessage answer = rig.answer(3.0);
   answer.axis_count = 1;
-  answer.value[0] = 3.0;
-  channel.waiting.push_back(answer);
-  ASSERT_TRUE(exchange.await_answer(nanoseconds(1)));
-  exchange.live();
-  exchange.send_sample();
+  rig.channel.waiting.push_back(answer);
+  ASSERT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
+  rig.exchange.step();
+  rig.exchange.send_sample();
 
-  EXPECT_EQ(channel.sent.back().axis_count, 1u);
-  EXPECT_DOUBLE_EQ(channel.sent.back().value[0], -0.0005);  // half of -1 mm and 0
-  EXPECT_DOUBLE_EQ(driver.commands.back()[0], 1.5);
-  EXPECT_DOUBLE_EQ(driver.commands.back()[1], 1.5);
+  EXPECT_EQ(rig.channel.sent.back().axis_count, 1u);
+  EXPECT_DOUBLE_EQ(rig.channel.sent.back().value[0], -0.0005);  // half of -1 mm and 0
+  EXPECT_DOUBLE_EQ(rig.driver.commands.back()[0], 1.5);
+  EXPECT_DOUBLE_EQ(rig.driver.commands.back()[1], 1.5);
 }
 
 TEST(Exchange, IsLostWhileItsDriverHasNoDevice) {
@@ -537,11 +528,11 @@ TEST(Exchange, StandsByWhileAnotherNodeIsAnswered) {
   const auto period_of_another = [&rig] {
     rig.exchange.send_sample();
     GestureMessage message = rig.answer(9.0);
-    message.answered_epoch = kRun + 1;
+    message.answered_epoch = kEpoch + 1;
     rig.channel.waiting.push_back(message);
     now_nsec += kPeriodNsec;
     rig.exchange.receive();
-    rig.exchange.live();
+    rig.exchange.step();
     return rig.driver.commands.back()[0];
   };
   EXPECT_EQ(period_of_another(), 0.0);
@@ -562,7 +553,13 @@ TEST(Exchange, StopsItsDriverAtTheEnd) {
   FakeChannel channel;
   LoopMeter meter;
   {
-    const Exchange exchange(config, Role::kMass, {kRun, 0}, false, driver, channel, meter, &now);
+    const Exchange exchange({.config = config,
+                             .driver = driver,
+                             .channel = channel,
+                             .meter = meter,
+                             .series = {kEpoch, 0},
+                             .lockstep = false,
+                             .clock = &now});
     EXPECT_FALSE(driver.stopped);
   }
   EXPECT_TRUE(driver.stopped);
@@ -570,7 +567,7 @@ TEST(Exchange, StopsItsDriverAtTheEnd) {
 
 TEST(Exchange, BeginsAnewAfterItStoodStillWhateverTheWatchdog) {
   now_nsec = 1'000'000'000;
-  Rig rig(false, Role::kMass, {kRun, 0}, /*watchdog_s=*/0.05);
+  Rig rig(false, Role::kMass, {kEpoch, 0}, config_of_two_axes(/*watchdog_s=*/0.05));
   EXPECT_EQ(rig.period(true, 3.0), 3.0);
 
   now_nsec += 22 * kPeriodNsec;  // the board has let go, and the answers are not old yet
@@ -605,7 +602,7 @@ TEST(Exchange, LeavesWithoutAJumpOfForce) {
     ASSERT_LT(periods, 10);
     rig.channel.waiting.push_back(rig.answer(20.0));  // is not taken
     now_nsec += kPeriodNsec;
-    rig.exchange.live();
+    rig.exchange.step();
     EXPECT_LE(before - rig.driver.commands.back()[0], 5.0 + 1e-9);  // 5000 N/s
     EXPECT_GT(rig.driver.age, age_before) << "a driver with a guard of its own fades as well";
     before = rig.driver.commands.back()[0];
@@ -614,12 +611,12 @@ TEST(Exchange, LeavesWithoutAJumpOfForce) {
 
   EXPECT_EQ(before, 0.0);
   EXPECT_EQ(periods, 4) << "20 N at 5000 N/s";
-  EXPECT_EQ(rig.meter.phase(), Phase::kRunning) << "nobody is told that it was lost";
+  EXPECT_EQ(rig.meter.phase(), Phase::kRunning) << "its loss is not reported";
 }
 
 TEST(Exchange, LeavesWithinHalfASecondHoweverSlowlyForcesMayFade) {
   now_nsec = 1'000'000'000;
-  Rig rig(false, Role::kMass, {kRun, 0}, /*watchdog_s=*/60.0);
+  Rig rig(false, Role::kMass, {kEpoch, 0}, config_of_two_axes(/*watchdog_s=*/60.0));
   rig.config.force_guard.slew_n_per_s = 1.0;
   rig.period(true, 20.0);
   rig.exchange.leave();
@@ -627,7 +624,7 @@ TEST(Exchange, LeavesWithinHalfASecondHoweverSlowlyForcesMayFade) {
   int periods = 0;
   for (; !rig.exchange.has_left() && periods < 1000; ++periods) {
     now_nsec += kPeriodNsec;
-    rig.exchange.live();
+    rig.exchange.step();
   }
 
   EXPECT_NEAR(periods, 500, 1);

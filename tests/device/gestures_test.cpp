@@ -111,7 +111,7 @@ TEST(Gestures, HoldStays) {
   EXPECT_EQ(paths[1].at(5.0), -0.02);
 }
 
-TEST(Gestures, TellWhatIsWrong) {
+TEST(Gestures, ReportWhatIsWrong) {
   EXPECT_NE(problems_of("gesture: {kind: knead, open_m: 0.1, grip_m: 0.1}", 2).find("four axes"),
             std::string::npos);
   EXPECT_NE(problems_of("{gesture: {kind: hold, at_m: 0}, start_m: 0}", 1).find("either"),

@@ -62,10 +62,10 @@ TEST(Pantograph, KnowsWhatItCannotReach) {
 
 TEST(Pantograph, TorquesStayWithinTheirLimitUpToASingularPose) {
   const Pantograph arms{0.07, 0.09, 0.1};
-  const double in_line = std::acos((0.18 - 0.1) / 0.14);  // elbows two outer arms apart
+  const double stretched = std::acos((0.18 - 0.1) / 0.14);  // elbows two outer arms apart
   double largest = 0.0;
   for (double bend = 0.5; bend > 1e-9; bend *= 0.3) {
-    const double right = in_line + bend;
+    const double right = stretched + bend;
     const Pantograph::Pose pose = arms.forward({std::numbers::pi - right, right});
     ASSERT_TRUE(pose.exists) << bend;
     const Pantograph::Pair wanted = Pantograph::torques(pose, {1.0, 2.0}, 1e9);

@@ -15,7 +15,7 @@ namespace {
 
 using test::Hostile;
 
-constexpr std::uint64_t kRun = 77;
+constexpr std::uint64_t kEpoch = 77;
 constexpr std::uint64_t kSceneEpoch = 5;
 constexpr std::int64_t kPeriodNsec = 1'000'000;
 
@@ -65,8 +65,14 @@ class HeldKey : public Driver {
 
 struct Rig {
   Rig(Role role, bool lockstep, bool end_piece)
-      : exchange(config_with(end_piece), role, {kRun, 0}, lockstep, driver, line, meter,
-                 &fake_clock) {}
+      : exchange({.config = config_with(end_piece),
+                  .driver = driver,
+                  .channel = line,
+                  .meter = meter,
+                  .role = role,
+                  .series = {kEpoch, 0},
+                  .lockstep = lockstep,
+                  .clock = &fake_clock}) {}
 
   const DeviceConfig& config_with(bool end_piece) {
     config.layout.count = 2;
@@ -93,7 +99,7 @@ struct Rig {
     line.waiting.push_back(true_answer(value));
     fake_nsec += kPeriodNsec;
     exchange.receive();
-    exchange.live();
+    exchange.step();
     exchange.send_sample();
   }
 

@@ -3,6 +3,7 @@
 #include "device_node/firmware/kfb1.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -63,7 +64,7 @@ TEST_F(Kfb1Test, CarriesPositionsAndForcesBothWays) {
   EXPECT_TRUE(until(*key, {}, [&](bool) { return board.forces[0] == 0 && board.forces[1] == 0; }));
 }
 
-TEST_F(Kfb1Test, TellsTheDeviceTheLargestForceOfItsFile) {
+TEST_F(Kfb1Test, SendsTheDeviceTheLargestForceOfItsFile) {
   Kfb1Board board;  // its own is 10 N
   board.plug.into_serial_line(link());
   AxisLayout layout = layout_of(2);
@@ -103,7 +104,7 @@ TEST_F(Kfb1Test, SaysOrCountsAtEachConnectionWhereTheDeviceIsNotWhatItsFileSays)
   };
 
   EXPECT_EQ(said_of(0.04, 10.0), "");
-  EXPECT_EQ(said_of(0.04, 4.0), "") << "a stronger device is told its limit";
+  EXPECT_EQ(said_of(0.04, 4.0), "") << "a stronger device receives its limit";
   EXPECT_PRED2(is_twice, said_of(0.05, 10.0),
                "kfb1: the keys have a travel of 0.04 m, and travel_m of the device file is 0.05 "
                "m: scenes are held against that");
@@ -115,17 +116,17 @@ TEST_F(Kfb1Test, SaysOrCountsAtEachConnectionWhereTheDeviceIsNotWhatItsFileSays)
 TEST_F(Kfb1Test, SaysOnceWhyASerialLineCannotBeOpened) {
   const CapturedLog log;
   auto keys = keys_at(port(), 2);
-  const auto live = [&] { until(*keys, {}, [n = 0](bool) mutable { return ++n == 50; }); };
+  const auto step = [&] { until(*keys, {}, [n = 0](bool) mutable { return ++n == 50; }); };
   const std::string begins = link().string() + " cannot be opened: ";
   const std::string absent = begins + "No such file or directory\n";
   keys->start(Role::kMass);
-  live();
+  step();
   EXPECT_EQ(log.lines("/"), absent) << "of five tries";
 
   std::filesystem::create_symlink("/dev/null", link());
-  live();
+  step();
   const std::string no_line = begins + "Inappropriate ioctl for device\n";
-  EXPECT_EQ(log.lines("/"), absent + no_line) << "another reason is told";
+  EXPECT_EQ(log.lines("/"), absent + no_line) << "another reason is reported";
 
   std::filesystem::remove(link());
   Kfb1Board board;
@@ -133,7 +134,7 @@ TEST_F(Kfb1Test, SaysOnceWhyASerialLineCannotBeOpened) {
   EXPECT_TRUE(until(*keys, {}, [](bool there) { return there; }));
   board.plug.pull();
   EXPECT_TRUE(until(*keys, {}, [](bool there) { return !there; }));
-  live();
+  step();
   EXPECT_EQ(log.lines("/"), absent + no_line) << "the same one is counted, once unplugged";
   keys.reset();
   EXPECT_EQ(log.lines("/"), absent + no_line + link().string() + " was not there: 1 more time\n");
@@ -263,7 +264,10 @@ TEST_F(Kfb1Test, LetsGoWhileTheBoardReportsAnEmergencyStopAndLogsOrCountsEachOne
       }));
       board.event = 0;
       int there_for = 0;  // longer than an event counts as going on
-      EXPECT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) { return (there_for += there) > 700; }));
+      const auto over = std::chrono::steady_clock::now() + std::chrono::milliseconds(700);
+      EXPECT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) {
+        return (there_for += there) > 700 && std::chrono::steady_clock::now() > over;
+      }));
       EXPECT_EQ(board.forces[0], 16384);
     }
 
@@ -301,7 +305,7 @@ TEST_F(Kfb1Test, GreetsUntilABoardThatResetsAtTheOpeningOfItsLineAnswers) {
   EXPECT_TRUE(until(*key, {}, [](bool there) { return there; }));
 }
 
-TEST_F(Kfb1Test, TellsABoardThatHasRestartedItsLargestForceAgain) {
+TEST_F(Kfb1Test, SendsABoardThatHasRestartedItsLargestForceAgain) {
   const CapturedLog log;
   Kfb1Board board;
   board.plug.into_serial_line(link());

@@ -12,7 +12,7 @@ msg::NodeStatus status_of(const LoopMeter& meter) {
   return status;
 }
 
-TEST(LoopMeter, TellsWhatWasCounted) {
+TEST(LoopMeter, ReportsWhatWasCounted) {
   LoopMeter meter;
   for (int n = 0; n < 5; ++n) meter.count_tick();
   meter.count_dropped();
@@ -33,7 +33,19 @@ TEST(LoopMeter, TellsWhatWasCounted) {
   EXPECT_EQ(status.silent_ticks(), 4u);
 }
 
-TEST(LoopMeter, TellsItsPhase) {
+TEST(LoopMeter, CountsSamplesWithoutAnAnswerOfTheirOwn) {
+  LoopMeter meter;
+  EXPECT_EQ(status_of(meter).link_samples(), 0u);
+
+  meter.record_answer(1);  // the first
+  meter.record_answer(1);
+  meter.record_answer(4);  // three between them have none
+
+  EXPECT_EQ(status_of(meter).link_samples(), 6u);
+  EXPECT_EQ(status_of(meter).link_unanswered(), 3u);
+}
+
+TEST(LoopMeter, ReportsItsPhase) {
   LoopMeter meter;
   EXPECT_EQ(status_of(meter).phase(), msg::PHASE_WAITING);
   meter.set_phase(Phase::kUnused);

@@ -83,7 +83,7 @@ TEST(Mock, SensorDoesNotMeasureMoreThanTheLimitOfForce) {
   EXPECT_EQ(after(mock, 2.0, 0.0)[0], -4.0);
 }
 
-TEST(Mock, PlaysTheAxesItIsToldOneAfterTheOther) {
+TEST(Mock, PlaysTheAxesItIsGivenOneAfterTheOther) {
   MockSettings settings = played_by_a_hand(-0.02, 0);
   settings.played = {2, 0};
   settings.stagger_s = 1.0;

@@ -18,9 +18,9 @@ constexpr double kPeriod = 0.001;   // T [s]
 constexpr double kMass = 0.05;      // m [kg]
 constexpr double kViscosity = 1.0;  // b [N s/m]
 
-/// Largest stiffness that is passive for every hand with a delay of d periods (Colgate and
+/// Largest stiffness that is passive for slow hands with a delay of d periods (Colgate and
 /// Schenkel 1997 for d = 0).
-double passive_stiffness(int delay) {
+double passive_stiffness(double delay) {
   return kViscosity / (kPeriod * (0.5 + delay));
 }
 
@@ -40,19 +40,21 @@ struct Key {
   double position = 0.0;
   double speed = 0.0;
 
-  void live(double force) {
-    const double decay = std::exp(-kViscosity * kPeriod / kMass);
+  void step(double force, double share) {
+    const double decay = std::exp(-kViscosity * share * kPeriod / kMass);
     const double end = force / kViscosity;  // the speed it tends to
     const double tau = kMass / kViscosity;
-    position += end * kPeriod + (speed - end) * tau * (1.0 - decay);
+    position += end * share * kPeriod + (speed - end) * tau * (1.0 - decay);
     speed = end + (speed - end) * decay;
   }
 };
 
-/// The key before a wall that pushes back from 0 downwards, as it was `delay` periods ago.
+/// The key before a wall that pushes back from 0 downwards, as it was `delay` periods ago. With a
+/// part of a period its force changes within the period.
 struct Loop {
-  Loop(double stiffness, int delay, bool active)
+  Loop(double stiffness, double delay, bool active)
       : stiffness_(stiffness),
+        part_(delay - std::floor(delay)),
         guard(guarded(active)),
         past_(static_cast<std::size_t>(delay) + 1, 0.0) {}
 
@@ -64,23 +66,33 @@ struct Loop {
     guard.accept(wanted);
     AxisValues position{};
     position[0] = key.position;
-    key.live(guard.tick(0.0, position)[0] + hand_n);
+    const double before = force_;
+    force_ = guard.tick(0.0, position, part_)[0];
+    const double start = key.position;
+    key.step(before + hand_n, part_);
+    given += before * (key.position - start);
+    const double middle = key.position;
+    key.step(force_ + hand_n, 1.0 - part_);
+    given += force_ * (key.position - middle);
     damped += guard.energy().is_damping();
   }
 
  private:
   double stiffness_;
+  double part_;
+  double force_ = 0.0;
 
  public:
   Key key;
   ForceGuard guard;
   int damped = 0;
+  double given = 0.0;  // to the hand, exactly [J]
 
  private:
   std::deque<double> past_;
 };
 
-class Delays : public ::testing::TestWithParam<int> {};
+class Delays : public ::testing::TestWithParam<double> {};
 
 TEST_P(Delays, APassiveWallIsNeverDamped) {
   std::mt19937_64 random(7);
@@ -97,6 +109,8 @@ TEST_P(Delays, APassiveWallIsNeverDamped) {
 
   EXPECT_EQ(loop.damped, 0);
   EXPECT_LT(deepest, -0.002) << "the hand has pressed the wall";
+  EXPECT_NEAR(loop.guard.energy().given_j(), loop.given, 5e-3 * std::abs(loop.given))
+      << "the motion between two samples is nearly straight";
 }
 
 /// Half of the range of positions in the last of six seconds under a hand of 1 N.
@@ -126,7 +140,8 @@ TEST_P(Delays, TheControllerEndsALimitCycleUpToTenTimesTheLimit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(PassivityObserver, Delays, ::testing::Values(0, 1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(PassivityObserver, Delays,
+                         ::testing::Values(0.0, 0.12, 0.33, 0.5, 0.9, 1.0, 1.4, 2.0, 2.7, 3.0));
 
 TEST(PassivityObserver, SumsForceTimesTheWayThatFollowedIt) {
   PassivityObserver monitor{PassivitySettings{}};

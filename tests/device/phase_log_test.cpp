@@ -14,7 +14,7 @@ PhaseLog key_log() {
   return {"keyboard", "kfb1", 0.02};
 }
 
-TEST(PhaseLog, TellsEachChangeInItsWords) {
+TEST(PhaseLog, ReportsEachChangeInItsWords) {
   const test::CapturedLog log;
   PhaseLog phases = key_log();
   EXPECT_FALSE(phases.note(Phase::kWaiting, true, 0)) << "it waits at first";

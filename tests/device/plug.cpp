@@ -29,7 +29,7 @@ void Plug::into_serial_line(const std::filesystem::path& link) {
   tcsetattr(keeper_, TCSANOW, &line);
   std::filesystem::remove(link);
   std::filesystem::create_symlink(ptsname(wire_), link);
-  live();
+  step();
 }
 
 int Plug::into_udp() {
@@ -41,7 +41,7 @@ int Plug::into_udp() {
   socklen_t size = sizeof address;
   getsockname(wire_, reinterpret_cast<sockaddr*>(&address), &size);
   udp_ = true;
-  live();
+  step();
   return ntohs(address.sin_port);
 }
 
@@ -53,7 +53,7 @@ void Plug::pull() {
   wire_ = keeper_ = -1;
 }
 
-void Plug::live() {
+void Plug::step() {
   lives_ = true;
   thread_ = std::thread([this] {
     const sched_param priority{sched_get_priority_min(SCHED_FIFO)};

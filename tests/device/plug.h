@@ -14,7 +14,7 @@
 namespace cordis::test {
 
 /// An emulated device's end. What arrives is handed to `receive`, on a thread of its own, which
-/// also calls `idle` about every millisecond; `say` answers from there, and harms what it is told
+/// also calls `idle` about every millisecond; `say` answers from there, and harms what it is asked to
 /// to.
 class Plug {
  public:
@@ -47,7 +47,7 @@ class Plug {
   void say(std::span<const std::uint8_t> bytes);
 
  private:
-  void live();
+  void step();
 
   std::function<void(std::uint8_t)> receive_;
   std::function<void()> idle_;

@@ -134,7 +134,7 @@ struct BadScript {
 
 class ScriptProblem : public testing::TestWithParam<BadScript> {};
 
-TEST_P(ScriptProblem, IsToldWithItsPlace) {
+TEST_P(ScriptProblem, IsReportedWithItsPlace) {
   config::Problems problems;
 
   const auto script = script_of(GetParam().text, two_keys(), problems);

@@ -45,9 +45,9 @@ class Wired : public ::testing::Test {
         problems);
     for (const DriverEntry& entry : driver_table()) {
       if (entry.name != name) continue;
-      auto made = entry.make(section, layout, problems);
+      auto driver = entry.make(section, layout, problems);
       EXPECT_EQ(problems.text(), "");
-      return made;
+      return driver;
     }
     return nullptr;
   }
@@ -87,13 +87,13 @@ class Wired : public ::testing::Test {
   /// Plugs a device in and lives with it through harm of every kind, until enough of it was found
   /// out; then unplugs it, and lives on until it is lost.
   /// @param check  of what is sensed in every period in which the device is there
-  /// @param felt   whether the device has the force, which it loses when the machine keeps the
+  /// @param arrived   whether the device has the force, which it loses when the machine keeps the
   /// driver
   ///               waiting
   static void live_through_harm(Driver& driver, test::Plug& plug, const std::filesystem::path& link,
                                 const AxisValues& force,
                                 const std::function<void(const AxisValues&)>& check,
-                                const std::function<bool()>& felt) {
+                                const std::function<bool()>& arrived) {
     auto& hardware = dynamic_cast<Hardware&>(driver);
     const std::uint64_t bad_before = hardware.bad_count();
     const std::uint64_t late_before = hardware.late_count();
@@ -108,7 +108,7 @@ class Wired : public ::testing::Test {
       EXPECT_TRUE(there || periods == 0 || hardware.is_let_go()) << "no harm makes it be lost";
       periods += there;
       return periods >= 150 && hardware.bad_count() >= bad_before + 12 &&
-             hardware.late_count() >= late_before + 12 && felt();
+             hardware.late_count() >= late_before + 12 && arrived();
     }));
     EXPECT_EQ(hardware.contact(), Contact::kPresent);
 

@@ -13,7 +13,7 @@
 //
 // usage: node examples_test.mjs SOURCE_FOLDER PROGRAM_FOLDER
 import assert from 'node:assert/strict';
-import { execFile, spawn } from 'node:child_process';
+import { execFile, execFileSync, spawn } from 'node:child_process';
 import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
@@ -26,6 +26,9 @@ const folder = mkdtempSync(join(tmpdir(), 'cordis-examples-'));
 process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
 cpSync(join(root, 'launch_configs'), join(folder, 'launch_configs'), { recursive: true });
 symlinkSync(join(programs, 'cordis'), join(folder, 'cordis'));
+// A take for the examples that read one.
+execFileSync(join(programs, 'contract_take'), [folder, '1']);
+cpSync(join(folder, 'zstd.mcap'), join(folder, 'take.mcap'));
 const environment = {
   ...process.env, PATH: `${programs}:${process.env.PATH}`, CORDIS_RUNTIME_DIR: join(folder, 'sessions'), NO_COLOR: '1',
 };
@@ -80,6 +83,7 @@ const isMention = (line) => !/^(\.\/)?cordis (test|doctor)$/.test(line) &&
   (!line.includes('launch_configs/') || /\b[A-Z]{2,}\b/.test(line));
 
 const all = commands();
+const isOfTake = (line) => line.includes('.mcap') && !line.startsWith('cordis record ');
 const ofVerb = (verb) => [...all].filter(([line]) => line.split(' ')[1] === verb);
 
 test('every block of code says what it is', () => {
@@ -193,29 +197,69 @@ test('cordis run', async () => {
   for (const [line, origin] of ofVerb('run')) await runs(line.includes('--duration') ? line : `${line} --duration 300ms`, origin);
 });
 
+/** Starts `cordis` with these words, waits until a line works, does what is wanted, and ends it. */
+async function during(words, ready, use) {
+  const program = spawn(join(programs, 'cordis'), words, { cwd: folder, env: environment, stdio: ['ignore', 'pipe', 'pipe'] });
+  let said = '';
+  for (const stream of [program.stdout, program.stderr]) stream.on('data', (text) => (said += text));
+  const ended = new Promise((resolve) => program.on('close', resolve));
+  try {
+    const end = Date.now() + LONGEST_MS;
+    while ((await shell(ready)).code !== 0) assert.ok(Date.now() < end, `'${words.join(' ')}' does not start\n${said}`);
+    await use();
+  } finally {
+    program.kill('SIGINT');
+    await ended;
+  }
+}
+
+const isForPlayer = (line) => / (seek|rate) /.test(line); // what a player alone understands
+
 test('cordis ctl', async () => {
   const sessions = new Map(); // name: lines
-  for (const [line, origin] of ofVerb('ctl')) {
+  for (const [line, origin] of ofVerb('ctl').filter(([text]) => !isForPlayer(text))) {
     const session = basename(line.split(' ')[2], '.yaml');
     sessions.set(session, [...(sessions.get(session) ?? []), [line, origin]]);
   }
   for (const [session, lines] of sessions) {
     lines.sort(([a], [b]) => a.includes(' load ') - b.includes(' load ')); // another scene has other links
-    const words = ['run', `launch_configs/${session}.yaml`];
-    const launcher = spawn(join(programs, 'cordis'), words, { cwd: folder, env: environment, stdio: ['ignore', 'pipe', 'pipe'] });
-    let said = '';
-    for (const stream of [launcher.stdout, launcher.stderr]) stream.on('data', (text) => (said += text));
-    const ended = new Promise((resolve) => launcher.on('close', resolve));
-    try {
-      const end = Date.now() + LONGEST_MS;
-      while ((await shell(`cordis ctl ${session} pause`)).code !== 0) assert.ok(Date.now() < end, `${session} does not start\n${said}`);
+    await during(['run', `launch_configs/${session}.yaml`], `cordis ctl ${session} pause`, async () => {
       for (const [line, origin] of lines) await runs(`${line} --timeout 60s`, origin);
-    } finally {
-      launcher.kill('SIGINT');
-      await ended;
-    }
+    });
   }
   assert.ok(sessions.size >= 2, 'sessions of examples');
+});
+
+test('cordis record, list, echo, hz, get and info of a session that runs', async () => {
+  writeFileSync(join(folder, 'msgs.idl'), 'struct Note { long pitch; };\n');
+  const SHORT = { record: ['--max-duration', '1s'], echo: ['-n', '1'], hz: ['--duration', '2s'] };
+  await during(['run', 'launch_configs/plucked_string.yaml'], 'cordis get plucked_string finger', async () => {
+    for (const verb of ['record', 'list', 'echo', 'hz', 'get', 'info']) {
+      const [option, value] = SHORT[verb] ?? [];
+      for (const [line, origin] of ofVerb(verb).filter(([text]) => !isOfTake(text))) {
+        const quick = option ? `${line.replace(new RegExp(` ${option} \\S+`), '')} ${option} ${value}` : line;
+        const text = await runs(quick, origin, verb === 'record' ? [0, 3] : [0]); // 3: done with loss
+        assert.notEqual(text.trim(), '', `${origin}: '${quick}' says nothing`);
+      }
+    }
+  });
+});
+
+test('cordis play', async () => {
+  cpSync(join(root, 'tests', 'golden', 'realtime_key.mcap'), join(folder, 'take.mcap'));
+  const quick = (line) => line.replace(/\b10s\b/, '1s'); // the take has 2.8 s
+  for (const [line, origin] of ofVerb('play').filter(([text]) => !text.includes('--loop'))) {
+    await runs(`${quick(line)} --playback-duration 500ms`, origin);
+  }
+  const asked = ofVerb('ctl').filter(([text]) => isForPlayer(text));
+  const endless = ofVerb('play').filter(([text]) => text.includes('--loop'));
+  for (const [line] of endless) {
+    const words = [...quick(line).split(' ').slice(1), '--session', 'plucked_string'];
+    await during(words, 'cordis ctl plucked_string resume', async () => {
+      for (const [order, origin] of asked) await runs(quick(order), origin);
+    });
+  }
+  assert.ok(endless.length > 0 && asked.length > 0);
 });
 
 test('cordis check', async () => {
@@ -224,10 +268,47 @@ test('cordis check', async () => {
   assert.ok(lines.length >= 3);
 });
 
+test('cordis cut, merge, info and recover', async () => {
+  for (const verb of ['cut', 'merge', 'info', 'recover']) {  // a merge takes what a cut has made
+    for (const [line, origin] of ofVerb(verb).filter(([text]) => isOfTake(text))) await runs(line, origin);
+  }
+});
+
 test('cordis lab', async () => {
   for (const [line, origin] of ofVerb('lab')) {
-    const quick = line.includes('--quick') ? line : `${line} --quick --duration 20ms`;
+    const quick = line.includes('--quick') ? line : `${line} --quick --duration 100ms`;
     await runs(`${quick} --out lab_${(written += 1)}`, origin);
+  }
+});
+
+test('cordis resim', async () => {
+  cpSync(join(root, 'tests', 'golden'), join(folder, 'tests', 'golden'), { recursive: true });
+  cpSync(join(root, 'tests', 'golden', 'realtime_key.mcap'), join(folder, 'take.mcap'));
+  const lines = ofVerb('resim');
+  for (const [line, origin] of lines) await runs(line, origin);
+  assert.ok(lines.length >= 4);
+});
+
+test('cordis simulate', async () => {
+  for (const [line, origin] of ofVerb('simulate')) {
+    await runs(line, origin);
+    for (const [, file] of line.matchAll(/--(?:csv|npz|wav|events|summary) (\w\S*)/g)) {
+      assert.ok(readFileSync(join(folder, file)).length > 0, `${origin}: ${file}`);
+    }
+  }
+});
+
+test('cordis export', async () => {
+  const take = join(folder, 'take.mcap');
+  rmSync(take, { force: true });
+  await runs('cordis run launch_configs/sounding_string.yaml clock=lockstep --only sim,hand,record --record take.mcap --duration 1s',
+    'a take with signals and sound');
+  for (const [line, origin] of ofVerb('export')) {
+    const text = await runs(line, origin, [0, 3]); // 3: a recorder may miss messages without queue
+    assert.equal(text.includes('lost: the take has no'), false, text);
+    for (const [, file] of line.matchAll(/--(?:csv|npz|wav|events) (\w\S*)/g)) {
+      assert.ok(readFileSync(join(folder, file)).length > 0, `${origin}: ${file}`);
+    }
   }
 });
 
@@ -245,7 +326,10 @@ test('cordis test lists what it would run', async () => {
 });
 
 test('no verb has examples that nothing runs', () => {
-  const RUN = ['run', 'ctl', 'check', 'lab', 'doctor', 'test'];
+  const RUN = [
+    'run', 'ctl', 'check', 'lab', 'simulate', 'doctor', 'resim', 'test', 'cut', 'merge', 'info', 'recover',
+    'export', 'record', 'play', 'list', 'echo', 'hz', 'get',
+  ];
   for (const [line, origin] of all) assert.ok(RUN.includes(line.split(' ')[1]), `${origin}: ${line}`);
   for (const verb of RUN) assert.ok(ofVerb(verb).length > 0, verb);
 });

@@ -14,6 +14,7 @@
 #include "device_node/device_config.h"
 #include "node/config/launch.h"
 #include "node/config/yaml_reader.h"
+#include "record_node/record_config.h"
 #include "sim_node/sim_config.h"
 #include "viz_node/viz_config.h"
 
@@ -73,6 +74,7 @@ mock: {q: 1, key: {q: 1}, sensor: {q: 1}, hand: {q: 1, axes: [0, 1, 2, 3], finge
       hand +
       R"(}}
 script: {q: 1, positions: [{at_s: 0, m: 0, q: 1}]}
+replay: {take: none.mcap, q: 1}
 kfb1: {)" +
       wire + "}\nfirefader: {" + wire + "}\nhaply: {" + wire + "}\n";
   text = std::regex_replace(text, std::regex("\\bq: 1"), kUnknown + std::string(": 1"));
@@ -90,12 +92,15 @@ Tables accepted() {
   Tables tables;
   const std::string unknown = kUnknown + std::string(": 1");
   config::Problems problems;
-  const config::Launch launch = config::load_launch_text(
-      "cordis: 1\ndomain: 1\n" + unknown + "\nnodes:\n  sim: {node: sim_node, scene: none, " +
-          unknown + "}\n  view: {node: viz_node, " + unknown + "}\n",
-      "launch", {}, problems);
+  const config::Launch launch =
+      config::load_launch_text("cordis: 1\ndomain: 1\nnetwork: {peers: [h], " + unknown + "}\n" +
+                                   unknown + "\nnodes:\n  sim: {node: sim_node, scene: none, " +
+                                   unknown + "}\n  view: {node: viz_node, " + unknown +
+                                   "}\n  record: {node: record_node, " + unknown + "}\n",
+                               "launch", {}, problems);
   sim::read_sim_config(launch, launch.nodes.at(0), problems);
   viz::read_viz_config(launch.nodes.at(1), problems);
+  record::read_record_section(launch.nodes.at(2), problems);
   collect(problems, tables);
   const std::vector<std::string>& of_launcher = config::launcher_keys();
   tables["every node"] = {of_launcher.begin(), of_launcher.end()};
@@ -127,9 +132,11 @@ Keys together(std::initializer_list<Keys> all) {
 const std::map<std::string, std::string>& headings() {
   static const std::map<std::string, std::string> kHeadings{
       {"Session", "launch file"},
+      {"network", "network"},
       {"Every node", "every node"},
       {"sim_node", "node 'sim'"},
       {"viz_node", "viz_node 'view'"},
+      {"record_node", "record_node 'record'"},
       {"end_piece", "end_piece"},
       {"passivity", "passivity"},
       {"trace", "trace"},
@@ -142,6 +149,7 @@ const std::map<std::string, std::string>& headings() {
       {"script", "script"},
       {"script.positions", "point"},
       {"script.forces", "force"},
+      {"replay", "replay"},
       {"kfb1", "kfb1"},
       {"firefader", "firefader"},
       {"haply", "haply"},
@@ -185,7 +193,7 @@ TEST(LaunchDocument, ListsKeysThatAreReadOnlyWhenTheyArePresent) {
   for (const auto& [heading, keys] : documented()) all.insert(keys.begin(), keys.end());
   const std::filesystem::path root = CORDIS_SOURCE_DIR;
   std::size_t files = 0;
-  for (const char* folder : {"device_node", "node/config", "viz_node", "sim_node"}) {
+  for (const char* folder : {"device_node", "node/config", "record_node", "viz_node", "sim_node"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string path = entry.path().string();
       const bool reads_scenes = path.find("/scene/") != std::string::npos;

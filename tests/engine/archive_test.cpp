@@ -237,7 +237,8 @@ std::size_t whole_numbers_of(const RandomWorld& random, const Snapshot& snapshot
                             scene.integrator == IntegratorKind::kImplicit;
   if (is_full_step) ++found;                                                   // has begun
   if (scene.integrator == IntegratorKind::kModal) found += scene.mats.size();  // driven
-  if (scene.freeze_tolerance > 0.0) found += scene.mats.size();                // steps at rest
+  // quiet steps, steps asleep, trials
+  if (scene.freeze_tolerance > 0.0) found += 3 * scene.mats.size();
   if (scene.sets.size() == 1) return found;
   const std::size_t slots = scene.freeze_tolerance > 0.0 ? 1 : 2;
   const std::size_t pairs =

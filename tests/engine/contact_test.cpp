@@ -42,7 +42,7 @@ NetworkDescription approach(StateMachine state_machine, double mass_kg, double s
 double speed_after(World& world) {
   for (int n = 0; n < 10'000'000; ++n) {
     world.step();
-    const bool away = world.velocity(1).x() > 0.0 && world.pull_of(0) == 0.0;
+    const bool away = world.velocity(1).x() > 0.0 && world.tension_of(0) == 0.0;
     if (away && world.position(1).x() > 0.0 && world.state_of(0) == 0) return world.velocity(1).x();
   }
   return 0.0;

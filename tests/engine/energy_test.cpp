@@ -292,7 +292,7 @@ TEST(Energy, OfStarsThatPullByAnExpressionIsKept) {
   }
 }
 
-TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsPull) {
+TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsTension) {
   const Term e = q(Quantity::kElongation);
   LinkState state;
   state.stiffness = 5.0;
@@ -332,6 +332,29 @@ TEST(Energy, OwnsUpToWhatAContactMakesWhoseStepIsTooLong) {
   EXPECT_GT(std::abs(wrong.integration_error()), 0.1 * wrong.largest);
   const Energy right = after_bouncing(0.001, 5'000);
   EXPECT_LT(std::abs(right.integration_error()), 0.01 * right.largest);
+}
+
+/// The largest integration error over the largest energy of a mass on a linear spring at K' = K dt^2 / m.
+double error_of_swing(int dimension, double number, int step_count) {
+  NetworkDescription scene = oscillator(0.1, 0.0, 0.0, 0.1, 0.0, 1e-3);
+  scene.dimension = dimension;
+  scene.links[0].stiffness = 0.1 * number / (scene.step * scene.step);
+  scene.links[0].rest_length = 0.05;
+  World world = make_world(scene);
+  double worst = 0.0;
+  for (int n = 0; n < step_count; ++n) {
+    const Energy energy = world.energy();
+    worst = std::max(worst, std::abs(energy.integration_error()) / energy.largest);
+    world.step();
+  }
+  return worst;
+}
+
+TEST(Energy, ErrorOfALinearSpringTellsStableFromDiverging) {
+  for (const int dimension : {1, 2}) {
+    EXPECT_LT(error_of_swing(dimension, 0.01, 2000), 0.005) << dimension;
+    EXPECT_GT(error_of_swing(dimension, 4.02, 60), 0.5) << dimension;
+  }
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace cordis::test {
 namespace {
 
-constexpr unsigned kOfAProcess = 0x1f80;
+constexpr unsigned kDefaultMode = 0x1f80;
 constexpr unsigned kFlushesAndRoundsUp = 0xdfc0;
 
 /// The mode of the caller, for a while.
@@ -85,7 +85,7 @@ TEST_P(FadingString, HasTheSameBitsInEveryModeOfItsCaller) {
     return hashes;
   };
 
-  EXPECT_EQ(hashes_in(kFlushesAndRoundsUp), hashes_in(kOfAProcess));
+  EXPECT_EQ(hashes_in(kFlushesAndRoundsUp), hashes_in(kDefaultMode));
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FadingString,

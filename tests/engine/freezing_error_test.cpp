@@ -61,7 +61,7 @@ TEST(FreezingError, IsOffByLessThanThreeTolerances) {
                          std::to_string(difference.awake));
       awake_before = difference.awake;
     }
-    EXPECT_LT(awake_before, 0.3);
+    EXPECT_LT(awake_before, 0.65);
   }
 }
 
@@ -118,7 +118,7 @@ TEST(FreezingError, IsOffByLessThanTenTolerancesInAnyNetwork) {
     double largest = 0.0;
     double farthest = 0.0;
     std::uint32_t max_asleep = 0;
-    constexpr int kSteps = 3000;
+    constexpr int kSteps = 8000;
     for (int n = 0; n < kSteps; ++n) {
       for (World* world : {&whole, &part}) {
         world->set_external_force(5, n < 100 ? Vec3(2.0, 0, 0) : Vec3(Vec3::Zero()));
@@ -138,7 +138,7 @@ TEST(FreezingError, IsOffByLessThanTenTolerancesInAnyNetwork) {
     EXPECT_LT(std::sqrt(square), 10.0) << seed;
     EXPECT_LT(largest, 100.0) << seed;
     EXPECT_GT(farthest, 100.0 * kTolerance) << seed;
-    EXPECT_GT(max_asleep, 10U) << seed;
+    EXPECT_GT(max_asleep, 5U) << seed;
     RecordProperty("network" + std::to_string(seed),
                    std::to_string(std::sqrt(square)) + ", at most " + std::to_string(largest));
   }

@@ -26,7 +26,7 @@ TEST(Freezing, LetsAPulseIntoWhatRests) {
   const NetworkDescription scene = bedded_chain(kCount);
   World whole = make_world(scene);
   World part = make_world(frozen(scene, kTolerance));
-  run(part, 30);
+  run(part, 101);
   ASSERT_EQ(part.asleep_count(), kCount);
 
   std::vector<int> arrival(kCount + 1, 0);
@@ -251,10 +251,10 @@ NetworkDescription resting_pair(const Behaving& state_machine) {
 
 TEST(Freezing, WakesWhereAnAgeRunsOut) {
   Behaving fuse;
-  fuse.state(0.0).exit(q(engine::Quantity::kAge) > 0.1, 1);
+  fuse.state(0.0).exit(q(engine::Quantity::kAge) > 0.2, 1);
   fuse.state(50.0);
   World world = make_world(resting_pair(fuse));
-  run(world, 90);
+  run(world, 190);
   ASSERT_EQ(world.asleep_count(), 2U);
 
   run(world, 20);
@@ -271,7 +271,7 @@ TEST(Freezing, WakesWhatIsTouched) {
   hook.state(50.0);
   const NetworkDescription scene = resting_pair(hook);
   World world = make_world(scene);
-  run(world, 50);
+  run(world, 110);
   ASSERT_EQ(world.asleep_count(), 2U);
 
   world.force_state(0, 1);
@@ -280,7 +280,7 @@ TEST(Freezing, WakesWhatIsTouched) {
   EXPECT_NE(world.velocity(1), Vec3::Zero());
 
   World other = make_world(scene);
-  run(other, 50);
+  run(other, 110);
   other.set_external_force(1, Vec3(0.01, 0, 0));
   EXPECT_FALSE(other.is_asleep(1));
   EXPECT_TRUE(other.is_asleep(2));
@@ -288,7 +288,7 @@ TEST(Freezing, WakesWhatIsTouched) {
   EXPECT_GT(other.velocity(1).x(), 0.0);
 
   World changed = make_world(scene);
-  run(changed, 50);
+  run(changed, 110);
   engine::StateMachine stiff = scene.state_machines[0];
   stiff.states[0].stiffness = 20.0;
   changed.replace_state_machine(0, stiff);
@@ -300,7 +300,7 @@ TEST(Freezing, WakesWhatIsTouched) {
   edited.gravity = Vec3(1.0, 0, 0);
   World after = make_world(edited);
   World before = make_world(scene);
-  run(before, 50);
+  run(before, 110);
   std::vector<double> room;
   room.reserve(after.max_values_of_state());
   ASSERT_TRUE(after.take_over(before, room));
@@ -328,7 +328,7 @@ TEST(Freezing, LetsAMaxwellElementFade) {
   scene.freeze_tolerance = 0.0;
   World whole = make_world(scene);
 
-  for (int n = 0; n < 20; ++n) {
+  for (int n = 0; n < 31; ++n) {
     run(world, 500);
     run(whole, 500);
     EXPECT_NEAR(world.position(1).x(), whole.position(1).x(), 20e-6) << "step " << 500 * n;
@@ -386,7 +386,7 @@ TEST(Freezing, ShowsTheForceOnWhatSleeps) {
   run(world, 3000);
   ASSERT_EQ(world.asleep_count(), 50U);
 
-  for (int n = 0; n < 100; ++n) {
+  for (int n = 0; n < 40; ++n) {
     strike(world, 51, scene.mats[51].position + Vec3(1e-3, 0, 0));
     world.step();
   }

@@ -133,12 +133,12 @@ TEST(Ratchet, HoldsTheTeethItHasPassed) {
     const double x = n <= kSteps ? reach * n / kSteps : reach * (2 * kSteps - n) / kSteps;
     world.impose_position(1, Vec3(x, 0, 0));
     world.step();
-    if (n == kSteps) before_reversal = world.pull_of(0);
+    if (n == kSteps) before_reversal = world.tension_of(0);
   }
 
   EXPECT_EQ(world.change_count(0, 0, 0), data["teeth"].get<std::uint64_t>());
   EXPECT_NEAR(before_reversal, number(data["force_before_reversal"]), 1e-9);
-  EXPECT_NEAR(world.pull_of(0), number(data["force_at_return"]), 1e-9);
+  EXPECT_NEAR(world.tension_of(0), number(data["force_at_return"]), 1e-9);
   EXPECT_NEAR(-world.energy().switching, number(data["dissipated"]), 1e-6);
 }
 

@@ -70,10 +70,10 @@ TEST(ImplicitEuler, SolvesANetworkAsDenseAlgebraDoes) {
     matrix(b, a) -= weight;
     const double apart = scene.mats[link.mat_b].position.x() - scene.mats[link.mat_a].position.x();
     const double speed = velocity(link.mat_b) - velocity(link.mat_a);
-    const double pull =
+    const double tension =
         link.stiffness * (apart - link.rest_length + dt * speed) + link.viscosity * speed;
-    push[a] += dt * pull;
-    push[b] -= dt * pull;
+    push[a] += dt * tension;
+    push[b] -= dt * tension;
   }
   for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
     matrix(i, i) += scene.mats[i].kind == MatKind::kMass

@@ -96,7 +96,7 @@ TEST(Law, IsTheSlopeOfItsPotential) {
     constexpr double kStep = 1e-5;
     const double rest_length = between(random, 0.5, 1.0);
     const auto energy = [&](double e) { return potential(law, {rest_length + e, e}); };
-    const auto pull = [&](double e) { return elastic_pull(law, {rest_length + e, e}); };
+    const auto tension = [&](double e) { return elastic_tension(law, {rest_length + e, e}); };
     for (int i = 0; i < 20; ++i) {
       const double e = between(random, -0.45, 1.0);
       const double slope = (energy(e + kStep) - energy(e - kStep)) / (2.0 * kStep);
@@ -104,10 +104,10 @@ TEST(Law, IsTheSlopeOfItsPotential) {
         ASSERT_EQ(slope, 0.0);
         continue;
       }
-      // The mean of the pull between the two, which rounding of the energy blurs.
+      // The mean of the tension between the two, which rounding of the energy blurs.
       const double change =
-          std::abs(pull(e + kStep) - pull(e)) + std::abs(pull(e) - pull(e - kStep));
-      ASSERT_NEAR(slope, pull(e), change + 1e-9 * (1.0 + std::abs(energy(e)))) << "at " << e;
+          std::abs(tension(e + kStep) - tension(e)) + std::abs(tension(e) - tension(e - kStep));
+      ASSERT_NEAR(slope, tension(e), change + 1e-9 * (1.0 + std::abs(energy(e)))) << "at " << e;
     }
   });
 }
@@ -117,9 +117,9 @@ TEST(Law, IsNowhereSteeperThanItsLargestSlope) {
     LawRange range{between(random, 0.1, 0.5), between(random, 0.5, 1.0), between(random, 0.0, 9.0)};
     range.viscous = argument_of(law) != LawArgument::kDistance && random() % 2 == 0;
     range.turns = !range.viscous && random() % 2 == 0;
-    const auto pull = [&](double at) {
-      return range.viscous ? viscous_pull(law, {range.rest_length, 0.0, at})
-                           : elastic_pull(law, {range.rest_length + at, at});
+    const auto tension = [&](double at) {
+      return range.viscous ? viscous_tension(law, {range.rest_length, 0.0, at})
+                           : elastic_tension(law, {range.rest_length + at, at});
     };
     double low = -range.argument;
     double high = range.argument;
@@ -134,18 +134,19 @@ TEST(Law, IsNowhereSteeperThanItsLargestSlope) {
       const double turn = balls->diameter * std::pow(0.5 + 0.5 * std::sqrt(1.0 + energy), -1.0 / 6);
       low = turn - range.rest_length;
     }
-    // A pull that lasts as the ends meet, or jumps, has no largest slope across the link.
+    // A tension that lasts as the ends meet, or jumps, has no largest slope across the link.
     const bool across = range.turns && largest.bounded && !largest.infinite_at_zero &&
-                        pull(-range.rest_length) <= 0.0;
+                        tension(-range.rest_length) <= 0.0;
     const double width = (high - low) / 400.0;
     ASSERT_TRUE(std::isfinite(largest.value));
     for (int i = 0; i < 400; ++i) {
       const double at = low + width * i;
-      const double slope = (pull(at + width) - pull(at)) / width;
-      ASSERT_LE(slope, largest.value + 1e-9 * (1.0 + std::abs(pull(at)) + largest.value))
+      const double slope = (tension(at + width) - tension(at)) / width;
+      ASSERT_LE(slope, largest.value + 1e-9 * (1.0 + std::abs(tension(at)) + largest.value))
           << "at " << at;
       if (!across || i == 0) continue;
-      ASSERT_LE(pull(at) / (range.rest_length + at), largest.value * (1.0 + 1e-9)) << "at " << at;
+      ASSERT_LE(tension(at) / (range.rest_length + at), largest.value * (1.0 + 1e-9))
+          << "at " << at;
     }
   });
 }
@@ -170,14 +171,15 @@ TEST(Law, HasTheSameBitsForOneLinkAndForEight) {
     for (auto& values : row) std::generate(values.begin(), values.end(), any);
     one.fill(1.0);
     for (const VectorWidth width : engine::supported_vector_widths()) {
-      engine::state_kernel(width).pulls(
+      engine::state_kernel(width).tensions(
           table.terms()[0],
           {kStateBatch, distance.data(), one.data(), speed.data(), rest_length.data(),
            mass_a.data(), mass_b.data(), 1.0, found.data(), viscous.data()});
       for (std::size_t i = 0; i < kStateBatch; ++i) {
         const LawPoint link{distance[i], distance[i] - rest_length[i], speed[i], mass_a[i],
                             mass_b[i]};
-        const double expected = elastic_pull(law, link) + viscous_pull(state.dissipation, link);
+        const double expected =
+            elastic_tension(law, link) + viscous_tension(state.dissipation, link);
         ASSERT_EQ(bits(found[i]), bits(expected)) << engine::to_string(width) << ", row " << i;
       }
     }

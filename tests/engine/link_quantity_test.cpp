@@ -26,7 +26,7 @@ StateMachine watching(Quantity quantity, double threshold) {
   return Behaving().state(10.0, 1.0).exit(q(quantity) > threshold, 1).state(10.0).state_machine;
 }
 
-TEST_P(LinkQuantities, TellHowItStandsAndMoves) {
+TEST_P(LinkQuantities, ReportHowItStandsAndMoves) {
   // b at (3, 4, 0) from a, moving by (0.3, -0.1, 0.2) in a step of 0.01 s, rest length 2
   const auto value_of = [](Quantity quantity) {
     NetworkDescription scene;
@@ -54,7 +54,7 @@ TEST_P(LinkQuantities, TellHowItStandsAndMoves) {
   EXPECT_EQ(value_of(Quantity::kAge), 0.0);
 }
 
-TEST_P(LinkQuantities, TellTheMassesOfItsEnds) {
+TEST_P(LinkQuantities, ReportTheMassesOfItsEnds) {
   const auto masses = [](Quantity quantity) {
     NetworkDescription scene;
     scene.step = 0.01;
@@ -71,11 +71,11 @@ TEST_P(LinkQuantities, TellTheMassesOfItsEnds) {
   EXPECT_EQ(masses(Quantity::kMassB), (std::vector<double>{2.5, 0.0}));
 }
 
-TEST_P(LinkQuantities, TellItsLastPullImpulseAndAge) {
+TEST_P(LinkQuantities, ReportItsLastTensionImpulseAndAge) {
   const auto step_of_change = [](Quantity quantity, double threshold, double* value) {
     World world = make(led_link(watching(quantity, threshold), 0.0, 0.0));
     for (int n = 0; n < 100; ++n) {
-      lead(world, 0.1 * (n + 1));  // pull in step n: 10 * 0.1 (n + 1) + 1 * 0.1 / 0.01 = n + 11
+      lead(world, 0.1 * (n + 1));  // tension in step n: 10 * 0.1 (n + 1) + 1 * 0.1 / 0.01 = n + 11
       if (world.events().empty()) continue;
       *value = world.events()[0].value;
       return n;
@@ -85,7 +85,7 @@ TEST_P(LinkQuantities, TellItsLastPullImpulseAndAge) {
   double value = 0.0;
   EXPECT_EQ(step_of_change(Quantity::kForce, 20.5, &value), 11);
   EXPECT_NEAR(value, 21.0, 1e-9);
-  // impulse at step n: 0.01 * sum of the pulls of steps 0 .. n-1 = 0.01 (n (n - 1) / 2 + 11 n)
+  // impulse at step n: 0.01 * sum of the tensions of steps 0 .. n-1 = 0.01 (n (n - 1) / 2 + 11 n)
   EXPECT_EQ(step_of_change(Quantity::kImpulse, 1.0, &value), 8);
   EXPECT_NEAR(value, 0.01 * (28 + 88), 1e-9);
   EXPECT_EQ(step_of_change(Quantity::kAge, 0.0749, &value), 8);

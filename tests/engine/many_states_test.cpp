@@ -16,7 +16,7 @@ class ManyStates : public testing::TestWithParam<int> {};
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, ManyStates, testing::Values(1, 2, 3));
 
-void expect_same(const World& first, const World& second) {
+void expect_same_states(const World& first, const World& second) {
   EXPECT_EQ(first.state_hash(), second.state_hash());
   const engine::Energy one = first.energy();
   const engine::Energy other = second.energy();
@@ -33,7 +33,7 @@ void expect_same(const World& first, const World& second) {
   for (std::uint32_t l = 0; l < 76; ++l) {
     EXPECT_EQ(first.state_of(l), second.state_of(l)) << "link " << l;
     EXPECT_EQ(first.rest_length_of(l), second.rest_length_of(l)) << "link " << l;
-    EXPECT_EQ(first.pull_of(l), second.pull_of(l)) << "link " << l;
+    EXPECT_EQ(first.tension_of(l), second.tension_of(l)) << "link " << l;
   }
 }
 
@@ -56,7 +56,7 @@ TEST_P(ManyStates, StepToTheSameBitsOnEveryWidth) {
     World world = make_world(network_of_many_states(GetParam()), width);
     stir(world, 1000);
     SCOPED_TRACE(engine::to_string(width));
-    expect_same(world, narrow);
+    expect_same_states(world, narrow);
   }
 }
 
@@ -71,11 +71,11 @@ TEST_P(ManyStates, GoOnFromASnapshotBitForBit) {
 
   second.restore(snapshot);
 
-  expect_same(first, second);
+  expect_same_states(first, second);
   EXPECT_TRUE(second.events().empty());
   stir(first, 300);
   stir(second, 300);
-  expect_same(first, second);
+  expect_same_states(first, second);
 }
 
 TEST_P(ManyStates, GoOnFromASnapshotOfOtherParameters) {
@@ -93,13 +93,13 @@ TEST_P(ManyStates, GoOnFromASnapshotOfOtherParameters) {
   stir(first, 100);
   stir(second, 100);
 
-  expect_same(first, second);
+  expect_same_states(first, second);
   World plain = make_world(network_of_many_states(GetParam()));
   const engine::Snapshot of_plain = plain.snapshot();
   second.restore(of_plain);
   stir(plain, 100);
   stir(second, 100);
-  expect_same(plain, second);
+  expect_same_states(plain, second);
 }
 
 TEST_P(ManyStates, RefuseASnapshotThatIsCutShort) {

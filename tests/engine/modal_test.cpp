@@ -64,6 +64,48 @@ TEST(Modal, FollowsEveryRegimeOfAnOscillatorExactly) {
   }
 }
 
+TEST(Modal, KeepsAStartVelocityHoweverFastItDecays) {
+  for (const double decay : {0.5, 1.0, 5.0, 30.0, 36.0, 100.0, 1e4}) {  // Z' = Z dt / m
+    constexpr double kStep = 1e-3;
+    constexpr double kSpeed = 2.0;
+    NetworkDescription scene = oscillator(0.1, 4.0, 0.0, 0.03, kSpeed, kStep);
+    scene.medium_viscosity = decay * 0.1 / kStep;
+    const double rate = 0.5 * decay / kStep;
+    const double spread = std::sqrt(rate * rate - 40.0);
+    const double slow = 40.0 / (rate + spread);
+    const double fast = rate + spread;
+    World world = make_world(by_modes(scene));
+    EXPECT_NEAR(world.energy().initial, 0.5 * 0.1 * kSpeed * kSpeed + 0.5 * 4.0 * 0.03 * 0.03,
+                decay < 0.7 ? 0.5 : 0.02)
+        << decay;
+    for (int n = 1; n <= 200; ++n) {
+      world.step();
+      const double t = n * kStep;
+      const double x = (0.03 * (fast * std::exp(-slow * t) - slow * std::exp(-fast * t)) +
+                        kSpeed * (std::exp(-slow * t) - std::exp(-fast * t))) /
+                       (fast - slow);
+      ASSERT_NEAR(world.position(1).x(), x, 2e-15 + 1e-12 * std::abs(x)) << decay << ", step " << n;
+      ASSERT_NEAR(world.energy().residual(), 0.0, 1e-12 * world.energy().largest) << decay;
+    }
+    EXPECT_NEAR(world.energy().dissipated, world.energy().initial - world.energy().elastic,
+                1e-3 * world.energy().initial)
+        << decay;
+  }
+}
+
+TEST(Modal, StartsFromASnapshotOfTheStart) {
+  NetworkDescription scene = oscillator(0.1, 4.0, 0.0, 0.03, 2.0, 1e-3);
+  scene.medium_viscosity = 5e3;
+  World world = make_world(by_modes(scene));
+  const engine::Snapshot start = world.snapshot();
+  run(world, 20);
+  const std::uint64_t hash = world.state_hash();
+  world.restore(start);
+  run(world, 20);
+
+  EXPECT_EQ(world.state_hash(), hash);
+}
+
 TEST(Modal, IsExactAtStepsFarBeyondTheLimitOfTheOthers) {
   // 1.6 ms is the limit of `cordis`; what is left is the error of the reference
   EXPECT_LT(error_after(0.02, string(0.0, 5e-3)), 5e-8);

@@ -45,6 +45,27 @@ class Members {
     }
   }
 
+  /// A way for each, up to `most` along each axis, that go_on() takes it.
+  void give_ways(double most) {
+    way_.resize(position_.size());
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (int axis = 0; axis < dimension_; ++axis) {
+        way_[4 * i + static_cast<std::size_t>(axis)] = most * (2.0 * uniform() - 1.0);
+      }
+    }
+  }
+  /// Gives every member the same speed, to one side or the other: pairs meet as fast as possible.
+  void give_opposite_ways(double way) {
+    way_.assign(position_.size(), 0.0);
+    for (std::size_t i = 0; i < count_; ++i) way_[4 * i] = uniform() < 0.5 ? way : -way;
+  }
+  void turn_back() {
+    for (double& way : way_) way = -way;
+  }
+  void go_on() {
+    for (std::size_t i = 0; i < position_.size(); ++i) position_[i] += way_[i];
+  }
+
   double square(std::size_t a, std::size_t b) {
     double sum = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -71,6 +92,7 @@ class Members {
   int dimension_;
   std::mt19937 random_;
   engine::AlignedVector<double> position_;
+  std::vector<double> way_;
 };
 
 /// The pairs of a list nearer than its range, in its order. Fails when it names one twice.
@@ -201,7 +223,7 @@ TEST(NeighbourList, WithoutEnoughRoomGivesTheSamePairsInParts) {
   }
 }
 
-TEST(NeighbourList, ForgetsWhereMembersWereWhenTold) {
+TEST(NeighbourList, ForgetsWhereMembersWereWhenAsked) {
   Members members(40, 3, 0.3);
   NeighbourList list(40, 0, 3, kRange, kPlenty, engine::pair_kernel(engine::best_vector_width()));
   list.refresh(members.data());

@@ -92,7 +92,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"link 0: viscosity", [](auto& s) { s.links[0].viscosity = kInfinity; }},
                     Fault{"link 0: viscosity", [](auto& s) { s.links[0].viscosity = 1e307; }},
                     Fault{"link 0: rest length", [](auto& s) { s.links[0].rest_length = kNan; }},
-                    Fault{"link 0: rest length", [](auto& s) { s.links[0].rest_length = -0.1; }}));
+                    Fault{"link 0: rest length", [](auto& s) { s.links[0].rest_length = -0.1; }},
+                    Fault{"Maxwell link 0: start force", [](auto& s) {
+                            s.maxwell_links.push_back({0, 1, 1.0, 1.0, kNan});
+                          }}));
 
 TEST(Network, TakesARestLengthBelowZeroInOneDimension) {
   NetworkDescription scene = sound();
@@ -117,6 +120,12 @@ TEST(Network, HasTheFingerprintOfItsValues) {
 
   EXPECT_EQ(Network(sound()).fingerprint(), Network(sound()).fingerprint());
   EXPECT_NE(Network(sound()).fingerprint(), Network(other).fingerprint());
+
+  NetworkDescription slack = sound();
+  slack.maxwell_links.push_back({0, 1, 5.0, 1.0});
+  NetworkDescription taut = slack;
+  taut.maxwell_links[0].start_force = 0.1;
+  EXPECT_NE(Network(slack).fingerprint(), Network(taut).fingerprint());
 }
 
 }  // namespace

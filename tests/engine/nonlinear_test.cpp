@@ -25,9 +25,9 @@ LinkState with(const Law& elasticity, double stiffness = 0.0) {
   return state;
 }
 
-/// Pull of a link of one state at some distances, rest length 0.5, nothing moving.
-std::vector<double> pulls(const LinkState& state, const std::vector<double>& distances,
-                          VectorWidth width) {
+/// Tension of a link of one state at some distances, rest length 0.5, nothing moving.
+std::vector<double> tensions(const LinkState& state, const std::vector<double>& distances,
+                             VectorWidth width) {
   NetworkDescription scene;
   scene.step = 0.01;
   scene.mats.push_back(fixed(Vec3::Zero()));
@@ -40,7 +40,7 @@ std::vector<double> pulls(const LinkState& state, const std::vector<double>& dis
   world.step();
   std::vector<double> found;
   for (std::uint32_t l = 0; l < distances.size(); ++l) {
-    found.push_back(world.pull_of(l));
+    found.push_back(world.tension_of(l));
     EXPECT_NEAR(world.link_force(l + 1).y(), -found.back(), 1e-12 * std::abs(found.back()));
   }
   return found;
@@ -48,13 +48,13 @@ std::vector<double> pulls(const LinkState& state, const std::vector<double>& dis
 
 class Laws : public testing::TestWithParam<VectorWidth> {
  protected:
-  static void expect_pulls(const LinkState& state, double (*expected)(double distance)) {
+  static void expect_tensions(const LinkState& state, double (*expected)(double distance)) {
     std::vector<double> distances;
     for (int i = 1; i <= 61; ++i) distances.push_back(0.05 * i - 0.0123);
-    const std::vector<double> found = pulls(state, distances, GetParam());
+    const std::vector<double> found = tensions(state, distances, GetParam());
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const double pull = expected(distances[i]);
-      EXPECT_NEAR(found[i], pull, 1e-13 * (1.0 + std::abs(pull))) << "at " << distances[i];
+      const double tension = expected(distances[i]);
+      EXPECT_NEAR(found[i], tension, 1e-13 * (1.0 + std::abs(tension))) << "at " << distances[i];
     }
   }
 };
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Widths, Laws, testing::ValuesIn(engine::supported_vecto
                          [](const auto& width) { return engine::to_string(width.param); });
 
 TEST_P(Laws, OfATableIsLinearBetweenItsPointsAndConstantBeyond) {
-  expect_pulls(with(table_law()), [](double d) {
+  expect_tensions(with(table_law()), [](double d) {
     const double e = d - 0.5;
     if (e < -0.2) return -9.0;
     if (e < -0.05) return -9.0 + 8.0 * (e + 0.2) / 0.15;
@@ -76,10 +76,10 @@ TEST_P(Laws, OfATableIsLinearBetweenItsPointsAndConstantBeyond) {
 TEST_P(Laws, OfATableMeetsItsPointsExactly) {
   LinkState state;
   state.elasticity = engine::Table{{-0.25, 0.125, 0.25, 1.5}, {-0.3, 0.7, 0.1, 7.7}};
-  EXPECT_EQ(pulls(state, {0.25, 0.625, 0.75, 2.0, 0.125, 9.0}, GetParam()),
+  EXPECT_EQ(tensions(state, {0.25, 0.625, 0.75, 2.0, 0.125, 9.0}, GetParam()),
             (std::vector<double>{-0.3, 0.7, 0.1, 7.7, -0.3, 7.7}));
   state.elasticity = engine::Table{{0.3}, {2.5}};
-  EXPECT_EQ(pulls(state, {0.25, 0.75, 0.8}, GetParam()), (std::vector<double>{2.5, 2.5, 2.5}));
+  EXPECT_EQ(tensions(state, {0.25, 0.75, 0.8}, GetParam()), (std::vector<double>{2.5, 2.5, 2.5}));
 }
 
 TEST_P(Laws, OfALongTableFindsEverySegment) {
@@ -92,38 +92,40 @@ TEST_P(Laws, OfALongTableFindsEverySegment) {
   const LinkState state = with(engine::Table(at, value));
   std::vector<double> distances;
   for (int i = 0; i < 76; ++i) distances.push_back(0.5 + 0.03 * (i + 0.5) - 0.4);
-  const std::vector<double> found = pulls(state, distances, GetParam());
+  const std::vector<double> found = tensions(state, distances, GetParam());
   for (int i = 0; i < 76; ++i) EXPECT_NEAR(found[i], i * i + i + 0.5, 1e-9);
 }
 
 TEST_P(Laws, OfAPowerKeepsTheSignOfTheElongation) {
-  expect_pulls(with(power_law(3.0, 1.5)), [](double d) {
+  expect_tensions(with(power_law(3.0, 1.5)), [](double d) {
     return std::copysign(3.0 * std::pow(std::abs(d - 0.5), 1.5), d - 0.5);
   });
-  expect_pulls(with(power_law(-2.0, 7.0)), [](double d) { return -2.0 * std::pow(d - 0.5, 7.0); });
-  expect_pulls(with(power_law(2.0, 0.5)),
-               [](double d) { return std::copysign(2.0 * std::sqrt(std::abs(d - 0.5)), d - 0.5); });
-  expect_pulls(with(power_law(4.0, 0.0)), [](double d) { return d < 0.5 ? -4.0 : 4.0; });
-  EXPECT_EQ(pulls(with(power_law(4.0, 0.0)), {0.5}, GetParam()), std::vector<double>{0.0});
+  expect_tensions(with(power_law(-2.0, 7.0)),
+                  [](double d) { return -2.0 * std::pow(d - 0.5, 7.0); });
+  expect_tensions(with(power_law(2.0, 0.5)), [](double d) {
+    return std::copysign(2.0 * std::sqrt(std::abs(d - 0.5)), d - 0.5);
+  });
+  expect_tensions(with(power_law(4.0, 0.0)), [](double d) { return d < 0.5 ? -4.0 : 4.0; });
+  EXPECT_EQ(tensions(with(power_law(4.0, 0.0)), {0.5}, GetParam()), std::vector<double>{0.0});
 }
 
 TEST_P(Laws, OfLennardJonesIsTheSlopeOfItsPotential) {
-  expect_pulls(with(lennard_jones_law(2e-3, 0.6, 0.0)), [](double d) {
+  expect_tensions(with(lennard_jones_law(2e-3, 0.6, 0.0)), [](double d) {
     const double r = 0.6 / d;
     return 4.0 * 2e-3 * (-12.0 * std::pow(r, 12) + 6.0 * std::pow(r, 6)) / d;
   });
-  expect_pulls(with(lennard_jones_law(2e-3, 0.6, 1.5)), [](double d) {
+  expect_tensions(with(lennard_jones_law(2e-3, 0.6, 1.5)), [](double d) {
     const double r = 0.6 / d;
     return d < 1.5 ? 4.0 * 2e-3 * (-12.0 * std::pow(r, 12) + 6.0 * std::pow(r, 6)) / d : 0.0;
   });
 }
 
 TEST_P(Laws, OfRingsAddUp) {
-  expect_pulls(with(ring_law()), [](double d) {
-    double pull = 0.0;
-    if (d < 0.2) pull -= 40.0 * (0.2 - d);
-    if (d < 0.4) pull += 15.0 * (0.4 - d);
-    return pull;
+  expect_tensions(with(ring_law()), [](double d) {
+    double tension = 0.0;
+    if (d < 0.2) tension -= 40.0 * (0.2 - d);
+    if (d < 0.4) tension += 15.0 * (0.4 - d);
+    return tension;
   });
 }
 
@@ -145,12 +147,12 @@ TEST_P(Laws, OfAnExpressionHaveTheBitsOfTheScalarEvaluator) {
   const LinkState state = with(law_of_every_function());
   std::vector<double> distances;
   for (int i = 1; i < 60; ++i) distances.push_back(0.02 * i);
-  const std::vector<double> found = pulls(state, distances, GetParam());
+  const std::vector<double> found = tensions(state, distances, GetParam());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double d = distances[i];
-    EXPECT_EQ(found[i], elastic_pull(state.elasticity, {d, d - 0.5, 0.0, 1.0, 1.0}));
+    EXPECT_EQ(found[i], elastic_tension(state.elasticity, {d, d - 0.5, 0.0, 1.0, 1.0}));
   }
-  expect_pulls(state, [](double d) {
+  expect_tensions(state, [](double d) {
     const double e = d - 0.5;
     if (e >= 0.4) return -1.0;
     return std::tanh(3.0 * e) * std::exp(-std::abs(e)) + std::sin(9.0 * d) * std::cos(d) +
@@ -158,23 +160,23 @@ TEST_P(Laws, OfAnExpressionHaveTheBitsOfTheScalarEvaluator) {
   });
 }
 
-TEST_P(Laws, OfAnExpressionWithoutAFiniteValueArePullsOfZero) {
+TEST_P(Laws, OfAnExpressionWithoutAFiniteValueAreTensionsOfZero) {
   const Term below = q(Quantity::kDistance) - 1.0;
-  EXPECT_EQ(pulls(with(expression_law(one(Operation::kSqrt, below))), {0.75, 5.0}, GetParam()),
+  EXPECT_EQ(tensions(with(expression_law(one(Operation::kSqrt, below))), {0.75, 5.0}, GetParam()),
             (std::vector<double>{0.0, 2.0}));
-  EXPECT_EQ(pulls(with(expression_law(1.0 / below)), {1.0, 1.5}, GetParam()),
+  EXPECT_EQ(tensions(with(expression_law(1.0 / below)), {1.0, 1.5}, GetParam()),
             (std::vector<double>{0.0, 2.0}));
 }
 
 TEST_P(Laws, OfAnExpressionComeOnTopOfTheSpring) {
-  expect_pulls(with(cubic_law(), 7.0), [](double d) {
+  expect_tensions(with(cubic_law(), 7.0), [](double d) {
     const double e = d - 0.5;
     return 7.0 * e + 30.0 * e + 100.0 * e * e * e;
   });
 }
 
 TEST_P(Laws, OfViscosityAnswerToTheSpeed) {
-  const auto pull = [](const Law& dissipation, double speed) {
+  const auto tension = [](const Law& dissipation, double speed) {
     NetworkDescription scene;
     scene.dimension = 1;
     scene.step = 0.01;
@@ -186,12 +188,12 @@ TEST_P(Laws, OfViscosityAnswerToTheSpeed) {
     World world = make_world(scene, GetParam());
     world.impose_position(1, Vec3(1.0 + 0.01 * speed, 0, 0));
     world.step();
-    return world.pull_of(0);
+    return world.tension_of(0);
   };
-  EXPECT_NEAR(pull(table_law(), 0.05), 1.25, 1e-9);
-  EXPECT_NEAR(pull(table_law(), -7.0), -9.0, 1e-9);
-  EXPECT_NEAR(pull(power_law(3.0, 2.0), -0.5), -0.75, 1e-9);
-  EXPECT_NEAR(pull(power_law(3.0, 0.0), -0.5), -3.0, 1e-9);
+  EXPECT_NEAR(tension(table_law(), 0.05), 1.25, 1e-9);
+  EXPECT_NEAR(tension(table_law(), -7.0), -9.0, 1e-9);
+  EXPECT_NEAR(tension(power_law(3.0, 2.0), -0.5), -0.75, 1e-9);
+  EXPECT_NEAR(tension(power_law(3.0, 0.0), -0.5), -3.0, 1e-9);
 }
 
 /// A chain between fixed ends in 1 dimension: masses at `q`, of the half-step speed that makes

@@ -467,7 +467,7 @@ TEST(OverdampedFriction, SticksAgainstHeavyDampersAtOnce) {
     world.step();
     if (n > 3) {
       ASSERT_NEAR(world.position(1).x() - before, 1e-3, 1e-6) << n;
-      ASSERT_NEAR(world.pull_of(0), 1e5, 100.0) << n;
+      ASSERT_NEAR(world.tension_of(0), 1e5, 100.0) << n;
     }
   }
 }

@@ -58,7 +58,7 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
       {"states.size", [&] { world.force_state(0, 2); }},
       {"state_links", [&] { world.state_of(1); }},
       {"state_links", [&] { world.rest_length_of(1); }},
-      {"state_links", [&] { world.pull_of(1); }},
+      {"state_links", [&] { world.tension_of(1); }},
       {"mat_count", [&] { world.position(2); }},
       {"mat_count", [&] { world.velocity(2); }},
       {"mat_count", [&] { world.link_force(2); }},

@@ -52,7 +52,7 @@ struct Rows {
     rows.state = state.data();
     rows.rest_length = of(Quantity::kRestLength).data();
     rows.elongation = of(Quantity::kElongation).data();
-    rows.pull = of(Quantity::kForce).data();
+    rows.tension = of(Quantity::kForce).data();
     rows.impulse = of(Quantity::kImpulse).data();
     rows.entered = entered.data();
     rows.memory = memory.data();

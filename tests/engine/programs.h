@@ -84,8 +84,8 @@ inline Term size(Term u) {
 }
 
 /// A law that is the value of an expression.
-inline engine::Law expression_law(Term pull) {
-  return engine::Expression{std::move(pull.program)};
+inline engine::Law expression_law(Term tension) {
+  return engine::Expression{std::move(tension.program)};
 }
 
 /// A state machine under construction.

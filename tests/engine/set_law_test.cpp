@@ -27,12 +27,12 @@ struct Pair {
   double mass_b;
 };
 
-/// A law, and its pull written down once more.
+/// A law, and its tension written down once more.
 struct LawCase {
   std::string name;
   LinkState state;
   double rest_length;  // < 0: sum of the radii
-  std::function<double(const Pair&)> pull;
+  std::function<double(const Pair&)> tension;
 };
 
 std::vector<LawCase> laws() {
@@ -130,11 +130,11 @@ std::vector<Vec3> forces_of_all_pairs(const NetworkDescription& scene, const Law
     const Vec3 axis = along / distance;
     const double rest = law.rest_length < 0.0 ? scene.radius[a] + scene.radius[b] : law.rest_length;
     const double speed = axis.dot(along - (before[b] - before[a])) / scene.step;
-    const double pull =
-        law.pull({distance, distance - rest, speed, scene.mats[a].mass, scene.mats[b].mass});
-    force[a] += pull * axis;
-    force[b] -= pull * axis;
-    scale = std::max(scale, std::abs(pull));
+    const double tension =
+        law.tension({distance, distance - rest, speed, scene.mats[a].mass, scene.mats[b].mass});
+    force[a] += tension * axis;
+    force[b] -= tension * axis;
+    scale = std::max(scale, std::abs(tension));
   };
   for (std::size_t i = 0; i < set.set_p.size(); ++i) {
     if (set.set_q.empty()) {

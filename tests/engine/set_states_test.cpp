@@ -312,6 +312,28 @@ NetworkDescription balls_that_fly_together(std::uint32_t side, double spacing) {
   return scene;
 }
 
+TEST(SetStates, OfTwoSetsAreNotRestoredWithAPairOfOneSide) {
+  NetworkDescription scene = cloud(4, 0.0, 0.0, 3);
+  for (std::uint32_t i = 0; i < 4; ++i) scene.mats[i].position = Vec3(i % 2, 0.01 * (i / 2), 0);
+  scene.state_machines = {sticking(10.0, 0.0, 1.0)};
+  SetLiaison set;
+  set.set_p = {0, 1};
+  set.set_q = {2, 3};
+  set.range = 0.1;
+  set.rest_length = 0.05;
+  scene.sets = {set};
+  World world = make_world(scene);
+  world.step();
+  ASSERT_EQ(world.bound_pairs(0).size(), 2U);  // 0 and 2, 1 and 3
+
+  engine::Snapshot snapshot = world.snapshot();
+  EXPECT_NO_THROW(world.restore(snapshot));
+  const auto is_member_2 = [](double value) { return value == 4.0 * 2.0; };
+  ASSERT_EQ(std::count_if(snapshot.state.begin(), snapshot.state.end(), is_member_2), 1);
+  *std::find_if(snapshot.state.begin(), snapshot.state.end(), is_member_2) = 4.0 * 1.0;
+  EXPECT_THROW(world.restore(snapshot), std::invalid_argument) << "0 and 1 are of one set";
+}
+
 TEST(SetStates, NeverForgetABondThoughAllPairsBindAtOnce) {
   World world = make_world(balls_that_fly_together(9, 0.001));
   const engine::StepReport report = world.step();

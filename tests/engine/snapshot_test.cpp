@@ -87,6 +87,23 @@ TEST(Snapshot, OfAnotherNetworkIsRefused) {
   EXPECT_THROW(world.restore(make_world(other).snapshot()), std::invalid_argument);
 }
 
+TEST(Snapshot, OfAForceHeldOnAFixedPointIsRefused) {
+  NetworkDescription scene = free_cluster(3, 61, 0.2);
+  scene.mats.push_back(scene.mats[0]);
+  scene.mats[3].kind = engine::MatKind::kFixed;
+  scene.mats[3].mass = 0.0;
+  scene.mats[3].velocity = Vec3::Zero();
+  World world = make_world(scene);
+  world.set_external_force(2, Vec3(1, 0, 0));
+  engine::Snapshot snapshot = world.snapshot();
+  double& held = snapshot.state[snapshot.state.size() - 4];  // before the 3 values of the force
+  ASSERT_EQ(held, 2.0);
+  held = 3.0;
+  EXPECT_THROW(world.restore(snapshot), std::invalid_argument);
+  held = 1.0;
+  EXPECT_NO_THROW(world.restore(snapshot));
+}
+
 TEST(Snapshot, ThatIsCutShortIsRefused) {
   World world = make_world(scene_with_everything());
   drive(world, 5);

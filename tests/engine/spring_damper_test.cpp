@@ -26,13 +26,14 @@ TEST_P(SpringDamper, PullsAlongTheLineOfItsEnds) {
 
   world.step();
 
-  const Vec3 pull = (7.0 * (3.0 - 2.0) + 5.0 * 0.2) * Vec3(1, 2, 2) / 3.0;
-  EXPECT_LT((world.link_force(0) - pull).norm(), 1e-4);  // of the acceleration during half a step
-  EXPECT_LT((world.link_force(1) + pull).norm(), 1e-4);
+  const Vec3 tension = (7.0 * (3.0 - 2.0) + 5.0 * 0.2) * Vec3(1, 2, 2) / 3.0;
+  EXPECT_LT((world.link_force(0) - tension).norm(),
+            1e-4);  // of the acceleration during half a step
+  EXPECT_LT((world.link_force(1) + tension).norm(), 1e-4);
 }
 
 TEST_P(SpringDamper, HasASignInOneDimension) {
-  // ends crossed: b - a = -1, rest = 2, hence a pull of -3 K
+  // ends crossed: b - a = -1, rest = 2, hence a tension of -3 K
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = 1e-3;
@@ -85,9 +86,9 @@ std::vector<Vec3> expected_forces(const NetworkDescription& scene) {
   std::vector<Vec3> forces(scene.mats.size(), Vec3::Zero());
   for (const Link& link : scene.links) {
     const Vec3 along = scene.mats[link.mat_b].position - scene.mats[link.mat_a].position;
-    const Vec3 pull = link.stiffness * (along.norm() - link.rest_length) * along.normalized();
-    forces[link.mat_a] += pull;
-    forces[link.mat_b] -= pull;
+    const Vec3 tension = link.stiffness * (along.norm() - link.rest_length) * along.normalized();
+    forces[link.mat_a] += tension;
+    forces[link.mat_b] -= tension;
   }
   return forces;
 }

@@ -73,7 +73,7 @@ TEST_P(StateLinks, ChangeByTheFirstExitThatHolds) {
   lead(world, 3.0);
 
   EXPECT_EQ(world.state_of(0), 2U);
-  EXPECT_EQ(world.pull_of(0), 60.0);
+  EXPECT_EQ(world.tension_of(0), 60.0);
   ASSERT_EQ(world.events().size(), 1U);
   const LinkEvent& event = world.events()[0];
   EXPECT_EQ(event.step, 1U);
@@ -106,7 +106,8 @@ TEST_P(StateLinks, ChangeAtMostOnceAStep) {
   for (int n = 0; n < 5; ++n) {
     world.step();
     states.push_back(world.state_of(0));
-    EXPECT_EQ(world.pull_of(0), 1.0 + world.state_of(0)) << "the pull of the state it is in then";
+    EXPECT_EQ(world.tension_of(0), 1.0 + world.state_of(0))
+        << "the tension of the state it is in then";
   }
   EXPECT_EQ(states, (std::vector<std::uint32_t>{1, 2, 0, 1, 2}));
 }
@@ -117,7 +118,7 @@ TEST_P(StateLinks, StartInTheStartStateAndTestItsExitsInTheFirstStep) {
   state_machine.start = 1;
   World world = make(led_link(state_machine, 1.0, 0.0));
   EXPECT_EQ(world.state_of(0), 1U);
-  EXPECT_EQ(world.pull_of(0), 0.0);
+  EXPECT_EQ(world.tension_of(0), 0.0);
 
   world.step();
 
@@ -146,7 +147,7 @@ TEST_P(StateLinks, KeepTheirRestLengthOrTakeAnother) {
 }
 
 TEST_P(StateLinks, FlowPlasticallyAtTheirYieldPoint) {
-  // past the elongation of 0.1 m the rest length follows, so that the pull stays K * 0.1 m
+  // past the elongation of 0.1 m the rest length follows, so that the tension stays K * 0.1 m
   const Term yielding = q(Quantity::kElongation) > 0.1;
   const Term flowed = q(Quantity::kRestLength) + q(Quantity::kElongation) - 0.1;
   World world = make(
@@ -154,11 +155,11 @@ TEST_P(StateLinks, FlowPlasticallyAtTheirYieldPoint) {
 
   for (int n = 1; n <= 100; ++n) {
     lead(world, 1.0 + 0.005 * n);
-    ASSERT_NEAR(world.pull_of(0), n <= 20 ? 50.0 * 0.005 * n : 5.0, 1e-12) << "step " << n;
+    ASSERT_NEAR(world.tension_of(0), n <= 20 ? 50.0 * 0.005 * n : 5.0, 1e-12) << "step " << n;
   }
   EXPECT_NEAR(world.rest_length_of(0), 1.4, 1e-12);
   lead(world, 1.4);
-  EXPECT_NEAR(world.pull_of(0), 0.0, 1e-12) << "the remanent length";
+  EXPECT_NEAR(world.tension_of(0), 0.0, 1e-12) << "the remanent length";
 }
 
 TEST_P(StateLinks, DampWithoutASpikeOnEntry) {
@@ -169,9 +170,9 @@ TEST_P(StateLinks, DampWithoutASpikeOnEntry) {
 
   lead(world, 1.0);
   EXPECT_EQ(world.state_of(0), 1U);
-  EXPECT_EQ(world.pull_of(0), 0.0);
+  EXPECT_EQ(world.tension_of(0), 0.0);
   lead(world, 1.5);
-  EXPECT_NEAR(world.pull_of(0), 7.0 * 0.5 / 0.01, 1e-9);
+  EXPECT_NEAR(world.tension_of(0), 7.0 * 0.5 / 0.01, 1e-9);
 }
 
 TEST_P(StateLinks, DampOnlyOthersWhenOneOfABatchIsEntered) {
@@ -182,8 +183,8 @@ TEST_P(StateLinks, DampOnlyOthersWhenOneOfABatchIsEntered) {
 
   lead(world, 0.25);
 
-  EXPECT_NEAR(world.pull_of(0), 7.0 * 0.25 / 0.01, 1e-9);
-  EXPECT_EQ(world.pull_of(1), 0.0);
+  EXPECT_NEAR(world.tension_of(0), 7.0 * 0.25 / 0.01, 1e-9);
+  EXPECT_EQ(world.tension_of(1), 0.0);
 }
 
 TEST_P(StateLinks, DoNotPullWhenClamped) {
@@ -194,13 +195,13 @@ TEST_P(StateLinks, DoNotPullWhenClamped) {
   World world = make(led_link(Behaving().state(clamped).state_machine, 0.9, 1.0));
 
   lead(world, 0.9);
-  EXPECT_NEAR(world.pull_of(0), -1.0, 1e-12);
+  EXPECT_NEAR(world.tension_of(0), -1.0, 1e-12);
   lead(world, 0.95);  // the damper alone would pull with 2.5 N, the spring pushes with 0.5 N
-  EXPECT_EQ(world.pull_of(0), 0.0);
+  EXPECT_EQ(world.tension_of(0), 0.0);
   lead(world, 1.2);
-  EXPECT_EQ(world.pull_of(0), 0.0);
-  lead(world, 1.1);  // approaching: the damper wants 5 N of push, the spring 1 N of pull
-  EXPECT_NEAR(world.pull_of(0), -4.0, 1e-12);
+  EXPECT_EQ(world.tension_of(0), 0.0);
+  lead(world, 1.1);  // approaching: the damper wants 5 N of push, the spring 1 N of tension
+  EXPECT_NEAR(world.tension_of(0), -4.0, 1e-12);
 }
 
 TEST_P(StateLinks, DoNotPushWhenTheyAreThreads) {
@@ -210,9 +211,9 @@ TEST_P(StateLinks, DoNotPushWhenTheyAreThreads) {
   World world = make(led_link(Behaving().state(thread).state_machine, 1.0, 1.0));
 
   lead(world, 0.5);
-  EXPECT_EQ(world.pull_of(0), 0.0);
+  EXPECT_EQ(world.tension_of(0), 0.0);
   lead(world, 1.5);
-  EXPECT_NEAR(world.pull_of(0), 5.0, 1e-12);
+  EXPECT_NEAR(world.tension_of(0), 5.0, 1e-12);
 }
 
 TEST_P(StateLinks, NeverGoBeyondTheirForceLimit) {
@@ -223,15 +224,15 @@ TEST_P(StateLinks, NeverGoBeyondTheirForceLimit) {
   World world = make(led_link(Behaving().state(limited).state_machine, 1.0, 1.0));
 
   lead(world, 1.1);
-  EXPECT_EQ(world.pull_of(0), 2.0);
+  EXPECT_EQ(world.tension_of(0), 2.0);
   lead(world, 0.1);
-  EXPECT_EQ(world.pull_of(0), -2.0);
+  EXPECT_EQ(world.tension_of(0), -2.0);
   lead(world, 0.1);
-  EXPECT_EQ(world.pull_of(0), -2.0);
+  EXPECT_EQ(world.tension_of(0), -2.0);
   lead(world, 0.9);
-  EXPECT_EQ(world.pull_of(0), 2.0);
+  EXPECT_EQ(world.tension_of(0), 2.0);
   lead(world, 0.9);
-  EXPECT_NEAR(world.pull_of(0), -1.0, 1e-12);
+  EXPECT_NEAR(world.tension_of(0), -1.0, 1e-12);
 }
 
 TEST_P(StateLinks, AreForcedIntoAState) {
@@ -285,7 +286,7 @@ TEST_P(StateLinks, HaveNoForceWhileTheirLengthIsZero) {
   run(world, 10);
 
   EXPECT_EQ(world.position(0), Vec3(1, 2, 3));
-  EXPECT_EQ(world.pull_of(0), 0.0);
+  EXPECT_EQ(world.tension_of(0), 0.0);
   EXPECT_TRUE(std::isfinite(world.energy().residual()));
 }
 
@@ -367,7 +368,7 @@ TEST_P(StateLinks, TakeOtherParametersBetweenTwoSteps) {
   EXPECT_EQ(world.state_of(0), 1U);
   EXPECT_NEAR(world.energy().switching - switched, 0.5 * (6.0 - 2.0), 1e-12);
   world.step();
-  EXPECT_EQ(world.pull_of(0), 6.0);
+  EXPECT_EQ(world.tension_of(0), 6.0);
   EXPECT_LT(std::abs(world.energy().residual()), 1e-12);
 }
 

@@ -12,7 +12,7 @@
 #include "tests/engine/scenes.h"
 #include "tests/support/allocation_guard.h"
 
-namespace cordis::test::steep {
+namespace cordis::test::stiff {
 namespace {
 
 using engine::IntegratorKind;
@@ -71,7 +71,7 @@ TEST(StiffFriction, BringDryFrictionToRestWhereItStopsAndHoldItThere) {
   world.set_external_force(1, Vec3(1.9, 0, 0));
   run(world, 1000);
   EXPECT_NEAR(world.position(1).x(), stopped, 1e-5);  // it holds
-  EXPECT_NEAR(world.pull_of(0), 1.9, 1e-6);
+  EXPECT_NEAR(world.tension_of(0), 1.9, 1e-6);
 
   world.set_external_force(1, Vec3(5.0, 0, 0));
   const double held = world.position(1).x();
@@ -236,4 +236,4 @@ TEST(StiffFriction, AreThoseBeyondThreeTenthsTogether) {
 }
 
 }  // namespace
-}  // namespace cordis::test::steep
+}  // namespace cordis::test::stiff

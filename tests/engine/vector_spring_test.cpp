@@ -12,10 +12,10 @@ namespace {
 using engine::Energy;
 using engine::IntegratorKind;
 
-constexpr double kStiffness = 500.0;  // [N/m]
+constexpr double kHoldStiffness = 500.0;  // [N/m]
 
 /// A tool tied to a port, and a free mass tied to the tool.
-NetworkDescription tied_tools(IntegratorKind integrator, double viscosity) {
+NetworkDescription held_tools(IntegratorKind integrator, double viscosity) {
   NetworkDescription scene;
   scene.dimension = 3;
   scene.step = 1e-3;
@@ -23,7 +23,7 @@ NetworkDescription tied_tools(IntegratorKind integrator, double viscosity) {
   scene.mats = {fixed(Vec3::Zero()), mass(0.05, Vec3(0.01, 0, 0), Vec3(0, 1, 0.3)),
                 mass(0.08, Vec3(0.01, 0, 0), Vec3(0.2, 0, 0))};
   if (integrator != IntegratorKind::kSymplectic4) scene.mats[0] = port(Vec3::Zero());
-  scene.links = {{0, 1, kStiffness, viscosity, 0.0, true}, {1, 2, 300.0, viscosity, 0.0, true}};
+  scene.links = {{0, 1, kHoldStiffness, viscosity, 0.0, true}, {1, 2, 300.0, viscosity, 0.0, true}};
   return scene;
 }
 
@@ -38,15 +38,15 @@ NetworkDescription along(int axis, NetworkDescription scene) {
   return scene;
 }
 
-struct Tie {
+struct Case {
   IntegratorKind integrator;
   double viscosity;  // [N s/m]; 16: `leapfrog` damps implicitly
 };
 
-class EveryIntegrator : public testing::TestWithParam<Tie> {};
+class EveryIntegrator : public testing::TestWithParam<Case> {};
 
-TEST_P(EveryIntegrator, MovesATieAlongEachAxisAsALinkInOneDimension) {
-  const NetworkDescription scene = tied_tools(GetParam().integrator, GetParam().viscosity);
+TEST_P(EveryIntegrator, MovesAVectorSpringAlongEachAxisAsALinkInOneDimension) {
+  const NetworkDescription scene = held_tools(GetParam().integrator, GetParam().viscosity);
   World world = make_world(scene);
   World lines[] = {make_world(along(0, scene)), make_world(along(1, scene)),
                    make_world(along(2, scene))};
@@ -79,30 +79,31 @@ TEST_P(EveryIntegrator, MovesATieAlongEachAxisAsALinkInOneDimension) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryIntegrator,
-                         testing::Values(Tie{IntegratorKind::kCordis, 1.5},
-                                         Tie{IntegratorKind::kLeapfrog, 1.5},
-                                         Tie{IntegratorKind::kLeapfrog, 16.0},
-                                         Tie{IntegratorKind::kSymplectic4, 0.0},
-                                         Tie{IntegratorKind::kImplicit, 1.5}));
+                         testing::Values(Case{IntegratorKind::kCordis, 1.5},
+                                         Case{IntegratorKind::kLeapfrog, 1.5},
+                                         Case{IntegratorKind::kLeapfrog, 16.0},
+                                         Case{IntegratorKind::kSymplectic4, 0.0},
+                                         Case{IntegratorKind::kImplicit, 1.5}));
 
 TEST(VectorSpring, CalmsAToolThatCirclesItsHandle) {
   // x, y(n+1) = (2 - K' - Z') x(n) - (1 - Z') x(n-1): a radius that shrinks by sqrt(1 - Z') a step.
   // Another link of rest length 0 keeps the circle.
-  constexpr double kMass = 0.05;
+  constexpr double kToolMass = 0.05;
   constexpr double kViscosity = 1.5;
   for (const bool isotropic : {true, false}) {
     NetworkDescription scene;
     scene.dimension = 2;
     scene.step = 1e-3;
-    scene.mats = {port(Vec3::Zero()), mass(kMass, Vec3(0.001, 0, 0),
-                                           Vec3(0, 0.001 * std::sqrt(kStiffness / kMass), 0))};
-    scene.links = {{0, 1, kStiffness, kViscosity, 0.0, isotropic}};
+    scene.mats = {port(Vec3::Zero()),
+                  mass(kToolMass, Vec3(0.001, 0, 0),
+                       Vec3(0, 0.001 * std::sqrt(kHoldStiffness / kToolMass), 0))};
+    scene.links = {{0, 1, kHoldStiffness, kViscosity, 0.0, isotropic}};
     World world = make_world(scene);
     const double radius = 1e-3;
 
     run(world, 200);
 
-    const double shrunk = std::pow(1.0 - kViscosity * scene.step / kMass, 100.0);
+    const double shrunk = std::pow(1.0 - kViscosity * scene.step / kToolMass, 100.0);
     EXPECT_LT(shrunk, 0.05);
     // An ellipse by now, Z / 2 sqrt(K m) = 0.15 of its size from a circle.
     EXPECT_NEAR(world.position(1).norm(), radius * (isotropic ? shrunk : 1.0),
@@ -111,7 +112,7 @@ TEST(VectorSpring, CalmsAToolThatCirclesItsHandle) {
 }
 
 TEST(VectorSpring, KeepsMomentumStateAndAccount) {
-  NetworkDescription scene = tied_tools(IntegratorKind::kCordis, 1.5);
+  NetworkDescription scene = held_tools(IntegratorKind::kCordis, 1.5);
   scene.mats[0] = mass(0.1, Vec3::Zero());
   World world = make_world(scene);
   const Vec3 momentum = world.momentum();
@@ -134,7 +135,7 @@ TEST(VectorSpring, KeepsMomentumStateAndAccount) {
 }
 
 TEST(VectorSpring, HasNoRestLength) {
-  NetworkDescription scene = tied_tools(IntegratorKind::kCordis, 1.5);
+  NetworkDescription scene = held_tools(IntegratorKind::kCordis, 1.5);
   scene.links[1].rest_length = 0.1;
 
   EXPECT_THROW(make_world(scene), std::invalid_argument);

@@ -242,5 +242,30 @@ TEST(World, GoesOnAfterAMove) {
   EXPECT_EQ(moved.state_hash(), second.state_hash());
 }
 
+TEST(World, KeepsItsAngularMomentumFor20Seconds) {
+  // Three masses on springs, turning and swinging about a place away from the origin.
+  for (const double rate : {44'100.0, 192'000.0}) {
+    NetworkDescription scene;
+    scene.dimension = 3;
+    scene.step = 1.0 / rate;
+    const Vec3 away(0.7, -0.4, 0.2);
+    scene.mats = {mass(0.1, away, Vec3(0.3, 1.0, -0.2)),
+                  mass(0.2, away + Vec3(0.5, 0.1, 0), Vec3(-0.2, -0.6, 0.3)),
+                  mass(0.15, away + Vec3(0.1, 0.6, 0.3), Vec3(0.1, 0.2, -0.3))};
+    scene.links = {{0, 1, 40.0, 0.0, 0.4}, {1, 2, 70.0, 0.0, 0.5}, {2, 0, 30.0, 0.0, 0.6}};
+    scene.mats[2].velocity = -(0.1 * scene.mats[0].velocity + 0.2 * scene.mats[1].velocity) / 0.15;
+    World world = make_world(scene);
+    world.step();
+    const Vec3 start = world.angular_momentum();
+    double largest = 0.0;
+    for (int n = 0; n < 20; ++n) {
+      run(world, static_cast<int>(rate));
+      largest = std::max(largest, (world.angular_momentum() - start).norm() / start.norm());
+    }
+
+    EXPECT_LT(largest, 1e-12) << rate << " Hz";
+  }
+}
+
 }  // namespace
 }  // namespace cordis::test

@@ -5,7 +5,7 @@
 
 #include "node/config/device_limits.h"
 #include "sim_node/checks/port_check.h"
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
@@ -19,18 +19,18 @@ ChangedScene in_role_mass(const std::string& coupling) {
 }
 
 /// The force of the hand over how far it has gone in [N/m].
-double stiffness_under_the_hand(Stage& stage, const std::string& hand) {
-  stage.play_until(kLeaning);
-  return -stage.signal("blow") / (kFace - stage.position(hand).x());
+double stiffness_under_the_hand(GallerySession& session, const std::string& hand) {
+  session.play_until(kLeaning);
+  return -session.signal("blow") / (kFace - session.position(hand).x());
 }
 
 TEST(Anvil, IsAsStiffAsSteelInRoleLiaison) {
-  Stage stage("anvil.yaml");
-  const double steel = stiffness_under_the_hand(stage, "hammer");
-  EXPECT_LT(stage.signal("blow"), -4.0);
+  GallerySession session("anvil.yaml");
+  const double steel = stiffness_under_the_hand(session, "hammer");
+  EXPECT_LT(session.signal("blow"), -4.0);
 
   const ChangedScene changed = in_role_mass("");
-  Stage coupled("anvil.yaml", changed.overrides());
+  GallerySession coupled("anvil.yaml", changed.overrides());
   const double soft = stiffness_under_the_hand(coupled, "hammer.handle");
   EXPECT_LT(coupled.signal("blow"), -2.0);
   EXPECT_NEAR(soft, 500.0, 100.0) << "the coupling";
@@ -41,19 +41,19 @@ TEST(Anvil, IsTooStiffForADeviceInRoleMass) {
   config::DeviceLimits key;  // of launch_configs/devices/keyboard.yaml
   key.moving_mass_kg = 0.05;
   key.viscosity_n_s_per_m = 1.0;
-  const auto uncertainty_of = [&key](const Stage& stage) {
-    return sim::verdict_on(sim::demands_of(stage.scene()).at(0), key, 1).uncertainty;
+  const auto uncertainty_of = [&key](const GallerySession& session) {
+    return sim::verdict_on(sim::demands_of(session.scene()).at(0), key, 1).uncertainty;
   };
-  EXPECT_EQ(uncertainty_of(Stage("anvil.yaml")), "");
+  EXPECT_EQ(uncertainty_of(GallerySession("anvil.yaml")), "");
   const ChangedScene changed = in_role_mass(", coupling: direct");
-  EXPECT_NE(uncertainty_of(Stage("anvil.yaml", changed.overrides())), "");
+  EXPECT_NE(uncertainty_of(GallerySession("anvil.yaml", changed.overrides())), "");
 }
 
 TEST(Anvil, IsStruckByTheLawOfHertz) {
-  Stage stage("anvil.yaml");
-  stage.play_until(kLeaning);
-  const double pressed = stage.position("anvil").x() - stage.position("hammer").x();
-  EXPECT_NEAR(-stage.signal("blow"), 1.0e8 * std::pow(pressed, 1.5), 1e-3);
+  GallerySession session("anvil.yaml");
+  session.play_until(kLeaning);
+  const double pressed = session.position("anvil").x() - session.position("hammer").x();
+  EXPECT_NEAR(-session.signal("blow"), 1.0e8 * std::pow(pressed, 1.5), 1e-3);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
@@ -22,14 +22,14 @@ double restitution(double viscosity) {
 
 TEST(BouncingBall, ComesBackAsHighAsItsMaterialLets) {
   const std::array<double, 3> viscosities = {0.2, 0.8, 2.0};
-  Stage stage("bouncing_ball.yaml");
+  GallerySession session("bouncing_ball.yaml");
   std::array<double, 3> highest{};
   std::array<bool, 3> has_bounced{};
-  stage.play_until(0.6, [&] {
+  session.play_until(0.6, [&] {
     for (std::uint32_t i = 0; i < 3; ++i) {
-      const double height = stage.position("balls", i).y() - kRadius;
+      const double height = session.position("balls", i).y() - kRadius;
       if (height < 0.0 && highest[i] > 0.001) has_bounced[i] = true;  // the second touch
-      if (stage.velocity("balls", i).y() > 0.0 && !has_bounced[i]) {
+      if (session.velocity("balls", i).y() > 0.0 && !has_bounced[i]) {
         highest[i] = std::max(highest[i], height);
       }
     }
@@ -43,12 +43,12 @@ TEST(BouncingBall, ComesBackAsHighAsItsMaterialLets) {
 }
 
 TEST(BouncingBall, FindsTheBeatOfTheBat) {
-  Stage stage("bouncing_ball.yaml");
+  GallerySession session("bouncing_ball.yaml");
   int hits = 0;
   bool touches = false;
-  stage.play_until(4.0);
-  stage.play_until(8.0, [&] {
-    const bool now = std::abs(stage.signal("bat_force")) > 0.0;
+  session.play_until(4.0);
+  session.play_until(8.0, [&] {
+    const bool now = std::abs(session.signal("bat_force")) > 0.0;
     if (now && !touches) ++hits;
     touches = now;
   });

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
@@ -15,22 +15,22 @@ constexpr std::size_t kBroken = 3;
 constexpr double kHardenedLength = 0.1;
 
 TEST(EcrouissageBar, GrowsHarderAndLongerWithEveryPullUntilItBreaks) {
-  Stage stage("ecrouissage_bar.yaml");
+  GallerySession session("ecrouissage_bar.yaml");
   const std::array<double, 4> pull_begins = {0.0, 1.8, 3.8, 5.8};
   const std::array<double, 3> pull_ends = {1.8, 3.8, 5.8};
   std::array<double, 4> flow_force{};  // at which the first liaison flows in a pull
   std::array<double, 3> peak_force{};  // of a pull
   std::array<double, 3> remanent{};    // after it
   for (std::size_t pull = 0; pull < 4; ++pull) {
-    EXPECT_NEAR(stage.time_s(), pull_begins[pull], 1.0e-6);
-    stage.play_until(pull < 3 ? pull_ends[pull] : 6.9, [&] {
-      const double force = std::abs(stage.signal("hand_force"));
+    EXPECT_NEAR(session.time_s(), pull_begins[pull], 1.0e-6);
+    session.play_until(pull < 3 ? pull_ends[pull] : 6.9, [&] {
+      const double force = std::abs(session.signal("hand_force"));
       if (pull < 3) peak_force[pull] = std::max(peak_force[pull], force);
-      if (flow_force[pull] == 0.0 && stage.world().state_of(0) == kFlowing) {
+      if (flow_force[pull] == 0.0 && session.world().state_of(0) == kFlowing) {
         flow_force[pull] = force;
       }
     });
-    if (pull < 3) remanent[pull] = stage.position("bar", 4).x() - kHardenedLength;
+    if (pull < 3) remanent[pull] = session.position("bar", 4).x() - kHardenedLength;
   }
 
   EXPECT_NEAR(flow_force[0], 2.0, 0.2);  // yield 1 mm, 2000 N/m
@@ -44,16 +44,16 @@ TEST(EcrouissageBar, GrowsHarderAndLongerWithEveryPullUntilItBreaks) {
 }
 
 TEST(EcrouissageBar, BreaksAtItsFlawAlone) {
-  Stage stage("ecrouissage_bar.yaml");
-  stage.play_until(5.8);
-  const engine::World& world = stage.world();
+  GallerySession session("ecrouissage_bar.yaml");
+  session.play_until(5.8);
+  const engine::World& world = session.world();
   const std::uint32_t flaw = 3;  // state links: three before it, one behind, the thread
   EXPECT_NE(world.state_of(flaw), kBroken);
 
-  stage.play_until(9.0);
+  session.play_until(9.0);
   EXPECT_EQ(world.state_of(flaw), kBroken);
   for (const std::uint32_t whole : {0u, 1u, 2u, 4u}) EXPECT_NE(world.state_of(whole), kBroken);
-  EXPECT_NEAR(stage.signal("hand_force"), 0.0, 1.0e-9);
+  EXPECT_NEAR(session.signal("hand_force"), 0.0, 1.0e-9);
 }
 
 }  // namespace

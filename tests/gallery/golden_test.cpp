@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 #include "tests/support/golden_hashes.h"
 
 namespace cordis::test {
@@ -14,12 +14,12 @@ constexpr std::uint64_t kSteps = 10'000;
 class Gallery : public testing::TestWithParam<std::string> {};
 
 TEST_P(Gallery, PlaysAsEverAndAccountsForItsEnergy) {
-  Stage stage(GetParam() + ".yaml");
-  stage.play_until(kSteps * stage.world().network().step());
+  GallerySession session(GetParam() + ".yaml");
+  session.play_until(kSteps * session.world().network().step());
 
-  EXPECT_EQ(hexadecimal(stage.world().state_hash()), golden_hashes("gallery.yaml")[GetParam()])
+  EXPECT_EQ(hexadecimal(session.world().state_hash()), golden_hashes("gallery.yaml")[GetParam()])
       << "the numbers of this scene have changed";
-  EXPECT_LT(std::abs(stage.energy_residual()), 1.0e-9);
+  EXPECT_LT(std::abs(session.energy_residual()), 1.0e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(LaunchFiles, Gallery, testing::ValuesIn(launch_files()),

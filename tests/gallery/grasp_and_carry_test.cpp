@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
@@ -21,75 +21,75 @@ struct Motion {
 };
 
 /// Of the centre of mass of balls of one mass.
-Motion motion_of(const Stage& stage, const std::string& name) {
-  const scene::NamedRange body = stage.mats(name);
+Motion motion_of(const GallerySession& session, const std::string& name) {
+  const scene::NamedRange body = session.mats(name);
   Motion sum{engine::Vec3::Zero(), engine::Vec3::Zero()};
   for (std::uint32_t i = body.first; i < body.first + body.count; ++i) {
-    sum.position += stage.world().position(i) / body.count;
-    sum.velocity += stage.world().velocity(i) / body.count;
+    sum.position += session.world().position(i) / body.count;
+    sum.velocity += session.world().velocity(i) / body.count;
   }
   return sum;
 }
 
-engine::Vec3 between_fingers(const Stage& stage) {
-  return 0.5 * (stage.position("left") + stage.position("right"));
+engine::Vec3 between_fingers(const GallerySession& session) {
+  return 0.5 * (session.position("left") + session.position("right"));
 }
 
 TEST(GraspAndCarry, CarriesTheParcelWithoutLosingHold) {
-  Stage stage("grasp_and_carry.yaml");
-  stage.play_until(2.9);  // lifted
-  const engine::Vec3 from = motion_of(stage, "parcel.body").position;
-  const engine::Vec3 in_the_hand = from - between_fingers(stage);
+  GallerySession session("grasp_and_carry.yaml");
+  session.play_until(2.9);  // lifted
+  const engine::Vec3 from = motion_of(session, "parcel.body").position;
+  const engine::Vec3 in_the_hand = from - between_fingers(session);
 
   double slip = 0.0;
-  stage.play_until(4.5, [&] {
-    const engine::Vec3 now = motion_of(stage, "parcel.body").position - between_fingers(stage);
+  session.play_until(4.5, [&] {
+    const engine::Vec3 now = motion_of(session, "parcel.body").position - between_fingers(session);
     slip = std::max(slip, (now - in_the_hand).norm());
-    ASSERT_EQ(stage.world().bound_pairs(kPinch).size(), 4u);  // two balls at either finger
+    ASSERT_EQ(session.world().bound_pairs(kPinch).size(), 4u);  // two balls at either finger
   });
   EXPECT_LT(slip, 0.0001);  // 0.1 mm of 14 cm
-  EXPECT_NEAR(motion_of(stage, "parcel.body").position.x() - from.x(), 0.14, 0.0002);
+  EXPECT_NEAR(motion_of(session, "parcel.body").position.x() - from.x(), 0.14, 0.0002);
 }
 
 TEST(GraspAndCarry, LetsTheParcelFallFreely) {
-  Stage stage("grasp_and_carry.yaml");
+  GallerySession session("grasp_and_carry.yaml");
   double released_s = 0.0;
   Motion released;
-  stage.play_until(4.7);
-  stage.play_until(4.82, [&] {
-    if (released_s > 0.0 || !stage.world().bound_pairs(kPinch).empty()) return;
-    released_s = stage.time_s();
-    released = motion_of(stage, "parcel.body");
+  session.play_until(4.7);
+  session.play_until(4.82, [&] {
+    if (released_s > 0.0 || !session.world().bound_pairs(kPinch).empty()) return;
+    released_s = session.time_s();
+    released = motion_of(session, "parcel.body");
   });
   ASSERT_GT(released_s, 4.7);
-  ASSERT_GT(motion_of(stage, "parcel.body").position.y(), 0.0);  // still in the air
+  ASSERT_GT(motion_of(session, "parcel.body").position.y(), 0.0);  // still in the air
 
   // v' = -g - (Z/m) v
   const double rate = kMediumViscosity / kBallMass;
   const double final_speed = -kGravity / rate;
   const double expected = final_speed + (released.velocity.y() - final_speed) *
-                                            std::exp(-rate * (stage.time_s() - released_s));
+                                            std::exp(-rate * (session.time_s() - released_s));
   EXPECT_LT(expected, -0.4);
-  EXPECT_NEAR(motion_of(stage, "parcel.body").velocity.y(), expected, 1.0e-4 * -expected);
+  EXPECT_NEAR(motion_of(session, "parcel.body").velocity.y(), expected, 1.0e-4 * -expected);
 
-  stage.play_until(7.0);
-  const engine::Vec3 rest = motion_of(stage, "parcel.body").position;
+  session.play_until(7.0);
+  const engine::Vec3 rest = motion_of(session, "parcel.body").position;
   EXPECT_LT(rest.y(), -0.02);  // in the bin
   EXPECT_NEAR(rest.x(), 0.07, 0.01);
 }
 
 TEST(GraspAndCarry, NeverGivesTheBurrBack) {
-  Stage stage("grasp_and_carry.yaml");
+  GallerySession session("grasp_and_carry.yaml");
   std::size_t held = 0;
-  stage.play_until(10.0, [&] {
-    const std::size_t now = stage.world().bound_pairs(kHooks).size();
-    ASSERT_GE(now, held) << stage.time_s();  // no way back
+  session.play_until(10.0, [&] {
+    const std::size_t now = session.world().bound_pairs(kHooks).size();
+    ASSERT_GE(now, held) << session.time_s();  // no way back
     held = now;
   });
   EXPECT_EQ(held, 4u);
-  EXPECT_GT(stage.signal("squeeze"), 0.5);  // the open hand draws at it
-  EXPECT_LT((motion_of(stage, "burr.body").position - between_fingers(stage)).norm(), 0.001);
-  EXPECT_LT(std::abs(stage.energy_residual()), 1.0e-9);
+  EXPECT_GT(session.signal("squeeze"), 0.5);  // the open hand draws at it
+  EXPECT_LT((motion_of(session, "burr.body").position - between_fingers(session)).norm(), 0.001);
+  EXPECT_LT(std::abs(session.energy_residual()), 1.0e-9);
 }
 
 }  // namespace

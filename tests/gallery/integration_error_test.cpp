@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/run/shadow_world.h"
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
@@ -13,10 +13,10 @@ namespace {
 class IntegrationError : public testing::TestWithParam<std::string> {};
 
 TEST_P(IntegrationError, IsBelowAHundredthOfTheLargestEnergy) {
-  Stage stage(GetParam() + ".yaml");
+  GallerySession session(GetParam() + ".yaml");
   for (int half_seconds = 1; half_seconds <= 12; ++half_seconds) {
-    stage.play_until(0.5 * half_seconds);
-    const engine::Energy energy = stage.world().energy();
+    session.play_until(0.5 * half_seconds);
+    const engine::Energy energy = session.world().energy();
     EXPECT_FALSE(sim::is_error_large(energy))
         << energy.integration_error() << " of " << energy.largest << " J";
   }

@@ -5,15 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
 
-std::vector<engine::Vec3> outline(const Stage& stage) {
-  const scene::NamedRange bag = stage.mats("bag");
+std::vector<engine::Vec3> outline(const GallerySession& session) {
+  const scene::NamedRange bag = session.mats("bag");
   std::vector<engine::Vec3> points;
-  for (std::uint32_t i = 0; i < bag.count; ++i) points.push_back(stage.position("bag", i));
+  for (std::uint32_t i = 0; i < bag.count; ++i) points.push_back(session.position("bag", i));
   return points;
 }
 
@@ -60,26 +60,27 @@ bool is_inside(const std::vector<engine::Vec3>& polygon, const engine::Vec3& poi
 }
 
 TEST(MaterialSkin, KeepsItsContentsAndComesBackToItsShape) {
-  Stage stage("material_skin.yaml");
-  const scene::NamedRange marbles = stage.mats("marbles");
+  GallerySession session("material_skin.yaml");
+  const scene::NamedRange marbles = session.mats("marbles");
   const auto play = [&](double until_s) {
     int tick = 0;
-    stage.play_until(until_s, [&] {
+    session.play_until(until_s, [&] {
       if (++tick % 10 != 0) return;
-      const std::vector<engine::Vec3> skin = outline(stage);
+      const std::vector<engine::Vec3> skin = outline(session);
       for (std::uint32_t i = 0; i < marbles.count; ++i) {
-        ASSERT_TRUE(is_inside(skin, stage.position("marbles", i))) << i << " at " << stage.time_s();
+        ASSERT_TRUE(is_inside(skin, session.position("marbles", i)))
+            << i << " at " << session.time_s();
       }
     });
   };
 
   play(1.4);  // it has fallen, and rests
-  const std::vector<engine::Vec3> before = outline(stage);
+  const std::vector<engine::Vec3> before = outline(session);
   play(3.0);  // pressed
-  const std::vector<engine::Vec3> pressed = outline(stage);
-  const double force = -stage.signal("press_force");
+  const std::vector<engine::Vec3> pressed = outline(session);
+  const double force = -session.signal("press_force");
   play(4.6);  // let go
-  const std::vector<engine::Vec3> after = outline(stage);
+  const std::vector<engine::Vec3> after = outline(session);
 
   EXPECT_GT(force, 1.0);
   EXPECT_GT(waist(before), 1.0);  // its weight has flattened it
@@ -87,7 +88,7 @@ TEST(MaterialSkin, KeepsItsContentsAndComesBackToItsShape) {
   EXPECT_NEAR(waist(after), waist(before), 0.02);
   EXPECT_GT(area(pressed), 0.85 * area(before));  // what is pressed in here comes out there
   EXPECT_NEAR(area(after), area(before), 0.01 * area(before));
-  EXPECT_LT(std::abs(stage.energy_residual()), 1.0e-9);
+  EXPECT_LT(std::abs(session.energy_residual()), 1.0e-9);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
@@ -15,34 +15,34 @@ constexpr double kYield = 0.001;
 constexpr double kPlasticLength = 0.2;
 
 TEST(PlasticBar, KeepsAllOfAPullButTheElasticPart) {
-  Stage stage("plastic_bar.yaml");
+  GallerySession session("plastic_bar.yaml");
   double longest = 0.0;
   double force = 0.0;
   const auto watch = [&] {
-    longest = std::max(longest, stage.signal("end"));
-    force = std::max(force, std::abs(stage.signal("hand_force")));
+    longest = std::max(longest, session.signal("end"));
+    force = std::max(force, std::abs(session.signal("hand_force")));
   };
-  stage.play_until(3.4, watch);
-  const double first = stage.signal("end");
+  session.play_until(3.4, watch);
+  const double first = session.signal("end");
   EXPECT_NEAR(first, longest - kLinks * kYield, 2.0e-5);
   EXPECT_NEAR(force, kStiffness * kYield, 0.05);  // and what the air and the liaisons take at speed
-  EXPECT_NEAR(stage.velocity("bar", 10).norm(), 0.0, 1.0e-6);
+  EXPECT_NEAR(session.velocity("bar", 10).norm(), 0.0, 1.0e-6);
 
-  stage.play_until(7.0, watch);
-  EXPECT_NEAR(stage.signal("end"), longest - kLinks * kYield, 2.0e-5);
-  EXPECT_GT(stage.signal("end"), first + 0.02);
+  session.play_until(7.0, watch);
+  EXPECT_NEAR(session.signal("end"), longest - kLinks * kYield, 2.0e-5);
+  EXPECT_GT(session.signal("end"), first + 0.02);
 }
 
 TEST(PlasticBar, ComesBackFromAPullBelowItsYieldPoint) {
-  Stage stage(
+  GallerySession session(
       "plastic_bar.yaml",
       {"hand.script.positions=[{at_s: 0, m: 0}, {at_s: 1.5, m: 0.008}, {at_s: 2.5, m: 0}]"});
   double force = 0.0;
-  stage.play_until(3.4, [&] { force = std::max(force, std::abs(stage.signal("hand_force"))); });
+  session.play_until(3.4, [&] { force = std::max(force, std::abs(session.signal("hand_force"))); });
 
   EXPECT_GT(force, 0.5 * kStiffness * kYield);
   EXPECT_LT(force, kStiffness * kYield);
-  EXPECT_NEAR(stage.signal("end"), kPlasticLength, 1.0e-5);
+  EXPECT_NEAR(session.signal("end"), kPlasticLength, 1.0e-5);
 }
 
 }  // namespace

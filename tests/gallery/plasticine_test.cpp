@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/connected_components.h"
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
@@ -15,12 +15,12 @@ constexpr double kReach = 0.0075;  // of the law
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-Pairs neighbours(const Stage& stage) {
-  const scene::NamedRange paste = stage.mats("paste");
+Pairs neighbours(const GallerySession& session) {
+  const scene::NamedRange paste = session.mats("paste");
   Pairs pairs;
   for (std::uint32_t a = 0; a < paste.count; ++a) {
     for (std::uint32_t b = a + 1; b < paste.count; ++b) {
-      const double distance = (stage.position("paste", b) - stage.position("paste", a)).norm();
+      const double distance = (session.position("paste", b) - session.position("paste", a)).norm();
       if (distance < kReach) pairs.emplace_back(a, b);
     }
   }
@@ -35,25 +35,25 @@ std::size_t in_common(const Pairs& some, const Pairs& others) {
 }
 
 TEST(Plasticine, IsMouldedTornAndStuckTogetherAgain) {
-  Stage stage("plasticine.yaml");
+  GallerySession session("plasticine.yaml");
   std::vector<double> history;
   const auto note = [&] {
-    const double pieces = stage.signal("pieces");
+    const double pieces = session.signal("pieces");
     if (history.empty() || history.back() != pieces) history.push_back(pieces);
   };
-  stage.play_until(0.3, note);
-  const Pairs before = neighbours(stage);
+  session.play_until(0.3, note);
+  const Pairs before = neighbours(session);
 
-  stage.play_until(2.0, note);  // the fingers are apart
-  engine::ConnectedComponents pieces(stage.world().network(), 0);
-  ASSERT_EQ(pieces.find_near(stage.world().positions(), kReach), 2u);
+  session.play_until(2.0, note);  // the fingers are apart
+  engine::ConnectedComponents pieces(session.world().network(), 0);
+  ASSERT_EQ(pieces.find_near(session.world().positions(), kReach), 2u);
   std::size_t first = 0;
   for (std::size_t i = 0; i < 400; ++i) first += pieces.piece_of(i) == 0 ? 1 : 0;
   EXPECT_GE(std::min(first, 400 - first), 90u);
-  EXPECT_LT(in_common(before, neighbours(stage)),
+  EXPECT_LT(in_common(before, neighbours(session)),
             before.size() * 4 / 5);  // what is elastic keeps all
 
-  stage.play_until(2.9, note);  // and together
+  session.play_until(2.9, note);  // and together
   EXPECT_EQ(history, (std::vector<double>{1, 2, 1}));
 }
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gallery/stage.h"
+#include "tests/gallery/gallery_session.h"
 
 namespace cordis::test {
 namespace {
@@ -37,11 +37,11 @@ double shape(int mode, std::uint32_t mat) {
   return std::sin(std::numbers::pi * mode * mat / kStringLinks);
 }
 
-Mode mode_of(const Stage& stage, int number) {
+Mode mode_of(const GallerySession& session, int number) {
   Mode mode;
   for (std::uint32_t i = 1; i < kStringLinks; ++i) {
-    mode.amplitude += 2.0 / kStringLinks * shape(number, i) * stage.position("string", i).x();
-    mode.speed += 2.0 / kStringLinks * shape(number, i) * stage.velocity("string", i).x();
+    mode.amplitude += 2.0 / kStringLinks * shape(number, i) * session.position("string", i).x();
+    mode.speed += 2.0 / kStringLinks * shape(number, i) * session.velocity("string", i).x();
   }
   return mode;
 }
@@ -62,10 +62,10 @@ Swing after(Mode mode, int number, double time_s) {
 }
 
 TEST(PluckedByPlectrum, LetsGoAtTheForceOfTheQuillOnceAStroke) {
-  Stage stage("plucked_by_plectrum.yaml");
+  GallerySession session("plucked_by_plectrum.yaml");
   std::size_t released = 0;
-  stage.play_until(15.0, [&] {
-    for (const engine::LinkEvent& event : stage.events()) {
+  session.play_until(15.0, [&] {
+    for (const engine::LinkEvent& event : session.events()) {
       if (event.from != kPushing || event.to != kPassed) continue;
       ++released;
       EXPECT_GE(-event.value, kRelease);
@@ -78,22 +78,23 @@ TEST(PluckedByPlectrum, LetsGoAtTheForceOfTheQuillOnceAStroke) {
 }
 
 TEST(PluckedByPlectrum, LeavesTheStringToItsOwnNotes) {
-  Stage stage("plucked_by_plectrum.yaml");
-  stage.play_until(1.2);  // the plectrum has passed
+  GallerySession session("plucked_by_plectrum.yaml");
+  session.play_until(1.2);  // the plectrum has passed
   const std::vector<int> numbers = {1, 2};
   std::vector<Mode> plucked;
-  for (const int number : numbers) plucked.push_back(mode_of(stage, number));
-  EXPECT_LT(std::abs(mode_of(stage, 3).amplitude), 0.02 * std::abs(plucked[0].amplitude));
+  for (const int number : numbers) plucked.push_back(mode_of(session, number));
+  EXPECT_LT(std::abs(mode_of(session, 3).amplitude), 0.02 * std::abs(plucked[0].amplitude));
 
   // Six swings later. Damping makes every mode of this scheme sharp by Z dt / (4 m): by 0.3 % of a
   // swing in that time, the second mode by twice that.
-  stage.play_until(3.2);
+  session.play_until(3.2);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const Swing expected = after(plucked[i], numbers[i], 2.0);
-    EXPECT_NEAR(mode_of(stage, numbers[i]).amplitude, expected.amplitude, 0.006 * expected.envelope)
+    EXPECT_NEAR(mode_of(session, numbers[i]).amplitude, expected.amplitude,
+                0.006 * expected.envelope)
         << "mode " << numbers[i];
   }
-  EXPECT_LT(std::abs(stage.energy_residual()), 1.0e-9);
+  EXPECT_LT(std::abs(session.energy_residual()), 1.0e-9);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ bool comes_to_know(const Participant& participant, std::size_t others) {
   return true;
 }
 
-TEST(Cyclone, FindsASessionWhenItIsToldWhereAndIsForgottenWhenItDies) {
+TEST(Cyclone, FindsASessionWhenItIsGivenThePlaceAndIsForgottenWhenItDies) {
   Participant sim({test::own_domain(), "cyclone", "sim"});
   const node::StatusPublisher status(sim, msg::KIND_SIM_NODE,
                                      static_cast<std::uint64_t>(node::monotonic_nsec()),

@@ -46,9 +46,10 @@ test('the messages are those of the contract', () => {
   const contract = {
     'control.idl': ['ControlCommand', 'ControlReply', 'LiaisonChanges', 'NodeStatus'],
     'gesture.idl': ['GesturePositions', 'GestureForces', 'DeviceDescription'],
+    'inputs.idl': ['SourceFile', 'InputScene', 'InputSample', 'InputReach', 'InputEvent', 'SceneInputs'],
     'scene.idl': [
       'NamedRange', 'PortDescription', 'SignalDescription', 'StateMachineDescription', 'SceneDescription', 'SceneFrame',
-      'SceneSignals', 'LinkEvent', 'SceneEvents',
+      'SceneSignals', 'SceneSound', 'LinkEvent', 'SceneEvents',
     ],
     'topics.idl': [],
   };
@@ -65,7 +66,10 @@ for (const unit of units) {
 }
 
 test('both parsers find the same values of enums', () => {
-  assert.deepEqual(enums.map(own).sort(), ['ControlVerb', 'EventQuantity', 'MatKind', 'NodeKind', 'NodePhase', 'PortRole']);
+  assert.deepEqual(enums.map(own).sort(), [
+    'ControlVerb', 'EventQuantity', 'InputClock', 'InputKind', 'MatKind', 'NodeKind', 'NodePhase', 'PortRole', 'ReachBound',
+    'SignalRate',
+  ]);
   const generated = units.map((unit) => readFileSync(join(generatedFolder, `${basename(unit, '.idl')}.h`), 'utf8')).join('\n');
   for (const definition of enums) {
     const [, body] = generated.match(new RegExp(`enum ${own(definition)} : uint32_t\\s*\\{([^}]*)\\}`));

@@ -49,6 +49,13 @@ if [[ -f $build/share/cordis/page/index.html ]]; then
   if grep -q 'page not built' "$scratch/run"; then fail "viz_node does not find the installed page"; fi
 fi
 [[ -f $scratch/usr/share/cordis/idl/gesture.idl ]] || fail "the messages are not installed"
+example=$scratch/usr/share/cordis/examples/foreign_device
+[[ -f $example/device.c ]] || fail "the device of another vendor is not installed"
+if command -v idlc >/dev/null; then
+  cmake -G Ninja -S "$example" -B "$scratch/foreign"
+  cmake --build "$scratch/foreign"
+  if "$scratch/foreign/foreign_device" 2>/dev/null; then fail "foreign_device wants no words"; fi
+fi
 
 if grep -rF -- "$build" "$scratch/usr"/lib/cmake; then
   fail "the installed package points into the build tree"

@@ -69,12 +69,12 @@ void expect_bad_file(const Outcome& outcome, const std::string& place, const std
   EXPECT_EQ(outcome.output.find("terminate called"), std::string::npos) << outcome.output;
 }
 
-TEST(BadInput, WrongYamlIsToldWithItsPlace) {
+TEST(BadInput, WrongYamlIsReportedWithItsPlace) {
   expect_bad_file(run(with(wall_scene(1), "[key, ground]", "[key, ground"), steady_key(0, 0)),
                   "scene.yaml:", "error");
 }
 
-TEST(BadInput, AnUnknownFileIsToldByName) {
+TEST(BadInput, AnUnknownFileIsReportedByName) {
   LiveSession session("lockstep", kSimAndKey);
   session.add_file("key.yaml", steady_key(0, 0));
   ChildProcess& launcher = session.start_launcher();
@@ -86,7 +86,7 @@ TEST(BadInput, ADomainOutOfRangeIsRefused) {
   expect_bad_file(run(wall_scene(1), steady_key(0, 0), {"domain=233"}), "domain", "101");
 }
 
-TEST(BadInput, ADeviceWithTooFewAxesIsToldAtThePort) {
+TEST(BadInput, ADeviceWithTooFewAxesIsReportedAtThePort) {
   expect_bad_file(run(with(wall_scene(1), "axes: [0]", "axes: [3]"), steady_key(0, 0)),
                   "scene.yaml:11:", "wants axis 3 of the device 'keyboard', which has 1 axis");
 }
@@ -96,7 +96,7 @@ std::string demanding(const std::string& scene, const std::string& needs) {
   return with(scene, "at_m: [0]}\nlinks", "at_m: [0],\n    needs: {" + needs + "}}\nlinks");
 }
 
-TEST(BadInput, ADeviceWithoutWhatAPortNeedsIsToldThereWithBothNumbers) {
+TEST(BadInput, ADeviceWithoutWhatAPortNeedsIsReportedThereWithBothNumbers) {
   const Outcome outcome =
       run(demanding(wall_scene(1), "travel_m: 0.05, force_n: 25"), steady_key(0, 0));
   expect_bad_file(outcome, "scene.yaml:12:12: error:",
@@ -120,7 +120,7 @@ TEST(BadInput, NumbersThatAreNotFiniteAreRefused) {
   }
 }
 
-TEST(BadInput, AllProblemsOfAllNodesAreToldAtOnce) {
+TEST(BadInput, AllProblemsOfAllNodesAreReportedAtOnce) {
   const Outcome outcome =
       run(with(wall_scene(1), "kind: spring", "kind: sprung"), "cordis: 1\naxes: 99\n");
   expect_bad_file(outcome, "scene.yaml:6:", "spring");

@@ -122,7 +122,7 @@ TEST_P(Control, PausesStepsAndResumes) {
   expect_done({"pause"}, "sim: paused at step ");
   ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_PAUSED));
   const std::uint64_t step = step_shown();
-  EXPECT_EQ(step_shown(), step) << "pictures go on, the scene does not";
+  EXPECT_EQ(step_shown(), step) << "views go on, the scene does not";
 
   expect_steps({"step"}, step + 1);
   expect_steps({"step", "7"}, step + 8);
@@ -182,7 +182,7 @@ TEST_P(Control, SetChangesAParameterAndTheKeyFeelsIt) {
 }
 
 /// A link of a liaison with states, put into its other state by hand.
-TEST(ControlOfStates, StatePutsALinkIntoAStateAndAnEventTells) {
+TEST(ControlOfStates, StatePutsALinkIntoAStateAndAnEventReports) {
   LiveSession session("asap", "  sim: {node: sim_node, scene: scene.yaml}\n");
   session.add_file("scene.yaml",
                    R"(cordis: 1
@@ -248,7 +248,7 @@ class ControlWithoutDevices : public Control {
   ControlWithoutDevices() : Control("asap") { session_.add_file("scene.yaml", kFreeScene); }
 };
 
-TEST_F(ControlWithoutDevices, AScenePlayedAsFastAsCanBeObeysJustTheSame) {
+TEST_F(ControlWithoutDevices, ASceneAsFastAsPossibleExecutesThemTheSame) {
   session_.start("sim_node", "sim");
   ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
   expect_done({"pause"}, "sim: paused at step ");
@@ -369,7 +369,7 @@ TEST_F(ControlInRealtime, WithoutASimulationTheCommandEndsInOneClearMessage) {
   Outcome outcome = ctl({"pause"}, "1s");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(
-      outcome.output.find("nobody is in session 'test' of domain " + std::to_string(own_domain())),
+      outcome.output.find("no node is in session 'test' of domain " + std::to_string(own_domain())),
       std::string::npos)
       << outcome.output;
 
@@ -432,7 +432,7 @@ TEST_F(ControlInRealtime, BadWordsAreRefusedBeforeAnythingIsSent) {
   expect_refused({"pause", "--domain", "500"}, "domain");
 }
 
-/// Whoever takes part in a session may send `load`: the reply tells nothing of files that are not
+/// Whoever takes part in a session may send `load`: the reply says nothing of files that are not
 /// scenes below the folder of the launch file.
 class ControlOfFiles : public ControlInRealtime {
  protected:
@@ -502,7 +502,7 @@ TEST_F(ControlOfFiles, ThatAreNoScenesAreNotQuoted) {
         << path;
   }
   const std::string text = answer_to_load("broken.yaml");
-  EXPECT_NE(text.find("broken.yaml:3:"), std::string::npos) << "the place is told: " << text;
+  EXPECT_NE(text.find("broken.yaml:3:"), std::string::npos) << "the place is reported: " << text;
   EXPECT_EQ(text.find("not_quoted"), std::string::npos) << text;
 }
 

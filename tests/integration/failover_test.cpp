@@ -122,7 +122,8 @@ trace: {file: )" + trace("standby_node") +
       const double most = kSlew * periods_between(rows[i - 2], rows[i]) + kRounding;
       const double change = std::abs(rows[i].force_n - rows[i - 1].force_n);
       if (rows[i].force_n == 0.0 && change > most) {
-        ++at_once;
+        // A loop that has itself stalled lets go at once, whoever stopped it.
+        if (rows[i].time_nsec - rows[i - 1].time_nsec < 17'000'000) ++at_once;
       } else {
         EXPECT_LE(change, most) << node;
       }

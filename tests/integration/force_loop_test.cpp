@@ -13,13 +13,17 @@
 #include <sched.h>
 
 #include "idl/gesture.h"
+#include "node/config/name_hash.h"
+#include "node/dds/arrival.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
 #include "node/node_main.h"
+#include "node/time.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
 #include "tests/support/realtime_permission.h"
+#include "tests/support/timer_control.h"
 
 namespace cordis::test {
 namespace {
@@ -66,8 +70,10 @@ std::map<int, int> realtime_threads_of(pid_t process) {
   std::map<int, int> counts;
   const std::string tasks = "/proc/" + std::to_string(process) + "/task";
   for (const auto& task : std::filesystem::directory_iterator(tasks)) {
-    std::ifstream file(task.path() / "stat");
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::ostringstream stat;  // empty when the thread has ended
+    stat << std::ifstream(task.path() / "stat").rdbuf();
+    const std::string text = stat.str();
+    if (text.empty()) continue;
     std::istringstream words(text.substr(text.rfind(')') + 1));  // from the third one on
     const std::vector<std::string> fields{std::istream_iterator<std::string>(words), {}};
     if (fields.size() > 38 && fields[38] == std::to_string(SCHED_FIFO))
@@ -206,6 +212,91 @@ TEST(ForceLoop, ForcesThatAreNotFiniteNeverReachTheMotor) {
            status.of("keyboard").dropped() > dropped_before;
   }));
   EXPECT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING)) << "it goes on";
+}
+
+/// A device without a description is given no force, and its samples are refused.
+void describe_key(dds::Writer<msg::DeviceDescription>& writer, std::uint32_t device_id,
+                  std::uint64_t epoch) {
+  msg::DeviceDescription description;
+  description.device_id(device_id);
+  description.device("keyboard");
+  description.driver("of the test");
+  description.epoch(epoch);
+  description.coordinate_count(1);
+  description.rate_hz(1000.0);
+  description.moving_mass_kg(0.05);
+  description.travel_m()[0] = 0.08;
+  description.lowest_m(-0.04);
+  description.highest_m(0.04);
+  description.force_n()[0] = 20.0;
+  EXPECT_TRUE(writer.write(description));
+}
+
+/// Median age of the newest answer to a device whose samples come at a phase of the periods of this
+/// host, with a clock that is 200 ppm slow [periods].
+double median_answer_delay(LiveSession& session, std::uint32_t device_id, double phase,
+                           std::uint64_t epoch) {
+  constexpr double kPeriod = 1e6 * (1.0 + 200e-6);  // [ns]
+  constexpr int kToFindThePhase = 1000;
+  constexpr int kSamples = 2500;
+  dds::Arrival arrival;
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces, &arrival);
+  dds::Writer<msg::GesturePositions> positions(session.participant(), dds::Topic::kPositions);
+  dds::Writer<msg::DeviceDescription> descriptions(session.participant(), dds::Topic::kDevice);
+  describe_key(descriptions, device_id, epoch);
+  msg::GesturePositions sample;
+  sample.device_id(device_id);
+  sample.epoch(epoch);
+  sample.axis_count(1);
+  std::vector<double> delays;
+  const std::int64_t begin = node::monotonic_nsec() / 1'000'000 * 1'000'000 + 50'000'000;
+  for (int n = 1; n <= kSamples; ++n) {
+    const auto at = begin + static_cast<std::int64_t>((phase + n) * kPeriod);
+    msg::GestureForces force;
+    for (std::int64_t now = node::monotonic_nsec(); now < at; now = node::monotonic_nsec()) {
+      const std::uint32_t seen = arrival.count();
+      while (forces.take(force)) {
+        const bool answers = force.answered_epoch() == epoch &&
+                             force.answered_sample() == sample.sample() && n > kToFindThePhase;
+        if (answers)
+          delays.push_back(static_cast<double>(node::monotonic_nsec() - sample.time_nsec()));
+      }
+      arrival.wait_until(seen, at);
+    }
+    sample.sample(static_cast<std::uint64_t>(n));
+    sample.time_nsec(node::monotonic_nsec());
+    EXPECT_TRUE(positions.write(sample));
+  }
+  // A machine that is busy with others makes some of them late, and never all.
+  EXPECT_GT(delays.size(), 100u) << "answers in their own period";
+  if (delays.empty()) return 1.0;
+  std::nth_element(delays.begin(), delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2),
+                   delays.end());
+  return delays[delays.size() / 2] / kPeriod;
+}
+
+TEST(ForceLoop, ADeviceOfAnyPhaseIsAnsweredOnArrival) {
+  LiveSession session("realtime", kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  StatusWatch status(session.participant());
+  session.start("sim_node", "sim");
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_WAITING));
+  const std::uint32_t id = config::name_hash("keyboard");
+
+  const TimerControl control;
+  std::vector<double> delays;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    delays.push_back(median_answer_delay(session, id, 0.25 * quarter,
+                                         1000 + static_cast<std::uint64_t>(quarter)));
+  }
+
+  const std::string reason = control.reason_to_skip(std::chrono::milliseconds(20));
+  const auto [least, most] = std::minmax_element(delays.begin(), delays.end());
+  // A scene with a phase of its own would answer one of them half a period later than another.
+  if (*most - *least >= 0.3 && !reason.empty()) GTEST_SKIP() << reason;
+  EXPECT_LT(*most - *least, 0.3) << delays[0] << ' ' << delays[1] << ' ' << delays[2] << ' '
+                                 << delays[3];
 }
 
 }  // namespace

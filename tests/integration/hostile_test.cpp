@@ -114,15 +114,22 @@ TEST_F(Hostile, ADescriptionOfAnUnknownRoleIsRefusedAndTheDevicePlaysOn) {
        at = said.find("unknown role", at + 1)) {
     ++times;
   }
-  EXPECT_EQ(times, 1u) << "it is told once\n" << said;
+  EXPECT_EQ(times, 1u) << "it is reported once\n" << said;
 }
+
+constexpr std::uint32_t kAnotherVersion = msg::WIRE_VERSION + 6;
 
 /// A key of another version of the wire, in the session of a sim_node or alone.
 dds::ParticipantConfig of_another_version(LiveSession& session, const std::string& node) {
   dds::ParticipantConfig config = session.participant().config();
   config.node = node;
-  config.wire_version = msg::WIRE_VERSION + 6;
+  config.wire_version = kAnotherVersion;
   return config;
+}
+
+std::string of_versions(const std::string& node) {
+  return "'" + node + "' speaks version " + std::to_string(kAnotherVersion) +
+         " of the wire and this process version " + std::to_string(msg::WIRE_VERSION);
 }
 
 TEST(AnotherWireVersion, OfADeviceIsGivenNoForceAndNamedOnce) {
@@ -143,8 +150,7 @@ TEST(AnotherWireVersion, OfADeviceIsGivenNoForceAndNamedOnce) {
   sample.axis_count(1);
   sample.position_m()[0] = -0.01;
   const std::string refusal =
-      "'test/keyboard' speaks version 7 of the wire and this process "
-      "version 1: its messages are refused, and no force flows";
+      of_versions("test/keyboard") + ": its messages are refused, and no force flows";
   EXPECT_TRUE(status.wait_for("sim", [&](const msg::NodeStatus& said) {
     for (int i = 0; i < 20; ++i) {
       sample.sample(sample.sample() + 1);
@@ -178,7 +184,7 @@ TEST(AnotherWireVersion, OfASceneIsNotPlayedAndCtlSaysWhy) {
   scene.ports({port});
   EXPECT_TRUE(descriptions.write(scene));
 
-  const std::string refusal = "'test/sim' speaks version 7 of the wire and this process version 1";
+  const std::string refusal = of_versions("test/sim");
   EXPECT_TRUE(status.wait_for("keyboard", [&](const msg::NodeStatus& said) {
     return said.text().find(refusal) != std::string::npos;
   }));
@@ -190,11 +196,11 @@ TEST(AnotherWireVersion, OfASceneIsNotPlayedAndCtlSaysWhy) {
   EXPECT_NE(ctl.output().find(refusal), std::string::npos) << ctl.output();
 }
 
-/// 65 keys, each on a spring of its own: one more than DDS has room for among the forces.
-std::string keys_scene() {
+/// Keys k<first> to k<last - 1>, each on a spring of its own.
+std::string keys_scene(int first, int last) {
   std::string ports;
   std::string links;
-  for (int key = 0; key < 65; ++key) {
+  for (int key = first; key < last; ++key) {
     const std::string name = "k" + std::to_string(key);
     ports += "  " + name + ": {device: " + name +
              ", axes: [0], role: mass, coupling: direct, at_m: [0]}\n";
@@ -214,9 +220,11 @@ ports:
          "links:\n" + links;
 }
 
+/// DDS has room for the forces of 64 devices; those of another scene count as well.
 TEST(UnwrittenForces, AreCountedAsDropped) {
   LiveSession session("realtime", "  sim: {node: sim_node, scene: scene.yaml}\n");
-  session.add_file("scene.yaml", keys_scene());
+  session.add_file("scene.yaml", keys_scene(0, 64));
+  session.add_file("other.yaml", keys_scene(64, 65));
   session.start("sim_node", "sim");
   StatusWatch status(session.participant());
   dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
@@ -239,6 +247,8 @@ TEST(UnwrittenForces, AreCountedAsDropped) {
     })) << answered.size();
   }
   ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_WAITING));
+  ChildProcess ctl({program_path("cordis"), "ctl", session.launch_file(), "load", "other.yaml"});
+  ASSERT_EQ(ctl.wait(kPatience), 0) << ctl.output();
   const std::uint64_t before = status.of("sim").dropped();
 
   // Frames are left out at most once a second: a thousand are forces.

@@ -1,5 +1,6 @@
-// tests/integration/late_ticks_test.cpp -- the table at the end of `cordis run` tells why ticks
+// tests/integration/late_ticks_test.cpp -- the table at the end of `cordis run` reports why ticks
 // came late.
+#include <chrono>
 #include <csignal>
 #include <sstream>
 
@@ -8,6 +9,7 @@
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
+#include "tests/support/timer_control.h"
 
 namespace cordis::test {
 namespace {
@@ -61,6 +63,7 @@ class LateTicks : public testing::Test {
   LiveSession session_{"realtime", kSimAndKey};
   StatusWatch status_{session_.participant()};
   ChildProcess* launcher_ = nullptr;
+  const TimerControl timer_;
 };
 
 class LateTicksOfASlowScene : public LateTicks {
@@ -78,7 +81,9 @@ TEST_F(LateTicksOfASlowScene, AreTheScenesFault) {
   }));
   const std::string row = row_of("sim");
   EXPECT_TRUE(contains(row, "scene too slow ")) << row;
-  EXPECT_FALSE(contains(launcher_->output(), "the machine itself")) << launcher_->output();
+  if (timer_.worst() < std::chrono::milliseconds(1)) {  // otherwise the machine is late as well
+    EXPECT_FALSE(contains(launcher_->output(), "the machine itself")) << launcher_->output();
+  }
 }
 
 TEST_F(LateTicks, OfASceneAreNotThoseInWhichItsDeviceIsSilent) {

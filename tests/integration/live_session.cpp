@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <utility>
 
 #include "tests/support/test_domain.h"
 
@@ -15,15 +16,18 @@ std::string program_path(const std::string& program) {
 }
 
 LiveSession::LiveSession(const std::string& clock, const std::string& nodes,
-                         const std::string& session) {
+                         const std::string& session, Build build)
+    : build_(std::move(build)) {
+  if (build_.folder.empty()) build_.folder = CORDIS_PROGRAM_DIR;
   std::string name = (std::filesystem::temp_directory_path() / "cordis-test-XXXXXX").string();
   folder_ = mkdtemp(name.data());
   add_file("launch.yaml", "cordis: 1\nsession: " + session +
                               "\ndomain: " + std::to_string(own_domain()) + "\nclock: " + clock +
                               "\nnodes:\n" + nodes);
-  participant_ = std::make_unique<dds::Participant>(
-      dds::ParticipantConfig{own_domain(), session, "observer", clock == "lockstep",
-                             nodes.find("standby_for:") != std::string::npos});
+  dds::ParticipantConfig config{own_domain(), session, "observer", clock == "lockstep",
+                                nodes.find("standby_for:") != std::string::npos};
+  if (build_.wire_version != 0) config.wire_version = build_.wire_version;
+  participant_ = std::make_unique<dds::Participant>(config);
 }
 
 LiveSession::~LiveSession() {
@@ -39,7 +43,7 @@ void LiveSession::add_file(const std::string& name, const std::string& text) con
 
 ChildProcess& LiveSession::start(const std::string& program, const std::string& name,
                                  const std::vector<std::string>& words) {
-  std::vector<std::string> command = {program_path(program), launch_file(), "--name", name};
+  std::vector<std::string> command = {build_.folder + "/" + program, launch_file(), "--name", name};
   command.insert(command.end(), words.begin(), words.end());
   if (auto& old = processes_[name]) ended_.push_back(std::move(old));
   processes_[name] = std::make_unique<ChildProcess>(command);
@@ -47,7 +51,8 @@ ChildProcess& LiveSession::start(const std::string& program, const std::string& 
 }
 
 ChildProcess& LiveSession::start_launcher(const std::vector<std::string>& words) {
-  std::vector<std::string> command = {program_path("cordis"), "run", launch_file(), "--no-color"};
+  std::vector<std::string> command = {build_.folder + "/cordis", "run", launch_file(),
+                                      "--no-color"};
   command.insert(command.end(), words.begin(), words.end());
   if (auto& old = processes_["cordis"]) ended_.push_back(std::move(old));
   processes_["cordis"] = std::make_unique<ChildProcess>(command);

@@ -1,6 +1,7 @@
 // tests/integration/live_session.h -- real nodes in a DDS domain of this test's own.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -13,6 +14,12 @@
 
 namespace cordis::test {
 
+/// The executables that a session runs.
+struct Build {
+  std::string folder;              ///< empty: of this build
+  std::uint32_t wire_version = 0;  ///< that they speak; 0: that of this build
+};
+
 /// A folder with a launch file and what belongs to it, the nodes of it that the test has started,
 /// and a DDS participant of the test itself in the same session. Everything ends with the object.
 /// When a test has failed, the output of every process is printed.
@@ -21,7 +28,7 @@ class LiveSession {
   /// @param clock  realtime, lockstep or asap
   /// @param nodes  YAML text of the mapping `nodes:`, indented by two
   explicit LiveSession(const std::string& clock, const std::string& nodes,
-                       const std::string& session = "test");
+                       const std::string& session = "test", Build build = {});
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -40,6 +47,7 @@ class LiveSession {
   dds::Participant& participant() { return *participant_; }
 
  private:
+  Build build_;
   std::filesystem::path folder_;
   std::map<std::string, std::unique_ptr<ChildProcess>> processes_;
   std::vector<std::unique_ptr<ChildProcess>>

@@ -76,7 +76,8 @@ TEST(Locks, AreNeverSharedByTheForceLoopAndAThreadOfNormalPriority) {
 
   run_on(1000);
   look();
-  for (const char* words : {"pause", "resume", "reset"}) {  // each is told, logged and described
+  for (const char* words :
+       {"pause", "resume", "reset"}) {  // each is reported, logged and described
     ChildProcess ctl({program_path("cordis"), "ctl", session.launch_file(), words});
     EXPECT_EQ(ctl.wait(kPatience), 0) << ctl.output();
     run_on(500);

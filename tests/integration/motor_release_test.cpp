@@ -110,36 +110,22 @@ std::unique_ptr<Board> board_of(const std::string& name) {
   return std::make_unique<Kfb1OnALine>(name != "kfb1");
 }
 
-/// Processes that a process has started, with this name.
-std::vector<pid_t> children_of(pid_t parent, const std::string& name) {
-  std::vector<pid_t> found;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    const std::string digits = entry.path().filename();
-    if (digits.find_first_not_of("0123456789") != std::string::npos) continue;
-    std::ifstream file(entry.path() / "stat");
-    std::string stat;
-    std::getline(file, stat);
-    const std::size_t open = stat.find('(');
-    const std::size_t close = stat.rfind(')');
-    if (close == std::string::npos || close + 4 > stat.size()) continue;
-    if (stat.substr(open + 1, close - open - 1) != name) continue;
-    if (std::atoi(stat.c_str() + close + 4) == parent) found.push_back(std::stoi(digits));
-  }
-  return found;
-}
-
 pid_t child_of(pid_t parent, const std::string& name) {
-  std::vector<pid_t> found;
-  EXPECT_TRUE(eventually([&] { return (found = children_of(parent, name)).size() == 1; }))
-      << found.size() << " processes " << name;
-  return found.empty() ? -1 : found.front();
+  std::vector<ChildOf> found;
+  EXPECT_TRUE(eventually([&] {
+    found = children_of(parent);
+    std::erase_if(found, [&](const ChildOf& child) { return child.name != name; });
+    return found.size() == 1;
+  })) << found.size()
+      << " processes " << name;
+  return found.empty() ? -1 : found.front().id;
 }
 
 bool exists(pid_t pid) {
   return std::filesystem::exists("/proc/" + std::to_string(pid));
 }
 
-/// Waits until a process runs no more; one that nobody has collected yet does not.
+/// Waits until a process runs no more; one that is not collected yet does not.
 bool has_ended(pid_t pid) {
   return eventually([pid] {
     std::ifstream file("/proc/" + std::to_string(pid) + "/stat");

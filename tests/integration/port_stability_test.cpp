@@ -224,5 +224,61 @@ TEST(PassivityController, EndsTheSwingOfAHandTenTimesTooStiff) {
   EXPECT_LT(damped.last, 0.1) << "[N]";
 }
 
+/// Slow enough for a busy machine: the wall needs an answer within some 6 ms of its 10.
+constexpr const char* kSlowWall = R"(cordis: 1
+name: wall
+space: 1
+step: {rate_hz: 100, gesture_rate_hz: 100}
+liaisons:
+  wall: {kind: spring, stiffness_n_per_m: 500, rest_m: 0.0001}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  bob: {kind: mass, mass_kg: 1, at_m: [0.1]}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, at_m: [0], coupling: direct}
+links:
+  - {liaison: wall, between: [key, ground]}
+)";
+constexpr const char* kSlowKey = R"(cordis: 1
+axes: 1
+rest: middle
+rate_hz: 100
+driver: mock
+viscosity_n_s_per_m: 5
+moving_mass_kg: 0.2
+mock:
+  key: {mass_kg: 0.2, viscosity_n_s_per_m: 5}
+  hand: {gesture: {kind: hold, at_m: -0.01}}
+)";
+
+TEST(AnswerDelay, AKeyTooWeakForAnAnswerAPeriodLateIsPlayedOnceItsAnswersAreMeasuredFaster) {
+  LiveSession session("realtime",
+                      "  sim: {node: sim_node, scene: scene.yaml}\n"
+                      "  keyboard: {node: device_node, device: key.yaml}\n");
+  session.add_file("scene.yaml", kSlowWall);
+  session.add_file("key.yaml", kSlowKey);
+  dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);
+  StatusWatch status(session.participant());
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard");
+  const auto says = [&](const std::string& words) {
+    return status.wait_for("sim", [&](const msg::NodeStatus& message) {
+      return message.text().find(words) != std::string::npos;
+    });
+  };
+
+  ASSERT_TRUE(says("one period is assumed until 200 answers are measured"));
+  msg::GestureForces force;
+  double largest_before = 0.0;
+  while (forces.take(force))
+    largest_before = std::max(largest_before, std::abs(force.force_n()[0]));
+  EXPECT_EQ(largest_before, 0.0);
+
+  ASSERT_TRUE(says("the device 'keyboard' is answered within "));
+  EXPECT_TRUE(eventually([&] { return forces.take(force) && std::abs(force.force_n()[0]) > 1.0; }));
+  EXPECT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING));
+  EXPECT_EQ(status.of("keyboard").passivity_ticks(), 0u) << "the loop makes no energy";
+}
+
 }  // namespace
 }  // namespace cordis::test

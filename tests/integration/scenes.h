@@ -5,7 +5,7 @@
 
 namespace cordis::test {
 
-/// A key of role mass that a spring ties to its rest: force = -stiffness x position.
+/// A key of role mass that a spring holds at its rest: force = -stiffness x position.
 inline std::string wall_scene(double stiffness_n_per_m) {
   return R"(cordis: 1
 name: wall

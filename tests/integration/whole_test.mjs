@@ -103,7 +103,7 @@ const cases = {
     await until('the key is down', async () => (await height(page, KEY)) < -0.11);
   },
 
-  'Ctrl-C ends every process, and the launcher tells how it went': async ({ page, launcher, pageErrors }) => {
+  'Ctrl-C ends every process, and the launcher reports how it went': async ({ page, launcher, pageErrors }) => {
     assert.deepEqual([await viz(page, 'errors'), pageErrors], [[], []]);
     assert.equal(await launcher.end('SIGINT'), 0);
     for (const [node, row] of Object.entries({ sim: /^sim +[\d.]+ +1000 /m, keyboard: /^keyboard +[\d.]+ +1000 /m })) {

@@ -1,44 +1,18 @@
 // tests/machine/machine_test.cpp -- what is measured of the machine itself.
-#include <filesystem>
-#include <fstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "node/machine/deadline_record.h"
 #include "node/machine/processor_time.h"
-#include "node/machine/system_files.h"
 #include "node/machine/timer_watch.h"
 #include "node/machine/wakeups.h"
+#include "tests/support/fake_root.h"
 #include "tests/support/realtime_permission.h"
 
 namespace cordis::machine {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::int64_t kMillisecond = 1'000'000;
-
-/// A folder in the place of the root of the machine.
-class FakeRoot {
- public:
-  FakeRoot()
-      : folder_(fs::path(testing::TempDir()) / ("cordis machine " + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~FakeRoot() { fs::remove_all(folder_); }
-  FakeRoot(const FakeRoot&) = delete;
-  FakeRoot& operator=(const FakeRoot&) = delete;
-
-  void put(const std::string& path, const std::string& text) const {
-    fs::create_directories((folder_ / path).parent_path());
-    std::ofstream(folder_ / path) << text;
-  }
-  SystemFiles files() const { return SystemFiles(folder_); }
-
- private:
-  fs::path folder_;
-};
 
 TEST(DeadlineRecord, CountsTheDeadlinesThatPassMeanwhile) {
   DeadlineRecord record;
@@ -70,7 +44,7 @@ TEST(SystemFiles, TakeWhatIsMissingForNothing) {
   EXPECT_TRUE(root.files().names("dev", "tty").empty());
 }
 
-TEST(ProcessorTime, TellsTheShareThatWasStolen) {
+TEST(ProcessorTime, ReportsTheShareThatWasStolen) {
   const FakeRoot root;
   root.put("proc/stat", "cpu  100 0 50 800 10 0 5 35 99 0\ncpu0 1 1 1 1 1 1 1 1 0 0\n");
   const auto before = read_processor_time(root.files());
@@ -82,7 +56,7 @@ TEST(ProcessorTime, TellsTheShareThatWasStolen) {
   EXPECT_EQ(stolen_share(before, after), 0.125);  // 50 of 400
 }
 
-TEST(ProcessorTime, IsNothingWhereTheKernelDoesNotTell) {
+TEST(ProcessorTime, IsNothingWhereTheKernelDoesNotReport) {
   const FakeRoot root;
   EXPECT_FALSE(read_processor_time(root.files()));
   root.put("proc/stat", "intr 5\n");

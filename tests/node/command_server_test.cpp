@@ -1,11 +1,15 @@
 // tests/node/command_server_test.cpp
 #include "node/command_server.h"
 
+#include <future>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/eventually.h"
 
 namespace cordis::node {
 namespace {
@@ -28,7 +32,7 @@ struct Desk {
                        }};
 };
 
-TEST(CommandServer, ObeysWhatIsForItByNameByKindOrForAll) {
+TEST(CommandServer, ExecutesWhatIsForItByNameByKindOrForAll) {
   Desk server;
   std::uint64_t id = 0;
   for (const char* target : {"sim", "sim_node", "*"}) {
@@ -49,14 +53,14 @@ TEST(CommandServer, IsSilentAboutWhatIsForOthers) {
   EXPECT_TRUE(server.executed.empty());
 }
 
-TEST(CommandServer, ObeysACommandOnceHoweverOftenItComes) {
+TEST(CommandServer, ExecutesACommandOnceHoweverOftenItComes) {
   Desk server;
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(server.server.take(command_for("sim", 7))->text(), "answer 1");
   EXPECT_EQ(server.executed.size(), 1u);
 }
 
-TEST(CommandServer, TellsSendersApartThatUseTheSameNumber) {
+TEST(CommandServer, DistinguishesSendersThatUseTheSameNumber) {
   Desk server;
   static_cast<void>(server.server.take(command_for("sim", 7, "one")));
   EXPECT_EQ(server.server.take(command_for("sim", 7, "other"))->text(), "answer 2");
@@ -72,6 +76,64 @@ TEST(CommandServer, RemembersABoundedNumberOfCommands) {
   EXPECT_EQ(server.executed.size(), before) << "still known";
   static_cast<void>(server.server.take(command_for("sim", 0)));
   EXPECT_EQ(server.executed.size(), before + 1) << "forgotten, and executed as a new one";
+}
+
+TEST(CommandServer, ExecutesOthersWhileTheLongPartOfACommandIsUnderWay) {
+  std::promise<void> end_of_work;
+  int works = 0;
+  CommandServer server(
+      "sim", msg::KIND_SIM_NODE,
+      [](const msg::ControlCommand&) {
+        return Answer{true, "at once"};
+      },
+      [&](const msg::ControlCommand& command) -> Work {
+        if (command.verb() != msg::VERB_LOAD) return {};
+        return [&]() -> Finish {
+          end_of_work.get_future().wait();
+          ++works;
+          return [] { return Answer{true, "loaded"}; };
+        };
+      });
+  msg::ControlCommand load = command_for("sim", 1);
+  load.verb(msg::VERB_LOAD);
+  msg::ControlCommand other_load = command_for("sim", 3);
+  other_load.verb(msg::VERB_LOAD);
+
+  EXPECT_FALSE(server.take(load).has_value());
+  EXPECT_EQ(server.take(command_for("sim", 2))->text(), "at once");
+  EXPECT_FALSE(server.take(load).has_value()) << "sent again";
+  EXPECT_EQ(server.take(other_load)->text(),
+            "a 'load' is still under way; send this one after its reply");
+  EXPECT_FALSE(server.take_finished().has_value());
+  EXPECT_TRUE(server.is_working());
+
+  end_of_work.set_value();
+  std::optional<msg::ControlReply> reply;
+  ASSERT_TRUE(test::eventually([&] {
+    reply = server.take_finished();
+    return reply.has_value();
+  }));
+  EXPECT_EQ(reply->command_id(), 1U);
+  EXPECT_EQ(reply->text(), "loaded");
+  EXPECT_FALSE(server.is_working());
+  EXPECT_EQ(server.take(load)->text(), "loaded") << "and answered again";
+  EXPECT_EQ(works, 1);
+}
+
+TEST(CommandServer, AnswersAFailureOfALongPartWithItsReason) {
+  CommandServer server(
+      "sim", msg::KIND_SIM_NODE, [](const msg::ControlCommand&) { return Answer{}; },
+      [](const msg::ControlCommand&) -> Work {
+        return []() -> Finish { throw std::runtime_error("no memory for it"); };
+      });
+  EXPECT_FALSE(server.take(command_for("sim", 1)).has_value());
+  std::optional<msg::ControlReply> reply;
+  ASSERT_TRUE(test::eventually([&] {
+    reply = server.take_finished();
+    return reply.has_value();
+  }));
+  EXPECT_FALSE(reply->accepted());
+  EXPECT_EQ(reply->text(), "no memory for it");
 }
 
 TEST(CommandServer, AnswersAFailureWithItsReason) {

@@ -6,17 +6,21 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "idl/control.h"
 #include "idl/gesture.h"
 #include "idl/scene.h"
+#include "node/dds/payload.h"
 #include "node/dds/reader.h"
 #include "node/dds/wire_version.h"
 #include "node/dds/writer.h"
 #include "node/roster.h"
 #include "node/status.h"
+#include "node/time.h"
 #include "tests/support/eventually.h"
 #include "tests/support/test_domain.h"
 
@@ -47,6 +51,125 @@ msg::GesturePositions sample_of(std::uint32_t device, std::uint64_t number) {
   for (std::size_t axis = 0; axis < 16; ++axis)
     sample.position_m()[axis] = 0.001 * static_cast<double>(axis + 1);
   return sample;
+}
+
+TEST(Payload, OfAGestureOfWireVersion2IsReadWithoutTheDelayOfItsAnswer) {
+  msg::GesturePositions sample = sample_of(5, 7);
+  sample.answer_delay_s(0.25);
+  std::vector<std::byte> payload = encode(sample);
+  msg::GesturePositions read;
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read.answer_delay_s(), 0.25);
+
+  payload.resize(payload.size() - sizeof(double));
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read.answer_delay_s(), 0.0);
+  EXPECT_EQ(read.position_m(), sample.position_m());
+
+  payload.pop_back();
+  EXPECT_FALSE(decode(payload, read)) << "cut short";
+}
+
+/// A reader with an Arrival takes samples out of DDS in the thread that receives them.
+TEST(Arrival, CountsTheMessagesOfItsReadersAndWakesWhoWaits) {
+  Participant device(member("arrival", "keyboard"));
+  Participant sim(member("arrival", "sim"));
+  Arrival arrival;
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions, &arrival);
+  Reader<msg::GestureForces> other(sim, Topic::kForces, &arrival);
+  Writer<msg::GesturePositions> positions(device, Topic::kPositions);
+  Writer<msg::GestureForces> forces(device, Topic::kForces);
+  ASSERT_TRUE(eventually([&] {
+    return reader.matched_count() == 1 && other.matched_count() == 1 &&
+           positions.matched_count() == 1 && forces.matched_count() == 1;
+  }));
+  const auto waits = [&arrival](std::uint32_t seen) {
+    const std::int64_t patience = 10'000'000'000;
+    return arrival.wait_until(seen, node::monotonic_nsec() + patience);
+  };
+
+  std::uint32_t seen = arrival.count();
+  msg::GesturePositions sample = sample_of(5, 7);
+  ASSERT_TRUE(positions.write(sample));
+  ASSERT_TRUE(waits(seen));
+  msg::GesturePositions taken;
+  ASSERT_TRUE(reader.take(taken));
+  EXPECT_EQ(taken.sample(), 7u);
+  EXPECT_FALSE(reader.take(taken));
+
+  seen = arrival.count();
+  msg::GestureForces force;
+  force.device_id(5);
+  std::thread late([&] {
+    std::this_thread::sleep_for(20ms);
+    EXPECT_TRUE(forces.write(force));
+  });
+  EXPECT_TRUE(waits(seen)) << "it waits for both";
+  late.join();
+  EXPECT_TRUE(other.take(force));
+
+  EXPECT_FALSE(arrival.wait_until(arrival.count(), node::monotonic_nsec() + 1'000'000));
+}
+
+TEST(Arrival, KeepsTheNewestOfEachDeviceAndWriterWhateverAnotherSends) {
+  Participant device(member("room", "keyboard"));
+  Participant other(member("room", "flood"));
+  Participant sim(member("room", "sim"));
+  Arrival arrival;
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions, &arrival);
+  Writer<msg::GesturePositions> writer(device, Topic::kPositions);
+  Writer<msg::GesturePositions> flood(other, Topic::kPositions);
+  Writer<msg::GesturePositions> own(sim, Topic::kPositions);
+  ASSERT_TRUE(eventually([&] {
+    return reader.matched_count() == 3 && writer.matched_count() == 1 && flood.matched_count() == 1;
+  }));
+  const auto write = [&](Writer<msg::GesturePositions>& by, std::uint32_t id, std::uint64_t n) {
+    const std::uint32_t seen = arrival.count();
+    msg::GesturePositions sample = sample_of(id, n);
+    ASSERT_TRUE(by.write(sample));
+    arrival.wait_until(seen, node::monotonic_nsec() + 100'000'000);  // best effort: one may be lost
+  };
+  // Each of them three times: the last of three that are lost would be more than a busy machine.
+  for (std::uint64_t number = 1; number <= 3; ++number) write(writer, 5, number);
+  for (std::uint64_t number = 1; number <= 3; ++number) write(writer, 6, number);
+  for (std::uint64_t number = 1; number <= 300; ++number) write(flood, 5, number);
+  write(own, 5, 1);
+
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> taken;
+  for (msg::GesturePositions sample; reader.take(sample);)
+    taken.emplace_back(sample.device_id(), sample.sample());
+  ASSERT_EQ(taken.size(), 3u) << "one of each device and writer, and none of its own";
+  EXPECT_EQ(taken[0].first, 5u);
+  EXPECT_LE(taken[0].second, 3u);
+  EXPECT_EQ(taken[1].first, 6u);
+  EXPECT_EQ(taken[2].first, 5u);
+  EXPECT_GT(taken[2].second, 290u);
+}
+
+/// In lockstep every message counts, with an arrival as without one.
+TEST(Arrival, LosesNothingInLockstep) {
+  Participant device(member("letters", "keyboard", true));
+  Participant sim(member("letters", "sim", true));
+  Arrival arrival;
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions, &arrival);
+  Writer<msg::GesturePositions> writer(device, Topic::kPositions);
+  ASSERT_TRUE(
+      eventually([&] { return reader.matched_count() == 1 && writer.matched_count() == 1; }));
+  constexpr std::uint32_t kDevices = 60;
+  for (std::uint64_t number = 1; number <= 2; ++number) {
+    for (std::uint32_t id = 1; id <= kDevices; ++id) {
+      msg::GesturePositions sample = sample_of(id, number);
+      ASSERT_TRUE(writer.write(sample));
+    }
+  }
+
+  std::vector<std::uint64_t> newest(kDevices + 1, 0);
+  std::uint32_t count = 0;
+  EXPECT_TRUE(eventually([&] {
+    for (msg::GesturePositions sample; reader.take(sample); ++count)
+      EXPECT_EQ(sample.sample(), ++newest.at(sample.device_id()));
+    return count == 2 * kDevices;
+  })) << count;
 }
 
 TEST(Dds, CarriesALockstepGestureWholeAndInOrder) {
@@ -178,25 +301,25 @@ TEST(Roster, KnowsWhoIsAliveByWhatItSays) {
   EXPECT_TRUE(statuses.write(status));
 
   EXPECT_TRUE(eventually([&] {
-    roster.look();
+    roster.update();
     return roster.name_of(msg::KIND_SIM_NODE) == "'sim'";
   }));
   EXPECT_EQ(roster.name_of(msg::KIND_DEVICE_NODE), "");
   msg::NodeStatus taken;
   Reader<msg::NodeStatus> reader(here, Topic::kStatus);
   ASSERT_TRUE(receive(reader, taken));
-  forgetful.look();
+  forgetful.update();
   EXPECT_TRUE(forgetful.alive().empty()) << "matched, and silent since";
 
   status.phase(msg::PHASE_STOPPED);
   EXPECT_TRUE(statuses.write(status));
   EXPECT_TRUE(eventually([&] {
-    roster.look();
+    roster.update();
     return roster.alive().empty();
   }));
 }
 
-TEST(StatusPublisher, TellsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
+TEST(StatusPublisher, ReportsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
   Participant viewer(member("status", "view"));
   Reader<msg::NodeStatus> reader(viewer, Topic::kStatus);
   Participant sim(member("status", "sim"));

@@ -90,7 +90,7 @@ TEST(Participant, ForgetsAProcessThatIsKilledBeforeItsParentHasWaitedForIt) {
   const auto killed = speaker("zombie", "killed");
   ASSERT_TRUE(eventually([&] { return knows(here, "zombie/killed"); }));
 
-  killed->signal(SIGKILL);  // and nobody waits for it: it stays a zombie
+  killed->signal(SIGKILL);  // and no process waits for it: it stays a zombie
 
   EXPECT_TRUE(eventually([&] { return !knows(here, "zombie/killed"); }));
   EXPECT_EQ(killed->wait(kPatience), 128 + SIGKILL);
@@ -121,7 +121,7 @@ TEST(Participant, HearsAndIsHeardByAProcessThatItHasDropped) {
   description.name("");
   EXPECT_TRUE(eventually([&] { return scenes_there.take(description); }));
   EXPECT_EQ(description.name(), "said once");
-  EXPECT_EQ(there.rejoin_count(), 0u) << "it has dropped nobody that has come back";
+  EXPECT_EQ(there.rejoin_count(), 0u) << "it has dropped no process that has come back";
 }
 
 TEST(Participant, WritesAndReadsWhileItJoinsAnew) {
@@ -201,7 +201,7 @@ TEST(Participant, ListensOnLoopbackAloneAndToNoMulticast) {
 TEST(Participant, SaysThatADomainIsFull) {
   std::vector<std::unique_ptr<ParticipantPorts>> others;
   for (int i = 0; i < kMaxParticipants; ++i) {
-    others.push_back(std::make_unique<ParticipantPorts>(test::own_domain()));
+    others.push_back(std::make_unique<ParticipantPorts>(test::own_domain(), "127.0.0.1"));
   }
 
   try {
@@ -214,6 +214,19 @@ TEST(Participant, SaysThatADomainIsFull) {
   }
   others.pop_back();
   EXPECT_NO_THROW(Participant(member("full", "here")));
+}
+
+TEST(Participant, SaysThatAnAddressIsOfThisHostNoMore) {
+  ParticipantConfig config = member("gone", "here");
+  config.network.address = "203.0.113.9";
+  try {
+    const Participant elsewhere(config);
+    FAIL() << "203.0.113.9 is kept for documents";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("203.0.113.9 is no address of this host any more"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(ProcessIdentity, IsThatOfALivingProcessOfThisHost) {

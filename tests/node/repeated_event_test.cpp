@@ -27,10 +27,10 @@ TEST(RepeatedEvent, LeavesTheFirstToTheCallerAndCountsTheOthers) {
   EXPECT_EQ(log.lines("it was late"), "it was late: 37 more times in 5 s\n");
 }
 
-TEST(RepeatedEvent, TellsTheWorstOfThem) {
+TEST(RepeatedEvent, ReportsTheWorstOfThem) {
   const test::CapturedLog log;
   RepeatedEvent event("it was late");
-  EXPECT_TRUE(event.record(0, 9.0)) << "the caller tells the figure of the first";
+  EXPECT_TRUE(event.record(0, 9.0)) << "the caller reports the figure of the first";
   EXPECT_FALSE(event.record(1, 0.0123));
   EXPECT_FALSE(event.record(2, 0.002));
 
@@ -65,7 +65,7 @@ TEST(RepeatedEvent, IsAFirstOneAgainAfterAWindowWithoutAny) {
   EXPECT_EQ(log.lines(""), "it was late: 1 more time in 5 s\nit was late: 1 more time in 5 s\n");
 }
 
-TEST(RepeatedEvent, TellsTheRestAtItsEnd) {
+TEST(RepeatedEvent, ReportsTheRestAtItsEnd) {
   const test::CapturedLog log;
   {
     RepeatedEvent event("it was late");

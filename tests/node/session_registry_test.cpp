@@ -45,9 +45,9 @@ class Folder {
 };
 
 /// A process that is a session's node until it is killed or asked to end.
-class Player {
+class RegisteredSession {
  public:
-  Player(const fs::path& folder, const SessionRequest& request) {
+  RegisteredSession(const fs::path& folder, const SessionRequest& request) {
     std::array<int, 2> ends{};
     if (pipe(ends.data()) != 0) throw std::runtime_error("pipe");
     id_ = fork();
@@ -58,9 +58,9 @@ class Player {
     close(ends[1]);
     report_ = ends[0];
   }
-  ~Player() { end(SIGKILL); }
-  Player(const Player&) = delete;
-  Player& operator=(const Player&) = delete;
+  ~RegisteredSession() { end(SIGKILL); }
+  RegisteredSession(const RegisteredSession&) = delete;
+  RegisteredSession& operator=(const RegisteredSession&) = delete;
 
   pid_t id() const noexcept { return id_; }
 
@@ -126,7 +126,7 @@ std::string refusal_of(const fs::path& folder, const SessionRequest& request) {
 TEST(SessionRegistry, GivesEverySessionADomainOfItsOwnAndRecordsIt) {
   const Folder folder;
   const SessionRegistration one(folder, request_of("one", "sim"));
-  Player two(folder, request_of("two", "sim"));
+  RegisteredSession two(folder, request_of("two", "sim"));
 
   ASSERT_GE(two.domain(), 0);
   EXPECT_NE(two.domain(), one.domain());
@@ -144,15 +144,15 @@ TEST(SessionRegistry, GivesEverySessionADomainOfItsOwnAndRecordsIt) {
 
 TEST(SessionRegistry, LetsNodesOfOneSessionMeetInItsDomain) {
   const Folder folder;
-  Player sim(folder, request_of("string", "sim"));
+  RegisteredSession sim(folder, request_of("string", "sim"));
   ASSERT_GE(sim.domain(), 0);
-  Player view(folder, request_of("string", "view"));
+  RegisteredSession view(folder, request_of("string", "view"));
   EXPECT_EQ(view.domain(), sim.domain());
 
   sim.end(SIGKILL);
-  Player other(folder, request_of("other", "sim"));
+  RegisteredSession other(folder, request_of("other", "sim"));
   EXPECT_NE(other.domain(), view.domain()) << "the view is still there";
-  Player again(folder, request_of("string", "sim"));
+  RegisteredSession again(folder, request_of("string", "sim"));
   EXPECT_EQ(again.domain(), view.domain());
 }
 
@@ -232,7 +232,7 @@ TEST(SessionRegistry, PassesOverADomainThatAForeignProgramUses) {
 TEST(SessionRegistry, PassesOverADomainThatAnotherUserHolds) {
   const Folder mine;
   const Folder theirs;
-  Player other(theirs, request_of("string", "sim"));
+  RegisteredSession other(theirs, request_of("string", "sim"));
   ASSERT_GE(other.domain(), 0);
 
   const SessionRegistration own(mine, request_of("string", "sim"));
@@ -271,14 +271,14 @@ TEST(SessionRegistry, NeverGivesOneDomainToTwoSessionsWhateverHappens) {
   const auto pick = [&random](int count) { return static_cast<int>(random() % count); };
   const std::array<Folder, 2> users;
   // (user, session, node) to the process that plays it
-  std::map<std::array<int, 3>, std::unique_ptr<Player>> living;
+  std::map<std::array<int, 3>, std::unique_ptr<RegisteredSession>> living;
   int checked = 0;
 
   for (int round = 0; round < 40; ++round) {
     for (int start = pick(6); start >= 0; --start) {
       const std::array<int, 3> who{pick(2), pick(5), pick(3)};
       if (living[who] != nullptr) continue;
-      living[who] = std::make_unique<Player>(
+      living[who] = std::make_unique<RegisteredSession>(
           users[static_cast<std::size_t>(who[0])],
           request_of("s" + std::to_string(who[1]), "n" + std::to_string(who[2])));
       if (pick(4) == 0) {
@@ -288,9 +288,9 @@ TEST(SessionRegistry, NeverGivesOneDomainToTwoSessionsWhateverHappens) {
     }
     std::map<int, std::pair<int, int>> session_in;  // by domain
     std::map<std::pair<int, int>, int> domain_of;
-    for (auto& [who, player] : living) {
-      if (player == nullptr) continue;
-      const int domain = player->domain();
+    for (auto& [who, registered] : living) {
+      if (registered == nullptr) continue;
+      const int domain = registered->domain();
       ASSERT_GE(domain, 0) << "refused in round " << round;
       const std::pair session{who[0], who[1]};
       const auto [at, is_new] = session_in.emplace(domain, session);
@@ -298,16 +298,52 @@ TEST(SessionRegistry, NeverGivesOneDomainToTwoSessionsWhateverHappens) {
       ASSERT_EQ(domain_of.emplace(session, domain).first->second, domain) << "round " << round;
       ++checked;
     }
-    for (auto& [who, player] : living) {
+    for (auto& [who, registered] : living) {
       const int fate = pick(5);
-      if (player == nullptr || fate > 1) continue;
-      player->end(fate == 0 ? SIGKILL : SIGTERM);
-      player.reset();
+      if (registered == nullptr || fate > 1) continue;
+      registered->end(fate == 0 ? SIGKILL : SIGTERM);
+      registered.reset();
     }
   }
   EXPECT_GT(checked, 100);
   living.clear();
   for (const Folder& user : users) EXPECT_TRUE(running_sessions(user).empty());
+}
+
+TEST(SessionRegistry, KeepsSceneAndDevicesOutOfATakeThatIsPlayed) {
+  const Folder folder;
+  const SessionRegistration played(folder, {"string", {}, "", {"play"}, true});
+  const auto join = [&](const std::string& node, bool simulates) {
+    const SessionRegistration joined(folder, {"string", {}, "", {node}, false, simulates});
+    return joined.domain();
+  };
+  try {
+    join("sim", true);
+    ADD_FAILURE() << "a scene has joined a take";
+  } catch (const SessionRuns&) {
+    ADD_FAILURE() << "of `cordis play` alone";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), "session 'string' in DDS domain " + std::to_string(played.domain()) +
+                                " is a take that is played (process " + std::to_string(getpid()) +
+                                "); stop it, or give this one session=NAME");
+  }
+  EXPECT_EQ(join("view", false), played.domain()) << "a viewer may";
+}
+
+TEST(SessionRegistry, KeepsANewSessionOutOfOneThatRuns) {
+  const Folder folder;
+  const SessionRegistration running(folder, {"string", {}, "", {"sim"}});
+  const auto is_refused = [&](std::optional<int> domain) {
+    try {
+      const SessionRegistration played(folder, {"string", domain, "", {"play"}, true});
+      return false;
+    } catch (const SessionRuns&) {
+      return true;
+    }
+  };
+  EXPECT_TRUE(is_refused({}));
+  EXPECT_TRUE(is_refused(running.domain()));
+  EXPECT_NO_THROW(SessionRegistration(folder, {"other", {}, "", {"play"}, true}));
 }
 
 }  // namespace

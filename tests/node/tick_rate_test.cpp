@@ -10,21 +10,21 @@ constexpr std::int64_t kMsec = 1'000'000;
 
 TEST(TickRate, DoesNotCountTheWaitForTheFirstTick) {
   TickRate rate(5'000 * kMsec);
-  rate.look(5'500 * kMsec, 0);
-  rate.look(6'000 * kMsec, 100);  // began 100 ms ago
-  rate.look(7'000 * kMsec, 1'100);
+  rate.update(5'500 * kMsec, 0);
+  rate.update(6'000 * kMsec, 100);  // began 100 ms ago
+  rate.update(7'000 * kMsec, 1'100);
   EXPECT_EQ(rate.mean_hz(), 1'000.0);
-  rate.look(8'000 * kMsec, 2'000);
+  rate.update(8'000 * kMsec, 2'000);
   EXPECT_EQ(rate.mean_hz(), 950.0);
   EXPECT_EQ(rate.reached_hz(), 900.0);
 }
 
 TEST(TickRate, OfARunTooShortForTwoLooksIsThatSinceTheLastLookWithoutTicks) {
   TickRate rate(0);
-  rate.look(400 * kMsec, 0);
-  rate.look(500 * kMsec, 50);
+  rate.update(400 * kMsec, 0);
+  rate.update(500 * kMsec, 50);
   EXPECT_EQ(rate.mean_hz(), 500.0);
-  rate.look(501 * kMsec, 60);  // too close
+  rate.update(501 * kMsec, 60);  // too close
   EXPECT_EQ(rate.mean_hz(), 500.0);
   EXPECT_EQ(rate.reached_hz(), 500.0);
 }

@@ -25,7 +25,7 @@ TEST(OscillatorError, IsOneCentAtAPhaseOf118Thousandths) {
 }
 
 TEST(OscillatorError, IsWhatTheEngineDoes) {
-  // 2 s of 5 Hz at 100 steps a second: the n-th zero crossing tells the period, interpolated.
+  // 2 s of 5 Hz at 100 steps a second: the n-th zero crossing gives the period, interpolated.
   const double w = 10.0 * M_PI;
   const double viscosity = 0.8;
   World world = make_world(oscillator(1.0, w * w, viscosity, 1.0, 0.0, 0.01));
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, CreepError,
                                          engine::IntegratorKind::kLeapfrog,
                                          engine::IntegratorKind::kImplicit));
 
-TEST(OscillatorError, TellsWhatSwingsFromWhatCreepsAndDiverges) {
+TEST(OscillatorError, DistinguishesWhatSwingsFromWhatCreepsAndDiverges) {
   EXPECT_FALSE(oscillator_error(10.0, 30.0, 1e-3).oscillates);  // over-damped
   EXPECT_TRUE(oscillator_error(10.0, 30.0, 1e-3).creeps);
   EXPECT_FALSE(oscillator_error(10.0, 3000.0, 1e-3).creeps);  // beyond the limit of `cordis`

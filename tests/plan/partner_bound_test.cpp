@@ -167,7 +167,7 @@ TEST(Partners, MakeTheRateOfACrowdHighEnough) {
     crowd.state_machines[0].states[0].viscosity = 0.002;
     return crowd;
   }();
-  const plan::RateChoice choice = plan::choose_rate(scene, {0.01, 20.0, 1.0, 0.0}, 1000.0);
+  const plan::FormulaRate choice = plan::rate_by_formula(scene, {0.01, 20.0, 1.0, 0.0}, 1000.0);
 
   NetworkDescription chosen = scene;
   chosen.step = 1.0 / choice.rate_hz;

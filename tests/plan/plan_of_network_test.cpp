@@ -17,7 +17,7 @@ using engine::Quantity;
 using plan::Plan;
 using plan::plan_of;
 
-TEST(Plan, TellsStableFromUnstable) {
+TEST(Plan, DistinguishesStableFromUnstable) {
   // K' = 4 at 0.02 s
   const Plan stable = plan_of(oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 0.01), 1.0);
   EXPECT_TRUE(stable.stability.holds());
@@ -66,9 +66,9 @@ NetworkDescription mass_on_law(int dimension, double weight, const Vec3& at, con
 }
 
 TEST(Plan, DoesNotCallAHammerUnstableThatIsStillAwayFromItsString) {
-  engine::StateMachine felt = state_machine(0.0, engine::Power{3e8, 2.5});
-  felt.states[0].pulls = false;
-  NetworkDescription scene = mass_on_law(1, 0.009, Vec3(0.04, 0, 0), Vec3(-1.5, 0, 0), felt, 0.0);
+  engine::StateMachine hammer = state_machine(0.0, engine::Power{3e8, 2.5});
+  hammer.states[0].pulls = false;
+  NetworkDescription scene = mass_on_law(1, 0.009, Vec3(0.04, 0, 0), Vec3(-1.5, 0, 0), hammer, 0.0);
   scene.step = 1.0 / 44100.0;
 
   const plan::Stability stability = plan_of(scene, 10.0).stability;
@@ -93,6 +93,18 @@ TEST(Plan, IsNotCertainOfAContactThatGainsEnergyAtEachTouch) {
   EXPECT_TRUE(stability_at(500.0).holds());
 }
 
+TEST(Plan, IsNotCertainOfAMaxwellElementThatStartsTooStrong) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3::Zero()), mass(0.1, Vec3(0.5, 0, 0))};
+  scene.maxwell_links = {{0, 1, 100.0, 5.0, 49.0}};
+  EXPECT_FALSE(plan_of(scene, 10.0).stability.uncertainty.has_value());
+
+  scene.maxwell_links[0].start_force = 51.0;
+  EXPECT_TRUE(plan_of(scene, 10.0).stability.uncertainty.has_value());
+}
+
 TEST(Plan, IsNotCertainOfAnOrbitAboutARingThatPulls) {
   const engine::StateMachine law = state_machine(0.0, engine::Rings{{{-800.0, 0.12}}});
   EXPECT_FALSE(plan_of(mass_on_law(2, 0.002, Vec3(0.06, 0.002, 0), Vec3(0, 0.1, 0), law, 0.0), 10.0)
@@ -102,10 +114,10 @@ TEST(Plan, IsNotCertainOfAnOrbitAboutARingThatPulls) {
 }
 
 TEST(Plan, SeesTheViscosityThatAnExpressionHasInItsElasticity) {
-  const Term pull = 90.0 * q(Quantity::kElongation) + 4.0 * q(Quantity::kSpeed);
+  const Term tension = 90.0 * q(Quantity::kElongation) + 4.0 * q(Quantity::kSpeed);
   const plan::Stability stability =
       plan_of(mass_on_law(2, 0.001, Vec3(0.1, 0, 0), Vec3(0.2, 0, 0),
-                          state_machine(0.0, expression_law(pull)), 0.1),
+                          state_machine(0.0, expression_law(tension)), 0.1),
               10.0)
           .stability;
   EXPECT_TRUE(stability.diverges());  // Z' = 4

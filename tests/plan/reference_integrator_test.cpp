@@ -144,6 +144,18 @@ TEST(ReferenceIntegrator, RelaxesAMaxwellElementAsTheClosedFormDoes) {
   EXPECT_NEAR((0.5 - reference_integrator.velocity(1).x()) / slowed, 1.0, 1e-5);
 }
 
+TEST(ReferenceIntegrator, BeginsWithTheStartForceOfAMaxwellElement) {
+  // At rest, F = F(0) e^(-K t / Z) on a mass so heavy that it hardly moves.
+  NetworkDescription scene = oscillator(1e6, 0.0, 0.0, 1.0, 0.0, 1e-3);
+  scene.links.clear();
+  scene.maxwell_links = {{0, 1, 300.0, 20.0, 8.0}};
+  ReferenceIntegrator reference_integrator(scene);
+  reference_integrator.advance_to(0.1);
+
+  const double impulse = 8.0 * 20.0 / 300.0 * (1.0 - std::exp(-300.0 * 0.1 / 20.0));
+  EXPECT_NEAR(-reference_integrator.velocity(1).x() * 1e6 / impulse, 1.0, 1e-5);
+}
+
 /// Two balls fly apart after they have pushed each other, once by a state link, once as a set.
 NetworkDescription colliding_balls(bool as_set) {
   NetworkDescription scene;

@@ -283,8 +283,8 @@ ReferenceProblem standard_linear_solid() {
   return made;
 }
 
-engine::Law always(double pull) {
-  return engine::Table{{0.0}, {pull}};
+engine::Law always(double tension) {
+  return engine::Table{{0.0}, {tension}};
 }
 
 /// A block on a spring under a belt, from where it is farthest on. It sticks by a spring so stiff

@@ -45,9 +45,9 @@ TEST(Dimension, APlaneOf3DIsComputedIn2DToTheBit) {
   const scene::Scene scene = reduced(text);
 
   ASSERT_EQ(scene.space(), 2);
-  ASSERT_TRUE(scene.confinement.has_value());
-  EXPECT_EQ(scene.confinement->space, 3);
-  EXPECT_EQ(scene.confinement->origin, engine::Vec3(0, 0.3, 0));
+  ASSERT_TRUE(scene.subspace.has_value());
+  EXPECT_EQ(scene.subspace->space, 3);
+  EXPECT_EQ(scene.subspace->origin, engine::Vec3(0, 0.3, 0));
   for (const char* name : {"net", "balls"}) {
     const auto before = motion(whole, name, 1000);
     const auto after = motion(scene, name, 1000);
@@ -112,7 +112,7 @@ TEST(Dimension, ALineIsComputedIn1DWhereTheSignOfItsLinksMakesNoDifference) {
   const scene::Scene scene = reduced(on_a_line("0"));
 
   ASSERT_EQ(scene.space(), 1);
-  EXPECT_EQ(scene.confinement->origin, engine::Vec3(0, 1, 0));
+  EXPECT_EQ(scene.subspace->origin, engine::Vec3(0, 1, 0));
   for (const char* name : {"bobs", "fast"}) {
     const auto before = motion(whole, name, 2000);
     auto after = motion(scene, name, 2000);

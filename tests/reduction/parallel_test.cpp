@@ -57,7 +57,7 @@ TEST(Parallel, MoveAsTheyDidApart) {
 
 TEST(Parallel, ALinkOfASignalStays) {
   const scene::Scene scene =
-      reduced(on_three_links(1, "signals:\n  pull: {of: second, quantity: force}\n"));
+      reduced(on_three_links(1, "signals:\n  tension: {of: second, quantity: force}\n"));
 
   ASSERT_EQ(scene.network.links.size(), 2u);
   const scene::Signal& signal = scene.signals.signals()[0];
@@ -67,13 +67,13 @@ TEST(Parallel, ALinkOfASignalStays) {
 
 TEST(Parallel, ASignalIsStillOfItsLinkWhenThoseBeforeItAreGone) {
   const scene::Scene scene =
-      reduced(on_three_links(1, "signals:\n  pull: {of: third, quantity: force}\n"));
+      reduced(on_three_links(1, "signals:\n  tension: {of: third, quantity: force}\n"));
 
   ASSERT_EQ(scene.network.links.size(), 2u);
   EXPECT_EQ(scene.network.links[scene.signals.signals()[0].index].viscosity, 0.03);
 }
 
-TEST(Parallel, WhereASignalTellsTheEnergyDifferentRestLengthsStay) {
+TEST(Parallel, WhereASignalReportsTheEnergyDifferentRestLengthsStay) {
   const std::string text = on_three_links(1, "signals:\n  e: {quantity: elastic_energy}\n");
 
   EXPECT_EQ(reduced(text).network.links.size(), 2u);  // the damper has none

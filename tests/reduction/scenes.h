@@ -10,6 +10,7 @@
 
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/reduction/reduce.h"
+#include "sim_node/scene/sections/scene_reader.h"
 
 namespace cordis::plan {
 
@@ -27,7 +28,7 @@ inline scene::Scene reduced(const std::string& text) {
   return scene;
 }
 
-/// What is told when the scene is reduced.
+/// What is reported when the scene is reduced.
 inline std::string refusal_of(const std::string& text) {
   config::Problems problems;
   scene::Scene scene = scene::load_scene_text(text, "t", problems);

@@ -1,4 +1,4 @@
-// tests/scene/absurd_scene_test.cpp -- scenes that nobody would write are told in few sentences,
+// tests/scene/absurd_scene_test.cpp -- absurd scenes are reported in few sentences,
 // and soon: a reader that followed them to their end would need minutes, or all memory.
 #include <functional>
 #include <string>
@@ -70,7 +70,7 @@ TEST(AbsurdScene, OfTooManyExitsIsRefused) {
             "liaison 'l' has more than 1000 exits");
 }
 
-TEST(AbsurdScene, OfManyWrongNamesIsToldUpToAHundredOfThem) {
+TEST(AbsurdScene, OfManyWrongNamesIsReportedUpToAHundredOfThem) {
   const std::string matter =
       repeated(3000, [](auto i, auto) { return "  b" + i + ": {kind: fixed, at_m: [0, 1]}\n"; });
   EXPECT_EQ(problems_in(kSpring + kBob + matter + "links:\n" +
@@ -97,6 +97,114 @@ TEST(AbsurdScene, OfPartsThatDoubleWithoutEndIsRefused) {
                             "}}}\n";
                    }) +
           "matter:\n  z: {part: p40}\n"),
+      "the scene has more than 1000000 MATs or 8000000 links");
+}
+
+// Without the bound each of these would add a million times a million copies.
+TEST(AbsurdScene, OfPartsRepeatedWithinEachOtherIsRefused) {
+  const std::string nested =
+      repeated(12,
+               [](auto i, auto next) {
+                 return "  p" + next + ": {matter: {m: {part: p" + i +
+                        ", repeat: {count: 1000, translate_m: [1, 0]}}}}\n";
+               }) +
+      "matter:\n  z: {part: p12}\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n";
+  EXPECT_EQ(problems_in("parts:\n  p0: {links: []}\n" + nested),
+            "missing key 'matter' in part 'p0'");
+  EXPECT_EQ(problems_in("parts:\n  p0: {matter: {m: {kind: fixed, at_m: [0, 0]}}}\n" + nested),
+            "the scene uses parts more than 100000 times, each copy counted");
+}
+
+TEST(AbsurdScene, OfPartsInAnEndlessRowIsRefused) {
+  EXPECT_EQ(problems_in("parts:\n  p0: {matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}}\n" +
+                        repeated(20'000,
+                                 [](auto i, auto next) {
+                                   return "  p" + next + ": {matter: {m: {part: p" + i + "}}}\n";
+                                 }) +
+                        "matter:\n  z: {part: p20000}\n"),
+            "parts stand more than 64 levels within each other");
+}
+
+TEST(AbsurdScene, OfLongPartsInManyCopiesIsRefused) {
+  const std::string parameters =
+      repeated(2000, [](auto i, auto) { return ", a" + i + ": [1, 2, 3]"; });
+  EXPECT_EQ(problems_in("parts:\n  p: {parameters: {b: 1" + parameters +
+                        "}, matter: {m: {kind: fixed, at_m: [0, 0]}}}\n" +
+                        "  q: {matter: {m: {part: p}}}\n" +
+                        "matter:\n  z: {part: q, repeat: {count: 40000}}\n"),
+            "the parts of the scene put more than 10000000 values into it");
+}
+
+const std::string kContact = "liaisons:\n  t: {kind: state_machine, stiffness_n_per_m: 0.1}\n";
+
+/// Masses in a square, 1 m apart.
+std::string square_of(int side) {
+  const std::string count = std::to_string(side);
+  return "matter:\n  s: {kind: lattice, structure: square, counts: [" + count + ", " + count +
+         "], mass_kg: 1, corner_m: [0, 0], spacing_m: 1}\n";
+}
+
+TEST(AbsurdScene, OfASetInWhichAllAreNearAllIsRefusedAtItsRange) {
+  config::Problems problems;
+  load_scene_text(scene_head(2) + kContact + square_of(1000) +
+                      "links:\n  - {liaison: t, within: s, rest_m: 1, range_m: 2000}\n"
+                      "  - {liaison: t, within: s, rest_m: 1, range_m: 3000, name: other}\n"
+                      "signals:\n  b: {of: other, quantity: bonds}\n",
+                  "t", problems);
+  ASSERT_EQ(problems.in_order().size(), 1u) << problems.text();
+  const config::Problem problem = problems.in_order()[0];
+  EXPECT_EQ(problem.message,
+            "the sets of the scene have more than 8000000 pairs of MATs in or near their range at "
+            "the start");
+  EXPECT_EQ(problem.hint,
+            "this one joins all that are nearer than 2000 m; give it a shorter 'range_m', or fewer "
+            "MATs");
+  EXPECT_EQ(problem.place.line, 9);
+  EXPECT_EQ(problem.place.column, 26);
+}
+
+TEST(AbsurdScene, OfSetsThatAreNearlyInRangeOfEachOtherIsRefused) {
+  // 40,000 masses in two heaps, none of the one in range of the other
+  const std::string heap = ", structure: square, counts: [200, 100], mass_kg: 1, spacing_m: 0.0001";
+  EXPECT_EQ(problems_in(kContact + "matter:\n  p: {kind: lattice, corner_m: [0, 0]" + heap +
+                        "}\n  q: {kind: lattice, corner_m: [1.2, 0]" + heap +
+                        "}\nlinks:\n"
+                        "  - {liaison: t, between_sets: [p, q], rest_m: 1, range_m: 1}\n"
+                        "  - {liaison: t, between_sets: [q, p], rest_m: 1, range_m: 1}\n"),
+            "the sets of the scene have more than 8000000 pairs of MATs in or near their range at "
+            "the start");
+}
+
+TEST(AbsurdScene, OfTooManySetsIsRefused) {
+  const auto scene = [](int side, int count) {
+    return kContact + square_of(side) + "links:\n" + repeated(count, [](auto, auto) {
+             return std::string("  - {liaison: t, within: s, rest_m: 0.1, range_m: 0.1}\n");
+           });
+  };
+  EXPECT_EQ(problems_in(scene(2, 1001)), "the scene has more than 1000 liaisons of sets");
+  EXPECT_EQ(problems_in(scene(700, 5)),
+            "the sets of the scene have more than 2000000 MATs together");
+}
+
+TEST(AbsurdScene, OfTooManyDevicesIsRefused) {
+  const auto scene = [](int count) {
+    return kBob + "ports:\n" + repeated(count, [](auto i, auto) {
+             return "  p" + i + ": {device: d" + i + ", axes: [0], role: mass, at_m: [0, 1]}\n";
+           });
+  };
+  EXPECT_EQ(problems_in(scene(64)), "");
+  EXPECT_EQ(problems_in(scene(70)), "the scene has more than 64 devices");
+}
+
+TEST(AbsurdScene, ThatIsFullSaysSoOnceAndReadsNoMoreMatter) {
+  EXPECT_EQ(
+      problems_in("matter:\n" +
+                  repeated(3000,
+                           [](auto i, auto) {
+                             return "  s" + i +
+                                    ": {kind: lattice, structure: square, counts: [1000, 900], "
+                                    "mass_kg: 1, corner_m: [0, 0], spacing_m: 1}\n";
+                           })),
       "the scene has more than 1000000 MATs or 8000000 links");
 }
 

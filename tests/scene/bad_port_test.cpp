@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kLinked, "signals:\n  s: {of: ^\"a.links[0]\", quantity: position}\n",
                  "'a.links' has no links", ""},
         BadScene{kLinked, "signals:\n  s: {of: \"a[0]\", quantity: speed, ^unit: m}\n",
-                 "unknown key 'unit' in signal 's'", "known keys: of, quantity, axis"},
+                 "unknown key 'unit' in signal 's'", "known keys: of, quantity, axis, sound, rate"},
         BadScene{kLinked, "signals:\n  ^s s: {quantity: energy}\n",
                  "a name is of letters, digits, '_' and '-' and begins with a letter, got 's s'",
                  ""}));

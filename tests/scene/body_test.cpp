@@ -77,7 +77,7 @@ TEST(Disc, OfRingsHasSixMoreMatsInEachAndOnlyTriangles) {
   }
 }
 
-TEST(Disc, IsATriangularLatticeUnlessToldOtherwise) {
+TEST(Disc, IsATriangularLatticeUnlessSetOtherwise) {
   const Scene scene =
       body(2, "kind: disc, center_m: [0, 0], radius_m: 0.2, spacing_m: 0.1" + kMassAndLaw);
   EXPECT_EQ(mat_count(scene), 19u);

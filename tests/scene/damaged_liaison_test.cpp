@@ -116,7 +116,7 @@ signals:
   EXPECT_EQ(problems.all()[0].hint, "it has pieces, bonds");
 }
 
-TEST(BadLiaisons, AreAllToldInOneGo) {
+TEST(BadLiaisons, AreAllReportedInOneGo) {
   config::Problems problems;
   load_scene_text(scene_head(2) +
                       R"(liaisons:

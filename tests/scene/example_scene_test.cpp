@@ -14,7 +14,7 @@
 #include "node/config/launch.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/reduction/reduce.h"
-#include "sim_node/scene/scene.h"
+#include "sim_node/scene/sections/scene_reader.h"
 #include "tests/support/rounds.h"
 
 namespace cordis::scene {

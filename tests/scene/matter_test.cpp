@@ -27,7 +27,7 @@ int fixed_count(const std::vector<Mat>& mats) {
   return count;
 }
 
-TEST(Matter, MassStandsWhereItIsPutAndMovesAsToldTo) {
+TEST(Matter, MassStandsWhereItIsPutAndMovesAsItsVelocitySays) {
   const Scene scene = sound_scene(2,
                                   R"(matter:
   a: {kind: mass, mass_kg: 0.5, at_m: [[1, 2], [3, 4]], velocity_m_per_s: [5, 6], drawn_radius_m: 0.1}

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/scene/matter/packing.h"
 #include "tests/scene/scene_text.h"
 #include "tests/support/rounds.h"
 
@@ -85,6 +86,33 @@ TEST(Pack, OfTenThousandBallsIsNoTrouble) {
                                   side + ", " + side + ", " + side + "]}");
   ASSERT_EQ(scene.network.mats.size(), static_cast<std::size_t>(count));
   EXPECT_GE(smallest_distance(scene), 0.02 * (1.0 - 1e-15));
+}
+
+TEST(Pack, ThatJamsIsGivenUpEarly) {
+  Region box;
+  box.space = 3;
+  box.lowest = Vec3::Zero();
+  box.highest = Vec3::Constant(0.2);
+  const double ball = 4.0 / 3.0 * std::numbers::pi * 1e-6;
+  const auto count_of = [&](double fill) {
+    return static_cast<std::size_t>(fill * box.measure() / ball);
+  };
+  const PackedBalls sparse = pack_balls(box, 0.01, count_of(0.55), 1);
+  EXPECT_TRUE(sparse.centers.has_value());
+  const PackedBalls jammed = pack_balls(box, 0.01, count_of(0.63), 1);
+  EXPECT_FALSE(jammed.centers.has_value());
+  EXPECT_LE(jammed.rounds, 500);
+}
+
+TEST(Pack, OfManyBallsThatAreSurelyTooManyIsRefusedUnseen) {
+  config::Problems problems;
+  load_scene_text(scene_head(3) + R"(matter:
+  a: {kind: pack, ball: {mass_kg: 1, radius_m: 0.001}, fill: 0.66, region: {from_m: [0, 0, 0], to_m: [0.12, 0.12, 0.12]}}
+)",
+                  "t", problems);
+  ASSERT_EQ(problems.in_order().size(), 1u) << problems.text();
+  EXPECT_EQ(problems.in_order()[0].message,
+            "272270 balls of matter 'a' do not fit into the region");
 }
 
 TEST(Pack, OfASingleBallInARegionOfItsSizeStandsInTheMiddle) {

@@ -91,7 +91,7 @@ TEST(Part, HasParametersThatAUseOverrides) {
   const auto mass = [&](std::size_t mat) { return scene.network.mats.at(mat).mass; };
   EXPECT_EQ(mass(0), 1.0);
   EXPECT_EQ(mass(1), 1.0);
-  EXPECT_EQ(mass(4), 3.0);  // the hub is as heavy as the rim unless told otherwise
+  EXPECT_EQ(mass(4), 3.0);  // the hub is as heavy as the rim unless set otherwise
   EXPECT_EQ(mass(5), 3.0);
   EXPECT_EQ(mass(8), 4.0);
   EXPECT_EQ(mass(9), 1.0);
@@ -166,7 +166,7 @@ TEST(Part, RestsWhereItIsPut) {
   EXPECT_LT(sum.norm(), 1e-13);
 }
 
-TEST(Part, WithFaultsIsToldOnceHoweverOftenItIsUsed) {
+TEST(Part, WithFaultsIsReportedOnceHoweverOftenItIsUsed) {
   config::Problems problems;
   load_scene_text(scene_head(2) +
                       R"(parts:
@@ -219,7 +219,7 @@ parts:
   EXPECT_EQ(names_of(scene.matter)[2], "a.back.hub");
 }
 
-TEST_F(PartFiles, TellWhatIsWrongAtTheirOwnPlace) {
+TEST_F(PartFiles, ReportWhatIsWrongAtTheirOwnPlace) {
   write("parts/a.yaml", "cordis: 1\nparts:\n  include: b.yaml\n");
   write(
       "parts/b.yaml",

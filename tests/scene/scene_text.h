@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim_node/scene/scene.h"
+#include "sim_node/scene/sections/scene_reader.h"
 
 namespace cordis::scene {
 

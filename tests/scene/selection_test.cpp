@@ -86,7 +86,7 @@ TEST_F(Selections, AreJoinedByAList) {
   EXPECT_EQ(picked("'wall.*'"), picked("[wall.left, wall.right, wall.back]"));
 }
 
-TEST_F(Selections, TellWhatIsWrong) {
+TEST_F(Selections, ReportWhatIsWrong) {
   EXPECT_EQ(picked("sting"), "no matter or port is named 'sting'; did you mean 'string'?\n");
   EXPECT_EQ(picked("string[5]"), "'string' has the MATs 0 to 4, got 5\n");
   EXPECT_EQ(picked("string.links[4]", true), "'string.links' has the links 0 to 3, got 4\n");

@@ -37,7 +37,7 @@ class Observed {
   engine::World world_;
 };
 
-TEST(SignalReader, TellsWhatPartIsAwakeAndKeepsAwakeWhoseForceIsAskedFor) {
+TEST(SignalReader, ReportsWhatPartIsAwakeAndKeepsAwakeWhoseForceIsAskedFor) {
   config::Problems problems;
   Observed run(load_scene_text(
       R"(cordis: 1
@@ -54,14 +54,14 @@ signals:
   ASSERT_EQ(problems.text(), "");
 
   EXPECT_EQ(run.value("a"), 1.0);
-  run.step(50);
+  run.step(110);
 
   EXPECT_LT(run.value("a"), 0.5);
   EXPECT_GT(run.value("a"), 0.1);
   EXPECT_FALSE(run.world().is_asleep(run.scene().network.kept_awake.at(0)));
 }
 
-TEST(SignalReader, TellsPositionVelocityAndSpeedOfAFreeMass) {
+TEST(SignalReader, ReportsPositionVelocityAndSpeedOfAFreeMass) {
   Observed run(sound_scene(2,
                            R"(matter:
   a: {kind: mass, mass_kg: 2, at_m: [1, 2], velocity_m_per_s: [3, -4]}
@@ -87,7 +87,7 @@ signals:
   EXPECT_EQ(run.scene().signals.signals()[4].unit, "J");
 }
 
-TEST(SignalReader, TellsDistanceElongationGrowthAndPullOfALink) {
+TEST(SignalReader, ReportsDistanceElongationSpeedAndTensionOfALink) {
   Observed run(sound_scene(2,
                            R"(liaisons:
   s: {kind: spring_damper, stiffness_n_per_m: 10, viscosity_n_s_per_m: 2, rest_m: 4}
@@ -116,7 +116,7 @@ signals:
   EXPECT_NEAR(run.value("stored"), 0.5 * 10 * 1.01 * 1.0, 1e-4);
 }
 
-TEST(SignalReader, TellsOfEachLiaisonOfSeveralInParallel) {
+TEST(SignalReader, ReportsOfEachLiaisonOfSeveralInParallel) {
   Observed run(sound_scene(1,
                            R"(matter:
   a: {kind: fixed, at_m: 0}
@@ -180,7 +180,7 @@ signals:
   EXPECT_NEAR(run.value("f"), -25.0, 1e-6);  // the spring pulls it up again
 }
 
-TEST(SignalReader, TellsTheAccountOfEnergy) {
+TEST(SignalReader, ReportsTheAccountOfEnergy) {
   Observed run(sound_scene(2,
                            R"(world: {gravity_m_per_s2: [0, -10], viscosity_n_s_per_m: 0.5}
 matter:
@@ -291,6 +291,49 @@ signals:
   EXPECT_EQ(problem("{of: stiff, quantity: pieces}"), "a link has no quantity 'pieces'");
   EXPECT_EQ(problem("{of: glue, quantity: bonds, near_m: 1}"),
             "unknown key 'near_m' in signal 'p'");
+}
+
+TEST(SignalReader, OfEachStepAreThoseThatSayRateStepOrSound) {
+  Observed run(sound_scene(2,
+                           R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [3, 4]}
+signals:
+  x: {of: a, quantity: position, axis: x}
+  y: {of: a, quantity: position, axis: y, rate: step}
+  e: {quantity: energy, rate: gesture}
+  s: {of: a, quantity: speed, sound: true, full_scale: 2.5}
+)"));
+  const SignalReader& reader = run.scene().signals;
+  EXPECT_EQ(reader.by_step(), (std::vector<std::size_t>{1, 3}));
+  EXPECT_EQ(reader.sounds(), (std::vector<std::size_t>{1}));
+  EXPECT_EQ(reader.signals()[3].full_scale, 2.5);
+  EXPECT_EQ(reader.signals()[1].full_scale, 1.0);
+  run.step(3);
+  std::vector<double> all(4);
+  std::vector<double> some(2);
+  reader.read(run.world(), all.data());
+  reader.read_by_step(run.world(), some.data());
+  EXPECT_EQ(some, (std::vector<double>{all[1], all[3]}));
+}
+
+TEST(SignalReader, RefusesARateThatDoesNotGoWithASound) {
+  const auto problem = [](const std::string& words) {
+    config::Problems problems;
+    load_scene_text(
+        scene_head(1) + "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nsignals:\n" + words, "t",
+        problems);
+    return problems.all().empty() ? std::string() : problems.all()[0].message;
+  };
+  const std::string of = "  p: {of: a, quantity: position, ";
+  EXPECT_EQ(problem(of + "sound: true, rate: gesture}\n"), "a sound is taken after each step");
+  EXPECT_EQ(problem(of + "full_scale: 2}\n"), "'full_scale' is of a sound");
+  EXPECT_EQ(problem(of + "sound: true, full_scale: 0}\n"),
+            "'full_scale' in signal 'p' must be > 0, got 0");
+  EXPECT_NE(problem(of + "rate: often}\n").find("often"), std::string::npos);
+  std::string nine;
+  for (int i = 0; i < 9; ++i)
+    nine += "  p" + std::to_string(i) + ": {of: a, quantity: position, sound: true}\n";
+  EXPECT_EQ(problem(nine), "a scene has at most 8 signals with 'sound: true'");
 }
 
 TEST(SignalReader, ReadsWithoutAllocating) {

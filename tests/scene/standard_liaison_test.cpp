@@ -67,7 +67,7 @@ links:
     }
   }
   /// What the links draw the hand back with [N].
-  double pull() const { return -world_.link_force(kHand).x(); }
+  double tension() const { return -world_.link_force(kHand).x(); }
   int changes() const { return changes_; }
   std::string state() const {
     const engine::NetworkDescription& network = scene_.network;
@@ -94,86 +94,87 @@ std::string link(const std::string& liaison, const std::string& more = {}) {
 }
 
 /// The speed of a mass of 1 kg after it has met the wall at 1 m/s.
-double bounced(const std::string& liaison, double viscosity, double& largest_pull, int& changes) {
+double bounced(const std::string& liaison, double viscosity, double& largest_tension,
+               int& changes) {
   Rig rig("  - {liaison: " + liaison +
               ", between: [wall, bob], rest_m: 0, stiffness_n_per_m: 10000, viscosity_n_s_per_m: " +
               std::to_string(viscosity) + "}\n",
           "{mass_kg: 1, at_m: 0.001, velocity_m_per_s: -1}");
-  largest_pull = 0.0;
+  largest_tension = 0.0;
   while (rig.time() < 0.1) {
     rig.step();
-    largest_pull = std::max(largest_pull, rig.world().pull_of(0));
+    largest_tension = std::max(largest_tension, rig.world().tension_of(0));
   }
   changes = rig.changes();
   return rig.bob_speed();
 }
 
 TEST(Contact, SendsAMassBackAtItsOwnSpeed) {
-  double pull = 0.0;
+  double tension = 0.0;
   int changes = 0;
   // w dt = 1e-3: the scheme gains or loses less than (w dt)^2 / 4 of the energy at each change
-  EXPECT_NEAR(bounced("contact", 0.0, pull, changes), 1.0, 1e-6);
+  EXPECT_NEAR(bounced("contact", 0.0, tension, changes), 1.0, 1e-6);
   EXPECT_EQ(changes, 2);
 }
 
 TEST(Contact, WithViscositySendsItBackSlower) {
   // half a swing of the damped oscillator: exp(-pi zeta / sqrt(1 - zeta^2)), zeta = Z / (2 sqrt(K
   // m))
-  double pull = 0.0;
+  double tension = 0.0;
   int changes = 0;
   const double zeta = 0.2;
   const double exact = std::exp(-std::numbers::pi * zeta / std::sqrt(1.0 - zeta * zeta));
-  EXPECT_NEAR(bounced("contact", 40.0, pull, changes), exact, 2e-3);
-  EXPECT_GT(pull, 1.0);  // it pulls when it lets go: Z times the speed
+  EXPECT_NEAR(bounced("contact", 40.0, tension, changes), exact, 2e-3);
+  EXPECT_GT(tension, 1.0);  // it pulls when it lets go: Z times the speed
 }
 
 TEST(ContactClamped, NeverPulls) {
   // it is free when the force is: after (pi - acos(1 - 2 zeta^2) ... of the swing
-  double pull = 0.0;
+  double tension = 0.0;
   int changes = 0;
   const double zeta = 0.2;
   const double root = std::sqrt(1.0 - zeta * zeta);
   const double exact = std::exp(
       -zeta / root * (std::numbers::pi - std::atan2(2.0 * zeta * root, 1.0 - 2.0 * zeta * zeta)));
-  EXPECT_NEAR(bounced("contact_clamped", 40.0, pull, changes), exact, 2e-3);
-  EXPECT_EQ(pull, 0.0);
+  EXPECT_NEAR(bounced("contact_clamped", 40.0, tension, changes), exact, 2e-3);
+  EXPECT_EQ(tension, 0.0);
   EXPECT_EQ(changes, 2);
 }
 
 TEST(Grasp, HoldsForGoodWhatItHasTouched) {
   Rig rig(link("grasp", ", viscosity_n_s_per_m: 0"));
   rig.move_to(0.01, 0.1);
-  EXPECT_EQ(rig.pull(), 0.0);
+  EXPECT_EQ(rig.tension(), 0.0);
   rig.move_to(-0.001, 0.1);
   EXPECT_EQ(rig.state(), "held");
   rig.move_to(0.05, 0.1);
-  EXPECT_NEAR(rig.pull(), 1000 * 0.05, 1e-2);  // of the step before the last
+  EXPECT_NEAR(rig.tension(), 1000 * 0.05, 1e-2);  // of the step before the last
   EXPECT_EQ(rig.changes(), 1);
 }
 
 TEST(Pluck, SlipsOffAtItsForceAndIsReadyOnceItIsOut) {
   Rig rig(link("pluck"));
   double largest = 0.0;
-  rig.move_to(-0.005, 0.1, [&] { largest = std::max(largest, -rig.pull()); });
+  rig.move_to(-0.005, 0.1, [&] { largest = std::max(largest, -rig.tension()); });
   EXPECT_NEAR(largest, 500 * 0.003, 1e-3);
   EXPECT_EQ(rig.state(), "passed");
-  EXPECT_EQ(rig.pull(), 0.0);
-  rig.move_to(0.001, 0.1, [&] { EXPECT_EQ(rig.pull(), 0.0); });
+  EXPECT_EQ(rig.tension(), 0.0);
+  rig.move_to(0.001, 0.1, [&] { EXPECT_EQ(rig.tension(), 0.0); });
   EXPECT_EQ(rig.state(), "apart");
   EXPECT_EQ(rig.changes(), 3);
   rig.move_to(-0.002, 0.1);
-  EXPECT_NEAR(rig.pull(), -500 * 0.002, 1e-3);
+  EXPECT_NEAR(rig.tension(), -500 * 0.002, 1e-3);
 }
 
 TEST(Stick, HoldsUpToItsForceAndMayStickAgain) {
   Rig rig(link("stick", ", viscosity_n_s_per_m: 0"));
   double largest = 0.0;
-  const auto watch = [&] { largest = std::max(largest, rig.pull()); };
+  const auto watch = [&] { largest = std::max(largest, rig.tension()); };
   rig.move_to(-0.001, 0.1);
-  EXPECT_NEAR(rig.pull(), -500 * 0.001, 1e-3);
+  EXPECT_NEAR(rig.tension(), -500 * 0.001, 1e-3);
   rig.move_to(0.005, 0.1, watch);
   EXPECT_NEAR(largest, 500 * 0.002, 1e-3);
-  EXPECT_EQ(rig.pull(), 0.0);
+  EXPECT_EQ(rig.tension(), 0.0);
   rig.move_to(-0.001, 0.1);
   EXPECT_EQ(rig.state(), "stuck");
   EXPECT_EQ(rig.changes(), 3);
@@ -214,10 +215,10 @@ TEST(Ratchet, GivesWayToothByToothAndHoldsBackwards) {
   // tests/reference R17: three teeth of 10 mm on the way to 37 mm, 15 mJ lost
   Rig rig(link("ratchet"));
   rig.move_to(0.037, 0.1);
-  EXPECT_NEAR(rig.pull(), 0.7, 1e-3);
+  EXPECT_NEAR(rig.tension(), 0.7, 1e-3);
   EXPECT_EQ(rig.changes(), 3);
   rig.move_to(0.0, 0.1);
-  EXPECT_NEAR(rig.pull(), -3.0, 1e-3);
+  EXPECT_NEAR(rig.tension(), -3.0, 1e-3);
   EXPECT_EQ(rig.changes(), 3);
   const engine::Energy energy = rig.world().energy();
   EXPECT_NEAR(-energy.switching, 0.015, 1e-4);
@@ -229,9 +230,9 @@ TEST(Plastic, KeepsARemanentLengthAndLosesTheAreaOfItsLoop) {
   Rig rig(link("plastic"));
   rig.move_to(0.01, 0.1);
   EXPECT_EQ(rig.state(), "longer");
-  EXPECT_NEAR(rig.pull(), 2.0, 1e-9);
+  EXPECT_NEAR(rig.tension(), 2.0, 1e-9);
   rig.move_to(0.008, 0.1);
-  EXPECT_NEAR(rig.pull(), 0.0, 2e-3);  // at rest where it was drawn to, less 2 mm
+  EXPECT_NEAR(rig.tension(), 0.0, 2e-3);  // at rest where it was drawn to, less 2 mm
   EXPECT_NEAR(rig.world().rest_length_of(0), 0.008, 2e-6);
   rig.move_to(-0.01, 0.1);
   EXPECT_EQ(rig.state(), "shorter");
@@ -248,27 +249,27 @@ TEST(Ecrouissage, HardensKeepsARemanentLengthAndBreaks) {
   Rig rig("  - {liaison: ecrouissage, between: [wall, hand]}\n");
   const auto drawn = [](double length) { return 2.0 + 100 * (length - 0.002); };
   rig.move_to(0.001, 0.1);
-  EXPECT_NEAR(rig.pull(), 1.0, 2e-3);
+  EXPECT_NEAR(rig.tension(), 1.0, 2e-3);
   rig.move_to(0.010, 0.1);
-  EXPECT_NEAR(rig.pull(), drawn(0.010), 1e-3);
+  EXPECT_NEAR(rig.tension(), drawn(0.010), 1e-3);
   const double remanent = 0.010 - drawn(0.010) / 1000;  // (1 - 100 / 1000) (10 - 2) mm
   rig.move_to(remanent, 0.1);
   EXPECT_EQ(rig.state(), "remanent");
-  EXPECT_NEAR(rig.pull(), 0.0, 2e-3);
+  EXPECT_NEAR(rig.tension(), 0.0, 2e-3);
   EXPECT_NEAR(rig.world().rest_length_of(0), 0.0072, 2e-6);
   rig.move_to(0.009, 0.1);
-  EXPECT_NEAR(rig.pull(), 1000 * (0.009 - remanent), 4e-3);  // elastic up to where it was left
+  EXPECT_NEAR(rig.tension(), 1000 * (0.009 - remanent), 4e-3);  // elastic up to where it was left
   rig.move_to(0.015, 0.1);
   EXPECT_EQ(rig.state(), "flowing");
-  EXPECT_NEAR(rig.pull(), drawn(0.015), 1e-3);
+  EXPECT_NEAR(rig.tension(), drawn(0.015), 1e-3);
   rig.move_to(0.013, 0.1);
   rig.move_to(0.016, 0.1);
-  EXPECT_NEAR(rig.pull(), drawn(0.016), 1e-3);
+  EXPECT_NEAR(rig.tension(), drawn(0.016), 1e-3);
   double largest = 0.0;
-  rig.move_to(0.03, 0.1, [&] { largest = std::max(largest, rig.pull()); });
+  rig.move_to(0.03, 0.1, [&] { largest = std::max(largest, rig.tension()); });
   EXPECT_NEAR(largest, drawn(0.020), 1e-3);
   EXPECT_EQ(rig.state(), "broken");
-  EXPECT_EQ(rig.pull(), 0.0);
+  EXPECT_EQ(rig.tension(), 0.0);
   // flowing, remanent, flowing, remanent, flowing, broken
   EXPECT_EQ(rig.changes(), 6);
   const engine::Energy energy = rig.world().energy();
@@ -280,9 +281,9 @@ TEST(Ecrouissage, MayUnloadAtAnotherStiffness) {
   rig.move_to(0.010, 0.1);
   rig.move_to(0.009, 0.1);
   EXPECT_NEAR(rig.world().rest_length_of(0), 0.010 - 2.8 / 2000, 2e-6);
-  EXPECT_NEAR(rig.pull(), 2.8 - 2000 * 0.001, 1e-2);
+  EXPECT_NEAR(rig.tension(), 2.8 - 2000 * 0.001, 1e-2);
   rig.move_to(0.0102, 0.1);
-  EXPECT_NEAR(rig.pull(), 2.82, 1e-3);  // back on the same line of hardening
+  EXPECT_NEAR(rig.tension(), 2.82, 1e-3);  // back on the same line of hardening
 }
 
 TEST(Rupture, BreaksAtItsElongationInTensionAlone) {
@@ -308,21 +309,21 @@ TEST(Rupture, BreaksAtItsElongationInTensionAlone) {
 TEST(Bond, BreaksAndIsWholeAgain) {
   Rig rig(link("bond", ", viscosity_n_s_per_m: 0"));
   double largest = 0.0;
-  rig.move_to(0.01, 0.1, [&] { largest = std::max(largest, rig.pull()); });
+  rig.move_to(0.01, 0.1, [&] { largest = std::max(largest, rig.tension()); });
   EXPECT_NEAR(largest, 5.0, 1e-2);
   EXPECT_EQ(rig.state(), "broken");
   rig.move_to(0.0005, 0.1);
-  EXPECT_EQ(rig.pull(), 0.0);
+  EXPECT_EQ(rig.tension(), 0.0);
   rig.move_to(-0.001, 0.1);
-  EXPECT_NEAR(rig.pull(), -1.0, 2e-3);
+  EXPECT_NEAR(rig.tension(), -1.0, 2e-3);
   EXPECT_EQ(rig.changes(), 2);
 }
 
-/// Draws the hand 1 mm at once, waits, and tells the pull.
+/// Draws the hand 1 mm at once, waits, and reports the tension.
 double relaxed(Rig& rig, double time) {
   rig.move_to(0.001, 0.001 / kStep);  // in one step
   while (rig.time() < time) rig.step();
-  return rig.pull();
+  return rig.tension();
 }
 
 TEST(Maxwell, ForgetsAStretch) {

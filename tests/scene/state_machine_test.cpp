@@ -210,20 +210,20 @@ TEST(Law, OfAFreeExpressionIsItsValue) {
       "  - {liaison: l, between: [wall, bob]}\n");
   const engine::LinkState& state = network.state_machines.at(0).states[0];
   ASSERT_TRUE(std::holds_alternative<engine::Expression>(state.elasticity));
-  const auto pull = [&](double distance, double elongation) {
-    return elastic_pull(state.elasticity, {distance, elongation});
+  const auto tension = [&](double distance, double elongation) {
+    return elastic_tension(state.elasticity, {distance, elongation});
   };
-  EXPECT_NEAR(pull(1.0, 0.1), 500 * 0.1 + 2e6 * 0.001, 1e-9);
-  EXPECT_NEAR(pull(3.0, 0.1), 500 * 0.1 + 2e6 * 0.001 - 1.0, 1e-9);
-  EXPECT_EQ(viscous_pull(state.dissipation, {1.0, 0.1, 2.0, 4.0}), 24.0);
+  EXPECT_NEAR(tension(1.0, 0.1), 500 * 0.1 + 2e6 * 0.001, 1e-9);
+  EXPECT_NEAR(tension(3.0, 0.1), 500 * 0.1 + 2e6 * 0.001 - 1.0, 1e-9);
+  EXPECT_EQ(viscous_tension(state.dissipation, {1.0, 0.1, 2.0, 4.0}), 24.0);
 }
 
-/// The pull of an expression at a distance of 2 m, an elongation of 0.5 m and a speed of -3 m/s.
-double pull_of_text(const std::string& text, const std::string& parameters = "{}") {
+/// The tension of an expression at a distance of 2 m, an elongation of 0.5 m and a speed of -3 m/s.
+double tension_of_text(const std::string& text, const std::string& parameters = "{}") {
   const engine::NetworkDescription network =
       network_of("  l:\n    parameters: " + parameters + "\n    elasticity: \"" + text + "\"\n",
                  "  - {liaison: l, between: [wall, bob]}\n");
-  return elastic_pull(network.state_machines.at(0).states[0].elasticity, {2.0, 0.5, -3.0, 7.0});
+  return elastic_tension(network.state_machines.at(0).states[0].elasticity, {2.0, 0.5, -3.0, 7.0});
 }
 
 TEST(Law, KnowsPowersChoicesAndFunctions) {
@@ -250,8 +250,9 @@ TEST(Law, KnowsPowersChoicesAndFunctions) {
       {"log(speed_m_per_s)", 0.0},
       {"1 / (distance_m - 2)", 0.0},
   };
-  for (const auto& [text, pull] : expected) EXPECT_DOUBLE_EQ(pull_of_text(text), pull) << text;
-  EXPECT_DOUBLE_EQ(pull_of_text("p^elongation_m * distance_m^n", "{p: 4, n: 3}"), 16.0);
+  for (const auto& [text, tension] : expected)
+    EXPECT_DOUBLE_EQ(tension_of_text(text), tension) << text;
+  EXPECT_DOUBLE_EQ(tension_of_text("p^elongation_m * distance_m^n", "{p: 4, n: 3}"), 16.0);
 }
 
 TEST(Law, IsPartOfTheFingerprint) {
@@ -276,6 +277,23 @@ TEST(Liaison, MayBeAMaxwellElement) {
   EXPECT_EQ(network.maxwell_links[0].stiffness, 100.0);
   EXPECT_EQ(network.maxwell_links[0].viscosity, 5.0);
   EXPECT_EQ(network.maxwell_links[1].stiffness, 50.0);
+}
+
+TEST(Liaison, OfAMaxwellElementMayHaveAStartForce) {
+  const engine::NetworkDescription network = network_of(
+      R"(  creep:
+    parameters: {load_n: 3}
+    kind: maxwell
+    stiffness_n_per_m: 100
+    viscosity_n_s_per_m: 5
+    start_force_n: -2 * load_n
+)",
+      R"(  - {liaison: creep, between: [wall, bob]}
+  - {liaison: creep, between: [wall, bob], load_n: 4}
+)");
+  ASSERT_EQ(network.maxwell_links.size(), 2u);
+  EXPECT_EQ(network.maxwell_links[0].start_force, -6.0);
+  EXPECT_EQ(network.maxwell_links[1].start_force, -8.0);
 }
 
 TEST(Liaison, OfSeveralInParallelMakesALinkOfEach) {

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/world.h"
-#include "sim_node/scene/scene.h"
+#include "sim_node/scene/sections/scene_reader.h"
 
 namespace cordis::scene {
 namespace {
@@ -116,7 +116,7 @@ TEST(Tutorial, ItsScenesLoadAndDoWhatItSays) {
   ASSERT_EQ(glued.size(), 6u);  // apart, held, free
   EXPECT_GT(glued[0], 0u);
   EXPECT_GT(glued[3], 0u) << "held for half a second";
-  EXPECT_GT(glued[4], 0u) << "and parted";
+  EXPECT_GT(glued[4], 0u) << "and separated";
 }
 
 }  // namespace cordis::scene

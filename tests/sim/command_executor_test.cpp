@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <future>
 #include <thread>
 #include <vector>
 
@@ -39,13 +40,17 @@ links:
 class CommandExecutorTest : public ::testing::Test {
  protected:
   CommandExecutorTest()
-      : runner_(stage_of(swing_text()), false),
+      : runner_(loaded_scene_of(swing_text()), false),
         executor_(
             mailbox_, runner_.simulation().shared_scene(), kEpochOfSim,
-            [](const std::string& path, config::Problems& problems) {
+            [this](const std::string& path, config::Problems& problems) {
               if (path == "merged.yaml") {
                 return plan::reduce(scene::load_scene_text(merged_text(), path, problems),
                                     problems);
+              }
+              if (path == "slow.yaml") {
+                may_read_.get_future().wait();
+                return scene::load_scene_text(swing_text("slow"), path, problems);
               }
               return scene::load_scene_text(
                   path == "other.yaml" ? swing_text("other") : "cordis: 2", path, problems);
@@ -85,6 +90,7 @@ class CommandExecutorTest : public ::testing::Test {
     mailbox_.close();
   }
 
+  std::promise<void> may_read_;  // slow.yaml
   RequestMailbox mailbox_;
   Runner runner_;
   std::vector<std::string> published_;
@@ -111,6 +117,27 @@ TEST_F(CommandExecutorTest, AnswersWhenTheSingleStepsAreDone) {
   EXPECT_EQ(runner_.simulation().world().step_count(), 10u);
 }
 
+TEST_F(CommandExecutorTest, PausesWhileAnotherThreadReadsAScene) {
+  msg::ControlCommand load;
+  load.verb(msg::VERB_LOAD);
+  load.argument("slow.yaml");
+  const node::Work work = executor_.work_of(load);
+  ASSERT_TRUE(work);
+  std::future<node::Finish> reading = std::async(std::launch::async, work);
+
+  EXPECT_EQ(execute(msg::VERB_PAUSE).text.find("paused at step "), 0u);
+  EXPECT_EQ(execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 101}").accepted, true);
+  EXPECT_TRUE(published_.empty());
+
+  may_read_.set_value();
+  const node::Answer answer = reading.get()();
+  EXPECT_EQ(answer.text.find("'slow' begins, paused; the scene before ended at step "), 0u)
+      << answer.text;
+  EXPECT_EQ(published_, std::vector<std::string>{"slow 2"});
+  load.verb(msg::VERB_PAUSE);
+  EXPECT_FALSE(executor_.work_of(load)) << "not long";
+}
+
 TEST_F(CommandExecutorTest, BeginsTheSceneAnew) {
   execute(msg::VERB_PAUSE);
   const node::Answer answer = execute(msg::VERB_RESET);
@@ -122,14 +149,14 @@ TEST_F(CommandExecutorTest, BeginsTheSceneAnew) {
   EXPECT_EQ(published_, std::vector<std::string>{"swing 2"});
 }
 
-TEST_F(CommandExecutorTest, LoadsAnotherSceneAndTellsOfIt) {
+TEST_F(CommandExecutorTest, LoadsAnotherSceneAndPublishesIt) {
   const node::Answer answer = execute(msg::VERB_LOAD, "other.yaml");
   EXPECT_TRUE(answer.accepted);
   EXPECT_EQ(answer.text.find("'other' begins; the scene before ended at step "), 0u) << answer.text;
   execute(msg::VERB_RESET);
   end_loop();
   EXPECT_EQ(runner_.simulation().scene().name, "other");
-  EXPECT_EQ(runner_.stage().frames.shape().version, 3u);
+  EXPECT_EQ(runner_.loaded_scene().frames.shape().version, 3u);
   EXPECT_EQ(published_, (std::vector<std::string>{"other 2", "other 3"}));
 }
 
@@ -163,7 +190,7 @@ TEST_F(CommandExecutorTest, SetsParametersOfALiaisonInTheRunningScene) {
     EXPECT_EQ(link.viscosity, 0.5) << "set before, and kept";
   }
   EXPECT_GT(runner_.simulation().world().step_count(), 0u);
-  EXPECT_EQ(runner_.stage().frames.shape().version, 1u) << "it is the same scene";
+  EXPECT_EQ(runner_.loaded_scene().frames.shape().version, 1u) << "it is the same scene";
   EXPECT_TRUE(published_.empty());
 }
 

@@ -13,7 +13,7 @@ namespace {
 using engine::Vec3;
 
 constexpr std::uint32_t kDevice = 9;
-constexpr std::uint64_t kRun = 1000;
+constexpr std::uint64_t kEpoch = 1000;
 constexpr double kStiffness = 50.0;  // [N/m]
 constexpr double kRate = 1000.0;     // [Hz]
 
@@ -51,7 +51,7 @@ DeviceExchange mass_exchange() {
 msg::GesturePositions sample_at(std::uint64_t number, double position) {
   msg::GesturePositions sample;
   sample.device_id(kDevice);
-  sample.epoch(kRun);
+  sample.epoch(kEpoch);
   sample.sample(number);
   sample.time_nsec(static_cast<std::int64_t>(number) * 1'000'000);
   sample.axis_count(2);
@@ -68,11 +68,63 @@ std::uint64_t settle(DeviceExchange& exchange, engine::World& world, double posi
     exchange.receive(sample_at(++number, position));
     exchange.begin_tick();
     for (int j = 1; j <= sub_steps; ++j) {
-      exchange.play(world, j, sub_steps);
+      exchange.play(world, j, static_cast<double>(j) / sub_steps);
       world.step();
     }
   }
   return number;
+}
+
+TEST(DeviceExchange, ADeviceThatIsSupportedAtLastIsNotAnsweredUntilItsGuardHasLetGo) {
+  DeviceExchange device("key", 9, Role::kMass, {}, 1000.0, 1);
+  msg::GesturePositions sample;
+  sample.epoch(5);
+  sample.axis_count(1);
+  std::uint64_t number = 0;
+  const auto tick = [&](bool is_supported) {
+    sample.sample(++number);
+    device.receive(sample, is_supported);
+    device.begin_tick();
+  };
+  tick(true);
+  EXPECT_FALSE(device.is_restarting()) << "it was never refused";
+  for (int n = 0; n < 200; ++n) tick(false);
+  tick(true);
+  EXPECT_FALSE(device.is_restarting()) << "it was refused for a moment";
+  for (int n = 0; n < 300; ++n) tick(false);
+  EXPECT_TRUE(device.is_lost());
+  EXPECT_FALSE(device.is_silent()) << "it is answered on arrival, and measured";
+  EXPECT_FALSE(device.is_restarting());
+
+  int ticks = 0;
+  tick(true);
+  while (device.is_restarting() && ticks < 1000) {
+    tick(true);
+    ++ticks;
+  }
+
+  EXPECT_EQ(ticks, 250);
+  for (int n = 0; n < 22; ++n) device.begin_tick();
+  EXPECT_TRUE(device.is_silent());
+}
+
+TEST(DeviceExchange, KeepsThePlaceOfADescribedProcessForASecond) {
+  DeviceExchange device("key", 9, Role::kMass, {}, 1000.0, 1);
+  EXPECT_FALSE(device.is_described());
+  msg::GesturePositions sample;
+  sample.epoch(5);
+  sample.axis_count(1);
+  sample.sample(1);
+  device.receive(sample, /*is_supported=*/false);
+  device.record_described();
+  EXPECT_TRUE(device.is_described()) << "it waits for the next tick";
+  for (int n = 0; n < 999; ++n) device.begin_tick();
+  EXPECT_TRUE(device.is_described());
+  DeviceExchange of_next_scene("key", 9, Role::kMass, {}, 1000.0, 1);
+  of_next_scene.take_over(device, /*at_once=*/false);
+  EXPECT_TRUE(of_next_scene.is_described());
+  of_next_scene.begin_tick();
+  EXPECT_FALSE(of_next_scene.is_described());
 }
 
 TEST(DeviceExchange, AnswersAPositionWithTheForceOfTheLinksAtThatPosition) {
@@ -88,7 +140,7 @@ TEST(DeviceExchange, AnswersAPositionWithTheForceOfTheLinksAtThatPosition) {
   EXPECT_EQ(answer.force_n()[0], 0.0);
   EXPECT_EQ(answer.device_id(), kDevice);
   EXPECT_EQ(answer.epoch(), 77u);
-  EXPECT_EQ(answer.answered_epoch(), kRun);
+  EXPECT_EQ(answer.answered_epoch(), kEpoch);
   EXPECT_EQ(answer.answered_sample(), number);
   EXPECT_EQ(answer.answered_time_nsec(), static_cast<std::int64_t>(number) * 1'000'000);
   EXPECT_EQ(answer.axis_count(), 2u);
@@ -102,7 +154,7 @@ TEST(DeviceExchange, RampsAPositionOverTheSubStepsAndAnswersAtItsEnd) {
   exchange.begin_tick();
 
   for (int j = 1; j <= 4; ++j) {
-    exchange.play(world, j, 4);
+    exchange.play(world, j, j / 4.0);
     world.step();
     EXPECT_NEAR(world.position(0).x(), 1.0 + 0.001 * j, 1e-15);
   }
@@ -124,7 +176,7 @@ TEST(DeviceExchange, KeepsTheWholeVirtualDampingOverSubSteps) {
       exchange.receive(sample_at(++number, position));
       exchange.begin_tick();
       for (int j = 1; j <= sub_steps; ++j) {
-        exchange.play(world, j, sub_steps);
+        exchange.play(world, j, static_cast<double>(j) / sub_steps);
         world.step();
       }
     }
@@ -152,7 +204,7 @@ TEST(DeviceExchange, TakesOverGraduallyFromADeviceThatWasAway) {
   for (int tick = 0; tick < 100; ++tick) {
     exchange.receive(sample_at(++number, kFar));
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
     largest_move = std::max(largest_move, std::abs(world.position(0).x() - 1.0 - before));
     before = world.position(0).x() - 1.0;
@@ -171,10 +223,10 @@ TEST(DeviceExchange, AnotherProcessOfTheDeviceTakesOverGradually) {
   double largest_rise = 0.0;
   for (std::uint64_t number = 1; number <= 100; ++number) {
     msg::GesturePositions sample = sample_at(number, 0.04);
-    sample.epoch(kRun + 1);
+    sample.epoch(kEpoch + 1);
     exchange.receive(sample);
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
     const double force_now = exchange.answer_forces(world, true, 0).force_n()[1];
     largest_rise = std::max(largest_rise, std::abs(force_now) - std::abs(force));
@@ -198,7 +250,7 @@ TEST(DeviceExchange, TakesOverGraduallyWhenTheSceneItselfStoodStill) {
   for (std::uint64_t tick = 0; tick < 100; ++tick) {
     exchange.receive(sample_at(before + 50 + tick, 0.02));
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
     const double position = world.position(0).x() - 1.0;
     EXPECT_LT(position - last, 0.02 / 99.0) << "within 0.1 s, tick " << tick;
@@ -216,12 +268,12 @@ TEST(DeviceExchange, ASceneThatIsAlwaysLatePlaysWhatComes) {
   for (int tick = 0; tick < 150; ++tick) {
     exchange.receive(sample_at(number += 50, 0.02));
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
   }
   exchange.receive(sample_at(number += 50, 0.01));
   exchange.begin_tick();
-  exchange.play(world, 1, 1);
+  exchange.play(world, 1, 1.0);
   world.step();
 
   EXPECT_NEAR(world.position(0).x(), 1.01, 1e-15);
@@ -235,7 +287,7 @@ TEST(DeviceExchange, GivesNoForceToADeviceThatCannotBearTheScene) {
   for (int tick = 0; tick < 5; ++tick) {
     exchange.receive(sample_at(++number, 0.03), /*is_supported=*/false);
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
   }
   EXPECT_TRUE(exchange.is_lost());
@@ -261,7 +313,7 @@ TEST(DeviceExchange, GivesItsForcesGraduallyToADeviceThatWasAway) {
   for (int tick = 0; tick < 100; ++tick) {
     exchange.receive(sample_at(++number, 0.02));
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
     const double force = exchange.answer_forces(world, true, 0).force_n()[1];
     largest_change = std::max(largest_change, std::abs(force - before));
@@ -307,7 +359,7 @@ TEST(DeviceExchange, HoldsItsMatsWhenTheDeviceFallsSilent) {
   EXPECT_FALSE(exchange.is_lost());
   for (int tick = 0; tick < 25; ++tick) {
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
   }
   EXPECT_TRUE(exchange.is_lost());
@@ -354,7 +406,7 @@ TEST(DeviceExchange, LetsGoOfAMassWhenTheForceFallsSilent) {
                           {port_at(2, Vec3(0.0, 1.0, 0.0), 0, Vec3::UnitY())}, kRate, 77);
   msg::GestureForces push;
   push.device_id(kDevice);
-  push.epoch(kRun);
+  push.epoch(kEpoch);
   push.axis_count(1);
   push.force_n().fill(0.0);
   push.force_n()[0] = 3.0;
@@ -362,7 +414,7 @@ TEST(DeviceExchange, LetsGoOfAMassWhenTheForceFallsSilent) {
     push.sample(static_cast<std::uint64_t>(tick));
     exchange.receive(push);
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
   }
   const double speed = world.velocity(2).y();
@@ -372,7 +424,7 @@ TEST(DeviceExchange, LetsGoOfAMassWhenTheForceFallsSilent) {
 
   for (int tick = 0; tick < 25; ++tick) {
     exchange.begin_tick();
-    exchange.play(world, 1, 1);
+    exchange.play(world, 1, 1.0);
     world.step();
   }
   const double speed_when_lost = world.velocity(2).y();
@@ -397,7 +449,7 @@ TEST(DeviceExchange, RefusesWhatIsMalformedOrNotFinite) {
   EXPECT_FALSE(exchange.has_received());
 }
 
-TEST(DeviceExchange, TellsNewFromRepeatedAndOldSamples) {
+TEST(DeviceExchange, DistinguishesNewFromRepeatedAndOldSamples) {
   DeviceExchange exchange = mass_exchange();
   using Reception = DeviceExchange::Reception;
   EXPECT_EQ(exchange.receive(sample_at(5, 0.0)), Reception::kNew);
@@ -406,7 +458,7 @@ TEST(DeviceExchange, TellsNewFromRepeatedAndOldSamples) {
   EXPECT_EQ(exchange.receive(sample_at(9, 0.0)), Reception::kNew);
   EXPECT_EQ(exchange.missed_count(), 3u);
   msg::GesturePositions of_a_new_epoch = sample_at(1, 0.0);
-  of_a_new_epoch.epoch(kRun + 1);
+  of_a_new_epoch.epoch(kEpoch + 1);
   EXPECT_EQ(exchange.receive(of_a_new_epoch), Reception::kNew) << "the device was restarted";
 }
 

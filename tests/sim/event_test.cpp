@@ -121,13 +121,13 @@ TEST(Description, SaysNothingOfStatesWhenThereAreNone) {
 }
 
 TEST(Runner, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
-  Runner player(std::make_unique<LoadedScene>(breaking_scene(6), kEpochOfSim, 1), false);
-  FrameStore& frames = player.stage().frames;
-  frames.turn(player.simulation().world(), 0.0, 0);
+  Runner runner(std::make_unique<LoadedScene>(breaking_scene(6), kEpochOfSim, 1), false);
+  FrameStore& frames = runner.loaded_scene().frames;
+  frames.turn(runner.simulation().world(), 0.0, 0);
   EXPECT_EQ(frames.published().link_state, std::vector<std::uint8_t>(8, 0));
-  for (int tick = 0; tick < 10; ++tick) player.advance();
+  for (int tick = 0; tick < 10; ++tick) runner.advance();
   EXPECT_TRUE(frames.has_news());
-  frames.turn(player.simulation().world(), 0.0, 0);
+  frames.turn(runner.simulation().world(), 0.0, 0);
 
   const FrameBuffer& frame = frames.published();
   ASSERT_EQ(frame.events.events().size(), 6u);
@@ -191,26 +191,26 @@ TEST(LinkStates, ThatDoNotExistAreRefusedInOneSentence) {
 }
 
 TEST(Runner, PutsLinksIntoStates) {
-  Runner player(std::make_unique<LoadedScene>(breaking_scene(6), kEpochOfSim, 1), false);
+  Runner runner(std::make_unique<LoadedScene>(breaking_scene(6), kEpochOfSim, 1), false);
   Request request;
   request.kind = Request::Kind::kForceStates;
-  request.forced = find_states(player.simulation().scene(), "fuse[1]", "broken");
-  player.execute(request);
-  player.advance();
-  EXPECT_EQ(player.simulation().world().state_of(1), 1u);
-  const auto events = player.stage().frames.events().events();
+  request.forced = find_states(runner.simulation().scene(), "fuse[1]", "broken");
+  runner.execute(request);
+  runner.advance();
+  EXPECT_EQ(runner.simulation().world().state_of(1), 1u);
+  const auto events = runner.loaded_scene().frames.events().events();
   ASSERT_FALSE(events.empty());
   EXPECT_EQ(events[0].link, 1u);
   EXPECT_EQ(events[0].quantity, engine::Quantity::kNone);
 }
 
 TEST(Runner, GathersEventsWithoutAllocating) {
-  Runner player(std::make_unique<LoadedScene>(breaking_scene(60), kEpochOfSim, 1), false);
+  Runner runner(std::make_unique<LoadedScene>(breaking_scene(60), kEpochOfSim, 1), false);
   const test::AllocationGuard guard;
   for (int tick = 0; tick < 10; ++tick) {
-    player.advance();
-    player.stage().frames.turn(player.simulation().world(), 0.0, 0);
-    player.stage().changes.count(player.simulation().world());
+    runner.advance();
+    runner.loaded_scene().frames.turn(runner.simulation().world(), 0.0, 0);
+    runner.loaded_scene().changes.count(runner.simulation().world());
   }
   EXPECT_EQ(guard.count(), 0u);
 }

@@ -103,7 +103,7 @@ class Loop {
   }
   void tick(double target, bool receives = true) { tick(Vec3(target, 0.0, 0.0), receives); }
 
-  /// The next samples tell this work [J].
+  /// The next samples report this work [J].
   void lie_about_work(double work_j) { lie_ = work_j; }
 
   /// A tick, with or without new samples.
@@ -140,12 +140,12 @@ class Loop {
       sample.axis_count(3);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const double now = felt.position_m()[static_cast<std::size_t>(axis)];
-        const double pull =
+        const double tension =
             std::clamp(stiffness[axis] * (target[axis] - now), -kMaxForce, kMaxForce);
-        work += 0.5 * (pull + force[axis]) * (now - carried[axis]);
+        work += 0.5 * (tension + force[axis]) * (now - carried[axis]);
         carried[axis] = now;
-        force[axis] = pull;
-        sample.force_n()[static_cast<std::size_t>(axis)] = pull;
+        force[axis] = tension;
+        sample.force_n()[static_cast<std::size_t>(axis)] = tension;
       }
       sample.work_j(work);
       return sample;

@@ -212,9 +212,8 @@ TYPED_TEST(HostileSample, FarBeyondTheTravelIsTakenForItsEnd) {
     rig.send(sample);
     ASSERT_NO_FATAL_FAILURE(rig.tick());
   }
-  // A force of the bound against 100 N/m ends at force / 100.
-  const double farthest = this->role() == "mass" ? DeviceReach::kTravelShare * kTravel
-                                                 : DeviceReach::kForceShare * kForce / 100.0;
+  // A force of the bound against 100 N/m presses the mass against the end of the travel.
+  const double farthest = this->role() == "mass" ? DeviceReach::kTravelShare * kTravel : kTravel;
   EXPECT_LE(std::abs(rig.place()), 1.5 * farthest);
   EXPECT_GT(std::abs(rig.place()), 0.5 * farthest) << "it is taken all the same";
 }
@@ -248,7 +247,7 @@ TEST(DeviceReach, OfAHostileDescriptionIsThatOfAnUnknownDevice) {
   }
 }
 
-TEST(ReachTable, BelievesWhatIsToldFirstOfARunAndKeepsTheLast) {
+TEST(ReachTable, BelievesWhatIsReportedFirstOfAnEpochAndKeepsTheLast) {
   ReachTable table;
   const DeviceReach description = described_reach();
   EXPECT_EQ(table.find(1, 1).travel_m[0], DeviceReach::kFarthest);
@@ -261,6 +260,16 @@ TEST(ReachTable, BelievesWhatIsToldFirstOfARunAndKeepsTheLast) {
   for (std::uint64_t epoch = 2; epoch < 100; ++epoch) table.put(1, epoch, description);
   EXPECT_EQ(table.find(1, 1).travel_m[0], DeviceReach::kFarthest) << "forgotten";
   EXPECT_EQ(table.find(1, 99).travel_m[0], description.travel_m[0]);
+}
+
+TEST(ReachTable, KeepsADeviceThatPlaysHoweverOftenOthersRestart) {
+  ReachTable table;
+  const DeviceReach description = described_reach();
+  table.put(1, 1, description);
+  for (std::uint64_t epoch = 2; epoch < 500; ++epoch) {
+    table.put(static_cast<std::uint32_t>(1 + epoch % 3), epoch, DeviceReach());
+    EXPECT_EQ(table.find(1, 1).travel_m[0], description.travel_m[0]) << epoch;
+  }
 }
 
 }  // namespace

@@ -33,20 +33,20 @@ links:
 }
 
 TEST(LimitWatch, KeepsTheLargestThatAMassHasHad) {
-  const auto stage = stage_of(snatch_text("20000"));
-  Simulation& simulation = stage->simulation;
+  const auto loaded = loaded_scene_of(snatch_text("20000"));
+  Simulation& simulation = loaded->simulation;
   EventRoom events(1);
-  stage->limits.look(simulation.world());
-  EXPECT_NEAR(stage->limits.largest(), 2.0 * 1e-3 / 0.1, 1e-12);  // 2 Z dt / m
+  loaded->limits.update(simulation.world());
+  EXPECT_NEAR(loaded->limits.largest(), 2.0 * 1e-3 / 0.1, 1e-12);  // 2 Z dt / m
 
   for (int tick = 0; tick < 5; ++tick) simulation.advance(1, events);
   ASSERT_EQ(simulation.world().state_of(0), 1u);
-  stage->limits.look(simulation.world());
-  EXPECT_NEAR(stage->limits.largest(), 2e4 * 1e-6 / 0.1, 1e-12);  // K dt^2 / m
+  loaded->limits.update(simulation.world());
+  EXPECT_NEAR(loaded->limits.largest(), 2e4 * 1e-6 / 0.1, 1e-12);  // K dt^2 / m
 }
 
 TEST(LimitWatch, CountsTheNeighboursThatABallOfASetMayHave) {
-  const auto stage = stage_of(
+  const auto loaded = loaded_scene_of(
       R"(cordis: 1
 name: row
 space: 1
@@ -57,15 +57,15 @@ matter:
 links:
   - {liaison: touch, within: balls, rest: radii, range_m: 0.02}
 )");
-  stage->limits.look(stage->simulation.world());
-  const double one = 3000.0 * 1e-6 + 2.0 * 1e-3;                       // K dt^2 + 2 Z dt
-  EXPECT_NEAR(stage->limits.largest(), 2.0 * 2.0 * one / 0.1, 1e-12);  // one on each side
+  loaded->limits.update(loaded->simulation.world());
+  const double one = 3000.0 * 1e-6 + 2.0 * 1e-3;                        // K dt^2 + 2 Z dt
+  EXPECT_NEAR(loaded->limits.largest(), 2.0 * 2.0 * one / 0.1, 1e-12);  // one on each side
 }
 
 TEST(LimitWatch, StaysBelowFourWhereTheStepIsCertified) {
   // Five equal masses between walls: 2 - 2 cos(5 pi / 6) = 3.73 of 4 K dt^2 / m.
   const auto row = [](const std::string& stiffness) {
-    const auto stage = stage_of(
+    const auto loaded = loaded_scene_of(
         R"(cordis: 1
 name: row
 space: 1
@@ -81,17 +81,17 @@ links:
   - {liaison: s, between: ["wall[1]", "bob[4]"]}
   - {liaison: s, between: ["bob[0..3]", "bob[1..4]"]}
 )");
-    stage->limits.look(stage->simulation.world());
-    return stage->limits.largest();
+    loaded->limits.update(loaded->simulation.world());
+    return loaded->limits.largest();
   };
   const double exact = 2.0 - 2.0 * std::cos(5.0 * M_PI / 6.0);
   EXPECT_GE(row("100000"), exact - 1e-9);
   EXPECT_LT(row("100000"), exact + 0.1);
 }
 
-TEST(Divergence, IsToldWithTheLinkAndTheReason) {
-  const auto stage = stage_of(snatch_text("900000"));
-  Simulation& simulation = stage->simulation;
+TEST(Divergence, IsReportedWithTheLinkAndTheReason) {
+  const auto loaded = loaded_scene_of(snatch_text("900000"));
+  Simulation& simulation = loaded->simulation;
   EventRoom events(1);
   EXPECT_EQ(simulation.failure(), "");
   for (int tick = 0; tick < 2000 && !simulation.failed(); ++tick) simulation.advance(1, events);

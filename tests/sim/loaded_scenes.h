@@ -8,6 +8,7 @@
 
 #include "node/config/name_hash.h"
 #include "sim_node/run/loaded_scene.h"
+#include "sim_node/scene/sections/scene_reader.h"
 
 namespace cordis::sim {
 
@@ -42,7 +43,8 @@ inline std::shared_ptr<const scene::Scene> scene_of(const std::string& text) {
   return scene;
 }
 
-inline std::unique_ptr<LoadedScene> stage_of(const std::string& text, std::uint64_t version = 1) {
+inline std::unique_ptr<LoadedScene> loaded_scene_of(const std::string& text,
+                                                    std::uint64_t version = 1) {
   return std::make_unique<LoadedScene>(scene_of(text), kEpochOfSim, version);
 }
 

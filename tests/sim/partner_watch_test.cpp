@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ using engine::World;
 std::string gathering_text(const std::string& stiffness) {
   return "cordis: 1\nname: gathering\nspace: 2\nstep: {rate_hz: 1000}\n"
          "liaisons:\n"
-         "  pull: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01}\n"
+         "  tension: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01}\n"
          "  push: {kind: state_machine, stiffness_n_per_m: " +
          stiffness +
          ", pulls: false}\n"
@@ -32,13 +33,13 @@ std::string gathering_text(const std::string& stiffness) {
          "  crowd: {kind: lattice, structure: square, corner_m: [0, 0], counts: [5, 5], spacing_m: "
          "0.05, mass_kg: 0.001}\n"
          "links:\n"
-         "  - {liaison: pull, between: [middle, crowd], rest_m: 0}\n"
+         "  - {liaison: tension, between: [middle, crowd], rest_m: 0}\n"
          "  - {liaison: push, within: crowd, rest_m: 0.02, range_m: 0.02}\n";
 }
 
 TEST(PartnerWatch, SeesInItsStepThatMorePartnersCameThanCertified) {
-  const auto stage = stage_of(gathering_text("150"));
-  Simulation& simulation = stage->simulation;
+  const auto loaded = loaded_scene_of(gathering_text("150"));
+  Simulation& simulation = loaded->simulation;
   const plan::Stability stability = plan::plan_of(simulation.scene().network, 10.0).stability;
   ASSERT_TRUE(stability.holds());  // 6 at once are
   ASSERT_EQ(stability.sets.size(), 1u);
@@ -56,6 +57,7 @@ TEST(PartnerWatch, SeesInItsStepThatMorePartnersCameThanCertified) {
     EXPECT_GE(seen->largest, now.of_p);
     passed = now.of_p > certified;
     EXPECT_EQ(seen->is_passed(), passed);
+    EXPECT_EQ(simulation.passed_bound(), passed ? PassedBound::kPartners : PassedBound::kNone);
   }
   ASSERT_TRUE(passed) << "the crowd gathers";
   const std::string text = crowding_text(simulation.scene(), *simulation.partners().nearest());
@@ -63,13 +65,13 @@ TEST(PartnerWatch, SeesInItsStepThatMorePartnersCameThanCertified) {
   EXPECT_NE(text.find("certified up to " + std::to_string(certified)), std::string::npos) << text;
 
   // The bound from above on K' + 2 Z' counts the partners that are there.
-  stage->limits.look(simulation.world());
-  EXPECT_GT(stage->limits.largest(), 4.0);
+  loaded->limits.update(simulation.world());
+  EXPECT_GT(loaded->limits.largest(), 4.0);
 }
 
 TEST(PartnerWatch, SeesOneThatIsTooManyWhereNoneIsCertified) {
-  const auto stage = stage_of(gathering_text("100000"));
-  Simulation& simulation = stage->simulation;
+  const auto loaded = loaded_scene_of(gathering_text("100000"));
+  Simulation& simulation = loaded->simulation;
   const auto at_first = simulation.partners().nearest();
   ASSERT_TRUE(at_first.has_value());
   ASSERT_EQ(at_first->certified, 0u) << "at 1000 Hz a single contact is too stiff";
@@ -85,24 +87,56 @@ TEST(PartnerWatch, SeesOneThatIsTooManyWhereNoneIsCertified) {
   EXPECT_TRUE(simulation.partners().nearest()->is_passed());
 }
 
-TEST(PartnerWatch, LooksWithoutAllocation) {
-  const auto stage = stage_of(gathering_text("150"));
+TEST(PartnerWatch, RemembersTheMostWhenParametersChange) {
+  const auto before = loaded_scene_of(gathering_text("150"));
   EventRoom events(1);
-  stage->simulation.advance(1, events);
+  for (int tick = 0; tick < 3000; ++tick) before->simulation.advance(1, events);
+  const auto seen = before->simulation.partners().nearest();
+  ASSERT_GT(seen->largest, 0u);
+
+  const auto after = loaded_scene_of(gathering_text("140"));
+  std::vector<double> room(after->simulation.world().max_values_of_state());
+  ASSERT_TRUE(after->simulation.go_on_from(before->simulation, room));
+  EXPECT_GE(after->simulation.partners().nearest()->largest, seen->largest);
+}
+
+TEST(PartnerWatch, LetsGoOfTheDevicesUntilTheSceneRestartsUnlessItIsForced) {
+  const auto before = loaded_scene_of(gathering_text("150"));
+  const auto forced = loaded_scene_of(gathering_text("150"));
+  forced->simulation.keep_devices();
+  EventRoom events(1);
+  for (int tick = 0; tick < 3000; ++tick) {
+    before->simulation.advance(1, events);
+    forced->simulation.advance(1, events);
+  }
+  ASSERT_TRUE(before->simulation.partners().nearest()->is_passed());
+  EXPECT_EQ(before->simulation.passed_bound(), PassedBound::kPartners);
+  EXPECT_EQ(forced->simulation.passed_bound(), PassedBound::kNone);
+
+  const auto after = loaded_scene_of(gathering_text("1"));
+  std::vector<double> room(after->simulation.world().max_values_of_state());
+  ASSERT_TRUE(after->simulation.go_on_from(before->simulation, room));
+  EXPECT_EQ(after->simulation.passed_bound(), PassedBound::kPartners);
+}
+
+TEST(PartnerWatch, LooksWithoutAllocation) {
+  const auto loaded = loaded_scene_of(gathering_text("150"));
+  EventRoom events(1);
+  loaded->simulation.advance(1, events);
   const test::AllocationGuard guard;
-  for (int tick = 0; tick < 100; ++tick) stage->simulation.advance(1, events);
+  for (int tick = 0; tick < 100; ++tick) loaded->simulation.advance(1, events);
   EXPECT_EQ(guard.count(), 0u);
 }
 
 TEST(PartnerWatch, HasNothingToSayWhereGeometryGuaranteesTheNumber) {
-  const auto stage = stage_of(
+  const auto loaded = loaded_scene_of(
       "cordis: 1\nname: pair\nspace: 1\nstep: {rate_hz: 1000}\n"
       "liaisons: {push: {kind: state_machine, stiffness_n_per_m: 10, pulls: false}}\n"
       "matter:\n  s: {kind: mass, mass_kg: 0.1, at_m: [0, 0.005]}\n"
       "links:\n  - {liaison: push, within: s, rest_m: 0.01, range_m: 0.01}\n");
   EventRoom events(1);
-  stage->simulation.advance(1, events);
-  EXPECT_FALSE(stage->simulation.partners().nearest().has_value());
+  loaded->simulation.advance(1, events);
+  EXPECT_FALSE(loaded->simulation.partners().nearest().has_value());
 }
 
 /// A random scene of one set: masses in a box, each joined to those in range by contacts or by
@@ -188,7 +222,7 @@ TEST(SetsByChance, StayBoundedJustBelowTheirCertifiedStep) {
     const double start = world.energy().kinetic + world.energy().elastic;
     for (int n = 1; n <= 20000; ++n) {
       ASSERT_EQ(world.step().non_finite_mats, 0u) << "seed " << seed << ", step " << n;
-      watch.look(world);
+      watch.update(world);
       if (watch.nearest() && watch.nearest()->is_passed()) break;
       if (n % 20 > 0) continue;
       ASSERT_LT(excess(scene, world, start), 1.1) << "seed " << seed << ", step " << n;

@@ -65,7 +65,7 @@ TEST_P(Late, AHandWithinTheLimitIsNeverDamped) {
 
 INSTANTIATE_TEST_SUITE_P(PassivityController, Late, ::testing::Values(1, 2, 3));
 
-TEST(PassivityController, KeepsToItselfWhenTheDeviceTellsNoWork) {
+TEST(PassivityController, KeepsToItselfWhenTheDeviceReportsNoWork) {
   Loop loop({5.0, 1, 10000.0, 1, false});
 
   swing(loop);

@@ -2,15 +2,21 @@
 // late.
 #include "sim_node/checks/port_check.h"
 
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
 #include "node/config/yaml_reader.h"
+#include "node/time.h"
 #include "sim_node/devices/refused_devices.h"
+#include "sim_node/scene/sections/scene_reader.h"
 
 namespace cordis::sim {
 namespace {
@@ -48,7 +54,7 @@ config::DeviceLimits key_limits() {
   return limits;
 }
 
-PortVerdict verdict(const scene::Scene& scene, const config::DeviceLimits& limits, int delay) {
+PortVerdict verdict(const scene::Scene& scene, const config::DeviceLimits& limits, double delay) {
   return verdict_on(demands_of(scene).at(0), limits, delay);
 }
 
@@ -236,6 +242,189 @@ TEST(RefusedDevices, AreThoseThatCannotBearTheSceneWhicheverComesFirst) {
   EXPECT_EQ(devices.text(), "");
 }
 
+constexpr std::int64_t kSecondOfWall = 1'000'000'000;
+
+/// Devices of a session in real time, and what they measure.
+struct MeasuredDevices {
+  std::unique_ptr<AnswerDelays> delays = std::make_unique<AnswerDelays>();
+  RefusedDevices devices{1.0, delays.get()};
+  std::uint64_t answers = 0;
+  std::int64_t now_nsec = node::monotonic_nsec();
+
+  /// So many seconds of answers to a process that take so long.
+  void play(int seconds, double delay_s, std::uint64_t epoch = 1) {
+    for (int i = 0; i < 4 * seconds; ++i) {
+      for (int n = 0; n < 250; ++n) {
+        ++answers;
+        delays->record(epoch, {answers, answers, delay_s}, now_nsec);
+      }
+      static_cast<void>(refuses(epoch));
+      devices.measure(now_nsec += kSecondOfWall / 4);
+    }
+  }
+  void join(std::uint64_t epoch, double viscosity = 1.5) {
+    EXPECT_TRUE(devices.receive(description_of(epoch, viscosity), now_nsec));
+  }
+  bool refuses(std::uint64_t epoch) { return devices.refuses(epoch, now_nsec); }
+};
+
+TEST(RefusedDevices, AreSupportedOnceTheirAnswersAreMeasuredFastEnough) {
+  MeasuredDevices session;
+  RefusedDevices& devices = session.devices;
+  devices.receive(description_of(1, 1.5));  // 1.5 / (T/2 + d T)
+  devices.play(walls_of("800"));            // two of them: d < 0.44
+
+  EXPECT_TRUE(session.refuses(1));
+  EXPECT_NE(devices.text().find("supports 1001 N/m"), std::string::npos) << devices.text();
+  EXPECT_NE(devices.text().find("needs an answer within 438 us; one period is assumed until 1000 "
+                                "answers are measured"),
+            std::string::npos)
+      << devices.text();
+  session.play(1, 0.2e-3);
+  EXPECT_FALSE(session.refuses(1));
+  EXPECT_EQ(devices.text(), "");
+  ASSERT_EQ(devices.loops().size(), 1u);
+  EXPECT_EQ(devices.loops()[0].device, "keyboard");
+  EXPECT_NEAR(devices.loops()[0].answer_delay_s.value(), 0.2e-3, 0.01e-3);
+  // b / (T/2 + 1.1 d T), d as the upper end of its bin
+  EXPECT_NEAR(devices.loops()[0].supported_stiffness.value(), 2070.0, 50.0);
+}
+
+TEST(RefusedDevices, AreThoseWhoseAnswersTakeLongerNowUntilTheyAreCalmAgain) {
+  MeasuredDevices session;
+  RefusedDevices& devices = session.devices;
+  devices.play(walls_of("800"));
+  devices.receive(description_of(1, 1.5));
+  session.play(20, 0.2e-3);
+  ASSERT_FALSE(session.refuses(1));
+
+  session.play(1, 0.6e-3);
+  EXPECT_TRUE(session.refuses(1));
+  EXPECT_NE(devices.text().find("needs an answer within 437 us; its answers take 6"),
+            std::string::npos)
+      << devices.text();
+  int changes = 0;
+  bool before = true;
+  for (int i = 0; i < 30; ++i) {  // in the middle of its limit
+    session.play(1, i % 2 == 0 ? 0.5e-3 : 0.35e-3);
+    changes += session.refuses(1) != before;
+    before = session.refuses(1);
+  }
+  EXPECT_EQ(changes, 0);
+  session.play(21, 0.2e-3);
+  EXPECT_FALSE(session.refuses(1));
+}
+
+TEST(RefusedDevices, SayWhichAnswersTakeLongerThanAPeriod) {
+  MeasuredDevices session;
+  session.devices.play(walls_of("100"));
+  session.devices.receive(description_of(1, 1.5));
+  session.play(1, 2e-3);
+
+  EXPECT_FALSE(session.refuses(1)) << "1.5 / 2.7 ms = 556 N/m";
+  EXPECT_NE(session.devices.text().find("the answers to the device 'keyboard' take 2."),
+            std::string::npos)
+      << session.devices.text();
+  EXPECT_NE(session.devices.text().find("periods, and it supports 5"), std::string::npos)
+      << session.devices.text();
+}
+
+TEST(RefusedDevices, AreNotThoseThatAnswerWithinThePeriodThatWasAssumed) {
+  MeasuredDevices session;
+  session.devices.play(walls_of("480"));  // 960 N/m; the limit of one period is 1001 N/m
+  session.join(1);
+  ASSERT_FALSE(session.refuses(1));
+  session.play(3, 1.01e-3);
+  EXPECT_FALSE(session.refuses(1));
+  EXPECT_EQ(session.devices.text(), "");
+}
+
+TEST(RefusedDevices, ANewProcessOfADeviceIsMeasuredAnew) {
+  MeasuredDevices session;
+  session.devices.play(walls_of("800"));
+  session.devices.receive(description_of(1, 1.5));
+  session.play(2, 0.1e-3);
+  ASSERT_FALSE(session.refuses(1));
+
+  session.join(2);
+  session.play(20, 0.1e-3);  // beyond all windows
+  EXPECT_TRUE(session.refuses(2));
+  EXPECT_FALSE(session.refuses(1));
+
+  session.play(2, 0.1e-3, 2);
+  EXPECT_FALSE(session.refuses(2));
+}
+
+TEST(RefusedDevices, AreNotReportedWhenTheyHaveEndedOrStandBy) {
+  MeasuredDevices session;
+  session.devices.play(walls_of("800"));
+  session.join(1);
+  session.play(2, 0.1e-3);
+  session.join(2);  // a standby: nothing of it comes
+  EXPECT_NE(session.devices.text(), "") << "it may play at once";
+  session.play(3, 0.1e-3);
+  EXPECT_EQ(session.devices.text(), "");
+  EXPECT_NE(session.devices.loops_text().find("is answered within 1"), std::string::npos)
+      << session.devices.loops_text();
+  EXPECT_TRUE(session.refuses(2)) << "it is not measured";
+
+  session.play(2, 0.1e-3, 2);  // it takes over, and the first one has ended
+  session.play(1, 0.1e-3, 2);
+  EXPECT_EQ(session.devices.text(), "");
+  ASSERT_EQ(session.devices.loops().size(), 1u);
+  EXPECT_EQ(session.devices.loops()[0].epoch, 2u);
+}
+
+TEST(RefusedDevices, ARefusalOutlivesAnyNumberOfOtherDescriptions) {
+  MeasuredDevices session;
+  session.devices.play(walls_of("501"));  // the limit is 1001 N/m
+  session.join(1, 1.5);
+  for (std::uint64_t epoch = 100; epoch < 180; ++epoch) {
+    session.join(epoch, epoch % 2 == 0 ? 3.0 : 1.5);
+    session.now_nsec += 1000;
+    ASSERT_TRUE(session.refuses(1)) << epoch;
+    ASSERT_EQ(session.refuses(epoch), epoch % 2 != 0) << "every one of them";
+  }
+  EXPECT_TRUE(session.refuses(100)) << "forgotten: it has not described itself";
+  EXPECT_TRUE(session.refuses(9999)) << "never described";
+}
+
+TEST(RefusedDevices, ARefusedOneIsNeverLetThroughWhileOthersAreChecked) {
+  RefusedDevices devices(1);
+  devices.play(walls_of("501"));
+  for (std::uint64_t epoch = 1; epoch <= 8; ++epoch) devices.receive(description_of(epoch, 1.0));
+  std::atomic<bool> ending{false};
+  std::atomic<std::uint64_t> asked{0};
+  std::uint64_t let_through = 0;
+  std::thread loop([&] {
+    while (!ending) {
+      for (std::uint64_t epoch = 1; epoch <= 8; ++epoch) let_through += !devices.refuses(epoch);
+      ++asked;
+    }
+  });
+  // Every second description is of one that is supported, and every second scene is another one.
+  for (std::uint64_t epoch = 10; epoch < 20; ++epoch) {
+    const std::uint64_t before = asked;
+    devices.receive(description_of(epoch, epoch % 2 == 0 ? 3.0 : 1.0));
+    devices.play(walls_of(epoch % 2 == 0 ? "600" : "501"));
+    while (asked < before + 2) std::this_thread::yield();
+  }
+  ending = true;
+  loop.join();
+  EXPECT_EQ(let_through, 0u);
+}
+
+TEST(PortCheck, SaysHowFastAnAnswerMustBe) {
+  const PortDemand demand = demands_of(walls_of("800")).at(0);
+  const double most = largest_supported_delay(demand, key_limits(), 1.0).value();
+
+  EXPECT_EQ(verdict_on(demand, key_limits(), most).refusal, "");
+  EXPECT_NE(verdict_on(demand, key_limits(), 1.01 * most).refusal, "");
+  EXPECT_EQ(largest_supported_delay(demand, key_limits(), 0.3), 0.3);
+  EXPECT_FALSE(largest_supported_delay(demands_of(walls_of("1600")).at(0), key_limits(), 1.0))
+      << "3003 N/m without delay";
+}
+
 TEST(RefusedDevices, AreThoseWithoutWhatAPortNeeds) {
   RefusedDevices devices(1);
   devices.play(walls_of("1", ", needs: {travel_m: 0.05, force_n: 5}"));
@@ -256,10 +445,12 @@ TEST(RefusedDevices, AreThoseWithoutWhatAPortNeeds) {
             "port 'key' needs a force of 5 N, and axis 0 of the device 'keyboard' has 4 N: driver "
             "kfb1 is given no force");
 
+  description.travel_m()[0] = 0.03;
   description.travel_m()[1] = std::nan("");
   description.epoch(3);
   devices.receive(description);
-  EXPECT_FALSE(devices.refuses(3)) << "a number that makes no sense";
+  EXPECT_EQ(devices.text().find("0.03"), std::string::npos) << "a number that makes no sense";
+  EXPECT_TRUE(devices.refuses(3)) << "it has not described itself";
 }
 
 TEST(RefusedDevices, DoNotBelieveNumbersThatMakeNoSense) {
@@ -274,7 +465,9 @@ TEST(RefusedDevices, DoNotBelieveNumbersThatMakeNoSense) {
     description.moving_mass_kg(bad);
     devices.receive(description);
   }
-  EXPECT_FALSE(devices.refuses(1));
+  EXPECT_EQ(devices.text(), "");
+  EXPECT_TRUE(devices.loops().empty());
+  EXPECT_TRUE(devices.refuses(1)) << "it has not described itself";
 }
 
 }  // namespace

@@ -18,35 +18,35 @@ Request request_of(Request::Kind kind, std::uint64_t steps = 0) {
   return request;
 }
 
-void execute(Runner& player, Request request) {
-  player.execute(request);
+void execute(Runner& runner, Request request) {
+  runner.execute(request);
 }
 
 /// A turn in which the key sends a position.
-bool turn(Runner& player, std::uint64_t number, double position_m) {
-  DeviceExchange& key = player.simulation().devices().front();
+bool turn(Runner& runner, std::uint64_t number, double position_m) {
+  DeviceExchange& key = runner.simulation().devices().front();
   key.receive(key_sample(number, position_m));
-  return player.advance();
+  return runner.advance();
 }
 
-double force_of_key(Runner& player) {
-  DeviceExchange& key = player.simulation().devices().front();
-  return key.answer_forces(player.simulation().world(), true, 0).force_n()[0];
+double force_of_key(Runner& runner) {
+  DeviceExchange& key = runner.simulation().devices().front();
+  return key.answer_forces(runner.simulation().world(), true, 0).force_n()[0];
 }
 
-std::uint64_t steps_of(const Runner& player) {
-  return player.simulation().world().step_count();
+std::uint64_t steps_of(const Runner& runner) {
+  return runner.simulation().world().step_count();
 }
 
 TEST(Runner, PlaysATickPerTurn) {
-  Runner player(stage_of(swing_text()), false);
-  EXPECT_TRUE(player.advance());
-  EXPECT_EQ(steps_of(player), 4u);
+  Runner runner(loaded_scene_of(swing_text()), false);
+  EXPECT_TRUE(runner.advance());
+  EXPECT_EQ(steps_of(runner), 4u);
 }
 
 TEST(Runner, StandsStillWhilePausedAndGoesOnWhereItWas) {
-  Runner straight(stage_of(swing_text()), true);
-  Runner paused(stage_of(swing_text()), true);
+  Runner straight(loaded_scene_of(swing_text()), true);
+  Runner paused(loaded_scene_of(swing_text()), true);
   for (std::uint64_t n = 1; n <= 50; ++n) turn(straight, n, 0.001);
   for (std::uint64_t n = 1; n <= 25; ++n) turn(paused, n, 0.001);
 
@@ -61,22 +61,22 @@ TEST(Runner, StandsStillWhilePausedAndGoesOnWhereItWas) {
 }
 
 TEST(Runner, DoesJustTheSingleStepsWanted) {
-  Runner player(stage_of(swing_text()), true);
-  turn(player, 1, 0.0);
-  execute(player, request_of(Request::Kind::kStep, 6));
+  Runner runner(loaded_scene_of(swing_text()), true);
+  turn(runner, 1, 0.0);
+  execute(runner, request_of(Request::Kind::kStep, 6));
 
-  EXPECT_TRUE(turn(player, 2, 0.0));
-  EXPECT_EQ(steps_of(player), 8u);
-  EXPECT_FALSE(turn(player, 3, 0.0)) << "the tick is not complete";
-  EXPECT_EQ(steps_of(player), 10u);
-  EXPECT_FALSE(player.moves());
-  EXPECT_FALSE(player.advance());
-  EXPECT_EQ(steps_of(player), 10u);
+  EXPECT_TRUE(turn(runner, 2, 0.0));
+  EXPECT_EQ(steps_of(runner), 8u);
+  EXPECT_FALSE(turn(runner, 3, 0.0)) << "the tick is not complete";
+  EXPECT_EQ(steps_of(runner), 10u);
+  EXPECT_FALSE(runner.moves());
+  EXPECT_FALSE(runner.advance());
+  EXPECT_EQ(steps_of(runner), 10u);
 }
 
 TEST(Runner, CompletesATickBegunInSingleStepsAsIfItHadNotBeenInterrupted) {
-  Runner straight(stage_of(swing_text()), true);
-  Runner stepped(stage_of(swing_text()), true);
+  Runner straight(loaded_scene_of(swing_text()), true);
+  Runner stepped(loaded_scene_of(swing_text()), true);
   for (std::uint64_t n = 1; n <= 40; ++n) {
     turn(straight, n, 1e-4 * static_cast<double>(n));
     DeviceExchange& key = stepped.simulation().devices().front();
@@ -92,53 +92,53 @@ TEST(Runner, CompletesATickBegunInSingleStepsAsIfItHadNotBeenInterrupted) {
 }
 
 TEST(Runner, GivesNoForceWhilePausedAndGivesItBackGradually) {
-  Runner player(stage_of(swing_text()), /*devices_wait=*/false);
+  Runner runner(loaded_scene_of(swing_text()), /*devices_wait=*/false);
   std::uint64_t number = 0;
-  for (int i = 0; i < 300; ++i) turn(player, ++number, -0.01);
-  ASSERT_GT(std::abs(force_of_key(player)), 0.1);
+  for (int i = 0; i < 300; ++i) turn(runner, ++number, -0.01);
+  ASSERT_GT(std::abs(force_of_key(runner)), 0.1);
 
-  execute(player, request_of(Request::Kind::kPause));
-  turn(player, ++number, -0.01);
-  EXPECT_EQ(force_of_key(player), 0.0);
-  for (int i = 0; i < 50; ++i) turn(player, ++number, -0.03);
-  EXPECT_EQ(force_of_key(player), 0.0);
+  execute(runner, request_of(Request::Kind::kPause));
+  turn(runner, ++number, -0.01);
+  EXPECT_EQ(force_of_key(runner), 0.0);
+  for (int i = 0; i < 50; ++i) turn(runner, ++number, -0.03);
+  EXPECT_EQ(force_of_key(runner), 0.0);
 
-  execute(player, request_of(Request::Kind::kResume));
-  turn(player, ++number, -0.03);
-  EXPECT_LT(std::abs(force_of_key(player)), 100.0 * 0.03 / 20.0) << "a hundredth of the force";
-  for (int i = 0; i < 300; ++i) turn(player, ++number, -0.03);
-  EXPECT_GT(std::abs(force_of_key(player)), 0.5);
+  execute(runner, request_of(Request::Kind::kResume));
+  turn(runner, ++number, -0.03);
+  EXPECT_LT(std::abs(force_of_key(runner)), 100.0 * 0.03 / 20.0) << "a hundredth of the force";
+  for (int i = 0; i < 300; ++i) turn(runner, ++number, -0.03);
+  EXPECT_GT(std::abs(force_of_key(runner)), 0.5);
 }
 
 TEST(Runner, BeginsAnotherStageAndHandsTheOldOneBack) {
-  Runner player(stage_of(swing_text()), false);
-  for (std::uint64_t n = 1; n <= 200; ++n) turn(player, n, -0.01);
-  const LoadedScene* before = &player.stage();
+  Runner runner(loaded_scene_of(swing_text()), false);
+  for (std::uint64_t n = 1; n <= 200; ++n) turn(runner, n, -0.01);
+  const LoadedScene* before = &runner.loaded_scene();
   Request request = request_of(Request::Kind::kRestart);
-  request.stage = stage_of(swing_text("other", 500.0), 2);
-  const LoadedScene* next = request.stage.get();
+  request.scene = loaded_scene_of(swing_text("other", 500.0), 2);
+  const LoadedScene* next = request.scene.get();
 
-  player.execute(request);
+  runner.execute(request);
 
-  EXPECT_EQ(&player.stage(), next);
-  EXPECT_EQ(request.stage.get(), before);
+  EXPECT_EQ(&runner.loaded_scene(), next);
+  EXPECT_EQ(request.scene.get(), before);
   EXPECT_EQ(request.step, 800u);
-  EXPECT_EQ(steps_of(player), 0u);
-  EXPECT_NEAR(player.played_s(), 0.2, 1e-12) << "the time played goes on";
-  EXPECT_EQ(force_of_key(player), 0.0);
-  turn(player, 201, -0.01);
-  EXPECT_NEAR(player.played_s(), 0.202, 1e-12);
+  EXPECT_EQ(steps_of(runner), 0u);
+  EXPECT_NEAR(runner.played_s(), 0.2, 1e-12) << "the time played goes on";
+  EXPECT_EQ(force_of_key(runner), 0.0);
+  turn(runner, 201, -0.01);
+  EXPECT_NEAR(runner.played_s(), 0.202, 1e-12);
 }
 
-TEST(Runner, StaysPausedWithAnotherStage) {
-  Runner player(stage_of(swing_text()), false);
-  execute(player, request_of(Request::Kind::kPause));
+TEST(Runner, StaysPausedWithAnotherScene) {
+  Runner runner(loaded_scene_of(swing_text()), false);
+  execute(runner, request_of(Request::Kind::kPause));
   Request request = request_of(Request::Kind::kRestart);
-  request.stage = stage_of(swing_text(), 2);
-  player.execute(request);
+  request.scene = loaded_scene_of(swing_text(), 2);
+  runner.execute(request);
   EXPECT_TRUE(request.was_paused);
-  EXPECT_FALSE(player.advance());
-  EXPECT_EQ(steps_of(player), 0u);
+  EXPECT_FALSE(runner.advance());
+  EXPECT_EQ(steps_of(runner), 0u);
 }
 
 /// The swing with another stiffness of its springs.
@@ -148,21 +148,21 @@ std::unique_ptr<LoadedScene> stage_with_stiffness(double stiffness) {
   return std::make_unique<LoadedScene>(scene, kEpochOfSim, 1);
 }
 
-Request exchange_for(std::unique_ptr<LoadedScene> stage) {
+Request exchange_for(std::unique_ptr<LoadedScene> loaded) {
   Request request = request_of(Request::Kind::kExchange);
-  request.room.reserve(stage->simulation.world().max_values_of_state());
-  request.stage = std::move(stage);
+  request.room.reserve(loaded->simulation.world().max_values_of_state());
+  request.scene = std::move(loaded);
   return request;
 }
 
 TEST(Runner, GoesOnBitForBitWhenTheNewParametersAreTheOldOnes) {
-  Runner straight(stage_of(swing_text()), false);
-  Runner exchanged(stage_of(swing_text()), false);
+  Runner straight(loaded_scene_of(swing_text()), false);
+  Runner exchanged(loaded_scene_of(swing_text()), false);
   for (std::uint64_t n = 1; n <= 400; ++n) {
     turn(straight, n, -0.005);
     turn(exchanged, n, -0.005);
     if (n != 200) continue;
-    Request request = exchange_for(stage_of(swing_text()));
+    Request request = exchange_for(loaded_scene_of(swing_text()));
     exchanged.execute(request);
     ASSERT_TRUE(request.done);
   }
@@ -174,60 +174,60 @@ TEST(Runner, GoesOnBitForBitWhenTheNewParametersAreTheOldOnes) {
 }
 
 TEST(Runner, TakesOverMotionForceAndAccountWithNewParameters) {
-  Runner player(stage_of(swing_text()), false);
+  Runner runner(loaded_scene_of(swing_text()), false);
   std::uint64_t number = 0;
-  for (int i = 0; i < 300; ++i) turn(player, ++number, -0.01);
-  const engine::Vec3 position = player.simulation().world().position(1);
-  const engine::Vec3 velocity = player.simulation().world().velocity(1);
-  const std::uint64_t hash = player.simulation().world().state_hash();
+  for (int i = 0; i < 300; ++i) turn(runner, ++number, -0.01);
+  const engine::Vec3 position = runner.simulation().world().position(1);
+  const engine::Vec3 velocity = runner.simulation().world().velocity(1);
+  const std::uint64_t hash = runner.simulation().world().state_hash();
   Request request = exchange_for(stage_with_stiffness(300.0));
 
   const test::AllocationGuard guard;
-  player.execute(request);
+  runner.execute(request);
   EXPECT_EQ(guard.count(), 0u);
 
-  const engine::World& world = player.simulation().world();
+  const engine::World& world = runner.simulation().world();
   EXPECT_TRUE(request.done);
   EXPECT_EQ(world.state_hash(), hash);
   EXPECT_EQ(world.position(1), position);
   EXPECT_EQ(world.velocity(1), velocity);
   EXPECT_EQ(world.network().description().links[0].stiffness, 300.0);
-  const double threefold = 3.0 * force_of_key(player);
-  turn(player, ++number, -0.01);
-  EXPECT_NEAR(force_of_key(player), threefold, 0.02 * std::abs(threefold)) << "at once";
+  const double threefold = 3.0 * force_of_key(runner);
+  turn(runner, ++number, -0.01);
+  EXPECT_NEAR(force_of_key(runner), threefold, 0.02 * std::abs(threefold)) << "at once";
 
-  for (int i = 0; i < 2500; ++i) turn(player, ++number, -0.01);
-  const engine::Energy energy = player.simulation().world().energy();
+  for (int i = 0; i < 2500; ++i) turn(runner, ++number, -0.01);
+  const engine::Energy energy = runner.simulation().world().energy();
   EXPECT_NE(energy.switching, 0.0);
   EXPECT_LT(std::abs(energy.residual()), 1e-9 * energy.largest) << "the account closes";
 }
 
 TEST(Runner, RefusesAStageThatDoesNotFitAndGoesOn) {
-  Runner player(stage_of(swing_text()), false);
-  for (std::uint64_t n = 1; n <= 10; ++n) turn(player, n, 0.0);
+  Runner runner(loaded_scene_of(swing_text()), false);
+  for (std::uint64_t n = 1; n <= 10; ++n) turn(runner, n, 0.0);
   auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
   scene->network.mats.push_back(scene->network.mats.back());
   scene->radius_m.push_back(0.0);
   scene->layout.push_back({});
   Request request = exchange_for(std::make_unique<LoadedScene>(scene, kEpochOfSim, 1));
-  player.execute(request);
+  runner.execute(request);
   EXPECT_FALSE(request.done);
-  EXPECT_EQ(steps_of(player), 40u);
+  EXPECT_EQ(steps_of(runner), 40u);
 }
 
 TEST(Runner, AllocatesNothingWhatever) {
-  Runner player(stage_of(swing_text()), false);
+  Runner runner(loaded_scene_of(swing_text()), false);
   Request restart = request_of(Request::Kind::kRestart);
-  restart.stage = stage_of(swing_text("other"), 2);
+  restart.scene = loaded_scene_of(swing_text("other"), 2);
   Request pause = request_of(Request::Kind::kPause);
   Request step = request_of(Request::Kind::kStep, 5);
   Request resume = request_of(Request::Kind::kResume);
 
   const test::AllocationGuard guard;
   for (Request* request : {&pause, &step, &restart, &resume}) {
-    player.execute(*request);
-    player.advance();
-    player.advance();
+    runner.execute(*request);
+    runner.advance();
+    runner.advance();
   }
   EXPECT_EQ(guard.count(), 0u);
 }

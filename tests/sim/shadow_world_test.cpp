@@ -34,34 +34,34 @@ links:
 )";
 }
 
-void expect_same(const WorldLook& look, const WorldLook& own) {
-  EXPECT_EQ(look.step, own.step);
-  EXPECT_EQ(look.state_hash, own.state_hash);
-  EXPECT_EQ(look.energy.total(), own.energy.total());
-  EXPECT_EQ(look.energy.dissipated, own.energy.dissipated);
-  EXPECT_EQ(look.energy.residual(), own.energy.residual());
-  EXPECT_EQ(look.energy.largest, own.energy.largest);
+void expect_same(const WorldFigures& figures, const WorldFigures& own) {
+  EXPECT_EQ(figures.step, own.step);
+  EXPECT_EQ(figures.state_hash, own.state_hash);
+  EXPECT_EQ(figures.energy.total(), own.energy.total());
+  EXPECT_EQ(figures.energy.dissipated, own.energy.dissipated);
+  EXPECT_EQ(figures.energy.residual(), own.energy.residual());
+  EXPECT_EQ(figures.energy.largest, own.energy.largest);
 }
 
-/// A loop and a thread that looks, a turn of the one after the other; `text` in motion.
+/// A loop and a thread that reads, a turn of the one after the other; `text` in motion.
 void expect_to_see_what_the_world_is(const std::string& text) {
   Simulation simulation(scene_of(text), kEpochOfSim);
   EventRoom events(64);
   ShadowWorld shadow(simulation.world().shared_network());
-  EXPECT_FALSE(shadow.look(0ms)) << "nothing was handed over";
+  EXPECT_FALSE(shadow.read(0ms)) << "nothing was handed over";
   for (int n = 0; n < 5; ++n) {
-    for (int tick = 0; tick < 100; ++tick) simulation.advance(simulation.steps_per_tick(), events);
-    const WorldLook own = look_at(simulation.world());
+    for (int tick = 0; tick < 100; ++tick) simulation.advance(simulation.steps_of_tick(), events);
+    const WorldFigures own = figures_of(simulation.world());
     const test::AllocationGuard guard;
     shadow.hand_over(simulation.world());
     EXPECT_EQ(guard.count(), 0u);
-    simulation.advance(simulation.steps_per_tick(), events);
-    shadow.hand_over(simulation.world());  // nobody has asked again
+    simulation.advance(simulation.steps_of_tick(), events);
+    shadow.hand_over(simulation.world());  // not asked again
 
-    const std::optional<WorldLook> look = shadow.look(0ms);
-    ASSERT_TRUE(look);
-    expect_same(*look, own);
-    EXPECT_FALSE(shadow.look(0ms));
+    const std::optional<WorldFigures> figures = shadow.read(0ms);
+    ASSERT_TRUE(figures);
+    expect_same(*figures, own);
+    EXPECT_FALSE(shadow.read(0ms));
   }
 }
 
@@ -80,11 +80,11 @@ TEST(ShadowWorld, WaitsForTheLoop) {
   std::thread loop([&] {
     while (!ends) shadow.hand_over(simulation.world());
   });
-  const std::optional<WorldLook> look = shadow.look(60'000ms);
+  const std::optional<WorldFigures> figures = shadow.read(60'000ms);
   ends = true;
   loop.join();
-  ASSERT_TRUE(look);
-  expect_same(*look, look_at(simulation.world()));
+  ASSERT_TRUE(figures);
+  expect_same(*figures, figures_of(simulation.world()));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ test('paths in documents exist', () => {
 });
 
 test('documents that the code, the scenes and the programs name exist', () => {
-  const files = ['cli', 'cmake', 'device_node', 'docs', 'idl', 'launch_configs', 'node', 'sim_node', 'tests', 'viz_node']
+  const files = ['cli', 'cmake', 'device_node', 'docs', 'idl', 'launch_configs', 'node', 'record_node', 'sim_node', 'tests', 'viz_node']
     .filter((folder) => existsSync(join(root, folder)))
     .flatMap((folder) => filesBelow(join(root, folder), /\.(h|cpp|c|idl|yaml|txt|mjs|ts|md)$/));
   for (const file of [...files, join(root, 'README.md'), join(root, 'CHANGELOG.md')]) {

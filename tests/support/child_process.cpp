@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -33,9 +33,11 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+/// Empty when the process that the file speaks of has ended.
 std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
 }
 
 }  // namespace
@@ -147,19 +149,27 @@ void ChildProcess::print() const {
   std::fprintf(stderr, "---- output of %s\n%s\n", command_.c_str(), output().c_str());
 }
 
-pid_t process_of(const ChildProcess& launcher, const std::string& name) {
+std::vector<ChildOf> children_of(pid_t parent) {
+  std::vector<ChildOf> children;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     const std::string number = entry.path().filename();
     if (number.find_first_not_of("0123456789") != std::string::npos) continue;
     const std::string stat = text_of(entry.path() / "stat");
+    const std::size_t name = stat.find('(') + 1;
     const std::size_t name_end = stat.rfind(')');
-    int parent = 0;
+    int own_parent = 0;
     if (name_end == std::string::npos ||
-        std::sscanf(stat.c_str() + name_end, ") %*c %d", &parent) != 1 || parent != launcher.id())
+        std::sscanf(stat.c_str() + name_end, ") %*c %d", &own_parent) != 1 || own_parent != parent)
       continue;
-    const std::string words = text_of(entry.path() / "cmdline");
-    if (words.find(std::string("--name\0", 7) + name + '\0') != std::string::npos)
-      return std::stoi(number);
+    children.push_back({std::stoi(number), stat.substr(name, name_end - name)});
+  }
+  return children;
+}
+
+pid_t process_of(const ChildProcess& launcher, const std::string& name) {
+  for (const ChildOf& child : children_of(launcher.id())) {
+    const std::string words = text_of("/proc/" + std::to_string(child.id) + "/cmdline");
+    if (words.find(std::string("--name\0", 7) + name + '\0') != std::string::npos) return child.id;
   }
   return 0;
 }

@@ -36,7 +36,7 @@ class ChildProcess {
   /// stderr says so.
   bool wait_for_output(const std::string& text, std::chrono::milliseconds at_most);
 
-  /// Waits until nobody can write into its output any more: neither it nor a process that it
+  /// Waits until no process can write into its output any more: neither it nor a process that it
   /// started.
   bool wait_for_end_of_output(std::chrono::milliseconds at_most);
 
@@ -59,6 +59,13 @@ class ChildProcess {
   std::atomic<bool> abandoned_{false};
   std::thread reader_;
 };
+
+/// A process that another one has started.
+struct ChildOf {
+  pid_t id;
+  std::string name;  ///< of its program
+};
+std::vector<ChildOf> children_of(pid_t parent);
 
 /// The node that this launcher has started with `--name NAME`; 0 when there is none.
 pid_t process_of(const ChildProcess& launcher, const std::string& name);

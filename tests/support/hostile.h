@@ -1,4 +1,4 @@
-// tests/support/hostile.h -- numbers as nobody should send them.
+// tests/support/hostile.h -- numbers that must never be sent.
 #pragma once
 
 #include <array>

@@ -117,7 +117,7 @@ void write_frames(int file, const char* title, std::array<void*, kFrames>& frame
   backtrace_symbols_fd(frames.data(), count, file);
 }
 
-void tell() {
+void report() {
   const char* path = std::getenv("LOCK_WATCH_FILE");
   if (path == nullptr) return;
   const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
@@ -145,7 +145,7 @@ void on_signal(int) {
   if (!looks.exchange(true)) return;
   looks = false;
   inside = true;
-  tell();
+  report();
   inside = false;
 }
 

@@ -10,7 +10,7 @@
 namespace cordis::test {
 
 /// A thread that does nothing but sleep until every millisecond of the clock, from construction to
-/// destruction. What a test needs of real time is judged against it: the thread shares the cores,
+/// destruction. What a test needs of real time is measured against it: the thread shares the cores,
 /// the load and the seconds with the test, and runs no code of Cordis.
 class TimerControl {
  public:

@@ -15,6 +15,7 @@ const FLAGS = [
   '--disable-background-networking',
   '--disable-component-update',
   '--disable-sync',
+  '--host-resolver-rules=MAP lab.test 127.0.0.1', // a name that is not this machine's
 ];
 
 const { chromium } = need('playwright-core');

@@ -68,6 +68,13 @@ TEST(FrameEncoder, PutsSignalsRowAfterRowWithTheTimeOfTheFirst) {
   EXPECT_EQ(at<float>(bytes, 48 + 2 * 8 + 4), -2.0F);
 }
 
+TEST(FrameEncoder, PutsTheMeanStrideOfRowsThatAreNotEvenlyApart) {
+  msg::SceneSignals signals = signals_of_three(/*first_step=*/44, /*rows=*/11);
+  signals.stride_steps(44);
+  signals.row_step({0, 44, 88, 132, 176, 220, 264, 308, 352, 397, 441});
+  EXPECT_EQ(at<double>(encode_signals(signals, 7, 44'100.0), 40), 0.001);
+}
+
 TEST(FrameEncoder, PutsRadiiEndsAndKindsIntoTheTopology) {
   const std::string bytes = encode_topology(row_of_three(), 9);
 
@@ -79,6 +86,23 @@ TEST(FrameEncoder, PutsRadiiEndsAndKindsIntoTheTopology) {
   EXPECT_EQ(at<float>(bytes, 24 + 4), 0.25F);
   EXPECT_EQ(at<std::uint32_t>(bytes, 36 + 12), 2u);
   EXPECT_EQ(at<std::uint8_t>(bytes, 52 + 2), 2);
+}
+
+TEST(FrameEncoder, PutsSoundStepAfterStepWithItsRate) {
+  msg::SceneSound sound = sound_of_row(/*first_step=*/500, /*steps=*/4);
+  sound.sound_count(2);  // two steps of two sounds
+  const std::string bytes = encode_sound(sound, 7);
+
+  expect_prefix(bytes, MessageType::kSound, 48);
+  ASSERT_EQ(bytes.size(), 48u + 4 * 4);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 8), 7u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 12), 2u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 16), 2u);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 20), 3u);
+  EXPECT_EQ(at<std::uint64_t>(bytes, 24), 500u);
+  EXPECT_EQ(at<double>(bytes, 32), 2000.0);
+  EXPECT_EQ(at<std::int64_t>(bytes, 40), -7);
+  EXPECT_EQ(at<float>(bytes, 48 + 3 * 4), 3.0F);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // tests/viz/page_life_test.mjs -- what becomes of a page in a day: it is reloaded, hidden, frozen,
 // stopped with its machine, debugged, loses its graphics, and its session ends and another begins.
-// Each ends in a live picture, or in a clear sentence on the page.
+// Each ends in a live view, or in a clear sentence on the page.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { banner, drawn, isDark, look, openPage, textOf, viz } from './browser.mjs';

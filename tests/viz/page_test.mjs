@@ -121,15 +121,15 @@ const cases = {
     await page.screenshot({ path: join(out, 'page_string.png') });
   },
 
-  'the picture keeps up, and signals come at full rate': async ({ page }) => {
+  'the view keeps up, and signals come at full rate': async ({ page }) => {
     await drawn(page, 25);
-    await until('the picture is not old', async () => {
+    await until('the view is not old', async () => {
       const lag = await viz(page, 'lag_s');
       return lag >= 0 && lag < 2;
     });
     const signals = await viz(page, 'signals');
     assert.equal(signals.count, 3);
-    await until('signals and picture show the same time', async () => {
+    await until('signals and view show the same time', async () => {
       const [newestS, simulatedS] = await page.evaluate(() => [window.viz.signals.newestS, window.viz.lastFrame.simulatedS]);
       return Math.abs(newestS - simulatedS) < 2;
     });
@@ -144,6 +144,10 @@ const cases = {
     });
     assert.ok((await page.locator('#plots canvas').count()) === 3, 'one plot per unit');
     assert.match(await textOf(page, '.plot:first-child .series b'), /^-?\d.*m$/);
+  },
+
+  'troubles of the steps are shown, and those that never came are not': async ({ page }) => {
+    await until('inputs were refused', async () => (await textOf(page, '#troubles')) === '3 inputs refused');
   },
 
   'keys turn the camera, colour by speed, freeze the view': async ({ page }) => {
@@ -165,7 +169,7 @@ const cases = {
     await page.keyboard.press('c');
     await drawn(page, 5);
     await until('a slow place is not the blue of a mass', async () => (await look(page, MIDDLE)).colour[2] < 240);
-    await until('the fastest speed is told', async () => /m\/s$/.test(await textOf(page, '#speed-most')));
+    await until('the fastest speed is reported', async () => /m\/s$/.test(await textOf(page, '#speed-most')));
     await page.keyboard.press('c');
 
     await page.keyboard.press(' ');
@@ -242,7 +246,7 @@ const cases = {
     await until('it has been low', isLow);
     await drawn(page, 10);
     const { y } = (await until('it is low again', isLow)).at;
-    assert.ok(y > stage.y && y < stage.y + stage.height, `the middle is at ${y}, the picture at ${JSON.stringify(stage)}`);
+    assert.ok(y > stage.y && y < stage.y + stage.height, `the middle is at ${y}, the view at ${JSON.stringify(stage)}`);
     assert.ok((await viz(page, 'camera')).orthographic);
 
     const far = (await viz(page, 'camera')).metresPerPixel;

@@ -49,11 +49,14 @@ TEST(PageText, SurvivesTextsThatAreNoUtf8AndNumbersThatAreNone) {
 }
 
 TEST(PageText, KeepsARunOf64BitsWhole) {
-  const Json json = Json::parse(description_text(row_of_three(), 3));
+  const Json json = Json::parse(description_text(sounding_row(), 3));
   EXPECT_EQ(json["epoch"], "1234567890123456789");
   EXPECT_EQ(json["scene"], 3);
   EXPECT_EQ(json["link_count"], 2);
   EXPECT_EQ(json["signals"][1]["unit"], "N");
+  EXPECT_EQ(json["signals"][0]["sound"], false);
+  EXPECT_EQ(json["signals"][1]["sound"], true);
+  EXPECT_EQ(json["signals"][1]["full_scale"], 4.0);
 }
 
 TEST(PageText, ReadsAnAcknowledgement) {
@@ -75,7 +78,7 @@ TEST(PageText, TakesNothingElseForAnAcknowledgement) {
   }
 }
 
-TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
+TEST(PageText, ReportsEventsWithNamesOfStatesAndCounts) {
   msg::SceneDescription description = row_of_three();
   msg::StateMachineDescription state_machine;
   state_machine.name("rosin");
@@ -85,7 +88,7 @@ TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
   EXPECT_EQ(described["state_machines"],
             Json::parse(R"([{"name": "rosin", "states": ["hooked", "unhooked"]}])"));
 
-  HeardEvents events;
+  ReceivedEvents events;
   events.total = 9;
   msg::LinkEvent event;
   event.step(120);
@@ -112,7 +115,7 @@ TEST(PageText, TellsEventsWithNamesOfStatesAndCounts) {
   EXPECT_EQ(json["nodes"][0]["lost_events"], 3);
 }
 
-TEST(PageText, TellsRepliesToThePages) {
+TEST(PageText, ReportsRepliesToThePages) {
   msg::ControlReply reply;
   reply.command_id(4);
   reply.node("sim");
@@ -138,6 +141,27 @@ TEST(PageCommand, IsNothingElse) {
         R"({"type": "command", "verb": "step", "steps": -1})",
         R"({"type": "command", "verb": "step", "steps": "9"})"}) {
     EXPECT_FALSE(read_page_command(text).has_value()) << text;
+  }
+}
+
+TEST(PageCommand, MovesATakeWithANumber) {
+  const auto seek = read_page_command(R"({"type": "command", "verb": "seek", "value": 2.5})");
+  ASSERT_TRUE(seek.has_value());
+  EXPECT_EQ(seek->verb, msg::VERB_SEEK);
+  EXPECT_EQ(seek->value, 2.5);
+  EXPECT_EQ(read_page_command(R"({"type": "command", "verb": "rate", "value": 4})")->value, 4.0);
+  for (const char* text : {R"({"type": "command", "verb": "seek"})",
+                           R"({"type": "command", "verb": "rate", "value": "fast"})"}) {
+    EXPECT_FALSE(read_page_command(text).has_value()) << text;
+  }
+}
+
+TEST(SoundRequest, IsReadFromItsMessageAndNothingElse) {
+  EXPECT_EQ(read_sound_request(R"({"type": "sound", "on": true})"), true);
+  EXPECT_EQ(read_sound_request(R"({"type": "sound", "on": false})"), false);
+  for (const char* text : {"", "{", "[]", R"({"type": "sound"})", R"({"type": "sound", "on": 1})",
+                           R"({"type": "ack", "on": true})"}) {
+    EXPECT_FALSE(read_sound_request(text).has_value()) << text;
   }
 }
 

@@ -11,7 +11,7 @@ const WebSocket = need('ws');
 const MAGIC = 'CDS1';
 const [FRAME, SIGNALS, TOPOLOGY] = [1, 2, 3];
 const MATS = 60;
-const ACK_TIMEOUT_NSEC = 3e9; // client_credit.h
+const ACK_TIMEOUT_NSEC = 3e9; // flow_credit.h
 
 /** Status, headers and text of one request, its path sent as it stands. */
 function ask(url, path, { method = 'GET', headers = {}, body } = {}) {
@@ -175,7 +175,7 @@ const cases = {
     assert.equal((await ask(url, '/live')).status, 426);
   },
 
-  'a client is told the scene, then every frame and every row of the signals': async ({ url }) => {
+  'a client receives the scene, then every frame and every row of the signals': async ({ url }) => {
     await withClients(url, 1, async (client) => {
       await until('20 frames came', () => client.frames.length >= 20);
       assert.equal(client.texts[0].type, 'hello');
@@ -183,7 +183,7 @@ const cases = {
       const description = client.newest('description');
       assert.equal(description.name, 'string');
       assert.equal(description.mat_count, MATS);
-      assert.deepEqual(description.signals[0], { name: 'finger position', unit: 'm' });
+      assert.deepEqual(description.signals[0], { name: 'finger position', unit: 'm', sound: false, full_scale: 0 });
       const topology = client.topologies[0];
       assert.equal(topology.links, MATS - 1);
       assert.deepEqual(topology.ends.slice(0, 4), [0, 1, 1, 2]);
@@ -309,7 +309,7 @@ const cases = {
     });
   },
 
-  'a client that stops reading large frames slows nobody, and memory stays flat': async (session) => {
+  'a client that stops reading large frames slows no other, and memory stays flat': async (session) => {
     await session.source.end();
     session.source = session.scene('--scene', 'grid', '--mats', '100000');
     await withClients(session.url, 3, async (stalled, deaf, reading) => {
@@ -329,7 +329,7 @@ const cases = {
     });
   },
 
-  'an occupied port is no end: the next free one is taken, and told in log and status': async (session) => {
+  'an occupied port is no end: the next free one is taken, and reported in log and status': async (session) => {
     const { port } = new URL(session.url);
     const second = session.vizOf(session.launchFile(`port: ${port}`, 'other'));
     const url = await second.says(/page at (\S+)/);

@@ -98,11 +98,32 @@ TEST(SceneCheck, FindsBatchesThatAreNoWholeRows) {
       {"values", [](auto& s) { s.value().pop_back(); }},
       {"values", [](auto& s) { s.value().resize(kMaxBatchValues + 2); }},
       {"no steps", [](auto& s) { s.stride_steps(0); }},
+      {"steps of rows",
+       [](auto& s) {
+         s.row_step({0, 2, 4, 6});
+       }},
   };
   for (const auto& [word, spoil] : faults) {
     msg::SceneSignals signals = signals_of_three(1, 5);
     spoil(signals);
     EXPECT_NE(fault_of(signals, row_of_three()).find(word), std::string::npos) << word;
+  }
+}
+
+TEST(SceneCheck, FindsBlocksOfSoundThatAreNoWholeSteps) {
+  EXPECT_EQ(fault_of(sound_of_row(1, 5), sounding_row()), "");
+  EXPECT_NE(fault_of(sound_of_row(1, 5), row_of_three()), "") << "it has no sound";
+  const std::vector<std::pair<const char*, std::function<void(msg::SceneSound&)>>> faults = {
+      {"sounds", [](auto& s) { s.sound_count(2); }},
+      {"sounds", [](auto& s) { s.sound_count(0); }},
+      {"values", [](auto& s) { s.value().resize(kMaxBatchValues + 1); }},
+      {"rate", [](auto& s) { s.step_rate_hz(0.0); }},
+      {"rate", [](auto& s) { s.step_rate_hz(std::nan("")); }},
+  };
+  for (const auto& [word, spoil] : faults) {
+    msg::SceneSound sound = sound_of_row(1, 5);
+    spoil(sound);
+    EXPECT_NE(fault_of(sound, sounding_row()).find(word), std::string::npos) << word;
   }
 }
 

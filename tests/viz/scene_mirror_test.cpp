@@ -71,6 +71,15 @@ TEST_F(SceneMirrorTest, CountsWhatDoesNotFitAndShowsItToNobody) {
   EXPECT_EQ(mirror.figures().refused, 2u);
 }
 
+TEST_F(SceneMirrorTest, ShowsNoBatchOfEachStepWhateverItHolds) {
+  msg::SceneSignals by_step = signals_of_three(1, 2000);
+  by_step.rate(msg::RATE_STEP);
+  by_step.signal_count(1);
+  EXPECT_EQ(mirror.take(std::move(by_step)), "");
+  EXPECT_EQ(mirror.signals_after(0), nullptr);
+  EXPECT_EQ(mirror.figures().refused, 0u);
+}
+
 TEST(SceneMirror, PassesOverInSilenceWhatComesBeforeTheFirstDescription) {
   SceneMirror mirror(25.0);
   EXPECT_EQ(mirror.take(frame_of_three(1), arrival(1)), "");
@@ -91,22 +100,22 @@ TEST_F(SceneMirrorTest, CountsFramesThatNeverCame) {
 TEST_F(SceneMirrorTest, StartsAnewWithAnotherRun) {
   take_frame(900);
   msg::SceneFrame early = frame_of_three(1);
-  early.epoch(kRun + 1);
+  early.epoch(kEpoch + 1);
   EXPECT_EQ(mirror.take(std::move(early), arrival(900)), "") << "its description is on its way";
   EXPECT_EQ(mirror.frame()->frame.frame(), 900u);
   msg::SceneDescription next = row_of_three();
-  next.epoch(kRun + 1);
+  next.epoch(kEpoch + 1);
   mirror.take(std::move(next));
   EXPECT_EQ(mirror.frame(), nullptr) << "a frame of the run before";
 
   msg::SceneFrame frame = frame_of_three(1);
-  frame.epoch(kRun + 1);
+  frame.epoch(kEpoch + 1);
   EXPECT_EQ(mirror.take(std::move(frame), arrival(901)), "");
   EXPECT_EQ(mirror.frame()->sequence, 2u) << "the sequence goes on: clients count by it";
   EXPECT_EQ(mirror.frame()->scene, 2u);
   EXPECT_EQ(mirror.figures().lost, 0u);
   EXPECT_EQ(take_frame(902), "");
-  EXPECT_EQ(mirror.frame()->frame.epoch(), kRun + 1) << "not a frame of the run before, late";
+  EXPECT_EQ(mirror.frame()->frame.epoch(), kEpoch + 1) << "not a frame of the run before, late";
   EXPECT_EQ(mirror.figures().refused, 0u);
 }
 
@@ -185,7 +194,7 @@ TEST_F(SceneMirrorTest, BoundsTheBytesOfItsBatchesToo) {
   EXPECT_LE(bytes, 16u << 20);
 }
 
-TEST_F(SceneMirrorTest, TellsWhoeverWaitsAboutEveryNewThing) {
+TEST_F(SceneMirrorTest, NotifiesWhoeverWaitsOfEveryNewThing) {
   int calls = 0;
   mirror.on_change([&calls] { ++calls; });
   mirror.take(row_of_three());
@@ -218,7 +227,7 @@ TEST_F(SceneMirrorTest, KeepsTheNewestStatusOfEachNodeAndAtMost64Nodes) {
 
 TEST_F(SceneMirrorTest, CountsEventsAndKeepsTheLast) {
   msg::SceneEvents events;
-  events.epoch(kRun);
+  events.epoch(kEpoch);
   events.version(1);
   events.lost(2);
   for (std::uint64_t step = 0; step < 100; ++step) {
@@ -232,6 +241,60 @@ TEST_F(SceneMirrorTest, CountsEventsAndKeepsTheLast) {
   EXPECT_EQ(shown["lost"], 2);
   EXPECT_EQ(shown["newest"].size(), kEventsShown);
   EXPECT_EQ(shown["newest"].back()["step"], 99);
+}
+
+TEST(SceneMirror, KeepsSoundForWhoListensAlone) {
+  SceneMirror mirror(25.0);
+  mirror.take(sounding_row());
+  int calls = 0;
+  mirror.on_change([&calls] { ++calls; });
+  EXPECT_EQ(mirror.take(sound_of_row(1, 16)), "");
+  EXPECT_EQ(mirror.newest_sound(), 0u);
+  EXPECT_EQ(calls, 0) << "a silent page costs nothing";
+
+  mirror.add_listener();
+  EXPECT_EQ(mirror.take(sound_of_row(17, 16)), "");
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(mirror.newest_sound(), 1u);
+  mirror.remove_listener();
+  EXPECT_EQ(mirror.take(sound_of_row(33, 16)), "");
+  EXPECT_EQ(mirror.newest_sound(), 1u);
+}
+
+TEST(SceneMirror, HandsOutEveryBlockOfSoundInOrderAndKeepsHalfASecond) {
+  SceneMirror mirror(25.0);
+  mirror.take(sounding_row());
+  mirror.add_listener();
+  for (std::uint64_t block = 0; block < 1000; ++block) mirror.take(sound_of_row(16 * block, 16));
+
+  std::uint64_t last = 0;
+  int count = 0;
+  while (const auto block = mirror.sound_after(last)) {
+    if (count > 0) {
+      EXPECT_EQ(block->number, last + 1);
+    }
+    last = block->number;
+    ++count;
+  }
+  EXPECT_EQ(last, 1000u);
+  EXPECT_EQ(count, 64);
+  mirror.take(sounding_row());
+  EXPECT_EQ(mirror.sound_after(0), nullptr) << "of the scene before";
+}
+
+TEST_F(SceneMirrorTest, GoesBackToAnOlderVersionWhereATakeIsPlayed) {
+  msg::SceneDescription newer = row_of_three();
+  newer.version(2);
+  newer.name("newer");
+  mirror.take(std::move(newer));
+  msg::NodeStatus player = status_of(7, "play");
+  player.kind(msg::KIND_PLAYER);
+  mirror.take(std::move(player), 0);
+  mirror.take(row_of_three());
+
+  EXPECT_EQ(Json::parse(mirror.scene()->text)["name"], "row");
+  EXPECT_EQ(take_frame(1), "");
+  ASSERT_NE(mirror.frame(), nullptr);
 }
 
 }  // namespace

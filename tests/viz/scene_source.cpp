@@ -150,7 +150,7 @@ void name_parts(MovingScene& scene, const std::string& name, std::uint64_t epoch
   msg::NamedRange matter;
   matter.name(name);
   matter.count(static_cast<std::uint32_t>(description.mat_kind().size()));
-  msg::NamedRange tool;  // bears the name of the port, but is another MAT
+  msg::NamedRange tool;  // has the name of the port, but is another MAT
   tool.name("finger");
   tool.first(scene.port_mat + 3);
   tool.count(1);
@@ -265,9 +265,10 @@ int publish(const Options& options) {
     status.port_work_j(3e-3);
     status.switching_energy_j(250e-6);
     status.dissipated_j(1.2e-3);
-    status.largest_limit_number(1.75);
+    status.largest_stability_number(1.75);
     status.largest_partners(7);
     status.certified_partners(12);
+    status.refused_inputs(3);
   };
   const node::StatusPublisher sim_status(sim, msg::KIND_SIM_NODE, epoch, speak);
   const node::StatusPublisher keyboard_status(keyboard, msg::KIND_DEVICE_NODE, epoch,

@@ -7,12 +7,12 @@
 
 namespace cordis::viz {
 
-inline constexpr std::uint64_t kRun = 1234567890123456789u;
+inline constexpr std::uint64_t kEpoch = 1234567890123456789u;
 
 /// Three MATs in a row (fixed, mass, port), two links, two signals.
 inline msg::SceneDescription row_of_three() {
   msg::SceneDescription description;
-  description.epoch(kRun);
+  description.epoch(kEpoch);
   description.version(1);
   description.name("row");
   description.space(2);
@@ -34,7 +34,7 @@ inline msg::SceneDescription row_of_three() {
 
 inline msg::SceneFrame frame_of_three(std::uint64_t number) {
   msg::SceneFrame frame;
-  frame.epoch(kRun);
+  frame.epoch(kEpoch);
   frame.version(1);
   frame.frame(number);
   frame.step(80 * number);
@@ -47,7 +47,7 @@ inline msg::SceneFrame frame_of_three(std::uint64_t number) {
 /// Rows of (row, -row), every second step.
 inline msg::SceneSignals signals_of_three(std::uint64_t first_step, std::size_t rows) {
   msg::SceneSignals signals;
-  signals.epoch(kRun);
+  signals.epoch(kEpoch);
   signals.version(1);
   signals.first_step(first_step);
   signals.stride_steps(2);
@@ -57,6 +57,30 @@ inline msg::SceneSignals signals_of_three(std::uint64_t first_step, std::size_t 
     signals.value().push_back(-static_cast<double>(row));
   }
   return signals;
+}
+
+/// The same row, whose force is a sound.
+inline msg::SceneDescription sounding_row() {
+  msg::SceneDescription description = row_of_three();
+  description.signals()[1].rate(msg::RATE_STEP);
+  description.signals()[1].sound(true);
+  description.signals()[1].full_scale(4.0);
+  return description;
+}
+
+/// Samples of 0, 1, 2 and so on.
+inline msg::SceneSound sound_of_row(std::uint64_t first_step, std::size_t steps) {
+  msg::SceneSound sound;
+  sound.epoch(kEpoch);
+  sound.version(1);
+  sound.first_step(first_step);
+  sound.step_rate_hz(2000.0);
+  sound.sound_count(1);
+  sound.dropped_steps(3);
+  sound.time_nsec(-7);
+  for (std::size_t step = 0; step < steps; ++step)
+    sound.value().push_back(static_cast<float>(step));
+  return sound;
 }
 
 }  // namespace cordis::viz

@@ -16,7 +16,7 @@ const { values: options } = parseArgs({
     'viz-node': { type: 'string' },
     'scene-source': { type: 'string' },
     web: { type: 'string' }, // the folder with node_modules
-    out: { type: 'string' }, // where pictures and launch files go
+    out: { type: 'string' }, // where images and launch files go
   },
 });
 mkdirSync(options.out, { recursive: true });
@@ -39,6 +39,17 @@ export function need(name) {
 export function skip(reason) {
   console.log(`skipped: ${reason}`);
   process.exit(SKIPPED);
+}
+
+/** Numbers from 0 to below 1, the same for the same seed (mulberry32). */
+export function lot(seed) {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) >>> 0;
+    let t = Math.imul(state ^ (state >>> 15), state | 1);
+    t ^= t + Math.imul(t ^ (t >>> 7), t | 61);
+    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
+  };
 }
 
 export const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));

@@ -16,7 +16,7 @@ VizConfig read(const std::string& section, config::Problems& problems) {
   return read_viz_config(node, problems);
 }
 
-TEST(VizConfig, ServesThisMachineAloneUnlessToldOtherwise) {
+TEST(VizConfig, ServesThisMachineAloneUnlessSetOtherwise) {
   config::Problems problems;
   const VizConfig viz = read("{}", problems);
 

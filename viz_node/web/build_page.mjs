@@ -17,6 +17,7 @@ await build({
   entryPoints: [
     { in: join(sources, 'main.ts'), out: 'page' },
     { in: join(sources, 'page.css'), out: 'page' },
+    { in: join(sources, 'sound/worklet.ts'), out: 'sound' }, // runs in the audio thread
   ],
   outdir: out,
   bundle: true,

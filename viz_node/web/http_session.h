@@ -11,7 +11,7 @@
 
 #include <boost/asio/buffer.hpp>
 
-#include "viz_node/web/gate.h"
+#include "viz_node/web/request_filter.h"
 #include "viz_node/web/static_pages.h"
 #include "viz_node/web/websocket_session.h"
 
@@ -23,7 +23,7 @@ inline constexpr const char* kContentPolicy =
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
     "frame-ancestors 'none'";
 
-/// One HTTP connection, until it ends or becomes a Client.
+/// One HTTP connection, until it ends or becomes a WebSocketSession.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket&& socket, ServerState& state, const StaticPages& pages)

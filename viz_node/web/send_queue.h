@@ -12,7 +12,7 @@
 
 #include "node/time.h"
 #include "viz_node/frame_encoder.h"
-#include "viz_node/web/client_credit.h"
+#include "viz_node/web/flow_credit.h"
 #include "viz_node/web/server_state.h"
 
 namespace cordis::viz {
@@ -26,18 +26,35 @@ class SendQueue {
   };
 
   explicit SendQueue(ServerState& state) : state_(state) {}
+  ~SendQueue() { listen(false); }
+  SendQueue(const SendQueue&) = delete;
+  SendQueue& operator=(const SendQueue&) = delete;
 
   /// The next thing that is due, which counts as sent; nothing when the page has it all.
   std::optional<Message> next() {
     if (!std::exchange(hello_sent_, true)) return text(state_.hello);
     if (auto scene = next_of_scene()) return scene;
-    if (auto status = next_status()) return status;
-    frame_first_ = !frame_first_;  // in turn: on a slow line neither starves the other
-    if (auto first = frame_first_ ? next_frame() : next_signals()) return first;
-    return frame_first_ ? next_signals() : next_frame();
+    sound_first_ =
+        !sound_first_;  // waits for one other message at most, and holds up none for long
+    if (sound_first_) {
+      if (auto sound = next_sound()) return sound;
+    }
+    if (auto other = next_other()) return other;
+    return sound_first_ ? std::nullopt : next_sound();
   }
 
-  ClientCredit& credit() noexcept { return credit_; }
+  FlowCredit& credit() noexcept { return credit_; }
+
+  /// Whether the page gets the blocks of sound that come from now on.
+  void listen(bool listens) {
+    if (std::exchange(listens_, listens) == listens) return;
+    if (listens) {
+      state_.mirror.add_listener();
+      sound_number_ = state_.mirror.newest_sound();
+    } else {
+      state_.mirror.remove_listener();
+    }
+  }
 
  private:
   static Message text(const std::string& text) { return {true, {asio::buffer(text)}}; }
@@ -55,6 +72,13 @@ class SendQueue {
     return text(kept_scene_->text);
   }
 
+  std::optional<Message> next_other() {
+    if (auto status = next_status()) return status;
+    frame_first_ = !frame_first_;  // in turn: on a slow line neither starves the other
+    if (auto first = frame_first_ ? next_frame() : next_signals()) return first;
+    return frame_first_ ? next_signals() : next_frame();
+  }
+
   std::optional<Message> next_status() {
     if (state_.status == nullptr || status_number_ == state_.status_number) return {};
     status_number_ = state_.status_number;
@@ -67,6 +91,16 @@ class SendQueue {
     if (kept_signals_ == nullptr) return {};
     signals_number_ = kept_signals_->number;
     return Message{false, {asio::buffer(kept_signals_->bytes)}};
+  }
+
+  /// Every block in its order. A page that is slower than half a second loses the oldest, which it
+  /// sees by the numbers of the steps.
+  std::optional<Message> next_sound() {
+    if (!listens_) return {};
+    kept_sound_ = state_.mirror.sound_after(sound_number_);
+    if (kept_sound_ == nullptr) return {};
+    sound_number_ = kept_sound_->number;
+    return Message{false, {asio::buffer(kept_sound_->bytes)}};
   }
 
   std::optional<Message> next_frame() {
@@ -94,17 +128,21 @@ class SendQueue {
   }
 
   ServerState& state_;
-  ClientCredit credit_;
+  FlowCredit credit_;
   bool hello_sent_ = false;
   bool frame_first_ = false;
+  bool sound_first_ = false;
   std::uint32_t scene_ = 0;
   std::uint64_t status_number_ = 0;
   std::uint64_t signals_number_ = 0;
+  bool listens_ = false;
+  std::uint64_t sound_number_ = 0;
   std::shared_ptr<const ShownScene> topology_due_;
   // What the message on its way is made of.
   std::shared_ptr<const ShownScene> kept_scene_;
   std::shared_ptr<const std::string> kept_status_;
   std::shared_ptr<const ShownSignals> kept_signals_;
+  std::shared_ptr<const ShownSound> kept_sound_;
   std::shared_ptr<const ShownFrame> kept_frame_;
   std::array<std::uint8_t, kFrameHeaderBytes> header_{};
 };

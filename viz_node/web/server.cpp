@@ -1,4 +1,4 @@
-// viz_node/web/server.cpp -- listens, wakes the clients, tells the figures. The only source that
+// viz_node/web/server.cpp -- listens, wakes the clients, reports the figures. The only source that
 // knows Boost.Beast.
 #include "viz_node/web/server.h"
 

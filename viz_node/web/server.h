@@ -19,7 +19,7 @@ struct ServerConfig {
   std::filesystem::path folder;  ///< the built page
 };
 
-/// What the server has done. Delays run from the hand to the picture: from the newest device sample
+/// What the server has done. Delays run from the hand to the view: from the newest device sample
 /// that a frame shows, or from the frame itself while no device plays, until a page said that it
 /// has drawn it.
 struct ServerFigures {
@@ -30,7 +30,7 @@ struct ServerFigures {
 };
 
 /// One thread of its own serves every client. A client gets the newest frame when it has credit
-/// (ClientCredit), one message at a time; a client that stalls costs nothing but its socket, and is
+/// (FlowCredit), one message at a time; a client that stalls costs nothing but its socket, and is
 /// let go when it answers no ping for half a minute.
 class WebServer {
  public:

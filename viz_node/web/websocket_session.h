@@ -85,6 +85,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     const auto word = read_acknowledgement(text);
     if (!word) {
       if (const auto command = read_page_command(text)) state_.execute(*command);
+      if (const auto listens = read_sound_request(text)) queue_.listen(*listens);
       return;
     }
     const auto taken_nsec = queue_.credit().acknowledge(word->sequence);

@@ -3,10 +3,11 @@
 
 #include <bit>
 #include <cstdint>
+#include <span>
 
 namespace cordis::engine {
 
-/// A 64-bit hash of a row of values, for telling whether two runs are the same bit for bit. Not for
+/// A 64-bit hash of a row of values, for finding whether two runs are the same bit for bit. Not for
 /// secrets. All NaN count as one value: their bits may depend on the order in which a compiler adds
 /// two of them.
 class StateHash {
@@ -26,5 +27,12 @@ class StateHash {
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
+
+/// The hash of a row of values.
+inline std::uint64_t hash_of(std::span<const double> values) noexcept {
+  StateHash hash;
+  for (const double value : values) hash.add(value);
+  return hash.value();
+}
 
 }  // namespace cordis::engine

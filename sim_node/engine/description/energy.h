@@ -19,16 +19,19 @@ namespace cordis::engine {
 /// elastic by elastic_error, which shows what finite steps have done to them.
 /// A port that has moved counts up to its present position, and rests there until the next step.
 ///
+/// The products with which this scheme keeps its account stay constant even where a motion diverges;
+/// kinetic_excess distinguishes the kinetic energy at x(n) from them.
+///
 /// All of this is so for IntegratorKind::kCordis. The others keep the account at the moment of the last
 /// forces, with all energies in closed form and the works of viscosity at that moment: then the
-/// residual is what finite steps have done, and elastic_error is 0.
+/// residual is what finite steps have done, and elastic_error and kinetic_excess are 0.
 struct Energy {
   double kinetic =
       0.0;  ///< of the half-step velocity (x(n) - x(n-1)) / dt before the present position
   double elastic = 0.0;  ///< in the links; below 0 for a moment where a link passes its rest length
   double gravity = 0.0;  ///< potential in the uniform gravity, 0 at the origin
   double dissipated = 0.0;  ///< taken since step 0 by the viscosity of links and medium, and by all
-                            ///< else of the pull of a link that is not the slope of a potential:
+                            ///< else of the tension of a link that is not the slope of a potential:
                             ///< a force limit, the cutting off of a clamped one, a function
   double port_work = 0.0;   ///< brought in by imposed positions and external forces since step 0
   double switching = 0.0;   ///< brought in by changes of state and of parameters since step 0: the
@@ -37,16 +40,19 @@ struct Energy {
   double elastic_error = 0.0;  ///< part of elastic that a finite step has put there, above what the
                                ///< laws of the links store: of order dt^2; 0 for linear links and
                                ///< states in 1 dimension, and at changes of state
+  double kinetic_excess =
+      0.0;               ///< m (v(n-1/2) + v(n+1/2))^2 / 8 over m v(n-1/2) v(n+1/2) / 2 at the
+                         ///< moment of the last forces, less that at step 0
   double largest = 0.0;  ///< largest magnitude among the fields above, and that port_work ever had:
                          ///< the scale for a relative residual
 
   double total() const noexcept { return kinetic + elastic + gravity; }
   /// What the integration has put in (> 0) or taken (< 0) and no account explains [J]:
   /// (kinetic + true potential + dissipated) - (initial + port_work + switching). The true potential
-  /// is that of the laws at the positions, whatever works the steps have done; of linear links in 1
-  /// dimension it is the product above. 0 but for terms of order dt^2 while a step is short enough;
-  /// it grows where a motion diverges though the account closes.
-  double integration_error() const noexcept { return residual() - elastic_error; }
+  /// and the kinetic energy are those of the moment of the last forces, whatever works the steps have
+  /// done. 0 but for terms of order dt^2 while a step is short enough; it grows where a motion
+  /// diverges though the account closes.
+  double integration_error() const noexcept { return residual() - elastic_error + kinetic_excess; }
   double residual() const noexcept {
     return total() - initial - port_work - switching + dissipated;
   }

@@ -89,6 +89,7 @@ void check_maxwell_link(const NetworkDescription& description, const MaxwellLink
           "finite and > 0");
   require(std::isfinite(link.viscosity / description.step), name + ": viscosity",
           "small enough for the step");
+  require(std::isfinite(link.start_force), name + ": start force", "finite");
 }
 
 void check_set(const NetworkDescription& description, const SetLiaison& set,

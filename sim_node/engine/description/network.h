@@ -28,15 +28,15 @@ struct Mat {
 ///
 /// In 2 and 3 dimensions, with d the distance of the ends, along the line of centres
 ///
-///     pull = K (d - rest) + Z (d(n) - d(n-1)) / dt
+///     tension = K (d - rest) + Z (d(n) - d(n-1)) / dt
 ///
 /// where the elongation increment is the relative displacement projected on that line; no force
 /// while d is 0. In 1 dimension d is signed, d = x_b - x_a, and so is the rest length: ends may
 /// cross.
 ///
-/// An isotropic one is a tie: K (x_b - x_a) + Z (its elongation increment in the last period, as a
+/// An isotropic one is a vector spring: K (x_b - x_a) + Z (its elongation increment in the last period, as a
 /// vector) / dt, the same in every direction and at distance 0, without a rest length. The damper
-/// of another link lets one end circle the other forever; a tie calms it, and so keeps no angular
+/// of another link lets one end circle the other forever; a vector spring calms it, and so keeps no angular
 /// momentum. In 1 dimension there is no difference.
 struct Link {
   std::uint32_t mat_a = 0;
@@ -62,13 +62,14 @@ struct StateLink {
 ///     F(n) = a F(n-1) + Z (1 - a) (elongation increment in the last period) / dt,  a = e^(-K dt /
 ///     Z)
 ///
-/// exact while the elongation rate is steady; F is 0 before step 0. A Maxwell element and a Link in
-/// parallel are a standard linear solid.
+/// exact while the elongation rate is steady; F(0) is the start force, whatever the speed of the
+/// ends. A Maxwell element and a Link in parallel are a standard linear solid.
 struct MaxwellLink {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
-  double stiffness = 0.0;  ///< K [N/m], > 0
-  double viscosity = 0.0;  ///< Z [N s/m], > 0
+  double stiffness = 0.0;    ///< K [N/m], > 0
+  double viscosity = 0.0;    ///< Z [N s/m], > 0
+  double start_force = 0.0;  ///< F(0) [N], any finite value; > 0 pulls the ends together
 };
 
 /// One liaison between the sets P and Q, or within the set P: between each two of their MATs nearer

@@ -13,7 +13,7 @@ namespace cordis::engine {
 
 /// A state describer: the parameters of the liaison while it is in this state.
 ///
-///     pull = K e + elasticity + Z v + dissipation
+///     tension = K e + elasticity + Z v + dissipation
 ///
 /// with e the elongation and v its elongation rate, positive pulling the ends
 /// together; then without its positive part unless `pulls`, without its negative part unless
@@ -35,8 +35,9 @@ struct LinkState {
 /// What a change of state does with the rest length.
 enum class RestRule : std::uint8_t {
   kKeep = 0,
-  kHere = 1,       ///< becomes the present distance: the points of hook-up are renewed
-  kExpression = 2  ///< becomes the value of Exit::rest_length, before the change: plastic flow
+  kHere = 1,  ///< becomes the present distance: the points of hook-up are renewed
+  kExpression =
+      2  ///< becomes the value of Transition::rest_length, before the change: plastic flow
 };
 
 /// A state change condition, and where it leads.
@@ -50,7 +51,7 @@ struct Transition {
 };
 
 /// A liaison with states. In each step, for each link: the quantities; the exits of its present
-/// state in the order written, of which the first that holds changes the state; the pull of the
+/// state in the order written, of which the first that holds changes the state; the tension of the
 /// state it is in then. So a link changes at most once a step.
 /// [Luc90 III.2.3 b formalism to modify the liaison]
 struct StateMachine {

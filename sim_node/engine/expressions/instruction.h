@@ -9,20 +9,20 @@
 namespace cordis::engine {
 
 /// What a condition or an expression may ask of a link, from its end a to its end b, in the present
-/// step. In 1 dimension the distance is signed, and "growth" means towards larger values.
+/// step. In 1 dimension the distance is signed, and elongation means towards larger values.
 enum class Quantity : std::uint8_t {
   kDistance = 0,    ///< d [m]
   kElongation = 1,  ///< d - rest length [m]
-  kSpeed = 2,   ///< growth of the link along its line of centres, from x(n) - x(n-1) [m/s]; true
-                ///< also in the step in which a state is entered; 0 while d is 0
-  kSpeedX = 3,  ///< velocity of b relative to a along an axis [m/s]
+  kSpeed = 2,       ///< elongation rate along its line of centres, from x(n) - x(n-1) [m/s]; true
+                    ///< also in the step in which a state is entered; 0 while d is 0
+  kSpeedX = 3,      ///< velocity of b relative to a along an axis [m/s]
   kSpeedY = 4,
   kSpeedZ = 5,
-  kSlip = 6,     ///< length of the relative velocity across the line of centres [m/s], >= 0
-  kForce = 7,    ///< pull of the link in the last step [N], positive pulls the ends together; 0 at
-                 ///< step 0
-  kImpulse = 8,  ///< sum of pull * dt since the state was entered [N s]
-  kAge = 9,      ///< time since the state was entered [s]; 0 in that step, and at step 0
+  kSlip = 6,   ///< length of the relative velocity across the line of centres [m/s], >= 0
+  kForce = 7,  ///< tension of the link in the last step [N], positive pulls the ends together; 0 at
+               ///< step 0
+  kImpulse = 8,      ///< sum of tension * dt since the state was entered [N s]
+  kAge = 9,          ///< time since the state was entered [s]; 0 in that step, and at step 0
   kRestLength = 10,  ///< present rest length [m]
   kMassA = 11,       ///< of end a [kg]; 0 for a fixed point or a port mass
   kMassB = 12,

@@ -113,8 +113,8 @@ double value_of(const Program& program, const LinkQuantities& now, const LinkQua
       value = now[quantity];
       old = before != nullptr ? (*before)[quantity] : value;
     } else if (is_edge(instruction.operation)) {
-      const double growth = value - old;
-      const bool is_so = instruction.operation == Operation::kRising ? growth > 0.0 : growth < 0.0;
+      const double change = value - old;
+      const bool is_so = instruction.operation == Operation::kRising ? change > 0.0 : change < 0.0;
       value = old = before != nullptr ? truth(is_so) : edge;
     } else {
       value = apply(instruction, &value);

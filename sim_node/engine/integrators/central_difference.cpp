@@ -4,14 +4,35 @@
 #include "sim_node/engine/integrators/world_state.h"
 
 namespace cordis::engine {
+namespace {
+
+/// m (a dt)^2 / 8 over the masses, a the acceleration by the last forces [J].
+double kinetic_excess_of(const WorldState& world) noexcept {
+  const NetworkDescription& network = world.description();
+  const bool has_moved = world.step_count > 0;  // since the forces were summed
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    if (network.mats[i].kind != MatKind::kMass) continue;
+    const Vec3 external_force = world.outside.external_force(i);
+    const Vec3 increment = has_moved ? world.mats.velocity_increment(i, external_force)
+                                     : world.mats.next_velocity_increment(i, external_force);
+    sum += network.mats[i].mass * increment.squaredNorm();
+  }
+  return sum / (8.0 * network.step * network.step);
+}
+
+}  // namespace
 
 void CentralDifference::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   world.add_frozen_forces(mats.force_columns());
+  const double excess = kinetic_excess_of(world);
   mats.start();
   world.start_one_period_ago();
-  world.account.start(world.description(), mats, world.stored_energy(),
-                      world.work_since_last_call().elastic);
+  const StepEnergy since = world.work_since_last_call();
+  world.account.start(world.description(), mats, world.stored_energy(), since.elastic);
+  world.account.begin_dissipated(since.dissipated);
+  world.account.set_initial_excess(excess);
 }
 
 Moved CentralDifference::step(WorldState& world) noexcept {
@@ -34,8 +55,11 @@ Moved CentralDifference::step(WorldState& world) noexcept {
 }
 
 Energy CentralDifference::energy(WorldState& world) const noexcept {
-  return world.account.energy(world.description(), world.mats, world.work_since_last_call(),
-                              world.stored_energy());
+  Energy energy = world.account.energy(world.description(), world.mats,
+                                       world.work_since_last_call(), world.stored_energy());
+  if (world.step_count > 0)
+    energy.kinetic_excess = kinetic_excess_of(world) - world.account.initial_excess();
+  return energy;
 }
 
 }  // namespace cordis::engine

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/integrators/world_state.h"
 
 namespace cordis::engine {
@@ -13,7 +14,7 @@ namespace {
 // While some only fall asleep, the choice of liaisons is made again every so many steps.
 constexpr std::uint64_t kStepsBetweenChoices = 16;
 constexpr double kMinCarried = 0.9;  // of the weight
-constexpr double kShare = 0.25;      // of the tolerance, for one mass in one step
+constexpr double kShare = 0.25;      // of the tolerance, for one mass in one window
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double square_of(const Vec3& vector) noexcept {
@@ -80,13 +81,25 @@ bool asks_for_impulse(const StateMachine& state_machine) {
                      });
 }
 
+/// Steps of the first window. Precondition: step > 0 [s].
+std::uint64_t first_window(double step) {
+  constexpr double kWindow = 0.1;          // [s]
+  constexpr std::uint64_t kMinSteps = 20;  // where steps are long
+  CORDIS_ASSERT(step > 0.0);
+  return std::max(kMinSteps, static_cast<std::uint64_t>(std::ceil(kWindow / step)));
+}
+
 }  // namespace
 
 Freezing::Freezing(const NetworkDescription& network)
     : max_push_(network.mats.size(), -1.0),
       max_moved_(network.mats.size(), 0.0),
       mass_over_dt2_(network.mats.size(), 0.0),
-      rest_(network.mats.size(), 0U),
+      first_window_(first_window(network.step)),
+      quiet_(network.mats.size(), 0U),
+      asleep_(network.mats.size(), 0U),
+      level_(network.mats.size(), 0U),
+      anchor_(3 * network.mats.size(), 0.0),
       held_(network.mats.size(), false),
       kept_awake_(network.mats.size(), false),
       roles_(network.mats.size()),
@@ -107,6 +120,7 @@ void Freezing::adopt(const NetworkDescription& network,
   const std::vector<OfMat> of_mats = measure(network, state_machines);
   const double tolerance = kShare * network.freeze_tolerance;
   const double dt = network.step;
+  max_drift_ = tolerance * tolerance;
   for (std::size_t i = 0; i < of_mats.size(); ++i) {
     const double stiffness = of_mats[i].stiffness();
     max_push_[i] = -1.0;
@@ -129,24 +143,50 @@ void Freezing::adopt(const NetworkDescription& network,
   wake_all();
 }
 
-void Freezing::wake(std::uint32_t mat) noexcept {
+/// A mass is awake again, with the level that it has.
+void Freezing::rouse(std::uint32_t mat) noexcept {
   if (is_asleep(mat)) {
     --asleep_count_;
     movers_changed_ = true;
     // those beside it may need their whole forces in the next step
     (roles_.has(mat, kMayStir) ? changed_ : woken_) = true;
   }
-  rest_[mat] = 0;
+  asleep_[mat] = 0;
+  quiet_[mat] = 0;
+}
+
+void Freezing::wake(std::uint32_t mat) noexcept {
+  rouse(mat);
+  level_[mat] = 0;
 }
 
 void Freezing::wake_all() noexcept {
-  std::fill(rest_.begin(), rest_.end(), std::uint8_t{0});
-  asleep_count_ = 0;
+  for (std::uint32_t i = 0; i < asleep_.size(); ++i) wake(i);
   woken_ = true;
   movers_changed_ = true;
 }
 
+/// Steps at rest after which a mass falls asleep. The first two trials are no shorter than the
+/// first window.
+std::uint64_t Freezing::window_of(std::uint32_t mat) const noexcept {
+  return std::max(first_window_, (first_window_ << level_[mat]) / 4);
+}
+
+/// Pauses of one level end in the same step, and those of all lower levels with them: what is soft
+/// or free as a whole is tried as a whole.
+void Freezing::try_sleepers(std::uint64_t step) noexcept {
+  const std::uint64_t first_pause = first_window_ * kPausesPerWindow / 4;
+  if (step % first_pause != 0) return;
+  const std::uint64_t pauses = step / first_pause;
+  for (std::uint32_t i = 0; i < asleep_.size(); ++i) {
+    if (!is_asleep(i) || pauses % (std::uint64_t{1} << level_[i]) != 0) continue;
+    rouse(i);
+    if (level_[i] < kMaxLevel) ++level_[i];
+  }
+}
+
 void Freezing::choose_liaisons(WorldState& world, bool sets_changed) noexcept {
+  try_sleepers(world.step_count);
   const bool due = changed_ && world.step_count % kStepsBetweenChoices == 0;
   if (woken_ || due || sets_changed) {
     choose_roles(world);
@@ -159,20 +199,20 @@ void Freezing::choose_liaisons(WorldState& world, bool sets_changed) noexcept {
 }
 
 void Freezing::choose_roles(WorldState& world) noexcept {
-  for (std::uint32_t i = 0; i < rest_.size(); ++i) {
+  for (std::uint32_t i = 0; i < asleep_.size(); ++i) {
     const bool is_mass = mass_over_dt2_[i] > 0.0;
-    const bool stirs = kept_awake_[i] || (is_mass && rest_[i] < kAsleep);
+    const bool stirs = kept_awake_[i] || (is_mass && asleep_[i] < kLeftOut);
     roles_.set(i, (is_mass ? kIsMass : 0U) | (stirs ? kActive | kMayStir | kWholeForce : 0U));
   }
   for (const WakePropagation& pass : {kToThoseBeside, kToThoseBeyond}) {
     world.links.mark_neighbours(pass, roles_);
-    world.ties.mark_neighbours(pass, roles_);
+    world.vector_springs.mark_neighbours(pass, roles_);
     world.state_links.mark_neighbours(pass, never_rests_, roles_);
     world.maxwell_links.mark_neighbours(pass, roles_);
     world.sets.mark_neighbours(pass, never_rests_, roles_);
   }
   world.links.choose_active(roles_);
-  world.ties.choose_active(roles_);
+  world.vector_springs.choose_active(roles_);
   world.state_links.choose_active(roles_);
   world.sets.choose_active(never_rests_, roles_);
 }
@@ -182,7 +222,7 @@ void Freezing::list_mats(const MatArray& mats) noexcept {
   whole_.clear();
   computed_.clear();
   some_.clear();
-  for (std::uint32_t i = 0; i < rest_.size(); ++i) {
+  for (std::uint32_t i = 0; i < asleep_.size(); ++i) {
     const unsigned roles = roles_.of(i);
     if ((roles & (kWholeForce | kSomeForce)) == 0) continue;
     computed_.push_back(i);
@@ -218,6 +258,12 @@ bool Freezing::is_balanced(const MatArray& mats, std::uint32_t mat) const noexce
   return square_of(mats.kick_at_half_step(mat)) <= max_push_[mat];
 }
 
+/// True if the mass is as slow and as near to its anchor as at rest.
+bool Freezing::is_quiet(const MatArray& mats, std::uint32_t mat) noexcept {
+  return square_of(mats.position(mat) - anchor(mat)) <= max_drift_ &&
+         square_of(mats.moved(mat)) <= max_moved_[mat];
+}
+
 double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
   MatArray& mats = world.mats;
   stopped_.clear();
@@ -228,16 +274,17 @@ double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
     if (is_asleep(mat)) {
       if (!balanced) {
         wake(mat);
-      } else if (rest_[mat] < kAsleep && ++rest_[mat] == kAsleep) {
+      } else if (asleep_[mat] < kLeftOut && ++asleep_[mat] == kLeftOut) {
         changed_ = true;
       }
       continue;
     }
-    const Vec3 moved = mats.position(mat) - mats.delayed(mat);
-    const bool may_sleep = !held_[mat] && !kept_awake_[mat];
-    if (!balanced || !may_sleep || !(square_of(moved) <= max_moved_[mat])) {
-      rest_[mat] = 0;
-    } else if (++rest_[mat] == kStepsToSleep) {
+    if (!balanced) level_[mat] = 0;
+    const bool may_sleep = balanced && !held_[mat] && !kept_awake_[mat];
+    if (!may_sleep || quiet_[mat] == 0 || !is_quiet(mats, mat)) {
+      anchor(mat) = mats.position(mat);
+      quiet_[mat] = may_sleep ? 1 : 0;
+    } else if (++quiet_[mat] >= window_of(mat)) {
       energy += stop(mats, mat, at_moments);
     }
   }
@@ -248,9 +295,10 @@ double Freezing::choose_movers(WorldState& world, bool at_moments) noexcept {
 /// What stops it is one more force, m (0 - moved) / dt^2 - f: its work over the middles before and
 /// after, half of that force times moved. At the moments it is the energy of the velocity there.
 double Freezing::stop(MatArray& mats, std::uint32_t mat, bool at_moments) noexcept {
-  const Vec3 moved = mats.position(mat) - mats.delayed(mat);
+  const Vec3 moved = mats.moved(mat);
   const Vec3 kick = mats.kick_at_half_step(mat);
   const Vec3 at_moment = moved + 0.5 * kick;
+  asleep_[mat] = 1;
   ++asleep_count_;
   movers_changed_ = true;
   stopped_.push_back(mat);
@@ -268,14 +316,21 @@ void Freezing::wake_where_states_change(const WorldState& world) noexcept {
 }
 
 void Freezing::serialize(Archive& archive) {
-  archive.wholes(std::span(rest_),
-                 [](std::size_t, std::uint8_t steps) { return steps <= kAsleep; });
-  archive.hash_rows(rest_.size(), rest_);
+  const std::uint64_t longest = (first_window_ << kMaxLevel) / 4;
+  archive.wholes(std::span(quiet_),
+                 [longest](std::size_t, std::uint32_t steps) { return steps <= longest; });
+  archive.wholes(std::span(asleep_),
+                 [](std::size_t, std::uint8_t steps) { return steps <= kLeftOut; });
+  archive.wholes(std::span(level_),
+                 [](std::size_t, std::uint8_t level) { return level <= kMaxLevel; });
+  archive.reals(anchor_);
+  archive.hash_rows(quiet_.size(), quiet_, asleep_, level_);
+  archive.hash(anchor_);
 }
 
 void Freezing::restored(const PortInputs& outside) noexcept {
   asleep_count_ = 0;
-  for (std::uint32_t i = 0; i < rest_.size(); ++i) {
+  for (std::uint32_t i = 0; i < asleep_.size(); ++i) {
     if (is_asleep(i)) ++asleep_count_;
     held_[i] = !outside.external_force(i).isZero(0.0);
   }

@@ -18,30 +18,36 @@ struct WorldState;
 /// Stops masses that rest, and leaves out what joins them, until something moves them: the paper's
 /// local area of deformation.
 ///
-/// A mass falls asleep when in kStepsToSleep steps in a row
+/// A mass falls asleep when all of this holds in every step of a window of time:
 ///
-///     it moves less than e in a step, so slowly that its dampers pull less than F, and the sum of
-///     all forces on it is below  F = e K,
+/// - It stays within e of one point.
+/// - It is so slow that its dampers pull less than F.
+/// - The sum of all forces on it is below F = e K.
 ///
-/// e being a quarter of the tolerance and K its own stiffness: the sum of that of its linear links
-/// or, if they have none, the least of the laws that may act on it. Forces that small add up over
-/// many masses: positions are off by about 3 tolerances, where all is soft by up to 50. A mass
-/// without stiffness never does; nor does one of whose weight more than a tenth is not carried, or
-/// on which a force from outside is held. It is stopped where it is; the energy it had counts as
-/// dissipated, exactly.
+/// e is a quarter of the tolerance. K is the stiffness of the mass: the sum of that of its linear
+/// links or, if it has none, the least of the laws that may act on it. A mass without stiffness
+/// never sleeps, nor does one of whose weight more than a tenth is not carried, or on which a force
+/// from outside is held. It is stopped where it is; the energy it had counts as dissipated, exactly.
 ///
-/// It wakes in the step in which the sum of all forces on it exceeds F, a link at it changes its
-/// state, or something from outside touches it. Forces are computed of each liaison at a mass that
-/// is awake, or beside one, with the same bits as without freezing: so nothing that is awake knows
-/// of it, and the condition to wake is tested on whole forces. Fixed points are beside nothing:
-/// what they bear from sleepers is not summed. A port and a MAT that is kept awake never sleep.
+/// A sleeper wakes in the step in which the sum of all forces on it exceeds F, a link at it changes
+/// its state, or something from outside touches it. Forces are computed of each liaison at a mass
+/// that is awake, or beside one, with the same bits as without freezing: so nothing that is awake
+/// knows of it, and the condition to wake is tested on whole forces. Fixed points are beside
+/// nothing: what sleepers put on them is not summed. A port and a MAT that is kept awake never
+/// sleep.
+///
+/// Forces below F on many masses move a soft or free structure far. So sleepers are tried: they
+/// wake together after a pause and do what they would do if they were free. Who stays within e
+/// sleeps again, and the next pause and window are twice as long, up to kMaxLevel. So a trial finds
+/// a creep however slow, and costs a part of the time that goes to 1/kPausesPerWindow.
 ///
 /// Between sleepers nothing is computed but Maxwell elements, whose forces fade, and links and sets
 /// with conditions on an age or an impulse. All other conditions are tested after the last of their
 /// ends has stopped, and cannot change after that.
 class Freezing {
  public:
-  static constexpr std::uint8_t kStepsToSleep = 20;
+  static constexpr std::uint64_t kPausesPerWindow = 16;
+  static constexpr std::uint8_t kMaxLevel = 10;
 
   explicit Freezing(const NetworkDescription& network);
 
@@ -53,7 +59,7 @@ class Freezing {
   /// True if a force from outside is held on a mass: it does not sleep then.
   void hold(std::uint32_t mat, bool is_held) noexcept { held_[mat] = is_held; }
 
-  bool is_asleep(std::uint32_t mat) const noexcept { return rest_[mat] >= kStepsToSleep; }
+  bool is_asleep(std::uint32_t mat) const noexcept { return asleep_[mat] > 0; }
   std::uint32_t asleep_count() const noexcept { return asleep_count_; }
 
   /// Before the forces of a step: chooses the liaisons that are computed, where those that are
@@ -77,10 +83,15 @@ class Freezing {
 
  private:
   /// Asleep, and its liaisons have been computed with it at rest: what their conditions remember of
-  /// the steps before, a pull and whether it rises, is that of rest then.
-  static constexpr std::uint8_t kAsleep = kStepsToSleep + 3;
+  /// the steps before, a tension and whether it rises, is that of rest then.
+  static constexpr std::uint8_t kLeftOut = 4;
 
   bool is_balanced(const MatArray& mats, std::uint32_t mat) const noexcept;
+  auto anchor(std::uint32_t mat) noexcept { return Vec3::Map(&anchor_[3 * std::size_t{mat}]); }
+  bool is_quiet(const MatArray& mats, std::uint32_t mat) noexcept;
+  std::uint64_t window_of(std::uint32_t mat) const noexcept;
+  void rouse(std::uint32_t mat) noexcept;
+  void try_sleepers(std::uint64_t step) noexcept;
   double stop(MatArray& mats, std::uint32_t mat, bool at_moments) noexcept;
   void wake_where_states_change(const WorldState& world) noexcept;
   void choose_roles(WorldState& world) noexcept;
@@ -89,9 +100,14 @@ class Freezing {
 
   std::vector<double>
       max_push_;  // square of the largest kick_at_half_step at rest; < 0: none [m^2]
-  std::vector<double> max_moved_;      // square of the largest displacement at rest [m^2]
+  std::vector<double> max_moved_;      // square of the largest displacement in a step at rest [m^2]
   std::vector<double> mass_over_dt2_;  // [kg/s^2]; 0 unless a mass
-  std::vector<std::uint8_t> rest_;     // steps at rest in a row; see kAsleep
+  double max_drift_ = 0.0;             // square of e [m^2]
+  std::uint64_t first_window_;         // [steps]
+  std::vector<std::uint32_t> quiet_;   // of a mass that is awake: steps at rest in a row
+  std::vector<std::uint8_t> asleep_;   // of a sleeper: steps asleep, up to kLeftOut; 0: awake
+  std::vector<std::uint8_t> level_;    // trials since something else woke it
+  std::vector<double> anchor_;         // where it has been since it is quiet, 3 values each [m]
   std::vector<bool> held_;
   std::vector<bool> kept_awake_;
   std::vector<bool> never_rests_;  // by state machine

@@ -23,7 +23,7 @@ NetworkDescription dampers_alone(const NetworkDescription& network) {
 }  // namespace
 
 ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
-    : in_line_(network.dimension == 1),
+    : is_1d_(network.dimension == 1),
       dt_(network.step),
       medium_viscosity_(network.step * network.medium_viscosity),
       matrix_(dampers_alone(network)),
@@ -45,12 +45,12 @@ ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
   for (const Link& link : network.links) {
     if (link.viscosity == 0.0 || mass_[link.mat_a] + mass_[link.mat_b] == 0.0) continue;
     dampers_.push_back({link.mat_a, link.mat_b, network.step * link.viscosity,
-                        link.isotropic && !in_line_, Vec3::UnitX()});
+                        link.isotropic && !is_1d_, Vec3::UnitX()});
   }
 }
 
 void ImplicitDamping::find_axes(const MatArray& mats) noexcept {
-  if (in_line_) return;
+  if (is_1d_) return;
   for (Damper& damper : dampers_) {
     if (damper.isotropic) continue;
     const Vec3 along = mats.position(damper.b) - mats.position(damper.a);
@@ -147,7 +147,7 @@ void ImplicitDamping::add_response(double force) noexcept {
   for (std::size_t i = 0; i < response_.size(); ++i) middle_[i] += force * response_[i];
 }
 
-ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<double>& felt,
+ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<double>& extrapolated,
                                                bool first) noexcept {
   const std::size_t count = mass_.size();
   // The mean velocity of the first period takes half a period of the forces.
@@ -178,7 +178,8 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
     const double energy_at_begin = mass_[i] * dot(begin, begin);
     work.dissipated += 0.5 * dot(begin + end, column(drag_, i));
     work.kinetic += first ? energy_at_begin : 0.5 * (energy_at_begin + mass_[i] * dot(end, end));
-    column(felt, i) = first ? Vec3(column(second_, i)) : Vec3(2.0 * end - column(middle_, i));
+    column(extrapolated, i) =
+        first ? Vec3(column(second_, i)) : Vec3(2.0 * end - column(middle_, i));
     column(displacement_, i) = end;
   }
   work.dissipated = rate * rate * (work.dissipated + work.port_work);
@@ -187,7 +188,8 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
 
   work.non_finite_mats = mats.move_by(displacement_);
   for (std::uint32_t i = 0; i < count; ++i) {
-    column(felt, i) = mass_[i] == 0.0 ? mats.position(i) : Vec3(mats.position(i) - column(felt, i));
+    column(extrapolated, i) =
+        mass_[i] == 0.0 ? mats.position(i) : Vec3(mats.position(i) - column(extrapolated, i));
   }
   return work;
 }

@@ -66,10 +66,10 @@ class ImplicitDamping {
     std::uint32_t non_finite_mats = 0;
   };
   /// Ends the period: moves the masses to x(n+1).
-  /// @param felt   becomes x(n+1) - dt v(n+1)
+  /// @param extrapolated   becomes x(n+1) - dt v(n+1)
   /// @param first  this is the period from x(0)
   /// Real time: O(MATs + dampers), no allocation.
-  Work advance(MatArray& mats, AlignedVector<double>& felt, bool first) noexcept;
+  Work advance(MatArray& mats, AlignedVector<double>& extrapolated, bool first) noexcept;
 
   /// Forces of the linear dampers on each MAT in the last period [N], 4 x N.
   const AlignedVector<double>& force() const noexcept { return force_; }
@@ -87,7 +87,7 @@ class ImplicitDamping {
   void add_drag_of_links(const AlignedVector<double>& displacement,
                          AlignedVector<double>& drag) const noexcept;
 
-  bool in_line_;
+  bool is_1d_;
   double dt_;
   std::vector<Damper> dampers_;
   std::vector<double> mass_;             // [kg], 0 unless a mass

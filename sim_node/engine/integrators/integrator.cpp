@@ -15,7 +15,7 @@
 namespace cordis::engine {
 
 Vec3 Integrator::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
-  return (world.mats.position(mat) - world.mats.delayed(mat)) / world.network->step();
+  return world.mats.moved(mat) / world.network->step();
 }
 
 std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network) {

@@ -13,7 +13,7 @@ namespace cordis::engine {
 
 struct WorldState;
 
-/// What a step has to tell besides what stands in the state.
+/// What a step reports besides what stands in the state.
 struct Moved {
   StepEnergy energy;
   std::uint32_t non_finite_mats = 0;

@@ -17,10 +17,10 @@ void Leapfrog::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   if (damping_) {
     world.links.drop_viscosity();
-    world.ties.drop_viscosity();
+    world.vector_springs.drop_viscosity();
   }
   world.add_frozen_forces(mats.force_columns());  // the delayed positions are x0 - dt v0
-  for (std::uint32_t i = 0; i < mats.count(); ++i) column(felt_, i) = mats.delayed(i);
+  for (std::uint32_t i = 0; i < mats.count(); ++i) column(extrapolated_, i) = mats.delayed(i);
   world.outside.start(mats);
   if (damping_) {
     mats.clear_forces();
@@ -29,7 +29,7 @@ void Leapfrog::start(WorldState& world) noexcept {
   }
   mats.set_forces_are_present(true);
   world.links.start();
-  world.ties.start();
+  world.vector_springs.start();
   world.state_links.start();
   world.sets.start();
   world.account.open(energy(world).total());
@@ -42,14 +42,14 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   begin_step(world, energy);
   feel_ports(world);
   stiff_friction_.begin_step(world);
-  find_forces(world, felt_.data(), energy);
+  find_forces(world, extrapolated_.data(), energy);
 
   if (damping_) {
     moved.non_finite_mats = advance_damped(world, energy);
   } else {
     memory_[2 * velocity_.size()] = 0.0;
     if (world.freezing) energy.dissipated += stop_what_rests(world);
-    const AdvanceReport advance = mats.extrapolate(world.kernel, felt_);
+    const AdvanceReport advance = mats.extrapolate(world.kernel, extrapolated_);
     moved.non_finite_mats = advance.non_finite_mats;
     take_half(0.5 * advance.medium_work, energy);
   }
@@ -63,7 +63,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
 double Leapfrog::stop_what_rests(WorldState& world) noexcept {
   const double energy = world.freezing->choose_movers(world, true);
   for (const std::uint32_t mat : world.freezing->stopped()) {
-    column(felt_, mat) = world.mats.position(mat);
+    column(extrapolated_, mat) = world.mats.position(mat);
   }
   return energy;
 }
@@ -72,24 +72,25 @@ double Leapfrog::stop_what_rests(WorldState& world) noexcept {
 double Leapfrog::correct_forces(WorldState& world) noexcept {
   if (world.freezing) return 0.0;
   if (damping_) begin_damping(world);
-  return stiff_friction_.solve(world, felt_, damping_.get(), started_);
+  return stiff_friction_.solve(world, extrapolated_, damping_.get(), started_);
 }
 
 void Leapfrog::adopt(WorldState& world) noexcept {
   stiff_friction_.choose(world.description(), world.table.state_machines());
 }
 
-/// What a port does is given from outside: it is felt as it has moved in the last period.
+/// What a port does is given from outside: it is extrapolated as it has moved in the last period.
 void Leapfrog::feel_ports(const WorldState& world) noexcept {
   for (const std::uint32_t port : world.outside.ports()) {
-    column(felt_, port) = world.mats.delayed(port);
+    column(extrapolated_, port) = world.mats.delayed(port);
   }
 }
 
 void Leapfrog::begin_damping(WorldState& world) noexcept {
   const MatArray& mats = world.mats;
   for (std::uint32_t i = 0; i < mats.count(); ++i) {
-    const Vec3 before = started_ || !mats.is_mass(i) ? mats.delayed_at_rest(i) : column(felt_, i);
+    const Vec3 before =
+        started_ || !mats.is_mass(i) ? mats.delayed_at_rest(i) : column(extrapolated_, i);
     column(velocity_, i) = mats.position(i) - before;
   }
   for (const std::uint32_t port : world.outside.ports()) {
@@ -102,7 +103,7 @@ void Leapfrog::begin_damping(WorldState& world) noexcept {
 /// comes after.
 std::uint32_t Leapfrog::advance_damped(WorldState& world, StepEnergy& energy) noexcept {
   damping_->find_velocities(world.mats, nullptr);
-  const ImplicitDamping::Work work = damping_->advance(world.mats, felt_, !started_);
+  const ImplicitDamping::Work work = damping_->advance(world.mats, extrapolated_, !started_);
   const double before = started_ ? 0.5 : 0.0;
   energy.dissipated += before * work.dissipated;
   energy.port_work += before * work.port_work;
@@ -116,10 +117,10 @@ std::uint32_t Leapfrog::advance_damped(WorldState& world, StepEnergy& energy) no
 
 /// dt v at the moment of the last forces [m].
 Vec3 Leapfrog::centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept {
-  const Vec3 felt = column(felt_, mat);
-  if (!started_) return world.mats.position(mat) - felt;
+  const Vec3 extrapolated = column(extrapolated_, mat);
+  if (!started_) return world.mats.position(mat) - extrapolated;
   const Vec3 delayed = world.mats.delayed(mat);
-  return (world.mats.position(mat) - delayed) - (delayed - felt);
+  return (world.mats.position(mat) - delayed) - (delayed - extrapolated);
 }
 
 Energy Leapfrog::energy(WorldState& world) const noexcept {
@@ -131,7 +132,7 @@ Energy Leapfrog::energy(WorldState& world) const noexcept {
 
 Vec3 Leapfrog::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
   if (!world.mats.is_mass(mat)) return Integrator::velocity(world, mat);
-  return (world.mats.position(mat) - column(felt_, mat)) / world.network->step();
+  return (world.mats.position(mat) - column(extrapolated_, mat)) / world.network->step();
 }
 
 void Leapfrog::serialize(Archive& archive) {

@@ -23,7 +23,7 @@ namespace cordis::engine {
 /// extrapolated.
 ///
 /// Ports are given, so their velocity is that of the last period; Maxwell elements answer to the
-/// growth in the last period. The account belongs to the moment of the last forces: kinetic energy
+/// elongation increment. The account belongs to the moment of the last forces: kinetic energy
 /// of the centred velocity (x(n+1) - x(n-1)) / 2 dt, with implicit dampers the mean of those of the
 /// two velocities; all else in closed form. What finite steps do to it is the residual, of second
 /// order; implicit dampers, whose work is that of their forces, leave none.
@@ -49,10 +49,10 @@ class Leapfrog final : public FullStepIntegrator {
   bool has_last_kick() const noexcept { return memory_[2 * velocity_.size()] != 0.0; }
   Vec3 centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept;
 
-  // memory_: felt, 4 x N; then of implicit dampers the kick of the last step, 4 x N, 1 if there is
+  // memory_: extrapolated, 4 x N; then of implicit dampers the kick of the last step, 4 x N, 1 if there is
   // one, and the kinetic energy of the moment of the last forces [J].
-  AlignedVector<double>& felt_ = memory_;     // x(n) - dt v(n) [m]
-  std::unique_ptr<ImplicitDamping> damping_;  // none: dampers see the extrapolated velocity
+  AlignedVector<double>& extrapolated_ = memory_;  // x(n) - dt v(n) [m]
+  std::unique_ptr<ImplicitDamping> damping_;       // none: dampers see the extrapolated velocity
   StiffFriction stiff_friction_;
   AlignedVector<double> velocity_;  // dt v(n-1/2) [m]
 };

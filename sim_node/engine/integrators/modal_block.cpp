@@ -14,6 +14,9 @@
 namespace cordis::engine {
 namespace {
 
+/// The least part of a displacement that is left after a step by which a mode is started [1].
+constexpr double kRemembered = 0.5;
+
 /// By + - * / alone: those of the C library differ from one processor to the next.
 struct Turn {
   double sine = 0.0;
@@ -50,8 +53,8 @@ ModalBlock::ModalBlock(const NetworkDescription& network) {
   CORDIS_ASSERT(!refusal_of(network));
   find_modes(network);
   const double dt = network.step;
-  for (AlignedVector<double>* values :
-       {&velocity_retention_, &stiffness_, &gain_, &constant_, &dissipation_}) {
+  for (AlignedVector<double>* values : {&velocity_retention_, &stiffness_, &gain_, &constant_,
+                                        &constant_at_start_, &dissipation_}) {
     values->assign(place_.size(), 0.0);
   }
   of_speed_.assign(square_.size(), 0.0);
@@ -63,9 +66,9 @@ ModalBlock::ModalBlock(const NetworkDescription& network) {
     const double elongation = network.mats[link.mat_b].position.x() -
                               network.mats[link.mat_a].position.x() - link.rest_length;
     elastic_at_start_ += 0.5 * link.stiffness * elongation * elongation;
-    const double pull = link.stiffness * elongation;
+    const double tension = link.stiffness * elongation;
     for (std::size_t m = 0; m < square_.size(); ++m) {
-      link_force_[m] += pull * (shape(link.mat_a)[m] - shape(link.mat_b)[m]);
+      link_force_[m] += tension * (shape(link.mat_a)[m] - shape(link.mat_b)[m]);
     }
   }
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
@@ -183,13 +186,26 @@ void ModalBlock::start(const NetworkDescription& network, const double* forces) 
     }
     force += added;
     const double first = of_speed_[m] * speed + of_force_[m] * force;
-    const double velocity_retention = std::max(velocity_retention_[m], 1e-100);
+    const double needed = first - gain_[m] * force;
     place_[m] = 0.0;
-    moved_[m] = (first - gain_[m] * force) / velocity_retention;
+    // Little or nothing is left of a former displacement of a mode that decays within a step: the
+    // first step adds what is missing.
+    const bool remembers = velocity_retention_[m] >= kRemembered;
+    moved_[m] = remembers ? needed / velocity_retention_[m] : speed * std::sqrt(gain_[m]);
+    const double missing = remembers ? 0.0 : needed - velocity_retention_[m] * moved_[m];
+    constant_at_start_[m] = constant_[m] + missing;
   }
 }
 
-ModeRows ModalBlock::rows() noexcept {
+double ModalBlock::start_work() const noexcept {
+  double work = 0.0;
+  for (std::size_t m = 0; m < square_.size(); ++m) {
+    work += (constant_at_start_[m] - constant_[m]) * moved_[m] / gain_[m];
+  }
+  return 0.5 * work;
+}
+
+ModeRows ModalBlock::rows(bool first_step) noexcept {
   ModeRows rows;
   rows.count = place_.size();
   rows.place = place_.data();
@@ -197,7 +213,7 @@ ModeRows ModalBlock::rows() noexcept {
   rows.velocity_retention = velocity_retention_.data();
   rows.stiffness = stiffness_.data();
   rows.gain = gain_.data();
-  rows.constant = constant_.data();
+  rows.constant = first_step ? constant_at_start_.data() : constant_.data();
   rows.dissipation = dissipation_.data();
   return rows;
 }

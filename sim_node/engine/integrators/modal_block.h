@@ -31,7 +31,11 @@ class ModalBlock {
   /// Begins from rest at the start positions with the velocities of the network.
   /// @param forces  on MATs at step 0 besides those of the block, 4 x N [N]
   void start(const NetworkDescription& network, const double* forces) noexcept;
-  ModeRows rows() noexcept;
+  /// @param first_step  of the block: the one that takes the start velocities of fast decaying modes
+  ModeRows rows(bool first_step) noexcept;
+  /// Half of what the first step adds to the modes, as the account of a recurrence sees it, with the
+  /// present displacements [J]. Before the first step, and again after it.
+  double start_work() const noexcept;
   const AlignedVector<double>& place() const noexcept { return place_; }
   const AlignedVector<double>& moved() const noexcept { return moved_; }
   AlignedVector<double>& place() noexcept { return place_; }
@@ -61,6 +65,7 @@ class ModalBlock {
   AlignedVector<double> stiffness_;           // K'
   AlignedVector<double> gain_;                // [s^2]
   AlignedVector<double> constant_;            // gain * force that is always there
+  AlignedVector<double> constant_at_start_;   // and of the first step
   AlignedVector<double> dissipation_;         // Z' / 2 gain
   std::vector<double> square_;                // w^2 [1/s^2]
   std::vector<double> viscosity_;             // 2 s [1/s]

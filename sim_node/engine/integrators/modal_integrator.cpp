@@ -73,6 +73,7 @@ void ModalIntegrator::start(WorldState& world) noexcept {
   const double stored = world.stored_energy();
   world.account.open(0.0, stored);
   world.account.open(energy(world).total(), stored);
+  world.account.begin_dissipated(world.work_since_last_call().dissipated);
 }
 
 Moved ModalIntegrator::step(WorldState& world) noexcept {
@@ -94,10 +95,13 @@ Moved ModalIntegrator::step(WorldState& world) noexcept {
   for (std::size_t k = 0; k < driven_.size(); ++k) {
     drives_[k].force = mats.force(driven_[k]).x();
   }
-  ModeRows rows = block_.rows();
+  const bool first_step = world.step_count == 0;
+  ModeRows rows = block_.rows(first_step);
   rows.drives = drives_.data();
   rows.drive_count = drives_.size();
+  if (first_step) energy.dissipated -= block_.start_work();
   energy.dissipated += kernel_->step(rows);
+  if (first_step) energy.dissipated -= block_.start_work();
   for (std::size_t k = 0; k < driven_.size(); ++k) {
     const std::uint32_t mat = driven_[k];
     const double next = start_[mat] + drives_[k].place;

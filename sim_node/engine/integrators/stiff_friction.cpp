@@ -56,13 +56,13 @@ void find_steps(const NetworkDescription& network, const std::vector<StateMachin
   }
 }
 
-/// The pull of one link at 8 speeds, everything else being as it is.
-class PullOverSpeed {
+/// The tension of one link at 8 speeds, everything else being as it is.
+class TensionOverSpeed {
  public:
   static constexpr std::size_t kCount = kStateBatch;
 
-  PullOverSpeed(const WorldState& world, std::uint32_t link) noexcept
-      : find_pulls_(world.state_machines.pulls),
+  TensionOverSpeed(const WorldState& world, std::uint32_t link) noexcept
+      : find_tensions_(world.state_machines.tensions),
         state_(world.table.terms()[world.state_links.state_index(link)]),
         dt_(world.network->step()) {
     const NetworkDescription& network = world.description();
@@ -79,16 +79,16 @@ class PullOverSpeed {
 
   void find(const std::array<double, kCount>& speeds) noexcept {
     for (std::size_t i = 0; i < kCount; ++i) increments_[i] = speeds[i] * dt_;
-    find_pulls_(state_, {kCount, distance_, one_, increments_, rest_length_, mass_a_, mass_b_,
-                         1.0 / dt_, pull_, viscous_});
+    find_tensions_(state_, {kCount, distance_, one_, increments_, rest_length_, mass_a_, mass_b_,
+                            1.0 / dt_, tension_, viscous_});
   }
-  double pull(std::size_t i) const noexcept { return pull_[i]; }
+  double tension(std::size_t i) const noexcept { return tension_[i]; }
   double viscous(std::size_t i) const noexcept { return viscous_[i]; }
 
  private:
   static void fill(double* values, double value) noexcept { std::fill_n(values, kCount, value); }
 
-  FindPulls find_pulls_;
+  FindTensions find_tensions_;
   const StateTerm& state_;
   double dt_;
   alignas(64) double distance_[kCount];
@@ -97,11 +97,11 @@ class PullOverSpeed {
   alignas(64) double rest_length_[kCount];
   alignas(64) double mass_a_[kCount];
   alignas(64) double mass_b_[kCount];
-  alignas(64) double pull_[kCount];
+  alignas(64) double tension_[kCount];
   alignas(64) double viscous_[kCount];
 };
 
-/// An interval in which u - u_free + half_mobility * pull(u) goes through 0.
+/// An interval in which u - u_free + half_mobility * tension(u) goes through 0.
 struct Bracket {
   double low;  // speeds; `low` need not be the smaller one
   double high;
@@ -127,19 +127,19 @@ struct Bracket {
 
 /// Looks from `begin`, where the value is `at_begin`, towards the root: as far as a law that never
 /// falls can have it, in ever longer strides, then farther.
-bool find_bracket(PullOverSpeed& of, double begin, double at_begin, double half_mobility,
+bool find_bracket(TensionOverSpeed& of, double begin, double at_begin, double half_mobility,
                   double free_speed, Bracket& bracket) noexcept {
   constexpr int kLooks = 4;
   constexpr double kStride = 4.0;
   bracket = {begin, begin, at_begin, at_begin};
   double far = -at_begin;
   for (int look = 0; look < kLooks; ++look) {
-    std::array<double, PullOverSpeed::kCount> speeds{};
+    std::array<double, TensionOverSpeed::kCount> speeds{};
     double reach = far;
     for (std::size_t i = speeds.size(); i-- > 0; reach /= kStride) speeds[i] = begin + reach;
     of.find(speeds);
     for (std::size_t i = 0; i < speeds.size(); ++i) {
-      const double value = speeds[i] - free_speed + half_mobility * of.pull(i);
+      const double value = speeds[i] - free_speed + half_mobility * of.tension(i);
       if ((value < 0.0) != (at_begin < 0.0) || value == 0.0) {
         bracket.high = speeds[i];
         bracket.at_high = value;
@@ -154,7 +154,7 @@ bool find_bracket(PullOverSpeed& of, double begin, double at_begin, double half_
 }
 
 /// Narrows it down to rounding; a jump of the law as well as a smooth place.
-double find_root(PullOverSpeed& of, double half_mobility, double free_speed,
+double find_root(TensionOverSpeed& of, double half_mobility, double free_speed,
                  Bracket bracket) noexcept {
   constexpr int kMaxLooks = 40;  // each takes three quarters away, where it finds no better
   constexpr double kNear = 1.0 / (1 << 13);
@@ -164,17 +164,17 @@ double find_root(PullOverSpeed& of, double half_mobility, double free_speed,
     const double width = bracket.high - bracket.low;
     if (!(std::abs(width) > rounding)) break;
     const double guess = bracket.secant();
-    const std::array<double, PullOverSpeed::kCount> speeds{guess,
-                                                           guess - kNearest * width,
-                                                           guess + kNearest * width,
-                                                           guess - kNear * width,
-                                                           guess + kNear * width,
-                                                           bracket.low + 0.25 * width,
-                                                           bracket.low + 0.5 * width,
-                                                           bracket.low + 0.75 * width};
+    const std::array<double, TensionOverSpeed::kCount> speeds{guess,
+                                                              guess - kNearest * width,
+                                                              guess + kNearest * width,
+                                                              guess - kNear * width,
+                                                              guess + kNear * width,
+                                                              bracket.low + 0.25 * width,
+                                                              bracket.low + 0.5 * width,
+                                                              bracket.low + 0.75 * width};
     of.find(speeds);
     for (std::size_t i = 0; i < speeds.size(); ++i) {
-      const double value = speeds[i] - free_speed + half_mobility * of.pull(i);
+      const double value = speeds[i] - free_speed + half_mobility * of.tension(i);
       if (value == 0.0) return speeds[i];
       bracket.narrow(speeds[i], value);
     }
@@ -233,18 +233,18 @@ void StiffFriction::choose(const NetworkDescription& network,
   }
 }
 
-void StiffFriction::add_pull(WorldState& world, const Solved& solved, double pull) noexcept {
+void StiffFriction::add_tension(WorldState& world, const Solved& solved, double tension) noexcept {
   const StateLink& ends = world.description().state_links[solved.link];
-  const Vec3 force = pull * solved.axis;
+  const Vec3 force = tension * solved.axis;
   world.mats.set_force(ends.mat_a, world.mats.force(ends.mat_a) + force);
   world.mats.set_force(ends.mat_b, world.mats.force(ends.mat_b) - force);
 }
 
 void StiffFriction::begin_step(const WorldState& world) noexcept {
-  for (Solved& solved : solved_) solved.pull = world.state_links.pull(solved.link);
+  for (Solved& solved : solved_) solved.tension = world.state_links.tension(solved.link);
 }
 
-/// Takes the pull of the last step in place of the one with the extrapolated speed, which may be
+/// Takes the tension of the last step in place of the one with the extrapolated speed, which may be
 /// far too large.
 void StiffFriction::prepare(WorldState& world, const Around& around, Solved& solved) noexcept {
   const StateLink& ends = world.description().state_links[solved.link];
@@ -260,23 +260,23 @@ void StiffFriction::prepare(WorldState& world, const Around& around, Solved& sol
                 Vec3::Map(around.extrapolated.data() + 4 * std::size_t{mat}));
   };
   solved.speed = solved.axis.dot(extrapolated(ends.mat_b) - extrapolated(ends.mat_a)) / dt_;
-  PullOverSpeed of(world, solved.link);
+  TensionOverSpeed of(world, solved.link);
   of.find({solved.speed});
-  solved.elastic = of.pull(0) - of.viscous(0);
+  solved.elastic = of.tension(0) - of.viscous(0);
   solved.viscous_power = of.viscous(0) * solved.speed;
-  const double explicit_pull = world.state_links.pull(solved.link);
-  if (!around.started) solved.pull = explicit_pull;
-  add_pull(world, solved, solved.pull - explicit_pull);
+  const double explicit_tension = world.state_links.tension(solved.link);
+  if (!around.started) solved.tension = explicit_tension;
+  add_tension(world, solved, solved.tension - explicit_tension);
 }
 
-/// The centred speed that all forces but its own pull leave a link. In the first step, which begins
+/// The centred speed that all forces but its own tension leave a link. In the first step, which begins
 /// with a velocity that its explicit forces have made, that of the middle of the step.
 double StiffFriction::free_speed(const WorldState& world, const Around& around,
                                  const Solved& solved) const noexcept {
   const StateLink& ends = world.description().state_links[solved.link];
   if (around.damping != nullptr) {
     const double speed = around.damping->elongation(ends.mat_a, ends.mat_b, solved.axis) / dt_;
-    return speed + solved.half_mobility * solved.pull;
+    return speed + solved.half_mobility * solved.tension;
   }
   const double part = around.started ? 0.5 : 1.0;
   const auto moved = [&](std::uint32_t mat) {
@@ -289,16 +289,16 @@ double StiffFriction::free_speed(const WorldState& world, const Around& around,
     return moving;
   };
   const double speed = solved.axis.dot(moved(ends.mat_b) - moved(ends.mat_a)) / dt_;
-  return speed + solved.half_mobility * solved.pull;
+  return speed + solved.half_mobility * solved.tension;
 }
 
-/// @param pull  of the link, then that of its root
-/// @return its speed; the pull stays when no root is found
+/// @param tension  of the link, then that of its root
+/// @return its speed; the tension stays when no root is found
 double StiffFriction::solve_one(const WorldState& world, const Solved& solved, double free_speed,
-                                double& pull) noexcept {
-  PullOverSpeed of(world, solved.link);
+                                double& tension) noexcept {
+  TensionOverSpeed of(world, solved.link);
   of.find({solved.speed});
-  const double value = solved.speed - free_speed + solved.half_mobility * of.pull(0);
+  const double value = solved.speed - free_speed + solved.half_mobility * of.tension(0);
   double speed = solved.speed;
   if (value != 0.0) {
     Bracket bracket{};
@@ -307,25 +307,25 @@ double StiffFriction::solve_one(const WorldState& world, const Solved& solved, d
     }
     speed = find_root(of, solved.half_mobility, free_speed, bracket);
   }
-  pull = (free_speed - speed) / solved.half_mobility;
+  tension = (free_speed - speed) / solved.half_mobility;
   return speed;
 }
 
-/// Counts the pulls as constant over the period, and finds the velocities with them.
+/// Counts the tensions as constant over the period, and finds the velocities with them.
 void StiffFriction::find_damped_velocities(WorldState& world, ImplicitDamping& damping) noexcept {
   add_to(damping, world, 1.0);
   damping.find_velocities(world.mats, &world.outside);
   add_to(damping, world, -1.0);
 }
 
-/// Adds a part of the present pulls to the forces that are constant over the period.
+/// Adds a part of the present tensions to the forces that are constant over the period.
 void StiffFriction::add_to(ImplicitDamping& damping, const WorldState& world,
                            double part) const noexcept {
   for (const Solved& solved : solved_) {
     if (solved.rests) continue;
     const StateLink& ends = world.description().state_links[solved.link];
-    damping.add_constant_force(ends.mat_a, part * solved.pull * solved.axis);
-    damping.add_constant_force(ends.mat_b, -part * solved.pull * solved.axis);
+    damping.add_constant_force(ends.mat_a, part * solved.tension * solved.axis);
+    damping.add_constant_force(ends.mat_b, -part * solved.tension * solved.axis);
   }
 }
 
@@ -335,7 +335,7 @@ double StiffFriction::solve(WorldState& world, const AlignedVector<double>& extr
   const Around around{extrapolated, damping, started};
   for (Solved& solved : solved_) prepare(world, around, solved);
   if (damping != nullptr) find_damped_velocities(world, *damping);
-  constexpr double kSettled = 1e-10;  // of the largest pull
+  constexpr double kSettled = 1e-10;  // of the largest tension
   // Dampers couple all links.
   const bool in_turn = share_masses_ || (damping != nullptr && solved_.size() > 1);
   const double part = started || damping != nullptr ? 1.0 : 0.5;
@@ -348,15 +348,15 @@ double StiffFriction::solve(WorldState& world, const AlignedVector<double>& extr
         const StateLink& ends = world.description().state_links[solved.link];
         solved.half_mobility = damping->find_response(ends.mat_a, ends.mat_b, solved.axis) / dt_;
       }
-      double pull = solved.pull;
+      double tension = solved.tension;
       const double free = free_speed(world, around, solved);
-      const double speed = solve_one(world, solved, free, pull);
-      if (!std::isfinite(pull)) continue;
-      add_pull(world, solved, part * (pull - solved.pull));
-      if (damping != nullptr) damping->add_response(pull - solved.pull);
-      largest = std::max(largest, std::abs(pull));
-      changed = std::max(changed, std::abs(pull - solved.pull));
-      solved.pull = pull;
+      const double speed = solve_one(world, solved, free, tension);
+      if (!std::isfinite(tension)) continue;
+      add_tension(world, solved, part * (tension - solved.tension));
+      if (damping != nullptr) damping->add_response(tension - solved.tension);
+      largest = std::max(largest, std::abs(tension));
+      changed = std::max(changed, std::abs(tension - solved.tension));
+      solved.tension = tension;
       solved.speed = speed;
     }
     if (!(changed > kSettled * largest)) break;
@@ -365,8 +365,8 @@ double StiffFriction::solve(WorldState& world, const AlignedVector<double>& extr
   double power = 0.0;
   for (const Solved& solved : solved_) {
     if (solved.rests) continue;
-    power += (solved.pull - solved.elastic) * solved.speed - solved.viscous_power;
-    world.state_links.set_pull(solved.link, solved.pull);
+    power += (solved.tension - solved.elastic) * solved.speed - solved.viscous_power;
+    world.state_links.set_tension(solved.link, solved.tension);
   }
   return 0.5 * dt_ * power;
 }

@@ -25,17 +25,17 @@ std::vector<double> largest_extrapolated_steps(const NetworkDescription& network
 bool solves_stiff_friction(const NetworkDescription& network);
 
 /// What `leapfrog` does to the state links beyond those steps: each is solved by itself for the
-/// centred speed u that its own pull leaves,
+/// centred speed u that its own tension leaves,
 ///
-///     u = u_free - dt / 2 (1/m_a + 1/m_b) pull(u),   u = (x(n+1) - x(n-1)) / 2 dt along the link
+///     u = u_free - dt / 2 (1/m_a + 1/m_b) tension(u),   u = (x(n+1) - x(n-1)) / 2 dt along the link
 ///
 /// all other forces given, by narrowing down the interval that holds the root: however steep the
-/// law, a jump too, where the pull is then what holds the ends together (dry friction that sticks).
+/// law, a jump too, where the tension is then what holds the ends together (dry friction that sticks).
 /// Where a law falls with the speed there may be three roots: the one on the side and branch of the
 /// extrapolated speed is taken, so that what sticks goes on sticking until it cannot. Links that
-/// share a mass are solved in turn, each with the last pulls of the others, until these no longer
+/// share a mass are solved in turn, each with the last tensions of the others, until these no longer
 /// change, at most kMaxRounds times. Where linear dampers are implicit (ImplicitDamping), u is their
-/// w, and 1/m its answer to the pull through all of them; the pulls are constant over the period,
+/// w, and 1/m its answer to the tension through all of them; the tensions are constant over the period,
 /// which with dampers of Z dt / m above 1 makes what drags on friction of first order. In the step in which a state is entered its speed is 0, as
 /// everywhere.
 class StiffFriction {
@@ -49,9 +49,9 @@ class StiffFriction {
   void choose(const NetworkDescription& network,
               const std::vector<StateMachine>& state_machines) noexcept;
 
-  /// Notes the pulls of the last step. Before the forces of a step are computed.
+  /// Notes the tensions of the last step. Before the forces of a step are computed.
   void begin_step(const WorldState& world) noexcept;
-  /// Replaces the pulls of these links, computed with the extrapolated speed, by the solved ones.
+  /// Replaces the tensions of these links, computed with the extrapolated speed, by the solved ones.
   /// @param extrapolated     x(n) - dt v(n), extrapolated, 4 x N [m]
   /// @param damping  of the linear links, its step begun; null: they are among the forces
   /// @param started  a step has been done
@@ -64,10 +64,10 @@ class StiffFriction {
   struct Solved {
     std::uint32_t link = 0;
     double half_mobility = 0.0;  // dt / 2 (1/m_a + 1/m_b), or that of implicit dampers [s/kg]
-    double pull = 0.0;           // [N]
+    double tension = 0.0;        // [N]
     double speed = 0.0;          // [m/s]
-    double viscous_power = 0.0;  // of the pull with the extrapolated speed [W]
-    double elastic = 0.0;        // the part of the pull that stores energy [N]
+    double viscous_power = 0.0;  // of the tension with the extrapolated speed [W]
+    double elastic = 0.0;        // the part of the tension that stores energy [N]
     Vec3 axis = Vec3::Zero();
     bool rests = false;  // nothing to solve in this step
   };
@@ -78,13 +78,13 @@ class StiffFriction {
   };
 
   void prepare(WorldState& world, const Around& around, Solved& solved) noexcept;
-  static void add_pull(WorldState& world, const Solved& solved, double pull) noexcept;
+  static void add_tension(WorldState& world, const Solved& solved, double tension) noexcept;
   void find_damped_velocities(WorldState& world, ImplicitDamping& damping) noexcept;
   void add_to(ImplicitDamping& damping, const WorldState& world, double part) const noexcept;
   double free_speed(const WorldState& world, const Around& around,
                     const Solved& solved) const noexcept;
   double solve_one(const WorldState& world, const Solved& solved, double free_speed,
-                   double& pull) noexcept;
+                   double& tension) noexcept;
 
   double dt_;
   bool is_1d_;

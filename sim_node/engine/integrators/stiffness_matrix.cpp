@@ -55,17 +55,17 @@ void StiffnessMatrix::order_masses(const NetworkDescription& network) {
   }
 }
 
-/// Column c of mass k: the blocks of earlier masses that it is tied to, then its own block down to
+/// Column c of mass k: the blocks of earlier masses that it is joined to, then its own block down to
 /// row c.
 void StiffnessMatrix::lay_out(const NetworkDescription& network) {
   std::vector<std::vector<std::uint32_t>> earlier(mat_.size());
-  const auto of_tie = [&](const Link& link) {
+  const auto ends_in_order = [&](const Link& link) {
     const std::uint32_t a = place_[link.mat_a];
     const std::uint32_t b = place_[link.mat_b];
     return std::pair(std::min(a, b), std::max(a, b));
   };
   for (const Link& link : network.links) {
-    const auto [low, high] = of_tie(link);
+    const auto [low, high] = ends_in_order(link);
     if (high != kNoPlace) earlier[high].push_back(low);
   }
   for (auto& masses : earlier) {
@@ -74,15 +74,15 @@ void StiffnessMatrix::lay_out(const NetworkDescription& network) {
   }
   const double dt = network.step;
   for (const Link& link : network.links) {
-    const auto [low, high] = of_tie(link);
+    const auto [low, high] = ends_in_order(link);
     if (low == kNoPlace) continue;
     std::uint32_t slot = kNoPlace;
     if (high != kNoPlace) {
       const auto found = std::lower_bound(earlier[high].begin(), earlier[high].end(), low);
       slot = static_cast<std::uint32_t>(found - earlier[high].begin());
     }
-    ties_.push_back({link.mat_a, link.mat_b, dt * dt * link.stiffness, dt * link.viscosity,
-                     link.rest_length, link.isotropic, slot});
+    links_.push_back({link.mat_a, link.mat_b, dt * dt * link.stiffness, dt * link.viscosity,
+                      link.rest_length, link.isotropic, slot});
   }
   const auto d = static_cast<std::uint32_t>(dimension_);
   column_begin_.push_back(0);
@@ -127,15 +127,15 @@ void StiffnessMatrix::find_fill() {
 }
 
 StiffnessMatrix::Tangent StiffnessMatrix::tangent(const MatArray& mats,
-                                                  const Tie& tie) const noexcept {
-  if (dimension_ == 1) return {Vec3::UnitX(), tie.stiffness, 0.0};
-  if (tie.isotropic) return {Vec3::UnitX(), tie.stiffness, tie.stiffness};
-  const Vec3 along = mats.position(tie.mat_b) - mats.position(tie.mat_a);
+                                                  const MatrixLink& link) const noexcept {
+  if (dimension_ == 1) return {Vec3::UnitX(), link.stiffness, 0.0};
+  if (link.isotropic) return {Vec3::UnitX(), link.stiffness, link.stiffness};
+  const Vec3 along = mats.position(link.mat_b) - mats.position(link.mat_a);
   const double length =
       std::sqrt(along.x() * along.x() + along.y() * along.y() + along.z() * along.z());
   if (length == 0.0) return {Vec3::Zero(), 0.0, 0.0};
-  const double across = tie.stiffness * (1.0 - tie.rest / length);
-  return {along / length, tie.stiffness, std::max(across, 0.0)};
+  const double across = link.stiffness * (1.0 - link.rest / length);
+  return {along / length, link.stiffness, std::max(across, 0.0)};
 }
 
 void StiffnessMatrix::add_block(std::uint32_t row_mass, std::uint32_t column_mass,
@@ -154,12 +154,12 @@ void StiffnessMatrix::add_block(std::uint32_t row_mass, std::uint32_t column_mas
   }
 }
 
-void StiffnessMatrix::add_tie(const Tie& tie, const Tangent& part) noexcept {
-  const std::uint32_t a = place_[tie.mat_a];
-  const std::uint32_t b = place_[tie.mat_b];
+void StiffnessMatrix::add_link(const MatrixLink& link, const Tangent& part) noexcept {
+  const std::uint32_t a = place_[link.mat_a];
+  const std::uint32_t b = place_[link.mat_b];
   if (a != kNoPlace) add_block(a, a, 0, part, 1.0);
   if (b != kNoPlace) add_block(b, b, 0, part, 1.0);
-  if (tie.slot != kNoPlace) add_block(std::min(a, b), std::max(a, b), tie.slot, part, -1.0);
+  if (link.slot != kNoPlace) add_block(std::min(a, b), std::max(a, b), link.slot, part, -1.0);
 }
 
 bool StiffnessMatrix::assemble(const MatArray& mats) noexcept {
@@ -169,11 +169,11 @@ bool StiffnessMatrix::assemble(const MatArray& mats) noexcept {
   for (std::size_t column = 0; column < mat_.size() * d; ++column) {
     value_[column_begin_[column + 1] - 1] = inertia_[column / d];
   }
-  for (const Tie& tie : ties_) {
-    Tangent part = tangent(mats, tie);
-    part.along += tie.viscosity;
-    if (tie.isotropic && dimension_ > 1) part.across += tie.viscosity;
-    add_tie(tie, part);
+  for (const MatrixLink& link : links_) {
+    Tangent part = tangent(mats, link);
+    part.along += link.viscosity;
+    if (link.isotropic && dimension_ > 1) part.across += link.viscosity;
+    add_link(link, part);
   }
   assembled_ = factor();
   return assembled_;
@@ -181,15 +181,15 @@ bool StiffnessMatrix::assemble(const MatArray& mats) noexcept {
 
 void StiffnessMatrix::subtract_stiffness_times(const MatArray& mats, const double* displacement,
                                                double* change) const noexcept {
-  for (const Tie& tie : ties_) {
-    const Tangent part = tangent(mats, tie);
-    const Vec3 apart = Vec3::Map(displacement + 4 * std::size_t{tie.mat_b}) -
-                       Vec3::Map(displacement + 4 * std::size_t{tie.mat_a});
+  for (const MatrixLink& link : links_) {
+    const Tangent part = tangent(mats, link);
+    const Vec3 apart = Vec3::Map(displacement + 4 * std::size_t{link.mat_b}) -
+                       Vec3::Map(displacement + 4 * std::size_t{link.mat_a});
     const Vec3& n = part.direction;
     const double along = n.x() * apart.x() + n.y() * apart.y() + n.z() * apart.z();
     const Vec3 force = part.across * apart + ((part.along - part.across) * along) * n;
-    Eigen::Map<Vec3>(change + 4 * std::size_t{tie.mat_a}) += force;
-    Eigen::Map<Vec3>(change + 4 * std::size_t{tie.mat_b}) -= force;
+    Eigen::Map<Vec3>(change + 4 * std::size_t{link.mat_a}) += force;
+    Eigen::Map<Vec3>(change + 4 * std::size_t{link.mat_b}) -= force;
   }
 }
 

@@ -29,7 +29,7 @@ class StiffnessMatrix {
   std::size_t factor_size() const noexcept { return factor_.size(); }
 
  private:
-  struct Tie {  // a link
+  struct MatrixLink {
     std::uint32_t mat_a;
     std::uint32_t mat_b;
     double stiffness;  // dt^2 K [kg]
@@ -47,8 +47,8 @@ class StiffnessMatrix {
   void order_masses(const NetworkDescription& network);
   void lay_out(const NetworkDescription& network);
   void find_fill();
-  Tangent tangent(const MatArray& mats, const Tie& tie) const noexcept;
-  void add_tie(const Tie& tie, const Tangent& tangent) noexcept;
+  Tangent tangent(const MatArray& mats, const MatrixLink& link) const noexcept;
+  void add_link(const MatrixLink& link, const Tangent& tangent) noexcept;
   void add_block(std::uint32_t row_mass, std::uint32_t column_mass, std::uint32_t slot,
                  const Tangent& part, double sign) noexcept;
   bool factor() noexcept;
@@ -58,7 +58,7 @@ class StiffnessMatrix {
   std::vector<std::uint32_t> place_;  // of each MAT in the order; kNoPlace unless a mass
   std::vector<std::uint32_t> mat_;    // in the order
   std::vector<double> inertia_;       // m + dt Z of the medium, in the order [kg]
-  std::vector<Tie> ties_;
+  std::vector<MatrixLink> links_;
   std::vector<std::size_t> column_begin_;  // upper part by columns, rows ascending within blocks
   std::vector<std::uint32_t> row_;
   std::vector<double> value_;

@@ -90,7 +90,7 @@ void Symplectic4::add_forces(WorldState& world) noexcept {
   ForceColumns at_rest = world.mats.force_columns();
   at_rest.delayed = at_rest.position;
   world.links.add_forces_at_full_step(world.kernel, at_rest);
-  world.ties.add_forces_at_full_step(world.kernel, at_rest);
+  world.vector_springs.add_forces_at_full_step(world.kernel, at_rest);
   world.state_links.add_forces_before_start(world.state_machines, world.table, at_rest);
   world.sets.add_forces(world.pair_step(true), at_rest);
 }

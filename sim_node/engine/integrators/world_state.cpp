@@ -67,7 +67,7 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       mats(description()),
       positions(mats.position()),
       links(stepped_links(description())),
-      ties(description(), SpringDamperArray::Kind::kTie),
+      vector_springs(description(), SpringDamperArray::Kind::kVectorSpring),
       table(make_table(description().state_machines)),
       state_links(description(), table),
       maxwell_links(description()),
@@ -91,6 +91,7 @@ StepReport WorldState::step() noexcept {
   log.begin_step();
   sets.forget_partners();
   const Moved moved = scheme->step(*this);
+  std::construct_at(&positions, mats.position());
   account.add(moved.energy);
   ++step_count;
   report.non_finite_mats = moved.non_finite_mats;
@@ -103,21 +104,22 @@ StepReport WorldState::step() noexcept {
 
 void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
   links.add_forces(kernel, columns);
-  ties.add_forces(kernel, columns);
+  vector_springs.add_forces(kernel, columns);
   state_links.add_forces_before_start(state_machines, table, columns);
+  maxwell_links.add_held_forces(state_machines, columns);
   sets.add_forces(pair_step(true), columns);
 }
 
 void WorldState::start_one_period_ago() noexcept {
   ForceColumns one_period_ago = mats.force_columns();
   one_period_ago.position = one_period_ago.delayed;
+  maxwell_links.go_back(mats);
   add_frozen_forces(one_period_ago);
   outside.start(mats);
   mats.clear_forces();
   links.start();
-  ties.start();
-  state_links.start();
-  sets.start();
+  vector_springs.start();
+  state_links.forget_tensions();
 }
 
 double WorldState::stored_energy() noexcept {
@@ -126,14 +128,14 @@ double WorldState::stored_energy() noexcept {
 }
 
 double WorldState::potential_energy() noexcept {
-  return links.potential_energy(mats) + ties.potential_energy(mats) +
+  return links.potential_energy(mats) + vector_springs.potential_energy(mats) +
          state_links.stored_energy(table, mats) + maxwell_links.stored_energy() +
          sets.stored_energy(table);
 }
 
 StepEnergy WorldState::work_since_last_call() const noexcept {
   StepEnergy work = links.work_since_last_call(mats);
-  work += ties.work_since_last_call(mats);
+  work += vector_springs.work_since_last_call(mats);
   work += state_links.work_since_last_call(mats);
   work += maxwell_links.work_since_last_call(mats);
   work += sets.work_since_last_call(mats);
@@ -150,6 +152,11 @@ StepEnergy WorldState::begin_forces(const ForceColumns& columns) noexcept {
   return energy;
 }
 
+StepEnergy WorldState::add_maxwell_forces(const ForceColumns& columns) noexcept {
+  return step_count == 0 ? maxwell_links.add_first_forces(state_machines, columns)
+                         : maxwell_links.add_forces(state_machines, columns);
+}
+
 StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
   if (sets.empty()) return {};
   return freezing ? sets.add_pair_forces(pair_step(false), columns)
@@ -159,11 +166,11 @@ StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
 void WorldState::add_forces_at_half_step(StepEnergy& energy) noexcept {
   const ForceColumns columns = mats.force_columns();
   energy += links.add_forces(kernel, columns);
-  energy += ties.add_forces(kernel, columns);
+  energy += vector_springs.add_forces(kernel, columns);
   if (!state_links.empty()) {
     energy += state_links.add_forces(state_machines, table, columns, step_count, log);
   }
-  energy += maxwell_links.add_forces(state_machines, columns);
+  energy += add_maxwell_forces(columns);
   energy += add_set_forces(columns);
   if (freezing) freezing->restore_forces(mats);
 }
@@ -177,14 +184,16 @@ double WorldState::add_forces_at_full_step(const double* extrapolated_positions,
   const StepEnergy of_last_sets = begin_forces(extrapolated);
 
   StepEnergy of_links = links.add_forces_at_full_step(kernel, extrapolated);
-  of_links += ties.add_forces_at_full_step(kernel, extrapolated);
+  of_links += vector_springs.add_forces_at_full_step(kernel, extrapolated);
   of_links.dissipated *= 0.5;
   // Half the work of the viscous forces of this step is returned: those of the last are forgotten.
   if (!state_links.empty()) {
     state_links.forget_viscous_forces();
     of_links += state_links.add_forces(state_machines, table, extrapolated, step_count, log);
   }
-  energy.dissipated += maxwell_links.add_forces(state_machines, as_it_moved).dissipated;
+  if (step_count == 0) maxwell_links.go_back(mats);
+  const double taken = add_maxwell_forces(as_it_moved).dissipated;
+  if (step_count > 0) energy.dissipated += taken;  // the account begins at the moment of step 0
   of_links += of_last_sets;
   of_links += add_set_forces(extrapolated);
   if (freezing) freezing->restore_forces(mats);
@@ -221,7 +230,7 @@ Archive WorldState::serialize(Archive archive) {
   archive.hash(step_count);
   mats.serialize(archive);
   links.serialize(archive);
-  ties.serialize(archive);
+  vector_springs.serialize(archive);
   state_links.serialize(archive, table);
   maxwell_links.serialize(archive);
   log.serialize(archive);

@@ -54,8 +54,7 @@ struct WorldState {
   PairStep pair_step(bool frozen) noexcept {
     return {table, state_machines, log, step_count, frozen};
   }
-  /// Adds the forces of all liaisons, as they are, without testing an exit; Maxwell elements left
-  /// out.
+  /// Adds the forces of all liaisons as they are at the start, without testing an exit.
   void add_frozen_forces(const ForceColumns& columns) noexcept;
   /// Begins the account of ports and liaisons of `cordis` with the links as they were one period
   /// ago, when nothing is known to have moved.
@@ -70,6 +69,8 @@ struct WorldState {
   /// Clears the forces. Of a world that freezes, ends the account of the last ones of the sets and
   /// chooses the liaisons that are computed. @return works [J]
   [[nodiscard]] StepEnergy begin_forces(const ForceColumns& columns) noexcept;
+  /// Adds the forces of the Maxwell elements. @return works [J]
+  StepEnergy add_maxwell_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of the sets after that.
   StepEnergy add_set_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of all liaisons as `cordis` does; enters what they take.
@@ -108,7 +109,7 @@ struct WorldState {
   MatArray mats;
   Columns positions;  // of mats
   SpringDamperArray links;
-  SpringDamperArray ties;
+  SpringDamperArray vector_springs;
   StateTable table;
   StateLinkArray state_links;
   MaxwellArray maxwell_links;

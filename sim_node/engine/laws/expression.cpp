@@ -6,7 +6,7 @@
 
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/laws/quadrature.h"
-#include "sim_node/engine/laws/scalar_pull.h"
+#include "sim_node/engine/laws/scalar_tension.h"
 
 namespace cordis::engine {
 
@@ -44,24 +44,24 @@ double Expression::distance_of_no_potential(const LawPoint& link) const noexcept
 
 double Expression::potential(const LawPoint& link) const noexcept {
   const double rest_length = link.distance - link.elongation;
-  const auto pull = [&](double at) {
-    return scalar_pull(*this, {at, at - rest_length, 0.0, link.mass_a, link.mass_b}, at);
+  const auto tension = [&](double at) {
+    return scalar_tension(*this, {at, at - rest_length, 0.0, link.mass_a, link.mass_b}, at);
   };
-  return integral_over_distance(pull, distance_of_no_potential(link), link.distance);
+  return integral_over_distance(tension, distance_of_no_potential(link), link.distance);
 }
 
 /// The largest rise between two samples.
 LawSlope Expression::largest_slope(const LawRange& range) const noexcept {
-  const auto pull = [&](double at) {
+  const auto tension = [&](double at) {
     LawPoint point{range.rest_length, 0.0, at, range.mass, range.mass};
     if (!range.viscous) point = {at + range.rest_length, at, 0.0, range.mass, range.mass};
-    return scalar_pull(*this, point, at);
+    return scalar_tension(*this, point, at);
   };
   LawSlope slope{0.0, false};
   const double step = 2.0 * range.argument / range.samples;
   for (int i = 0; i < range.samples && step > 0.0; ++i) {
     const double at = -range.argument + step * i;
-    const double rise = (pull(at + step) - pull(at)) / step;
+    const double rise = (tension(at + step) - tension(at)) / step;
     if (std::isfinite(rise)) slope.value = std::max(slope.value, rise);
   }
   return slope;

@@ -5,6 +5,7 @@
 
 #include "sim_node/engine/expressions/program.h"
 #include "sim_node/engine/expressions/program_term.h"
+#include "sim_node/engine/laws/law_field.h"
 #include "sim_node/engine/laws/law_term.h"
 
 namespace cordis::engine {
@@ -15,15 +16,21 @@ class ProgramLoop;  // expressions/program_kernel_body.h
 /// True when an expression of a law may ask for the quantity.
 bool is_known_to_laws(Quantity quantity) noexcept;
 
-/// The pull is 0 where the value is not finite.
+/// The tension is 0 where the value is not finite.
 struct Expression {
   Program program;  ///< of distance, elongation, speed and masses alone, without edges
 
+  static constexpr const char* kName = nullptr;  ///< a scene writes the expression itself
   static constexpr LawArgument kArgument = LawArgument::kAny;
   static constexpr bool kStoresEnergy = false;
 
+  template <class Self, class Visit>
+  static void visit_fields(Self& law, Visit&& visit) {
+    visit(LawField{.key = "expression"}, law.program.code);
+  }
+
   void check(const std::string& name) const;
-  /// True when the pull is the slope of a potential: it does not ask for the speed.
+  /// True when the tension is the slope of a potential: it does not ask for the speed.
   bool is_potential() const noexcept { return !asks_for(program, Quantity::kSpeed); }
   /// By quadrature: 0 at the elongation 0; when that is not asked for, at the distance 0, or at 1 m
   /// of a law that has no value there [J].
@@ -39,7 +46,7 @@ struct Expression {
   Term term() const noexcept { return {program.code.data(), program.code.size()}; }
 
   template <class Lanes>
-  static void add(const Term& program, const LawArguments& of, double* pull) noexcept {
+  static void add(const Term& program, const LawArguments& of, double* tension) noexcept {
     using Row = typename Lanes::Row;
     const double* quantity[kQuantityCount] = {};
     quantity[static_cast<std::size_t>(Quantity::kDistance)] = of.distance;
@@ -54,7 +61,7 @@ struct Expression {
       const auto is_finite = Lanes::less(Lanes::magnitude(v), infinity);
       return p + Lanes::select(is_finite, v, Lanes::zero());
     };
-    LaneBatch<Lanes>::each(pull, sum, pull, value);
+    LaneBatch<Lanes>::each(tension, sum, tension, value);
   }
 };
 

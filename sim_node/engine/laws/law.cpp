@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "sim_node/engine/core/require.h"
-#include "sim_node/engine/laws/scalar_pull.h"
+#include "sim_node/engine/laws/scalar_tension.h"
 
 namespace cordis::engine {
 
@@ -26,12 +26,12 @@ void check_dissipation(const Law& law, const std::string& name) {
   check_elasticity(law, name);
 }
 
-double elastic_pull(const Law& law, const LawPoint& link) noexcept {
-  return std::visit([&](const auto& of) { return scalar_pull(of, link, link.elongation); }, law);
+double elastic_tension(const Law& law, const LawPoint& link) noexcept {
+  return std::visit([&](const auto& of) { return scalar_tension(of, link, link.elongation); }, law);
 }
 
-double viscous_pull(const Law& law, const LawPoint& link) noexcept {
-  return std::visit([&](const auto& of) { return scalar_pull(of, link, link.speed); }, law);
+double viscous_tension(const Law& law, const LawPoint& link) noexcept {
+  return std::visit([&](const auto& of) { return scalar_tension(of, link, link.speed); }, law);
 }
 
 double potential(const Law& law, const LawPoint& link) noexcept {

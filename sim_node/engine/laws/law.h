@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "sim_node/engine/laws/expression.h"
+#include "sim_node/engine/laws/law_field.h"
 #include "sim_node/engine/laws/lennard_jones.h"
 #include "sim_node/engine/laws/power.h"
 #include "sim_node/engine/laws/rings.h"
@@ -12,10 +13,15 @@
 
 namespace cordis::engine {
 
-/// No pull.
+/// No tension.
 struct NoLaw {
+  static constexpr const char* kName = nullptr;  ///< its `kind` in a scene; nullptr: it has none
   static constexpr LawArgument kArgument = LawArgument::kNone;
   static constexpr bool kStoresEnergy = true;
+
+  /// See LawField.
+  template <class Self, class Visit>
+  static void visit_fields(Self& /*law*/, Visit&& /*visit*/) {}
 
   void check(const std::string& /*name*/) const noexcept {}
   double potential(double /*distance*/, double /*elongation*/) const noexcept { return 0.0; }
@@ -27,10 +33,10 @@ struct NoLaw {
   Term term() const noexcept { return {}; }
 
   template <class Lanes>
-  static void add(const Term& /*law*/, const LawArguments& /*of*/, double* /*pull*/) noexcept {}
+  static void add(const Term& /*law*/, const LawArguments& /*of*/, double* /*tension*/) noexcept {}
 };
 
-/// An elastic law gives a pull over the elongation or the distance, a viscous one over the speed.
+/// An elastic law gives a tension over the elongation or the distance, a viscous one over the speed.
 /// A new law is a type with the members of NoLaw, added here at the end: its place is part of the
 /// fingerprint of a network.
 /// [Luc90 III.2.2 Modelisation of the material in its continuous behaviour]
@@ -51,13 +57,13 @@ void check_elasticity(const Law& law, const std::string& name);
 /// The same for its viscosity.
 void check_dissipation(const Law& law, const std::string& name);
 
-/// The pull [N] of the elasticity of one link, with the bits that the kernels find. Precondition:
+/// The tension [N] of the elasticity of one link, with the bits that the kernels find. Precondition:
 /// checked.
-double elastic_pull(const Law& law, const LawPoint& link) noexcept;
-/// The pull [N] of a dissipation.
-double viscous_pull(const Law& law, const LawPoint& link) noexcept;
+double elastic_tension(const Law& law, const LawPoint& link) noexcept;
+/// The tension [N] of a dissipation.
+double viscous_tension(const Law& law, const LawPoint& link) noexcept;
 
-/// Energy [J] whose slope over the distance is the pull of the law: 0 at the elongation 0 for a
+/// Energy [J] whose slope over the distance is the tension of the law: 0 at the elongation 0 for a
 /// table or a power, 0 at its cutoff (or far away) for Lennard-Jones, 0 outside all rings;
 /// Expression::potential() for an expression, and 0 if it has none.
 double potential(const Law& law, const LawPoint& link) noexcept;

@@ -20,7 +20,7 @@ enum class LawArgument : std::uint8_t {
 struct LawPoint {
   double distance = 0.0;    ///< [m], signed in 1 dimension
   double elongation = 0.0;  ///< distance - rest length [m]
-  double speed = 0.0;       ///< growth of the link [m/s]; 0 in the step in which a state is entered
+  double speed = 0.0;       ///< elongation rate [m/s]; 0 in the step in which a state is entered
   double mass_a = 0.0;      ///< of the ends [kg]; 0 for a fixed point or a port mass
   double mass_b = 0.0;
 };
@@ -50,7 +50,7 @@ struct LawRange {
   double energy = 0.0;       ///< with which two MATs approach each other [J]
   double mass = 0.0;         ///< of each end [kg]
   bool viscous = false;      ///< it is a dissipation
-  bool turns = false;        ///< a pull also has a slope across the link: pull / distance
+  bool turns = false;        ///< a tension also has a slope across the link: tension / distance
   int samples = 400;         ///< of a law that is known by its values alone
 };
 

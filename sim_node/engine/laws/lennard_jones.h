@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "sim_node/engine/laws/law_field.h"
 #include "sim_node/engine/laws/law_term.h"
 
 namespace cordis::engine {
@@ -13,8 +14,19 @@ struct LennardJones {
   double diameter = 0.0;    ///< [m], > 0
   double cutoff = 0.0;      ///< distance from which on there is no force [m]; 0: everywhere
 
+  static constexpr const char* kName = "lennard_jones";
   static constexpr LawArgument kArgument = LawArgument::kDistance;
   static constexpr bool kStoresEnergy = true;
+
+  template <class Self, class Visit>
+  static void visit_fields(Self& law, Visit&& visit) {
+    constexpr double kSmallest = 1.0e-12;  // its 12th power is still a number
+    visit(LawField{.key = "depth_j", .lowest = 0.0}, law.well_depth);
+    visit(LawField{.key = "diameter_m", .lowest = kSmallest, .highest = 1.0 / kSmallest},
+          law.diameter);
+    visit(LawField{.key = "cut_m", .lowest = 0.0, .lowest_excluded = true, .is_optional = true},
+          law.cutoff);
+  }
 
   void check(const std::string& name) const;
   double potential(double distance, double elongation) const noexcept;
@@ -30,7 +42,7 @@ struct LennardJones {
   Term term() const noexcept;
 
   template <class Lanes>
-  static void add(const Term& law, const LawArguments& of, double* pull) noexcept {
+  static void add(const Term& law, const LawArguments& of, double* tension) noexcept {
     using Row = typename Lanes::Row;
     const Row attraction = Lanes::every(law.attraction);
     const Row repulsion = Lanes::every(law.repulsion);
@@ -44,14 +56,14 @@ struct LennardJones {
           Lanes::both(Lanes::less(Lanes::magnitude(d), cutoff), Lanes::not_equal(d, Lanes::zero()));
       return p + Lanes::select(within, slope, Lanes::zero());
     };
-    LaneBatch<Lanes>::each(pull, sum, pull, of.distance);
+    LaneBatch<Lanes>::each(tension, sum, tension, of.distance);
   }
 
-  /// Pull / distance of the square of a distance, without its root; the cutoff is up to the caller.
+  /// Tension / distance of the square of a distance, without its root; the cutoff is up to the caller.
   template <class Lanes>
-  static typename Lanes::Row pull_per_distance(const typename Lanes::Row& attraction,
-                                               const typename Lanes::Row& repulsion,
-                                               const typename Lanes::Row& square) noexcept {
+  static typename Lanes::Row tension_per_distance(const typename Lanes::Row& attraction,
+                                                  const typename Lanes::Row& repulsion,
+                                                  const typename Lanes::Row& square) noexcept {
     const auto inverse_square = Lanes::inverse_or_zero(square, square);
     const auto sixth = inverse_square * inverse_square * inverse_square;
     return (attraction - repulsion * sixth) * sixth * inverse_square;

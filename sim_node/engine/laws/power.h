@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include "sim_node/engine/laws/law_field.h"
 #include "sim_node/engine/laws/law_term.h"
 
 namespace cordis::engine {
@@ -17,8 +18,20 @@ struct Power {
   double coefficient = 0.0;  ///< [N/m^exponent], or [N (s/m)^exponent]
   double exponent = 1.0;     ///< a multiple of 0.5 from 0 to kMaxExponent
 
+  static constexpr const char* kName = "power";
   static constexpr LawArgument kArgument = LawArgument::kElongation;
   static constexpr bool kStoresEnergy = true;
+
+  template <class Self, class Visit>
+  static void visit_fields(Self& law, Visit&& visit) {
+    visit(LawField{.key = "coefficient"}, law.coefficient);
+    visit(LawField{.key = "exponent",
+                   .lowest = 0.0,
+                   .highest = kMaxExponent,
+                   .multiple_of = 0.5,
+                   .hint = "give any other power as a table"},
+          law.exponent);
+  }
 
   void check(const std::string& name) const;
   double potential(double distance, double elongation) const noexcept;
@@ -33,7 +46,7 @@ struct Power {
   Term term() const noexcept { return {coefficient, static_cast<std::uint32_t>(2.0 * exponent)}; }
 
   template <class Lanes>
-  static void add(const Term& law, const LawArguments& of, double* pull) noexcept {
+  static void add(const Term& law, const LawArguments& of, double* tension) noexcept {
     using Row = typename Lanes::Row;
     const Row coefficient = Lanes::every(law.coefficient);
     const auto sum = [&](Row p, Row u) {
@@ -47,7 +60,7 @@ struct Power {
       power = Lanes::select(Lanes::less(u, Lanes::zero()), -power, power);
       return p + Lanes::select(Lanes::equal(u, Lanes::zero()), Lanes::zero(), power);
     };
-    LaneBatch<Lanes>::each(pull, sum, pull, of.argument);
+    LaneBatch<Lanes>::each(tension, sum, tension, of.argument);
   }
 };
 

@@ -27,13 +27,13 @@ double Rings::potential(double distance, double /*elongation*/) const noexcept {
   return sum;
 }
 
-/// Along a piece between two radii the slope is constant, and pull / distance is monotone.
+/// Between two radii the slope is constant, and tension / distance is monotone.
 double Rings::slope_beyond(double distance, bool turns) const noexcept {
   double largest = 0.0;
   const auto consider_across = [&](double at) {
-    double pull = 0.0;
-    for (const Ring& ring : rings) pull -= ring.stiffness * std::max(ring.radius - at, 0.0);
-    if (pull > 0.0) largest = std::max(largest, pull / at);
+    double tension = 0.0;
+    for (const Ring& ring : rings) tension -= ring.stiffness * std::max(ring.radius - at, 0.0);
+    if (tension > 0.0) largest = std::max(largest, tension / at);
   };
   if (turns) consider_across(distance);
   for (const Ring& inner : rings) {  // just inside this ring

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_node/engine/laws/law_field.h"
 #include "sim_node/engine/laws/law_term.h"
 
 namespace cordis::engine {
@@ -14,13 +15,26 @@ namespace cordis::engine {
 struct Ring {
   double stiffness = 0.0;  ///< [N/m]
   double radius = 0.0;     ///< [m], > 0
+
+  static constexpr const char* kName = "ring";
+  template <class Self, class Visit>
+  static void visit_fields(Self& ring, Visit&& visit) {
+    visit(LawField{.key = "stiffness_n_per_m"}, ring.stiffness);
+    visit(LawField{.key = "radius_m", .lowest = 0.0, .lowest_excluded = true}, ring.radius);
+  }
 };
 
 struct Rings {
   std::vector<Ring> rings;
 
+  static constexpr const char* kName = "rings";
   static constexpr LawArgument kArgument = LawArgument::kDistance;
   static constexpr bool kStoresEnergy = true;
+
+  template <class Self, class Visit>
+  static void visit_fields(Self& law, Visit&& visit) {
+    visit(LawField{.key = "rings"}, law.rings);
+  }
 
   void check(const std::string& name) const;
   double potential(double distance, double elongation) const noexcept;
@@ -38,7 +52,7 @@ struct Rings {
   Term term() const noexcept { return {rings.data(), rings.size()}; }
 
   template <class Lanes>
-  static void add(const Term& law, const LawArguments& of, double* pull) noexcept {
+  static void add(const Term& law, const LawArguments& of, double* tension) noexcept {
     using Row = typename Lanes::Row;
     for (std::size_t r = 0; r < law.count; ++r) {
       const Row stiffness = Lanes::every(law.rings[r].stiffness);
@@ -46,7 +60,7 @@ struct Rings {
       const auto sum = [&](Row p, Row d) {
         return p - Lanes::select(Lanes::less(d, radius), stiffness * (radius - d), Lanes::zero());
       };
-      LaneBatch<Lanes>::each(pull, sum, pull, of.distance);
+      LaneBatch<Lanes>::each(tension, sum, tension, of.distance);
     }
   }
 };

@@ -10,7 +10,12 @@
 namespace cordis::engine {
 
 Table::Table(std::vector<double> at, std::vector<double> value)
-    : at_(std::move(at)), value_(std::move(value)), slope_(at_.size(), 0.0) {
+    : at_(std::move(at)), value_(std::move(value)) {
+  find_slopes();
+}
+
+void Table::find_slopes() {
+  slope_.assign(at_.size(), 0.0);
   for (std::size_t i = 1; i < std::min(at_.size(), value_.size()); ++i) {
     slope_[i - 1] = (value_[i] - value_[i - 1]) / (at_[i] - at_[i - 1]);
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_node/engine/laws/law_field.h"
 #include "sim_node/engine/laws/law_term.h"
 
 namespace cordis::engine {
@@ -14,14 +15,23 @@ class Table {
  public:
   Table() = default;
   /// @param at     elongation [m] or speed [m/s], strictly ascending
-  /// @param value  pull [N], one for each
+  /// @param value  tension [N], one for each
   Table(std::vector<double> at, std::vector<double> value);
 
   const std::vector<double>& at() const noexcept { return at_; }
   const std::vector<double>& value() const noexcept { return value_; }
 
+  static constexpr const char* kName = "table";
   static constexpr LawArgument kArgument = LawArgument::kElongation;
   static constexpr bool kStoresEnergy = true;
+
+  template <class Self, class Visit>
+  static void visit_fields(Self& law, Visit&& visit) {
+    visit(LawField{.key = nullptr, .ascends = true}, law.at_);
+    visit(LawField{.key = "force_n", .as_many_as_first = true}, law.value_);
+  }
+  /// Follows a visit_fields() that has written them.
+  void find_slopes();
 
   void check(const std::string& name) const;
   double potential(double distance, double elongation) const noexcept;
@@ -38,7 +48,7 @@ class Table {
   Term term() const noexcept { return {at_.data(), value_.data(), slope_.data(), at_.size()}; }
 
   template <class Lanes>
-  static void add(const Term& table, const LawArguments& of, double* pull) noexcept {
+  static void add(const Term& table, const LawArguments& of, double* tension) noexcept {
     using Row = typename Lanes::Row;
     using Batch = LaneBatch<Lanes>;
     alignas(64) double clamped[Batch::kRows];
@@ -57,7 +67,7 @@ class Table {
       slope[i] = table.slope[point];
     }
     Batch::each(
-        pull, [](Row p, Row u, Row a, Row v, Row s) { return p + (v + s * (u - a)); }, pull,
+        tension, [](Row p, Row u, Row a, Row v, Row s) { return p + (v + s * (u - a)); }, tension,
         clamped, at, value, slope);
   }
 

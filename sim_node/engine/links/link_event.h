@@ -21,7 +21,7 @@ struct LinkEvent {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
   Quantity quantity =
-      Quantity::kNone;  ///< what triggered: Exit::triggered, kNone when it was forced
+      Quantity::kNone;  ///< what triggered: Transition::triggered, kNone when it was forced
   double value = 0.0;   ///< its value, in its own SI unit
   double energy = 0.0;  ///< stored in the link after minus before the change [J]: what it added
 };

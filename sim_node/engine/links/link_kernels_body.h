@@ -9,7 +9,7 @@ namespace cordis::engine {
 template <class Lanes>
 constexpr StateKernel make_state_kernel() noexcept {
   return StateKernel{StateMachineLoop<Lanes>::step,
-                     StateMachineLoop<Lanes>::find_pulls,
+                     StateMachineLoop<Lanes>::find_tensions,
                      StateLinkLoop<Lanes, Motion1d>::add_forces,
                      StateLinkLoop<Lanes, MotionNd>::add_forces,
                      add_maxwell_forces<Lanes, Increment1d>,

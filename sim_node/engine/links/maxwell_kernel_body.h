@@ -16,7 +16,7 @@ struct Increment1d {
                              Lanes::difference_1d(columns.delayed, a, b)),
         before_moved(elongation_increment) {}
 
-  Row factor(Row pull) const noexcept { return pull; }
+  Row factor(Row tension) const noexcept { return tension; }
   void add(double* force, const std::uint32_t* a, const std::uint32_t* b,
            Row factor) const noexcept {
     Lanes::add_pairs_1d(force, a, b, factor);
@@ -42,7 +42,7 @@ struct IncrementNd {
     before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
   }
 
-  Row factor(Row pull) const noexcept { return pull * inverse; }
+  Row factor(Row tension) const noexcept { return tension * inverse; }
   void add(double* force, const std::uint32_t* a, const std::uint32_t* b,
            Row factor) const noexcept {
     Lanes::add_pairs(force, a, b, Row3{along.x * factor, along.y * factor, along.z * factor});
@@ -75,16 +75,16 @@ void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
       const std::uint32_t* a = links.column_a + i;
       const std::uint32_t* b = links.column_b + i;
       const Growth<Lanes> link(columns, a, b);
-      const Row before = Lanes::load(links.pull + i);
-      const Row pull = Lanes::load(links.velocity_retention + i) * before +
-                       Lanes::load(links.gain + i) * link.elongation_increment;
-      const Row factor = link.factor(pull);
+      const Row before = Lanes::load(links.tension + i);
+      const Row tension = Lanes::load(links.velocity_retention + i) * before +
+                          Lanes::load(links.gain + i) * link.elongation_increment;
+      const Row factor = link.factor(tension);
       const Row work =
-          pull * link.elongation_increment + Lanes::load(links.factor + i) * link.before_moved;
-      const Row more = (pull * pull - before * before) * Lanes::load(links.compliance + i);
+          tension * link.elongation_increment + Lanes::load(links.factor + i) * link.before_moved;
+      const Row more = (tension * tension - before * before) * Lanes::load(links.compliance + i);
       stored[part] = stored[part] + more;
       taken[part] = taken[part] + (work - more);
-      Lanes::store(links.pull + i, pull);
+      Lanes::store(links.tension + i, tension);
       Lanes::store(links.factor + i, factor);
       link.add(columns.force, a, b, factor);
     }

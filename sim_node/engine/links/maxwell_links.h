@@ -28,6 +28,15 @@ class MaxwellArray {
   /// allocation. @return stored and dissipated energy, as EnergyAccount counts them.
   StepEnergy add_forces(const StateKernel& kernel, const ForceColumns& columns) noexcept;
 
+  /// Adds the stored forces unchanged, however far the MATs have moved.
+  StepEnergy add_held_forces(const StateKernel& kernel, const ForceColumns& columns) noexcept;
+  /// Makes of the start forces those of one period before: less the growth that the masses, which
+  /// have not moved yet, would have made of their delayed positions.
+  void go_back(const MatArray& mats) noexcept;
+  /// Adds the forces of step 0, without a decay: after go_back() they are the start forces and the
+  /// change by moved ports.
+  StepEnergy add_first_forces(const StateKernel& kernel, const ForceColumns& columns) noexcept;
+
   /// As that of SpringDamperArray. All are computed in every step, since their forces fade while
   /// nothing moves: of their ends the whole force is needed.
   void mark_neighbours(const WakePropagation& pass, MatRoles& roles) const noexcept;
@@ -41,6 +50,9 @@ class MaxwellArray {
   void serialize(Archive& archive);
 
  private:
+  StepEnergy add_undecayed(const StateKernel& kernel, const ForceColumns& columns,
+                           bool grows) noexcept;
+
   bool is_1d_;  // 1 dimension
   std::size_t link_count_;
   AlignedVector<std::uint32_t> column_a_;     // 4 * MAT index
@@ -48,7 +60,7 @@ class MaxwellArray {
   AlignedVector<double> velocity_retention_;  // e^(-K dt / Z)
   AlignedVector<double> gain_;                // Z (1 - e^(-K dt / Z)) / dt [N/m]
   AlignedVector<double> compliance_;          // 1 / K [m/N]
-  AlignedVector<double> pull_;                // F(n) [N]
+  AlignedVector<double> tension_;             // F(n) [N]
   AlignedVector<double> factor_;  // force of the last call = factor * vector from a to b
 };
 

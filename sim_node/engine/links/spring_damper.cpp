@@ -11,11 +11,11 @@ namespace {
 using Kind = SpringDamperArray::Kind;
 
 bool is_of(Kind kind, const NetworkDescription& description, const Link& link) {
-  return (description.dimension > 1 && link.isotropic) == (kind == Kind::kTie);
+  return (description.dimension > 1 && link.isotropic) == (kind == Kind::kVectorSpring);
 }
 
 std::size_t axes_of(Kind kind, const NetworkDescription& description) {
-  return kind == Kind::kTie ? static_cast<std::size_t>(description.dimension) : 1;
+  return kind == Kind::kVectorSpring ? static_cast<std::size_t>(description.dimension) : 1;
 }
 
 std::size_t row_count(Kind kind, const NetworkDescription& description) {
@@ -29,7 +29,7 @@ std::size_t row_count(Kind kind, const NetworkDescription& description) {
 
 // A row of padding joins a MAT to itself without stiffness or viscosity: its force is 0.
 SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind)
-    : is_1d_(description.dimension == 1 || kind == Kind::kTie),
+    : is_1d_(description.dimension == 1 || kind == Kind::kVectorSpring),
       column_a_(padded(row_count(kind, description), kLinkBatch), 0U),
       column_b_(column_a_.size(), 0U),
       stiffness_(column_a_.size(), 0.0),

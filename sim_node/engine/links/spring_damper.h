@@ -16,14 +16,14 @@ namespace cordis::engine {
 
 /// Linear springs, dampers and spring-dampers: two positions in, two opposite forces out.
 ///
-/// pull = K (d - rest) + Z (elongation increment along its axis in the last period) / dt; see
-/// Link for d. Ties are taken apart into one such link along each axis, as in 1 dimension.
+/// tension = K (d - rest) + Z (elongation increment along its axis in the last period) / dt; see
+/// Link for d. Vector springs are taken apart into one such link along each axis, as in 1 dimension.
 /// Source: [Luc90 III.2.2 Modelisation of the material in its continuous behaviour].
 class SpringDamperArray {
  public:
   enum class Kind : std::uint8_t {
-    kAlong,  ///< all links in 1 dimension, those that are not isotropic in 2 and 3
-    kTie     ///< the others
+    kAlong,        ///< all links in 1 dimension, those that are not isotropic in 2 and 3
+    kVectorSpring  ///< the others
   };
   SpringDamperArray(const NetworkDescription& description, Kind kind);
 
@@ -69,15 +69,15 @@ class SpringDamperArray {
   LinkRows rows(const ActiveLinks::Run& run) noexcept;
   StepEnergy add(AddLinkForces add_link_forces, const ForceColumns& columns) noexcept;
 
-  bool is_1d_;                             // 1 dimension, or ties
+  bool is_1d_;                             // 1 dimension, or vector springs
   bool viscous_ = false;                   // a link has viscosity
-  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index, + axis of a tie
+  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index, + axis of a vector spring
   AlignedVector<std::uint32_t>
       column_b_;                     // all arrays: one per link, padded to a multiple of kLinkBatch
   AlignedVector<double> stiffness_;  // K [N/m]
   AlignedVector<double> viscosity_over_dt_;  // Z / dt [N/m]
   AlignedVector<double> rest_length_;        // [m]
-  AlignedVector<double> viscous_factor_;     // [N/m]; in line the viscous pull itself [N]
+  AlignedVector<double> viscous_factor_;     // [N/m]; in line the viscous tension itself [N]
   AlignedVector<double> elastic_factor_;     // [N/m]; none in line
   ActiveLinks active_;
 };

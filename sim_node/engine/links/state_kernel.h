@@ -2,7 +2,7 @@
 // vector width.
 //
 // A row is a state link, or a pair of a set. Whoever owns the rows finds their kinematics, calls
-// StepStateMachines, and puts the pulls on the MATs. As in step_kernel.h, nothing here has a member
+// StepStateMachines, and puts the tensions on the MATs. As in step_kernel.h, nothing here has a member
 // function, so that the linker never mixes up code of two widths.
 #pragma once
 
@@ -36,12 +36,12 @@ struct TransitionTerm {
 struct StateTerm {
   double stiffness = 0.0;          // K [N/m]
   double viscosity_over_dt = 0.0;  // Z / dt [N/m]
-  double min_pull = 0.0;           // [N]; 0 when it does not push
-  double max_pull = 0.0;           // [N]; 0 when it does not pull
+  double min_tension = 0.0;        // [N]; 0 when it does not push
+  double max_tension = 0.0;        // [N]; 0 when it does not pull
   double min_elongation = 0.0;     // that its stored energy knows: 0 when it does not push [m]
   double max_elongation = 0.0;     // 0 when it does not pull
   bool one_sided = false;          // one of the two above is finite
-  bool limited = false;            // one of the pulls above is finite
+  bool limited = false;            // one of the tensions above is finite
   LawTerm elasticity;
   LawTerm dissipation;
   const TransitionTerm* exits = nullptr;
@@ -51,7 +51,7 @@ struct StateTerm {
 /// 8 rows; every array holds 8 values and is 64-byte aligned.
 struct StateMachineRows {
   // given: what does not depend on the state, and all that the states' programs ask
-  // for (StateTable::needs); what nobody asks for may be null. quantity[kElongation], [kForce],
+  // for (StateTable::needs); what no state asks for may be null. quantity[kElongation], [kForce],
   // [kImpulse] and [kRestLength] are the arrays below.
   const double* quantity[kQuantityCount] = {};
   const double* elongation_increment =
@@ -59,20 +59,20 @@ struct StateMachineRows {
   double dt = 0.0;          // [s]
   double rate = 0.0;        // 1 / dt [1/s]
   double now = 0.0;         // step count
-  std::uint32_t still = 0;  // bit i: row i has no direction, hence no pull
+  std::uint32_t still = 0;  // bit i: row i has no direction, hence no tension
   bool frozen = false;      // no exit is tested: before step 0
   // given, and changed
   StateIndex* state = nullptr;
   double* rest_length = nullptr;  // [m]
   double* elongation = nullptr;   // distance - rest length [m]
-  double* pull = nullptr;         // of the last step, then of this one [N]
+  double* tension = nullptr;      // of the last step, then of this one [N]
   double* impulse = nullptr;      // since entry, this step included [N s]; may be null
   double* entered = nullptr;      // step count at the entry of the present state
   double* memory = nullptr;       // of slot s: memory[8 * s], 8 values, kNoValue at first
   std::size_t memory_slots = 0;
   std::uint32_t* forced = nullptr;  // target state or kNotForced, then kNotForced; may be null
   // found
-  double* elastic = nullptr;         // the part of the pull that stores energy [N]
+  double* elastic = nullptr;         // the part of the tension that stores energy [N]
   double* elastic_before = nullptr;  // that of the state before the change; valid where one changed
   std::uint32_t changed = 0;         // bit i: row i has changed
   StateIndex from[kStateBatch];      // valid where changed:
@@ -82,7 +82,7 @@ struct StateMachineRows {
 };
 
 /// One step of the state machines of 8 rows: exits of the present state in order, at most one
-/// change a row, pull of the state it is in then. Updates impulse, entered and memory. In a row
+/// change a row, tension of the state it is in then. Updates impulse, entered and memory. In a row
 /// that has changed, the dampers see no elongation increment.
 using StepStateMachines = void (*)(const StateTerm* states, StateMachineRows& rows) noexcept;
 
@@ -96,12 +96,12 @@ struct PlainRows {
   const double* mass_a = nullptr;                // [kg]; may be null unless its law asks for it
   const double* mass_b = nullptr;
   double rate = 0.0;                 // 1 / dt [1/s]
-  double* factor = nullptr;          // pull / distance [N/m]
+  double* factor = nullptr;          // tension / distance [N/m]
   double* viscous_factor = nullptr;  // of the part that stores no energy
 };
 
-/// Finds the pulls of all rows; 0 while the distance is.
-using FindPulls = void (*)(const StateTerm& state, const PlainRows& rows) noexcept;
+/// Finds the tensions of all rows; 0 while the distance is.
+using FindTensions = void (*)(const StateTerm& state, const PlainRows& rows) noexcept;
 
 /// State links, one row each; arrays 64-byte aligned, padded to a multiple of 8 with rows that join
 /// a MAT to itself in a state of no force.
@@ -114,7 +114,7 @@ struct StateLinkRows {
   const StateTerm* states = nullptr;
   StateIndex* state = nullptr;
   double* rest_length = nullptr;  // as in StateMachineRows, all of these
-  double* pull = nullptr;
+  double* tension = nullptr;
   double* impulse = nullptr;
   double* entered = nullptr;
   double* memory = nullptr;  // of row l, slot s: memory[(l / 8 * memory_slots + s) * 8 + l % 8]
@@ -137,7 +137,7 @@ struct ForceColumns;
 struct LinkWork;
 
 /// Steps the state machines of all links and adds their forces, in link order, and their works as
-/// AddLinkForces counts them: of the elastic parts of the pulls, and of the rest.
+/// AddLinkForces counts them: of the elastic parts of the tensions, and of the rest.
 using AddStateLinkForces = void (*)(const StateLinkRows& links, const ForceColumns& columns,
                                     LinkWork& work) noexcept;
 
@@ -150,7 +150,7 @@ struct MaxwellRows {
   const double* velocity_retention;  // e^(-K dt / Z)
   const double* gain;                // Z (1 - velocity retention) / dt [N/m]
   const double* compliance;          // 1 / K [m/N]
-  double* pull;                      // [N]
+  double* tension;                   // [N]
   double* factor;                    // force of the last call = factor * vector from a to b
 };
 
@@ -162,7 +162,7 @@ using AddMaxwellForces = void (*)(const MaxwellRows& links, const ForceColumns& 
 /// The loops of one width.
 struct StateKernel {
   StepStateMachines step = nullptr;
-  FindPulls pulls = nullptr;
+  FindTensions tensions = nullptr;
   AddStateLinkForces state_links_1d = nullptr;
   AddStateLinkForces state_links_3d = nullptr;  // for 2 dimensions too
   AddMaxwellForces maxwell_1d = nullptr;

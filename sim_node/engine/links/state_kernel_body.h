@@ -21,7 +21,7 @@ class StateMachineLoop {
     StateMachineLoop(states, rows).step();
   }
 
-  static void find_pulls(const StateTerm& state, const PlainRows& rows) noexcept {
+  static void find_tensions(const StateTerm& state, const PlainRows& rows) noexcept {
     alignas(64) double elongation[Batch::kRows];
     alignas(64) double elastic[Batch::kRows];
     const auto quantity = [](Quantity which) { return static_cast<std::size_t>(which); };
@@ -30,9 +30,9 @@ class StateMachineLoop {
     batch.elongation = elongation;
     batch.elastic = elastic;
     StateMachineLoop loop(&state, batch);
-    const auto per_distance = [](Row pull, Row inverse) {
+    const auto per_distance = [](Row tension, Row inverse) {
       const auto still = Lanes::equal(inverse, Lanes::zero());
-      return Lanes::select(still, Lanes::zero(), pull * inverse);
+      return Lanes::select(still, Lanes::zero(), tension * inverse);
     };
     for (std::size_t i = 0; i < rows.count; i += Batch::kRows) {
       Batch::each(
@@ -43,12 +43,12 @@ class StateMachineLoop {
         batch.quantity[quantity(Quantity::kMassA)] = rows.mass_a + i;
         batch.quantity[quantity(Quantity::kMassB)] = rows.mass_b + i;
       }
-      loop.find_pull(state, Batch::kAll, rows.elongation_increment + i);
-      Batch::each(rows.factor + i, per_distance, loop.pull_, rows.inverse + i);
+      loop.find_tension(state, Batch::kAll, rows.elongation_increment + i);
+      Batch::each(rows.factor + i, per_distance, loop.tension_, rows.inverse + i);
       Batch::each(
           rows.viscous_factor + i,
-          [&](Row pull, Row e, Row inverse) { return per_distance(pull - e, inverse); }, loop.pull_,
-          elastic, rows.inverse + i);
+          [&](Row tension, Row e, Row inverse) { return per_distance(tension - e, inverse); },
+          loop.tension_, elastic, rows.inverse + i);
     }
   }
 
@@ -62,7 +62,7 @@ class StateMachineLoop {
       const StateIndex state = rows_.state[__builtin_ctz(left)];
       const std::uint32_t group = rows_in(state);
       if (!rows_.frozen) test_exits(states_[state], group);
-      find_pull(states_[state], group, rows_.elongation_increment);
+      find_tension(states_[state], group, rows_.elongation_increment);
       left &= ~group;
     }
     if (rows_.changed != 0) enter();
@@ -118,10 +118,10 @@ class StateMachineLoop {
     rows_.changed |= leaving;
   }
 
-  /// The pull of the rows of a group, all in one state.
-  void find_pull(const StateTerm& state, std::uint32_t group,
-                 const double* elongation_increment) noexcept {
-    alignas(64) double pull[Batch::kRows];
+  /// The tension of the rows of a group, all in one state.
+  void find_tension(const StateTerm& state, std::uint32_t group,
+                    const double* elongation_increment) noexcept {
+    alignas(64) double tension[Batch::kRows];
     alignas(64) double elastic[Batch::kRows];
     alignas(64) double speed[Batch::kRows];
     const bool stores_energy = state.elasticity.stores_energy;
@@ -139,12 +139,12 @@ class StateMachineLoop {
     if (stores_energy) LawLoop<Lanes>::add(state.elasticity, of, elastic);
     const Row viscosity = Lanes::every(state.viscosity_over_dt);
     Batch::each(
-        pull, [&](Row e, Row g) { return e + viscosity * g; }, elastic, elongation_increment);
-    if (!stores_energy) add_expression(state.elasticity, of, pull, elastic);
+        tension, [&](Row e, Row g) { return e + viscosity * g; }, elastic, elongation_increment);
+    if (!stores_energy) add_expression(state.elasticity, of, tension, elastic);
     of.argument = speed;
-    LawLoop<Lanes>::add(state.dissipation, of, pull);
+    LawLoop<Lanes>::add(state.dissipation, of, tension);
 
-    if (state.limited) limit(state, pull);
+    if (state.limited) limit(state, tension);
     if (state.elasticity.is_potential && state.limited) {
       limit(state, elastic);
     } else if (state.one_sided) {
@@ -159,29 +159,29 @@ class StateMachineLoop {
         LawLoop<Lanes>::add(state.elasticity, arguments(elongation, speed), elastic);
       }
     }
-    keep(group, pull, elastic);
+    keep(group, tension, elastic);
   }
 
   /// Adds what an expression pulls; to the part that stores energy if it has a potential.
-  static void add_expression(const LawTerm& law, const LawArguments& of, double* pull,
+  static void add_expression(const LawTerm& law, const LawArguments& of, double* tension,
                              double* elastic) noexcept {
     if (!law.is_potential) {
-      LawLoop<Lanes>::add(law, of, pull);
+      LawLoop<Lanes>::add(law, of, tension);
       return;
     }
     alignas(64) double value[Batch::kRows];
     Batch::fill(value, -0.0);  // which changes no sum, not even 0
     LawLoop<Lanes>::add(law, of, value);
     const auto sum = [](Row p, Row v) { return p + v; };
-    Batch::each(pull, sum, pull, value);
+    Batch::each(tension, sum, tension, value);
     Batch::each(elastic, sum, elastic, value);
   }
 
-  static void limit(const StateTerm& state, double* pull) noexcept {
-    const Row least = Lanes::every(state.min_pull);
-    const Row most = Lanes::every(state.max_pull);
+  static void limit(const StateTerm& state, double* tension) noexcept {
+    const Row least = Lanes::every(state.min_tension);
+    const Row most = Lanes::every(state.max_tension);
     Batch::each(
-        pull, [&](Row p) { return Lanes::minimum(most, Lanes::maximum(least, p)); }, pull);
+        tension, [&](Row p) { return Lanes::minimum(most, Lanes::maximum(least, p)); }, tension);
   }
 
   LawArguments arguments(const double* argument, const double* speed) const noexcept {
@@ -193,14 +193,14 @@ class StateMachineLoop {
             rows_.quantity[static_cast<std::size_t>(Quantity::kMassB)]};
   }
 
-  void keep(std::uint32_t group, const double* pull, const double* elastic) noexcept {
+  void keep(std::uint32_t group, const double* tension, const double* elastic) noexcept {
     if (group == Batch::kAll) {
       Batch::each(
-          pull_, [](Row p) { return p; }, pull);
+          tension_, [](Row p) { return p; }, tension);
       Batch::each(
           rows_.elastic, [](Row p) { return p; }, elastic);
     } else {
-      Batch::put(pull_, pull, group);
+      Batch::put(tension_, tension, group);
       Batch::put(rows_.elastic, elastic, group);
     }
   }
@@ -232,7 +232,7 @@ class StateMachineLoop {
     for (std::uint32_t left = rows_.changed; left != 0;) {
       const StateIndex state = rows_.state[__builtin_ctz(left)];
       const std::uint32_t group = rows_in(state) & rows_.changed;
-      find_pull(states_[state], group, no_increment);
+      find_tension(states_[state], group, no_increment);
       left &= ~group;
     }
   }
@@ -260,21 +260,21 @@ class StateMachineLoop {
     if (rows_.still != 0) {
       alignas(64) double none[Batch::kRows];
       Batch::fill(none, 0.0);
-      Batch::put(pull_, none, rows_.still);
+      Batch::put(tension_, none, rows_.still);
       Batch::put(rows_.elastic, none, rows_.still);
     }
     Batch::each(
-        rows_.pull, [](Row p) { return p; }, pull_);
+        rows_.tension, [](Row p) { return p; }, tension_);
     if (rows_.impulse == nullptr) return;
     const Row dt = Lanes::every(rows_.dt);
     Batch::each(
-        rows_.impulse, [&](Row sum, Row p) { return sum + p * dt; }, rows_.impulse, pull_);
+        rows_.impulse, [&](Row sum, Row p) { return sum + p * dt; }, rows_.impulse, tension_);
   }
 
   const StateTerm* states_;
   StateMachineRows& rows_;
   ProgramLoop<Lanes> program_;
-  alignas(64) double pull_[Batch::kRows];
+  alignas(64) double tension_[Batch::kRows];
   StateIndex target_[Batch::kRows];
 };
 

@@ -42,8 +42,8 @@ struct Motion1d {
     }
   }
 
-  /// @return pull -> factor of the force.
-  static Row factor(const LinkMotion&, std::size_t, Row pull) noexcept { return pull; }
+  /// @return tension -> factor of the force.
+  static Row factor(const LinkMotion&, std::size_t, Row tension) noexcept { return tension; }
 
   static void add(const StateLinkRows& links, const ForceColumns& columns, std::size_t l,
                   std::size_t i, const LinkMotion&, Row factor) noexcept {
@@ -82,8 +82,8 @@ struct MotionNd {
     if (links.needs_velocity) find_velocity(links.rate, i, moved, speed, motion);
   }
 
-  static Row factor(const LinkMotion& motion, std::size_t i, Row pull) noexcept {
-    return pull * Lanes::load(motion.inverse + i);
+  static Row factor(const LinkMotion& motion, std::size_t i, Row tension) noexcept {
+    return tension * Lanes::load(motion.inverse + i);
   }
 
   static void add(const StateLinkRows& links, const ForceColumns& columns, std::size_t l,
@@ -178,12 +178,12 @@ class StateLinkLoop {
     rows_.still = motion_.still;
     rows_.state = links_.state + l;
     rows_.rest_length = links_.rest_length + l;
-    rows_.pull = links_.pull + l;
+    rows_.tension = links_.tension + l;
     rows_.impulse = links_.impulse == nullptr ? nullptr : links_.impulse + l;
     rows_.entered = links_.entered + l;
     rows_.memory = links_.memory + l * links_.memory_slots;
     rows_.forced = links_.forced == nullptr ? nullptr : links_.forced + l;
-    set(Quantity::kForce, rows_.pull);
+    set(Quantity::kForce, rows_.tension);
     set(Quantity::kImpulse, rows_.impulse);
     set(Quantity::kRestLength, rows_.rest_length);
     set(Quantity::kMassA, links_.mass_a + l);
@@ -205,9 +205,9 @@ class StateLinkLoop {
     const std::size_t i = part * Lanes::kWidth;
     const Row elongation_increment = Lanes::load(motion_.elongation_increment + i);
     const Row before_moved = Lanes::load(motion_.before_moved + i);
-    const Row pull = Lanes::load(rows_.pull + i);
+    const Row tension = Lanes::load(rows_.tension + i);
     const Row elastic = Lanes::load(elastic_ + i);
-    const Row viscous = pull - elastic;
+    const Row viscous = tension - elastic;
     double* elastic_factor = links_.elastic_factor + l + i;
     double* viscous_factor = links_.viscous_factor + l + i;
 
@@ -217,7 +217,7 @@ class StateLinkLoop {
                                                  Lanes::load(viscous_factor) * before_moved);
     Lanes::store(elastic_factor, Motion<Lanes>::factor(motion_, i, elastic));
     Lanes::store(viscous_factor, Motion<Lanes>::factor(motion_, i, viscous));
-    Motion<Lanes>::add(links_, columns_, l, i, motion_, Motion<Lanes>::factor(motion_, i, pull));
+    Motion<Lanes>::add(links_, columns_, l, i, motion_, Motion<Lanes>::factor(motion_, i, tension));
   }
 
   const StateLinkRows& links_;

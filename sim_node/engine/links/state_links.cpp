@@ -29,7 +29,7 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
       state_machine_(column_a_.size(), 0U),
       state_(column_a_.size(), table.padding_state()),
       rest_length_(column_a_.size(), 0.0),
-      pull_(column_a_.size(), 0.0),
+      tension_(column_a_.size(), 0.0),
       impulse_(column_a_.size(), 0.0),
       entered_(column_a_.size(), 0.0),
       forced_(column_a_.size(), kNotForced),
@@ -63,7 +63,7 @@ StateLinkRows StateLinkArray::rows(const StateTable& table, const ActiveLinks::R
   rows.states = table.terms();
   rows.state = state_.data() + first;
   rows.rest_length = rest_length_.data() + first;
-  rows.pull = pull_.data() + first;
+  rows.tension = tension_.data() + first;
   rows.impulse = needs_impulse_ ? impulse_.data() + first : nullptr;
   rows.entered = entered_.data() + first;
   rows.memory = memory_.data() + first * slot_count_;
@@ -90,8 +90,12 @@ void StateLinkArray::add_forces_before_start(const StateKernel& kernel, const St
 }
 
 void StateLinkArray::start() noexcept {
-  std::fill(pull_.begin(), pull_.end(), 0.0);
+  forget_tensions();
   forget_viscous_forces();
+}
+
+void StateLinkArray::forget_tensions() noexcept {
+  std::fill(tension_.begin(), tension_.end(), 0.0);
 }
 
 void StateLinkArray::forget_viscous_forces() noexcept {
@@ -220,11 +224,11 @@ void StateLinkArray::serialize(Archive& archive, const StateTable& table) {
   archive.wholes(std::span(forced_), [&is_state](std::size_t l, StateIndex state) {
     return state == kNotForced || is_state(l, state);
   });
-  for (auto* values : {&rest_length_, &pull_, &impulse_, &entered_, &elastic_factor_,
+  for (auto* values : {&rest_length_, &tension_, &impulse_, &entered_, &elastic_factor_,
                        &viscous_factor_, &memory_}) {
     archive.reals(*values);
   }
-  archive.hash_rows(link_count_, state_, rest_length_, pull_, impulse_, entered_);
+  archive.hash_rows(link_count_, state_, rest_length_, tension_, impulse_, entered_);
   if (!archive.restores()) return;
   any_forced_ = std::any_of(forced_.begin(), forced_.end(),
                             [](std::uint32_t target) { return target != kNotForced; });

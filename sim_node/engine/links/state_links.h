@@ -28,8 +28,10 @@ class StateLinkArray {
   /// Adds the forces of all links in their present states, without testing an exit: before step 0.
   void add_forces_before_start(const StateKernel& kernel, const StateTable& table,
                                const ForceColumns& columns) noexcept;
-  /// Forgets pulls and viscous forces: those before step 0 take no work.
+  /// Forgets tensions and viscous forces: those before step 0 take no work.
   void start() noexcept;
+  /// Forgets the tensions of the last call.
+  void forget_tensions() noexcept;
   /// Forgets the viscous forces of the last call.
   void forget_viscous_forces() noexcept;
 
@@ -58,16 +60,16 @@ class StateLinkArray {
 
   std::uint32_t state_of(const StateTable& table, std::uint32_t link) const noexcept;
   double rest_length(std::uint32_t link) const noexcept { return rest_length_[link]; }
-  double pull(std::uint32_t link) const noexcept { return pull_[link]; }
+  double tension(std::uint32_t link) const noexcept { return tension_[link]; }
   StateIndex state_index(std::uint32_t link) const noexcept { return state_[link]; }
   /// True if a change of state has happened in this step, which is not the first.
   bool is_new(std::uint32_t link, std::uint64_t step) const noexcept {
     return step > 0 && entered_[link] == static_cast<double>(step);
   }
-  /// The pull of this step is another one; its force has been put on the MATs.
-  void set_pull(std::uint32_t link, double pull) noexcept {
-    impulse_[link] += (pull - pull_[link]) * dt_;
-    pull_[link] = pull;
+  /// The tension of this step is another one; its force has been put on the MATs.
+  void set_tension(std::uint32_t link, double tension) noexcept {
+    impulse_[link] += (tension - tension_[link]) * dt_;
+    tension_[link] = tension;
   }
 
   void serialize(Archive& archive, const StateTable& table);
@@ -87,11 +89,11 @@ class StateLinkArray {
   AlignedVector<std::uint32_t> state_machine_;
   AlignedVector<StateIndex> state_;
   AlignedVector<double> rest_length_;  // [m]
-  AlignedVector<double> pull_;         // [N]
+  AlignedVector<double> tension_;      // [N]
   AlignedVector<double> impulse_;      // [N s]
   AlignedVector<double> entered_;      // step count
   AlignedVector<std::uint32_t> forced_;
-  AlignedVector<double> elastic_factor_;  // [N/m]; in 1 dimension the elastic pull itself [N]
+  AlignedVector<double> elastic_factor_;  // [N/m]; in 1 dimension the elastic tension itself [N]
   AlignedVector<double> viscous_factor_;  // the rest, likewise
   AlignedVector<double> memory_;          // slot_count_ x 8 values for each batch
   std::size_t slot_count_ = 0;

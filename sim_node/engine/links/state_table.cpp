@@ -8,7 +8,7 @@
 
 #include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/laws/quadrature.h"
-#include "sim_node/engine/laws/scalar_pull.h"
+#include "sim_node/engine/laws/scalar_tension.h"
 
 namespace cordis::engine {
 namespace {
@@ -102,8 +102,8 @@ void StateTable::Content::add_state(const LinkState& state,
   StateTerm term;
   term.stiffness = state.stiffness;
   term.viscosity_over_dt = state.viscosity / dt;
-  term.min_pull = state.pushes ? -state.force_limit : 0.0;
-  term.max_pull = state.pulls ? state.force_limit : 0.0;
+  term.min_tension = state.pushes ? -state.force_limit : 0.0;
+  term.max_tension = state.pulls ? state.force_limit : 0.0;
   term.min_elongation = state.pushes ? -kUnlimited : 0.0;
   term.max_elongation = state.pulls ? kUnlimited : 0.0;
   term.one_sided = !(state.pulls && state.pushes);
@@ -195,17 +195,17 @@ double StateTable::stored_energy(StateIndex index, double distance, double rest_
   return linear + potential(state(index).elasticity, {distance, elongation, 0.0, mass.a, mass.b});
 }
 
-/// Energy of an expression whose pull has limits: the integral of the limited pull [J].
+/// Energy of an expression whose tension has limits: the integral of the limited tension [J].
 double StateTable::limited_energy(StateIndex index, const LawPoint& link) const noexcept {
   const StateTerm& term = content_->terms[index];
   const Expression& law = *potential_expression(state(index).elasticity);
   const double rest_length = link.distance - link.elongation;
-  const auto pull = [&](double at) {
+  const auto tension = [&](double at) {
     const LawPoint point{at, at - rest_length, 0.0, link.mass_a, link.mass_b};
-    const double whole = term.stiffness * point.elongation + scalar_pull(law, point, at);
-    return std::min(term.max_pull, std::max(term.min_pull, whole));
+    const double whole = term.stiffness * point.elongation + scalar_tension(law, point, at);
+    return std::min(term.max_tension, std::max(term.min_tension, whole));
   };
-  return integral_over_distance(pull, law.distance_of_no_potential(link), link.distance);
+  return integral_over_distance(tension, law.distance_of_no_potential(link), link.distance);
 }
 
 double StateTable::change_energy(const StateMachineRows& rows, std::size_t row) const noexcept {

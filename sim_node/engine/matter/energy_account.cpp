@@ -11,7 +11,7 @@ double kinetic_energy(const NetworkDescription& network, const MatArray& mats) n
   double sum = 0.0;
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     if (network.mats[i].kind != MatKind::kMass) continue;
-    sum += network.mats[i].mass * (mats.position(i) - mats.delayed(i)).squaredNorm();
+    sum += network.mats[i].mass * mats.moved(i).squaredNorm();
   }
   return 0.5 * sum / (network.step * network.step);
 }
@@ -111,8 +111,8 @@ void EnergyAccount::enter_account(Energy& energy) const noexcept {
 }
 
 void EnergyAccount::serialize(Archive& archive) {
-  for (double* value :
-       {&initial_, &dissipated_, &port_work_, &largest_port_work_, &stored_, &switching_}) {
+  for (double* value : {&initial_, &dissipated_, &port_work_, &largest_port_work_, &stored_,
+                        &switching_, &initial_excess_}) {
     archive.real(*value);
   }
 }

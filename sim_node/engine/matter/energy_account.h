@@ -36,9 +36,17 @@ class EnergyAccount {
   void start(const NetworkDescription& network, const MatArray& mats, double stored,
              double since) noexcept;
 
+  /// Remembers what kinetic_excess is counted from: kinetic_excess_of() at step 0 [J].
+  void set_initial_excess(double excess) noexcept { initial_excess_ = excess; }
+  double initial_excess() const noexcept { return initial_excess_; }
+
   /// Opens the account of an integrator that keeps it at the moments x(n): with their sum [J].
   /// @param stored  as of the other start
   void open(double initial, double stored = 0.0) noexcept;
+
+  /// Leaves out what the forces before step 0 have taken up to the present positions [J]. Of these
+  /// forces only a law that is cut off takes any: they are frozen, and viscosity needs a speed.
+  void begin_dissipated(double since) noexcept { dissipated_ = -since; }
 
   /// Enters one step, or a change between two.
   void add(const StepEnergy& step) noexcept;
@@ -75,6 +83,7 @@ class EnergyAccount {
   double largest_port_work_ = 0.0;
   double stored_ = 0.0;  // in the links, when the last forces were computed
   double switching_ = 0.0;
+  double initial_excess_ = 0.0;  // of kinetic energy
 };
 
 }  // namespace cordis::engine

@@ -16,6 +16,7 @@ MatArray::MatArray(const NetworkDescription& description)
     : position_(4 * description.mats.size(), 0.0),
       delayed_(position_.size(), 0.0),
       force_(position_.size(), 0.0),
+      moved_(description.integrator == IntegratorKind::kCordis ? position_.size() : 0, 0.0),
       dt2_over_mass_(description.mats.size(), 0.0),
       velocity_retention_(description.mats.size(), 1.0),
       dt_(description.step),
@@ -28,6 +29,8 @@ MatArray::MatArray(const NetworkDescription& description)
     const Mat& mat = description.mats[i];
     set_column(position_, i, mat.position);
     set_column(delayed_, i, mat.position - dt * mat.velocity);
+    if (!moved_.empty()) set_column(moved_, i, dt * mat.velocity);
+    if (mat.kind == MatKind::kPort) ports_.push_back(static_cast<std::uint32_t>(i));
     mass_.push_back(mat.kind == MatKind::kMass ? mat.mass : 0.0);
     if (mat.kind != MatKind::kMass) continue;
 
@@ -50,13 +53,30 @@ void MatArray::start() noexcept {
   for (const Range& range : masses_) {
     for (std::size_t i = range.first; i < range.last; ++i) {
       const auto mat = static_cast<std::uint32_t>(i);
-      const Vec3 moved = position(mat) - delayed(mat);  // v0 dt
-      const Vec3 pushed =                               // a0 dt^2
-          kick_at_half_step(mat) - (1.0 - velocity_retention_[i]) * moved;
-      set_column(delayed_, i, position(mat) - (moved - 0.5 * pushed));
+      const Vec3 before = moved(mat);  // v0 dt
+      const Vec3 pushed =              // a0 dt^2
+          kick_at_half_step(mat) - (1.0 - velocity_retention_[i]) * before;
+      set_column(delayed_, i, position(mat) - (before - 0.5 * pushed));
+      if (!moved_.empty()) set_column(moved_, i, before - 0.5 * pushed);
     }
   }
   clear_forces();
+}
+
+Vec3 MatArray::velocity_increment(std::uint32_t mat, const Vec3& external_force) const noexcept {
+  const Vec3 pushed = pushed_by(mat, force(mat) + external_force);
+  const double retention = velocity_retention_[mat];
+  if (retention == 1.0 || retention == 0.0) return pushed;
+  const Vec3 moved = position(mat) - delayed(mat);
+  return moved - (moved - pushed) / retention;
+}
+
+Vec3 MatArray::next_velocity_increment(std::uint32_t mat,
+                                       const Vec3& external_force) const noexcept {
+  const Vec3 pushed = pushed_by(mat, force(mat) + external_force);
+  const double retention = velocity_retention_[mat];
+  if (retention == 1.0 || retention == 0.0) return pushed;
+  return pushed - (1.0 - retention) * moved(mat);
 }
 
 void MatArray::clear_forces() noexcept {
@@ -87,18 +107,33 @@ void MatArray::list_by_weight(std::span<const Range> rows,
 
 void MatArray::halt(std::uint32_t mat) noexcept {
   set_column(delayed_, mat, vector(position_, mat));
+  if (!moved_.empty()) set_column(moved_, mat, Vec3::Zero());
 }
 
 AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
   const bool in_medium = medium_viscosity_over_dt_ > 0.0;
-  return advance_rows(in_medium ? kernel.advance_in_medium : kernel.advance, nullptr, 0.5);
+  bool all_finite = true;
+  AdvanceReport report =
+      advance_rows(in_medium ? kernel.advance_in_medium : kernel.advance, nullptr, 0.5, all_finite);
+  // What does not move has one place in both.
+  position_.swap(delayed_);
+  for (const std::uint32_t port : ports_) {
+    std::swap_ranges(position_.data() + 4 * std::size_t{port},
+                     position_.data() + 4 * std::size_t{port} + 4,
+                     delayed_.data() + 4 * std::size_t{port});
+  }
+  if (!all_finite) report.non_finite_mats = count_non_finite();
+  return report;
 }
 
 AdvanceReport MatArray::extrapolate(const StepKernel& kernel,
                                     AlignedVector<double>& extrapolated) noexcept {
   const bool in_medium = medium_viscosity_over_dt_ > 0.0;
-  return advance_rows(in_medium ? kernel.extrapolate_in_medium : kernel.extrapolate,
-                      extrapolated.data(), 1.0);
+  bool all_finite = true;
+  AdvanceReport report = advance_rows(in_medium ? kernel.extrapolate_in_medium : kernel.extrapolate,
+                                      extrapolated.data(), 1.0, all_finite);
+  if (!all_finite) report.non_finite_mats = count_non_finite();
+  return report;
 }
 
 /// Columns of all MATs, with no range of masses yet.
@@ -110,7 +145,8 @@ MassColumns MatArray::columns(double* extrapolated) noexcept {
           force_.data(),
           dt2_over_mass_.data(),
           velocity_retention_.data(),
-          extrapolated};
+          extrapolated,
+          moved_.data()};
 }
 
 /// @param range  of one weight
@@ -121,11 +157,10 @@ void MatArray::choose_rows(MassColumns& columns, const Range& range) const noexc
 }
 
 /// @param share  of moved_product in the square of a displacement
-AdvanceReport MatArray::advance_rows(Advance advance_row, double* extrapolated,
-                                     double share) noexcept {
+AdvanceReport MatArray::advance_rows(Advance advance_row, double* extrapolated, double share,
+                                     bool& all_finite) noexcept {
   MassColumns row = columns(extrapolated);
   AdvanceReport report;
-  bool all_finite = true;
 
   for (const Range& range : moving_) {
     choose_rows(row, range);
@@ -133,7 +168,6 @@ AdvanceReport MatArray::advance_rows(Advance advance_row, double* extrapolated,
     report.medium_work += share * medium_viscosity_over_dt_ * result.moved_product;
     all_finite = all_finite && result.all_finite;
   }
-  if (!all_finite) report.non_finite_mats = count_non_finite();
   return report;
 }
 
@@ -224,8 +258,12 @@ ForceColumns MatArray::force_columns() noexcept {
 }
 
 void MatArray::serialize(Archive& archive) {
-  for (auto* columns : {&position_, &delayed_, &force_}) archive.reals(*columns);
+  for (auto* columns : {&position_, &delayed_, &force_, &moved_}) archive.reals(*columns);
   if (!archive.hashes()) return;
+  if (!moved_.empty()) {
+    const Columns moved = view(moved_);
+    for (Eigen::Index i = 0; i < moved.cols(); ++i) archive.hash({moved.col(i).data(), 3});
+  }
   for (const Columns& columns : {position(), delayed()}) {
     for (Eigen::Index i = 0; i < columns.cols(); ++i) archive.hash({columns.col(i).data(), 3});
   }

@@ -18,7 +18,7 @@ inline std::uint32_t column_of_padding(std::size_t row, std::size_t mat_count) n
   return 4 * static_cast<std::uint32_t>(row % mat_count);
 }
 
-/// What moving the masses by one step has to tell.
+/// What moving the masses by one step reports.
 struct AdvanceReport {
   std::uint32_t non_finite_mats = 0;  ///< masses whose new position is not finite
   double medium_work = 0.0;           ///< taken by the viscosity of the medium in this step [J]
@@ -54,10 +54,16 @@ class MatArray {
   void move_only(std::span<const Range> rows) noexcept;
   /// What forces and gravity add to the displacement of a mass in this period [m].
   Vec3 kick_at_half_step(std::uint32_t mat) const noexcept { return pushed_by(mat, force(mat)); }
+  /// dt times the change of velocity that the last forces, the medium and this force from outside have
+  /// made of a mass that has moved since [m].
+  Vec3 velocity_increment(std::uint32_t mat, const Vec3& external_force) const noexcept;
+  /// velocity_increment() of a mass that has not moved since the forces were summed [m].
+  Vec3 next_velocity_increment(std::uint32_t mat, const Vec3& external_force) const noexcept;
   /// A mass stays where it is, at rest.
   void halt(std::uint32_t mat) noexcept;
 
-  /// Moves every mass by one step. Real time: O(N), no allocation.
+  /// Moves every mass by one step. Views of the positions from before are then those of the delayed
+  /// ones. Real time: O(N), no allocation.
   [[nodiscard]] AdvanceReport advance(const StepKernel& kernel) noexcept;
 
   /// Moves every mass by one step of `leapfrog`; see StepKernel::extrapolate.
@@ -112,6 +118,11 @@ class MatArray {
   Vec3 position(std::uint32_t mat) const noexcept { return vector(position_, mat); }
   Vec3 delayed(std::uint32_t mat) const noexcept { return vector(delayed_, mat); }
   Vec3 force(std::uint32_t mat) const noexcept { return vector(force_, mat); }
+  /// x(n) - x(n-1) [m]; of `cordis` as it is carried, before it was rounded.
+  Vec3 moved(std::uint32_t mat) const noexcept {
+    return moved_.empty() || !is_mass(mat) ? Vec3(position(mat) - delayed(mat))
+                                           : vector(moved_, mat);
+  }
   /// x(n-1) of a mass; of all else, which rests between two steps, x(n). [m]
   Vec3 delayed_at_rest(std::uint32_t mat) const noexcept {
     return vector(is_mass(mat) ? delayed_ : position_, mat);
@@ -128,7 +139,7 @@ class MatArray {
   /// Where the links find the positions and leave their forces.
   ForceColumns force_columns() noexcept;
 
-  /// x(n), x(n-1), f(n).
+  /// x(n), x(n-1), f(n), and the carried displacements.
   void serialize(Archive& archive);
 
  private:
@@ -138,7 +149,8 @@ class MatArray {
   Vec3 weight_step(std::size_t mat) const noexcept {
     return !weightless_.empty() && weightless_[mat] != 0 ? Vec3(Vec3::Zero()) : weight_step_;
   }
-  AdvanceReport advance_rows(Advance advance_row, double* extrapolated, double share) noexcept;
+  AdvanceReport advance_rows(Advance advance_row, double* extrapolated, double share,
+                             bool& all_finite) noexcept;
   Columns view(const AlignedVector<double>& columns) const noexcept;
   static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;
   std::uint32_t count_non_finite() const noexcept;
@@ -146,12 +158,14 @@ class MatArray {
   AlignedVector<double> position_;
   AlignedVector<double> delayed_;
   AlignedVector<double> force_;
+  AlignedVector<double> moved_;               // of masses [m]; empty unless `cordis`
   AlignedVector<double> dt2_over_mass_;       // [s^2/kg], 0 unless a mass
   AlignedVector<double> velocity_retention_;  // 1 - dt Z / m
   std::vector<double> mass_;                  // [kg], 0 unless a mass
   std::vector<std::uint8_t> weightless_;      // by MAT; empty: none, or no gravity
   std::vector<Range> masses_;                 // rows of neighbouring masses, of one weight
   std::vector<Range> moving_;                 // those that are moved
+  std::vector<std::uint32_t> ports_;          // MATs that move_port() moves
   double dt_;                                 // [s]
   Vec3 weight_step_;                          // gravity * dt^2 [m]
   double medium_viscosity_over_dt_;           // Z / dt [N/m]

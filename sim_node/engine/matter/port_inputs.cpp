@@ -20,6 +20,7 @@ void serialize(Archive& archive, Vec3& value) {
 PortInputs::PortInputs(const NetworkDescription& description)
     : dimension_(description.dimension), slot_(description.mats.size(), kNoSlot) {
   for (std::size_t i = 0; i < description.mats.size(); ++i) {
+    is_mass_.push_back(description.mats[i].kind == MatKind::kMass);
     if (description.mats[i].kind != MatKind::kPort) continue;
     slot_[i] = static_cast<std::uint32_t>(ports_.size());
     ports_.push_back({static_cast<std::uint32_t>(i), description.mats[i].position});
@@ -38,7 +39,7 @@ void PortInputs::impose_position(std::uint32_t mat, const Vec3& position) noexce
 }
 
 void PortInputs::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
-  CORDIS_ASSERT(mat < slot_.size() && (slot_[mat] == kNoSlot || forces_[slot_[mat]].mat == mat));
+  CORDIS_ASSERT(mat < slot_.size() && is_mass_[mat]);
   const bool refused = !force.allFinite();
   if (refused) ++refused_;
   const Vec3 held = refused ? Vec3(Vec3::Zero()) : within_dimension(force);
@@ -114,7 +115,7 @@ void PortInputs::serialize(Archive& archive) {
   for (std::size_t i = 0; i < held_count; ++i) {
     HeldForce held = i < forces_.size() ? forces_[i] : HeldForce{0, Vec3::Zero()};
     archive.whole(held.mat,
-                  [this](std::uint32_t mat) { return mat < slot_.size() && !is_port(mat); });
+                  [this](std::uint32_t mat) { return mat < is_mass_.size() && is_mass_[mat]; });
     engine::serialize(archive, held.force);
     if (!archive.restores() || slot_[held.mat] != kNoSlot) continue;
     slot_[held.mat] = static_cast<std::uint32_t>(forces_.size());

@@ -69,6 +69,7 @@ class PortInputs {
   bool is_port(std::uint32_t mat) const noexcept;
 
   int dimension_;
+  std::vector<bool> is_mass_;             // by MAT
   std::vector<Port> ports_;               // in MAT order
   std::vector<std::uint32_t> port_mats_;  // of ports_
   std::vector<HeldForce>

@@ -61,6 +61,8 @@ struct MassColumns {
   const double* dt2_over_mass = nullptr;       // dt^2 / m [s^2/kg], one per MAT
   const double* velocity_retention = nullptr;  // 1 - dt Z / m, with Z of the medium; one per MAT
   double* extrapolated = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
+  double* moved =
+      nullptr;  // x(n) - x(n-1) before it was rounded, then that of n + 1; of `advance` [m]
   alignas(32) double weight_step[4] = {};  // gravity * dt^2 [m]
 };
 
@@ -71,7 +73,10 @@ struct AdvanceResult {
   bool all_finite = true;
 };
 
-/// x(n+1) = x(n) + velocity retention (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2.
+/// x(n+1) = x(n) + velocity retention (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2. The
+/// displacement is carried from step to step: what rounding takes from the difference of two
+/// positions would change the velocity of every later step. The new positions are stored in the place
+/// of the delayed ones: the two then change their names.
 using Advance = AdvanceResult (*)(const MassColumns& masses) noexcept;
 
 /// For schemes that keep velocities: v += push a, and, when it drifts, x += drift v and the forces

@@ -19,7 +19,7 @@ struct WorkRows {
 /// viscous work of these alone; see LinkWork and StepKernel.
 enum class Works { kHalfStep, kFullStep };
 
-/// pull = K (b - a - rest) + Z (elongation increment of b - a) / dt, signed; kViscous = false
+/// tension = K (b - a - rest) + Z (elongation increment of b - a) / dt, signed; kViscous = false
 /// leaves the second term out.
 template <class Lanes, bool kViscous, Works kWorks>
 struct Links1d {
@@ -31,24 +31,26 @@ struct Links1d {
     const std::uint32_t* b = links.column_b + l;
 
     const Row distance = Lanes::difference_1d(columns.position, a, b);
-    Row pull = Lanes::load(links.stiffness + l) * (distance - Lanes::load(links.rest_length + l));
+    Row tension =
+        Lanes::load(links.stiffness + l) * (distance - Lanes::load(links.rest_length + l));
     if constexpr (kViscous) {
       const Row elongation_increment = distance - Lanes::difference_1d(columns.delayed, a, b);
-      const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * elongation_increment;
+      const Row viscous_tension = Lanes::load(links.viscosity_over_dt + l) * elongation_increment;
       if constexpr (kWorks == Works::kHalfStep) {
-        work.dissipated = work.dissipated + (viscous_pull + Lanes::load(links.viscous_factor + l)) *
-                                                elongation_increment;
-        Lanes::store(links.viscous_factor + l, viscous_pull);
+        work.dissipated =
+            work.dissipated +
+            (viscous_tension + Lanes::load(links.viscous_factor + l)) * elongation_increment;
+        Lanes::store(links.viscous_factor + l, viscous_tension);
       } else {
-        work.dissipated = work.dissipated + viscous_pull * elongation_increment;
+        work.dissipated = work.dissipated + viscous_tension * elongation_increment;
       }
-      pull = pull + viscous_pull;
+      tension = tension + viscous_tension;
     }
-    Lanes::add_pairs_1d(columns.force, a, b, pull);
+    Lanes::add_pairs_1d(columns.force, a, b, tension);
   }
 };
 
-/// pull = K (d - rest) + Z (elongation increment of the link along its axis) / dt; none while d is
+/// tension = K (d - rest) + Z (elongation increment of the link along its axis) / dt; none while d is
 /// 0, for lack of a direction.
 template <class Lanes, bool kViscous, Works kWorks>
 struct LinksNd {
@@ -86,14 +88,14 @@ struct LinksNd {
     Row factor = elastic_factor;
     if constexpr (kViscous) {
       const Row elongation_increment = along_moved * inverse;
-      const Row viscous_pull = Lanes::load(links.viscosity_over_dt + l) * elongation_increment;
-      const Row viscous_factor = viscous_pull * inverse;
+      const Row viscous_tension = Lanes::load(links.viscosity_over_dt + l) * elongation_increment;
+      const Row viscous_factor = viscous_tension * inverse;
       if constexpr (kWorks == Works::kHalfStep) {
-        work.dissipated = work.dissipated + (viscous_pull * elongation_increment +
+        work.dissipated = work.dissipated + (viscous_tension * elongation_increment +
                                              Lanes::load(links.viscous_factor + l) * before_moved);
         Lanes::store(links.viscous_factor + l, viscous_factor);
       } else {
-        work.dissipated = work.dissipated + viscous_pull * elongation_increment;
+        work.dissipated = work.dissipated + viscous_tension * elongation_increment;
       }
       factor = factor + viscous_factor;
     }
@@ -136,17 +138,17 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
 
   for (std::size_t i = masses.first; i < masses.last; ++i) {
     const Column position = Lanes::load_column(masses.position + 4 * i);
-    const Column moved = position - Lanes::load_column(masses.delayed + 4 * i);
+    const Column moved = Lanes::load_column(masses.moved + 4 * i);
     const Column pushed =
         Lanes::load_column(masses.force + 4 * i) * Lanes::broadcast(masses.dt2_over_mass[i]) +
         weight_step;
     Column moving = moved + pushed;
     if constexpr (kMedium) moving = moved * Lanes::broadcast(masses.velocity_retention[i]) + pushed;
     const Column next = position + moving;
-    if constexpr (kMedium) product = product + moved * (moved + (next - position));
+    if constexpr (kMedium) product = product + moved * (moved + moving);
 
-    Lanes::store_column(masses.delayed + 4 * i, position);
-    Lanes::store_column(masses.position + 4 * i, next);
+    Lanes::store_column(masses.delayed + 4 * i, next);
+    Lanes::store_column(masses.moved + 4 * i, moving);
     // 0 for finite values, else NaN
     nonfinite = Lanes::unite(nonfinite, next - next);  // NOLINT(misc-redundant-expression)
   }

@@ -2,6 +2,7 @@
 #include "sim_node/engine/pairs/active_pairs.h"
 
 #include <algorithm>
+#include <new>
 
 namespace cordis::engine {
 namespace {
@@ -16,6 +17,17 @@ ActivePairs::ActivePairs(std::size_t member_count, std::size_t row_count, std::s
     : role_(member_count, 0U), start_(row_count + 1, 0), neighbour_(capacity + kPairBatch, 0U) {
   members_.reserve(member_count);
   rows_.reserve(row_count / 2 + 1);
+}
+
+bool ActivePairs::make_room(std::size_t capacity) noexcept {
+  if (start_.empty()) return true;
+  try {
+    neighbour_.resize(std::max(neighbour_.size(), capacity + kPairBatch), 0U);
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+  for (NeighbourRows& rows : rows_) rows.neighbour = neighbour_.data();
+  return true;
 }
 
 void ActivePairs::find_roles(const std::vector<std::uint32_t>& column,

@@ -31,6 +31,9 @@ class ActivePairs {
   /// @param capacity  of the neighbour list
   ActivePairs(std::size_t member_count, std::size_t row_count, std::size_t capacity);
 
+  /// Makes room for a longer neighbour list. Allocates. @return false without memory
+  [[nodiscard]] bool make_room(std::size_t capacity) noexcept;
+
   void choose_all() noexcept { all_ = true; }
   /// All, though some rest; their MATs take part.
   void choose_all(const std::vector<std::uint32_t>& column, MatRoles& roles) noexcept;

@@ -21,7 +21,7 @@ bool is_finite_point(const double* point) noexcept;
 /// along each axis, and kept in a table of few by few by few cells that repeats itself through
 /// space: a cell far away shares its entry with a near one. So whatever is within reach of a point
 /// stands in the 3 cells around it along each axis, each in an entry of its own, and what else
-/// stands there is told apart by its distance. A point that flies away costs nothing, a point that
+/// stands there is distinguished by its distance. A point that flies away costs nothing, a point that
 /// is not finite is left out.
 ///
 /// Proof of "within reach": let |x - x'| <= reach along an axis. A cell is (1 + 2^-8) reach long

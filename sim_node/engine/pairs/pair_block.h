@@ -40,7 +40,7 @@ class PairBlock {
   std::size_t end_of(std::size_t row) const noexcept { return start_[row - first_ + 1]; }
 
   double* rest_length() noexcept { return array(kRestLength); }        ///< [m]
-  double* factor() noexcept { return array(kFactor); }                 ///< pull / distance [N/m]
+  double* factor() noexcept { return array(kFactor); }                 ///< tension / distance [N/m]
   double* viscous_factor() noexcept { return array(kViscousFactor); }  ///< of what is not stored
 
  private:

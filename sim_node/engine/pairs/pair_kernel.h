@@ -46,7 +46,7 @@ using LargestMove = double (*)(const double* position, const double* from,
                                std::size_t count) noexcept;
 
 /// The pairs of a row: one member a, and members b in range; arrays 64-byte aligned, padded to
-/// whole batches with pairs at distance 0 of columns that belong to nobody.
+/// whole batches with pairs at distance 0 of columns that belong to no MAT.
 struct PairRow {
   std::uint32_t* column = nullptr;  // where the column of b begins
   double* x = nullptr;              // from a to b [m]
@@ -101,22 +101,22 @@ using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows
 /// its share to the fourth value of both where the factor is not 0: the partners of a member.
 using SpreadRows = void (*)(const PairRows& rows, const double* factor, double* force) noexcept;
 
-/// A contact: pull = K e + Z / dt * elongation increment, within min_pull and max_pull.
+/// A contact: tension = K e + Z / dt * elongation increment, within min_tension and max_tension.
 struct LinearPair {
   double stiffness = 0.0;          // [N/m]
   double viscosity_over_dt = 0.0;  // [N/m]
-  double min_pull = 0.0;           // [N]
-  double max_pull = 0.0;           // [N]
+  double min_tension = 0.0;        // [N]
+  double max_tension = 0.0;        // [N]
   double min_elongation = 0.0;     // that stores energy [m]
   double max_elongation = 0.0;     // [m]
 };
 
-/// Finds pull / distance of each pair, and the part of it that stores no energy.
+/// Finds tension / distance of each pair, and the part of it that stores no energy.
 /// @param rest  rest lengths [m]
 using LinearPairs = void (*)(const LinearPair& pair, const PairRow& row, std::size_t count,
                              const double* rest, double* factor, double* viscous_factor) noexcept;
 
-/// Lennard-Jones: pull = (attraction / d^6 - repulsion / d^12) / d.
+/// Lennard-Jones: tension = (attraction / d^6 - repulsion / d^12) / d.
 struct LennardJonesPair {
   double attraction = 0.0;    // 24 depth s^6 [J m^6]
   double repulsion = 0.0;     // 48 depth s^12 [J m^12]

@@ -172,13 +172,13 @@ void spread(const PairRow& row, std::size_t i, typename Lanes::Row factor,
             std::size_t part) noexcept {
   using Row3 = typename Lanes::Row3;
   const typename Lanes::Row partner = less_one<Lanes>(touching);
-  const Row3 pull{Lanes::load(row.x + i) * factor, Lanes::load(row.y + i) * factor,
-                  Lanes::load(row.z + i) * factor};
-  sum.x[part] = sum.x[part] + pull.x;
-  sum.y[part] = sum.y[part] + pull.y;
-  sum.z[part] = sum.z[part] + pull.z;
+  const Row3 tension{Lanes::load(row.x + i) * factor, Lanes::load(row.y + i) * factor,
+                     Lanes::load(row.z + i) * factor};
+  sum.x[part] = sum.x[part] + tension.x;
+  sum.y[part] = sum.y[part] + tension.y;
+  sum.z[part] = sum.z[part] + tension.z;
   sum.partners[part] = sum.partners[part] + partner;
-  Lanes::subtract(force, row.column + i, pull, partner);
+  Lanes::subtract(force, row.column + i, tension, partner);
 }
 
 /// The 8 places of a batch in the same order at every width.
@@ -210,25 +210,25 @@ void spread_some(const PairRows& rows, std::size_t i, std::size_t count, const d
   using Row = typename Lanes::Row;
   const PairRow& row = rows.pairs;
   const Row factor = Lanes::load_any(factors + i);
-  typename Lanes::Row3 pull{Lanes::load_any(row.x + i) * factor,
-                            Lanes::load_any(row.y + i) * factor,
-                            Lanes::load_any(row.z + i) * factor};
+  typename Lanes::Row3 tension{Lanes::load_any(row.x + i) * factor,
+                               Lanes::load_any(row.y + i) * factor,
+                               Lanes::load_any(row.z + i) * factor};
   const auto near = Lanes::less(Lanes::load_any(row.length + i), Lanes::every(rows.share.near));
   const Row share = Lanes::select(near, Lanes::every(-1.0), Lanes::every(-rows.share.beyond));
   Row partner = Lanes::select(Lanes::not_equal(factor, Lanes::zero()), share, Lanes::zero());
   if (count < Lanes::kWidth) {
     const auto own =
         Lanes::less(Lanes::load(kLaneNumber), Lanes::every(static_cast<double>(count)));
-    pull.x = Lanes::select(own, pull.x, Lanes::zero());
-    pull.y = Lanes::select(own, pull.y, Lanes::zero());
-    pull.z = Lanes::select(own, pull.z, Lanes::zero());
+    tension.x = Lanes::select(own, tension.x, Lanes::zero());
+    tension.y = Lanes::select(own, tension.y, Lanes::zero());
+    tension.z = Lanes::select(own, tension.z, Lanes::zero());
     partner = Lanes::select(own, partner, Lanes::zero());
   }
-  sum.x[part] = sum.x[part] + pull.x;
-  sum.y[part] = sum.y[part] + pull.y;
-  sum.z[part] = sum.z[part] + pull.z;
+  sum.x[part] = sum.x[part] + tension.x;
+  sum.y[part] = sum.y[part] + tension.y;
+  sum.z[part] = sum.z[part] + tension.z;
   sum.partners[part] = sum.partners[part] + partner;
-  Lanes::subtract(force, row.column + i, pull, partner);
+  Lanes::subtract(force, row.column + i, tension, partner);
 }
 
 template <class Lanes>
@@ -254,15 +254,16 @@ void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count,
   using Row = typename Lanes::Row;
   const Row stiffness = Lanes::every(pair.stiffness);
   const Row viscosity = Lanes::every(pair.viscosity_over_dt);
-  const Row min_pull = Lanes::every(pair.min_pull);
-  const Row max_pull = Lanes::every(pair.max_pull);
+  const Row min_tension = Lanes::every(pair.min_tension);
+  const Row max_tension = Lanes::every(pair.max_tension);
   const Row min_elongation = Lanes::every(pair.min_elongation);
   const Row max_elongation = Lanes::every(pair.max_elongation);
   for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
     const Row inverse = Lanes::load(row.inverse + i);
     const Row elongation = Lanes::load(row.length + i) - Lanes::load(rest + i);
-    const Row pull = stiffness * elongation + viscosity * Lanes::load(row.elongation_increment + i);
-    const Row limited = Lanes::minimum(max_pull, Lanes::maximum(min_pull, pull));
+    const Row tension =
+        stiffness * elongation + viscosity * Lanes::load(row.elongation_increment + i);
+    const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
     const Row stored =
         stiffness * Lanes::minimum(max_elongation, Lanes::maximum(min_elongation, elongation));
     Lanes::store(factor + i, limited * inverse);
@@ -288,7 +289,7 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
         const std::size_t at = i + part * Lanes::kWidth;
         const Row square = Lanes::load(row.square + at);
-        const Row factor = LennardJones::pull_per_distance<Lanes>(attraction, repulsion, square);
+        const Row factor = LennardJones::tension_per_distance<Lanes>(attraction, repulsion, square);
         const auto touching =
             Lanes::both(Lanes::less(square, touch_square), Lanes::not_equal(square, Lanes::zero()));
         spread<Lanes>(row, at, factor, touching, force, sum, part);

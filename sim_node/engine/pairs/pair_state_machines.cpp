@@ -80,7 +80,7 @@ void PairStateMachines::step(const PairStep& step, const MemberColumns& members,
                              double range_square, PairBlock& block) noexcept {
   if (needs_mass_) find_masses(block.rows());
   if (stateless_) {
-    find_plain_pulls(step, block);
+    find_plain_tensions(step, block);
     return;
   }
   recall(step, block);
@@ -91,7 +91,7 @@ void PairStateMachines::step(const PairStep& step, const MemberColumns& members,
   find_factors(range_square, block);
 }
 
-void PairStateMachines::find_plain_pulls(const PairStep& step, PairBlock& block) noexcept {
+void PairStateMachines::find_plain_tensions(const PairStep& step, PairBlock& block) noexcept {
   const PairRow pairs = block.rows().pairs;
   PlainRows plain;
   plain.count = block.padded_count();
@@ -104,7 +104,7 @@ void PairStateMachines::find_plain_pulls(const PairStep& step, PairBlock& block)
   plain.rate = 1.0 / dt_;
   plain.factor = block.factor();
   plain.viscous_factor = block.viscous_factor();
-  step.state_machines.pulls(step.table.terms()[start_], plain);
+  step.state_machines.tensions(step.table.terms()[start_], plain);
 }
 
 /// Loads what each pair of the block remembers, or what a new one begins with.
@@ -123,7 +123,7 @@ void PairStateMachines::recall(const PairStep& step, PairBlock& block) noexcept 
       const PairState& pair = states_.old_state(old);
       state_[i] = pair.state;
       block.rest_length()[i] = pair.rest_length;
-      array(kPull)[i] = pair.pull;
+      array(kTension)[i] = pair.tension;
       array(kImpulse)[i] = pair.impulse;
       array(kEntered)[i] = pair.entered;
       for (std::size_t s = 0; s < slots; ++s) {
@@ -137,7 +137,7 @@ void PairStateMachines::recall(const PairStep& step, PairBlock& block) noexcept 
 void PairStateMachines::begin_pair(std::size_t pair, StateIndex state,
                                    const PairStep& step) noexcept {
   state_[pair] = state;
-  array(kPull)[pair] = 0.0;
+  array(kTension)[pair] = 0.0;
   array(kImpulse)[pair] = 0.0;
   array(kEntered)[pair] = static_cast<double>(step.step);
   for (std::size_t s = 0; s < states_.slot_count(); ++s) memory_of(pair)[s * kPairBatch] = kNoValue;
@@ -208,7 +208,7 @@ void PairStateMachines::step_batches(const PairStep& step, PairBlock& block) noe
     rows.state = state_.data() + i;
     rows.rest_length = block.rest_length() + i;
     rows.elongation = array(kElongation) + i;
-    rows.pull = array(kPull) + i;
+    rows.tension = array(kTension) + i;
     rows.impulse = needs_impulse_ ? array(kImpulse) + i : nullptr;
     rows.entered = array(kEntered) + i;
     rows.memory = memory_.data() + i * states_.slot_count();
@@ -220,7 +220,7 @@ void PairStateMachines::step_batches(const PairStep& step, PairBlock& block) noe
     set(Quantity::kSpeedY, array(kSpeedY) + i);
     set(Quantity::kSpeedZ, array(kSpeedZ) + i);
     set(Quantity::kSlip, array(kSlip) + i);
-    set(Quantity::kForce, rows.pull);
+    set(Quantity::kForce, rows.tension);
     set(Quantity::kImpulse, rows.impulse);
     set(Quantity::kAge, array(kAge) + i);
     set(Quantity::kRestLength, rows.rest_length);
@@ -251,7 +251,7 @@ void PairStateMachines::remember(double range_square, PairBlock& block) noexcept
     for (std::size_t i = block.begin_of(a); i < block.end_of(a); ++i) {
       if (state_[i] == start_ && !(pairs.square[i] < range_square)) continue;
       const bool kept = states_.add({pairs.column[i], state_[i], block.rest_length()[i],
-                                     array(kPull)[i], array(kImpulse)[i], array(kEntered)[i]},
+                                     array(kTension)[i], array(kImpulse)[i], array(kEntered)[i]},
                                     memory_of(i), kPairBatch);
       if (!kept) ++forgotten_;
     }
@@ -261,15 +261,15 @@ void PairStateMachines::remember(double range_square, PairBlock& block) noexcept
 
 void PairStateMachines::find_factors(double range_square, PairBlock& block) noexcept {
   const PairRow pairs = block.rows().pairs;
-  const double* pull = array(kPull);
+  const double* tension = array(kTension);
   const double* elastic = array(kElastic);
   double* factor = block.factor();
   double* viscous_factor = block.viscous_factor();
   for (std::size_t i = 0; i < block.padded_count(); ++i) {
     const bool out_of_reach = state_[i] == start_ && !(pairs.square[i] < range_square);
     const double inverse = out_of_reach ? 0.0 : pairs.inverse[i];
-    factor[i] = pull[i] * inverse;
-    viscous_factor[i] = (pull[i] - elastic[i]) * inverse;
+    factor[i] = tension[i] * inverse;
+    viscous_factor[i] = (tension[i] - elastic[i]) * inverse;
   }
 }
 

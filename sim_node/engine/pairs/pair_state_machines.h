@@ -52,7 +52,7 @@ class PairStateMachines {
   std::size_t add_bound(const PairKernel& kernel, const PairStep& step,
                         const MemberColumns& members, std::size_t a, std::size_t count,
                         const PairRow& row) noexcept;
-  /// Finds the pulls of a padded block whose pairs have been measured. It holds the rest lengths
+  /// Finds the tensions of a padded block whose pairs have been measured. It holds the rest lengths
   /// that new pairs have.
   void step(const PairStep& step, const MemberColumns& members, double range_square,
             PairBlock& block) noexcept;
@@ -89,7 +89,7 @@ class PairStateMachines {
 
  private:
   enum Array : std::size_t {
-    kPull,
+    kTension,
     kElastic,
     kElongation,
     kImpulse,
@@ -113,7 +113,7 @@ class PairStateMachines {
   }
   void find_masses(const PairRows& rows) noexcept;
   void find_velocities(const MemberColumns& members, const PairRows& rows) noexcept;
-  void find_plain_pulls(const PairStep& step, PairBlock& block) noexcept;
+  void find_plain_tensions(const PairStep& step, PairBlock& block) noexcept;
   void recall(const PairStep& step, PairBlock& block) noexcept;
   void begin_pair(std::size_t pair, StateIndex state, const PairStep& step) noexcept;
   void find_quantities(const PairStep& step, PairBlock& block) noexcept;

@@ -77,16 +77,17 @@ void PairStates::add_to(StateHash& hash) const noexcept {
   for (std::size_t i = 0; i < written_.count; ++i) {
     const PairState& pair = written_.states[i];
     hash.add(std::uint64_t{pair.column} << 32 | pair.state);
-    for (const double value : {pair.rest_length, pair.pull, pair.impulse, pair.entered}) {
+    for (const double value : {pair.rest_length, pair.tension, pair.impulse, pair.entered}) {
       hash.add(value);
     }
   }
   hash.add(std::uint64_t{written_.count});
 }
 
-/// Checks that each row holds later members than its own, in their order.
-void PairStates::serialize(Archive& archive, std::size_t member_count, const StateTable& table,
-                           std::uint32_t state_machine) {
+/// Checks that each row holds later members than its own, of the other set where there are two, in
+/// their order.
+void PairStates::serialize(Archive& archive, std::size_t first_later, std::size_t member_count,
+                           const StateTable& table, std::uint32_t state_machine) {
   const std::size_t count = archive.count(written_.count, written_.states.size());
   archive.flag(has_rows_);
   std::vector<std::size_t>& starts = read_.start;  // free between two steps
@@ -96,16 +97,18 @@ void PairStates::serialize(Archive& archive, std::size_t member_count, const Sta
            (row + 1 < starts.size() || start == count);
   });
   std::uint32_t row = 0;
-  std::uint32_t previous = 0;  // column
+  const auto before_first =
+      static_cast<std::uint32_t>(4 * (std::max<std::size_t>(1, first_later) - 1));
+  std::uint32_t previous = before_first;  // column
   const auto fits = [&](std::size_t i, const PairState& pair) {
-    while (i >= starts[row + 1]) previous = 4 * ++row;
+    while (i >= starts[row + 1]) previous = std::max(before_first, 4 * ++row);
     const bool follows = pair.column > previous && pair.column / 4 < member_count;
     previous = pair.column;
     return follows && pair.column % 4 == 0 && table.has_state(state_machine, pair.state);
   };
   archive.records(std::span(written_.states).first(count), fits, &PairState::column,
-                  &PairState::state, &PairState::rest_length, &PairState::pull, &PairState::impulse,
-                  &PairState::entered);
+                  &PairState::state, &PairState::rest_length, &PairState::tension,
+                  &PairState::impulse, &PairState::entered);
   archive.reals({written_.memory.data(), count * slot_count_});
   archive.hash_with([this](StateHash& hash) { add_to(hash); });
 }

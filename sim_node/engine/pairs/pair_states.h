@@ -16,7 +16,7 @@ struct PairState {
   std::uint32_t column = 0;  // of the later member
   StateIndex state = 0;
   double rest_length = 0.0;  // [m]
-  double pull = 0.0;         // [N]
+  double tension = 0.0;      // [N]
   double impulse = 0.0;      // [N s]
   double entered = 0.0;      // step count
 };
@@ -69,9 +69,10 @@ class PairStates {
   std::uint32_t slot_count() const noexcept { return slot_count_; }
 
   /// What was written in the last step.
+  /// @param first_later    the first member that may be the later one of a pair
   /// @param state_machine  of these pairs
-  void serialize(Archive& archive, std::size_t member_count, const StateTable& table,
-                 std::uint32_t state_machine);
+  void serialize(Archive& archive, std::size_t first_later, std::size_t member_count,
+                 const StateTable& table, std::uint32_t state_machine);
 
  private:
   void add_to(StateHash& hash) const noexcept;

@@ -10,10 +10,10 @@ namespace cordis::engine {
 namespace {
 
 // Entries of a neighbour list: room for all pairs where they are few, else for twice those of the
-// start with a large skin, within bounds.
-constexpr std::size_t kMinCapacity = std::size_t{1} << 20;
-constexpr std::size_t kMaxCapacity = std::size_t{1} << 25;
-constexpr std::size_t kStatesPerMember = 64;
+// start with a large skin, within bounds. It grows between steps.
+constexpr std::size_t kFewPairs = std::size_t{1} << 14;
+constexpr std::size_t kMinPerMember = 64;
+constexpr std::size_t kStatesPerMember = 16;  // at first, and what the start takes
 
 std::size_t all_pairs(const SetLiaison& set) {
   const std::size_t p = set.set_p.size();
@@ -23,7 +23,7 @@ std::size_t all_pairs(const SetLiaison& set) {
 std::size_t list_capacity(const NetworkDescription& description, const SetLiaison& set,
                           const PairKernel& kernel) {
   const std::size_t all = all_pairs(set);
-  if (all <= kMinCapacity) return all;
+  if (all <= kFewPairs) return all;
   NeighbourList trial(set.set_p.size(), set.set_q.size(), description.dimension, set.range, 0,
                       kernel);
   trial.hold_skin(0.5 * set.range);
@@ -36,12 +36,12 @@ std::size_t list_capacity(const NetworkDescription& description, const SetLiaiso
   }
   position.resize(4 * padded(position.size() / 4, kPairBatch), 0.0);
   trial.refresh(position.data());
-  return std::min(all, std::clamp(2 * trial.entry_count(), kMinCapacity, kMaxCapacity));
+  const std::size_t least = kMinPerMember * (set.set_p.size() + set.set_q.size());
+  return std::min({all, NeighbourList::kMaxEntries, std::max(2 * trial.entry_count(), least)});
 }
 
 std::size_t state_capacity(const SetLiaison& set) {
-  const std::size_t members = set.set_p.size() + set.set_q.size();
-  return std::min(all_pairs(set), std::max(kMinCapacity / 8, kStatesPerMember * members));
+  return std::min(all_pairs(set), kStatesPerMember * (set.set_p.size() + set.set_q.size()));
 }
 
 double dot(const double* u, const double* v) noexcept {
@@ -96,8 +96,8 @@ void SetPairs::adopt(const StateTable& table) {
   path_ = Path::kAnyStateMachine;
   if (plain && is_none(elasticity)) {
     path_ = Path::kLinear;
-    linear_ = {term.stiffness, term.viscosity_over_dt, term.min_pull,
-               term.max_pull,  term.min_elongation,    term.max_elongation};
+    linear_ = {term.stiffness,   term.viscosity_over_dt, term.min_tension,
+               term.max_tension, term.min_elongation,    term.max_elongation};
   } else if (plain && bare && lennard_jones != nullptr) {
     path_ = Path::kLennardJones;
     const LennardJones::Term law = lennard_jones->term();
@@ -105,10 +105,10 @@ void SetPairs::adopt(const StateTable& table) {
     const double touch = touch_distance(table.state_machines()[state_machine_]);
     lennard_jones_ = {law.attraction, law.repulsion, range * range, touch * touch};
   }
-  const auto is_bare_limit = [](double pull) { return pull == 0.0 || std::isinf(pull); };
+  const auto is_bare_limit = [](double tension) { return tension == 0.0 || std::isinf(tension); };
   const bool conservative = path_ == Path::kLennardJones ||
                             (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 &&
-                             is_bare_limit(term.min_pull) && is_bare_limit(term.max_pull));
+                             is_bare_limit(term.min_tension) && is_bare_limit(term.max_tension));
   has_viscous_ = has_viscous_ || !conservative;  // forces of the last step may have been
 }
 
@@ -328,8 +328,11 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
       for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
         const PairState& pair = states.state(i);
         const std::size_t b = pair.column / 4;
-        sum += table.stored_energy(pair.state, distance(a, b), pair.rest_length,
-                                   state_machines_.masses_of(a, b));
+        const EndMasses mass = state_machines_.masses_of(a, b);
+        sum += table.stored_energy(pair.state, distance(a, b), pair.rest_length, mass);
+        // Less what it has where it comes into range, of the start and of all other states.
+        if (path_ != Path::kLennardJones)
+          sum -= table.stored_energy(start, range_, rest_of.of(a, b), mass);
       }
     }
     return sum;
@@ -380,10 +383,15 @@ std::size_t SetPairs::wanted_room() const noexcept {
 }
 
 bool SetPairs::wants_room() const noexcept {
-  return wanted_room() > state_machines_.states().capacity();
+  return neighbours_.wants_room() || wanted_room() > state_machines_.states().capacity();
 }
 
 void SetPairs::make_room() noexcept {
+  if (neighbours_.wants_room()) {
+    const std::size_t capacity = neighbours_.wanted_capacity();
+    if (active_.make_room(capacity)) neighbours_.make_room(capacity);
+  }
+  if (wanted_room() <= state_machines_.states().capacity()) return;
   const std::size_t twice = 2 * state_machines_.states().capacity();
   state_machines_.make_room(std::min(all_pairs_, std::max(wanted_room(), twice)));
 }
@@ -407,7 +415,8 @@ void SetPairs::serialize(Archive& archive, const StateTable& table) {
                                                [](double force) { return force != 0.0; });
   }
   if (!state_machines_.has_states()) return;
-  state_machines_.states().serialize(archive, column_.size(), table, state_machine_);
+  const std::size_t first_later = count_p_ < column_.size() ? count_p_ : 1;
+  state_machines_.states().serialize(archive, first_later, column_.size(), table, state_machine_);
 }
 
 }  // namespace cordis::engine

@@ -81,20 +81,20 @@ struct Avx2Lanes {
   }
 
   static void add_pairs(double* force, const std::uint32_t* a, const std::uint32_t* b,
-                        const Row3& pull) noexcept {
-    const Row even_xy = _mm256_unpacklo_pd(pull.x, pull.y);  // x0 y0 x2 y2
-    const Row odd_xy = _mm256_unpackhi_pd(pull.x, pull.y);   // x1 y1 x3 y3
-    const Row even_z = _mm256_unpacklo_pd(pull.z, zero());   // z0 0 z2 0
-    const Row odd_z = _mm256_unpackhi_pd(pull.z, zero());    // z1 0 z3 0
+                        const Row3& tension) noexcept {
+    const Row even_xy = _mm256_unpacklo_pd(tension.x, tension.y);  // x0 y0 x2 y2
+    const Row odd_xy = _mm256_unpackhi_pd(tension.x, tension.y);   // x1 y1 x3 y3
+    const Row even_z = _mm256_unpacklo_pd(tension.z, zero());      // z0 0 z2 0
+    const Row odd_z = _mm256_unpackhi_pd(tension.z, zero());       // z1 0 z3 0
     add_pair(force + a[0], force + b[0], _mm256_permute2f128_pd(even_xy, even_z, 0x20));
     add_pair(force + a[1], force + b[1], _mm256_permute2f128_pd(odd_xy, odd_z, 0x20));
     add_pair(force + a[2], force + b[2], _mm256_permute2f128_pd(even_xy, even_z, 0x31));
     add_pair(force + a[3], force + b[3], _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
   }
   static void add_pairs_1d(double* force, const std::uint32_t* a, const std::uint32_t* b,
-                           Row pull) noexcept {
+                           Row tension) noexcept {
     alignas(32) double lane[kWidth];
-    store(lane, pull);
+    store(lane, tension);
     for (std::size_t i = 0; i < kWidth; ++i) {
       force[a[i]] += lane[i];
       force[b[i]] -= lane[i];
@@ -119,9 +119,9 @@ struct Avx2Lanes {
     return _mm256_set_pd(columns[offset[3]], columns[offset[2]], columns[offset[1]],
                          columns[offset[0]]);
   }
-  static void add_pair(double* force_a, double* force_b, Column pull) noexcept {
-    store_column(force_a, load_column(force_a) + pull);
-    store_column(force_b, load_column(force_b) - pull);
+  static void add_pair(double* force_a, double* force_b, Column tension) noexcept {
+    store_column(force_a, load_column(force_a) + tension);
+    store_column(force_b, load_column(force_b) - tension);
   }
 };
 

@@ -73,11 +73,11 @@ struct Avx512Lanes {
   }
 
   static void add_pairs(double* force, const std::uint32_t* a, const std::uint32_t* b,
-                        const Row3& pull) noexcept {
-    const Row even_xy = _mm512_unpacklo_pd(pull.x, pull.y);  // x0 y0 x2 y2  x4 y4 x6 y6
-    const Row odd_xy = _mm512_unpackhi_pd(pull.x, pull.y);   // x1 y1 x3 y3  x5 y5 x7 y7
-    const Row even_z = _mm512_unpacklo_pd(pull.z, zero());   // z0 0 z2 0  z4 0 z6 0
-    const Row odd_z = _mm512_unpackhi_pd(pull.z, zero());    // z1 0 z3 0  z5 0 z7 0
+                        const Row3& tension) noexcept {
+    const Row even_xy = _mm512_unpacklo_pd(tension.x, tension.y);  // x0 y0 x2 y2  x4 y4 x6 y6
+    const Row odd_xy = _mm512_unpackhi_pd(tension.x, tension.y);   // x1 y1 x3 y3  x5 y5 x7 y7
+    const Row even_z = _mm512_unpacklo_pd(tension.z, zero());      // z0 0 z2 0  z4 0 z6 0
+    const Row odd_z = _mm512_unpackhi_pd(tension.z, zero());       // z1 0 z3 0  z5 0 z7 0
     const Row c04 = first_pairs(even_xy, even_z);
     const Row c15 = first_pairs(odd_xy, odd_z);
     const Row c26 = second_pairs(even_xy, even_z);
@@ -92,9 +92,9 @@ struct Avx512Lanes {
     add_pair(force + a[7], force + b[7], _mm512_extractf64x4_pd(c37, 1));
   }
   static void add_pairs_1d(double* force, const std::uint32_t* a, const std::uint32_t* b,
-                           Row pull) noexcept {
+                           Row tension) noexcept {
     alignas(64) double lane[kWidth];
-    store(lane, pull);
+    store(lane, tension);
     for (std::size_t i = 0; i < kWidth; ++i) {
       force[a[i]] += lane[i];
       force[b[i]] -= lane[i];
@@ -152,9 +152,9 @@ struct Avx512Lanes {
                          columns[offset[4]], columns[offset[3]], columns[offset[2]],
                          columns[offset[1]], columns[offset[0]]);
   }
-  static void add_pair(double* force_a, double* force_b, Column pull) noexcept {
-    store_column(force_a, load_column(force_a) + pull);
-    store_column(force_b, load_column(force_b) - pull);
+  static void add_pair(double* force_a, double* force_b, Column tension) noexcept {
+    store_column(force_a, load_column(force_a) + tension);
+    store_column(force_b, load_column(force_b) - tension);
   }
 };
 

@@ -87,16 +87,16 @@ struct Sse2Lanes {
   }
 
   static void add_pairs(double* force, const std::uint32_t* a, const std::uint32_t* b,
-                        const Row3& pull) noexcept {
+                        const Row3& tension) noexcept {
     add_pair(force + a[0], force + b[0],
-             {_mm_unpacklo_pd(pull.x, pull.y), _mm_unpacklo_pd(pull.z, zero())});
+             {_mm_unpacklo_pd(tension.x, tension.y), _mm_unpacklo_pd(tension.z, zero())});
     add_pair(force + a[1], force + b[1],
-             {_mm_unpackhi_pd(pull.x, pull.y), _mm_unpackhi_pd(pull.z, zero())});
+             {_mm_unpackhi_pd(tension.x, tension.y), _mm_unpackhi_pd(tension.z, zero())});
   }
   static void add_pairs_1d(double* force, const std::uint32_t* a, const std::uint32_t* b,
-                           Row pull) noexcept {
+                           Row tension) noexcept {
     alignas(16) double lane[kWidth];
-    store(lane, pull);
+    store(lane, tension);
     for (std::size_t i = 0; i < kWidth; ++i) {
       force[a[i]] += lane[i];
       force[b[i]] -= lane[i];
@@ -129,9 +129,9 @@ struct Sse2Lanes {
   static Row gather(const double* columns, const std::uint32_t* offset) noexcept {
     return _mm_loadh_pd(_mm_load_sd(columns + offset[0]), columns + offset[1]);
   }
-  static void add_pair(double* force_a, double* force_b, const Column& pull) noexcept {
-    store_column(force_a, load_column(force_a) + pull);
-    store_column(force_b, load_column(force_b) - pull);
+  static void add_pair(double* force_a, double* force_b, const Column& tension) noexcept {
+    store_column(force_a, load_column(force_a) + tension);
+    store_column(force_b, load_column(force_b) - tension);
   }
 };
 

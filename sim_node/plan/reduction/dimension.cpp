@@ -48,8 +48,8 @@ bool fits_a_line(const scene::Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
   if (!network.state_links.empty()) return false;
   for (const scene::Signal& signal : scene.signals.signals()) {
-    const bool is_of_link =
-        signal.quantity >= scene::Quantity::kDistance && signal.quantity <= scene::Quantity::kPull;
+    const bool is_of_link = signal.quantity >= scene::Quantity::kDistance &&
+                            signal.quantity <= scene::Quantity::kTension;
     if (is_of_link) return false;
   }
   // Where both ends are at one place there is no direction, and no force, but in 1 dimension.
@@ -69,24 +69,24 @@ bool fits_a_line(const scene::Scene& scene) {
 /// The vectors of a scene in the directions that are left.
 class Projection {
  public:
-  explicit Projection(const scene::Subspace& confinement, int dimension)
-      : confinement_(confinement), dimension_(dimension) {}
+  explicit Projection(const scene::Subspace& subspace, int dimension)
+      : subspace_(subspace), dimension_(dimension) {}
 
   Vec3 operator()(const Vec3& vector) const {
     Vec3 left = Vec3::Zero();
     for (int k = 0; k < dimension_; ++k) {
-      left[k] = vector[confinement_.axes[static_cast<std::size_t>(k)]];
+      left[k] = vector[subspace_.axes[static_cast<std::size_t>(k)]];
     }
     return left;
   }
 
  private:
-  const scene::Subspace& confinement_;
+  const scene::Subspace& subspace_;
   int dimension_;
 };
 
-void project(const scene::Subspace& confinement, int dimension, scene::Scene& scene) {
-  const Projection project(confinement, dimension);
+void project(const scene::Subspace& subspace, int dimension, scene::Scene& scene) {
+  const Projection project(subspace, dimension);
   engine::NetworkDescription& network = scene.network;
   network.dimension = dimension;
   network.gravity = project(network.gravity);
@@ -101,19 +101,19 @@ void project(const scene::Subspace& confinement, int dimension, scene::Scene& sc
   std::vector<scene::Signal> signals = scene.signals.signals();
   for (scene::Signal& signal : signals) {
     if (signal.quantity == scene::Quantity::kPosition) {
-      signal.offset -= signal.direction.dot(confinement.origin);  // what never changes
+      signal.offset -= signal.direction.dot(subspace.origin);  // what never changes
     }
     signal.direction = project(signal.direction);
   }
   scene.signals = scene::SignalReader(std::move(signals), network);
-  scene.confinement = confinement;
+  scene.subspace = subspace;
 }
 
 }  // namespace
 
 std::string confine(scene::Scene& scene) {
-  scene::Subspace confinement;
-  confinement.space = scene.space();
+  scene::Subspace subspace;
+  subspace.space = scene.space();
   std::vector<int> left;
   std::string places;
   for (int axis = 0; axis < scene.space(); ++axis) {
@@ -121,16 +121,16 @@ std::string confine(scene::Scene& scene) {
       left.push_back(axis);
       continue;
     }
-    confinement.origin[axis] = scene.network.mats.front().position[axis];
+    subspace.origin[axis] = scene.network.mats.front().position[axis];
     places += (places.empty() ? "" : ", ") + std::string(1, static_cast<char>('x' + axis)) + " = " +
-              config::number_text(confinement.origin[axis]) + " m";
+              config::number_text(subspace.origin[axis]) + " m";
   }
   const auto dimension = static_cast<int>(left.size());
   const bool fits = dimension > 1 || (dimension == 1 && fits_a_line(scene));
   if (dimension == scene.space() || !fits || asks_for_an_axis(scene.network)) return {};
-  std::copy(left.begin(), left.end(), confinement.axes.begin());
+  std::copy(left.begin(), left.end(), subspace.axes.begin());
   const std::string before = std::to_string(scene.space());
-  project(confinement, dimension, scene);
+  project(subspace, dimension, scene);
   return before + "-D computed as " + std::to_string(dimension) + "-D: nothing can ever leave " +
          places;
 }

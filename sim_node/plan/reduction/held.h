@@ -12,7 +12,7 @@ struct Held {
   std::vector<bool> mats;   ///< fixed ones, ports, members of sets, ends of other links than linear
                             ///< ones, those of signals
   std::vector<bool> links;  ///< linear ones: of signals, and couplings of ports
-  bool energy = false;      ///< a signal tells the energy in the links
+  bool energy = false;      ///< a signal reports the energy in the links
 };
 
 /// O(MATs + links).

@@ -43,10 +43,10 @@ void refuse_massless(const scene::Scene& scene, const MergedSeries& series,
 }  // namespace
 
 scene::Scene reduce(scene::Scene scene, config::Problems& problems) {
-  const scene::ReductionOptions wish = scene.reduce;
-  if (!wish.parallel && !wish.series && !wish.dimension) return scene;
+  const scene::ReductionOptions options = scene.reduce;
+  if (!options.parallel && !options.series && !options.dimension) return scene;
   auto whole = std::make_shared<const scene::Scene>(scene);
-  if (wish.dimension) {
+  if (options.dimension) {
     const int space = scene.space();
     const std::string done = confine(scene);
     const auto directions = static_cast<std::size_t>(space - scene.space());
@@ -55,9 +55,9 @@ scene::Scene reduce(scene::Scene scene, config::Problems& problems) {
   std::size_t merged_links = 0;
   std::size_t merged_mats = 0;
   for (bool again = true; again;) {
-    if (wish.parallel) merged_links += merge_parallel(scene);
+    if (options.parallel) merged_links += merge_parallel(scene);
     MergedSeries series;
-    if (wish.series) series = merge_series(scene);
+    if (options.series) series = merge_series(scene);
     again = series.count > 0;
     if (!again) refuse_massless(scene, series, problems);
     merged_mats += series.count;

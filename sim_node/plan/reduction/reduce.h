@@ -5,7 +5,7 @@
 
 namespace cordis::plan {
 
-/// The scene after the reductions that its `reduce` wants; Scene::reductions tells them, and
+/// The scene after the reductions that its `reduce` wants; Scene::reductions reports them, and
 /// Scene::whole is the scene as it was, when any was made. A MAT without mass that none takes out
 /// is a problem. What signals, ports, sets and links with states ask for stays; to set a parameter
 /// of a liaison, set it in the whole and reduce that again. Deterministic; O(MATs + links log

@@ -9,14 +9,14 @@
 namespace cordis::plan {
 
 InstructionCounter::InstructionCounter() noexcept {
-  perf_event_attr wish{};
-  wish.type = PERF_TYPE_HARDWARE;
-  wish.size = sizeof(wish);
-  wish.config = PERF_COUNT_HW_INSTRUCTIONS;
-  wish.disabled = 1;
-  wish.exclude_kernel = 1;
-  wish.exclude_hv = 1;
-  file_ = static_cast<int>(syscall(SYS_perf_event_open, &wish, 0, -1, -1, 0UL));
+  perf_event_attr request{};
+  request.type = PERF_TYPE_HARDWARE;
+  request.size = sizeof(request);
+  request.config = PERF_COUNT_HW_INSTRUCTIONS;
+  request.disabled = 1;
+  request.exclude_kernel = 1;
+  request.exclude_hv = 1;
+  file_ = static_cast<int>(syscall(SYS_perf_event_open, &request, 0, -1, -1, 0UL));
 }
 
 InstructionCounter::~InstructionCounter() {

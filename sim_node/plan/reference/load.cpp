@@ -2,33 +2,51 @@
 #include "sim_node/plan/reference/load.h"
 
 #include <algorithm>
-#include <chrono>
-#include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "sim_node/engine/world.h"
+#include "sim_node/plan/reference/thread_time.h"
 
 namespace cordis::plan {
+namespace {
 
-double measure_step_nsec(engine::NetworkDescription network) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds kAtLeast{50};
-  constexpr std::chrono::milliseconds kAtMost{250};
-  constexpr int kBatches = 10;
+constexpr double kWithoutSets = 5e7;  // [ns]
+constexpr double kWithSets = 5e8;     // [ns]
+constexpr double kOfOneBatch = 2e4;   // [ns]: the clock itself takes some hundred
+constexpr std::size_t kWarmUp = 3;    // batches: the caches fill
+constexpr std::size_t kMaxBatches = 50'000;
+
+}  // namespace
+
+StepLoad measure_steps(engine::NetworkDescription network) {
   network.freeze_tolerance = 0.0;
+  const double enough = network.sets.empty() ? kWithoutSets : kWithSets;
   engine::World world(std::make_shared<const engine::Network>(std::move(network)));
-  const Clock::time_point begin = Clock::now();
-  double quickest = std::numeric_limits<double>::infinity();
-  for (int batch = 0, steps = 1;; ++batch) {
-    const Clock::time_point from = Clock::now();
-    if (batch > 0 && from - begin > (batch < kBatches ? kAtMost : kAtLeast)) break;
-    for (int n = 0; n < steps; ++n) world.step();
-    const std::chrono::duration<double, std::nano> taken = Clock::now() - from;
-    quickest = std::min(quickest, taken.count() / steps);
-    if (taken < kAtLeast / (2 * kBatches)) steps *= 2;  // the clock itself costs time
-  }
-  return quickest;
+  StepLoad load;
+  std::vector<double> batches;  // [ns] of a step
+  std::size_t steps = 1;        // of a batch
+  double total = 0.0;
+  do {
+    const double from = thread_nsec();
+    for (std::size_t n = 0; n < steps; ++n) {
+      if (world.step().wants_room) world.make_room();
+    }
+    const double taken = thread_nsec() - from;
+    total += taken;
+    load.step_count += steps;
+    if (taken < kOfOneBatch && batches.size() <= kWarmUp) {
+      steps *= 2;
+      batches.clear();
+    }
+    batches.push_back(taken / static_cast<double>(steps));
+  } while (total < enough && batches.size() < kMaxBatches);
+  if (batches.size() > 2 * kWarmUp) batches.erase(batches.begin(), batches.begin() + kWarmUp);
+  std::sort(batches.begin(), batches.end());
+  load.median_nsec = batches[batches.size() / 2];
+  load.worst_nsec = batches.back();
+  return load;
 }
 
 }  // namespace cordis::plan

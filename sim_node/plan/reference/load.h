@@ -1,15 +1,26 @@
 // sim_node/plan/reference/load.h -- how long a step takes on this machine.
 #pragma once
 
+#include <cstddef>
+
 #include "sim_node/engine/description/network.h"
 
 namespace cordis::plan {
 
-/// Runs the network from its start, with all its masses awake, for some 50 ms of wall time, or one
-/// step where that takes longer.
-/// @return the time of a step [ns]: of the quickest of several batches, so that what else runs on
-///         the machine counts little. Not a promise: a scene in motion may have more contacts.
+/// Processor time of the steps of a trial.
+struct StepLoad {
+  double median_nsec = 0.0;
+  /// The longest step; where a step takes less than some microseconds, the longest mean of several
+  /// that are measured together.
+  double worst_nsec = 0.0;
+  std::size_t step_count = 0;
+};
+
+/// Runs the network from its start, with all its masses awake: for some 50 ms, with liaisons of sets
+/// for some 500 ms, in which neighbour lists are made again, or for one step where that takes
+/// longer. It is the time of the thread, so that what else runs on the machine counts little. Not a
+/// promise: a scene in motion may have more contacts.
 /// @throws std::invalid_argument when the engine does not take the network.
-double measure_step_nsec(engine::NetworkDescription network);
+StepLoad measure_steps(engine::NetworkDescription network);
 
 }  // namespace cordis::plan

@@ -31,7 +31,7 @@ bool NearPairs::has_strayed(const double* positions) const {
   return false;
 }
 
-void NearPairs::look(const double* positions) {
+void NearPairs::update(const double* positions) {
   seen_.clear();
   for (const auto* half : {&set_p_, &set_q_}) {
     for (const std::uint32_t mat : *half) seen_.push_back(at(positions, mat));
@@ -48,7 +48,7 @@ void NearPairs::look(const double* positions) {
 }
 
 const std::vector<NearPairs::Pair>& NearPairs::near(const double* positions) {
-  if (has_strayed(positions)) look(positions);
+  if (has_strayed(positions)) update(positions);
   return pairs_;
 }
 

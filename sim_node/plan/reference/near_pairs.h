@@ -10,7 +10,7 @@
 namespace cordis::plan {
 
 /// Pairs of MATs of a set liaison, kept until a member has moved so far that another pair may have
-/// come into range. Looks at all pairs when it looks: for sets of up to some thousand.
+/// come into range. Measures all pairs at an update: for sets of up to some thousand.
 class NearPairs {
  public:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
@@ -23,7 +23,7 @@ class NearPairs {
 
  private:
   bool has_strayed(const double* positions) const;
-  void look(const double* positions);
+  void update(const double* positions);
 
   std::vector<std::uint32_t> set_p_;
   std::vector<std::uint32_t> set_q_;

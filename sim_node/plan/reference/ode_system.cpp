@@ -58,6 +58,9 @@ OdeSystem::Values OdeSystem::start() const {
     std::copy_n(network_.mats[i].position.data(), 3, values.data() + 3 * i);
     std::copy_n(network_.mats[i].velocity.data(), 3, values.data() + position_count() + 3 * i);
   }
+  for (std::size_t l = 0; l < network_.maxwell_links.size(); ++l) {
+    values[2 * position_count() + l] = network_.maxwell_links[l].start_force;
+  }
   return values;
 }
 
@@ -127,17 +130,17 @@ OdeSystem::Geometry OdeSystem::geometry(const Values& values, const Joined& join
   return link;
 }
 
-double OdeSystem::pull(const Joined& joined, const Geometry& link) const {
+double OdeSystem::tension(const Joined& joined, const Geometry& link) const {
   const engine::LinkState& state = joined.state_machine.states[joined.present.state];
   const double elongation = link.distance - joined.present.rest_length;
   engine::LawPoint at{link.distance, elongation, 0.0, mass(joined.mat_a), mass(joined.mat_b)};
-  double pull = state.stiffness * elongation + state.viscosity * link.speed +
-                elastic_pull(state.elasticity, at);
+  double tension = state.stiffness * elongation + state.viscosity * link.speed +
+                   elastic_tension(state.elasticity, at);
   at.speed = link.speed;
-  pull += viscous_pull(state.dissipation, at);
-  if (!state.pulls) pull = std::min(pull, 0.0);
-  if (!state.pushes) pull = std::max(pull, 0.0);
-  return std::clamp(pull, -state.force_limit, state.force_limit);
+  tension += viscous_tension(state.dissipation, at);
+  if (!state.pulls) tension = std::min(tension, 0.0);
+  if (!state.pushes) tension = std::max(tension, 0.0);
+  return std::clamp(tension, -state.force_limit, state.force_limit);
 }
 
 void OdeSystem::rate(const Values& values, Values& rate) {
@@ -156,20 +159,20 @@ void OdeSystem::rate(const Values& values, Values& rate) {
       push(link.mat_a, link.mat_b, link.stiffness * along + link.viscosity * at.velocity);
       continue;
     }
-    const double pull =
+    const double tension =
         link.stiffness * (at.distance - link.rest_length) + link.viscosity * at.speed;
-    push(link.mat_a, link.mat_b, pull * at.direction);
+    push(link.mat_a, link.mat_b, tension * at.direction);
   }
   for (std::uint32_t l = 0; l < states_.size(); ++l) {
     const Joined link = joined(l);
     const Geometry at = geometry(values, link);
-    push(link.mat_a, link.mat_b, pull(link, at) * at.direction);
+    push(link.mat_a, link.mat_b, tension(link, at) * at.direction);
   }
   for (std::uint32_t s = 0; s < sets_.size(); ++s) {
     each_pair(s, values, [&](NearPairs::Pair pair, const Present& present) {
       const Joined link = joined(s, pair, present);
       const Geometry at = geometry(values, link);
-      push(pair.first, pair.second, pull(link, at) * at.direction);
+      push(pair.first, pair.second, tension(link, at) * at.direction);
       return true;
     });
   }
@@ -203,7 +206,7 @@ engine::LinkQuantities OdeSystem::quantities(const Joined& joined, double time,
           link.velocity.y(),
           link.velocity.z(),
           (link.velocity - link.speed * link.direction).norm(),
-          pull(joined, link),
+          tension(joined, link),
           0.0,
           time - std::max(joined.present.entered, 0.0),
           joined.present.rest_length,

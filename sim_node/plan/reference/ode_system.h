@@ -73,7 +73,7 @@ class OdeSystem {
 
   Geometry geometry(const Values& values, const Joined& joined) const;
   double mass(std::uint32_t mat) const;
-  double pull(const Joined& joined, const Geometry& link) const;
+  double tension(const Joined& joined, const Geometry& link) const;
   engine::LinkQuantities quantities(const Joined& joined, double time, const Geometry& link) const;
   /// The exit of the present state that holds; -1 when none does.
   std::int64_t exit_of(const Joined& joined, double time, const Values& values);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "sim_node/engine/core/state_hash.h"
@@ -18,6 +19,7 @@ using engine::Vec3;
 constexpr double kLooser = 100.0;  // than the tolerance, the second reference integrator
 constexpr double kShorter = 0.75;  // its longest step: where that decides, it differs all the same
 constexpr double kParted = 1e-3;   // of the amplitude
+constexpr double kMoved = 1e-6;    // of the amplitude, the start of the third
 constexpr double kFiner = 8.0;     // than the finest trial, where there is no reference integrator
 
 std::vector<std::uint32_t> masses_of(const engine::NetworkDescription& network) {
@@ -38,10 +40,10 @@ struct SampledTrajectory {
 /// Takes the samples of one motion.
 class Sampler {
  public:
-  Sampler(const engine::NetworkDescription& network, const ReferenceOptions& wish,
+  Sampler(const engine::NetworkDescription& network, const ReferenceOptions& options,
           double share_before)
       : network_(network),
-        wish_(wish),
+        options_(options),
         share_before_(share_before),
         masses_(masses_of(network)),
         begin_(Clock::now()) {}
@@ -55,13 +57,13 @@ class Sampler {
       kinetic += 0.5 * network_.mats[mat].mass * motion.velocity(mat).squaredNorm();
     }
     sampled.kinetic.push_back(kinetic);
-    if (wish_.progress) {
-      const double done = static_cast<double>(sampled.kinetic.size()) / wish_.sampling.count;
-      wish_.progress(share_before_ + 0.5 * done);
+    if (options_.progress) {
+      const double done = static_cast<double>(sampled.kinetic.size()) / options_.sampling.count;
+      options_.progress(share_before_ + done / 3.0);
     }
   }
   bool is_late() const {
-    return std::chrono::duration<double>(Clock::now() - begin_).count() > wish_.longest_s;
+    return std::chrono::duration<double>(Clock::now() - begin_).count() > options_.longest_s;
   }
 
   SampledTrajectory sampled;
@@ -69,7 +71,7 @@ class Sampler {
  private:
   using Clock = std::chrono::steady_clock;
   const engine::NetworkDescription& network_;
-  const ReferenceOptions& wish_;
+  const ReferenceOptions& options_;
   double share_before_;
   std::vector<std::uint32_t> masses_;
   Clock::time_point begin_;
@@ -77,10 +79,11 @@ class Sampler {
 
 /// Ends before the last sample where the reference integrator finds no way on, or not in time.
 SampledTrajectory sample_reference(const engine::NetworkDescription& network,
-                                   const InputTrajectory& trajectory, const ReferenceOptions& wish,
-                                   double tolerance, double share_before) {
+                                   const InputTrajectory& trajectory,
+                                   const ReferenceOptions& options, double tolerance,
+                                   double share_before) {
   ReferenceIntegrator reference_integrator(network, tolerance);
-  Sampler camera(network, wish, share_before);
+  Sampler sampler(network, options, share_before);
   std::size_t period = 0;
   const auto begin_period = [&] {
     if (goes_on(trajectory, period)) return;
@@ -95,41 +98,41 @@ SampledTrajectory sample_reference(const engine::NetworkDescription& network,
   };
   try {
     if (!trajectory.channels.empty()) begin_period();
-    for (int sample = 0; sample < wish.sampling.count; ++sample) {
-      const double until = wish.sampling.time(sample);
+    for (int sample = 0; sample < options.sampling.count; ++sample) {
+      const double until = options.sampling.time(sample);
       while (!trajectory.channels.empty() &&
              static_cast<double>(period + 1) * trajectory.period <= until * (1.0 + 1e-12)) {
         ++period;
         if (goes_on(trajectory, period)) continue;
         reference_integrator.advance_to(static_cast<double>(period) * trajectory.period);
         begin_period();
-        if (camera.is_late()) break;
+        if (sampler.is_late()) break;
       }
-      if (camera.is_late()) break;
+      if (sampler.is_late()) break;
       reference_integrator.advance_to(until);
-      camera.take(reference_integrator);
+      sampler.take(reference_integrator);
     }
   } catch (const std::runtime_error&) {
     // what has been reached is what there is
   }
-  camera.sampled.evaluations = reference_integrator.force_evaluations();
-  return std::move(camera.sampled);
+  sampler.sampled.evaluations = reference_integrator.force_evaluations();
+  return std::move(sampler.sampled);
 }
 
 SampledTrajectory sample_scheme(const engine::NetworkDescription& network,
-                                const InputTrajectory& trajectory, const ReferenceOptions& wish,
+                                const InputTrajectory& trajectory, const ReferenceOptions& options,
                                 double rate_hz, double share_before) {
   const auto steps =
-      static_cast<std::uint64_t>(std::max(1.0, std::round(rate_hz * wish.sampling.period)));
-  TrajectoryRun run(network, "cordis", static_cast<double>(steps) / wish.sampling.period,
+      static_cast<std::uint64_t>(std::max(1.0, std::round(rate_hz * options.sampling.period)));
+  TrajectoryRun run(network, "cordis", static_cast<double>(steps) / options.sampling.period,
                     trajectory);
-  Sampler camera(network, wish, share_before);
-  for (int sample = 0; sample < wish.sampling.count && !camera.is_late(); ++sample) {
+  Sampler sampler(network, options, share_before);
+  for (int sample = 0; sample < options.sampling.count && !sampler.is_late(); ++sample) {
     if (!run.advance(steps)) break;
-    camera.take(run.world());
+    sampler.take(run.world());
   }
-  camera.sampled.evaluations = run.world().step_count();
-  return std::move(camera.sampled);
+  sampler.sampled.evaluations = run.world().step_count();
+  return std::move(sampler.sampled);
 }
 
 double amplitude_of(const Reference& reference) {
@@ -148,20 +151,75 @@ double amplitude_of(const Reference& reference) {
   return std::sqrt(sum / static_cast<double>(rows * reference.masses.size()));
 }
 
-/// Compares with the second trajectory, and ends the comparison where they part.
-void hold_against(const SampledTrajectory& second, Reference& reference) {
+/// Root of the mean square distance of the masses in a sample of two motions, over the amplitude.
+double distance_between(const Reference& reference, int sample, const SampledTrajectory& first,
+                        const SampledTrajectory& second) {
+  const std::size_t width = 3 * reference.masses.size();
+  const std::size_t from = static_cast<std::size_t>(sample) * width;
   double sum = 0.0;
-  const auto samples = static_cast<int>(second.kinetic.size());
-  for (int sample = 0; sample < std::min(samples, reference.sampling.count); ++sample) {
+  for (std::size_t i = from; i < from + width; ++i) {
+    const double apart = first.position[i] - second.position[i];
+    sum += apart * apart;
+  }
+  return std::sqrt(sum / static_cast<double>(reference.masses.size())) / reference.amplitude;
+}
+
+/// The sample from which on a slightly different start has grown to kParted, `samples` when none.
+/// What shears instead, as the phase of an oscillator whose pitch depends on its amplitude, grows
+/// with the time: from the half of a time to the whole twice, under a steady force four times.
+int first_chaotic_sample(const Reference& reference, const SampledTrajectory& second,
+                         const SampledTrajectory& third, int samples) {
+  constexpr double kExponential = 8.0;
+  std::vector<double> largest;  // so far
+  for (int sample = 0; sample < samples; ++sample) {
+    const double apart = distance_between(reference, sample, second, third);
+    const double before = largest.empty() ? kMoved : largest.back();
+    largest.push_back(std::max(before, apart));
+    const double at_half = sample < 2 ? kMoved : largest[static_cast<std::size_t>(sample / 2)];
+    if (!(apart < kParted) && !(apart < kExponential * at_half)) return sample;
+  }
+  return samples;
+}
+
+/// Compares with the other trajectories, and ends the comparison where they part.
+void hold_against(const SampledTrajectory& second, const SampledTrajectory& third,
+                  Reference& reference) {
+  double sum = 0.0;
+  const auto samples = std::min(static_cast<int>(second.kinetic.size()), reference.sampling.count);
+  const int both = std::min(samples, static_cast<int>(third.kinetic.size()));
+  const int chaotic = first_chaotic_sample(reference, second, third, both);
+  for (int sample = 0; sample < samples; ++sample) {
     const double apart =
         reference.distance(sample, second.position.data() + static_cast<std::size_t>(sample) * 3 *
                                                                 reference.masses.size());
-    reference.diverged = !(apart < kParted);
+    reference.chaotic = sample == chaotic && chaotic < both;
+    reference.diverged = reference.chaotic || !(apart < kParted);
     if (reference.diverged) break;
     sum += apart * apart;
     reference.compared = sample + 1;
   }
   if (reference.compared > 0) reference.uncertainty = std::sqrt(sum / reference.compared);
+}
+
+/// The masses a little beside their start, each as far.
+engine::NetworkDescription moved_beside(engine::NetworkDescription network, double distance) {
+  const double each = distance / std::sqrt(static_cast<double>(network.dimension));
+  std::uint32_t bits = 0x2545F491;
+  for (engine::Mat& mat : network.mats) {
+    if (mat.kind != engine::MatKind::kMass) continue;
+    for (int axis = 0; axis < network.dimension; ++axis) {
+      bits = bits * 1664525U + 1013904223U;
+      mat.position[axis] += (bits >> 31) != 0 ? each : -each;
+    }
+  }
+  return network;
+}
+
+void require_samples(int count, const std::string& what, const std::string& advice = {}) {
+  if (count >= kFewestSamples) return;
+  throw std::runtime_error("too few samples: " + what + " " + std::to_string(count) + ", and " +
+                           std::to_string(kFewestSamples) +
+                           " are needed to distinguish a motion from rest" + advice);
 }
 
 }  // namespace
@@ -176,44 +234,54 @@ double Reference::distance(int sample, const double* positions) const noexcept {
 }
 
 Reference make_reference(const engine::NetworkDescription& network,
-                         const InputTrajectory& trajectory, const ReferenceOptions& wish) {
+                         const InputTrajectory& trajectory, const ReferenceOptions& options) {
+  std::ostringstream enough;
+  enough << ": ask for " << options.sampling.period * kFewestSamples << " s";
+  require_samples(options.sampling.count, "the duration has", enough.str());
   Reference reference;
   reference.masses = masses_of(network);
   SampledTrajectory first;
   SampledTrajectory second;
+  engine::NetworkDescription other = network;
   try {
-    first = sample_reference(network, trajectory, wish, wish.tolerance, 0.0);
-    engine::NetworkDescription other = network;
+    first = sample_reference(network, trajectory, options, options.tolerance, 0.0);
     other.step *= kShorter;
-    second = sample_reference(other, trajectory, wish, kLooser * wish.tolerance, 0.5);
+    second = sample_reference(other, trajectory, options, kLooser * options.tolerance, 1.0 / 3.0);
     reference.made_by = "reference integrator";
   } catch (const std::invalid_argument& refusal) {
-    const double rate = kFiner * wish.finest_hz;
-    first = sample_scheme(network, trajectory, wish, rate, 0.0);
-    second = sample_scheme(network, trajectory, wish, 0.5 * rate, 0.5);
+    const double rate = kFiner * options.finest_hz;
+    first = sample_scheme(network, trajectory, options, rate, 0.0);
+    second = sample_scheme(network, trajectory, options, 0.5 * rate, 1.0 / 3.0);
     reference.by_reference = false;
     reference.made_by = std::string("the scheme itself at ") + std::to_string(std::lround(rate)) +
                         " Hz, because " + refusal.what();
   }
-  reference.sampling = wish.sampling;
+  reference.sampling = options.sampling;
   reference.sampling.count = static_cast<int>(first.kinetic.size());
   reference.position = std::move(first.position);
   reference.kinetic = std::move(first.kinetic);
   reference.evaluations = first.evaluations;
-  if (reference.sampling.count == 0) {
-    throw std::runtime_error("no reference: the motion is too rough for the time given");
-  }
+  require_samples(reference.sampling.count,
+                  "the motion is so rough that within its time the reference has only");
   reference.amplitude = amplitude_of(reference);
   if (!(reference.amplitude > 0.0)) throw NothingMoves();
-  hold_against(second, reference);
-  if (reference.compared == 0)
-    throw std::runtime_error("no reference: two reference integrators never agree");
+  const engine::NetworkDescription beside = moved_beside(other, kMoved * reference.amplitude);
+  const SampledTrajectory third =
+      reference.by_reference
+          ? sample_reference(beside, trajectory, options, kLooser * options.tolerance, 2.0 / 3.0)
+          : sample_scheme(beside, trajectory, options, 0.5 * kFiner * options.finest_hz, 2.0 / 3.0);
+  hold_against(second, third, reference);
+  require_samples(reference.compared, reference.chaotic
+                                          ? "the motion is chaotic, and comparable in only"
+                                          : "two references agree in only");
   return reference;
 }
 
 std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& trajectory,
                      const Sampling& sampling, double tolerance) {
+  constexpr std::uint64_t kOfThreeRuns = 3;
   engine::StateHash hash;
+  hash.add(kOfThreeRuns);
   hash.add(engine::Network(network).fingerprint());
   for (const double value : {trajectory.period, sampling.period, tolerance}) hash.add(value);
   hash.add(static_cast<std::uint64_t>(sampling.count));

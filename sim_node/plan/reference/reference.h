@@ -22,8 +22,11 @@ struct Sampling {
 
 /// The motion of the masses of a network, and how far it can be trusted.
 ///
-/// Made twice, by an Reference integrator of one tolerance and by one of a hundred times that.
-/// Where the two part, the motion is chaotic: no step will follow it any further.
+/// Made twice, by an Reference integrator of one tolerance and by one of a hundred times that, and
+/// once more from a start that differs by a millionth of the amplitude. Where the first two part,
+/// the reference is known no further. Where the third has gone away from the second by a
+/// thousandth of the amplitude, by an exponential growth, the motion is chaotic: errors of any
+/// integrator grow alike, and say nothing of it.
 struct Reference {
   Sampling sampling;
   std::vector<std::uint32_t> masses;  ///< the MATs whose motion this is
@@ -32,7 +35,8 @@ struct Reference {
   /// Root of the mean square of the distance of a mass from its mean position [m].
   double amplitude = 0.0;
   int compared = 0;       ///< samples at which positions mean something
-  bool diverged = false;  ///< why they mean nothing any more: the two have diverged
+  bool diverged = false;  ///< why they mean nothing any more: two of the three have diverged
+  bool chaotic = false;   ///< and why these have
   double uncertainty =
       0.0;  ///< root of the mean square by which the two differ there, over the amplitude
   bool by_reference = true;       ///< false: by the scheme itself at a very high rate
@@ -46,6 +50,9 @@ struct Reference {
   double distance(int sample, const double* positions) const noexcept;
 };
 
+/// The fewest samples that distinguish a motion from rest.
+inline constexpr int kFewestSamples = 8;
+
 /// There is no motion to be referred to.
 struct NothingMoves : std::runtime_error {
   NothingMoves() : std::runtime_error("nothing moves") {}
@@ -56,12 +63,13 @@ struct ReferenceOptions {
   double tolerance = 1e-10;  ///< of the better of the two reference integrators
   double longest_s = 300.0;  ///< wall time for one of the two; then the comparison ends there
   double finest_hz = 0.0;    ///< the highest rate that will be compared with it
-  std::function<void(double)> progress;  ///< told the part that is done, 0 to 1; may be empty
+  std::function<void(double)> progress;  ///< receives the part that is done, 0 to 1; may be empty
 };
 
-/// @throws NothingMoves; std::runtime_error when not even the first sample can be reached.
+/// @throws NothingMoves; std::runtime_error when fewer than kFewestSamples are asked for, reached, or
+/// comparable.
 Reference make_reference(const engine::NetworkDescription& network,
-                         const InputTrajectory& trajectory, const ReferenceOptions& wish);
+                         const InputTrajectory& trajectory, const ReferenceOptions& options);
 
 /// 64-bit hash of all that a reference depends on.
 std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& trajectory,

@@ -26,32 +26,32 @@ double factor_for(double error, int columns) {
 }  // namespace
 
 ReferenceIntegrator::ReferenceIntegrator(engine::NetworkDescription network, double tolerance)
-    : motion_(std::move(network)),
+    : system_(std::move(network)),
       tolerance_(tolerance),
-      next_step_(motion_.network().step),
-      longest_step_(motion_.has_states() ? motion_.network().step
+      next_step_(system_.network().step),
+      longest_step_(system_.has_states() ? system_.network().step
                                          : std::numeric_limits<double>::infinity()),
-      values_(motion_.start()),
+      values_(system_.start()),
       columns_(kColumns) {}
 
 void ReferenceIntegrator::set_velocity(std::uint32_t mat, const engine::Vec3& velocity) {
-  const std::size_t first = motion_.position_count() + 3 * static_cast<std::size_t>(mat);
+  const std::size_t first = system_.position_count() + 3 * static_cast<std::size_t>(mat);
   std::copy_n(velocity.data(), 3, values_.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 void ReferenceIntegrator::midpoint(double step, int parts, Values& after) {
   const double part = step / parts;
-  motion_.rate(values_, rate_);
+  system_.rate(values_, rate_);
   first_ = values_;
   second_.resize(values_.size());
   for (std::size_t i = 0; i < values_.size(); ++i) second_[i] = values_[i] + part * rate_[i];
   for (int n = 1; n < parts; ++n) {
-    motion_.rate(second_, rate_);
+    system_.rate(second_, rate_);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       first_[i] = std::exchange(second_[i], first_[i] + 2.0 * part * rate_[i]);
     }
   }
-  motion_.rate(second_, rate_);
+  system_.rate(second_, rate_);
   after.resize(values_.size());
   for (std::size_t i = 0; i < values_.size(); ++i) {
     after[i] = 0.5 * (second_[i] + first_[i] + part * rate_[i]);
@@ -61,7 +61,7 @@ void ReferenceIntegrator::midpoint(double step, int parts, Values& after) {
 
 double ReferenceIntegrator::difference(const Values& after, const Values& lower) const {
   double error = 0.0;
-  const std::size_t n = motion_.position_count();
+  const std::size_t n = system_.position_count();
   const std::size_t ends[] = {0, n, 2 * n, after.size()};
   for (int group = 0; group < 3; ++group) {
     double largest = 0.0;
@@ -76,8 +76,8 @@ double ReferenceIntegrator::difference(const Values& after, const Values& lower)
   return error;
 }
 
-ReferenceIntegrator::Trial ReferenceIntegrator::try_step(double step, Values& after) {
-  Trial trial;
+ReferenceIntegrator::StepAttempt ReferenceIntegrator::try_step(double step, Values& after) {
+  StepAttempt attempt;
   for (int k = 0; k < kColumns; ++k) {
     const int parts = 2 * (k + 1);
     Values fresh;
@@ -93,14 +93,14 @@ ReferenceIntegrator::Trial ReferenceIntegrator::try_step(double step, Values& af
       }
     }
     columns_[static_cast<std::size_t>(k)] = std::move(fresh);
-    trial.columns = k + 1;
+    attempt.columns = k + 1;
     if (k + 1 < kFewestColumns) continue;
-    trial.error = difference(columns_[static_cast<std::size_t>(k)],
-                             columns_[static_cast<std::size_t>(k - 1)]);
-    if (trial.error <= 1.0) break;
+    attempt.error = difference(columns_[static_cast<std::size_t>(k)],
+                               columns_[static_cast<std::size_t>(k - 1)]);
+    if (attempt.error <= 1.0) break;
   }
-  after = columns_[static_cast<std::size_t>(trial.columns - 1)];
-  return trial;
+  after = columns_[static_cast<std::size_t>(attempt.columns - 1)];
+  return attempt;
 }
 
 void ReferenceIntegrator::accept(double step, Values& after) {
@@ -112,13 +112,13 @@ void ReferenceIntegrator::locate_change(double step, Values& after) {
   // The condition is false at the beginning of the step and true at its end.
   double low = 0.0;
   double high = step;
-  Values trial;
+  Values attempt;
   for (int n = 0; n < kHalvings && high - low > kSmallestShare * std::max(time_, high); ++n) {
     const double middle = 0.5 * (low + high);
-    try_step(middle, trial);
-    const bool true_there = motion_.next_change(time_ + middle, trial).has_value();
+    try_step(middle, attempt);
+    const bool true_there = system_.next_change(time_ + middle, attempt).has_value();
     (true_there ? high : low) = middle;
-    if (true_there) after = trial;
+    if (true_there) after = attempt;
   }
   accept(high, after);
 }
@@ -126,29 +126,29 @@ void ReferenceIntegrator::locate_change(double step, Values& after) {
 void ReferenceIntegrator::advance_to(double time) {
   Values after;
   while (time - time_ > kSmallestShare * std::max(1.0, time)) {
-    while (const auto change = motion_.next_change(time_, values_)) {
-      motion_.change(*change, time_, values_);
+    while (const auto change = system_.next_change(time_, values_)) {
+      system_.change(*change, time_, values_);
       ++changes_;
       if (changes_ % 1000000 == 0) throw std::runtime_error("the links change without end");
     }
     const double step = std::min({next_step_, longest_step_, time - time_});
-    const Trial trial = try_step(step, after);
-    if (!(trial.error <= 1.0)) {
-      next_step_ = step * std::clamp(factor_for(trial.error, trial.columns), 0.1, 0.9);
+    const StepAttempt attempt = try_step(step, after);
+    if (!(attempt.error <= 1.0)) {
+      next_step_ = step * std::clamp(factor_for(attempt.error, attempt.columns), 0.1, 0.9);
       if (next_step_ < kSmallestShare * std::max(time_, 1e-12)) {
         throw std::runtime_error("the motion is too rough at " + std::to_string(time_) + " s");
       }
       continue;
     }
-    if (motion_.has_states() && motion_.next_change(time_ + step, after)) {
+    if (system_.has_states() && system_.next_change(time_ + step, after)) {
       locate_change(step, after);
       continue;
     }
     accept(step, after);
     // A step that was easy may be longer, whatever its few columns say.
-    const double least = trial.columns < kColumns - 1 ? 1.5 : 0.2;
-    next_step_ =
-        std::max(next_step_, step) * std::clamp(factor_for(trial.error, trial.columns), least, 3.0);
+    const double least = attempt.columns < kColumns - 1 ? 1.5 : 0.2;
+    next_step_ = std::max(next_step_, step) *
+                 std::clamp(factor_for(attempt.error, attempt.columns), least, 3.0);
   }
 }
 

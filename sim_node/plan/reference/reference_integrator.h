@@ -1,5 +1,5 @@
 // sim_node/plan/reference/reference_integrator.h -- what a network really does, as nearly as double
-// numbers tell.
+// numbers resolve.
 #pragma once
 
 #include <cstdint>
@@ -21,37 +21,37 @@ class ReferenceIntegrator {
   explicit ReferenceIntegrator(engine::NetworkDescription network, double tolerance = 1e-13);
 
   /// Goes on to a time [s], not before the present one.
-  /// @throws std::runtime_error when a step becomes shorter than the numbers can tell
+  /// @throws std::runtime_error when a step becomes shorter than the numbers resolve
   void advance_to(double time);
 
   /// The velocity of a port [m/s], or the force from outside [N] on a mass, from now on.
   void set_velocity(std::uint32_t mat, const engine::Vec3& velocity);
-  void hold_force(std::uint32_t mat, const engine::Vec3& force) { motion_.hold_force(mat, force); }
+  void hold_force(std::uint32_t mat, const engine::Vec3& force) { system_.hold_force(mat, force); }
 
   double time() const noexcept { return time_; }
-  engine::Vec3 position(std::uint32_t mat) const { return motion_.position(values_, mat); }
-  engine::Vec3 velocity(std::uint32_t mat) const { return motion_.velocity(values_, mat); }
-  std::uint32_t state_of(std::uint32_t state_link) const { return motion_.state_of(state_link); }
+  engine::Vec3 position(std::uint32_t mat) const { return system_.position(values_, mat); }
+  engine::Vec3 velocity(std::uint32_t mat) const { return system_.velocity(values_, mat); }
+  std::uint32_t state_of(std::uint32_t state_link) const { return system_.state_of(state_link); }
   std::uint64_t force_evaluations() const noexcept { return evaluations_; }
   std::uint64_t state_changes() const noexcept { return changes_; }
 
  private:
   using Values = OdeSystem::Values;
 
-  struct Trial {
+  struct StepAttempt {
     double error = 0.0;  // over the tolerance
     int columns = 0;     // that it took
   };
 
   /// One step of this length from the present values.
-  Trial try_step(double step, Values& after);
+  StepAttempt try_step(double step, Values& after);
   /// Difference of two values after a step, over the tolerance.
   double difference(const Values& after, const Values& lower) const;
   void midpoint(double step, int parts, Values& after);
   void locate_change(double step, Values& after);
   void accept(double step, Values& after);
 
-  OdeSystem motion_;
+  OdeSystem system_;
   double tolerance_;
   double time_ = 0.0;
   double next_step_ = 0.0;

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/plan/reference/instruction_counter.h"
+#include "sim_node/plan/reference/thread_time.h"
 
 namespace cordis::plan {
 namespace {
@@ -20,15 +20,8 @@ engine::World world_at(engine::NetworkDescription network, const std::string& in
                        double rate_hz) {
   network.integrator = engine::integrator_named(integrator);
   network.step = 1.0 / rate_hz;
-  network.freeze_tolerance = 0.0;  // what that does is told apart
+  network.freeze_tolerance = 0.0;  // what that does is measured separately
   return engine::World(std::make_shared<const engine::Network>(std::move(network)));
-}
-
-/// Processor time of the calling thread [ns].
-double thread_nsec() noexcept {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
 }
 
 /// Sums of what a trial is off by.
@@ -119,7 +112,9 @@ bool TrajectoryRun::advance(std::uint64_t steps) {
         world_.impose_position(channel.mat, value);
       }
     }
-    if (world_.step().non_finite_mats > 0) return false;
+    const engine::StepReport report = world_.step();
+    if (report.wants_room) world_.make_room();
+    if (report.non_finite_mats > 0) return false;
   }
   return true;
 }

@@ -31,9 +31,20 @@ double slope_beyond(const engine::LennardJones& law, double touch, double range)
   double largest = 0.0;
   for (int i = 0; i <= kSamples; ++i) {
     const double distance = touch + (end - touch) * i / kSamples;
-    largest = std::max(largest, elastic_pull(law, {distance, distance}) / distance);
+    largest = std::max(largest, elastic_tension(law, {distance, distance}) / distance);
   }
   return largest;
+}
+
+constexpr const char* kStartsTooStrong =
+    "its start force is above stiffness times distance, and turns without a limit where its ends "
+    "meet";
+
+/// A start force of up to K times the distance is that of a spring without a rest length.
+bool turns_without_limit(const NetworkDescription& network, const engine::MaxwellLink& link) {
+  if (network.dimension == 1) return false;
+  const engine::Vec3 along = network.mats[link.mat_b].position - network.mats[link.mat_a].position;
+  return link.start_force > link.stiffness * along.norm();
 }
 
 void note(const Slope& slope, LiaisonId liaison, LiaisonGraph& graph) {
@@ -74,6 +85,21 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   graph.crowds.push_back(std::move(side));
 }
 
+/// True if a pair in the state of its start still pulls or pushes where it comes into range, with
+/// more than a tenth of what the largest slope would over the whole range.
+bool jumps_at_range(const engine::StateMachine& state_machine, double rest_length, double range,
+                    double largest_slope) {
+  constexpr double kShare = 0.1;
+  constexpr double kJustWithin = 1.0 - 1e-9;
+  const engine::LinkState& state = state_machine.states[state_machine.start];
+  const double at = kJustWithin * range;
+  double pull = state.stiffness * (at - rest_length) +
+                elastic_tension(state.elasticity, {at, at - rest_length});
+  pull = std::clamp(pull, state.pushes ? -state.force_limit : 0.0,
+                    state.pulls ? state.force_limit : 0.0);
+  return std::abs(pull) > kShare * largest_slope * range;
+}
+
 void add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
              LiaisonGraph& graph) {
   const engine::SetLiaison& set = network.sets[index];
@@ -94,6 +120,13 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   here.brought += stored;
   const Slope slope = largest_slope(state_machine, rest, network.dimension, here);
   note(slope, {LiaisonKind::kSet, index}, graph);
+  const std::size_t count_p = set.set_p.size();
+  const std::size_t all =
+      set.set_q.empty() ? count_p * (count_p - 1) / 2 : count_p * set.set_q.size();
+  const bool comes_into_range = !near.are_kept() || near.pairs().size() < all;
+  if (!graph.uncertainty && comes_into_range &&
+      jumps_at_range(state_machine, rest, set.range, slope.stiffness))
+    graph.uncertainty = {{LiaisonKind::kSet, index}, "its force jumps at its range"};
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);
   if (!set.set_q.empty()) add_side(network, index, slope, bounds, /*of_p=*/false, graph);
@@ -108,44 +141,47 @@ double largest_of_others(const ContactBound& crowd, const std::vector<double>& v
 }
 
 void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
-  for (Edge& joint : joints) {
-    if (joint.liaison.kind != LiaisonKind::kMaxwellLink) continue;
-    const engine::MaxwellLink& link = network.maxwell_links[joint.liaison.index];
+  for (Edge& edge : edges) {
+    if (edge.liaison.kind != LiaisonKind::kMaxwellLink) continue;
+    const engine::MaxwellLink& link = network.maxwell_links[edge.liaison.index];
     const double turn = 0.5 * link.stiffness * step / link.viscosity;
-    joint.stiffness = turn > 0.0 ? link.stiffness * std::tanh(turn) / turn : link.stiffness;
+    edge.stiffness = turn > 0.0 ? link.stiffness * std::tanh(turn) / turn : link.stiffness;
   }
 }
 
-LiaisonGraph liaison_graph(const NetworkDescription& network) {
+LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_factor) {
   LiaisonGraph graph;
   graph.medium_viscosity = network.medium_viscosity;
   for (const engine::Mat& mat : network.mats) {
     graph.inverse_mass.push_back(mat.kind == engine::MatKind::kMass ? 1.0 / mat.mass : 0.0);
   }
-  graph.joints.reserve(network.links.size() + network.state_links.size() +
-                       network.maxwell_links.size());
+  graph.edges.reserve(network.links.size() + network.state_links.size() +
+                      network.maxwell_links.size());
   std::uint32_t index = 0;
   for (const engine::Link& link : network.links) {
-    graph.joints.push_back(
+    graph.edges.push_back(
         {link.mat_a, link.mat_b, link.stiffness, link.viscosity, {LiaisonKind::kLink, index++}});
   }
-  const Reach reach = reach_of(network);
+  const Reach reach = reach_of(network, reach_factor);
   index = 0;
   for (const engine::StateLink& link : network.state_links) {
     const Slope slope =
         largest_slope(network.state_machines[link.state_machine], link.rest_length,
                       network.dimension, reach_between(reach, network, {link.mat_a}, {link.mat_b}));
     note(slope, {LiaisonKind::kStateLink, index}, graph);
-    graph.joints.push_back({link.mat_a,
-                            link.mat_b,
-                            slope.stiffness,
-                            slope.viscosity,
-                            {LiaisonKind::kStateLink, index++},
-                            slope.bounded});
+    graph.edges.push_back({link.mat_a,
+                           link.mat_b,
+                           slope.stiffness,
+                           slope.viscosity,
+                           {LiaisonKind::kStateLink, index++},
+                           slope.bounded});
   }
   index = 0;
   for (const engine::MaxwellLink& link : network.maxwell_links) {
-    graph.joints.push_back(
+    if (turns_without_limit(network, link) && !graph.uncertainty) {
+      graph.uncertainty = {{LiaisonKind::kMaxwellLink, index}, kStartsTooStrong};
+    }
+    graph.edges.push_back(
         {link.mat_a, link.mat_b, link.stiffness, 0.0, {LiaisonKind::kMaxwellLink, index++}});
   }
   for (index = 0; index < network.sets.size(); ++index) add_set(network, index, reach, graph);

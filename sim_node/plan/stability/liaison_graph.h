@@ -55,7 +55,7 @@ double largest_of_others(const ContactBound& crowd, const std::vector<double>& v
 /// tangent, in any pose and any combination of states, is below the Laplacian of this graph.
 struct LiaisonGraph {
   std::vector<double> inverse_mass;  ///< per MAT [1/kg]; 0 for fixed points and port masses
-  std::vector<Edge> joints;
+  std::vector<Edge> edges;
   std::vector<ContactBound> crowds;
   double medium_viscosity = 0.0;  ///< on every mass [N s/m]
   bool bounded = true;            ///< false: a law has no largest slope of its own; see Reach
@@ -66,6 +66,7 @@ struct LiaisonGraph {
 };
 
 /// Maxwell elements at their full stiffness, as set_step(0) would have them.
-LiaisonGraph liaison_graph(const engine::NetworkDescription& network);
+/// @param reach_factor  of the energies of reach_of()
+LiaisonGraph liaison_graph(const engine::NetworkDescription& network, double reach_factor = 1.0);
 
 }  // namespace cordis::plan

@@ -70,13 +70,13 @@ std::vector<double> changing_steps(const engine::NetworkDescription& network) {
 }
 
 LiaisonGraph weighted(LiaisonGraph graph, const LimitWeights& weights) {
-  for (Edge& joint : graph.joints) {
-    const bool linear = joint.liaison.kind == LiaisonKind::kLink;
-    joint.stiffness *= linear ? weights.link_stiffness : weights.stiffness;
-    joint.viscosity *= linear ? weights.link_viscosity : weights.viscosity;
-    if (joint.liaison.kind == LiaisonKind::kStateLink &&
-        weights.viscosity_of_state_link(joint.liaison.index) == 0.0) {
-      joint.viscosity = 0.0;
+  for (Edge& edge : graph.edges) {
+    const bool linear = edge.liaison.kind == LiaisonKind::kLink;
+    edge.stiffness *= linear ? weights.link_stiffness : weights.stiffness;
+    edge.viscosity *= linear ? weights.link_viscosity : weights.viscosity;
+    if (edge.liaison.kind == LiaisonKind::kStateLink &&
+        weights.viscosity_of_state_link(edge.liaison.index) == 0.0) {
+      edge.viscosity = 0.0;
     }
   }
   for (ContactBound& crowd : graph.crowds) {

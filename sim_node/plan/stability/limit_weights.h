@@ -53,7 +53,7 @@ inline double step_of(const StepBound& bound) {
 /// none for the others.
 std::vector<double> changing_steps(const engine::NetworkDescription& network);
 
-/// `leapfrog` takes dampers apart, and solves steep links, beyond some steps: up to each there is
+/// `leapfrog` takes dampers apart, and solves stiff links, beyond some steps: up to each there is
 /// one limit, beyond it another, which is not nearer.
 /// @param limit_of  a network at its step: the step at which it ends being stable
 /// @return the limit that a network comes to as its step grows

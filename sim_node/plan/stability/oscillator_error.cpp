@@ -40,8 +40,8 @@ Roots of_implicit_damping(double stiffness, double viscosity) {
 }
 
 /// The relative error of the slower of two real modes, from the root nearest to 1 on its left.
-void judge_creep(double angular_frequency, double viscosity, double step, const Roots& roots,
-                 OscillatorError& error) {
+void evaluate_creep(double angular_frequency, double viscosity, double step, const Roots& roots,
+                    OscillatorError& error) {
   const double rate = 0.5 * viscosity;
   const double apart = std::sqrt(rate * rate - angular_frequency * angular_frequency);
   const double square = 0.25 * roots.trace * roots.trace - roots.product;
@@ -93,7 +93,7 @@ OscillatorError oscillator_error(double angular_frequency, double viscosity, dou
     return error;
   }
   if (square <= 0.0) {
-    judge_creep(angular_frequency, viscosity, step, roots, error);
+    evaluate_creep(angular_frequency, viscosity, step, roots, error);
     return error;
   }
   error.oscillates =

@@ -23,9 +23,9 @@ PortLoad load_of(const LiaisonGraph& graph, std::uint32_t mat, bool least) {
     load.stiffness += count * stiffness;
     load.viscosity += count * viscosity;
   };
-  for (const Edge& joint : graph.joints) {
-    if (joint.mat_a != mat && joint.mat_b != mat) continue;
-    add(1.0, joint.stiffness, joint.viscosity, joint.bounded);
+  for (const Edge& edge : graph.edges) {
+    if (edge.mat_a != mat && edge.mat_b != mat) continue;
+    add(1.0, edge.stiffness, edge.viscosity, edge.bounded);
   }
   for (const ContactBound& crowd : graph.crowds) {
     for (std::size_t i = 0; i < crowd.members.size(); ++i) {
@@ -38,21 +38,119 @@ PortLoad load_of(const LiaisonGraph& graph, std::uint32_t mat, bool least) {
   return load;
 }
 
-/// G(z): position over force of the mass, the force held over a period.
-Complex mass_under_held_force(const PortDevice& device, double period, Complex z) {
-  const double tau = device.mass / device.viscosity;
-  const double lost = -std::expm1(-period / tau);  // share of the speed lost in a period
-  const double b = device.viscosity;
-  // T - tau (1 - E) is the difference of two nearly equal numbers where b T << m.
-  const double ratio = period / tau;
-  const double drift = ratio < 1e-4 ? period * ratio * (0.5 - ratio / 6.0) : period - tau * lost;
-  return (drift / b) / (z - 1.0) + (tau * lost) * (lost / b) / ((z - 1.0) * (z - 1.0 + lost));
+/// (e^x - 1 - x) / x^2 for x <= 0.
+double phi2(double x) {
+  // The difference of nearly equal numbers near 0: there its series.
+  if (x > -0.05) return 0.5 + x / 6.0 * (1.0 + x / 4.0 * (1.0 + x / 5.0 * (1.0 + x / 6.0)));
+  return (std::expm1(x) - x) / (x * x);
 }
 
-/// -z^d / G(z): what a wall is on the boundary.
-Complex wall_on_boundary(const PortDevice& device, const PortLoop& loop, Complex z) {
-  return -std::pow(z, loop.delay) / mass_under_held_force(device, loop.period, z);
-}
+/// A mass with viscosity, from rest under a force of 1 N, or from a speed of 1 m/s without one.
+struct HeldMotion {
+  HeldMotion(const PortDevice& device, double time) {
+    const double x = -time * device.viscosity / device.mass;
+    way_of_force = time * time / device.mass * phi2(x);
+    way_of_speed = x < 0.0 ? time * std::expm1(x) / x : time;
+    speed_of_force = way_of_speed / device.mass;
+    speed_of_speed = std::exp(x);
+    lost_speed = -std::expm1(x);
+  }
+  double way_of_force = 0.0;    // [m/N]
+  double speed_of_force = 0.0;  // [m/(N s)]
+  double way_of_speed = 0.0;    // [s]
+  double speed_of_speed = 0.0;
+  double lost_speed = 0.0;
+};
+
+/// Whole periods of a delay and the part that is left, in [0, 1).
+struct SplitDelay {
+  explicit SplitDelay(double delay) : whole(std::floor(delay)), part(delay - whole) {}
+  double whole;
+  double part;
+};
+
+/// -1 / G_d(z): what a wall is on the boundary. G(z) is position over force of the mass, the force
+/// held over a period and `part` of one late: until then the force before acts.
+class WallOnBoundary {
+ public:
+  WallOnBoundary(const PortDevice& device, const PortLoop& loop)
+      : delay_(loop.delay),
+        all_(device, loop.period),
+        before_(device, delay_.part * loop.period),
+        after_(device, (1.0 - delay_.part) * loop.period) {}
+
+  Complex operator()(Complex z) const {
+    const Complex late = 1.0 / z;
+    const Complex way = after_.way_of_force + late * (before_.way_of_force +
+                                                      after_.way_of_speed * before_.speed_of_force);
+    const Complex speed =
+        after_.speed_of_force + late * after_.speed_of_speed * before_.speed_of_force;
+    const Complex mass =
+        (way + all_.way_of_speed * speed / (z - 1.0 + all_.lost_speed)) / (z - 1.0);
+    return delay_.whole == 0.0 ? -1.0 / mass : -std::pow(z, delay_.whole) / mass;
+  }
+
+ private:
+  SplitDelay delay_;
+  HeldMotion all_;
+  HeldMotion before_;
+  HeldMotion after_;
+};
+
+/// What a wall K + B (1 - 1/z) / T gives at the frequency w / T: R = gain K - taken B, the same
+/// condition for both ends of the part of a period weighted by it.
+class PassiveLoop {
+ public:
+  explicit PassiveLoop(const PortLoop& loop)
+      : delay_(loop.delay), period_(loop.period), spread_(delay_.part * (1.0 - delay_.part)) {}
+
+  /// The viscosity that the device must have at w [N s/m].
+  double viscosity(double stiffness, double viscosity, double w) const {
+    const double real = gain(w) * stiffness - taken(w) * viscosity;
+    return 0.5 * (real + std::sqrt(real * real + spread_ * wall_squared(stiffness, viscosity, w)));
+  }
+
+  /// The stiffness that viscosity(K, B, w) == b allows [N/m]: the positive root of
+  /// s (1-s) T^2 |K + B (1 - e^(-iw)) / T|^2 + 4 b R - 4 b^2 = 0; infinite where none is too much.
+  double stiffness(double device_viscosity, double viscosity, double w) const {
+    const double b = device_viscosity;
+    const double turn = 1.0 - std::cos(w);
+    const double constant =
+        2.0 * spread_ * viscosity * viscosity * turn - 4.0 * b * (b + viscosity * taken(w));
+    if (constant >= 0.0) return 0.0;
+    const double linear = 4.0 * b * gain(w) + 2.0 * spread_ * viscosity * period_ * turn;
+    const double square = spread_ * period_ * period_;
+    const double both = linear + std::sqrt(linear * linear - 4.0 * square * constant);
+    return both > 0.0 ? -2.0 * constant / both : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  double gain(double w) const {
+    const auto of_whole = [&](double d) {
+      return w == 0.0 ? d + 0.5 : 0.5 * std::sin((d + 0.5) * w) / std::sin(0.5 * w);
+    };
+    return period_ * at_delay(of_whole);
+  }
+  double taken(double w) const {
+    return at_delay([&](double d) { return std::cos((d + 1.0) * w); });
+  }
+  template <class OfWhole>
+  double at_delay(const OfWhole& of_whole) const {
+    const double first = of_whole(delay_.whole);
+    return delay_.part == 0.0
+               ? first
+               : (1.0 - delay_.part) * first + delay_.part * of_whole(delay_.whole + 1.0);
+  }
+  /// T^2 |K + B (1 - e^(-iw)) / T|^2
+  double wall_squared(double stiffness, double viscosity, double w) const {
+    const double spring = stiffness * period_;
+    return spring * spring + 2.0 * viscosity * (spring + viscosity) * (1.0 - std::cos(w));
+  }
+
+  SplitDelay delay_;
+  double period_;
+  double spread_;  // s (1 - s)
+};
 
 /// The least positive real value that `curve` takes on the upper half of the unit circle.
 template <class Curve>
@@ -93,44 +191,37 @@ PortLoad min_port_load(const LiaisonGraph& graph, std::uint32_t mat) {
 }
 
 double min_device_viscosity(const PortLoad& load, const PortLoop& loop) {
-  const double d = loop.delay;
-  // The limit of the quotient of sines for w = 0.
-  double least = load.stiffness * loop.period * (0.5 + d) - load.viscosity;
-  for (int i = 1; i <= kFrequencies; ++i) {
+  const PassiveLoop passive(loop);
+  double least = 0.0;
+  for (int i = 0; i <= kFrequencies; ++i) {
     const double w = std::numbers::pi * i / kFrequencies;
-    const double spring =
-        0.5 * load.stiffness * loop.period * std::sin((d + 0.5) * w) / std::sin(0.5 * w);
-    least = std::max(least, spring - load.viscosity * std::cos((d + 1.0) * w));
+    least = std::max(least, passive.viscosity(load.stiffness, load.viscosity, w));
   }
-  return std::max(least, 0.0);
+  return least;
 }
 
 double largest_port_stiffness(double device_viscosity, double port_viscosity,
                               const PortLoop& loop) {
-  const double d = loop.delay;
-  // The limit for a slow hand, w = 0.
-  double least = (device_viscosity + port_viscosity) / (loop.period * (0.5 + d));
-  for (int i = 1; i <= kFrequencies; ++i) {
+  const PassiveLoop passive(loop);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kFrequencies; ++i) {
     const double w = std::numbers::pi * i / kFrequencies;
-    const double taken = device_viscosity + port_viscosity * std::cos((d + 1.0) * w);
-    const double gain = 0.5 * loop.period * std::sin((d + 0.5) * w) / std::sin(0.5 * w);
-    if (taken < 0.0) return 0.0;
-    if (gain > 0.0) least = std::min(least, taken / gain);
+    least = std::min(least, passive.stiffness(device_viscosity, port_viscosity, w));
   }
   return least;
 }
 
 double stable_port_viscosity(const PortDevice& device, const PortLoop& loop) {
-  return min_real_value(
-      [&](Complex z) { return loop.period * wall_on_boundary(device, loop, z) / (1.0 - 1.0 / z); });
+  const WallOnBoundary wall(device, loop);
+  return min_real_value([&](Complex z) { return loop.period * wall(z) / (1.0 - 1.0 / z); });
 }
 
 double stable_port_stiffness(const PortDevice& device, double port_viscosity,
                              const PortLoop& loop) {
   if (port_viscosity >= stable_port_viscosity(device, loop)) return 0.0;
-  return min_real_value([&](Complex z) {
-    return wall_on_boundary(device, loop, z) - port_viscosity * (1.0 - 1.0 / z) / loop.period;
-  });
+  const WallOnBoundary wall(device, loop);
+  return min_real_value(
+      [&](Complex z) { return wall(z) - port_viscosity * (1.0 - 1.0 / z) / loop.period; });
 }
 
 double largest_hand_stiffness(const PortLoad& load, double mass, const PortLoop& loop) {

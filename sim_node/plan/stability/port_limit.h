@@ -8,11 +8,11 @@
 
 namespace cordis::plan {
 
-/// The loop of one device. The force or position that answers a sample takes effect `delay` periods
-/// after it: one in the sessions of this program, more when an answer is late.
+/// The loop of one device. The force or position that answers sample n, taken at n T, takes effect
+/// at (n + delay) T, and the next one a period later. A part of a period counts as it is.
 struct PortLoop {
   double period = 1e-3;  ///< of the device, > 0 [s]
-  int delay = 1;         ///< [periods], >= 0
+  double delay = 1.0;    ///< [periods], >= 0
   int sub_steps = 1;     ///< of the scene in a period, over which a force of the hand is held
 };
 
@@ -39,9 +39,18 @@ PortLoad min_port_load(const LiaisonGraph& graph, std::uint32_t mat);
 /// Role mass. The viscosity [N s/m] that the device itself must have at least, so that the loop is
 /// passive: then no passive hand can make it oscillate.
 ///
-///     b > max over w of (K T / 2) sin((2 d + 1) w / 2) / sin(w / 2) - B cos((d + 1) w)
+/// For whole d, with R_d(w) = (K T / 2) sin((2 d + 1) w / 2) / sin(w / 2) - B cos((d + 1) w),
 ///
-/// With B = 0 that is K (T / 2 + d T). [Colgate and Schenkel for d = 0]
+///     b > max over w of R_d(w)
+///
+/// which is K (T / 2 + d T) for B = 0 [Colgate and Schenkel for d = 0]. A force that changes within
+/// the period, at the part s of it, is a force that changes at its ends as far as samples show:
+/// R = (1 - s) R_k + s R_(k+1), k + s = d. But the aliases of the held force, at w + 2 pi j, are no
+/// longer in phase, and a hand may answer each of them as it likes:
+///
+///     b > max over w of R / 2 + sqrt(R^2 + s (1 - s) T^2 |K + B (1 - e^(-i w)) / T|^2) / 2
+///
+/// For B = 0 this is at most 8 % above K (T / 2 + d T), at d = 0.25 [docs/numerics.md].
 double min_device_viscosity(const PortLoad& load, const PortLoop& loop);
 
 /// Role mass. The stiffness [N/m] a scene may show at the port to a device of this viscosity so
@@ -49,21 +58,22 @@ double min_device_viscosity(const PortLoad& load, const PortLoop& loop);
 double largest_port_stiffness(double device_viscosity, double port_viscosity, const PortLoop& loop);
 
 /// Role mass. The viscosity [N s/m] of a wall B (1 - 1/z) / T before which the device alone does
-/// not swing, whatever its stiffness. Cost: about 1 ms.
+/// not swing, whatever its stiffness. Cost: up to 1 ms.
 double stable_port_viscosity(const PortDevice& device, const PortLoop& loop);
 
 /// Role mass. The stiffness [N/m] of a wall K + B (1 - 1/z) / T before which the device alone does
 /// not swing; 0 when the viscosity B of the wall alone makes it swing.
 ///
-/// On the boundary a root of 1 + (K + B (1 - 1/z)/T) z^-d G(z) lies on the unit circle, G being the
-/// mass under a force held over a period: K is the least real positive value of
-/// -z^d / G(z) - B (1 - 1/z)/T there. Cost: about 1 ms.
+/// On the boundary a root of 1 + (K + B (1 - 1/z)/T) G_d(z) lies on the unit circle, G_d being the
+/// mass under a force that is held over a period and d periods late (the modified z-transform): K
+/// is the least real positive value of -1 / G_d(z) - B (1 - 1/z)/T there. Cost: up to 2 ms.
 double stable_port_stiffness(const PortDevice& device, double port_viscosity, const PortLoop& loop);
 
 /// Role liaison. The stiffness [N/m] that a hand may add to a port of this mass: (viscosity of the
 /// scene and the hand) / (mean age of its force), of which the hand's part is left out here; the
 /// age is d periods and, held over r sub-steps, (1 - 1/r) / 2 more. In any case what keeps the mass
-/// below the limit of the scheme.
+/// below the limit of the scheme. Exact for 0 < d <= 1 and r = 1, when the device goes the way to
+/// the answer in a period; a faster device supports more.
 double largest_hand_stiffness(const PortLoad& load, double mass, const PortLoop& loop);
 
 }  // namespace cordis::plan

@@ -322,23 +322,23 @@ class Evaluation {
 
 /// The largest of one slope over the box.
 double steepest(const engine::Program& program, const LinkBox& whole, std::size_t variable) {
-  struct Piece {
+  struct SubBox {
     LinkBox box;
     double most;
-    bool operator<(const Piece& other) const { return most < other.most; }
+    bool operator<(const SubBox& other) const { return most < other.most; }
   };
   constexpr int kBisections = 2000;
   constexpr double kNearEnough = 1.02;
-  const auto piece = [&](const LinkBox& box) {
-    return Piece{box, std::max(0.0, Evaluation(box).of(program).slope[variable].high)};
+  const auto sub_box = [&](const LinkBox& box) {
+    return SubBox{box, std::max(0.0, Evaluation(box).of(program).slope[variable].high)};
   };
-  std::priority_queue<Piece> pieces;
-  pieces.push(piece(whole));
+  std::priority_queue<SubBox> boxes;
+  boxes.push(sub_box(whole));
   double reached = 0.0;  // at places: no bound is below it
   const double distance = whole.distance.high - whole.distance.low;
   const double speed = whole.speed.high - whole.speed.low;
-  for (int n = 0; n < kBisections && pieces.top().most > kNearEnough * reached; ++n) {
-    Piece top = pieces.top();
+  for (int n = 0; n < kBisections && boxes.top().most > kNearEnough * reached; ++n) {
+    SubBox top = boxes.top();
     LinkBox place = top.box;
     place.distance.low = place.distance.high = 0.5 * (top.box.distance.low + top.box.distance.high);
     place.speed.low = place.speed.high = 0.5 * (top.box.speed.low + top.box.speed.high);
@@ -349,15 +349,15 @@ double steepest(const engine::Program& program, const LinkBox& whole, std::size_
     const Interval& wide = over_distance ? top.box.distance : top.box.speed;
     const double middle = 0.5 * (wide.low + wide.high);
     if (!(middle > wide.low && middle < wide.high)) break;
-    pieces.pop();
+    boxes.pop();
     LinkBox lower = top.box;
     LinkBox upper = top.box;
     (over_distance ? lower.distance : lower.speed).high = middle;
     (over_distance ? upper.distance : upper.speed).low = middle;
-    pieces.push(piece(lower));
-    pieces.push(piece(upper));
+    boxes.push(sub_box(lower));
+    boxes.push(sub_box(upper));
   }
-  return pieces.top().most;
+  return boxes.top().most;
 }
 
 }  // namespace

@@ -15,6 +15,11 @@ constexpr const char* kPullsWhereEndsMeet =
     "it still pulls where its ends meet, and turns there without a limit";
 constexpr const char* kJumps = "its force jumps";
 constexpr const char* kNoLargestSlope = "no largest slope of its expression is known";
+constexpr const char* kBeginsAnywhere =
+    "a change of state may begin it where it is steep, for its law has no largest slope";
+constexpr const char* kDrivesApart = "it drives its ends apart ever harder";
+constexpr const char* kCrushed =
+    "the energy of the scene may crush it to length 0, where it turns about between two steps";
 constexpr const char* kConfinesNothing = "its expression grows steeper, and no energy confines it";
 
 bool is_jump(const engine::Law& law) {
@@ -26,31 +31,33 @@ bool is_jump(const engine::Law& law) {
   return balls != nullptr && balls->cutoff > 0.0 && balls->cutoff < kWell * balls->diameter;
 }
 
-/// The most energy that a liaison can take up [J]: all there is, or two MATs meeting at the speed
-/// of the reach.
+}  // namespace
+
 double energy_at(const Reach& reach) {
   const double inverse = (reach.mass_a.high > 0.0 ? 1.0 / reach.mass_a.high : 0.0) +
                          (reach.mass_b.high > 0.0 ? 1.0 / reach.mass_b.high : 0.0);
   const double meeting = inverse > 0.0 ? 2.0 * reach.speed * reach.speed / inverse : 0.0;
-  constexpr double kSpare = 1.01;  // for the sum over the pull
+  constexpr double kSpare = 1.01;  // for the sum over the tension
   return kSpare * (reach.brought + meeting);
 }
 
-/// How far one way a state is stretched by the energy of the reach [m], its pull summed up; infinite
+namespace {
+
+/// How far one way a state is stretched by the energy of the reach [m], its tension summed up; infinite
 /// when a thousand times the length of its start does not take it up.
 double stretch_of(const engine::LinkState& state, double rest_length, double energy, double sign,
                   double scale, double last) {
   constexpr double kGrowth = 1.05;
   constexpr double kFarthest = 1e3;
-  const auto pull = [&](double at) {
+  const auto tension = [&](double at) {
     const double e = sign * at;
-    return sign * (state.stiffness * e + elastic_pull(state.elasticity, {e + rest_length, e}));
+    return sign * (state.stiffness * e + elastic_tension(state.elasticity, {e + rest_length, e}));
   };
   double stored = 0.0;
   double before = 0.0;
   for (double at = 1e-9 * scale; at < kFarthest * scale; at *= kGrowth) {
     const double reached = std::min(at, last);
-    stored += 0.5 * (pull(before) + pull(reached)) * (reached - before);
+    stored += 0.5 * (tension(before) + tension(reached)) * (reached - before);
     if (stored >= energy || reached >= last) return reached;
     before = reached;
   }
@@ -140,6 +147,10 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     slope.stiffness += law.value;
     slope.bounded = slope.bounded && law.bounded;
     if (is_jump(state.elasticity)) slope.uncertainty = kJumps;
+    const auto* power = std::get_if<engine::Power>(&state.elasticity);
+    if (power != nullptr && power->coefficient < 0.0 && power->exponent > 1.0) {
+      slope.uncertainty = kDrivesApart;
+    }
   }
   if (viscous != nullptr) {
     const bool was_sure = slope.uncertainty == nullptr;
@@ -151,12 +162,17 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     slope.viscosity += law.value;
     slope.bounded = slope.bounded && law.bounded;
   }
+  const bool follows = elastic != nullptr || is_power;
+  if (turns && follows && state.pushes && !slope.bounded && slope.uncertainty == nullptr &&
+      rest_length > 0.0 && stretch.shorter >= rest_length) {
+    slope.uncertainty = kCrushed;
+  }
   if (turns && state.pulls) {
     const double nearest = 1e-9 * std::max({reach.elongation, std::abs(rest_length), 1e-6});
-    const double pull = state.stiffness * (nearest - rest_length) +
-                        elastic_pull(state.elasticity, {nearest, nearest - rest_length});
+    const double tension = state.stiffness * (nearest - rest_length) +
+                           elastic_tension(state.elasticity, {nearest, nearest - rest_length});
     constexpr double kRounding = 1.001;
-    if (pull > kRounding * slope.stiffness * nearest) {
+    if (tension > kRounding * slope.stiffness * nearest) {
       slope.bounded = false;
       slope.uncertainty = kPullsWhereEndsMeet;
     }
@@ -164,10 +180,16 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   return slope;
 }
 
+/// True if the law rises without a limit towards 0, and less beyond: what diverges there saturates.
+bool is_root(const engine::Law& law) {
+  const auto* power = std::get_if<engine::Power>(&law);
+  return power != nullptr && power->exponent < 1.0;
+}
+
 /// True if the law of a state has a tangent there: it is neither let go of nor at its limit.
-bool acts_at(const engine::LinkState& state, double pull) {
-  return (state.pulls || pull < 0.0) && (state.pushes || pull > 0.0) &&
-         std::abs(pull) < state.force_limit;
+bool acts_at(const engine::LinkState& state, double tension) {
+  return (state.pulls || tension < 0.0) && (state.pushes || tension > 0.0) &&
+         std::abs(tension) < state.force_limit;
 }
 
 /// Kinetic, stored and what falling through the scene brings [J].
@@ -196,6 +218,9 @@ double energy_brought(const engine::NetworkDescription& network) {
     const double distance = length(link.mat_a, link.mat_b);
     energy += stored_in(state_machine, link.rest_length, distance);
   }
+  for (const engine::MaxwellLink& link : network.maxwell_links) {
+    energy += 0.5 * link.start_force * link.start_force / link.stiffness;
+  }
   return energy + weight * (highest - lowest).norm();
 }
 
@@ -204,18 +229,30 @@ double energy_brought(const engine::NetworkDescription& network) {
 double stored_in(const engine::StateMachine& state_machine, double rest_length, double distance) {
   const engine::LinkState& state = state_machine.states[state_machine.start];
   const double e = distance - rest_length;
-  const double pull = elastic_pull(state.elasticity, {distance, e});
-  if (!acts_at(state, state.stiffness * e + pull)) return 0.0;
+  const double tension = elastic_tension(state.elasticity, {distance, e});
+  if (!acts_at(state, state.stiffness * e + tension)) return 0.0;
   const double in_law = stores_energy(state.elasticity) ? potential(state.elasticity, {distance, e})
-                                                        : std::abs(pull * e);
+                                                        : std::abs(tension * e);
   return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
 }
 
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach) {
   Slope largest;
-  for (const engine::LinkState& state : state_machine.states) {
-    const Slope slope = slope_of(state, rest_length, dimension > 1, reach);
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    Slope slope = slope_of(state_machine.states[s], rest_length, dimension > 1, reach);
+    // A power is flat where it stores nothing: the energy that bounds it is that of its entry too.
+    const auto* power = std::get_if<engine::Power>(&state_machine.states[s].elasticity);
+    const bool is_flat_at_rest =
+        power != nullptr && power->exponent >= 1.0 && is_none(state_machine.states[s].dissipation);
+    const bool is_entered =
+        std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
+                    [&](const engine::Transition& exit) {
+                      return exit.target == s &&
+                             (!is_flat_at_rest || exit.rest == engine::RestRule::kExpression);
+                    });
+    if (!slope.bounded && is_entered && slope.uncertainty == nullptr)
+      slope.uncertainty = kBeginsAnywhere;
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.bounded = largest.bounded && slope.bounded;
@@ -227,36 +264,51 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 }
 
 Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_length,
-                         double distance) {
+                         double distance, double step) {
   const double elongation = distance - rest_length;
   const double nearby = 1e-6 * std::max(std::abs(distance), 1e-6);
-  const auto rise = [nearby](const auto& pull, double at) {
-    return (pull(at + nearby) - pull(at - nearby)) / (2.0 * nearby);
+  const auto rise = [nearby](const auto& tension, double at) {  // of a kink, the flatter side
+    return std::min(tension(at + nearby) - tension(at), tension(at) - tension(at - nearby)) /
+           nearby;
   };
   Tangent stiffest;
-  for (const engine::LinkState& state : state_machine.states) {
+  double largest = -kNoLimit;
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    const engine::LinkState& state = state_machine.states[s];
     const auto elastic = [&](double e) {
-      return elastic_pull(state.elasticity, {e + rest_length, e});
+      return elastic_tension(state.elasticity, {e + rest_length, e});
     };
     const auto viscous = [&](double speed) {
-      return viscous_pull(state.dissipation, {distance, elongation, speed}) +
-             elastic_pull(state.elasticity, {distance, elongation, speed});
+      return viscous_tension(state.dissipation, {distance, elongation, speed}) +
+             elastic_tension(state.elasticity, {distance, elongation, speed});
     };
-    const bool acts = acts_at(state, state.stiffness * elongation + elastic(elongation));
-    stiffest.stiffness =
-        std::max(stiffest.stiffness, state.stiffness + (acts ? rise(elastic, elongation) : 0.0));
-    stiffest.viscosity =
-        std::max(stiffest.viscosity, state.viscosity + (acts ? rise(viscous, 0.0) : 0.0));
+    // Nothing is known of the pose in which another state is entered.
+    const bool acts = s == state_machine.start &&
+                      acts_at(state, state.stiffness * elongation + elastic(elongation));
+    const bool bends = acts && !is_root(state.elasticity);
+    const double stiffness = state.stiffness + (bends ? rise(elastic, elongation) : 0.0);
+    const double viscosity =
+        state.viscosity + (bends && !is_root(state.dissipation) ? rise(viscous, 0.0) : 0.0);
+    const double number = step * step * stiffness + 2.0 * step * viscosity;
+    if (number <= largest) continue;
+    largest = number;
+    stiffest.stiffness = stiffness;
+    stiffest.viscosity = viscosity;
   }
+  stiffest.stiffness = std::max(stiffest.stiffness, 0.0);
+  stiffest.viscosity = std::max(stiffest.viscosity, 0.0);
   const engine::LinkState& first = state_machine.states.front();
   if (state_machine.is_stateless()) {
-    stiffest.pull = first.stiffness * elongation +
-                    elastic_pull(first.elasticity, {elongation + rest_length, elongation});
+    const double tension =
+        first.stiffness * elongation +
+        elastic_tension(first.elasticity, {elongation + rest_length, elongation});
+    stiffest.tension = std::clamp(tension, first.pushes ? -first.force_limit : 0.0,
+                                  first.pulls ? first.force_limit : 0.0);
   }
   return stiffest;
 }
 
-Reach reach_of(const engine::NetworkDescription& network) {
+Reach reach_of(const engine::NetworkDescription& network, double factor) {
   Reach reach;
   reach.speed = kMinSpeed;
   for (const engine::StateLink& link : network.state_links) {
@@ -272,7 +324,9 @@ Reach reach_of(const engine::NetworkDescription& network) {
     reach.speed = std::max(reach.speed, mat.velocity.norm());
     reach.energy = std::max(reach.energy, mat.mass * mat.velocity.squaredNorm());
   }
-  reach.brought = energy_brought(network);
+  reach.brought = factor * energy_brought(network);
+  reach.energy *= factor;
+  reach.speed *= std::sqrt(factor);
   return reach;
 }
 

@@ -12,7 +12,7 @@ namespace cordis::plan {
 /// How far a scene is taken to go where a law has no largest slope of its own.
 struct Reach {
   double elongation = 0.0;  ///< of a link, either way [m]
-  double speed = 0.0;       ///< of the growth of a link [m/s]
+  double speed = 0.0;       ///< elongation rate of a link [m/s]
   double energy = 0.0;      ///< with which two MATs approach each other [J]
   double brought = 0.0;  ///< kinetic and stored at the start, and by falling through the scene [J]
   Interval mass_a = {};  ///< of the ends of the liaison [kg]; 0 for what is no mass
@@ -37,23 +37,28 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
                     const Reach& reach);
 
 /// What a liaison stores at a distance in the state of its start [J], 0 where it does not act; of an
-/// expression, which has no closed form, the product of its pull and elongation.
+/// expression, which has no closed form, the product of its tension and elongation.
 double stored_in(const engine::StateMachine& state_machine, double rest_length, double distance);
 
-/// The tangent of a liaison at one distance of its ends and no speed, in the stiffest of its
-/// states.
+/// The tangent of a liaison at one distance of its ends and no speed, in the state that is the
+/// stiffest at a step. Laws count in the state of the start alone.
 struct Tangent {
   double stiffness = 0.0;  ///< along the link [N/m]
   double viscosity = 0.0;  ///< [N s/m]
-  double pull = 0.0;       ///< of a state machine of one state, else 0 [N]
+  double tension = 0.0;    ///< of a state machine of one state, else 0 [N]
 };
 
 Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_length,
-                         double distance);
+                         double distance, double step);
 
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the
 /// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.
-Reach reach_of(const engine::NetworkDescription& network);
+/// @param factor  of the energies
+Reach reach_of(const engine::NetworkDescription& network, double factor = 1.0);
+
+/// The most energy that a liaison can take up [J]: all there is, or two MATs meeting at the speed of
+/// the reach.
+double energy_at(const Reach& reach);
 
 /// The reach of a liaison between one of some MATs and one of others.
 Reach reach_between(Reach reach, const engine::NetworkDescription& network,

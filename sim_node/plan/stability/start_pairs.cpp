@@ -9,6 +9,8 @@
 namespace cordis::plan {
 namespace {
 
+constexpr std::size_t kFirstPerMember = 16;  // room for pairs, before more is made
+
 std::size_t pairs_of_all(const engine::SetLiaison& set) {
   const std::size_t p = set.set_p.size();
   return set.set_q.empty() ? p * (p - 1) / 2 : p * set.set_q.size();
@@ -41,7 +43,7 @@ StartPairs::StartPairs(const engine::NetworkDescription& network, const engine::
     return;
   }
   engine::NeighbourList list(count_p, count_q, network.dimension, set.range,
-                             std::min(all, kMaxPairs),
+                             std::min({all, kMaxPairs, kFirstPerMember * (count_p + count_q)}),
                              engine::pair_kernel(engine::best_vector_width()));
   list.hold_skin(0.0);
   engine::AlignedVector<double> position;
@@ -53,6 +55,10 @@ StartPairs::StartPairs(const engine::NetworkDescription& network, const engine::
   }
   position.resize(4 * engine::padded(count_p + count_q, engine::kPairBatch), 0.0);
   list.refresh(position.data());
+  if (!list.is_whole() && list.entry_count() <= kMaxPairs) {
+    list.make_room(std::min(all, kMaxPairs));
+    list.refresh(position.data());
+  }
   kept_ = list.is_whole();
   for (std::size_t m = 0; m < count_p + count_q; ++m) counts_.push_back(list.pair_count(m));
   if (!kept_) return;

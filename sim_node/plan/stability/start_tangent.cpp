@@ -104,9 +104,9 @@ Columns random_direction(const Eigen::RowVectorXd& root_of_inverse_mass, int dim
 bool acts(const engine::LinkState& state, const Tangent& tangent, double distance) {
   constexpr double kTouching = 1e-9;
   const double rounding = kTouching * std::abs(tangent.stiffness) * distance;
-  if (!state.pulls && tangent.pull > -rounding) return false;
-  if (!state.pushes && tangent.pull < rounding) return false;
-  return std::abs(tangent.pull) < state.force_limit;
+  if (!state.pulls && tangent.tension > -rounding) return false;
+  if (!state.pushes && tangent.tension < rounding) return false;
+  return std::abs(tangent.tension) < state.force_limit;
 }
 
 }  // namespace
@@ -130,26 +130,27 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
     const double elongation = distance(link.mat_a, link.mat_b) - link.rest_length;
     const double stiffness = weights.link_stiffness * link.stiffness;
     if (link.isotropic) {
-      add_tie(link, stiffness, weights.link_viscosity * link.viscosity);
+      add_vector_spring(link, stiffness, weights.link_viscosity * link.viscosity);
       continue;
     }
     const bool implicit = stiffness < 0.0;  // then a compressed link has no stiffness across
-    const double pull = stiffness * (implicit ? std::max(elongation, 0.0) : elongation);
-    add(link.mat_a, link.mat_b, network, stiffness, pull, weights.link_viscosity * link.viscosity,
-        0.0);
+    const double tension = stiffness * (implicit ? std::max(elongation, 0.0) : elongation);
+    add(link.mat_a, link.mat_b, network, stiffness, tension,
+        weights.link_viscosity * link.viscosity, 0.0);
   }
   std::uint32_t index = 0;
   for (const engine::StateLink& link : network.state_links) {
     const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
     const double length = distance(link.mat_a, link.mat_b);
-    const Tangent tangent = stiffest_tangent(state_machine, link.rest_length, length);
+    const Tangent tangent = stiffest_tangent(state_machine, link.rest_length, length, network.step);
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
-        weights.stiffness * tangent.pull,
+        weights.stiffness * tangent.tension,
         weights.viscosity_of_state_link(index++) * tangent.viscosity, 0.0);
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
-    add(link.mat_a, link.mat_b, network, weights.stiffness * link.stiffness, 0.0, 0.0,
-        weights.stiffness * link.viscosity);
+    add(link.mat_a, link.mat_b, network, weights.stiffness * link.stiffness,
+        weights.stiffness * std::min(link.start_force, 0.0), 0.0,
+        weights.stiffness * link.viscosity);  // a pull may fade before it turns anything
   }
   for (const engine::SetLiaison& set : network.sets) {
     add_set(network, set, weights.stiffness, weights.viscosity);
@@ -167,29 +168,29 @@ void StartTangent::add_set(const engine::NetworkDescription& network, const engi
     const std::uint32_t a = mat_of(set, pair.member_a);
     const std::uint32_t b = mat_of(set, pair.member_b);
     const Tangent tangent =
-        stiffest_tangent(start, rest_length_of(network, set, a, b), pair.distance);
+        stiffest_tangent(start, rest_length_of(network, set, a, b), pair.distance, network.step);
     if (!acts(start.states[0], tangent, pair.distance)) continue;
-    add(a, b, network, stiffness_weight * tangent.stiffness, stiffness_weight * tangent.pull,
+    add(a, b, network, stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
         viscosity_weight * tangent.viscosity, 0.0);
   }
 }
 
 void StartTangent::add(std::uint32_t a, std::uint32_t b, const engine::NetworkDescription& network,
-                       double along, double pull, double viscosity, double maxwell_viscosity) {
+                       double along, double tension, double viscosity, double maxwell_viscosity) {
   const Eigen::Vector3d from_a_to_b = network.mats[b].position - network.mats[a].position;
   const double length = from_a_to_b.norm();
   if (dimension_ == 1) {
     parts_.push_back({a, b, Eigen::Vector3d::UnitX(), along, 0.0, viscosity, maxwell_viscosity});
   } else if (length > 0.0) {
     parts_.push_back(
-        {a, b, from_a_to_b / length, along, pull / length, viscosity, maxwell_viscosity});
+        {a, b, from_a_to_b / length, along, tension / length, viscosity, maxwell_viscosity});
   }
 }
 
-void StartTangent::add_tie(const engine::Link& tie, double stiffness, double viscosity) {
+void StartTangent::add_vector_spring(const engine::Link& link, double stiffness, double viscosity) {
   for (int axis = 0; axis < dimension_; ++axis) {
     parts_.push_back(
-        {tie.mat_a, tie.mat_b, Eigen::Vector3d::Unit(axis), stiffness, 0.0, viscosity, 0.0});
+        {link.mat_a, link.mat_b, Eigen::Vector3d::Unit(axis), stiffness, 0.0, viscosity, 0.0});
   }
 }
 

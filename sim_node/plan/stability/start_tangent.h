@@ -40,10 +40,10 @@ class StartTangent {
   using Columns = Eigen::Matrix3Xd;
 
   void add(std::uint32_t a, std::uint32_t b, const engine::NetworkDescription& network,
-           double along, double pull, double viscosity, double maxwell_viscosity);
+           double along, double tension, double viscosity, double maxwell_viscosity);
   void add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
                double stiffness_weight, double viscosity_weight);
-  void add_tie(const engine::Link& tie, double stiffness, double viscosity);
+  void add_vector_spring(const engine::Link& link, double stiffness, double viscosity);
   /// M^-1/2 (stiffness_factor K + viscosity_factor Z) M^-1/2 x; Maxwell elements as at a step.
   Columns times(const Columns& x, double stiffness_factor, double viscosity_factor,
                 double step) const;

@@ -22,11 +22,11 @@ struct Rows {
 /// (D + A) x: all entries of the matrix taken as positive.
 Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
   Rows rows{std::vector<double>(x.size(), 0.0), std::vector<double>(x.size(), 0.0)};
-  for (const Edge& joint : graph.joints) {
-    const double sum = x[joint.mat_a] + x[joint.mat_b];
-    for (const std::uint32_t mat : {joint.mat_a, joint.mat_b}) {
-      rows.stiffness[mat] += joint.stiffness * sum;
-      rows.viscosity[mat] += joint.viscosity * sum;
+  for (const Edge& edge : graph.edges) {
+    const double sum = x[edge.mat_a] + x[edge.mat_b];
+    for (const std::uint32_t mat : {edge.mat_a, edge.mat_b}) {
+      rows.stiffness[mat] += edge.stiffness * sum;
+      rows.viscosity[mat] += edge.viscosity * sum;
     }
   }
   for (const ContactBound& crowd : graph.crowds) {
@@ -52,9 +52,9 @@ std::optional<LiaisonId> strongest_at(const LiaisonGraph& graph, std::uint32_t m
     most = weight;
     strongest = id;
   };
-  for (const Edge& joint : graph.joints) {
-    if (joint.mat_a != mat && joint.mat_b != mat) continue;
-    consider(joint.stiffness, joint.viscosity, joint.liaison);
+  for (const Edge& edge : graph.edges) {
+    if (edge.mat_a != mat && edge.mat_b != mat) continue;
+    consider(edge.stiffness, edge.viscosity, edge.liaison);
   }
   for (const ContactBound& crowd : graph.crowds) {
     for (std::size_t i = 0; i < crowd.members.size(); ++i) {
@@ -150,7 +150,7 @@ RowWeights row_weights(const LiaisonGraph& graph, double step) {
 }
 
 StepBound edge_bound(const LiaisonGraph& graph) {
-  // With x = 1/2 the rows of joints and crowds are the sums d of their slopes.
+  // With x = 1/2 the rows of edges and crowds are the sums d of their slopes.
   const std::size_t count = graph.inverse_mass.size();
   Rows sums = times(graph, std::vector<double>(count, 0.5));
   for (std::size_t i = 0; i < count; ++i) {
@@ -163,11 +163,11 @@ StepBound edge_bound(const LiaisonGraph& graph) {
                  a);
   };
   for (std::uint32_t i = 0; i < count; ++i) consider(i, 0.0, 0.0);
-  for (const Edge& joint : graph.joints) {
-    if (joint.stiffness == 0.0 && joint.viscosity == 0.0) continue;
-    const bool a_is_driven = sums.stiffness[joint.mat_a] >= sums.stiffness[joint.mat_b];
-    const std::uint32_t driven = a_is_driven ? joint.mat_a : joint.mat_b;
-    const std::uint32_t other = a_is_driven ? joint.mat_b : joint.mat_a;
+  for (const Edge& edge : graph.edges) {
+    if (edge.stiffness == 0.0 && edge.viscosity == 0.0) continue;
+    const bool a_is_driven = sums.stiffness[edge.mat_a] >= sums.stiffness[edge.mat_b];
+    const std::uint32_t driven = a_is_driven ? edge.mat_a : edge.mat_b;
+    const std::uint32_t other = a_is_driven ? edge.mat_b : edge.mat_a;
     consider(driven, sums.stiffness[other], sums.viscosity[other]);
   }
   for (const ContactBound& crowd : graph.crowds) {

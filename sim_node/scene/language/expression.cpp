@@ -174,7 +174,7 @@ class Parser {
   Operand read_product() {
     Operand left = read_sign();
     for (std::size_t at = at_;; at = at_) {
-      if (begins_with("**")) return left;  // told as what it is by fail_at_rest
+      if (begins_with("**")) return left;  // reported as what it is by fail_at_rest
       if (take("*", at)) {
         left = join(left, read_sign(), Operation::kMultiply, Type::kNumber, Type::kNumber, at);
       } else if (take("/", at)) {

@@ -66,7 +66,7 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
                                           const ParameterValues& parameters,
                                           std::uint32_t& next_slot, config::Problems& problems);
 
-/// A law: a pull [N] over distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg and the
+/// A law: a tension [N] over distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg and the
 /// parameters. Whatever is wrong is a problem of its place.
 std::optional<engine::Program> compile_law(const config::Value& text, const std::string& what,
                                            const ParameterValues& parameters,

@@ -8,7 +8,7 @@
 
 namespace cordis::scene {
 
-/// A quantity of a link. What it tells stands at engine::Quantity.
+/// A quantity of a link. Its meaning stands at engine::Quantity.
 struct QuantityName {
   const char* word;
   engine::Quantity quantity;

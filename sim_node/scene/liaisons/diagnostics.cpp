@@ -32,12 +32,12 @@ bool is_linear(const LinkState& state) {
   return is_none(state.elasticity);
 }
 
-/// The elastic pull of a linear state.
-double pull_of(const LinkState& state, double elongation) {
-  double pull = state.stiffness * elongation;
-  if (!state.pulls) pull = std::min(pull, 0.0);
-  if (!state.pushes) pull = std::max(pull, 0.0);
-  return std::clamp(pull, -state.force_limit, state.force_limit);
+/// The elastic tension of a linear state.
+double tension_of(const LinkState& state, double elongation) {
+  double tension = state.stiffness * elongation;
+  if (!state.pulls) tension = std::min(tension, 0.0);
+  if (!state.pushes) tension = std::max(tension, 0.0);
+  return std::clamp(tension, -state.force_limit, state.force_limit);
 }
 
 /// Numbers that look random and are always the same.
@@ -113,7 +113,7 @@ class Entries {
     double elongation = size() * dice_.between(-2.0, 2.0);
     double force = size() * dice_.between(-2.0, 2.0);
     if (is_linear(from) && !engine::asks_for(when, engine::Quantity::kForce))
-      force = pull_of(from, elongation);
+      force = tension_of(from, elongation);
     const bool of_force = engine::asks_for(when, engine::Quantity::kForce) &&
                           !engine::asks_for(when, engine::Quantity::kElongation);
     if (is_linear(from) && of_force && from.stiffness > 0.0) elongation = force / from.stiffness;
@@ -139,7 +139,8 @@ class Entries {
     at(link, engine::Quantity::kImpulse) = 0.0;
     const LinkState& state = state_machine_.states[exit.target];
     if (is_linear(state))
-      at(link, engine::Quantity::kForce) = pull_of(state, at(link, engine::Quantity::kElongation));
+      at(link, engine::Quantity::kForce) =
+          tension_of(state, at(link, engine::Quantity::kElongation));
     return link;
   }
 
@@ -149,8 +150,8 @@ class Entries {
   Dice dice_;
 };
 
-void lint_states(const StateMachine& state_machine, const StateMachinePlaces& places,
-                 const std::string& what, config::Problems& problems) {
+void check_states(const StateMachine& state_machine, const StateMachinePlaces& places,
+                  const std::string& what, config::Problems& problems) {
   std::vector<bool> reached(state_machine.states.size(), false);
   std::vector<std::uint32_t> open{state_machine.start};
   reached[state_machine.start] = true;
@@ -181,8 +182,8 @@ void lint_states(const StateMachine& state_machine, const StateMachinePlaces& pl
 }
 
 /// @return whether the condition may hold or not.
-bool lint_condition(const Program& when, const config::Place& place, const std::string& what,
-                    config::Problems& problems) {
+bool check_condition(const Program& when, const config::Place& place, const std::string& what,
+                     config::Problems& problems) {
   if (when.code.size() != 1 || when.code.front().operation != Operation::kConstant) return true;
   problems.warning(place, "this condition of " + what + " " +
                               (when.code.front().constant != 0.0 ? "always" : "never") + " holds");
@@ -191,12 +192,12 @@ bool lint_condition(const Program& when, const config::Place& place, const std::
 
 }  // namespace
 
-void lint(const StateMachine& state_machine, const StateMachinePlaces& places,
-          const std::string& what, config::Problems& problems) {
-  lint_states(state_machine, places, what, problems);
+void diagnose(const StateMachine& state_machine, const StateMachinePlaces& places,
+              const std::string& what, config::Problems& problems) {
+  check_states(state_machine, places, what, problems);
   std::vector<bool> open(state_machine.exits.size());
   for (std::size_t e = 0; e < state_machine.exits.size(); ++e)
-    open[e] = lint_condition(state_machine.exits[e].when, places.exits[e], what, problems);
+    open[e] = check_condition(state_machine.exits[e].when, places.exits[e], what, problems);
 
   Entries entries(state_machine);
   for (const LinkState& from : state_machine.states) {

@@ -6,7 +6,7 @@
 
 namespace cordis::scene {
 
-/// Tells of a state that no exit leads to (an error), and warns of
+/// Reports a state that no exit leads to (an error), and warns of
 /// - a state that acts, is not `final`, and has no exit;
 /// - a condition that always or never holds;
 /// - an exit that holds at the moment its state is entered: the link would change again in the next
@@ -14,7 +14,7 @@ namespace cordis::scene {
 ///   trying entries of many links whose ends move slowly: the speed is 0 unless the condition of
 ///   the entry asks for one.
 /// @param what  names the liaison in messages
-void lint(const engine::StateMachine& state_machine, const StateMachinePlaces& places,
-          const std::string& what, config::Problems& problems);
+void diagnose(const engine::StateMachine& state_machine, const StateMachinePlaces& places,
+              const std::string& what, config::Problems& problems);
 
 }  // namespace cordis::scene

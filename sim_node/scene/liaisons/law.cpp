@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <utility>
+#include <variant>
 
 namespace cordis::scene {
 
@@ -15,97 +16,98 @@ using config::Problems;
 using config::Range;
 using config::Value;
 using engine::Law;
+using engine::LawField;
 
-/// What a law is read from.
-struct LawSource {
-  config::MappingReader reader;
-  const ParameterValues& parameters;
-  Problems& problems;
+/// Reads the fields of a law, as the law itself declares them.
+class FieldReader {
+ public:
+  /// @param argument  key of what the law is a function of
+  FieldReader(config::MappingReader& reader, const char* argument,
+              const ParameterValues& parameters, Problems& problems)
+      : reader_(reader), argument_(argument), parameters_(parameters), problems_(problems) {}
 
-  double required(const char* key, Range range = {}) {
-    return required_formula(reader, key, range, parameters, problems);
+  void operator()(const LawField& field, double& value) {
+    const Range range{field.lowest, field.highest, field.lowest_excluded};
+    value = field.is_optional
+                ? optional_formula(reader_, field.key, 0.0, range, parameters_, problems_)
+                : required_formula(reader_, field.key, range, parameters_, problems_);
+    if (field.multiple_of == 0.0 || std::fmod(value, field.multiple_of) == 0.0) return;
+    reader_.error_at(field.key,
+                     quoted(field.key) + " must be a multiple of " +
+                         config::number_text(field.multiple_of) + ", got " +
+                         config::number_text(value),
+                     field.hint);
   }
+
+  void operator()(const LawField& field, std::vector<double>& list) {
+    const char* key = field.key == nullptr ? argument_ : field.key;
+    const std::size_t errors_before = problems_.error_count();
+    for (const Value& item : reader_.required_sequence(key).items())
+      list.push_back(read_formula(item, quoted(key), 0.0, {}, parameters_, problems_));
+    if (!field.as_many_as_first) first_count_ = list.size();
+    is_whole_ = is_whole_ && problems_.error_count() == errors_before;
+    if (is_whole_) check_list(field, key, list);
+  }
+
+  /// A list of mappings with fields of their own.
+  template <class Item>
+  void operator()(const LawField& field, std::vector<Item>& list) {
+    const Value items = reader_.required_sequence(field.key);
+    if (items.exists() && items.items().empty())
+      reader_.error_at(field.key, quoted(field.key) + " must not be empty");
+    for (const Value& item : items.items()) {
+      config::MappingReader reader(item, std::string(Item::kName) + " of " + reader_.what(),
+                                   problems_);
+      Item::visit_fields(list.emplace_back(),
+                         FieldReader(reader, argument_, parameters_, problems_));
+      reader.finish();
+    }
+  }
+
+ private:
+  std::string quoted(const char* key) const {
+    return std::string("'") + key + "' in " + reader_.what();
+  }
+
+  void check_list(const LawField& field, const char* key, const std::vector<double>& list) {
+    if (list.empty() && !field.as_many_as_first)
+      reader_.error_at(key, quoted(key) + " must not be empty");
+    if (field.as_many_as_first && list.size() != first_count_) {
+      reader_.error_at(key, quoted(key) + " must have one number for each of '" + argument_ +
+                                "', " + std::to_string(first_count_) + ", got " +
+                                std::to_string(list.size()));
+    }
+    const auto turn = std::adjacent_find(list.begin(), list.end(), std::greater_equal<>());
+    if (!field.ascends || turn == list.end()) return;
+    const auto points = reader_.optional_value(key).items();
+    problems_.error(points[static_cast<std::size_t>(turn - list.begin()) + 1].place(),
+                    quoted(key) + " must ascend, got " + config::number_text(turn[1]) + " after " +
+                        config::number_text(turn[0]));
+  }
+
+  config::MappingReader& reader_;
+  const char* argument_;
+  const ParameterValues& parameters_;
+  Problems& problems_;
+  std::size_t first_count_ = 0;
+  bool is_whole_ = true;  // all lists so far could be read
 };
 
-std::vector<double> read_numbers(LawSource& source, const char* key) {
-  std::vector<double> numbers;
-  for (const Value& item : source.reader.required_sequence(key).items()) {
-    numbers.push_back(read_formula(item, std::string("'") + key + "' in " + source.reader.what(),
-                                   0.0, {}, source.parameters, source.problems));
+/// Calls a function with each type of law that has a name, in the order of their table.
+template <class Function>
+void for_each_law(const Function& function) {
+  const auto call = [&]<class Type>(Type law) {
+    if constexpr (Type::kName != nullptr) function(std::move(law));
+  };
+  [&]<std::size_t... kTypes>(std::index_sequence<kTypes...>) {
+    (call(std::variant_alternative_t<kTypes, Law>{}), ...);
   }
-  return numbers;
-}
-
-engine::Table read_table(LawSource& source, const char* argument) {
-  const std::size_t errors_before = source.problems.error_count();
-  const std::vector<double> at = read_numbers(source, argument);
-  engine::Table table(at, read_numbers(source, "force_n"));
-  if (source.problems.error_count() != errors_before) return table;
-
-  const std::string name = std::string("'") + argument + "' in " + source.reader.what();
-  if (at.empty()) source.reader.error_at(argument, name + " must not be empty");
-  if (at.size() != table.value().size()) {
-    source.reader.error_at("force_n", "'force_n' in " + source.reader.what() +
-                                          " must have one number for each of '" + argument + "', " +
-                                          std::to_string(at.size()) + ", got " +
-                                          std::to_string(table.value().size()));
-  }
-  const auto turn = std::adjacent_find(at.begin(), at.end(), std::greater_equal<>());
-  if (turn != at.end()) {
-    const auto points = source.reader.optional_value(argument).items();
-    source.problems.error(points[static_cast<std::size_t>(turn - at.begin()) + 1].place(),
-                          name + " must ascend, got " + config::number_text(turn[1]) + " after " +
-                              config::number_text(turn[0]));
-  }
-  return table;
-}
-
-engine::Power read_power(LawSource& source) {
-  engine::Power power;
-  power.coefficient = source.required("coefficient");
-  power.exponent = source.required("exponent", Range::between(0.0, engine::kMaxExponent));
-  if (2.0 * power.exponent != std::floor(2.0 * power.exponent)) {
-    source.reader.error_at("exponent",
-                           "'exponent' in " + source.reader.what() +
-                               " must be a multiple of 0.5, got " +
-                               config::number_text(power.exponent),
-                           "give any other power as a table");
-  }
-  return power;
-}
-
-engine::LennardJones read_lennard_jones(LawSource& source) {
-  constexpr double kSmallest = 1.0e-12;  // its 12th power is still a number
-  engine::LennardJones law;
-  law.well_depth = source.required("depth_j", Range::not_negative());
-  law.diameter = source.required("diameter_m", Range::between(kSmallest, 1.0 / kSmallest));
-  law.cutoff = optional_formula(source.reader, "cut_m", 0.0, Range::positive(), source.parameters,
-                                source.problems);
-  return law;
-}
-
-engine::Rings read_rings(LawSource& source) {
-  engine::Rings law;
-  const Value rings = source.reader.required_sequence("rings");
-  if (rings.exists() && rings.items().empty())
-    source.reader.error_at("rings", "'rings' in " + source.reader.what() + " must not be empty");
-  for (const Value& item : rings.items()) {
-    config::MappingReader reader(item, "ring of " + source.reader.what(), source.problems);
-    engine::Ring ring;
-    ring.stiffness =
-        required_formula(reader, "stiffness_n_per_m", {}, source.parameters, source.problems);
-    ring.radius =
-        required_formula(reader, "radius_m", Range::positive(), source.parameters, source.problems);
-    reader.finish();
-    law.rings.push_back(ring);
-  }
-  return law;
+  (std::make_index_sequence<std::variant_size_v<Law>>{});
 }
 
 /// Reads the key of a law. @param argument  key of the points of a table
-Law read_law(config::MappingReader& reader, const char* key, const char* argument,
-             const std::vector<std::string>& kinds, const ParameterValues& parameters,
-             Problems& problems) {
+Law read_law(config::MappingReader& reader, const char* key, const char* argument, bool of_speed,
+             const ParameterValues& parameters, Problems& problems) {
   const Value value = reader.optional_value(key);
   const std::string what = std::string(key) + " of " + reader.what();
   if (!value.exists()) return {};
@@ -113,15 +115,22 @@ Law read_law(config::MappingReader& reader, const char* key, const char* argumen
     std::optional<engine::Program> program = compile_law(value, what, parameters, problems);
     return program ? Law(engine::Expression{std::move(*program)}) : Law();
   }
+  std::vector<std::string> kinds;
+  for_each_law([&]<class Type>(const Type& /*law*/) {
+    if (!of_speed || Type::kArgument != engine::LawArgument::kDistance)
+      kinds.emplace_back(Type::kName);
+  });
+  config::MappingReader fields(value, what, problems);
+  const std::string kind = fields.required_choice("kind", kinds);
   Law law;
-  LawSource source{config::MappingReader(value, what, problems), parameters, problems};
-  const std::string kind = source.reader.required_choice("kind", kinds);
-  if (!source.reader.ok()) return law;
-  if (kind == "table") law = read_table(source, argument);
-  if (kind == "power") law = read_power(source);
-  if (kind == "lennard_jones") law = read_lennard_jones(source);
-  if (kind == "rings") law = read_rings(source);
-  source.reader.finish();
+  if (!fields.ok()) return law;
+  for_each_law([&]<class Type>(Type read) {
+    if (kind != Type::kName) return;
+    Type::visit_fields(read, FieldReader(fields, argument, parameters, problems));
+    if constexpr (requires { read.find_slopes(); }) read.find_slopes();
+    law = std::move(read);
+  });
+  fields.finish();
   return law;
 }
 
@@ -129,13 +138,12 @@ Law read_law(config::MappingReader& reader, const char* key, const char* argumen
 
 engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues& parameters,
                             Problems& problems) {
-  return read_law(reader, "elasticity", "at_m", {"table", "power", "lennard_jones", "rings"},
-                  parameters, problems);
+  return read_law(reader, "elasticity", "at_m", /*of_speed=*/false, parameters, problems);
 }
 
 engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,
                              Problems& problems) {
-  return read_law(reader, "dissipation", "at_m_per_s", {"table", "power"}, parameters, problems);
+  return read_law(reader, "dissipation", "at_m_per_s", /*of_speed=*/true, parameters, problems);
 }
 
 }  // namespace cordis::scene

@@ -4,8 +4,9 @@
 #include <algorithm>
 
 #include "node/config/nearest_word.h"
+#include "sim_node/scene/language/name.h"
 #include "sim_node/scene/liaisons/include.h"
-#include "sim_node/scene/selection.h"
+#include "sim_node/scene/liaisons/liaison_reader.h"
 
 namespace cordis::scene {
 

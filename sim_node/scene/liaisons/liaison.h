@@ -37,7 +37,7 @@ class Liaisons {
 
   /// The liaison that the value names. Nothing when there is none of that name, which is a problem,
   /// or when the liaison itself has one.
-  /// @param with_hint  whether the nearest name is told with the problem
+  /// @param with_hint  whether the nearest name is reported with the problem
   const Liaison* find(const config::Value& name, config::Problems& problems,
                       bool with_hint = true) const;
   /// nullptr when there is none.

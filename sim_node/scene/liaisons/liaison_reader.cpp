@@ -1,12 +1,12 @@
-// sim_node/scene/liaisons/liaison_reader.cpp -- what a liaison is: its kind, its parameters, and
-// what one link of it consists of.
+// sim_node/scene/liaisons/liaison_reader.cpp
+#include "sim_node/scene/liaisons/liaison_reader.h"
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <utility>
 
 #include "sim_node/scene/liaisons/diagnostics.h"
-#include "sim_node/scene/liaisons/liaison.h"
 #include "sim_node/scene/liaisons/state_machine.h"
 
 namespace cordis::scene {
@@ -21,6 +21,7 @@ using config::Value;
 constexpr std::size_t kMaxParts = 64;  // of a parallel liaison, those in its parts counted too
 
 constexpr const char* kRestLength = "rest_m";
+constexpr const char* kStartForce = "start_force_n";
 
 /// A kind of liaison, and its keys that a link may give a value to.
 struct LiaisonKind {
@@ -128,6 +129,8 @@ class LiaisonReader {
     } else {
       refuse(kRestLength);
     }
+    if (maxwell)
+      law.start_force = optional_formula(reader, kStartForce, 0.0, Range{}, parameters, problems_);
     return law;
   }
 
@@ -160,7 +163,7 @@ class LiaisonReader {
       problems_.error(reader.place(), refusal.what());
       return law;
     }
-    if (with_diagnostics_) lint(state_machine, places, reader.what(), problems_);
+    if (with_diagnostics_) diagnose(state_machine, places, reader.what(), problems_);
     law.state_machine = std::make_shared<const engine::StateMachine>(std::move(state_machine));
     return law;
   }
@@ -229,7 +232,7 @@ class LiaisonReader {
     if (liaison == nullptr) return law;
     std::vector<std::string> open = open_;
     open.push_back(name);
-    Problems elsewhere;  // what is wrong in a liaison of its own is told there
+    Problems elsewhere;  // what is wrong in a liaison of its own is reported there
     LiaisonReader reader(liaisons_, std::move(open), space_, false, elsewhere);
     law = reader.read(liaison->definition, "liaison '" + name + "'", {}, nullptr);
     if (elsewhere.has_errors()) {

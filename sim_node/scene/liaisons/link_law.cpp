@@ -7,7 +7,7 @@
 
 #include "sim_node/engine/core/assert.h"
 #include "sim_node/scene/language/formula.h"
-#include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/liaisons/liaison_reader.h"
 
 namespace cordis::scene {
 
@@ -73,7 +73,7 @@ void read_tension(MappingReader& reader, LinkLaw& law) {
 }
 
 /// The parameters that a link may give are those of its liaison; others that liaisons often have
-/// are told as what they are.
+/// are reported as what they are.
 void refuse_foreign_parameters(MappingReader& reader, const Value& definition,
                                const std::vector<std::string>& words) {
   const std::string kind = definition.find("kind").text();
@@ -228,7 +228,7 @@ bool LinkLists::join_alone(const LinkLaw& law, std::uint32_t a, std::uint32_t b,
       state_links.push_back({a, b, law.state_machine_index, rest});
       break;
     case LinkKind::kMaxwell:
-      maxwell_links.push_back({a, b, law.stiffness, law.viscosity});
+      maxwell_links.push_back({a, b, law.stiffness, law.viscosity, law.start_force});
       break;
   }
   return true;

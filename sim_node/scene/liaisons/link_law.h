@@ -38,6 +38,7 @@ struct LinkLaw {
   LinkKind kind = LinkKind::kLinear;
   double stiffness = 0.0;             ///< K [N/m], unless kState
   double viscosity = 0.0;             ///< Z [N s/m], unless kState
+  double start_force = 0.0;           ///< [N] of kMaxwell
   std::optional<double> rest_length;  ///< [m]; the distance at the start when there is none
   bool rest_is_radii = false;         ///< the rest length is the sum of the radii of the two balls
   std::optional<double> tension;      ///< [N] at the start, instead of a rest length
@@ -81,27 +82,12 @@ class StateMachinePool {
   std::map<Origin, std::uint32_t> indices_;
 };
 
-/// Reads what a liaison is.
-/// @param definition  its mapping, complete
-/// @param name        of the liaison
-/// @param given       values that replace those of the definition: of `parameters`, and of the
-///                    plain keys that parameters_of() lists
-/// @param space       of the scene
-/// @param with_diagnostics  whether things that may be meant so are warned of
-std::optional<LinkLaw> read_liaison(const config::Value& definition, const std::string& name,
-                                    const GivenParameters& given, const Liaisons& liaisons,
-                                    int space, bool with_diagnostics, config::Problems& problems);
-
-/// The words that a link may give values to: the parameters of the liaison, and those of its plain
-/// keys that its kind has.
-std::vector<std::string> parameters_of(const config::Value& definition);
-
 /// Where a law is read: links need a liaison; matter may write its stiffness itself, and may have a
 /// tension.
 enum class LawPlace { kLink, kMatter };
 
 /// Reads `liaison` and the parameters that override it. Nothing after a problem.
-/// @param owner  the name of the links when they bear one of their own: then they share their
+/// @param owner  the name of the links when they have one of their own: then they share their
 ///               state machine with no others, so that it can be changed for them alone
 std::optional<LinkLaw> read_law(config::MappingReader& reader, LawPlace place,
                                 const Liaisons& liaisons, int space, const std::string& owner = {});

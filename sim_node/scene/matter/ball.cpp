@@ -1,10 +1,11 @@
-// sim_node/scene/matter/ball.cpp -- a ball: a solid sphere of MATs in the order of a crystal.
-#include "sim_node/scene/matter/crystal_piece.h"
-#include "sim_node/scene/matter/generators.h"
+// sim_node/scene/matter/ball.cpp
+#include "sim_node/scene/matter/ball.h"
+
+#include "sim_node/scene/matter/crystal_matter.h"
 
 namespace cordis::scene {
 
-Piece read_ball(Source& source) {
+GeneratedMatter read_ball(Source& source) {
   config::MappingReader& reader = source.reader;
   const engine::Vec3 center = required_point(reader, "center_m", source.space);
   const double radius = reader.required_number("radius_m", {0.0, kFarthest, true});
@@ -16,7 +17,7 @@ Piece read_ball(Source& source) {
   region.round = true;
   region.lowest = center.array() - radius;
   region.highest = center.array() + radius;
-  return crystal_piece(source, fill_region(source, *structure, keys, region, "radius_m"), keys);
+  return crystal_matter(source, fill_region(source, *structure, keys, region, "radius_m"), keys);
 }
 
 }  // namespace cordis::scene

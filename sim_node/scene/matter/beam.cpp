@@ -1,5 +1,5 @@
-// sim_node/scene/matter/beam.cpp -- a beam: a truss of cells, each braced crosswise.
-#include "sim_node/scene/matter/generators.h"
+// sim_node/scene/matter/beam.cpp
+#include "sim_node/scene/matter/beam.h"
 
 namespace cordis::scene {
 
@@ -79,45 +79,45 @@ BeamShape read_shape(Source& source) {
 /// The links of a section at every station, then those of every cell: along it, and crosswise in
 /// each of its faces.
 std::vector<Edge> joints_of(const BeamShape& shape) {
-  std::vector<Edge> joints;
+  std::vector<Edge> edges;
   for (std::uint32_t s = 0; s <= shape.cells; ++s) {
     for (const auto& all : {shape.sides, shape.section_diagonals}) {
-      for (const auto& [a, b] : all) joints.emplace_back(shape.index(s, a), shape.index(s, b));
+      for (const auto& [a, b] : all) edges.emplace_back(shape.index(s, a), shape.index(s, b));
     }
   }
   for (std::uint32_t s = 0; s < shape.cells; ++s) {
     for (std::uint32_t c = 0; c < shape.corners(); ++c)
-      joints.emplace_back(shape.index(s, c), shape.index(s + 1, c));
+      edges.emplace_back(shape.index(s, c), shape.index(s + 1, c));
     for (const auto& [a, b] : shape.sides) {
-      joints.emplace_back(shape.index(s, a), shape.index(s + 1, b));
-      joints.emplace_back(shape.index(s, b), shape.index(s + 1, a));
+      edges.emplace_back(shape.index(s, a), shape.index(s + 1, b));
+      edges.emplace_back(shape.index(s, b), shape.index(s + 1, a));
     }
   }
-  return joints;
+  return edges;
 }
 
 }  // namespace
 
-Piece read_beam(Source& source) {
-  Piece piece;
+GeneratedMatter read_beam(Source& source) {
+  GeneratedMatter matter;
   config::MappingReader& reader = source.reader;
   const std::size_t errors_before = source.problems.error_count();
   const BeamShape shape = read_shape(source);
-  const PointSpec grain = read_grain(source);
+  const PointSpec spec = read_point_spec(source);
   const FixedEnds ends = read_ends(reader);
   const std::optional<LinkLaw> law = read_neighbour_law(source);
-  if (!law || source.problems.error_count() != errors_before) return piece;
+  if (!law || source.problems.error_count() != errors_before) return matter;
 
   for (std::uint32_t s = 0; s <= shape.cells; ++s) {
     const Vec3 station =
         shape.from + (static_cast<double>(s) / shape.cells) * (shape.to - shape.from);
     for (const Vec3& corner : shape.section) {
-      add_mass(piece, grain, station + corner);
-      if ((s == 0 && ends.first) || (s == shape.cells && ends.last)) fix(piece.mats.back());
+      add_mass(matter, spec, station + corner);
+      if ((s == 0 && ends.first) || (s == shape.cells && ends.last)) fix(matter.mats.back());
     }
   }
-  join_all(source, piece, *law, joints_of(shape));
-  return piece;
+  join_all(source, matter, *law, joints_of(shape));
+  return matter;
 }
 
 }  // namespace cordis::scene

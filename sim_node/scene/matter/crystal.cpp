@@ -62,8 +62,8 @@ class Sites {
       index_[site(t)] = static_cast<std::int32_t>(crystal.points.size());
       crystal.points.push_back(point);
     });
-    crystal.neighbours = joints(structure_.neighbours);
-    crystal.second_neighbours = joints(structure_.second_neighbours);
+    crystal.neighbours = edges(structure_.neighbours);
+    crystal.second_neighbours = edges(structure_.second_neighbours);
     return crystal;
   }
 
@@ -77,18 +77,18 @@ class Sites {
     }
   }
 
-  std::vector<Edge> joints(const std::vector<Structure::Triple>& steps) const {
-    std::vector<Edge> joints;
+  std::vector<Edge> edges(const std::vector<Structure::Triple>& steps) const {
+    std::vector<Edge> edges;
     for_each([&](const Structure::Triple& t) {
       const std::int32_t a = index_[site(t)];
       if (a < 0) return;
       for (const Structure::Triple& step : steps) {
         const Structure::Triple other{t[0] + step[0], t[1] + step[1], t[2] + step[2]};
         const std::int32_t b = is_inside(other) ? index_[site(other)] : -1;
-        if (b >= 0) joints.emplace_back(a, b);
+        if (b >= 0) edges.emplace_back(a, b);
       }
     });
-    return joints;
+    return edges;
   }
 
   bool is_inside(const Structure::Triple& t) const {

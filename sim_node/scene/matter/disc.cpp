@@ -1,10 +1,10 @@
-// sim_node/scene/matter/disc.cpp -- a disc: a full circle, in the order of a triangular lattice or
-// of rings.
+// sim_node/scene/matter/disc.cpp
+#include "sim_node/scene/matter/disc.h"
+
 #include <cmath>
 #include <numbers>
 
-#include "sim_node/scene/matter/crystal_piece.h"
-#include "sim_node/scene/matter/generators.h"
+#include "sim_node/scene/matter/crystal_matter.h"
 
 namespace cordis::scene {
 
@@ -27,18 +27,18 @@ constexpr std::uint32_t first_of_ring(std::uint32_t ring) {
 }
 
 /// Joins of a ring to itself and to the one within, so that all meshes are triangles.
-void join_ring(std::uint32_t ring, std::vector<Edge>& joints) {
+void join_ring(std::uint32_t ring, std::vector<Edge>& edges) {
   const std::uint32_t first = first_of_ring(ring);
   const std::uint32_t first_within = first_of_ring(ring - 1);
   const std::uint32_t count = 6 * ring;
   const std::uint32_t count_within = ring == 1 ? 1 : 6 * (ring - 1);
   for (std::uint32_t i = 0; i < count; ++i) {
-    joints.emplace_back(first + i, first + (i + 1) % count);
+    edges.emplace_back(first + i, first + (i + 1) % count);
     const std::uint32_t sector = i / ring;
     const std::uint32_t along = i % ring;  // 0 at the corner of a sector: it has one MAT within
     const std::uint32_t within = sector * (ring - 1) + along;
-    if (along > 0) joints.emplace_back(first + i, first_within + within - 1);
-    joints.emplace_back(first + i, first_within + within % count_within);
+    if (along > 0) edges.emplace_back(first + i, first_within + within - 1);
+    edges.emplace_back(first + i, first_within + within % count_within);
   }
 }
 
@@ -59,7 +59,7 @@ Crystal rings(double spacing, double radius) {
 
 Crystal read_rings(Source& source, const CrystalKeys& keys, double radius) {
   config::MappingReader& reader = source.reader;
-  const double inner = radius - keys.grain.radius;
+  const double inner = radius - keys.spec.radius;
   if (inner < 0.0) {
     reader.error_at("radius_m", "no ball of " + reader.what() + " fits into it");
     return {};
@@ -74,7 +74,7 @@ Crystal read_rings(Source& source, const CrystalKeys& keys, double radius) {
 
 }  // namespace
 
-Piece read_disc(Source& source) {
+GeneratedMatter read_disc(Source& source) {
   config::MappingReader& reader = source.reader;
   const Vec3 center = required_point(reader, "center_m", source.space);
   const double radius = reader.required_number("radius_m", {0.0, kFarthest, true});
@@ -94,7 +94,7 @@ Piece read_disc(Source& source) {
                                                    circle(radius), "radius_m");
   for (Vec3& point : crystal.points)
     point = center + point.x() * plane.across + point.y() * plane.along;
-  return crystal_piece(source, crystal, keys);
+  return crystal_matter(source, crystal, keys);
 }
 
 }  // namespace cordis::scene

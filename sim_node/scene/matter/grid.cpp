@@ -1,7 +1,7 @@
-// sim_node/scene/matter/grid.cpp -- a grid: rows and columns in a plane.
-#include <algorithm>
+// sim_node/scene/matter/grid.cpp
+#include "sim_node/scene/matter/grid.h"
 
-#include "sim_node/scene/matter/generators.h"
+#include <algorithm>
 
 namespace cordis::scene {
 
@@ -52,20 +52,20 @@ GridShape read_grid_shape(Source& source) {
   return shape;
 }
 
-void place_grid(Piece& piece, const GridShape& shape, const PointSpec& grain,
+void place_grid(GeneratedMatter& matter, const GridShape& shape, const PointSpec& spec,
                 const std::string& border, int space) {
   for (long row = 0; row < shape.rows; ++row) {
     for (long column = 0; column < shape.columns; ++column) {
       const auto r = static_cast<double>(row);
       const auto c = static_cast<double>(column);
-      add_mass(piece, grain, shape.corner + c * shape.column_step + r * shape.row_step);
+      add_mass(matter, spec, shape.corner + c * shape.column_step + r * shape.row_step);
       const bool on_row_end = column == 0 || column == shape.columns - 1;
       const bool on_column_end = row == 0 || row == shape.rows - 1;
-      if (border == "fixed" && (on_row_end || on_column_end)) fix(piece.mats.back());
-      if (border == "corners" && on_row_end && on_column_end) fix(piece.mats.back());
+      if (border == "fixed" && (on_row_end || on_column_end)) fix(matter.mats.back());
+      if (border == "corners" && on_row_end && on_column_end) fix(matter.mats.back());
       if (space == 1) {
-        piece.layout.push_back({shape.layout.at.x + c * shape.layout.spacing,
-                                shape.layout.at.z + r * shape.layout.spacing});
+        matter.layout.push_back({shape.layout.at.x + c * shape.layout.spacing,
+                                 shape.layout.at.z + r * shape.layout.spacing});
       }
     }
   }
@@ -73,45 +73,45 @@ void place_grid(Piece& piece, const GridShape& shape, const PointSpec& grain,
 
 /// Along the rows, then along the columns.
 std::vector<Edge> sides_of(const GridShape& shape) {
-  std::vector<Edge> joints;
+  std::vector<Edge> edges;
   for (long row = 0; row < shape.rows; ++row) {
     for (long column = 0; column + 1 < shape.columns; ++column)
-      joints.emplace_back(shape.index(row, column), shape.index(row, column + 1));
+      edges.emplace_back(shape.index(row, column), shape.index(row, column + 1));
   }
   for (long row = 0; row + 1 < shape.rows; ++row) {
     for (long column = 0; column < shape.columns; ++column)
-      joints.emplace_back(shape.index(row, column), shape.index(row + 1, column));
+      edges.emplace_back(shape.index(row, column), shape.index(row + 1, column));
   }
-  return joints;
+  return edges;
 }
 
 std::vector<Edge> diagonals_of(const GridShape& shape) {
-  std::vector<Edge> joints;
+  std::vector<Edge> edges;
   for (long row = 0; row + 1 < shape.rows; ++row) {
     for (long column = 0; column + 1 < shape.columns; ++column) {
-      joints.emplace_back(shape.index(row, column), shape.index(row + 1, column + 1));
-      joints.emplace_back(shape.index(row, column + 1), shape.index(row + 1, column));
+      edges.emplace_back(shape.index(row, column), shape.index(row + 1, column + 1));
+      edges.emplace_back(shape.index(row, column + 1), shape.index(row + 1, column));
     }
   }
-  return joints;
+  return edges;
 }
 
 }  // namespace
 
-Piece read_grid(Source& source) {
-  Piece piece;
+GeneratedMatter read_grid(Source& source) {
+  GeneratedMatter matter;
   config::MappingReader& reader = source.reader;
   const GridShape shape = read_grid_shape(source);
-  const PointSpec grain = read_grain(source);
+  const PointSpec spec = read_point_spec(source);
   const std::string border = reader.optional_choice("border", "free", {"free", "fixed", "corners"});
   const std::optional<LinkLaw> law = read_neighbour_law(source);
   const std::optional<LinkLaw> shear = read_shear_law(reader);
-  if (!law || !reader.ok()) return piece;
+  if (!law || !reader.ok()) return matter;
 
-  place_grid(piece, shape, grain, border, source.space);
-  join_all(source, piece, *law, sides_of(shape));
-  if (shear) join_all(source, piece, *shear, diagonals_of(shape));
-  return piece;
+  place_grid(matter, shape, spec, border, source.space);
+  join_all(source, matter, *law, sides_of(shape));
+  if (shear) join_all(source, matter, *shear, diagonals_of(shape));
+  return matter;
 }
 
 }  // namespace cordis::scene

@@ -1,6 +1,7 @@
-// sim_node/scene/matter/lattice.cpp -- a lattice: MATs in the order of a crystal.
-#include "sim_node/scene/matter/crystal_piece.h"
-#include "sim_node/scene/matter/generators.h"
+// sim_node/scene/matter/lattice.cpp
+#include "sim_node/scene/matter/lattice.h"
+
+#include "sim_node/scene/matter/crystal_matter.h"
 
 namespace cordis::scene {
 
@@ -47,7 +48,7 @@ Crystal read_filled_region(Source& source, const Structure* structure, const Cry
 
 }  // namespace
 
-Piece read_lattice(Source& source) {
+GeneratedMatter read_lattice(Source& source) {
   config::MappingReader& reader = source.reader;
   const Structure* structure = read_structure(source, {"square", "triangular", "cubic", "fcc"}, "");
   const CrystalKeys keys = read_crystal_keys(source);
@@ -55,7 +56,7 @@ Piece read_lattice(Source& source) {
                               ? read_filled_region(source, structure, keys)
                               : read_block(source, structure, keys.spacing);
   if (!reader.ok() || structure == nullptr) return {};
-  return crystal_piece(source, crystal, keys);
+  return crystal_matter(source, crystal, keys);
 }
 
 }  // namespace cordis::scene

@@ -4,7 +4,17 @@
 #include <algorithm>
 #include <array>
 
-#include "sim_node/scene/matter/generators.h"
+#include "sim_node/scene/matter/ball.h"
+#include "sim_node/scene/matter/beam.h"
+#include "sim_node/scene/matter/disc.h"
+#include "sim_node/scene/matter/grid.h"
+#include "sim_node/scene/matter/lattice.h"
+#include "sim_node/scene/matter/mass.h"
+#include "sim_node/scene/matter/pack.h"
+#include "sim_node/scene/matter/points.h"
+#include "sim_node/scene/matter/ring.h"
+#include "sim_node/scene/matter/skin.h"
+#include "sim_node/scene/matter/string.h"
 
 namespace cordis::scene {
 
@@ -14,7 +24,7 @@ using config::Range;
 
 struct MatterKind {
   const char* name;
-  Piece (*read)(Source&);
+  GeneratedMatter (*read)(Source&);
   int lowest_space;
   int highest_space;
 };
@@ -61,19 +71,19 @@ Layout read_layout(config::MappingReader& reader) {
   return layout;
 }
 
-void read_drawing(config::MappingReader& reader, Piece& piece) {
+void read_drawing(config::MappingReader& reader, GeneratedMatter& matter) {
   const double drawn = reader.optional_number("drawn_radius_m", 0.0, Range::not_negative());
   const auto ball = [](double radius) { return radius > 0.0; };
-  const bool has_balls = std::any_of(piece.radius_m.begin(), piece.radius_m.end(), ball);
+  const bool has_balls = std::any_of(matter.radius_m.begin(), matter.radius_m.end(), ball);
   if (has_balls && reader.has("drawn_radius_m")) {
     reader.error_at("drawn_radius_m", "a ball is drawn with its own radius");
   }
-  piece.drawn_radius_m = piece.radius_m;
-  if (!has_balls) piece.drawn_radius_m.assign(piece.mats.size(), drawn);
+  matter.drawn_radius_m = matter.radius_m;
+  if (!has_balls) matter.drawn_radius_m.assign(matter.mats.size(), drawn);
 }
 
-Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int space,
-                 bool may_be_massless, config::Problems& problems) {
+GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& liaisons, int space,
+                                bool may_be_massless, config::Problems& problems) {
   std::vector<std::string> words;
   for (const MatterKind& kind : kMatterKinds) words.emplace_back(kind.name);
   const std::string word = reader.required_choice("kind", words);
@@ -82,10 +92,10 @@ Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int sp
   if (!check_space(reader, kind, space)) return {};
 
   Source source{reader, liaisons, space, may_be_massless, problems};
-  Piece piece = kind.read(source);
-  read_drawing(reader, piece);
+  GeneratedMatter matter = kind.read(source);
+  read_drawing(reader, matter);
   reader.finish();
-  return piece;
+  return matter;
 }
 
 }  // namespace cordis::scene

@@ -3,17 +3,17 @@
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/scene/liaisons/liaison.h"
-#include "sim_node/scene/sections/assembly.h"
+#include "sim_node/scene/matter/generated_matter.h"
 
 namespace cordis::scene {
 
 inline constexpr long kMaxMats = 1'000'000;  ///< of a scene
 
-/// Reads one piece of matter: its kind and what the kind wants. Whatever is wrong is a problem;
-/// then the piece is not to be used.
+/// Reads one entry of `matter:`, its kind and the keys of the kind. Whatever is wrong is a problem;
+/// then the result is not to be used.
 /// @param may_be_massless  a mass of 0 is taken: a reduction is to take it out
-Piece read_piece(config::MappingReader& reader, const Liaisons& liaisons, int space,
-                 bool may_be_massless, config::Problems& problems);
+GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& liaisons, int space,
+                                bool may_be_massless, config::Problems& problems);
 
 /// Where the MATs of a 1-D scene are shown: `layout_at_m` [x, z] and `layout_spacing_m`.
 struct Layout {
@@ -22,7 +22,7 @@ struct Layout {
 };
 Layout read_layout(config::MappingReader& reader);
 
-/// What the eye sees of the MATs of a piece: balls as they are, others as `drawn_radius_m` says.
-void read_drawing(config::MappingReader& reader, Piece& piece);
+/// The radii with which MATs are drawn: balls as they are, others as `drawn_radius_m` says.
+void read_drawing(config::MappingReader& reader, GeneratedMatter& matter);
 
 }  // namespace cordis::scene

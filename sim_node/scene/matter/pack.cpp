@@ -1,9 +1,9 @@
-// sim_node/scene/matter/pack.cpp -- a pack: equal balls that fill a region without order and
-// without overlap.
+// sim_node/scene/matter/pack.cpp
+#include "sim_node/scene/matter/pack.h"
+
 #include <cmath>
 #include <numbers>
 
-#include "sim_node/scene/matter/generators.h"
 #include "sim_node/scene/matter/packing.h"
 
 namespace cordis::scene {
@@ -37,6 +37,14 @@ std::size_t read_count(Source& source, const Region& region, double ball) {
   return 0;
 }
 
+/// The largest part of a region that can be filled. No packing at all is denser than the triangular
+/// lattice, or than fcc; many balls without order never come near them.
+double densest(int space, std::size_t count) {
+  constexpr std::size_t kMany = 1000;
+  if (count < kMany) return space == 2 ? 0.9069 : 0.7405;
+  return space == 2 ? 0.86 : 0.65;
+}
+
 void report_no_room(Source& source, const Region& region, double ball, std::size_t count) {
   const bool flat = source.space == 2;
   const double share = static_cast<double>(count) * ball / region.measure();
@@ -51,8 +59,8 @@ void report_no_room(Source& source, const Region& region, double ball, std::size
 
 }  // namespace
 
-Piece read_pack(Source& source) {
-  Piece piece;
+GeneratedMatter read_pack(Source& source) {
+  GeneratedMatter matter;
   config::MappingReader& reader = source.reader;
   const std::size_t errors_before = source.problems.error_count();
   if (!reader.has("ball")) reader.required_value("ball");
@@ -62,20 +70,18 @@ Piece read_pack(Source& source) {
   const bool sound = ball && source.problems.error_count() == errors_before;
   const double measure = measure_of_ball(sound ? ball->radius : 1.0, source.space);
   const std::size_t count = read_count(source, region, measure);
-  if (!sound || !reader.ok()) return piece;
+  if (!sound || !reader.ok()) return matter;
 
-  // no packing at all is denser than the triangular lattice, or than fcc
-  const double densest = source.space == 2 ? 0.9069 : 0.7405;
   std::optional<std::vector<engine::Vec3>> centers;
-  if (static_cast<double>(count) * measure <= densest * region.measure()) {
-    centers = pack_balls(region, ball->radius, count, static_cast<std::uint64_t>(seed));
+  if (static_cast<double>(count) * measure <= densest(source.space, count) * region.measure()) {
+    centers = pack_balls(region, ball->radius, count, static_cast<std::uint64_t>(seed)).centers;
   }
   if (!centers) {
     report_no_room(source, region, measure, count);
-    return piece;
+    return matter;
   }
-  for (const engine::Vec3& center : *centers) add_mass(piece, *ball, center);
-  return piece;
+  for (const engine::Vec3& center : *centers) add_mass(matter, *ball, center);
+  return matter;
 }
 
 }  // namespace cordis::scene

@@ -9,6 +9,13 @@
 
 namespace cordis::scene {
 
+struct PackedBalls {
+  /// Nothing when there is no end to it: the balls do not fit, or only in order. Of more than 1000
+  /// balls that is seen as soon as what they overlap by hardly shrinks any more.
+  std::optional<std::vector<engine::Vec3>> centers;
+  int rounds = 0;  ///< of pushing apart
+};
+
 /// Centres of `count` balls of `radius` [m] that lie wholly in the region and do not overlap.
 ///
 /// The centres are thrown at random, then every two that overlap are pushed apart along their line
@@ -16,8 +23,6 @@ namespace cordis::scene {
 /// which ends near 0.84 of an area and 0.64 of a volume. It computes with + - * / and std::sqrt
 /// alone and in one order, so that a seed means the same balls on every machine.
 /// Cost: O(count) per round; 10,000 balls take a fraction of a second.
-/// @return nothing when there is no end to it: the balls do not fit, or only in order.
-std::optional<std::vector<engine::Vec3>> pack_balls(const Region& region, double radius,
-                                                    std::size_t count, std::uint64_t seed);
+PackedBalls pack_balls(const Region& region, double radius, std::size_t count, std::uint64_t seed);
 
 }  // namespace cordis::scene

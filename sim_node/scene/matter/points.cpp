@@ -1,5 +1,5 @@
-// sim_node/scene/matter/points.cpp -- MATs one by one: each with its own place, mass and velocity.
-#include "sim_node/scene/matter/generators.h"
+// sim_node/scene/matter/points.cpp
+#include "sim_node/scene/matter/points.h"
 
 namespace cordis::scene {
 
@@ -47,15 +47,15 @@ std::vector<Vec3> in_a_row(std::size_t count) {
 }
 
 /// Checks that masses and radii are possible.
-void check_points(Source& source, const Piece& piece) {
+void check_points(Source& source, const GeneratedMatter& matter) {
   config::MappingReader& reader = source.reader;
-  for (const engine::Mat& mat : piece.mats) {
+  for (const engine::Mat& mat : matter.mats) {
     const bool is_possible = mat.mass > 0.0 || (mat.mass == 0.0 && source.may_be_massless);
     if (mat.kind == MatKind::kFixed || is_possible) continue;
     reader.error_at("mass_kg", "'mass_kg' in " + reader.what() + " must be > 0, got " +
                                    config::number_text(mat.mass));
   }
-  for (const double radius : piece.radius_m) {
+  for (const double radius : matter.radius_m) {
     if (radius >= 0.0 && radius <= kFarthest) continue;
     reader.error_at("radius_m", "'radius_m' in " + reader.what() + " must be >= 0, got " +
                                     config::number_text(radius));
@@ -64,8 +64,8 @@ void check_points(Source& source, const Piece& piece) {
 
 }  // namespace
 
-Piece read_points(Source& source) {
-  Piece piece;
+GeneratedMatter read_points(Source& source) {
+  GeneratedMatter matter;
   config::MappingReader& reader = source.reader;
   const std::vector<Vec3> points = required_points(reader, "at_m", source.space, source.problems);
   const std::size_t count = points.size();
@@ -78,16 +78,16 @@ Piece read_points(Source& source) {
   spread(source, "velocity_m_per_s", count, velocity);
   const std::vector<bool> fixed = read_fixed_ones(reader, count);
   for (std::size_t i = 0; i < count; ++i) {
-    piece.mats.push_back({MatKind::kMass, mass[i], points[i], velocity[i]});
-    if (fixed[i]) piece.mats.back() = {MatKind::kFixed, 0.0, points[i], Vec3::Zero()};
+    matter.mats.push_back({MatKind::kMass, mass[i], points[i], velocity[i]});
+    if (fixed[i]) matter.mats.back() = {MatKind::kFixed, 0.0, points[i], Vec3::Zero()};
   }
-  piece.radius_m = radius;
-  check_points(source, piece);
-  if (source.space > 1) return piece;
+  matter.radius_m = radius;
+  check_points(source, matter);
+  if (source.space > 1) return matter;
   std::vector<Vec3> layout = points_or(source, "layout_at_m", 2, in_a_row(count));
   spread(source, "layout_at_m", count, layout);
-  for (const Vec3& point : layout) piece.layout.push_back({point.x(), point.y()});
-  return piece;
+  for (const Vec3& point : layout) matter.layout.push_back({point.x(), point.y()});
+  return matter;
 }
 
 }  // namespace cordis::scene

@@ -1,8 +1,9 @@
-// sim_node/scene/matter/skin.cpp -- a skin: a closed surface, with or without a core.
+// sim_node/scene/matter/skin.cpp
+#include "sim_node/scene/matter/skin.h"
+
 #include <cmath>
 #include <numbers>
 
-#include "sim_node/scene/matter/generators.h"
 #include "sim_node/scene/matter/icosphere.h"
 
 namespace cordis::scene {
@@ -84,45 +85,45 @@ Surface read_surface(Source& source) {
   return source.reader.has("corners_m") ? read_polygon(source) : read_circle(source);
 }
 
-/// One MAT in the middle, the last of the piece, joined to all of the skin.
-void add_core(Source& source, Piece& piece, const config::Value& section) {
+/// One MAT in the middle, the last of the matter, joined to all of the skin.
+void add_core(Source& source, GeneratedMatter& matter, const config::Value& section) {
   config::MappingReader reader(section, "'core' of " + source.reader.what(), source.problems);
   Source inner{reader, source.liaisons, source.space, false, source.problems};
-  const PointSpec grain = read_grain(inner);
+  const PointSpec spec = read_point_spec(inner);
   const std::optional<LinkLaw> law = read_neighbour_law(inner);
   reader.finish();
-  if (!law || !reader.ok() || piece.mats.empty()) return;
+  if (!law || !reader.ok() || matter.mats.empty()) return;
 
-  const auto count = static_cast<std::uint32_t>(piece.mats.size());
+  const auto count = static_cast<std::uint32_t>(matter.mats.size());
   Vec3 sum = Vec3::Zero();
   std::vector<Edge> spokes;
   for (std::uint32_t i = 0; i < count; ++i) {
-    sum += piece.mats[i].position;
+    sum += matter.mats[i].position;
     spokes.emplace_back(count, i);
   }
-  add_mass(piece, grain, sum / static_cast<double>(count));
-  join_all(inner, piece, *law, spokes);
-  piece.names = {{"skin", 0, count}, {"core", count, 1}};
+  add_mass(matter, spec, sum / static_cast<double>(count));
+  join_all(inner, matter, *law, spokes);
+  matter.names = {{"skin", 0, count}, {"core", count, 1}};
 }
 
 }  // namespace
 
-Piece read_skin(Source& source) {
+GeneratedMatter read_skin(Source& source) {
   config::MappingReader& reader = source.reader;
   const Surface surface = read_surface(source);
-  const PointSpec grain = read_grain(source);
+  const PointSpec spec = read_point_spec(source);
   const std::optional<LinkLaw> law = read_neighbour_law(source);
   const std::optional<LinkLaw> shear = read_shear_law(reader);
   const config::Value core = reader.optional_mapping("core");
 
-  Piece piece;
+  GeneratedMatter matter;
   if (law && reader.ok()) {
-    for (const Vec3& point : surface.points) add_mass(piece, grain, point);
-    join_all(source, piece, *law, surface.edges);
-    if (shear) join_all(source, piece, *shear, surface.across);
+    for (const Vec3& point : surface.points) add_mass(matter, spec, point);
+    join_all(source, matter, *law, surface.edges);
+    if (shear) join_all(source, matter, *shear, surface.across);
   }
-  if (core.exists()) add_core(source, piece, core);
-  return piece;
+  if (core.exists()) add_core(source, matter, core);
+  return matter;
 }
 
 }  // namespace cordis::scene

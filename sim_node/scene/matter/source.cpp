@@ -14,14 +14,14 @@ std::optional<PointSpec> optional_ball(config::MappingReader& reader, bool with_
   const config::Value section = reader.optional_mapping("ball");
   if (!section.exists()) return std::nullopt;
   config::MappingReader ball(section, "'ball' of " + reader.what(), problems);
-  PointSpec grain;
-  if (with_mass) grain.mass = ball.required_number("mass_kg", Range::positive());
-  grain.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
+  PointSpec spec;
+  if (with_mass) spec.mass = ball.required_number("mass_kg", Range::positive());
+  spec.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
   ball.finish();
-  return grain;
+  return spec;
 }
 
-PointSpec read_grain(Source& source) {
+PointSpec read_point_spec(Source& source) {
   config::MappingReader& reader = source.reader;
   const config::Value mass = reader.optional_value("mass_kg");
   const std::optional<PointSpec> ball = optional_ball(reader, true, source.problems);
@@ -35,9 +35,9 @@ PointSpec read_grain(Source& source) {
   return ball.value_or(PointSpec{});
 }
 
-void add_mass(Piece& piece, const PointSpec& grain, const Vec3& position) {
-  piece.mats.push_back({MatKind::kMass, grain.mass, position, Vec3::Zero()});
-  piece.radius_m.push_back(grain.radius);
+void add_mass(GeneratedMatter& matter, const PointSpec& spec, const Vec3& position) {
+  matter.mats.push_back({MatKind::kMass, spec.mass, position, Vec3::Zero()});
+  matter.radius_m.push_back(spec.radius);
 }
 
 void fix(engine::Mat& mat) {
@@ -45,15 +45,17 @@ void fix(engine::Mat& mat) {
   mat.mass = 0.0;
 }
 
-void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Edge>& joints) {
-  piece.law = piece.links.count() == 0 ? std::optional(law) : std::nullopt;
+void join_all(Source& source, GeneratedMatter& matter, const LinkLaw& law,
+              const std::vector<Edge>& edges) {
+  matter.law = matter.links.count() == 0 ? std::optional(law) : std::nullopt;
   bool possible = true;
   double shortest = kFarthest;
-  for (const auto& [a, b] : joints) {
-    const Vec3& position_a = piece.mats[a].position;
-    const Vec3& position_b = piece.mats[b].position;
-    const double radii = piece.radius_m[a] + piece.radius_m[b];
-    possible = piece.links.join(law, a, b, position_a, position_b, source.space, radii) && possible;
+  for (const auto& [a, b] : edges) {
+    const Vec3& position_a = matter.mats[a].position;
+    const Vec3& position_b = matter.mats[b].position;
+    const double radii = matter.radius_m[a] + matter.radius_m[b];
+    possible =
+        matter.links.join(law, a, b, position_a, position_b, source.space, radii) && possible;
     shortest = std::min(shortest, (position_b - position_a).norm());
   }
   if (possible) return;

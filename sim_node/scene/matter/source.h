@@ -11,7 +11,6 @@
 #include "sim_node/scene/liaisons/liaison.h"
 #include "sim_node/scene/matter/matter.h"
 #include "sim_node/scene/matter/point.h"
-#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -31,23 +30,24 @@ struct PointSpec {
 };
 
 /// `mass_kg` of punctual masses, or `ball: {mass_kg, radius_m}`.
-PointSpec read_grain(Source& source);
+PointSpec read_point_spec(Source& source);
 
 /// `ball: {mass_kg, radius_m}`; the mass is not asked for where something else decides on it.
 /// @return nothing when there is no such key.
 std::optional<PointSpec> optional_ball(config::MappingReader& reader, bool with_mass,
                                        config::Problems& problems);
 
-/// Adds a mass to a piece.
-void add_mass(Piece& piece, const PointSpec& grain, const engine::Vec3& position);
+/// Adds a mass.
+void add_mass(GeneratedMatter& matter, const PointSpec& spec, const engine::Vec3& position);
 /// Makes a mass a point that never moves.
 void fix(engine::Mat& mat);
 
-/// Two MATs of a piece.
+/// Two MATs of the same entry.
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Joins MATs of the piece by a law; a negative rest length where there is none is a problem.
-void join_all(Source& source, Piece& piece, const LinkLaw& law, const std::vector<Edge>& joints);
+/// Joins MATs by a law; a negative rest length where there is none is a problem.
+void join_all(Source& source, GeneratedMatter& matter, const LinkLaw& law,
+              const std::vector<Edge>& edges);
 
 /// The law of the links between neighbours; nothing after a problem.
 [[nodiscard]] std::optional<LinkLaw> read_neighbour_law(Source& source);

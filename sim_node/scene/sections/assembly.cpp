@@ -10,75 +10,99 @@ namespace cordis::scene {
 using config::Value;
 
 void Assembly::read_liaisons(const Value& section) {
-  std::vector<LiaisonSection> sections{{section, scene_.file}};
-  sections.insert(sections.end(), parts_.liaisons().begin(), parts_.liaisons().end());
-  liaisons_->read(sections, scene_.space(), problems_);
+  std::vector<LiaisonSection> sections{{section, scene.file}};
+  sections.insert(sections.end(), parts.liaisons().begin(), parts.liaisons().end());
+  liaisons->read(sections, scene.space(), problems);
 }
 
-void Assembly::put(Piece& piece) const {
-  for (engine::Mat& mat : piece.mats) {
-    mat.position = placement_(mat.position);
-    mat.velocity = placement_.turn * mat.velocity;
+void Assembly::put(GeneratedMatter& matter) const {
+  for (engine::Mat& mat : matter.mats) {
+    mat.position = placement(mat.position);
+    mat.velocity = placement.turn * mat.velocity;
   }
-  for (LayoutPoint& point : piece.layout) {
-    point.x += placement_.layout_shift.x;
-    point.z += placement_.layout_shift.z;
+  for (LayoutPoint& point : matter.layout) {
+    point.x += placement.layout_shift.x;
+    point.z += placement.layout_shift.z;
   }
 }
 
-bool Assembly::add(Piece piece, const config::Place& place) {
-  const std::size_t mats = scene_.network.mats.size() + piece.mats.size();
-  const std::size_t links = sum(link_counts()) + piece.links.count();
+bool Assembly::add(GeneratedMatter matter, const config::Place& place) {
+  const std::size_t mats = scene.network.mats.size() + matter.mats.size();
+  const std::size_t links = sum(link_counts()) + matter.links.count();
   if (mats > static_cast<std::size_t>(kMaxMats) || links > kMaxLinks) {
-    problems_.error(place, "the scene has more than " + std::to_string(kMaxMats) + " MATs or " +
-                               std::to_string(kMaxLinks) + " links");
+    refuse_more(place, "the scene has more than " + std::to_string(kMaxMats) + " MATs or " +
+                           std::to_string(kMaxLinks) + " links");
     return false;
   }
-  if (!open_parts_.empty()) put(piece);
-  append(piece.links, mat_count());
-  scene_.radius_m.insert(scene_.radius_m.end(), piece.drawn_radius_m.begin(),
-                         piece.drawn_radius_m.end());
-  scene_.network.radius.insert(scene_.network.radius.end(), piece.radius_m.begin(),
-                               piece.radius_m.end());
-  scene_.network.mats.insert(scene_.network.mats.end(), piece.mats.begin(), piece.mats.end());
-  scene_.layout.insert(scene_.layout.end(), piece.layout.begin(), piece.layout.end());
+  if (!open_parts.empty()) put(matter);
+  append(matter.links, mat_count());
+  scene.radius_m.insert(scene.radius_m.end(), matter.drawn_radius_m.begin(),
+                        matter.drawn_radius_m.end());
+  scene.network.radius.insert(scene.network.radius.end(), matter.radius_m.begin(),
+                              matter.radius_m.end());
+  scene.network.mats.insert(scene.network.mats.end(), matter.mats.begin(), matter.mats.end());
+  scene.layout.insert(scene.layout.end(), matter.layout.begin(), matter.layout.end());
   return true;
 }
 
-void Assembly::read_matter(const Value& section) {
-  for (const Value::Entry& entry : section.entries()) {
-    check_name(entry.key, entry.key_place, problems_);
-    if (entry.value.find("part").exists()) {
-      read_part_use(entry);
-    } else {
-      read_generated(entry);
-    }
+void Assembly::refuse_more(const config::Place& place, const std::string& message,
+                           const std::string& hint) {
+  if (!is_full) problems.error(place, message, hint);
+  is_full = true;
+}
+
+void Assembly::add_group(const std::string& name, LinkKind kind, const LinkCounts& before,
+                         const config::Place& place, const LinkLaw* law) {
+  const auto k = static_cast<std::size_t>(kind);
+  LinkGroup group{
+      names.full(name), kind, before[k], link_counts()[k] - before[k], {}, {}, place, {}};
+  if (law != nullptr) {
+    group.liaison = law->liaison;
+    group.part = law->part;
+    group.given = law->given;
+  }
+  scene.link_groups.push_back(std::move(group));
+}
+
+void Assembly::name_links(const std::string& name, const LinkCounts& before, bool sound,
+                          const config::Place& place, const LinkLaw* law) {
+  const LinkCounts after = link_counts();
+  constexpr std::array<const char*, kLinkKindCount> kEndings{".linear", ".states", ".maxwell"};
+  std::size_t kinds = 0;
+  for (std::size_t k = 0; k < kLinkKindCount; ++k) kinds += after[k] > before[k] ? 1 : 0;
+  for (std::size_t k = 0; k < kLinkKindCount; ++k) {
+    const std::uint32_t count = after[k] - before[k];
+    if (count == 0 && (kinds > 0 || k > 0)) continue;
+    const std::string full = kinds > 1 ? name + kEndings[k] : name;
+    const auto kind = static_cast<LinkKind>(k);
+    names.add({full, Named::kLinks, link_word(kind, before[k]), count, sound, place}, problems);
+    if (count > 0) add_group(full, kind, before, place, law);
   }
 }
 
-void Assembly::read_generated(const Value::Entry& entry) {
-  const std::size_t errors_before = problems_.error_count();
-  config::MappingReader reader(entry.value, matter_called(entry.key), problems_);
-  Piece piece = read_piece(reader, *liaisons_, scene_.space(), scene_.reduce.series, problems_);
-  const std::vector<NamedRange> inner_names = piece.names;
-  const std::optional<LinkLaw> law = piece.law;
-  const std::uint32_t first_mat = mat_count();
-  const LinkCounts links_before = link_counts();
-  const bool sound =
-      problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
+void Assembly::append(const LinkLists& links, std::uint32_t first_mat) {
+  LinkLists all{std::move(scene.network.links), std::move(scene.network.state_links),
+                std::move(scene.network.maxwell_links)};
+  all.append(links, first_mat);
+  scene.network.links = std::move(all.links);
+  scene.network.state_links = std::move(all.state_links);
+  scene.network.maxwell_links = std::move(all.maxwell_links);
+}
 
-  names_.add(
-      {entry.key, Named::kMatter, first_mat, mat_count() - first_mat, sound, entry.key_place},
-      problems_);
-  for (const NamedRange& inner : inner_names) {
-    names_.add({entry.key + "." + inner.name, Named::kMatter, first_mat + inner.first, inner.count,
-                sound, entry.key_place},
-               problems_);
-  }
-  scene_.matter.push_back(
-      {names_.full(entry.key), first_mat, mat_count() - first_mat, entry.key_place});
-  name_links(entry.key + ".links", links_before, sound, entry.key_place,
-             law && law->beside.empty() ? &*law : nullptr);
+LinkCounts Assembly::link_counts() const noexcept {
+  const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+  return {count(scene.network.links), count(scene.network.state_links),
+          count(scene.network.maxwell_links)};
+}
+
+double Assembly::radius_of(std::uint32_t mat) const noexcept {
+  return mat < scene.network.radius.size() ? scene.network.radius[mat] : 0.0;
+}
+
+void Assembly::finish() {
+  scene.network.state_machines = liaisons->pool().state_machines();
+  scene.liaisons = liaisons;
+  number_links(scene);
 }
 
 }  // namespace cordis::scene

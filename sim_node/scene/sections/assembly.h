@@ -11,6 +11,7 @@
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/matter/generated_matter.h"
 #include "sim_node/scene/matter/placement.h"
 #include "sim_node/scene/scene.h"
 #include "sim_node/scene/sections/part.h"
@@ -18,18 +19,15 @@
 
 namespace cordis::scene {
 
-/// MATs and links of one piece of matter; a link counts the MATs of its piece from 0.
-struct Piece {
-  std::vector<engine::Mat> mats;
-  std::vector<LayoutPoint> layout;  ///< per MAT in 1-D, else empty
-  LinkLists links;
-  std::optional<LinkLaw> law;          ///< of all its links; none when there are several
-  std::vector<double> radius_m;        ///< per MAT; 0 for a punctual mass
-  std::vector<double> drawn_radius_m;  ///< per MAT
-  std::vector<NamedRange> names;       ///< of MATs within it, from 0
-};
-
-inline constexpr std::size_t kMaxLinks = 8'000'000;  ///< of a scene
+inline constexpr std::size_t kMaxLinks = 8'000'000;       ///< of a scene
+inline constexpr std::size_t kMaxDevices = 64;            ///< of a scene
+inline constexpr std::size_t kMaxSets = 1'000;            ///< liaisons of sets of a scene
+inline constexpr std::size_t kMaxSetMembers = 2'000'000;  ///< of all sets together
+inline constexpr std::size_t kMaxSetPairs = 8'000'000;    ///< in range at the start, of all sets
+inline constexpr std::size_t kMaxSetLooks = 64 * kMaxSetPairs;  ///< StartPairCount::looked_at
+inline constexpr std::size_t kMaxPartUses = 100'000;       ///< of a scene, each copy for itself
+inline constexpr std::size_t kMaxPartLevels = 64;          ///< of parts within each other
+inline constexpr std::size_t kMaxPartValues = 10'000'000;  ///< of the file, in all copies of parts
 
 /// How many links of each kind there are, by LinkKind.
 using LinkCounts = std::array<std::uint32_t, kLinkKindCount>;
@@ -39,112 +37,60 @@ inline std::uint32_t sum(const LinkCounts& counts) noexcept {
 
 /// What the sections of a scene file add to, in the order parts, liaisons, matter, ports, links,
 /// signals.
-class Assembly {
- public:
-  Assembly(Scene& scene, config::Problems& problems)
-      : scene_(scene),
-        problems_(problems),
-        liaisons_(std::make_shared<Liaisons>()),
-        parts_(problems) {}
+struct Assembly {
+  Assembly(Scene& of_file, config::Problems& all_problems)
+      : scene(of_file),
+        problems(all_problems),
+        liaisons(std::make_shared<Liaisons>()),
+        parts(all_problems) {}
 
-  void read_parts(const config::Value& section);
   /// Reads the liaisons of the scene and of files of parts.
   void read_liaisons(const config::Value& section);
-  void read_matter(const config::Value& section);
-  void read_ports(const config::Value& section);
-  void read_links(const config::Value& section);
-  void read_signals(const config::Value& section);
   /// Numbers the links of all kinds in one row; the last call.
   void finish();
 
- private:
-  /// An entry of `links:` while it is read.
-  struct LinkEntry {
-    config::MappingReader& reader;
-    std::string name;       ///< of its links: their own, or that of their liaison
-    bool has_name = false;  ///< of their own
-    std::optional<LinkLaw> law;
-    std::size_t errors_before = 0;
-  };
-
-  /// An entry of `matter:` that uses a part, while it is read.
-  struct PartUse {
-    const Part* part = nullptr;
-    PartBody body;
-    Placement placement;
-    Placement step;            ///< from one copy to the next
-    std::uint32_t copies = 0;  ///< 0: it is not repeated
-  };
-  void read_part_use(const config::Value::Entry& entry);
-  /// Nothing after a problem.
-  [[nodiscard]] std::optional<PartUse> read_use(const config::Value::Entry& entry);
-  /// Adds the matter and links of a part. @return whether all of it was sound.
-  [[nodiscard]] bool add_copy(const PartUse& use, const std::string& name,
-                              const Placement& placement);
-  /// True if the part is none of those that are being added; if it is, a problem.
-  [[nodiscard]] bool check_cycle(const Part& part, const config::Place& place);
-  /// What matter is called in messages.
-  std::string matter_called(const std::string& name) const;
-
-  void read_generated(const config::Value::Entry& entry);
-
-  void read_port(const config::Value::Entry& entry);
-  void read_link(const config::Value& value);
-  void read_ends(LinkEntry& entry);
-  void read_set(LinkEntry& entry);
-  void read_two_sets(LinkEntry& entry);
-  void add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
-               const std::vector<std::uint32_t>& q);
-  void read_signal(const config::Value::Entry& entry, std::vector<Signal>& signals);
-  void read_count_of_links(config::MappingReader& reader, const std::string& name,
-                           const Selection& picked, std::vector<Signal>& signals);
-  void read_signal_of_set(config::MappingReader& reader, const std::string& name, std::uint32_t set,
-                          std::vector<Signal>& signals);
-  /// The direction of a position, velocity or force; a port of one axis needs no `axis`.
-  void read_direction_of_signal(config::MappingReader& reader, const Selection& of,
-                                Signal& signal) const;
-
-  /// Adds the links between two selections: one to one, or one to many. @return false after a
-  /// problem.
-  bool join(const Selection& from, const Selection& to, const LinkLaw& law,
-            const config::Place& place);
-  /// Warns of the first of these links whose ends coincide and that has a rest length.
-  void warn_of_coincident_ends(const LinkLists& added, const config::Place& place);
-
+  /// Adds the MATs and links of an entry, where the part they belong to stands. @return false when
+  /// the scene would become too large, which is a problem.
+  [[nodiscard]] bool add(GeneratedMatter matter, const config::Place& place);
+  /// Remembers that the scene is as large as it may be: the first such problem is reported, and
+  /// nothing is read that would make it larger.
+  void refuse_more(const config::Place& place, const std::string& message,
+                   const std::string& hint = {});
+  /// Adds links whose MATs are counted from another one.
+  void append(const LinkLists& links, std::uint32_t first_mat);
   /// Remembers the links of a kind that have been added since there were `before`.
   void add_group(const std::string& name, LinkKind kind, const LinkCounts& before,
                  const config::Place& place, const LinkLaw* law);
   /// Gives a name to the links that have been added since there were `before` of each kind. Where
-  /// they are of one kind they bear it, else each kind bears its own after it.
+  /// they are of one kind they have it, else each kind has its own after it.
   /// @param law  they were made by; nullptr when they were made by several
   void name_links(const std::string& name, const LinkCounts& before, bool sound,
                   const config::Place& place, const LinkLaw* law);
 
-  /// Adds the MATs and links of a piece. @return false when the scene would become too large, which
-  /// is a problem.
-  [[nodiscard]] bool add(Piece piece, const config::Place& place);
-  /// Puts a piece where the part it belongs to stands.
-  void put(Piece& piece) const;
-  void check_devices();
-  void lay_out_ports();
   std::uint32_t mat_count() const noexcept {
-    return static_cast<std::uint32_t>(scene_.network.mats.size());
+    return static_cast<std::uint32_t>(scene.network.mats.size());
   }
-  /// Adds links whose MATs are counted from another one.
-  void append(const LinkLists& links, std::uint32_t first_mat);
   LinkCounts link_counts() const noexcept;
   double radius_of(std::uint32_t mat) const noexcept;  ///< of a ball [m], else 0
 
-  Scene& scene_;
-  config::Problems& problems_;
-  std::shared_ptr<Liaisons> liaisons_;
-  Names names_;
-  std::map<std::string, std::uint32_t> named_sets_;  // of the network, by full name
-  Parts parts_;
-  Placement placement_;                              // of the part that is being added
-  std::vector<const Part*> open_parts_;              // from the outermost to it
-  std::set<const Part*> faulty_parts_;               // whose faults have been reported
-  std::vector<std::uint32_t> ports_without_layout_;  // MATs of a 1-D scene
+  Scene& scene;
+  config::Problems& problems;
+  std::shared_ptr<Liaisons> liaisons;
+  Names names;
+  std::map<std::string, std::uint32_t> named_sets;  ///< of the network, by full name
+  Parts parts;
+  Placement placement;                  ///< of the part that is being added
+  std::vector<const Part*> open_parts;  ///< from the outermost to it
+  std::set<const Part*> faulty_parts;   ///< whose faults have been reported
+  std::size_t part_uses = 0;
+  std::size_t set_members = 0;
+  std::size_t set_pairs = 0;
+  std::size_t set_looks = 0;
+  bool is_full = false;                             ///< no more matter and links are read
+  std::vector<std::uint32_t> ports_without_layout;  ///< MATs of a 1-D scene
+
+ private:
+  void put(GeneratedMatter& matter) const;
 };
 
 }  // namespace cordis::scene

@@ -5,7 +5,7 @@
 
 #include "node/config/mapping_reader.h"
 #include "node/config/nearest_word.h"
-#include "sim_node/scene/selection.h"
+#include "sim_node/scene/language/name.h"
 
 namespace cordis::scene {
 
@@ -26,8 +26,12 @@ class Substitution {
     return names;
   }
 
+  /// How many values it has replaced or kept.
+  std::size_t value_count() const noexcept { return value_count_; }
+
   /// The value with every `$name` in it replaced; an unknown one is a problem.
-  Value operator()(const Value& value) const {
+  Value operator()(const Value& value) {
+    ++value_count_;
     if (value.kind() == Value::Kind::kSequence) {
       std::vector<Value> items;
       for (const Value& item : value.items()) items.push_back((*this)(item));
@@ -52,6 +56,7 @@ class Substitution {
   const Part& part_;
   config::Problems& problems_;
   std::map<std::string, Value> values_;
+  std::size_t value_count_ = 0;
 };
 
 }  // namespace
@@ -112,7 +117,7 @@ const Part* Parts::find(const Value& name) const {
 }
 
 std::optional<PartBody> Parts::body(const Part& part, const Value& given,
-                                    const config::Place& use_place) const {
+                                    const config::Place& use_place) {
   const std::size_t errors_before = problems_.error_count();
   Substitution substitution(part, problems_);
   for (const Value::Entry& parameter : part.parameters.entries()) {
@@ -132,6 +137,7 @@ std::optional<PartBody> Parts::body(const Part& part, const Value& given,
                     config::did_you_mean(entry.key, substitution.names()));
   }
   PartBody body{substitution(part.matter), substitution(part.links)};
+  value_count_ += substitution.value_count() + part.parameters.entries().size();
   if (problems_.error_count() != errors_before) return std::nullopt;
   return body;
 }

@@ -47,7 +47,10 @@ class Parts {
   /// @param given  a mapping of parameters to values; need not exist
   /// @param use    where the part is used
   std::optional<PartBody> body(const Part& part, const config::Value& given,
-                               const config::Place& use) const;
+                               const config::Place& use);
+
+  /// How many values all bodies had together.
+  std::size_t value_count() const noexcept { return value_count_; }
 
  private:
   void add(const config::Value::Entry& entry);
@@ -56,6 +59,7 @@ class Parts {
   Includes includes_;
   std::map<std::string, Part> parts_;
   std::vector<LiaisonSection> liaisons_;
+  std::size_t value_count_ = 0;
 };
 
 }  // namespace cordis::scene

@@ -1,92 +1,129 @@
-// sim_node/scene/sections/part_use.cpp -- matter that is a part: its body is added once, or once
-// per copy, where it is put.
+// sim_node/scene/sections/part_use.cpp
+#include "sim_node/scene/sections/part_use.h"
+
 #include <algorithm>
 
 #include "sim_node/scene/matter/matter.h"
-#include "sim_node/scene/sections/assembly.h"
+#include "sim_node/scene/sections/links.h"
+#include "sim_node/scene/sections/matter.h"
 
 namespace cordis::scene {
 
 using config::Value;
 
-void Assembly::read_parts(const Value& section) {
-  parts_.read_section(section, scene_.file);
-}
+namespace {
 
-std::string Assembly::matter_called(const std::string& name) const {
-  const std::string matter = "matter '" + name + "'";
-  return open_parts_.empty() ? matter : matter + " of part '" + open_parts_.back()->name + "'";
-}
+/// An entry of `matter:` that uses a part, while it is read.
+struct PartUse {
+  const Part* part = nullptr;
+  PartBody body;
+  Placement placement;
+  Placement step;            ///< from one copy to the next
+  std::uint32_t copies = 0;  ///< 0: it is not repeated
+};
 
-bool Assembly::check_cycle(const Part& part, const config::Place& place) {
-  const auto first = std::find(open_parts_.begin(), open_parts_.end(), &part);
-  if (first == open_parts_.end()) return true;
+/// True if the part is none of those that are being added; if it is, a problem.
+bool check_cycle(Assembly& assembly, const Part& part, const config::Place& place) {
+  const auto first = std::find(assembly.open_parts.begin(), assembly.open_parts.end(), &part);
+  if (first == assembly.open_parts.end()) return true;
   std::string cycle;
-  for (auto open = first; open != open_parts_.end(); ++open) cycle += (*open)->name + " > ";
-  problems_.error(place, "part '" + part.name + "' contains itself: " + cycle + part.name);
+  for (auto open = first; open != assembly.open_parts.end(); ++open) cycle += (*open)->name + " > ";
+  assembly.problems.error(place, "part '" + part.name + "' contains itself: " + cycle + part.name);
   return false;
 }
 
-std::optional<Assembly::PartUse> Assembly::read_use(const Value::Entry& entry) {
-  const std::size_t errors_before = problems_.error_count();
-  config::MappingReader reader(entry.value, matter_called(entry.key), problems_);
+/// Nothing after a problem.
+std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
+  const std::size_t errors_before = assembly.problems.error_count();
+  config::MappingReader reader(entry.value, matter_called(assembly, entry.key), assembly.problems);
   PartUse use;
   const Value name = reader.required_value("part");
-  use.part = parts_.find(name);
-  use.placement = read_placement(reader, scene_.space(), problems_);
+  use.part = assembly.parts.find(name);
+  use.placement = read_placement(reader, assembly.scene.space(), assembly.problems);
   const Value given = reader.optional_mapping("parameters");
   const Value repeat = reader.optional_mapping("repeat");
   reader.finish();
   if (repeat.exists()) {
-    config::MappingReader repeat_reader(repeat, "'repeat' of " + reader.what(), problems_);
+    config::MappingReader repeat_reader(repeat, "'repeat' of " + reader.what(), assembly.problems);
     use.copies = static_cast<std::uint32_t>(repeat_reader.required_integer("count", 1, kMaxMats));
-    use.step = read_placement(repeat_reader, scene_.space(), problems_);
+    use.step = read_placement(repeat_reader, assembly.scene.space(), assembly.problems);
     repeat_reader.finish();
   }
-  if (use.part == nullptr || faulty_parts_.contains(use.part) ||
-      !check_cycle(*use.part, name.place()))
+  if (use.part == nullptr || assembly.faulty_parts.contains(use.part) ||
+      !check_cycle(assembly, *use.part, name.place()))
     return std::nullopt;
-  const std::optional<PartBody> body = parts_.body(*use.part, given, entry.key_place);
-  if (!body || problems_.error_count() != errors_before) return std::nullopt;
+  if (assembly.open_parts.size() >= kMaxPartLevels) {
+    assembly.refuse_more(name.place(), "parts stand more than " + std::to_string(kMaxPartLevels) +
+                                           " levels within each other");
+    return std::nullopt;
+  }
+  const std::optional<PartBody> body = assembly.parts.body(*use.part, given, entry.key_place);
+  if (body && assembly.parts.value_count() > kMaxPartValues) {
+    assembly.refuse_more(entry.key_place, "the parts of the scene put more than " +
+                                              std::to_string(kMaxPartValues) + " values into it");
+    return std::nullopt;
+  }
+  if (!body || assembly.problems.error_count() != errors_before) return std::nullopt;
   use.body = *body;
   return use;
 }
 
-bool Assembly::add_copy(const PartUse& use, const std::string& name, const Placement& placement) {
-  const std::size_t errors_before = problems_.error_count();
-  const Placement outer = placement_;
-  placement_ = outer * placement;
-  open_parts_.push_back(use.part);
-  {
-    const Names::Scope scope(names_, name);
-    read_matter(use.body.matter);
-    read_links(use.body.links);
+/// Counts one more copy of a part. @return false where there are too many, which is a problem
+bool count_use(Assembly& assembly, const config::Place& place) {
+  if (assembly.part_uses == kMaxPartUses) {
+    assembly.refuse_more(place, "the scene uses parts more than " + std::to_string(kMaxPartUses) +
+                                    " times, each copy counted");
+    return false;
   }
-  open_parts_.pop_back();
-  placement_ = outer;
-  return problems_.error_count() == errors_before;
+  ++assembly.part_uses;
+  return true;
 }
 
-void Assembly::read_part_use(const Value::Entry& entry) {
-  const std::optional<PartUse> use = read_use(entry);
-  const std::uint32_t first = mat_count();
+/// Adds the matter and links of a part. @return whether all of it was sound.
+bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
+              const Placement& placement) {
+  const std::size_t errors_before = assembly.problems.error_count();
+  bool sound = true;
+  const Placement outer = assembly.placement;
+  assembly.placement = outer * placement;
+  assembly.open_parts.push_back(use.part);
+  {
+    const Names::Scope scope(assembly.names, name);
+    sound = read_matter(assembly, use.body.matter);
+    read_links(assembly, use.body.links);
+  }
+  assembly.open_parts.pop_back();
+  assembly.placement = outer;
+  return sound && assembly.problems.error_count() == errors_before;
+}
+
+}  // namespace
+
+bool read_part_use(Assembly& assembly, const Value::Entry& entry) {
+  const std::optional<PartUse> use = read_use(assembly, entry);
+  const std::uint32_t first = assembly.mat_count();
   bool sound = use.has_value();
-  if (sound && use->copies == 0) sound = add_copy(*use, entry.key, use->placement);
+  if (sound && use->copies == 0) {
+    sound =
+        count_use(assembly, entry.key_place) && add_copy(assembly, *use, entry.key, use->placement);
+  }
   Placement copy_placement;
   for (std::uint32_t copy = 0; sound && copy < use->copies; ++copy) {
     const std::string name = entry.key + "[" + std::to_string(copy) + "]";
-    const std::uint32_t first_of_copy = mat_count();
-    sound = add_copy(*use, name, use->placement * copy_placement);
-    names_.add(
-        {name, Named::kMatter, first_of_copy, mat_count() - first_of_copy, sound, entry.key_place},
-        problems_);
+    const std::uint32_t first_of_copy = assembly.mat_count();
+    sound = count_use(assembly, entry.key_place) &&
+            add_copy(assembly, *use, name, use->placement * copy_placement);
+    assembly.names.add({name, Named::kMatter, first_of_copy, assembly.mat_count() - first_of_copy,
+                        sound, entry.key_place},
+                       assembly.problems);
     copy_placement = use->step * copy_placement;
   }
-  // the faults of a part are told once, however often it is used
-  if (use && !sound) faulty_parts_.insert(use->part);
-  names_.add({entry.key, Named::kMatter, first, mat_count() - first, sound, entry.key_place,
-              use ? use->copies : 0},
-             problems_);
+  // the faults of a part are reported once, however often it is used
+  if (use && !sound) assembly.faulty_parts.insert(use->part);
+  assembly.names.add({entry.key, Named::kMatter, first, assembly.mat_count() - first, sound,
+                      entry.key_place, use ? use->copies : 0},
+                     assembly.problems);
+  return sound;
 }
 
 }  // namespace cordis::scene

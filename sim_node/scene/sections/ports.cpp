@@ -1,14 +1,15 @@
-// sim_node/scene/sections/ports.cpp -- the `ports:` section: MATs played by the axes of devices.
-// [Luc90 V.1 Force feedback gestual transducers]
+// sim_node/scene/sections/ports.cpp
+#include "sim_node/scene/sections/ports.h"
+
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "node/config/max_axes.h"
 #include "node/config/name_hash.h"
+#include "sim_node/scene/language/name.h"
 #include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/matter/source.h"
-#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -65,7 +66,7 @@ std::vector<Vec3> read_axis_directions(config::MappingReader& reader, std::size_
 
 /// A spring-damper between the handle that the device moves and a simulated tool, which the scene
 /// touches: what the hand feels is never stiffer than the coupling, whatever the scene is. It is a
-/// tie: a damper along the line from handle to tool would let the tool circle its handle.
+/// vector spring: a damper along the line from handle to tool would let the tool circle its handle.
 struct Coupling {
   double stiffness = 500.0;  // [N/m]
   double viscosity = 1.5;    // [N s/m]
@@ -112,15 +113,15 @@ PortNeeds read_needs(config::MappingReader& reader, config::Problems& problems) 
 
 /// The ball of a port, its mass 0 when it does not say.
 PointSpec read_port_ball(config::MappingReader& reader, config::Problems& problems) {
-  PointSpec grain;
+  PointSpec spec;
   const Value section = reader.optional_mapping("ball");
-  if (!section.exists()) return grain;
+  if (!section.exists()) return spec;
   config::MappingReader ball(section, "'ball' of " + reader.what(), problems);
   ball.optional_value("mass_kg");
-  if (ball.has("mass_kg")) grain.mass = ball.required_number("mass_kg", Range::positive());
-  grain.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
+  if (ball.has("mass_kg")) spec.mass = ball.required_number("mass_kg", Range::positive());
+  spec.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
   ball.finish();
-  return grain;
+  return spec;
 }
 
 /// The mass that the port says itself, of the simulated MAT that the scene touches: of the port in
@@ -137,16 +138,17 @@ double read_port_mass(config::MappingReader& reader, const PointSpec& ball) {
 }
 
 /// The MAT of a port, as the device holds it.
-Piece port_piece(config::MappingReader& reader, const Port& port, double radius, int space) {
-  Piece piece;
-  piece.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
-  piece.radius_m.push_back(radius);
-  read_drawing(reader, piece);
+GeneratedMatter port_matter(config::MappingReader& reader, const Port& port, double radius,
+                            int space) {
+  GeneratedMatter matter;
+  matter.mats.push_back({engine::MatKind::kPort, 0.0, port.rest, Vec3::Zero()});
+  matter.radius_m.push_back(radius);
+  read_drawing(reader, matter);
   if (space == 1) {
     const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
-    piece.layout.push_back({at[0], at[1]});
+    matter.layout.push_back({at[0], at[1]});
   }
-  return piece;
+  return matter;
 }
 
 /// It has no weight: the hand is to feel the scene, not what it holds.
@@ -156,29 +158,54 @@ void make_tool(engine::Mat& mat, double mass) {
   mat.weightless = true;
 }
 
-/// Makes the MAT of the piece the tool, and adds the handle and the coupling.
-void couple(Piece& piece, const Coupling& coupling, double mass) {
-  const engine::Mat handle = piece.mats[0];
-  make_tool(piece.mats[0], mass);
-  piece.mats.push_back(handle);
-  piece.radius_m.push_back(0.0);
-  piece.drawn_radius_m.push_back(0.0);
-  if (!piece.layout.empty()) piece.layout.push_back(piece.layout[0]);
-  piece.links.links.push_back({1, 0, coupling.stiffness, coupling.viscosity, 0.0, true});
+/// Makes the MAT of the port the tool, and adds the handle and the coupling.
+void couple(GeneratedMatter& matter, const Coupling& coupling, double mass) {
+  const engine::Mat handle = matter.mats[0];
+  make_tool(matter.mats[0], mass);
+  matter.mats.push_back(handle);
+  matter.radius_m.push_back(0.0);
+  matter.drawn_radius_m.push_back(0.0);
+  if (!matter.layout.empty()) matter.layout.push_back(matter.layout[0]);
+  matter.links.links.push_back({1, 0, coupling.stiffness, coupling.viscosity, 0.0, true});
 }
 
-}  // namespace
-
-void Assembly::read_ports(const Value& section) {
-  for (const Value::Entry& entry : section.entries()) read_port(entry);
-  check_devices();
+void check_devices(Assembly& assembly) {
+  std::map<std::uint32_t, const Port*> first_of_device;
+  std::map<std::pair<std::string, std::uint32_t>, const Port*> port_of_axis;
+  for (const Port& port : assembly.scene.ports) {
+    if (port.device.empty()) continue;
+    const Port* first = first_of_device.emplace(port.device_id, &port).first->second;
+    if (first == &port && first_of_device.size() == kMaxDevices + 1) {
+      assembly.problems.error(port.place,
+                              "the scene has more than " + std::to_string(kMaxDevices) + " devices",
+                              "a device plays several ports, each with axes of its own");
+    }
+    if (first->device != port.device) {
+      assembly.problems.error(
+          port.place,
+          "the devices '" + port.device + "' and '" + first->device + "' have the same hash",
+          "rename one of them");
+    } else if (first->role != port.role) {
+      assembly.problems.error(port.place, "all ports of a device have one role, and '" +
+                                              port.device + "' has the role " +
+                                              word_of(first->role) + " in port '" + first->name +
+                                              "'");
+    }
+    for (const std::uint32_t axis : port.axes) {
+      const auto [other, is_free] = port_of_axis.emplace(std::pair(port.device, axis), &port);
+      if (is_free) continue;
+      assembly.problems.error(port.place, "axis " + std::to_string(axis) + " of device '" +
+                                              port.device + "' is taken by port '" +
+                                              other->second->name + "'");
+    }
+  }
 }
 
-void Assembly::read_port(const Value::Entry& entry) {
-  const int space = scene_.space();
-  check_name(entry.key, entry.key_place, problems_);
-  const std::size_t errors_before = problems_.error_count();
-  config::MappingReader reader(entry.value, "port '" + entry.key + "'", problems_);
+void read_port(Assembly& assembly, const Value::Entry& entry) {
+  const int space = assembly.scene.space();
+  check_name(entry.key, entry.key_place, assembly.problems);
+  const std::size_t errors_before = assembly.problems.error_count();
+  config::MappingReader reader(entry.value, "port '" + entry.key + "'", assembly.problems);
   Port port;
   port.name = entry.key;
   port.place = entry.key_place;
@@ -190,10 +217,11 @@ void Assembly::read_port(const Value::Entry& entry) {
   port.role = is_mass ? Role::kMass : Role::kLiaison;
   port.rest = space == 1 ? optional_point(reader, "at_m", Vec3::Zero(), 1)
                          : required_point(reader, "at_m", space);
-  const PointSpec ball = read_port_ball(reader, problems_);
+  const PointSpec ball = read_port_ball(reader, assembly.problems);
   const double own_mass = read_port_mass(reader, ball);
-  Piece piece = port_piece(reader, port, ball.radius, space);
-  if (space == 1 && !reader.has("layout_at_m")) ports_without_layout_.push_back(mat_count());
+  GeneratedMatter matter = port_matter(reader, port, ball.radius, space);
+  if (space == 1 && !reader.has("layout_at_m"))
+    assembly.ports_without_layout.push_back(assembly.mat_count());
   if (port.axes.size() > static_cast<std::size_t>(space)) {
     reader.error_at("axes", reader.what() + " has " + std::to_string(port.axes.size()) +
                                 " axes, but a MAT moves in " + std::to_string(space) +
@@ -201,61 +229,45 @@ void Assembly::read_port(const Value::Entry& entry) {
                                 " in a scene of space " + std::to_string(space));
     reader.optional_value("along");
   } else {
-    port.directions = read_axis_directions(reader, port.axes.size(), space, problems_);
+    port.directions = read_axis_directions(reader, port.axes.size(), space, assembly.problems);
   }
-  port.needs = read_needs(reader, problems_);
-  std::optional<Coupling> coupling = read_coupling(reader, problems_);
+  port.needs = read_needs(reader, assembly.problems);
+  std::optional<Coupling> coupling = read_coupling(reader, assembly.problems);
   const double mass = own_mass > 0.0 ? own_mass : coupling.value_or(Coupling{}).mass;
   if (!is_mass) {
     coupling.reset();  // the mass of the port is the tool
-    make_tool(piece.mats[0], mass);
+    make_tool(matter.mats[0], mass);
   } else if (coupling) {
-    couple(piece, *coupling, mass);
+    couple(matter, *coupling, mass);
   }
   if (coupling && space == 1 && !reader.has("layout_at_m")) {
-    ports_without_layout_.push_back(mat_count() + 1);
+    assembly.ports_without_layout.push_back(assembly.mat_count() + 1);
   }
   reader.finish();
 
-  port.tool = mat_count();
+  port.tool = assembly.mat_count();
   port.mat = coupling ? port.tool + 1 : port.tool;
-  const LinkCounts links_before = link_counts();
-  const bool sound =
-      problems_.error_count() == errors_before && add(std::move(piece), entry.key_place);
-  names_.add({entry.key, Named::kPort, port.tool, 1, sound, entry.key_place}, problems_);
-  scene_.matter.push_back({entry.key, port.tool, 1, entry.key_place});
+  const LinkCounts links_before = assembly.link_counts();
+  const bool sound = assembly.problems.error_count() == errors_before &&
+                     assembly.add(std::move(matter), entry.key_place);
+  assembly.names.add({entry.key, Named::kPort, port.tool, 1, sound, entry.key_place},
+                     assembly.problems);
+  assembly.scene.matter.push_back({entry.key, port.tool, 1, entry.key_place});
   // What the device holds has a name of its own, whether it is the same MAT or not.
-  names_.add({entry.key + ".handle", Named::kPort, port.mat, 1, sound, entry.key_place}, problems_);
+  assembly.names.add({entry.key + ".handle", Named::kPort, port.mat, 1, sound, entry.key_place},
+                     assembly.problems);
   if (coupling) {
-    scene_.matter.push_back({entry.key + ".handle", port.mat, 1, entry.key_place});
-    name_links(entry.key + ".coupling", links_before, sound, entry.key_place, nullptr);
+    assembly.scene.matter.push_back({entry.key + ".handle", port.mat, 1, entry.key_place});
+    assembly.name_links(entry.key + ".coupling", links_before, sound, entry.key_place, nullptr);
   }
-  if (sound) scene_.ports.push_back(std::move(port));
+  if (sound) assembly.scene.ports.push_back(std::move(port));
 }
 
-void Assembly::check_devices() {
-  std::map<std::uint32_t, const Port*> first_of_device;
-  std::map<std::pair<std::string, std::uint32_t>, const Port*> port_of_axis;
-  for (const Port& port : scene_.ports) {
-    if (port.device.empty()) continue;
-    const Port* first = first_of_device.emplace(port.device_id, &port).first->second;
-    if (first->device != port.device) {
-      problems_.error(
-          port.place,
-          "the devices '" + port.device + "' and '" + first->device + "' have the same hash",
-          "rename one of them");
-    } else if (first->role != port.role) {
-      problems_.error(port.place, "all ports of a device have one role, and '" + port.device +
-                                      "' has the role " + word_of(first->role) + " in port '" +
-                                      first->name + "'");
-    }
-    for (const std::uint32_t axis : port.axes) {
-      const auto [other, is_free] = port_of_axis.emplace(std::pair(port.device, axis), &port);
-      if (is_free) continue;
-      problems_.error(port.place, "axis " + std::to_string(axis) + " of device '" + port.device +
-                                      "' is taken by port '" + other->second->name + "'");
-    }
-  }
+}  // namespace
+
+void read_ports(Assembly& assembly, const Value& section) {
+  for (const Value::Entry& entry : section.entries()) read_port(assembly, entry);
+  check_devices(assembly);
 }
 
 }  // namespace cordis::scene

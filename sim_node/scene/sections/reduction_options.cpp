@@ -24,7 +24,7 @@ constexpr std::array<ReductionWord, 3> kReductionWords{{
 }};
 
 /// The reductions of a list.
-void read_names(const Value& list, ReductionOptions& wish, config::Problems& problems) {
+void read_names(const Value& list, ReductionOptions& options, config::Problems& problems) {
   std::vector<std::string> words;
   for (const ReductionWord& known : kReductionWords) words.emplace_back(known.name);
   for (const Value& item : list.items()) {
@@ -32,7 +32,7 @@ void read_names(const Value& list, ReductionOptions& wish, config::Problems& pro
         std::find_if(kReductionWords.begin(), kReductionWords.end(),
                      [&](const ReductionWord& word) { return item.text() == word.name; });
     if (known != kReductionWords.end()) {
-      wish.*known->wanted = true;
+      options.*known->wanted = true;
       continue;
     }
     problems.error(item.place(),
@@ -44,10 +44,10 @@ void read_names(const Value& list, ReductionOptions& wish, config::Problems& pro
 }  // namespace
 
 ReductionOptions read_reduce(const Value& value, bool by_itself, config::Problems& problems) {
-  ReductionOptions wish;
+  ReductionOptions options;
   if (value.kind() == Value::Kind::kSequence) {
-    read_names(value, wish, problems);
-    return wish;
+    read_names(value, options, problems);
+    return options;
   }
   const bool is_mapping = value.kind() == Value::Kind::kMapping;
   const bool is_word = value.text() == "all" || value.text() == "none";
@@ -59,11 +59,11 @@ ReductionOptions read_reduce(const Value& value, bool by_itself, config::Problem
   }
   config::MappingReader reader(is_mapping ? value : Value{}, "reduce", problems);
   for (const ReductionWord& word : kReductionWords) {
-    wish.*word.wanted =
+    options.*word.wanted =
         reader.optional_truth(word.name, is_word ? value.text() == "all" : by_itself);
   }
   reader.finish();
-  return wish;
+  return options;
 }
 
 }  // namespace cordis::scene

@@ -1,10 +1,12 @@
-// sim_node/scene/sections/sets.cpp -- liaisons of the `links:` section within a set of MATs, or
-// between two sets. [Luc90 III.2.3 a formalism for inter-connection]
+// sim_node/scene/sections/sets.cpp
+#include "sim_node/scene/sections/sets.h"
+
 #include <algorithm>
 #include <utility>
 
+#include "node/config/number.h"
+#include "sim_node/engine/pairs/start_pair_count.h"
 #include "sim_node/scene/liaisons/law.h"
-#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -64,66 +66,55 @@ double largest_radii(const std::vector<double>& p, const std::vector<double>& q)
   return sorted[0] + sorted[1];
 }
 
-}  // namespace
-
-void Assembly::read_set(LinkEntry& entry) {
-  config::MappingReader& reader = entry.reader;
-  const Value within = reader.required_value("within");
-  const std::optional<Selection> set =
-      select(within, "'within' in a link", false, names_, problems_);
-  for (const char* other : {"between", "between_sets"}) {
-    if (reader.has(other)) reader.error_at(other, kOneOfThem);
-    reader.optional_value(other);
+/// Counts a set and its pairs. @return false where there are too many, which is a problem
+bool count_set(Assembly& assembly, const LinkEntry& entry, const engine::SetLiaison& set) {
+  const config::Place place = entry.reader.place_of(set.set_q.empty() ? "within" : "between_sets");
+  if (assembly.scene.network.sets.size() == kMaxSets) {
+    assembly.refuse_more(
+        place, "the scene has more than " + std::to_string(kMaxSets) + " liaisons of sets");
+    return false;
   }
-  if (set && set->count() == 1)
-    reader.error_at("within", "a set of one MAT has no two that could be joined");
-  add_set(entry, set ? set->indices : std::vector<std::uint32_t>{}, {});
+  assembly.set_members += set.set_p.size() + set.set_q.size();
+  if (assembly.set_members > kMaxSetMembers) {
+    assembly.refuse_more(place, "the sets of the scene have more than " +
+                                    std::to_string(kMaxSetMembers) + " MATs together");
+    return false;
+  }
+  const engine::StartPairCount pairs = engine::count_start_pairs(
+      assembly.scene.network, set,
+      {kMaxSetPairs - assembly.set_pairs, kMaxSetLooks - assembly.set_looks});
+  assembly.set_pairs += pairs.in_range;
+  assembly.set_looks += pairs.looked_at;
+  if (assembly.set_pairs > kMaxSetPairs || assembly.set_looks > kMaxSetLooks) {
+    assembly.refuse_more(place,
+                         "the sets of the scene have more than " + std::to_string(kMaxSetPairs) +
+                             " pairs of MATs in or near their range at the start",
+                         "this one joins all that are nearer than " +
+                             config::number_text(set.range) +
+                             " m; give it a shorter 'range_m', or fewer MATs");
+    return false;
+  }
+  return true;
 }
 
-void Assembly::read_two_sets(LinkEntry& entry) {
+void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32_t>& p,
+             const std::vector<std::uint32_t>& q) {
   config::MappingReader& reader = entry.reader;
-  const Value both = reader.required_sequence("between_sets");
-  if (reader.has("between")) reader.error_at("between", kOneOfThem);
-  reader.optional_value("between");
-  std::vector<std::vector<std::uint32_t>> sets;
-  for (const Value& value : both.items()) {
-    const std::optional<Selection> set = select(value, "a set of a link", false, names_, problems_);
-    sets.push_back(set ? set->indices : std::vector<std::uint32_t>{});
-  }
-  if (both.exists() && sets.size() != 2) {
-    reader.error_at("between_sets", "a link is between 2 sets, got " + std::to_string(sets.size()));
-  }
-  sets.resize(2);
-  std::vector<std::uint32_t> p = sets[0];
-  std::sort(p.begin(), p.end());
-  const auto shared = std::find_if(sets[1].begin(), sets[1].end(), [&](std::uint32_t mat) {
-    return std::binary_search(p.begin(), p.end(), mat);
-  });
-  if (shared != sets[1].end())
-    reader.error_at("between_sets", "the two sets have a MAT in common",
-                    "write within: for one set");
-  if (sets[0].empty() || sets[1].empty())
-    sets = {{}, {}};  // what is wrong with one has been reported
-  add_set(entry, sets[0], sets[1]);
-}
-
-void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
-                       const std::vector<std::uint32_t>& q) {
-  config::MappingReader& reader = entry.reader;
-  if (entry.has_name) {  // so that nothing else bears it
-    const bool sound = problems_.error_count() == entry.errors_before;
-    names_.add({entry.name, Named::kLinks, 0, 0, sound, reader.place_of("name")}, problems_);
+  if (entry.has_name) {  // so that nothing else has it
+    const bool sound = assembly.problems.error_count() == entry.errors_before;
+    assembly.names.add({entry.name, Named::kLinks, 0, 0, sound, reader.place_of("name")},
+                       assembly.problems);
   }
   const bool has_range = reader.optional_value("range_m").exists();
   const double given_range =
       has_range ? reader.required_number("range_m", config::Range::positive()) : 0.0;
-  if (!entry.law || p.empty() || problems_.error_count() != entry.errors_before) return;
+  if (!entry.law || p.empty() || assembly.problems.error_count() != entry.errors_before) return;
 
   std::vector<LinkLaw> parts = entry.law->beside;
   parts.insert(parts.begin(), *entry.law);
   const auto radii_of = [&](const std::vector<std::uint32_t>& mats) {
     std::vector<double> radii;
-    for (const std::uint32_t mat : mats) radii.push_back(radius_of(mat));
+    for (const std::uint32_t mat : mats) radii.push_back(assembly.radius_of(mat));
     return radii;
   };
   const double radii = largest_radii(radii_of(p), radii_of(q));
@@ -149,20 +140,66 @@ void Assembly::add_set(LinkEntry& entry, const std::vector<std::uint32_t>& p,
                                      "' of sets reaches to any distance, it needs a 'range_m'");
       return;
     }
-    const std::string owner = entry.has_name ? names_.full(entry.name) : "";
+    const std::string owner = entry.has_name ? assembly.names.full(entry.name) : "";
+    if (!count_set(assembly, entry, set)) return;
     set.state_machine = part.kind == LinkKind::kState
                             ? part.state_machine_index
-                            : liaisons_->pool().index_of(
+                            : assembly.liaisons->pool().index_of(
                                   {part.liaison, part.given, part.part, owner}, *state_machine);
     const std::string name =
-        names_.full(parts.size() == 1 ? entry.name : entry.name + "." + part.part);
+        assembly.names.full(parts.size() == 1 ? entry.name : entry.name + "." + part.part);
     if (entry.has_name) {
-      named_sets_.emplace(name, static_cast<std::uint32_t>(scene_.network.sets.size()));
+      assembly.named_sets.emplace(name,
+                                  static_cast<std::uint32_t>(assembly.scene.network.sets.size()));
     }
-    scene_.network.sets.push_back(std::move(set));
-    scene_.set_names.push_back(name);
-    scene_.set_places.push_back(reader.place());
+    assembly.scene.network.sets.push_back(std::move(set));
+    assembly.scene.set_names.push_back(name);
+    assembly.scene.set_places.push_back(reader.place());
   }
+}
+
+}  // namespace
+
+void read_set(Assembly& assembly, LinkEntry& entry) {
+  config::MappingReader& reader = entry.reader;
+  const Value within = reader.required_value("within");
+  const std::optional<Selection> set =
+      select(within, "'within' in a link", false, assembly.names, assembly.problems);
+  for (const char* other : {"between", "between_sets"}) {
+    if (reader.has(other)) reader.error_at(other, kOneOfThem);
+    reader.optional_value(other);
+  }
+  if (set && set->count() == 1)
+    reader.error_at("within", "a set of one MAT has no two that could be joined");
+  add_set(assembly, entry, set ? set->indices : std::vector<std::uint32_t>{}, {});
+}
+
+void read_two_sets(Assembly& assembly, LinkEntry& entry) {
+  config::MappingReader& reader = entry.reader;
+  const Value both = reader.required_sequence("between_sets");
+  if (reader.has("between")) reader.error_at("between", kOneOfThem);
+  reader.optional_value("between");
+  std::vector<std::vector<std::uint32_t>> sets;
+  for (const Value& value : both.items()) {
+    const std::optional<Selection> set =
+        select(value, "a set of a link", false, assembly.names, assembly.problems);
+    sets.push_back(set ? set->indices : std::vector<std::uint32_t>{});
+  }
+  if (both.exists() && sets.size() != 2) {
+    reader.error_at("between_sets", "a link is between 2 sets, got " + std::to_string(sets.size()));
+  }
+  sets.resize(2);
+  std::vector<std::uint32_t> p = sets[0];
+  std::sort(p.begin(), p.end());
+  const auto shared = std::find_if(sets[1].begin(), sets[1].end(), [&](std::uint32_t mat) {
+    return std::binary_search(p.begin(), p.end(), mat);
+  });
+  if (shared != sets[1].end())
+    reader.error_at("between_sets", "the two sets have a MAT in common",
+                    "write within: for one set");
+  if (sets[0].empty() || sets[1].empty())
+    sets = {{}, {}};  // what is wrong with one has been reported
+  add_set(assembly, entry, sets[0], sets[1]);
 }
 
 }  // namespace cordis::scene

@@ -1,11 +1,13 @@
-// sim_node/scene/sections/signals.cpp -- the `signals:` section: named scalars of MATs, ports,
-// links and the scene.
+// sim_node/scene/sections/signals.cpp
+#include "sim_node/scene/sections/signals.h"
+
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
 
+#include "sim_node/scene/language/name.h"
 #include "sim_node/scene/matter/point.h"
-#include "sim_node/scene/sections/assembly.h"
 
 namespace cordis::scene {
 
@@ -32,11 +34,11 @@ constexpr std::array<QuantityWord, 30> kWords{{
     {"distance", Owner::kLink, Quantity::kDistance, "m", false},
     {"elongation", Owner::kLink, Quantity::kElongation, "m", false},
     {"speed", Owner::kLink, Quantity::kElongationRate, "m/s", false},
-    {"force", Owner::kLink, Quantity::kPull, "N", false},
+    {"force", Owner::kLink, Quantity::kTension, "N", false},
     {"distance", Owner::kStateLink, Quantity::kDistance, "m", false},
     {"elongation", Owner::kStateLink, Quantity::kElongation, "m", false},
     {"speed", Owner::kStateLink, Quantity::kElongationRate, "m/s", false},
-    {"force", Owner::kStateLink, Quantity::kPull, "N", false},
+    {"force", Owner::kStateLink, Quantity::kTension, "N", false},
     {"state", Owner::kStateLink, Quantity::kState, "", false},
     {"rest_length", Owner::kStateLink, Quantity::kRestLength, "m", false},
     {"pieces", Owner::kStateLink, Quantity::kPieces, "", false},
@@ -111,34 +113,90 @@ const QuantityWord* read_quantity(config::MappingReader& reader, Owner owner) {
   return nullptr;
 }
 
-}  // namespace
-
-const char* word_of(Quantity quantity) noexcept {
-  for (const QuantityWord& known : kWords) {
-    if (known.quantity == quantity) return known.word;
+/// The direction of a position, velocity or force; a port of one axis needs no `axis`.
+void read_direction_of_signal(Assembly& assembly, config::MappingReader& reader,
+                              const Selection& of, Signal& signal) {
+  const std::vector<std::string> words = axis_words(assembly.scene.space());
+  if (reader.has("axis")) {
+    signal.direction = Vec3::Unit(reader.required_choice("axis", words).front() - 'x');
+    return;
   }
-  return "";
+  for (const Port& port : assembly.scene.ports) {
+    const bool is_here = port.mat == of.indices[0] || port.tool == of.indices[0];
+    if (!is_here || port.directions.size() != 1) continue;
+    signal.direction = port.directions.front();
+    if (signal.quantity == Quantity::kPosition) signal.offset = signal.direction.dot(port.rest);
+    return;
+  }
+  signal.direction = Vec3::UnitX();
+  if (assembly.scene.space() > 1) reader.required_choice("axis", words);
 }
 
-void Assembly::read_signals(const Value& section) {
-  std::vector<Signal> signals;
-  for (const Value::Entry& entry : section.entries()) read_signal(entry, signals);
-  for (const Signal& signal : signals) {
-    if (signal.quantity == Quantity::kForce) scene_.network.kept_awake.push_back(signal.index);
+/// Reads how often a signal is taken, and whether it is a sound.
+void read_rate(config::MappingReader& reader, Signal& signal) {
+  signal.is_sound = reader.optional_truth("sound", false);
+  const std::string rate =
+      reader.optional_choice("rate", signal.is_sound ? "step" : "gesture", {"gesture", "step"});
+  if (rate == "step") signal.rate = SignalRate::kStep;
+  if (signal.is_sound && rate == "gesture") {
+    reader.error_at("rate", "a sound is taken after each step",
+                    "write 'rate: step', or leave it out");
   }
-  if (problems_.has_errors()) return;  // and the network is not whole
-  scene_.signals = SignalReader(std::move(signals), scene_.network);
+  if (!reader.has("full_scale")) return;
+  signal.full_scale = reader.required_number("full_scale", config::Range::positive());
+  if (!signal.is_sound) {
+    reader.error_at("full_scale", "'full_scale' is of a sound", "add 'sound: true'");
+  }
 }
 
-void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signals) {
-  check_name(entry.key, entry.key_place, problems_);
-  config::MappingReader reader(entry.value, "signal '" + entry.key + "'", problems_);
+void read_signal_of_set(Assembly& assembly, config::MappingReader& reader, const std::string& name,
+                        std::uint32_t set, std::vector<Signal>& signals) {
+  const QuantityWord* quantity = read_quantity(reader, Owner::kSet);
+  const bool is_pieces = quantity != nullptr && quantity->quantity == Quantity::kPieces;
+  Signal signal;
+  signal.name = name;
+  signal.index = set;
+  if (quantity != nullptr) signal.quantity = quantity->quantity;
+  if (is_pieces && reader.has("near_m")) {
+    signal.near = reader.required_number("near_m", config::Range::positive());
+  }
+  const std::uint32_t state_machine = assembly.scene.network.sets[set].state_machine;
+  const bool binds = assembly.liaisons->pool().state_machines()[state_machine].states.size() > 1;
+  if (quantity != nullptr && !binds && !reader.has("near_m")) {
+    reader.error_at("quantity", "pairs of a liaison of one state are never bound",
+                    "count pieces of balls nearer than near_m");
+  }
+  read_rate(reader, signal);
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+void read_count_of_links(config::MappingReader& reader, const std::string& name,
+                         const Selection& picked, std::vector<Signal>& signals) {
+  Signal signal;
+  signal.name = name;
+  Owner owner = Owner::kStateLink;
+  for (const std::uint32_t link : picked.indices) {
+    if (kind_of_link(link) != LinkKind::kState) owner = owner_of(kind_of_link(link));
+    signal.state_links.push_back(index_of_link(link));
+  }
+  const QuantityWord* quantity = read_quantity(reader, owner);
+  if (quantity != nullptr) signal.quantity = quantity->quantity;
+  read_rate(reader, signal);
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Signal>& signals) {
+  check_name(entry.key, entry.key_place, assembly.problems);
+  config::MappingReader reader(entry.value, "signal '" + entry.key + "'", assembly.problems);
   const Value of = reader.optional_value("of");
-  const auto set = named_sets_.find(of.text());
-  if (set != named_sets_.end()) return read_signal_of_set(reader, entry.key, set->second, signals);
+  const auto set = assembly.named_sets.find(of.text());
+  if (set != assembly.named_sets.end())
+    return read_signal_of_set(assembly, reader, entry.key, set->second, signals);
   std::optional<Selection> picked;
   if (of.exists()) {
-    picked = select(of, "'of' in " + reader.what(), true, names_, problems_);
+    picked = select(of, "'of' in " + reader.what(), true, assembly.names, assembly.problems);
     if (!picked) return;  // whose signal it is decides what else it may say
   }
   const bool is_link = picked && picked->kind == Named::kLinks;
@@ -152,7 +210,7 @@ void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signa
                     "a signal is of one MAT or one link, and " +
                         (of.text().empty() ? "this list" : "'" + of.text() + "'") + " has " +
                         std::to_string(picked->count()),
-                    "pick one: " + names_.word_of(picked->indices[0], is_link));
+                    "pick one: " + assembly.names.word_of(picked->indices[0], is_link));
   }
   Owner owner = Owner::kScene;
   if (picked) owner = is_link ? owner_of(kind_of_link(picked->indices[0])) : Owner::kMat;
@@ -174,67 +232,32 @@ void Assembly::read_signal(const Value::Entry& entry, std::vector<Signal>& signa
     signal.quantity = quantity->quantity;
     signal.unit = quantity->unit;
     if (quantity->has_direction) {
-      read_direction_of_signal(reader, *picked, signal);
+      read_direction_of_signal(assembly, reader, *picked, signal);
     } else if (reader.has("axis")) {
       reader.error_at("axis", std::string("the quantity '") + quantity->word + "' has no axis");
     }
   }
+  read_rate(reader, signal);
   reader.finish();
   signals.push_back(std::move(signal));
 }
 
-void Assembly::read_count_of_links(config::MappingReader& reader, const std::string& name,
-                                   const Selection& picked, std::vector<Signal>& signals) {
-  Signal signal;
-  signal.name = name;
-  Owner owner = Owner::kStateLink;
-  for (const std::uint32_t link : picked.indices) {
-    if (kind_of_link(link) != LinkKind::kState) owner = owner_of(kind_of_link(link));
-    signal.state_links.push_back(index_of_link(link));
-  }
-  const QuantityWord* quantity = read_quantity(reader, owner);
-  if (quantity != nullptr) signal.quantity = quantity->quantity;
-  reader.finish();
-  signals.push_back(std::move(signal));
-}
+}  // namespace
 
-void Assembly::read_signal_of_set(config::MappingReader& reader, const std::string& name,
-                                  std::uint32_t set, std::vector<Signal>& signals) {
-  const QuantityWord* quantity = read_quantity(reader, Owner::kSet);
-  const bool is_pieces = quantity != nullptr && quantity->quantity == Quantity::kPieces;
-  Signal signal;
-  signal.name = name;
-  signal.index = set;
-  if (quantity != nullptr) signal.quantity = quantity->quantity;
-  if (is_pieces && reader.has("near_m")) {
-    signal.near = reader.required_number("near_m", config::Range::positive());
+void read_signals(Assembly& assembly, const Value& section) {
+  std::vector<Signal> signals;
+  for (const Value::Entry& entry : section.entries()) read_signal(assembly, entry, signals);
+  for (const Signal& signal : signals) {
+    if (signal.quantity == Quantity::kForce)
+      assembly.scene.network.kept_awake.push_back(signal.index);
   }
-  const std::uint32_t state_machine = scene_.network.sets[set].state_machine;
-  const bool binds = liaisons_->pool().state_machines()[state_machine].states.size() > 1;
-  if (quantity != nullptr && !binds && !reader.has("near_m")) {
-    reader.error_at("quantity", "pairs of a liaison of one state are never bound",
-                    "count pieces of balls nearer than near_m");
+  const auto is_sound = [](const Signal& signal) { return signal.is_sound; };
+  if (std::ranges::count_if(signals, is_sound) > static_cast<long>(kMaxSounds)) {
+    assembly.problems.error(section.place(), "a scene has at most " + std::to_string(kMaxSounds) +
+                                                 " signals with 'sound: true'");
   }
-  reader.finish();
-  signals.push_back(std::move(signal));
-}
-
-void Assembly::read_direction_of_signal(config::MappingReader& reader, const Selection& of,
-                                        Signal& signal) const {
-  const std::vector<std::string> words = axis_words(scene_.space());
-  if (reader.has("axis")) {
-    signal.direction = Vec3::Unit(reader.required_choice("axis", words).front() - 'x');
-    return;
-  }
-  for (const Port& port : scene_.ports) {
-    const bool is_here = port.mat == of.indices[0] || port.tool == of.indices[0];
-    if (!is_here || port.directions.size() != 1) continue;
-    signal.direction = port.directions.front();
-    if (signal.quantity == Quantity::kPosition) signal.offset = signal.direction.dot(port.rest);
-    return;
-  }
-  signal.direction = Vec3::UnitX();
-  if (scene_.space() > 1) reader.required_choice("axis", words);
+  if (assembly.problems.has_errors()) return;  // and the network is not whole
+  assembly.scene.signals = SignalReader(std::move(signals), assembly.scene.network);
 }
 
 }  // namespace cordis::scene

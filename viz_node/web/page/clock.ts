@@ -1,4 +1,4 @@
-// viz_node/web/page/clock.ts -- two clocks and one rate: how old the picture is, and how fast
+// viz_node/web/page/clock.ts -- two clocks and one rate: how old the view is, and how fast
 // simulated time runs.
 
 const BUCKET_MS = 10_000;

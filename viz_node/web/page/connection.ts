@@ -44,8 +44,13 @@ export class Connection {
   }
 
   /** Asks for something of the simulation. */
-  command(verb: string): void {
-    if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'command', verb }));
+  command(verb: string, more: { steps?: number; value?: number } = {}): void {
+    if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'command', verb, ...more }));
+  }
+
+  /** Asks for the sound of the scene, or for no more of it. A new connection is silent. */
+  listen(on: boolean): void {
+    if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'sound', on }));
   }
 
   private open(): void {

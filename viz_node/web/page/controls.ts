@@ -11,7 +11,7 @@ export class Controls {
   private paused = false;
   private shownNumber = 0; // of the reply shown last
   private asked = false; // a command was sent that has no reply yet
-  private impatientMs = Number.POSITIVE_INFINITY; // when its silence is told
+  private impatientMs = Number.POSITIVE_INFINITY; // when its silence is reported
   private timer = 0;
 
   constructor(private readonly connection: Connection) {

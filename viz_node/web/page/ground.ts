@@ -1,4 +1,4 @@
-// viz_node/web/page/ground.ts -- a grid of round lengths under or behind the scene, so that the eye
+// viz_node/web/page/ground.ts -- a grid of round lengths under or behind the scene: a viewer
 // has something to hold on to.
 import * as THREE from 'three';
 

@@ -4,9 +4,11 @@ import { count, duration, joined, NONE, plain, rate, threeDigits, withUnit } fro
 import { countsLine, eventLine } from './events.ts';
 import { VERSION, type Description, type Hello, type NodeState, type Reply, type Status } from './protocol.ts';
 import { fillRows, setText } from './rows.ts';
+import { takeIn, type Take } from './take.ts';
 
-// After this time without a frame the picture is called old, whatever the nodes say.
+// After this time without a frame the view is called old, whatever the nodes say.
 const OLD_AFTER_S = 1.5;
+const FROZEN: [string, string, 'warn'] = ['view frozen', 'The simulation goes on. Space lets the view go on too.', 'warn'];
 const GONE = ['lost', 'stopped', 'failed'];
 
 /** What the page itself measures. */
@@ -34,6 +36,7 @@ function set(id: string, text: string, level: 'good' | 'warn' | 'bad' | '' = '')
 
 export class Hud {
   private status: Status | null = null;
+  private take: Take | null = null; // null in a live session
   private description: Description | null = null;
   private otherVersion = false; // of viz_node than of this page
 
@@ -52,6 +55,7 @@ export class Hud {
 
   setStatus(status: Status): void {
     this.status = status;
+    this.take = takeIn(status.nodes);
     this.writeNodes(status.nodes);
     this.writeEvents(status);
   }
@@ -75,11 +79,12 @@ export class Hud {
     set('time-more', Number.isFinite(measured.simulatedS) ? 's' : '');
     const factor = fresh && sim !== undefined ? measured.realTimeFactor : Number.NaN;
     set('factor', Number.isFinite(factor) ? `×${factor.toFixed(2)}` : NONE, factor < 0.98 ? 'warn' : '');
-    const lag = fresh ? measured.lagS : measured.sinceFrameS;
+    // The frames of a take were taken by another clock.
+    const lag = this.take !== null ? Number.NaN : fresh ? measured.lagS : measured.sinceFrameS;
     set('lag', Number.isFinite(lag) ? (1000 * lag).toFixed(0) : NONE, lag > 0.5 ? 'bad' : lag > 0.15 ? 'warn' : '');
     const viz = this.alive('viz_node');
     element('lag').title = viz !== undefined && viz.latency_count > 0
-      ? `from the hand to the picture, all pages: p50 ${joined(withUnit(viz.latency_p50_s, 's'))}, p99 ${joined(withUnit(viz.latency_p99_s, 's'))}, max ${joined(withUnit(viz.latency_max_s, 's'))}`
+      ? `from the hand to the view, all pages: p50 ${joined(withUnit(viz.latency_p50_s, 's'))}, p99 ${joined(withUnit(viz.latency_p99_s, 's'))}, max ${joined(withUnit(viz.latency_max_s, 's'))}`
       : '';
     set('dropped', count(measured.dropped), '');
     const before = (this.status?.viz.lost ?? 0) + (this.status?.viz.refused ?? 0);
@@ -90,6 +95,11 @@ export class Hud {
   /** The node of this kind that was heard lately. */
   alive(kind: string): NodeState | undefined {
     return this.nodes.find((node) => node.kind === kind && !GONE.includes(node.state));
+  }
+
+  /** What the buttons command: the player of a take, or else the simulation. */
+  get commanded(): NodeState | undefined {
+    return this.take === null ? this.alive('sim_node') : this.nodes.find(({ kind }) => kind === 'player');
   }
 
   private writeLoop(sim: NodeState | undefined): void {
@@ -115,6 +125,7 @@ export class Hud {
     set('latency-p99', worst ? joined(withUnit(worst.latency_p99_s, 's')) : NONE);
     set('latency-max', worst ? joined(withUnit(worst.latency_max_s, 's')) : NONE);
     set('latency-device', worst ? `· ${worst.name}` : '');
+    element('latency').title = devices.map(linkLine).join('\n');
   }
 
   private writeEnergy(sim: NodeState | undefined): void {
@@ -125,11 +136,19 @@ export class Hud {
     set('by-ports', joined(withUnit(sim?.port_work_j, 'J')));
     set('by-switching', joined(withUnit(sim?.switching_energy_j, 'J')));
     set('by-viscosity', joined(withUnit(sim?.dissipated_j, 'J')));
-    const limit = sim?.largest_limit_number;
+    const limit = sim?.largest_stability_number;
     set('limit', typeof limit === 'number' ? `${threeDigits(limit)} of 4` : NONE, typeof limit === 'number' && limit >= 4 ? 'warn' : '');
     const partners = sim?.largest_partners ?? 0;
     const certified = sim?.certified_partners ?? null;
     set('partners', certified !== null ? `${partners} of ${certified}` : NONE, certified !== null && partners > certified ? 'warn' : '');
+    const troubles: [number, string][] = [
+      [sim?.overflowed_steps ?? 0, 'steps with pairs beyond room'],
+      [sim?.forgotten_pairs ?? 0, 'pairs forgotten'],
+      [sim?.refused_inputs ?? 0, 'inputs refused'],
+    ];
+    const shown = troubles.filter(([times]) => times > 0).map(([times, what]) => `${count(times)} ${what}`);
+    element('troubles').hidden = shown.length === 0;
+    set('troubles', shown.join(', '), 'warn');
   }
 
   private writeNodes(nodes: NodeState[]): void {
@@ -166,6 +185,9 @@ export class Hud {
   private alarm(measured: Measured): [string, string, 'bad' | 'warn' | ''] {
     if (!measured.connected) return ['viz_node does not answer', 'The session may be running all the same. Trying again …', 'bad'];
     if (this.otherVersion) return ['reload this page', 'It is older or newer than the viz_node that it shows.', 'bad'];
+    if (this.take?.state === 'paused') return ['take paused', 'Space lets it go on; the bar moves it.', 'warn'];
+    if (this.take?.state === 'over') return ['end of the take', 'The bar moves it.', 'warn'];
+    if (this.take !== null && this.description !== null) return measured.frozen ? FROZEN : ['', '', ''];
     const sims = this.nodes.filter((node) => node.kind === 'sim_node');
     if (!sims.some((node) => !GONE.includes(node.state))) {
       const last = sims.sort((a, b) => a.received_s - b.received_s)[0];
@@ -182,7 +204,7 @@ export class Hud {
       return [amiss.map((n) => `${n.name} is ${n.state}`).join(', '), amiss.map(fate).join(' ') + (device ? ' Its forces are zero meanwhile.' : ''), 'warn'];
     }
     if (this.alive('sim_node')?.state === 'paused') return ['paused', 'The scene is paused, and the devices are let go of.', 'warn'];
-    if (measured.frozen) return ['view frozen', 'The simulation goes on. Space lets the view go on too.', 'warn'];
+    if (measured.frozen) return FROZEN;
     return ['', '', ''];
   }
 }
@@ -208,15 +230,30 @@ function makeRow(): HTMLElement {
   return row;
 }
 
+/** What a row says of losses: of a device the share of samples without an answer, else messages. */
+function lossOf(node: NodeState): string {
+  const share = node.link_samples > 0 ? (100 * node.link_unanswered) / node.link_samples : 0;
+  if (share >= 0.05) return `${share.toFixed(1)} % lost`;
+  return node.dropped > 0 ? `${count(node.dropped)} lost` : '';
+}
+
+/** The link between a device and the scene: round trip and loss. */
+export function linkLine(node: NodeState): string {
+  if (node.link_samples === 0) return '';
+  const lost = (100 * node.link_unanswered) / node.link_samples;
+  return `${node.name}: round trip ${joined(withUnit(node.latency_p50_s, 's'))}, ${lost.toFixed(2)} % of ${count(node.link_samples)} samples without an answer`;
+}
+
 function writeRow(row: HTMLElement, node: NodeState): void {
   const device = `${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.passivity_ticks)} ticks braked`;
   row.dataset.state = node.state;
-  row.title = node.kind === 'device_node' ? node.text + (node.text && '; ') + device : node.text;
+  const parts = node.kind === 'device_node' ? [node.text, device, linkLine(node)] : [node.text];
+  row.title = [...parts, `on ${node.host}`].filter((part) => part !== '').join('; ');
   const texts = [
     node.name,
     node.state,
     GONE.includes(node.state) ? NONE : rate(node.reached_rate_hz) + ' Hz',
-    node.dropped > 0 ? `${count(node.dropped)} lost` : '',
+    lossOf(node),
     joined(withUnit(node.memory_bytes, 'B')),
   ];
   texts.forEach((text, i) => setText(row.children[i]!, text));

@@ -172,7 +172,7 @@ export function sceneUniforms(): SceneUniforms {
   };
 }
 
-/** Kinds as the shader tells them apart: a fixed point without a radius is no ball. */
+/** Kinds as the shader distinguishes them: a fixed point without a radius is no ball. */
 export function shownKinds(kinds: Uint8Array, radii: Float32Array, tools: number[]): Uint8Array {
   const shown = kinds.map((kind, i) => (kind === MAT_FIXED && radii[i] === 0 ? SHOWN_FIXED_POINT : kind));
   for (const tool of tools) shown[tool] = SHOWN_TOOL;

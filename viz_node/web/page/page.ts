@@ -11,11 +11,13 @@ import { toolsOf, type Description, type Frame, type Message, type Topology } fr
 import { chooseQuality, findRenderer } from './quality.ts';
 import { SceneView } from './scene_view.ts';
 import type { SignalStore } from './signal_store.ts';
+import { SoundPanel } from './sound/sound_panel.ts';
+import { TakeBar } from './take.ts';
 
 const FIGURES_PERIOD_MS = 200;
 const PLOTS_PERIOD_MS = 60;
 const MOST_ERRORS = 20;
-const CONTEXT_LOST = 'The browser stopped drawing: its graphics driver failed. Reload the page if the picture does not come back';
+const CONTEXT_LOST = 'The browser stopped drawing: its graphics driver failed. Reload the page if the view does not come back';
 
 function find<T extends HTMLElement>(selector: string): T {
   const found = document.querySelector<T>(selector);
@@ -43,8 +45,10 @@ export class Page {
   private readonly renderer = findRenderer();
   readonly connection: Connection;
   private readonly controls: Controls;
+  readonly sound: SoundPanel;
+  readonly takeBar: TakeBar;
   private pending: Frame | null = null;
-  private pendingIsLate = false; // it came, or waited, while nobody could see the page
+  private pendingIsLate = false; // it came, or waited, while the page was hidden
   private frameMs = Number.NaN; // when the newest frame came
   private pose: Pose | null = null; // of the camera, for the next view
   private drawAsked = false;
@@ -64,11 +68,13 @@ export class Page {
     this.listenToKeys();
     this.connection = new Connection(`ws${location.protocol.slice(4)}//${location.host}/live`, {
       message: (message) => this.take(message),
-      opened: () => {},
+      opened: () => this.sound.reopen(),
       closed: () => this.forgetConnection(),
       failed: (error) => this.note(error),
     });
     this.controls = new Controls(this.connection);
+    this.sound = new SoundPanel(this.connection, (error) => this.note(error));
+    this.takeBar = new TakeBar(this.connection);
     window.setInterval(() => this.refresh(), FIGURES_PERIOD_MS);
   }
 
@@ -93,12 +99,15 @@ export class Page {
       case 'status':
         this.clock.note(message.sent_nsec, performance.now());
         this.hud.setStatus(message);
-        return this.controls.update(this.hud.alive('sim_node'), message.replies);
+        this.takeBar.update(message.nodes);
+        return this.controls.update(this.hud.commanded, message.replies);
       case 'signals':
         if (message.scene !== this.description?.scene) return;
         this.store?.append(message);
         this.plotsDirty = true;
         return this.askToDraw();
+      case 'sound':
+        return message.scene === this.description?.scene ? this.sound.take(message) : undefined;
       case 'frame':
         return this.takeFrame(message);
     }
@@ -117,7 +126,7 @@ export class Page {
     this.askToDraw();
   }
 
-  /** A scene that is told again, by a viz_node that was restarted, goes on where it was. */
+  /** A scene that is described again, by a viz_node that was restarted, goes on where it was. */
   private describe(description: Description): void {
     const last = this.description;
     const isSame = last !== null && last.epoch === description.epoch && last.version === description.version;
@@ -127,6 +136,7 @@ export class Page {
     this.connection.acknowledge(); // frames of the last scene are not drawn any more
     this.factor.clear();
     this.hud.setDescription(description);
+    this.sound.describe(description);
     if (isSame) return;
     this.pose = looksAlike && this.view !== null ? this.view.rig.pose : null;
     this.view?.dispose();
@@ -197,7 +207,7 @@ export class Page {
     this.lastFrame = frame;
     this.pendingIsLate = false;
     const lagS = Math.max(0, this.clock.serverMs(performance.now()) * 1e-3 - frame.takenNsec * 1e-9);
-    // Smoothed so that it can be read; a picture that falls behind shows within a second.
+    // Smoothed so that it can be read; a view that falls behind shows within a second.
     this.lagS = Number.isNaN(this.lagS) || !drawn ? lagS : this.lagS + 0.1 * (lagS - this.lagS);
   }
 
@@ -249,6 +259,8 @@ export class Page {
     };
     window.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.altKey || event.metaKey) return;
+      if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement) return;
+      if (this.takeBar.key(event.key)) return event.preventDefault();
       const action = keys[event.key];
       if (action === undefined) return;
       event.preventDefault();

@@ -7,6 +7,7 @@ export const VERSION = 1;
 const TYPE_FRAME = 1;
 const TYPE_SIGNALS = 2;
 const TYPE_TOPOLOGY = 3;
+const TYPE_SOUND = 4;
 
 export interface Frame {
   type: 'frame';
@@ -43,6 +44,18 @@ export interface Topology {
   radii: Float32Array<ArrayBuffer>; // [m]
   linkEnds: Uint32Array<ArrayBuffer>; // two per link
   kinds: Uint8Array<ArrayBuffer>; // MAT_*
+}
+
+export interface Sound {
+  type: 'sound';
+  scene: number;
+  soundCount: number;
+  stepCount: number;
+  droppedSteps: number; // before the first, by sim_node
+  firstStep: number;
+  stepRateHz: number; // samples per second of simulated time
+  takenNsec: number; // when the last sample was taken
+  values: Float32Array<ArrayBuffer>; // step after step
 }
 
 export interface NamedRange {
@@ -83,10 +96,10 @@ export interface Description {
   links: NamedRange[];
   state_machines: { name: string; states: string[] }[];
   ports: Port[];
-  signals: { name: string; unit: string }[];
+  signals: { name: string; unit: string; sound: boolean; full_scale: Figure }[];
 }
 
-/** The MATs that hands move by a coupling: they bear the name of a port whose own MAT is the handle. */
+/** The MATs that hands move by a coupling: they have the name of a port whose own MAT is the handle. */
 export function toolsOf({ ports, matter }: Description): number[] {
   const isTool = (range: NamedRange, port: Port) =>
     range.name === port.name && range.count === 1 && range.first !== port.mat;
@@ -98,6 +111,7 @@ type Figure = number | null;
 
 export interface NodeState {
   name: string;
+  host: string; // with its address on a network
   kind: string;
   epoch: string;
   state: string; // a word of NodePhase, idl/control.idl
@@ -113,13 +127,15 @@ export interface NodeState {
   latency_p50_s: Figure;
   latency_p99_s: Figure;
   latency_max_s: Figure;
+  link_samples: number; // of a device: answered, or older than one that is
+  link_unanswered: number; // of these, without an answer of their own
   energy_j: Figure;
   energy_drift: Figure;
   integration_error_j: Figure; // what the steps have put in, and no account explains
   switching_energy_j: Figure; // brought in by changes of state and of parameters, net
   port_work_j: Figure; // brought in through the ports, net
   dissipated_j: Figure; // taken by viscosity
-  largest_limit_number: Figure; // K' + 2 Z' seen: below 4 nothing diverges
+  largest_stability_number: Figure; // K' + 2 Z' seen: below 4 nothing diverges
   largest_partners: number; // most others that a mass of a set has touched at once
   certified_partners: number | null; // up to which the step is certified; null where nothing is watched
   overflowed_steps: number; // in which a set had more pairs than room
@@ -169,10 +185,10 @@ export interface Status {
   viz: { frames: number; refused: number; lost: number };
 }
 
-export type Message = Frame | Signals | Topology | Hello | Description | Status;
+export type Message = Frame | Signals | Topology | Sound | Hello | Description | Status;
 
 /** Reads a binary message. Throws an Error when it is none of this protocol, or shorter than it says. */
-export function decodeBinary(buffer: ArrayBuffer): Frame | Signals | Topology {
+export function decodeBinary(buffer: ArrayBuffer): Frame | Signals | Topology | Sound {
   const view = new DataView(buffer);
   if (buffer.byteLength < 8 || view.getUint32(0, true) !== MAGIC) throw new Error('not a message of viz_node');
   if (view.getUint8(4) !== VERSION) throw new Error(`protocol version ${view.getUint8(4)}: reload the page`);
@@ -184,6 +200,8 @@ export function decodeBinary(buffer: ArrayBuffer): Frame | Signals | Topology {
       return decodeSignals(view, header);
     case TYPE_TOPOLOGY:
       return decodeTopology(view, header);
+    case TYPE_SOUND:
+      return decodeSound(view, header);
     default:
       throw new Error(`unknown message type ${view.getUint8(5)}`);
   }
@@ -229,6 +247,23 @@ function decodeSignals(view: DataView<ArrayBuffer>, header: number): Signals {
     firstS: view.getFloat64(32, true),
     rowPeriodS: view.getFloat64(40, true),
     values: new Float32Array(view.buffer, header, signalCount * rowCount),
+  };
+}
+
+function decodeSound(view: DataView<ArrayBuffer>, header: number): Sound {
+  const soundCount = view.getUint32(12, true);
+  const stepCount = view.getUint32(16, true);
+  checkLength(view, header + 4 * soundCount * stepCount);
+  return {
+    type: 'sound',
+    scene: view.getUint32(8, true),
+    soundCount,
+    stepCount,
+    droppedSteps: view.getUint32(20, true),
+    firstStep: u64(view, 24),
+    stepRateHz: view.getFloat64(32, true),
+    takenNsec: u64(view, 40),
+    values: new Float32Array(view.buffer, header, soundCount * stepCount),
   };
 }
 

@@ -1,4 +1,4 @@
-// viz_node/web/page/quality.ts -- how much the picture may cost: a machine without a graphics card
+// viz_node/web/page/quality.ts -- how much the view may cost: a machine without a graphics card
 // draws with its CPU.
 
 export interface Quality {

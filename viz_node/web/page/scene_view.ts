@@ -182,7 +182,7 @@ export class SceneView {
     return { x: box.left + (0.5 + 0.5 * at.x) * box.width, y: box.top + (0.5 - 0.5 * at.y) * box.height };
   }
 
-  /** Colour of one pixel of the picture as it is drawn now, 0..255; a place on the page [CSS pixels]. */
+  /** Colour of one pixel of the view as it is drawn now, 0..255; a place on the page [CSS pixels]. */
   pixelAt(x: number, y: number): number[] {
     this.draw();
     const gl = this.renderer.getContext();

@@ -1,6 +1,8 @@
 // viz_node/web/page/viz.ts -- window.viz: what the page knows, for tests and for the curious.
 import type { Page } from './page.ts';
 import type { NodeState, Reply } from './protocol.ts';
+import type { SoundFigures } from './sound/sound_stream.ts';
+import type { Take } from './take.ts';
 
 export interface Viz {
   readonly connected: boolean;
@@ -16,12 +18,16 @@ export interface Viz {
   readonly scene: { number: number; name: string; space: number; matCount: number; linkCount: number } | null;
   readonly camera: { preset: string; orthographic: boolean; target: number[]; metresPerPixel: number } | null;
   readonly signals: { count: number; rows: number; gaps: number; newestS: number } | null;
+  readonly sound: { on: boolean; figures: SoundFigures | null };
+  readonly take: Take | null; // null in a live session
   readonly quality: { software: boolean; spheres: boolean; links: boolean } | null;
   /** Coordinates of MAT `index` in the frame drawn last [m]. */
   position(index: number): number[] | null;
   /** Where MAT `index` is on the page [CSS pixels]. */
   project(index: number): { x: number; y: number } | null;
-  /** Red, green and blue of the picture at a place on the page, 0..255. */
+  /** Levels of the sound as it is played [dB], one each `binHz`; null while none is. */
+  soundSpectrum(): { binHz: number; levels: number[] } | null;
+  /** Red, green and blue of the view at a place on the page, 0..255. */
   pixelAt(x: number, y: number): number[] | null;
 }
 
@@ -85,11 +91,18 @@ export function exposeViz(page: Page): void {
       const store = page.store;
       return store && { count: store.signalCount, rows: store.rowCount, gaps: store.gaps, newestS: store.newestS };
     },
+    get sound() {
+      return { on: page.sound.isOn, figures: page.sound.figures };
+    },
+    get take() {
+      return page.takeBar.take;
+    },
     get quality() {
       return page.view?.quality ?? null;
     },
     position: (index) => (page.lastFrame ? [...page.lastFrame.positions.slice(3 * index, 3 * index + 3)] : null),
     project: (index) => page.view?.project(index) ?? null,
+    soundSpectrum: () => page.sound.spectrum(),
     pixelAt: (x, y) => page.view?.pixelAt(x, y) ?? null,
   };
 }

@@ -1,0 +1,129 @@
+// cli/hz/hz_verb.cpp
+#include "cli/hz/hz_verb.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "cli/duration.h"
+#include "cli/exit_code.h"
+#include "cli/live_output.h"
+#include "cli/session_words.h"
+#include "cli/topic_listener.h"
+#include "node/stop.h"
+
+namespace cordis::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto kHzWait = std::chrono::milliseconds(100);
+constexpr auto kTable = std::chrono::seconds(1);
+
+struct HzWords {
+  SessionWords of;
+  std::string topic;
+  std::string duration;
+};
+
+/// What came on a topic since the last table.
+struct Traffic {
+  std::uint64_t messages = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t missing = 0;  // numbers of the writers that did not come
+  std::map<dds::WriterId, std::uint64_t> sequence;
+  std::map<dds::WriterId, std::int64_t> time_nsec;
+  std::uint64_t intervals = 0;
+  double shortest_s = 0.0;
+  double longest_s = 0.0;
+
+  void add(const ReceivedMessage& message) {
+    ++messages;
+    bytes += message.size;
+    std::uint64_t& last = sequence[message.writer];
+    if (last != 0 && message.sequence > last + 1 && !message.topic.exclusive)
+      missing += message.sequence - last - 1;
+    last = message.sequence;
+    std::int64_t& before = time_nsec[message.writer];
+    if (before != 0) {
+      const double interval = static_cast<double>(message.reception_nsec - before) * 1e-9;
+      shortest_s = intervals == 0 ? interval : std::min(shortest_s, interval);
+      longest_s = std::max(longest_s, interval);
+      ++intervals;
+    }
+    before = message.reception_nsec;
+  }
+  void begin_again() {
+    messages = bytes = missing = intervals = 0;
+    shortest_s = longest_s = 0.0;
+  }
+};
+
+void print(std::map<std::string, Traffic>& topics, double seconds) {
+  std::size_t width = 5;
+  for (const auto& [name, traffic] : topics) width = std::max(width, name.size());
+  std::printf("%-*s %10s %12s %12s %9s %8s\n", static_cast<int>(width), "topic", "rate [Hz]",
+              "min [ms]", "max [ms]", "kB/s", "missing");
+  for (auto& [name, traffic] : topics) {
+    std::printf("%-*s %10.1f %12.3f %12.3f %9.1f %8llu\n", static_cast<int>(width), name.c_str(),
+                static_cast<double>(traffic.messages) / seconds, traffic.shortest_s * 1e3,
+                traffic.longest_s * 1e3, static_cast<double>(traffic.bytes) / seconds / 1e3,
+                static_cast<unsigned long long>(traffic.missing));
+    traffic.begin_again();
+  }
+}
+
+int hz(const HzWords& words) {
+  std::optional<std::chrono::nanoseconds> duration;
+  if (!words.duration.empty()) duration = parse_duration(words.duration);
+  const SessionAddress address = words.of.address();
+  node::install_stop_signals();
+  TopicListener listener(address, words.topic, false);
+  SilenceNote silence("hz", address.session, words.topic);
+  std::map<std::string, Traffic> topics;
+  const auto began = Clock::now();
+  auto table = began;
+  bool over = false;
+  while (!node::stop_requested() && !over) {
+    for (const ReceivedMessage& message : listener.take(kHzWait))
+      topics[message.topic.name].add(message);
+    silence.update(topics.size());
+    const auto now = Clock::now();
+    over = duration && now >= began + *duration;
+    // What came since the last table is shown at the end, too.
+    if (topics.empty() || (now < table + kTable && !over)) continue;
+    print(topics, std::chrono::duration<double>(now - table).count());
+    table = now;
+    if (!flush_output()) return kSuccess;
+  }
+  if (duration && topics.empty()) throw std::runtime_error(silence.text());
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_hz_verb(CommandLine& line) {
+  auto words = std::make_shared<HzWords>();
+  Verb& verb = line.verb("hz", "SESSION [TOPIC] [options]",
+                         "Measure how often the topics of a session are written");
+  verb.optional_word("SESSION", words->of.session, "The launch file, or the name of the session");
+  verb.optional_word("TOPIC", words->topic, "A topic, or a pattern: 'gesture/*'");
+  verb.option("--duration", "TIME", words->duration, "End after so long: 10s");
+  add_session_options(verb, words->of);
+  verb.examples(
+      "A table each second, until Ctrl-C: messages per second, the shortest and the longest time\n"
+      "between two of one writer as they came here, and numbers of writers that did not come.\n"
+      "Exit code: 0 done, 1 no such session or no message, 2 bad command line.\n\n"
+      "Examples:\n"
+      "  cordis hz plucked_string\n"
+      "  cordis hz plucked_string 'gesture/*' --duration 10s\n");
+  verb.action([words] { return hz(*words); });
+}
+
+}  // namespace cordis::cli

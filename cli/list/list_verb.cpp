@@ -1,0 +1,119 @@
+// cli/list/list_verb.cpp
+#include "cli/list/list_verb.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "cli/exit_code.h"
+#include "cli/session_launch.h"
+#include "node/config/launch.h"
+#include "node/runtime_folder.h"
+#include "node/session_registry.h"
+
+namespace cordis::cli {
+namespace {
+
+struct ListWords {
+  bool json = false;
+};
+
+/// Seconds since the process began, by the last number of its identity: ticks since the host began.
+double age_s(const node::SessionMember& member) {
+  double uptime = 0.0;
+  std::ifstream("/proc/uptime") >> uptime;
+  const std::size_t blank = member.identity.rfind(' ');
+  if (blank == std::string::npos) return 0.0;
+  const double began = std::strtod(member.identity.c_str() + blank + 1, nullptr) /
+                       static_cast<double>(sysconf(_SC_CLK_TCK));
+  return std::max(0.0, uptime - began);
+}
+
+std::string clock_of(const node::SessionRecord& session) {
+  config::Problems problems;
+  const config::Launch launch =
+      running_launch({session.session, session.domain, session.launch_file}, problems);
+  if (launch.file.empty() || problems.has_errors()) return "-";
+  return config::clock_word(launch.clock);
+}
+
+struct Row {
+  std::string nodes;
+  double age = 0.0;
+};
+
+Row row_of(const node::SessionRecord& session) {
+  Row row;
+  for (const node::SessionMember& member : session.members) {
+    for (const std::string& node : member.nodes) row.nodes += (row.nodes.empty() ? "" : ",") + node;
+    row.age = std::max(row.age, age_s(member));
+  }
+  return row;
+}
+
+std::string age_text(double seconds) {
+  if (seconds < 120.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 7200.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+int list(const ListWords& words) {
+  const auto sessions = node::running_sessions(node::runtime_folder());
+  if (words.json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const node::SessionRecord& session : sessions) {
+      nlohmann::json nodes = nlohmann::json::array();
+      for (const node::SessionMember& member : session.members) {
+        for (const std::string& node : member.nodes) nodes.push_back(node);
+      }
+      all.push_back({{"session", session.session},
+                     {"domain", session.domain},
+                     {"clock", clock_of(session)},
+                     {"nodes", nodes},
+                     {"age_s", row_of(session).age},
+                     {"launch_file", session.launch_file}});
+    }
+    std::puts(all.dump(1).c_str());
+    return kSuccess;
+  }
+  if (sessions.empty()) {
+    std::puts("no session of this user runs on this host");
+    return kSuccess;
+  }
+  std::size_t width = 7;
+  for (const node::SessionRecord& session : sessions)
+    width = std::max(width, session.session.size());
+  std::fputs(fmt::format("{:<{}}  domain  clock     age      nodes\n", "session", width).c_str(),
+             stdout);
+  for (const node::SessionRecord& session : sessions) {
+    const Row row = row_of(session);
+    std::fputs(fmt::format("{:<{}}  {:>6}  {:<8}  {:<7}  {}\n", session.session, width,
+                           session.domain, clock_of(session), age_text(row.age), row.nodes)
+                   .c_str(),
+               stdout);
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_list_verb(CommandLine& line) {
+  auto words = std::make_shared<ListWords>();
+  Verb& verb = line.verb("list", "[--json]", "Print the sessions that run on this host");
+  verb.flag("--json", words->json, "As JSON, with the launch files");
+  verb.examples(
+      "Those of this user. A session of another user is reached with --domain N.\n\n"
+      "Examples:\n"
+      "  cordis list\n");
+  verb.action([words] { return list(*words); });
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,50 @@
+// cli/live_output.cpp
+#include "cli/live_output.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include <poll.h>
+#include <unistd.h>
+
+namespace cordis::cli {
+namespace {
+
+constexpr auto kLongSilence = std::chrono::seconds(2);  // processes find each other sooner
+
+bool reader_has_gone() {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+}
+
+}  // namespace
+
+bool flush_output() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  const int reason = errno;
+  if (reason == EPIPE || reader_has_gone()) return false;
+  throw std::runtime_error(std::string("cannot write what came: ") +
+                           std::strerror(reason != 0 ? reason : EIO));
+}
+
+SilenceNote::SilenceNote(std::string verb, std::string session, std::string pattern)
+    : verb_(std::move(verb)), session_(std::move(session)), pattern_(std::move(pattern)) {}
+
+void SilenceNote::update(std::uint64_t received) {
+  if (done_ || (received == 0 && std::chrono::steady_clock::now() < began_ + kLongSilence)) return;
+  done_ = true;
+  if (received == 0) std::fprintf(stderr, "cordis %s: %s\n", verb_.c_str(), text().c_str());
+}
+
+std::string SilenceNote::text() const {
+  const std::string what =
+      "no message has come" + (pattern_.empty() ? std::string() : " on '" + pattern_ + "'");
+  if (session_.empty()) return what;
+  return what + "; `cordis info " + session_ + "` lists the topics";
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,119 @@
+// cli/resim/take_reader.cpp
+#include "cli/resim/take_reader.h"
+
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "idl/topics.h"
+#include "node/config/count_text.h"
+#include "node/dds/payload.h"
+
+namespace cordis::cli {
+namespace {
+
+constexpr std::size_t kWaiting = 256;  // messages: some seconds of inputs, and of frames
+
+}  // namespace
+
+TakeReader::TakeReader(const std::string& path)
+    : file_(path),
+      inputs_(file_.messages({.topics = {msg::TOPIC_INPUTS}})),
+      frames_(file_.messages({.topics = {msg::TOPIC_FRAME}})) {
+  choose_epoch();
+  read_descriptions();
+}
+
+void TakeReader::choose_epoch() {
+  mcap::MessageCursor cursor = file_.messages({.topics = {msg::TOPIC_INPUTS}});
+  std::set<std::uint64_t> epochs;
+  std::uint64_t first = 0;
+  std::uint64_t complete = 0;
+  mcap::Message message;
+  msg::SceneInputs batch;
+  while (cursor.next(message)) {
+    if (!dds::decode(message.data, batch)) continue;
+    epochs.insert(batch.epoch());
+    if (first == 0) first = batch.epoch();
+    if (complete == 0 && batch.batch() == 1) complete = batch.epoch();
+  }
+  if (epochs.empty()) {
+    throw std::invalid_argument(file_.path().string() + " has no inputs: " +
+                                (file_.is_whole() ? "it was recorded without " + msg::TOPIC_INPUTS +
+                                                        ", or by an older version"
+                                                  : file_.damage()));
+  }
+  epoch_ = complete != 0 ? complete : first;
+  other_epochs_ = epochs.size() - 1;
+}
+
+void TakeReader::read_descriptions() {
+  mcap::MessageCursor cursor = file_.messages({.topics = {msg::TOPIC_DESCRIPTION}});
+  mcap::Message message;
+  msg::SceneDescription description;
+  while (cursor.next(message)) {
+    if (!dds::decode(message.data, description) || description.epoch() != epoch_) continue;
+    descriptions_[description.version()] = description;
+  }
+}
+
+template <class Message>
+bool TakeReader::read(mcap::MessageCursor& cursor, Message& message) {
+  mcap::Message raw;
+  while (cursor.next(raw)) {
+    if (!dds::decode(raw.data, message)) {
+      ++unreadable_;
+      continue;
+    }
+    if (message.epoch() == epoch_) return true;
+  }
+  return false;
+}
+
+/// The one with the least number of those that come next.
+template <class Message, class Number>
+bool TakeReader::next(mcap::MessageCursor& cursor, std::map<std::uint64_t, Message>& waiting,
+                      Number number, Message& message) {
+  while (waiting.size() < kWaiting && read(cursor, message))
+    waiting.emplace(number(message), message);
+  if (waiting.empty()) return false;
+  message = std::move(waiting.begin()->second);
+  waiting.erase(waiting.begin());
+  return true;
+}
+
+bool TakeReader::next(msg::SceneInputs& batch) {
+  return next(
+      inputs_, waiting_inputs_, [](const msg::SceneInputs& one) { return one.batch(); }, batch);
+}
+
+bool TakeReader::next(msg::SceneFrame& frame) {
+  const auto number = [](const msg::SceneFrame& one) { return one.frame(); };
+  while (next(frames_, waiting_frames_, number, frame)) {
+    if (frame.frame() <= newest_frame_) continue;  // received twice
+    newest_frame_ = frame.frame();
+    return true;
+  }
+  return false;
+}
+
+const msg::SceneDescription* TakeReader::description(std::uint64_t version) const noexcept {
+  const auto found = descriptions_.find(version);
+  return found == descriptions_.end() ? nullptr : &found->second;
+}
+
+std::string TakeReader::loss() const {
+  std::string text = file_.damage();
+  for (const mcap::MessageCursor* cursor : {&inputs_, &frames_}) {
+    for (const std::string& problem : cursor->problems()) {
+      if (text.find(problem) == std::string::npos) text += (text.empty() ? "" : "; ") + problem;
+    }
+  }
+  if (unreadable_ > 0) {
+    text +=
+        (text.empty() ? "" : "; ") + config::count_text(unreadable_, "message") + " cannot be read";
+  }
+  return text;
+}
+
+}  // namespace cordis::cli

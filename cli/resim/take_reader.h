@@ -1,0 +1,58 @@
+// cli/resim/take_reader.h -- what a re-simulation needs of a take.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "idl/inputs.h"
+#include "idl/scene.h"
+#include "record_node/mcap/reader.h"
+
+namespace cordis::cli {
+
+/// The inputs and frames of one life of sim_node in a take, each by their numbers: times of a clock
+/// that was set back meanwhile may be in another order.
+class TakeReader {
+ public:
+  /// Takes the first epoch whose inputs begin in the take, else the first there is.
+  /// @throws mcap::FileError when it cannot be read; config::ConfigError-like sentences as
+  /// std::invalid_argument when it holds no inputs
+  explicit TakeReader(const std::string& path);
+
+  /// The next batch of scene/inputs; false at the end.
+  bool next(msg::SceneInputs& batch);
+  /// The next frame; false at the end.
+  bool next(msg::SceneFrame& frame);
+  /// The scene as it was described; nullptr when the take has no such version.
+  const msg::SceneDescription* description(std::uint64_t version) const noexcept;
+
+  const mcap::Reader& file() const noexcept { return file_; }
+  std::uint64_t epoch() const noexcept { return epoch_; }
+  /// Other lives of sim_node in the take, which are left out.
+  std::size_t other_epochs() const noexcept { return other_epochs_; }
+  /// Why not everything could be read; empty when it could.
+  std::string loss() const;
+
+ private:
+  void choose_epoch();
+  void read_descriptions();
+  template <class Message>
+  bool read(mcap::MessageCursor& cursor, Message& message);
+  template <class Message, class Number>
+  bool next(mcap::MessageCursor& cursor, std::map<std::uint64_t, Message>& waiting, Number number,
+            Message& message);
+
+  mcap::Reader file_;
+  mcap::MessageCursor inputs_;
+  mcap::MessageCursor frames_;
+  std::map<std::uint64_t, msg::SceneInputs> waiting_inputs_;  // by number
+  std::map<std::uint64_t, msg::SceneFrame> waiting_frames_;   // likewise
+  std::uint64_t epoch_ = 0;
+  std::uint64_t newest_frame_ = 0;
+  std::size_t other_epochs_ = 0;
+  std::uint64_t unreadable_ = 0;  // messages
+  std::map<std::uint64_t, msg::SceneDescription> descriptions_;
+};
+
+}  // namespace cordis::cli

@@ -1,0 +1,174 @@
+// cli/run/signal_log.cpp
+#include "cli/run/signal_log.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "node/config/count_text.h"
+
+namespace cordis::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxWaiting = 64;  // batches of a scene that has not been described
+
+}  // namespace
+
+SignalRows::SignalRows(const std::string& table_file, const std::string& summary_file)
+    : table_path_(table_file) {
+  if (!table_file.empty()) table_file_.emplace(table_file);
+  if (!summary_file.empty()) summary_file_.emplace(summary_file);
+}
+
+void SignalRows::begin(const msg::SceneDescription& description) {
+  // A description comes again when the reader finds its writer again.
+  const bool is_known = description.epoch() == epoch_ && description.version() == version_;
+  if (starts_ > 0 && is_known && !is_over_) return;
+  std::vector<std::string> names;
+  std::vector<std::string> units;
+  for (const msg::SignalDescription& signal : description.signals()) {
+    names.push_back(signal.name());
+    units.push_back(signal.unit());
+  }
+  is_over_ = starts_ > 0 && (names != names_ || units != units_);
+  if (is_over_) return;
+  epoch_ = description.epoch();
+  version_ = description.version();
+  step_rate_hz_ = description.step_rate_hz();
+  steps_per_row_ = std::max(1.0, description.step_rate_hz() / description.gesture_rate_hz());
+  last_step_ = 0;
+  if (starts_++ > 0) return;
+  scene_ = description.name();
+  names_ = std::move(names);
+  units_ = std::move(units);
+  summaries_.resize(names_.size());
+  if (!table_file_) return;
+  line_ = "time [s]";
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    line_ += ',';
+    append_text(line_, header_of({names_[i], units_[i]}));
+  }
+  line_ += '\n';
+  table_file_->write(line_);
+}
+
+bool SignalRows::add(const msg::SceneSignals& batch) {
+  if (starts_ == 0 || batch.epoch() != epoch_ || batch.version() != version_) return false;
+  const std::size_t columns = names_.size();
+  if (is_over_ || batch.rate() != msg::RATE_GESTURE || columns == 0 ||
+      batch.signal_count() != columns)
+    return true;
+  const std::size_t rows = batch.value().size() / columns;
+  const bool is_uneven = batch.row_step().size() == rows;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::uint64_t step =
+        batch.first_step() + (is_uneven ? batch.row_step()[row] : row * batch.stride_steps());
+    if (step <= last_step_) continue;
+    const double gap = static_cast<double>(step - last_step_) / steps_per_row_;
+    lost_rows_ += static_cast<std::uint64_t>(std::max(0LL, std::llround(gap) - 1));
+    last_step_ = step;
+    ++row_count_;
+    line_.clear();
+    append_number(line_, static_cast<double>(step) / step_rate_hz_);
+    for (std::size_t column = 0; column < columns; ++column) {
+      const double value = batch.value()[row * columns + column];
+      summaries_[column].add(value);
+      line_ += ',';
+      append_number(line_, value);
+    }
+    line_ += '\n';
+    if (table_file_) table_file_->write(line_);
+  }
+  return true;
+}
+
+void SignalRows::write_summary() {
+  Json columns = Json::object();
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    const ColumnSummary& column = summaries_[i];
+    if (column.count() == 0) continue;
+    columns[names_[i]] = column.json(units_[i]);
+  }
+  const Json json = {{"scene", scene_},
+                     {"step_rate_hz", step_rate_hz_},
+                     {"last_step", last_step_},
+                     {"rows", row_count_},
+                     {"lost_rows", lost_rows_},
+                     {"starts", starts_},
+                     {"complete", lost_rows_ == 0 && starts_ == 1 && !is_over_},
+                     {"columns", columns}};
+  summary_file_->write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  summary_file_->flush();
+}
+
+void SignalRows::finish() {
+  if (table_file_) table_file_->flush();
+  if (summary_file_) write_summary();
+}
+
+std::string SignalRows::text() const {
+  if (starts_ == 0) return "signals: no scene said which it has";
+  if (names_.empty()) return "signals: the scene has none";
+  std::string text = "signals: " + config::count_text(row_count_, "row");
+  if (!table_path_.empty()) text += " in " + table_path_;
+  if (lost_rows_ > 0) text += ", " + std::to_string(lost_rows_) + " lost on the way";
+  if (starts_ > 1) text += "; the scene began " + config::count_text(starts_, "time");
+  if (is_over_) text += "; a scene with other signals came, whose rows are not in the file";
+  return text;
+}
+
+SignalLog::SignalLog(dds::Participant& participant, const std::string& table_file,
+                     const std::string& summary_file)
+    : rows_(table_file, summary_file),
+      descriptions_(participant, dds::Topic::kDescription),
+      signals_(participant, dds::Topic::kSignals),
+      thread_([this] { loop(); }) {}
+
+SignalLog::~SignalLog() {
+  ending_.store(true);
+  signals_.interrupt();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SignalLog::take() {
+  msg::SceneDescription description;
+  while (descriptions_.take(description)) {
+    rows_.begin(description);
+    std::erase_if(waiting_, [this](const msg::SceneSignals& batch) { return rows_.add(batch); });
+  }
+  msg::SceneSignals batch;
+  while (signals_.take(batch)) {
+    if (rows_.add(batch)) continue;
+    waiting_.push_back(batch);
+    if (waiting_.size() > kMaxWaiting) waiting_.pop_front();
+  }
+}
+
+void SignalLog::loop() {
+  try {
+    while (!ending_.load()) {
+      signals_.wait(20ms);
+      take();
+    }
+    take();
+    rows_.finish();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+  }
+}
+
+std::string SignalLog::finish() {
+  ending_.store(true);
+  signals_.interrupt();
+  thread_.join();
+  return failure_.empty() ? rows_.text() : "signals: " + failure_ + "; " + rows_.text();
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,89 @@
+// cli/run/signal_log.h -- the signals of a running session, as a table.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/table/column_summary.h"
+#include "cli/table/csv_file.h"
+#include "idl/scene.h"
+#include "node/dds/participant.h"
+#include "node/dds/reader.h"
+
+namespace cordis::cli {
+
+/// Rows of signals from batches of `scene/signals`, and what of them never came.
+class SignalRows {
+ public:
+  /// A path is empty when the file is not wanted. @throws UsageError when a file cannot be made.
+  SignalRows(const std::string& table_file, const std::string& summary_file);
+
+  /// The scene whose rows follow. One with other signals ends the table.
+  void begin(const msg::SceneDescription& description);
+  /// Adds the rows of a batch of that scene.
+  /// @return false when the batch belongs to another scene, whose description may come behind it
+  /// @throws std::runtime_error when the file takes no more.
+  bool add(const msg::SceneSignals& batch);
+  void finish();
+
+  /// What a person has to know at the end, in one sentence.
+  std::string text() const;
+  std::uint64_t row_count() const noexcept { return row_count_; }
+  std::uint64_t lost_rows() const noexcept { return lost_rows_; }
+
+ private:
+  void write_summary();
+
+  std::string table_path_;
+  std::optional<OutputFile> table_file_;
+  std::optional<OutputFile> summary_file_;
+  std::string line_;
+  std::string scene_;
+  std::vector<std::string> names_;
+  std::vector<std::string> units_;
+  std::vector<ColumnSummary> summaries_;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t version_ = 0;
+  double step_rate_hz_ = 0.0;
+  double steps_per_row_ = 1.0;
+  std::uint64_t last_step_ = 0;
+  std::uint64_t row_count_ = 0;
+  std::uint64_t lost_rows_ = 0;
+  std::uint64_t starts_ = 0;  // of scenes with these signals
+  bool is_over_ = false;      // a scene with other signals came
+};
+
+/// Reads the signals of a session in a thread of its own.
+class SignalLog {
+ public:
+  SignalLog(dds::Participant& participant, const std::string& table_file,
+            const std::string& summary_file);
+  ~SignalLog();
+  SignalLog(const SignalLog&) = delete;
+  SignalLog& operator=(const SignalLog&) = delete;
+
+  /// Takes what has come, and completes the files. @return what a person has to know
+  std::string finish();
+  /// True unless a file took no more.
+  bool is_whole() const noexcept { return failure_.empty(); }
+
+ private:
+  void loop();
+  void take();
+
+  SignalRows rows_;
+  dds::Reader<msg::SceneDescription> descriptions_;
+  dds::Reader<msg::SceneSignals> signals_;
+  std::deque<msg::SceneSignals> waiting_;  // for their description
+  std::string failure_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace cordis::cli

@@ -1,0 +1,36 @@
+// cli/session_words.h -- the words that name a running session, the same for all verbs.
+#pragma once
+
+#include <string>
+
+#include "cli/command_line.h"
+#include "cli/session_address.h"
+
+namespace cordis::cli {
+
+/// A session, or a whole domain.
+struct SessionWords {
+  std::string session;
+  std::string domain;
+  std::string name;
+
+  /// @throws UsageError when nothing is named, else as address_of(). The session is empty for a
+  /// whole domain.
+  SessionAddress address() const {
+    if (!session.empty()) return address_of(session, domain, name);
+    if (domain.empty())
+      throw UsageError("which session? name one, or a whole domain with --domain");
+    SessionAddress address = address_of("any", domain, "", /*is_any=*/true);
+    address.session.clear();
+    return address;
+  }
+};
+
+inline void add_session_options(Verb& verb, SessionWords& words) {
+  verb.option("--domain", "N", words.domain,
+              "DDS domain, for a session that another user or host began");
+  verb.option("--session", "NAME", words.name,
+              "Name of the session, when it is not that of the file");
+}
+
+}  // namespace cordis::cli

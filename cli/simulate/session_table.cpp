@@ -1,0 +1,76 @@
+// cli/simulate/session_table.cpp
+#include "cli/simulate/session_table.h"
+
+#include "cli/mat_words.h"
+
+namespace cordis::cli {
+namespace {
+
+/// The dimensions of the scene as its file says it.
+int space_of(const scene::Scene& scene) {
+  return scene.subspace ? scene.subspace->space : scene.space();
+}
+
+/// A position in the space of the file.
+engine::Vec3 shown_position(const scene::Scene& scene, const engine::Vec3& position) {
+  if (!scene.subspace) return position;
+  engine::Vec3 shown = scene.subspace->origin;
+  for (int k = 0; k < scene.space(); ++k)
+    shown[scene.subspace->axes[static_cast<std::size_t>(k)]] = position[k];
+  return shown;
+}
+
+}  // namespace
+
+SessionTable::SessionTable(const OfflineSession& session, const std::vector<std::string>& mats)
+    : session_(session) {
+  columns_.push_back({"time", "s"});
+  for (const scene::Signal& signal : session.scene().signals.signals())
+    columns_.push_back({signal.name, signal.unit});
+  add_ports();
+  for (const std::string& word : mats) add_mats(word);
+  row_.resize(columns_.size());
+}
+
+void SessionTable::add_ports() {
+  for (const scene::Port& port : session_.scene().ports) {
+    for (std::size_t i = 0; i < port.axes.size(); ++i) {
+      const std::string axis = std::to_string(port.axes[i]);
+      columns_.push_back({port.device + ".position[" + axis + "]", "m"});
+      columns_.push_back({port.device + ".force[" + axis + "]", "N"});
+      port_axes_.push_back({&port, i});
+    }
+  }
+}
+
+void SessionTable::add_mats(const std::string& word) {
+  for (const PickedMat& mat : pick_mats(session_.scene().matter, word)) {
+    for (int axis = 0; axis < space_of(session_.scene()); ++axis)
+      columns_.push_back({mat.name + axis_suffix(axis), "m"});
+    mats_.push_back(mat.index);
+  }
+}
+
+const std::vector<double>& SessionTable::row() {
+  const engine::World& world = session_.world();
+  const scene::Scene& scene = session_.scene();
+  double* value = row_.data();
+  *value++ = static_cast<double>(world.step_count()) / scene.step_rate_hz;
+  scene.signals.read(world, value);
+  value += scene.signals.count();
+  for (const PortAxis& at : port_axes_) {
+    const scene::Port& port = *at.port;
+    const engine::Vec3& direction = port.directions[at.axis];
+    *value++ = (world.position(port.mat) - port.rest).dot(direction);
+    const bool is_mass = port.role == scene::Role::kMass;
+    *value++ =
+        is_mass ? world.link_force(port.mat).dot(direction) : session_.given_on_axis(port, at.axis);
+  }
+  for (const std::uint32_t mat : mats_) {
+    const engine::Vec3 position = shown_position(scene, world.position(mat));
+    for (int axis = 0; axis < space_of(scene); ++axis) *value++ = position[axis];
+  }
+  return row_;
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,43 @@
+// cli/simulate/simulate.h -- a session played offline, and the numbers that come of it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/table_options.h"
+
+namespace cordis::cli {
+
+/// What a person asks of `cordis simulate`; the rows are step, tick, a number of steps or a span of
+/// time.
+struct SimulateOptions : TableOptions {
+  std::string file;                    ///< a scene or a launch file
+  std::vector<std::string> overrides;  ///< of a launch file
+  double duration_s = 0.0;             ///< 0: `duration_s` of the sim_node
+  std::string summary_file;
+};
+
+/// What came of it.
+struct SimulateResult {
+  std::vector<std::string> warnings;
+  std::string failure;  ///< empty, or why it ended before its time
+  bool is_stopped = false;
+  double simulated_s = 0.0;
+  std::uint64_t step_count = 0;
+  std::uint64_t state_hash = 0;
+  std::uint64_t row_count = 0;
+  std::uint64_t event_count = 0;
+  std::uint64_t lost_events = 0;
+  double wall_s = 0.0;      ///< of the simulation alone
+  double sound_peak = 0.0;  ///< of the sound file; 1 is full scale
+};
+
+/// Makes all files first, then plays. Files keep what was written when the scene diverges or a person stops
+/// it.
+/// @param stops  asked after each gesture period
+/// @throws config::ConfigError, UsageError for what is wrong with files or words, before a step;
+///         std::runtime_error when a file takes no more.
+SimulateResult simulate(const SimulateOptions& options, const std::function<bool()>& stops);
+
+}  // namespace cordis::cli

@@ -1,0 +1,90 @@
+// cli/simulate/simulate_verb.cpp
+#include "cli/simulate/simulate_verb.h"
+
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/duration.h"
+#include "cli/exit_code.h"
+#include "cli/run/stop_signals.h"
+#include "cli/simulate/simulate.h"
+#include "node/config/count_text.h"
+
+namespace cordis::cli {
+namespace {
+
+std::string report_of(const SimulateResult& result) {
+  std::string text =
+      fmt::format("simulated {:.6g} s in {:.3g} s", result.simulated_s, result.wall_s);
+  if (result.wall_s > 0.0)
+    text += fmt::format(", {:.3g} times as fast as real time", result.simulated_s / result.wall_s);
+  if (result.row_count > 0) text += "; " + config::count_text(result.row_count, "row");
+  text += "; " + config::count_text(result.event_count, "event");
+  if (result.lost_events > 0)
+    text += ", and " + std::to_string(result.lost_events) + " lost, too many at once";
+  if (result.sound_peak > 0.0) {
+    text += fmt::format("; the sound reaches {:.3g} of full scale", result.sound_peak);
+  }
+  return text + fmt::format("\nstate hash {:016x} after {}\n", result.state_hash,
+                            config::count_text(result.step_count, "step"));
+}
+
+int run(const SimulateOptions& options) {
+  StopSignals signals;
+  const SimulateResult result = simulate(options, [&signals] { return signals.take(); });
+  for (const std::string& warning : result.warnings) std::fprintf(stderr, "%s\n", warning.c_str());
+  const bool is_piped =
+      options.csv_file == "-" || options.events_file == "-" || options.summary_file == "-";
+  std::fputs(report_of(result).c_str(), is_piped ? stderr : stdout);
+  if (result.is_stopped) {
+    std::fputs("stopped before its time; what was simulated is kept\n", stderr);
+    return kFailure;
+  }
+  if (result.failure.empty()) return kSuccess;
+  std::fprintf(stderr, "%s; what came before is kept\n", result.failure.c_str());
+  return kFailure;
+}
+
+}  // namespace
+
+void add_simulate_verb(CommandLine& line) {
+  struct SimulateWords {
+    SimulateOptions options;
+    std::string duration;
+  };
+  auto words = std::make_shared<SimulateWords>();
+  SimulateOptions& options = words->options;
+  Verb& verb = line.verb("simulate", "SCENE|LAUNCH [words] [options]",
+                         "Play a scene offline, as fast as it goes, and write its numbers");
+  verb.required_word("SCENE|LAUNCH", options.file,
+                     "A scene, whose ports rest, or a launch file, whose simulated devices play");
+  verb.more_words("words", options.overrides,
+                  "Change a launch file, as for `cordis run`: name.key=value");
+  verb.option("--duration", "TIME", words->duration,
+              "Simulated time [duration_s of the sim_node]: 500ms, 10s, 2min");
+  add_table_files(verb, options,
+                  "Rows of the table: step, tick (a gesture period), 10 (steps), 0.01s [tick]");
+  verb.option("--summary", "FILE", options.summary_file,
+              "Write what came of it, as JSON; - for stdout");
+  verb.examples(
+      "The devices of a launch file play with the drivers mock and script; the result is that of\n"
+      "`cordis run` in lockstep, bit for bit. Columns are the time, the signals, the position and\n"
+      "the force of each axis of a device, and the MATs of --mat, with their units in the header.\n"
+      "Ctrl-C, and a scene that diverges, keep what was simulated.\n"
+      "Exit code: 0 all well, 1 stopped, diverged or disk full, 2 bad file or command line.\n\n"
+      "Examples:\n"
+      "  cordis simulate launch_configs/plucked_string.yaml --duration 2s --csv string.csv\n"
+      "  cordis simulate launch_configs/scenes/membrane.yaml --duration 1s --every step --npz "
+      "membrane.npz\n"
+      "  cordis simulate launch_configs/ratchet.yaml --duration 4s --events ratchet.csv "
+      "--summary -\n");
+  verb.action([words] {
+    SimulateOptions& asked = words->options;
+    if (!words->duration.empty()) asked.duration_s = seconds_of(parse_duration(words->duration));
+    return run(asked);
+  });
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,41 @@
+// cli/table/output_file.cpp
+#include "cli/table/output_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "cli/command_line.h"
+
+namespace cordis::cli {
+
+OutputFile::OutputFile(std::string path)
+    : path_(std::move(path)), file_(path_ == "-" ? stdout : std::fopen(path_.c_str(), "wb")) {
+  if (file_ == nullptr) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
+}
+
+OutputFile::~OutputFile() {
+  if (file_ != stdout) std::fclose(file_);
+}
+
+void OutputFile::fail() const {
+  throw std::runtime_error("cannot write '" + path_ + "': " + std::strerror(errno));
+}
+
+void OutputFile::write(std::string_view bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
+  size_ += bytes.size();
+}
+
+void OutputFile::overwrite(std::uint64_t at, std::string_view bytes) {
+  if (fseeko(file_, static_cast<off_t>(at), SEEK_SET) != 0) fail();
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
+  if (fseeko(file_, 0, SEEK_END) != 0) fail();
+}
+
+void OutputFile::flush() {
+  if (std::fflush(file_) != 0) fail();
+}
+
+}  // namespace cordis::cli

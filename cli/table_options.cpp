@@ -1,0 +1,51 @@
+// cli/table_options.cpp
+#include "cli/table_options.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "cli/table/csv_file.h"
+#include "cli/table/npz_file.h"
+
+namespace cordis::cli {
+
+void add_table_files(Verb& verb, TableOptions& options, const std::string& rows) {
+  verb.option("--csv", "FILE", options.csv_file, "Write a table; - for stdout");
+  verb.option("--npz", "FILE", options.npz_file, "Write the table for NumPy");
+  verb.option("--wav", "FILE", options.wav_file, "Write the signals with `sound: true`");
+  verb.option("--events", "FILE", options.events_file,
+              "Write the changes of state, comma-separated; - for stdout");
+  verb.option("--every", "ROWS", options.every, rows);
+  verb.list("--mat", "NAME,...", options.mats,
+            "Also the positions of these MATs: string, string[3], string[2..5]");
+}
+
+void refuse_shared_files(const TableOptions& options, const std::string& summary_file) {
+  const std::vector<std::pair<std::string, const std::string*>> files{
+      {"--csv", &options.csv_file},
+      {"--npz", &options.npz_file},
+      {"--wav", &options.wav_file},
+      {"--events", &options.events_file},
+      {"--summary", &summary_file}};
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!files[i].second->empty() && *files[i].second == *files[j].second)
+        throw UsageError(files[j].first + " and " + files[i].first + " name the same file");
+    }
+  }
+  for (const auto& [option, file] : {files[1], files[2]}) {
+    if (*file == "-") throw UsageError(option + " wants a file, not stdout");
+  }
+}
+
+std::vector<std::unique_ptr<TableFile>> make_table_files(const TableOptions& options,
+                                                         const std::vector<Column>& columns) {
+  std::vector<std::unique_ptr<TableFile>> files;
+  if (!options.csv_file.empty())
+    files.push_back(std::make_unique<CsvFile>(options.csv_file, columns));
+  if (!options.npz_file.empty())
+    files.push_back(std::make_unique<NpzFile>(options.npz_file, columns));
+  return files;
+}
+
+}  // namespace cordis::cli

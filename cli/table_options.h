@@ -1,0 +1,39 @@
+// cli/table_options.h -- the files that `cordis simulate` and `cordis export` write.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/table/column.h"
+#include "cli/table/table_file.h"
+
+namespace cordis::cli {
+
+/// Which files a person asks for. A path is empty when the file is not wanted; `-` is stdout.
+struct TableOptions {
+  std::string csv_file;
+  std::string npz_file;
+  std::string wav_file;
+  std::string events_file;
+  std::vector<std::string> mats;  ///< words that pick MATs, for columns of their positions
+  std::string every = "tick";     ///< which rows; each verb has its own words beside `tick`
+
+  bool has_table() const noexcept { return !csv_file.empty() || !npz_file.empty(); }
+};
+
+/// Adds --csv, --npz, --wav, --events, --every and --mat to a verb.
+/// @param rows  help of --every
+void add_table_files(Verb& verb, TableOptions& options, const std::string& rows);
+
+/// @param summary_file  of --summary, for a verb that has it; else empty
+/// @throws UsageError when two options name one file, or one that has to be a file is stdout
+void refuse_shared_files(const TableOptions& options, const std::string& summary_file);
+
+/// Makes the files of the table.
+/// @throws UsageError for a file that cannot be made
+std::vector<std::unique_ptr<TableFile>> make_table_files(const TableOptions& options,
+                                                         const std::vector<Column>& columns);
+
+}  // namespace cordis::cli

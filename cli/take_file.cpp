@@ -1,0 +1,74 @@
+// cli/take_file.cpp
+#include "cli/take_file.h"
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "cli/command_line.h"
+#include "node/config/count_text.h"
+#include "record_node/mcap/file_error.h"
+#include "record_node/mcap/format.h"
+
+namespace cordis::cli {
+
+bool is_take(const std::string& word) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(word, ignored)) return false;
+  if (word.ends_with(".mcap") || word.ends_with(".mcap.part")) return true;
+  std::array<char, mcap::kMagic.size()> begin{};
+  std::ifstream(word, std::ios::binary).read(begin.data(), begin.size());
+  return std::memcmp(begin.data(), mcap::kMagic.data(), begin.size()) == 0;
+}
+
+std::unique_ptr<mcap::Reader> open_take(const std::string& verb, const std::string& file) {
+  try {
+    auto reader = std::make_unique<mcap::Reader>(file);
+    if (!reader->is_whole())
+      std::fprintf(stderr, "cordis %s: %s (`cordis recover` repairs it)\n", verb.c_str(),
+                   reader->damage().c_str());
+    return reader;
+  } catch (const mcap::FileError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+std::unique_ptr<mcap::Writer> make_take(const std::string& file, const std::string& compression) {
+  mcap::WriterConfig config;
+  const auto named = mcap::compression_named(compression);
+  if (!named) throw UsageError("--compression is none, lz4 or zstd, not '" + compression + "'");
+  config.compression = *named;
+  config.library = "cordis " CORDIS_VERSION;
+  try {
+    return std::make_unique<mcap::Writer>(file, config);
+  } catch (const mcap::FileError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+void finish_take(const std::string& verb, mcap::Writer& writer,
+                 const std::vector<std::string>& problems) {
+  if (writer.close() != mcap::WriteStatus::kOk) throw mcap::FileError(writer.problem());
+  std::printf("%s: %s\n", writer.path().c_str(),
+              config::count_text(writer.statistics().message_count, "message").c_str());
+  for (const std::string& problem : problems)
+    std::fprintf(stderr, "cordis %s: %s\n", verb.c_str(), problem.c_str());
+}
+
+std::string size_text(std::uint64_t bytes) {
+  if (bytes < 1000) return fmt::format("{} bytes", bytes);
+  double size = 1e-3 * static_cast<double>(bytes);
+  const char* unit = "kB";
+  for (const char* larger : {"MB", "GB"}) {
+    if (size < 999.5) break;
+    size *= 1e-3;
+    unit = larger;
+  }
+  return fmt::format("{:.3g} {}", size, unit);
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,58 @@
+// cli/test/test_verb.cpp
+#include "cli/test/test_verb.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <unistd.h>
+
+#include "cli/programs.h"
+
+namespace cordis::cli {
+namespace {
+
+/// The folder whose tests are meant: all build trees side by side when ./cordis has gathered them,
+/// else that of this program alone.
+std::filesystem::path test_directory() {
+  const std::filesystem::path tree = program_directory().parent_path();
+  const std::filesystem::path all = tree.parent_path();
+  return std::filesystem::exists(all / "CTestTestfile.cmake") ? all : tree;
+}
+
+int hand_over_to_ctest(const std::vector<std::string>& ctest_options) {
+  const std::string directory = test_directory();
+  std::vector<std::string> words{
+      "ctest",
+      "--test-dir",
+      directory,
+      "--output-on-failure",
+      "--no-tests=error",
+      "-j" + std::to_string(std::max(1u, std::thread::hardware_concurrency()))};
+  words.insert(words.end(), ctest_options.begin(), ctest_options.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execvp(arguments[0], arguments.data());
+  throw std::runtime_error(std::string("cannot start ctest: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+void add_test_verb(CommandLine& line) {
+  auto ctest_options = std::make_shared<std::vector<std::string>>();
+  Verb& verb = line.verb("test", "[options of ctest]", "Run the tests; ./cordis builds them first");
+  verb.hand_on_words(*ctest_options);
+  verb.examples(
+      "Examples:\n"
+      "  cordis test                    # all tests, also under the sanitizers\n"
+      "  cordis test -L unit            # those with a label: unit, golden, integration\n"
+      "  cordis test -R World -V        # those whose name matches, with all they print\n");
+  verb.action([ctest_options] { return hand_over_to_ctest(*ctest_options); });
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,24 @@
+// node/dds/network.h -- through which address of this host a participant speaks, and with whom.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cordis::dds {
+
+/// The network of a participant. As it is made: this host alone, on loopback.
+struct Network {
+  std::string address = "127.0.0.1";  ///< of this host, IPv4: what its sockets are bound to
+  std::vector<std::string> peers;     ///< other hosts, IPv4
+  std::string server;                 ///< IPv4 of a discovery server; empty: none
+  std::uint16_t server_port = 0;
+  bool multicast = false;  ///< announces itself on 239.255.0.1, and is found there
+
+  bool operator==(const Network&) const = default;
+
+  /// True if no datagram leaves this host, and none comes from outside.
+  bool is_loopback() const noexcept { return address.starts_with("127."); }
+};
+
+}  // namespace cordis::dds

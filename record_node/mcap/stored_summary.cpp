@@ -1,0 +1,94 @@
+// record_node/mcap/stored_summary.cpp
+#include "record_node/mcap/stored_summary.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "record_node/mcap/chunk_contents.h"
+#include "record_node/mcap/crc32.h"
+#include "record_node/mcap/format.h"
+
+namespace cordis::mcap {
+namespace {
+
+/// Moves a value that was read to where it belongs. @return false when there is none
+template <class T, class Place>
+bool take(std::optional<T> value, Place place) {
+  if (value) place(std::move(*value));
+  return value.has_value();
+}
+
+bool read_record(const Record& record, Summary& summary) {
+  const auto& content = record.content;
+  switch (record.opcode) {
+    case Opcode::kSchema:
+      return take(parse_schema(content),
+                  [&](Schema&& schema) { summary.schemas.emplace(schema.id, std::move(schema)); });
+    case Opcode::kChannel:
+      return take(parse_channel(content), [&](Channel&& channel) {
+        summary.channels.emplace(channel.id, std::move(channel));
+      });
+    case Opcode::kStatistics:
+      return take(parse_statistics(content),
+                  [&](Statistics&& statistics) { summary.statistics = std::move(statistics); });
+    case Opcode::kChunkIndex:
+      return take(parse_chunk_index(content),
+                  [&](ChunkIndex&& index) { summary.chunks.push_back(std::move(index)); });
+    case Opcode::kAttachmentIndex:
+      return take(parse_attachment_index(content), [&](AttachmentIndex&& index) {
+        summary.attachments.push_back(std::move(index));
+      });
+    case Opcode::kMetadataIndex:
+      return take(parse_metadata_index(content),
+                  [&](MetadataIndex&& index) { summary.metadata.push_back(std::move(index)); });
+    default:
+      return true;
+  }
+}
+
+/// True if the summary says where all its messages are.
+bool is_complete(const Summary& summary) {
+  const Statistics& statistics = summary.statistics;
+  std::set<std::uint64_t> offsets;
+  for (const ChunkIndex& chunk : summary.chunks) offsets.insert(chunk.offset);
+  return offsets.size() == summary.chunks.size() &&
+         statistics.chunk_count == summary.chunks.size() &&
+         (statistics.message_count == 0 || !summary.chunks.empty()) &&
+         statistics.channel_count == summary.channels.size() &&
+         statistics.attachment_count == summary.attachments.size() &&
+         statistics.metadata_count == summary.metadata.size();
+}
+
+}  // namespace
+
+std::string read_stored_summary(std::span<const std::byte> file, Summary& summary) {
+  constexpr std::size_t kEnd = kFooterSize + kMagic.size();
+  if (file.size() < kMagic.size() + kEnd) return "it ends too early";
+  const auto magic = std::as_bytes(std::span(kMagic));
+  const auto tail = file.last(kEnd);
+  if (!std::equal(magic.begin(), magic.end(), tail.last(magic.size()).begin()))
+    return "it was not closed";
+  const auto record = first_record(tail);
+  const auto footer =
+      record && record->opcode == Opcode::kFooter ? parse_footer(record->content) : std::nullopt;
+  if (!footer) return "its footer is damaged";
+  const std::uint64_t footer_start = file.size() - kEnd;
+  if (footer->summary_start == 0) return kNoSummary;
+  if (footer->summary_start > footer_start) return "its footer is damaged";
+  const auto checked =
+      file.subspan(footer->summary_start,
+                   file.size() - magic.size() - sizeof footer->summary_crc - footer->summary_start);
+  if (footer->summary_crc != 0 && crc32(checked) != footer->summary_crc)
+    return "its summary is damaged";
+  bool is_readable = true;
+  const auto records = file.subspan(footer->summary_start, footer_start - footer->summary_start);
+  const bool is_whole = for_each_record(records, [&](const Record& each, std::uint64_t /*offset*/) {
+    is_readable = is_readable && read_record(each, summary);
+    return is_readable;
+  });
+  if (!is_whole || !is_readable) return "its summary is damaged";
+  return is_complete(summary) ? "" : "its summary is incomplete";
+}
+
+}  // namespace cordis::mcap

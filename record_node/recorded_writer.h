@@ -1,0 +1,62 @@
+// record_node/recorded_writer.h -- what one writer says on one topic: a channel of the take.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+#include "node/dds/participant.h"
+
+namespace cordis::record {
+
+struct RecordedWriter {
+  RecordedWriter(dds::RawTopic of, const dds::WriterId& writer, std::uint32_t place)
+      : topic(std::move(of)), id(writer), number(place) {}
+
+  const dds::RawTopic topic;
+  const dds::WriterId id;
+  const std::uint32_t number;  ///< its place in the list, from 0
+
+  std::uint64_t last_sequence = 0;         ///< of the threads of DDS
+  std::atomic<std::uint64_t> messages{0};  ///< that came
+  std::atomic<std::uint64_t> bytes{0};     ///< of them
+  std::atomic<std::uint64_t> dropped{0};   ///< of them, for want of room or disk
+  std::atomic<std::uint64_t> lost{0};      ///< that never came, by its numbers
+  /// Numbers before the first message that came: written before the reader was found. 0 for a topic
+  /// that is kept for late joiners, whose newest message alone is wanted, and for an exclusive one,
+  /// of which DDS keeps messages back.
+  std::atomic<std::uint64_t> before{0};
+
+  std::uint16_t channel = 0;  ///< of the thread of the file; 0: not in it yet
+};
+
+/// The writers so far; any thread adds one or looks at one. None leaves.
+class RecordedWriters {
+ public:
+  RecordedWriter& add(const dds::RawTopic& topic, const dds::WriterId& writer) {
+    const std::lock_guard lock(mutex_);
+    return writers_.emplace_back(topic, writer, static_cast<std::uint32_t>(writers_.size()));
+  }
+  RecordedWriter& at(std::uint32_t number) {
+    const std::lock_guard lock(mutex_);
+    return writers_[number];
+  }
+  template <class Use>
+  void for_each(Use use) {
+    const std::lock_guard lock(mutex_);
+    for (RecordedWriter& writer : writers_) use(writer);
+  }
+  template <class Use>
+  void for_each(Use use) const {
+    const std::lock_guard lock(mutex_);
+    for (const RecordedWriter& writer : writers_) use(writer);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::deque<RecordedWriter> writers_;
+};
+
+}  // namespace cordis::record

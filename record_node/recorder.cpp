@@ -1,0 +1,143 @@
+// record_node/recorder.cpp
+#include "record_node/recorder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "idl/topics.h"
+#include "record_node/mcap/topic_glob.h"
+#include "record_node/recorded_writer.h"
+#include "record_node/sample_queue.h"
+#include "record_node/take_writer.h"
+#include "record_node/topic_follower.h"
+
+namespace cordis::record {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+dds::ParticipantConfig member_of(const RecorderConfig& config) {
+  dds::ParticipantConfig member{config.domain, config.session, config.node + "/topics"};
+  member.every_partition = config.session.empty();
+  member.network = config.network;
+  return member;
+}
+
+}  // namespace
+
+struct Recorder::Impl {
+  explicit Impl(RecorderConfig wanted)
+      : config(std::move(wanted)),
+        queue(config.queue_bytes),
+        participant(member_of(config)),
+        file(config, queue, writers, [this](const dds::WriterId& id) { return origin_of(id); }),
+        follower(
+            participant, [this](const std::string& topic) { return is_wanted(topic); },
+            [this](const dds::RawTopic& topic, const dds::RawSample& sample) {
+              take(topic, sample);
+            }) {}
+
+  ~Impl() { close(); }
+
+  const RecorderConfig config;
+  const Clock::time_point began = Clock::now();
+  SampleQueue queue;
+  RecordedWriters writers;
+  dds::Participant participant;
+  TakeWriter file;
+  std::mutex known_mutex;
+  std::map<dds::WriterId, RecordedWriter*> known;
+  TopicFollower follower;
+
+  bool is_wanted(const std::string& topic) const {
+    return mcap::matches_topic(topic, config.topics) &&
+           (config.excluded.empty() || !mcap::matches_topic(topic, config.excluded));
+  }
+
+  RecordedWriter* writer_of(const dds::RawTopic& topic, const dds::WriterId& id) {
+    const std::lock_guard lock(known_mutex);
+    RecordedWriter*& writer = known[id];
+    if (writer == nullptr) writer = &writers.add(topic, id);
+    return writer;
+  }
+
+  /// Called from threads of DDS, one at a time for a topic.
+  void take(const dds::RawTopic& topic, const dds::RawSample& sample) {
+    RecordedWriter* const writer = writer_of(topic, sample.writer);
+    // Where a stronger writer speaks, DDS keeps back what others say.
+    const bool has_gap = writer->last_sequence != 0 && sample.sequence > writer->last_sequence + 1;
+    if (has_gap && !topic.exclusive) writer->lost += sample.sequence - writer->last_sequence - 1;
+    if (writer->last_sequence == 0 && !topic.transient_local && !topic.exclusive)
+      writer->before = sample.sequence - std::min<std::uint64_t>(sample.sequence, 1);
+    writer->last_sequence = sample.sequence;
+    ++writer->messages;
+    writer->bytes += sample.size;
+    const QueuedSample queued{.channel = writer->number,
+                              .sequence = static_cast<std::uint32_t>(sample.sequence),
+                              .log_time_nsec = static_cast<std::uint64_t>(sample.reception_nsec),
+                              .publish_time_nsec = static_cast<std::uint64_t>(sample.source_nsec)};
+    const bool is_frame = topic.name == msg::TOPIC_FRAME;
+    if (file.is_over() || !queue.push(queued, {sample.data, sample.size}, is_frame))
+      ++writer->dropped;
+  }
+
+  TakeWriter::Origin origin_of(const dds::WriterId& id) const {
+    TakeWriter::Origin origin;
+    for (const dds::FoundWriter& writer : participant.writers()) {
+      if (writer.id != id) continue;
+      for (const std::string& partition : writer.partitions)
+        origin.partitions += (origin.partitions.empty() ? "" : ",") + partition;
+    }
+    for (const dds::Peer& peer : participant.peers()) {
+      if (std::equal(peer.prefix.begin(), peer.prefix.end(), id.begin()))
+        origin.process = peer.name;
+    }
+    return origin;
+  }
+
+  RecorderFigures figures() const {
+    RecorderFigures sum;
+    std::set<std::string> topics;
+    writers.for_each([&](const RecordedWriter& writer) {
+      sum.messages += writer.messages;
+      sum.bytes += writer.bytes;
+      sum.dropped += writer.dropped;
+      sum.lost += writer.lost;
+      sum.before += writer.before;
+      topics.insert(writer.topic.name);
+    });
+    sum.topics = topics.size();
+    sum.waiting_bytes = queue.waiting_bytes();
+    sum.file_bytes = file.file_bytes();
+    sum.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+    sum.is_over = file.is_over();
+    sum.has_failed = file.has_failed();
+    sum.problem = file.problem();
+    return sum;
+  }
+
+  void close() {
+    follower.stop();
+    file.close();
+  }
+};
+
+Recorder::Recorder(RecorderConfig config) : impl_(std::make_unique<Impl>(std::move(config))) {}
+
+Recorder::~Recorder() = default;
+
+RecorderFigures Recorder::figures() const {
+  return impl_->figures();
+}
+
+RecorderFigures Recorder::close() {
+  impl_->close();
+  return impl_->figures();
+}
+
+}  // namespace cordis::record

@@ -1,0 +1,68 @@
+// sim_node/arrival_pace.cpp
+#include "sim_node/arrival_pace.h"
+
+#include <algorithm>
+
+#include "node/processor_time.h"
+#include "node/stop.h"
+#include "node/time.h"
+
+namespace cordis::sim {
+namespace {
+
+constexpr std::uint32_t kMaxMessages = 64;  // in a period, each of which wakes the loop
+constexpr double kLooks = 16.0;             // in a period, at what comes beyond them
+
+}  // namespace
+
+ArrivalPace::ArrivalPace(double rate_hz) : rule_(rate_hz, node::monotonic_nsec()) {
+  sent_.reserve(ArrivalRule::kMaxDevices);
+}
+
+void ArrivalPace::restart(double rate_hz) noexcept {
+  rule_.restart(rate_hz, node::monotonic_nsec());
+  is_first_ = true;
+}
+
+node::LateCause ArrivalPace::wait(Simulation& simulation, DeviceLink& devices, InputLog& inputs) {
+  const std::int64_t computed =
+      is_first_ ? 0 : node::thread_processor_nsec() - begun_processor_nsec_;
+  is_first_ = false;
+  wait_for_samples(simulation, devices, inputs);
+  const std::uint64_t skipped = rule_.begin_tick(sent(simulation), node::monotonic_nsec());
+  begun_processor_nsec_ = node::thread_processor_nsec();
+  if (skipped == 0) return node::LateCause::kNone;
+  return static_cast<double>(computed) * rate_hz() < 1e9 ? node::LateCause::kMachine
+                                                         : node::LateCause::kWork;
+}
+
+void ArrivalPace::wait_for_samples(Simulation& simulation, DeviceLink& devices, InputLog& inputs) {
+  dds::Arrival& arrival = devices.arrival();
+  const std::uint32_t before = arrival.count();
+  const auto between_looks = static_cast<std::int64_t>(1e9 / rate_hz() / kLooks);
+  rule_.begin_wait(sent(simulation));
+  while (!node::stop_requested()) {
+    const std::uint32_t seen = arrival.count();
+    devices.receive(simulation, inputs);
+    const std::int64_t now = node::monotonic_nsec();
+    if (rule_.is_due(sent(simulation), now)) return;
+    const std::int64_t end = rule_.grid().end_nsec();
+    if (seen - before < kMaxMessages) {
+      arrival.wait_until(seen, end);
+    } else {
+      node::sleep_until(std::min(now + between_looks, end));
+    }
+  }
+}
+
+std::span<const ArrivalRule::Device> ArrivalPace::sent(Simulation& simulation) {
+  sent_.clear();
+  for (const DeviceExchange& device : simulation.devices()) {
+    sent_.push_back({.id = device.device_id(),
+                     .sent = device.new_count() + device.missed_count(),
+                     .plays = device.has_received() && !device.is_silent()});
+  }
+  return sent_;
+}
+
+}  // namespace cordis::sim

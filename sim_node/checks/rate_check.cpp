@@ -1,0 +1,33 @@
+// sim_node/checks/rate_check.cpp
+#include "sim_node/checks/rate_check.h"
+
+#include <string>
+
+#include "node/config/mapping_reader.h"
+#include "sim_node/plan/reference/trial_run.h"
+
+namespace cordis::sim {
+
+std::optional<plan::RateSelection> select_rate(scene::Scene& scene, config::Problems& problems) {
+  if (!scene.accuracy) return {};
+  const scene::Accuracy& asked = *scene.accuracy;
+  plan::RateSelection selection = plan::select_rate(
+      scene.network, {asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s},
+      scene.gesture_rate_hz,
+      scene.integrator_is_open ? plan::integrators_for(scene.network)
+                               : std::vector<std::string>{to_string(scene.network.integrator)},
+      !scene.ports.empty());
+  if (!selection.uncertainty.empty()) problems.warning(asked.place, selection.uncertainty);
+  if (scene.rate_is_open) {
+    scene::set_step(scene, selection.rate_hz, engine::integrator_named(selection.integrator));
+  } else if (scene.step_rate_hz < selection.needed_hz) {
+    problems.warning(
+        asked.place,
+        "at " + config::number_text(scene.step_rate_hz) +
+            " Hz the scene does not keep this: " + selection.because + " asks for more",
+        "take a rate_hz of " + config::number_text(selection.rate_hz) + ", or leave rate_hz out");
+  }
+  return selection;
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,132 @@
+// sim_node/checks/start_check.cpp
+#include "sim_node/checks/start_check.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <variant>
+
+#include "sim_node/engine/core/liaison_id.h"
+#include "sim_node/plan/stability/start_pairs.h"
+#include "sim_node/scene/naming.h"
+
+namespace cordis::sim {
+namespace {
+
+using engine::NetworkDescription;
+
+/// The way of two balls in the first step, over their diameter, above which they are warned of.
+constexpr double kThrown = 0.1;
+
+/// The two MATs of a liaison that its law pushes apart the most for their masses.
+struct Overlap {
+  std::uint32_t mat_a = 0;
+  std::uint32_t mat_b = 0;
+  double distance = 0.0;  // [m]
+  double force = 0.0;     // [N]
+  double way = 0.0;       // in the first step, both together [m]
+};
+
+std::string short_text(double number) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g", number);
+  return text;
+}
+
+double inverse_mass(const NetworkDescription& network, std::uint32_t mat) {
+  const engine::Mat& at = network.mats[mat];
+  return at.kind == engine::MatKind::kMass ? 1.0 / at.mass : 0.0;
+}
+
+/// The law of the start, if it is Lennard-Jones.
+const engine::LennardJones* law_at_start(const engine::StateMachine& state_machine) {
+  return std::get_if<engine::LennardJones>(&state_machine.states[state_machine.start].elasticity);
+}
+
+void consider(const NetworkDescription& network, const engine::LennardJones& law, std::uint32_t a,
+              std::uint32_t b, double distance, Overlap& worst) {
+  if (!(distance > 0.0) || distance >= law.diameter) return;
+  const double force = -engine::elastic_tension(law, {distance, distance});
+  const double way =
+      force * network.step * network.step * (inverse_mass(network, a) + inverse_mass(network, b));
+  if (way > worst.way) worst = {a, b, distance, force, way};
+}
+
+void warn_of(const scene::Scene& scene, const Overlap& worst, const engine::LennardJones& law,
+             engine::LiaisonId liaison, config::Problems& problems) {
+  if (!(worst.way > kThrown * law.diameter)) return;
+  const scene::Called called = scene::call_liaison(scene, liaison);
+  problems.warning(called.place,
+                   scene::call_mat(scene, worst.mat_a).name + " and " +
+                       scene::call_mat(scene, worst.mat_b).name + " start " +
+                       short_text(worst.distance) + " m apart, and " + called.name +
+                       ", whose diameter is " + short_text(law.diameter) + " m, pushes them with " +
+                       short_text(worst.force) + " N: " + short_text(worst.way) +
+                       " m in the first step",
+                   "start them at least a diameter apart");
+}
+
+void check_overlaps(const scene::Scene& scene, config::Problems& problems) {
+  const NetworkDescription& network = scene.network;
+  for (std::uint32_t s = 0; s < network.sets.size(); ++s) {
+    const engine::SetLiaison& set = network.sets[s];
+    const auto* law = law_at_start(network.state_machines[set.state_machine]);
+    if (law == nullptr) continue;
+    Overlap worst;
+    const plan::StartPairs near(network, set);
+    for (const plan::StartPair& pair : near.pairs()) {
+      consider(network, *law, plan::mat_of(set, pair.member_a), plan::mat_of(set, pair.member_b),
+               pair.distance, worst);
+    }
+    warn_of(scene, worst, *law, {engine::LiaisonKind::kSet, s}, problems);
+  }
+  for (std::uint32_t l = 0; l < network.state_links.size(); ++l) {
+    const engine::StateLink& link = network.state_links[l];
+    const auto* law = law_at_start(network.state_machines[link.state_machine]);
+    if (law == nullptr) continue;
+    Overlap worst;
+    const double distance =
+        (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();
+    consider(network, *law, link.mat_a, link.mat_b, distance, worst);
+    warn_of(scene, worst, *law, {engine::LiaisonKind::kStateLink, l}, problems);
+  }
+}
+
+/// True where x(n+1) = x(n) + (x(n) - x(n-1)) + g dt^2 rounds to x(n) for a mass at rest.
+bool swallows_gravity(const NetworkDescription& network, const engine::Mat& mat) {
+  if (mat.kind != engine::MatKind::kMass) return false;
+  const engine::Vec3 fall = network.gravity_on(mat) * (network.step * network.step);
+  for (int axis = 0; axis < network.dimension; ++axis) {
+    if (fall[axis] != 0.0 && mat.position[axis] + fall[axis] == mat.position[axis]) return true;
+  }
+  return false;
+}
+
+void check_gravity(const scene::Scene& scene, config::Problems& problems) {
+  const NetworkDescription& network = scene.network;
+  const bool keeps_positions_alone = network.integrator == engine::IntegratorKind::kLeapfrog ||
+                                     network.integrator == engine::IntegratorKind::kImplicit;
+  if (!keeps_positions_alone) return;
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    const engine::Mat& mat = network.mats[i];
+    if (!swallows_gravity(network, mat)) continue;
+    const scene::Called called = scene::call_mat(scene, i);
+    const double fall = (network.gravity_on(mat) * (network.step * network.step)).norm();
+    problems.warning(called.place,
+                     called.name + " never begins to fall: " + short_text(fall) +
+                         " m a step are less than half of what a position of " +
+                         short_text(mat.position.norm()) + " m is rounded to",
+                     "a place nearer to the origin, a lower rate_hz, or the integrator cordis");
+    return;
+  }
+}
+
+}  // namespace
+
+void check_start(const scene::Scene& scene, config::Problems& problems) {
+  check_overlaps(scene, problems);
+  check_gravity(scene, problems);
+}
+
+}  // namespace cordis::sim

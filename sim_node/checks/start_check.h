@@ -1,0 +1,15 @@
+// sim_node/checks/start_check.h -- warns of starts that no rate or rounding can follow.
+#pragma once
+
+#include "node/config/problem.h"
+#include "sim_node/scene/scene.h"
+
+namespace cordis::sim {
+
+/// Warns, at the place of the liaison or of the mass, once for each set and once for all masses:
+/// of Lennard-Jones balls that overlap so much at the start that the first step throws them apart;
+/// of positions so far from the origin that their rounding swallows gravity. O(MATs + pairs).
+/// Precondition: the scene has its rate.
+void check_start(const scene::Scene& scene, config::Problems& problems);
+
+}  // namespace cordis::sim

@@ -1,0 +1,68 @@
+// sim_node/lockstep_loop.cpp
+#include "sim_node/lockstep_loop.h"
+
+#include <chrono>
+#include <limits>
+#include <string>
+
+#include <spdlog/spdlog.h>
+
+#include "node/time.h"
+
+namespace cordis::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 50ms;  // how long a wait for a sample may keep the loop from a stop
+constexpr std::int64_t kLongWait = 2'000'000'000;  // for a sample [ns]
+constexpr std::int64_t kWaitIsReported = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
+LockstepLoop::LockstepLoop(SceneLoop& loop, dds::Participant& participant)
+    : loop_(loop), roster_(participant) {}
+
+void LockstepLoop::run() {
+  while (!loop_.finished()) {
+    if (!loop_.execute_or_wait()) {
+      waits_since_nsec_ = 0;
+      continue;
+    }
+    if (loop_.simulation().is_between_ticks() && !receive()) continue;
+    if (!loop_.advance()) continue;
+    loop_.devices().answer_all(loop_.simulation());
+  }
+}
+
+bool LockstepLoop::receive() {
+  loop_.devices().receive(loop_.simulation(), loop_.inputs());
+  for (const DeviceExchange& device : loop_.simulation().devices()) {
+    if (device.has_new_sample()) continue;
+    if (!loop_.devices().holds_sample_of(device)) report_wait(device);
+    loop_.devices().wait_for(device, kPatience);
+    return false;
+  }
+  waits_since_nsec_ = 0;
+  return true;
+}
+
+/// Says for whom a scene in lockstep has long been waiting, and whether that node is alive. Every
+/// wait is one event.
+void LockstepLoop::report_wait(const DeviceExchange& device) {
+  const std::int64_t now = node::monotonic_nsec();
+  absences_.report(now);
+  silences_.report(now);
+  roster_.update();
+  if (waits_since_nsec_ == 0) waits_since_nsec_ = now;
+  if (now - waits_since_nsec_ < kLongWait) return;
+  waits_since_nsec_ = kWaitIsReported;
+  const std::string alive = roster_.name_of(msg::KIND_DEVICE_NODE);
+  if (!(alive.empty() ? absences_ : silences_).record(now)) return;
+  const std::string who = alive.empty() ? "no device_node of the session is alive"
+                                        : "device_node " + alive + " is alive, and sends no sample";
+  spdlog::warn("has been waiting for the device '{}' for {} s: {}", device.device(),
+               kLongWait / 1'000'000'000, who);
+}
+
+}  // namespace cordis::sim

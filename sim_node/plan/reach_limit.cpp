@@ -1,0 +1,72 @@
+// sim_node/plan/reach_limit.cpp
+#include "sim_node/plan/reach_limit.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/slope.h"
+
+namespace cordis::plan {
+namespace {
+
+using engine::NetworkDescription;
+
+bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph) {
+  return !graph.uncertainty && network.step < certified_bound(network, graph).step;
+}
+
+/// To which a liaison was followed within its reach [J].
+double energy_followed(const engine::StateMachine& state_machine, const Reach& reach) {
+  double energy = energy_at(reach);
+  for (const engine::LinkState& state : state_machine.states) {
+    const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity);
+    if (balls != nullptr) energy = std::min(energy, std::max(balls->well_depth, reach.energy));
+  }
+  return energy;
+}
+
+/// The least energy to which a law without a largest slope was followed.
+ReachLimit limit_at(const NetworkDescription& network, const LiaisonGraph& graph, double factor) {
+  const Reach reach = reach_of(network, factor);
+  ReachLimit limit;
+  limit.speed = reach.speed;
+  for (const Edge& edge : graph.edges) {
+    if (edge.bounded) continue;
+    const engine::StateLink& link = network.state_links[edge.liaison.index];
+    const Reach here = reach_between(reach, network, {edge.mat_a}, {edge.mat_b});
+    limit.energy =
+        std::min(limit.energy, energy_followed(network.state_machines[link.state_machine], here));
+  }
+  limit.of_pairs = limit.is_infinite();
+  if (!limit.of_pairs) return limit;
+  for (const ContactBound& crowd : graph.crowds) {
+    if (crowd.bounded) continue;
+    const Reach here = reach_between(reach, network, crowd.members, crowd.others);
+    const engine::SetLiaison& set = network.sets[crowd.set];
+    limit.energy =
+        std::min(limit.energy, energy_followed(network.state_machines[set.state_machine], here));
+  }
+  return limit;
+}
+
+}  // namespace
+
+ReachLimit reach_limit(const NetworkDescription& network) {
+  constexpr double kStep = 4.0;
+  constexpr double kLargest = 1e6;
+  LiaisonGraph graph = liaison_graph(network);
+  if (graph.bounded || network.integrator == engine::IntegratorKind::kModal) return {};
+  if (!is_certified(network, graph)) return {};
+  double factor = 1.0;
+  while (factor < kLargest) {
+    LiaisonGraph wider = liaison_graph(network, kStep * factor);
+    if (!is_certified(network, wider)) break;
+    factor *= kStep;
+    graph = std::move(wider);
+  }
+  return limit_at(network, graph, factor);
+}
+
+}  // namespace cordis::plan

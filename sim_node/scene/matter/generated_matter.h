@@ -1,0 +1,22 @@
+// sim_node/scene/matter/generated_matter.h -- what one entry of `matter:` makes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sim_node/scene/scene.h"
+
+namespace cordis::scene {
+
+/// MATs and links of one entry; a link counts the MATs of its entry from 0.
+struct GeneratedMatter {
+  std::vector<engine::Mat> mats;
+  std::vector<LayoutPoint> layout;  ///< per MAT in 1-D, else empty
+  LinkLists links;
+  std::optional<LinkLaw> law;          ///< of all its links; none when there are several
+  std::vector<double> radius_m;        ///< per MAT; 0 for a punctual mass
+  std::vector<double> drawn_radius_m;  ///< per MAT
+  std::vector<NamedRange> names;       ///< of MATs within it, from 0
+};
+
+}  // namespace cordis::scene

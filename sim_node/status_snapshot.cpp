@@ -1,0 +1,187 @@
+// sim_node/status_snapshot.cpp
+#include "sim_node/status_snapshot.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "node/time.h"
+
+namespace cordis::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kCopyPatience = 10ms;  // of the status thread for a copy of the world
+
+/// For a person. Precondition: a bound is passed.
+std::string let_go_text(const Simulation& simulation) {
+  const std::string done = "has let go of the devices: ";
+  switch (simulation.passed_bound()) {
+    case PassedBound::kPartners:
+      return done + crowding_text(simulation.scene(), *simulation.partners().nearest());
+    case PassedBound::kNumber:
+      return done + "K' + 2 Z' came to 4, from where on the scene may be unstable";
+    case PassedBound::kEnergy:
+      return done + "the steps have made more than a tenth of the largest energy";
+    case PassedBound::kNone:
+      break;
+  }
+  return {};
+}
+
+}  // namespace
+
+void StatusSnapshot::record(Runner& runner, const PartnersSeen& partners, std::uint64_t dropped) {
+  Simulation& simulation = runner.simulation();
+  std::uint64_t passivity_ticks = 0;
+  const bool has_devices = clock_ != config::Clock::kAsap && !simulation.devices().empty();
+  bool has_sample = !has_devices;
+  for (const DeviceExchange& device : simulation.devices()) {
+    dropped += device.refused_count() + device.missed_count();
+    has_sample = has_sample || !device.is_lost();
+    passivity_ticks += device.passivity_ticks();
+  }
+  dropped_.store(dropped, std::memory_order_relaxed);
+  passivity_ticks_.store(passivity_ticks, std::memory_order_relaxed);
+  const bool let_go = has_devices && simulation.passed_bound() != PassedBound::kNone;
+  set_phase(runner.is_paused() ? msg::PHASE_PAUSED
+            : let_go           ? msg::PHASE_DISCONNECTED
+            : has_sample       ? msg::PHASE_RUNNING
+                               : msg::PHASE_WAITING);
+  const bool realtime = clock_ == config::Clock::kRealtime;
+  target_rate_hz_.store(realtime ? simulation.scene().gesture_rate_hz : 0.0,
+                        std::memory_order_relaxed);
+
+  // The status thread holds the lock for a copy at most; the loop never waits for it.
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock()) return;
+  LoadedScene& loaded = runner.loaded_scene();
+  const std::uint64_t version = loaded.frames.shape().version;
+  loaded.limits.update(simulation.world());
+  figures_.stability_number = loaded.limits.largest();
+  if (!partners.is_passed()) {
+    figures_.crowding.clear();
+  } else if (partners != figures_.partners || figures_.version != version) {
+    figures_.crowding = crowding_text(simulation.scene(), partners);
+  }
+  figures_.partners = partners;
+  record_let_go(simulation, let_go);
+  if (!realtime || !is_looping_) figures_.of_world = figures_of(simulation.world());
+  figures_.is_looping = is_looping_;
+  figures_.troubles = simulation.troubles();
+  figures_.version = version;
+  figures_.changes = loaded.changes.count(simulation.world());
+}
+
+/// Precondition: the lock is held.
+void StatusSnapshot::record_let_go(const Simulation& simulation, bool let_go) {
+  if (!let_go) {
+    figures_.let_go.clear();
+  } else if (figures_.let_go.empty()) {
+    figures_.let_go = let_go_text(simulation);
+    spdlog::warn("{}", figures_.let_go);
+  }
+}
+
+void StatusSnapshot::record_failure(std::string failure) {
+  const std::lock_guard lock(mutex_);
+  figures_.failure = std::move(failure);
+}
+
+void StatusSnapshot::change_scene(const scene::Scene& scene, std::uint64_t version) {
+  const std::lock_guard lock(mutex_);
+  liaisons_ = ChangeCounter(scene.network.state_machines).names();
+  liaisons_version_ = version;
+}
+
+void StatusSnapshot::change_shadow(std::shared_ptr<ShadowWorld> shadow) {
+  const std::lock_guard lock(shadow_mutex_);
+  shadow_ = std::move(shadow);
+}
+
+/// Real time: the status thread finds energy and state hash, of a copy of the world.
+void StatusSnapshot::read_shadow() {
+  std::shared_ptr<ShadowWorld> shadow;
+  {
+    const std::lock_guard lock(shadow_mutex_);
+    shadow = shadow_;
+  }
+  const std::optional<WorldFigures> figures = shadow->read(kCopyPatience);
+  if (figures && sim::makes_energy(figures->energy)) makes_energy_ = shadow->id();
+  const std::lock_guard lock(mutex_);
+  if (figures && figures_.is_looping) figures_.of_world = *figures;
+}
+
+void StatusSnapshot::fill(msg::NodeStatus& status, const std::string& refusal,
+                          const std::string& loops) {
+  status.phase(phase_.load());
+  status.target_rate_hz(target_rate_hz_.load());
+  status.ticks(ticks_.load());
+  late_ticks_.fill(status);
+  status.dropped(dropped_.load());
+  status.passivity_ticks(passivity_ticks_.load());
+  report_passivity(status.passivity_ticks());
+
+  if (clock_ == config::Clock::kRealtime) read_shadow();
+  const std::lock_guard lock(mutex_);
+  status.text(!figures_.failure.empty()    ? figures_.failure
+              : !figures_.let_go.empty()   ? figures_.let_go
+              : !refusal.empty()           ? refusal
+              : !figures_.crowding.empty() ? figures_.crowding
+                                           : loops);
+  fill_figures(status);
+  report_integration_error(figures_.of_world.energy);
+}
+
+/// Precondition: the lock is held.
+void StatusSnapshot::fill_figures(msg::NodeStatus& status) const {
+  const engine::Energy& energy = figures_.of_world.energy;
+  status.energy_j(energy.total());
+  status.energy_drift(energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0);
+  status.integration_error_j(energy.integration_error());
+  status.overflowed_steps(figures_.troubles.overflowed_steps);
+  status.forgotten_pairs(figures_.troubles.forgotten_pairs);
+  status.refused_inputs(figures_.troubles.refused_inputs);
+  status.switching_energy_j(energy.switching);
+  status.port_work_j(energy.port_work);
+  status.dissipated_j(energy.dissipated);
+  status.largest_stability_number(figures_.stability_number);
+  status.largest_partners(figures_.partners.largest);
+  status.certified_partners(figures_.partners.certified);
+  status.step(figures_.of_world.step);
+  status.state_hash(figures_.of_world.state_hash);
+  status.changes().clear();
+  if (figures_.version != liaisons_version_) return;  // the scene was changed this very moment
+  for (std::size_t i = 0; i < liaisons_.size(); ++i) {
+    status.changes().emplace_back();
+    status.changes().back().liaison(liaisons_[i]);
+    status.changes().back().changes(figures_.changes[i]);
+  }
+}
+
+/// Warns once when the force of a hand in role liaison had to be damped.
+void StatusSnapshot::report_passivity(std::uint64_t ticks) {
+  if (ticks == 0 || std::exchange(passivity_reported_, true)) return;
+  spdlog::warn(
+      "the forces of a hand in role liaison bring in more energy than it gives, for it is too "
+      "stiff for the viscosity of its port or its samples are late: the port is damped");
+}
+
+/// Warns when the steps have made or taken more than a hundredth of the largest energy.
+void StatusSnapshot::report_integration_error(const engine::Energy& energy) {
+  const std::int64_t now = node::monotonic_nsec();
+  integration_errors_.report(now);
+  const double error = energy.integration_error();
+  const bool passed = is_error_large(energy);
+  const bool was_passed = std::exchange(error_is_passed_, passed);
+  if (!passed || was_passed || !integration_errors_.record(now)) return;
+  spdlog::warn(
+      "the steps have {} {:.3g} J that no account explains, above 1 % of the largest energy "
+      "({:.3g} J): the step is too long for a liaison. A higher step rate helps",
+      error > 0.0 ? "made" : "taken", std::abs(error), energy.largest);
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,59 @@
+// tests/cli/signal_log_test.cpp -- rows of signals, and what of them is lost.
+#include "cli/run/signal_log.h"
+
+#include <gtest/gtest.h>
+
+#include "idl/scene.h"
+
+namespace cordis::cli {
+namespace {
+
+msg::SceneDescription described(std::uint64_t version) {
+  msg::SceneDescription scene;
+  scene.epoch(7);
+  scene.version(version);
+  scene.step_rate_hz(8000.0);
+  scene.gesture_rate_hz(1000.0);
+  msg::SignalDescription signal;
+  signal.name("height");
+  signal.unit("m");
+  scene.signals().push_back(signal);
+  return scene;
+}
+
+/// One row after each of `count` gesture periods.
+msg::SceneSignals rows(std::uint64_t version, std::uint64_t first_step, std::size_t count) {
+  msg::SceneSignals batch;
+  batch.epoch(7);
+  batch.version(version);
+  batch.rate(msg::RATE_GESTURE);
+  batch.signal_count(1);
+  batch.first_step(first_step);
+  batch.stride_steps(8);
+  batch.value().assign(count, 0.5);
+  return batch;
+}
+
+TEST(SignalRows, ADescriptionThatComesAgainBeginsNothing) {
+  SignalRows table("", "");
+  table.begin(described(1));
+  table.add(rows(1, 8, 100));
+  table.begin(described(1));
+  table.add(rows(1, 808, 100));
+  EXPECT_EQ(table.row_count(), 200u);
+  EXPECT_EQ(table.lost_rows(), 0u);
+  EXPECT_EQ(table.text(), "signals: 200 rows");
+}
+
+TEST(SignalRows, AnotherVersionBeginsAtStepZero) {
+  SignalRows table("", "");
+  table.begin(described(1));
+  table.add(rows(1, 8, 100));
+  table.begin(described(2));
+  table.add(rows(2, 24, 10));
+  EXPECT_EQ(table.row_count(), 110u);
+  EXPECT_EQ(table.lost_rows(), 2u);
+}
+
+}  // namespace
+}  // namespace cordis::cli

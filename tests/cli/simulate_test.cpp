@@ -1,0 +1,238 @@
+// tests/cli/simulate_test.cpp -- numbers of a scene that is played offline.
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "cli/exit_code.h"
+#include "cli/simulate/row_schedule.h"
+#include "cli/simulate/simulate_verb.h"
+#include "tests/cli/captured_run.h"
+
+namespace cordis::cli {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A mass that falls freely from rest: its height is -g t^2 / 2, which the scheme keeps exactly.
+constexpr const char* kFalling = R"(cordis: 1
+name: falling
+space: 2
+step: {rate_hz: 4000, integrator: cordis}
+world: {gravity_m_per_s2: [0, -10]}
+matter:
+  stone: {kind: mass, mass_kg: 2, at_m: [0.5, 0]}
+signals:
+  height: {of: stone, quantity: position, axis: y}
+)";
+
+/// The step is beyond the limit of stability.
+constexpr const char* kDiverging = R"(cordis: 1
+name: diverging
+space: 1
+step: {rate_hz: 1000, integrator: cordis}
+matter:
+  wall: {kind: fixed, at_m: 0}
+  ball: {kind: mass, mass_kg: 1, at_m: 0.1}
+liaisons: {steel: {kind: spring_damper, stiffness_n_per_m: 5.0e+6, viscosity_n_s_per_m: 0}}
+links: [{liaison: steel, between: [wall, ball], rest_m: 0}]
+signals: {place: {of: ball, quantity: position}}
+)";
+
+class Simulate : public testing::Test {
+ protected:
+  Simulate() : folder_(testing::TempDir() + "simulate." + std::to_string(getpid())) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~Simulate() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string put(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name)) << text;
+    return path(name);
+  }
+  std::string text_of(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  int run(std::vector<std::string> words) {
+    CommandLine line("cordis", "", "1");
+    add_simulate_verb(line);
+    words.insert(words.begin(), "simulate");
+    return run_captured(line, words, out_, error_);
+  }
+
+  /// The table of a CSV file; its header goes to `header_`.
+  std::vector<std::vector<double>> table(const std::string& name) {
+    std::istringstream lines(text_of(name));
+    std::string line;
+    std::getline(lines, line);
+    header_ = line;
+    std::vector<std::vector<double>> rows;
+    while (std::getline(lines, line)) {
+      rows.emplace_back();
+      for (const char* at = line.c_str(); *at != '\0';) {
+        char* end = nullptr;
+        rows.back().push_back(std::strtod(at, &end));
+        at = *end == ',' ? end + 1 : end;
+      }
+    }
+    return rows;
+  }
+
+  std::string folder_;
+  std::string out_;
+  std::string error_;
+  std::string header_;
+};
+
+TEST_F(Simulate, WritesARowForEachStepWithUnitsInTheHeader) {
+  const std::string scene = put("fall.yaml", kFalling);
+  ASSERT_EQ(
+      run({scene, "--duration", "1s", "--every", "step", "--mat", "stone", "--csv", path("a.csv")}),
+      kSuccess)
+      << error_;
+  const auto rows = table("a.csv");
+  EXPECT_EQ(header_, "time [s],height [m],stone.x [m],stone.y [m]");
+  ASSERT_EQ(rows.size(), 4000u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double n = static_cast<double>(i + 1);
+    EXPECT_EQ(rows[i][0], n / 4000.0);
+    EXPECT_NEAR(rows[i][1], -5.0 * n * n / 16.0e6, 1e-12 * n);
+    EXPECT_EQ(rows[i][2], 0.5);
+    EXPECT_EQ(rows[i][3], rows[i][1]);
+  }
+}
+
+TEST_F(Simulate, TakesRowsByTickByStepsAndByTime) {
+  const std::string scene = put("fall.yaml", kFalling);
+  ASSERT_EQ(run({scene, "--duration", "0.1s", "--every", "step", "--csv", path("all.csv")}), 0);
+  const auto all = table("all.csv");
+  const std::vector<std::pair<std::string, std::size_t>> cases{
+      {"tick", 4}, {"10", 10}, {"2.5ms", 10}, {"0.01s", 40}};
+  for (const auto& [every, stride] : cases) {
+    ASSERT_EQ(run({scene, "--duration", "0.1s", "--every", every, "--csv", path("some.csv")}), 0);
+    const auto some = table("some.csv");
+    ASSERT_EQ(some.size(), all.size() / stride) << every;
+    for (std::size_t i = 0; i < some.size(); ++i)
+      EXPECT_EQ(some[i], all[(i + 1) * stride - 1]) << every;
+  }
+}
+
+TEST_F(Simulate, GivesTheStateOfTheSameStepsInAnyPortions) {
+  const std::string launch = CORDIS_SOURCE_DIR "/launch_configs/bowed_string.yaml";
+  std::vector<std::string> hashes;
+  for (const std::string every : {"tick", "step"}) {
+    ASSERT_EQ(run({launch, "--duration", "1s", "--every", every, "--csv", path("b.csv"),
+                   "--summary", path("b.json")}),
+              0)
+        << error_;
+    hashes.push_back(nlohmann::json::parse(text_of("b.json"))["state_hash"]);
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST_F(Simulate, WritesThePositionAndTheForceOfADevice) {
+  const std::string launch = CORDIS_SOURCE_DIR "/launch_configs/bowed_string.yaml";
+  ASSERT_EQ(run({launch, "--duration", "0.5s", "--every", "step", "--csv", path("b.csv")}), 0);
+  const auto rows = table("b.csv");
+  ASSERT_EQ(header_,
+            "time [s],bow [m],under_bow [m],middle [m],bow_force [N],energy [J],hand.position[0] "
+            "[m],hand.force[0] [N]");
+  for (const auto& row : rows) {
+    EXPECT_EQ(row[6], row[1]);
+    EXPECT_EQ(row[7], row[4]);
+  }
+}
+
+TEST_F(Simulate, WritesEventsToAFileOfTheirOwn) {
+  const std::string launch = CORDIS_SOURCE_DIR "/launch_configs/ratchet.yaml";
+  ASSERT_EQ(
+      run({launch, "--duration", "4s", "--events", path("e.csv"), "--summary", path("e.json")}), 0);
+  const std::string text = text_of("e.csv");
+  EXPECT_TRUE(text.starts_with(
+      "time [s],step,liaison,link,mat_a,mat_b,from,to,quantity,value,energy [J]\n"));
+  const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+  EXPECT_EQ(lines - 1, nlohmann::json::parse(text_of("e.json"))["events"]);
+  EXPECT_GT(lines, 10u);
+  EXPECT_THAT(text, HasSubstr(",ratchet,driver,pawl,rack,"));
+}
+
+TEST_F(Simulate, ASceneThatDivergesKeepsItsRowsAndSaysSo) {
+  const std::string launch = put("d.yaml", "cordis: 1\nnodes:\n  sim: {node: sim_node, scene: '" +
+                                               put("div.yaml", kDiverging) + "', force: true}\n");
+  EXPECT_EQ(run({launch, "--duration", "2s", "--csv", path("d.csv"), "--summary", path("d.json")}),
+            kFailure);
+  EXPECT_THAT(error_, HasSubstr("the scene diverged at step"));
+  EXPECT_THAT(error_, HasSubstr("what came before is kept"));
+  const auto rows = table("d.csv");
+  EXPECT_GT(rows.size(), 10u);
+  for (const auto& row : rows) EXPECT_TRUE(std::isfinite(row[1]));
+  const auto json = nlohmann::json::parse(text_of("d.json"));
+  EXPECT_EQ(json["complete"], false);
+  EXPECT_EQ(json["steps"], rows.size() + 1);
+}
+
+TEST_F(Simulate, RefusesBeforeItSimulates) {
+  const std::string scene = put("fall.yaml", kFalling);
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{scene, "--duration", "1s", "--csv", path("none/a.csv")}, "No such file or directory"},
+      {{scene, "--duration", "1s", "--mat", "ston"}, "has no MATs 'ston'; did you mean 'stone'?"},
+      {{scene, "--duration", "1s", "--mat", "stone[1]"}, "picks none of the MATs stone[0..0]"},
+      {{scene}, "say how long: --duration 2s"},
+      {{scene, "--duration", "1s", "--every", "often"}, "is none of step, tick"},
+      {{scene, "--duration", "1s", "--every", "1us"}, "1us"},
+      {{scene, "--duration", "1s", "--wav", path("a.wav")}, "add 'sound: true'"},
+      {{scene, "--duration", "1s", "--npz", "-"}, "wants a file, not stdout"},
+      {{scene, "--duration", "1s", "--csv", path("x"), "--npz", path("x")}, "name the same file"},
+  };
+  for (const auto& [words, sentence] : cases) {
+    EXPECT_EQ(run(words), kBadInput) << sentence;
+    EXPECT_THAT(error_, HasSubstr(sentence));
+  }
+}
+
+TEST_F(Simulate, AFullDiskEndsItWithASentence) {
+  const std::string scene = put("fall.yaml", kFalling);
+  EXPECT_EQ(run({scene, "--duration", "10s", "--csv", "/dev/full"}), kFailure);
+  EXPECT_THAT(error_, HasSubstr("cannot write '/dev/full': No space left on device"));
+}
+
+TEST_F(Simulate, NumpyReadsTheSameNumbersAsTheCsvFileHas) {
+  const std::string launch = CORDIS_SOURCE_DIR "/launch_configs/bowed_string.yaml";
+  ASSERT_EQ(run({launch, "--duration", "0.5s", "--mat", "string", "--csv", path("n.csv"), "--npz",
+                 path("n.npz")}),
+            0);
+  put("read.py", R"(import csv, sys, numpy, zipfile
+assert zipfile.ZipFile(sys.argv[1]).testzip() is None
+table = numpy.load(sys.argv[1])
+rows = list(csv.reader(open(sys.argv[2])))
+numbers = numpy.array(rows[1:], dtype=float)
+headers = [f'{name} [{unit}]' if unit else str(name) for name, unit in zip(table['_columns'], table['_units'])]
+assert headers == rows[0], headers
+for i, name in enumerate(table['_columns']):
+    assert table[name].dtype == numpy.float64
+    assert (table[name] == numbers[:, i]).all(), name
+print('read', numbers.shape)
+)");
+  const std::string command = "/usr/bin/python3 " + path("read.py") + " " + path("n.npz") + " " +
+                              path("n.csv") + " > " + path("said") + " 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << text_of("said");
+  EXPECT_EQ(text_of("said"), "read (500, 50)\n");
+}
+
+}  // namespace
+}  // namespace cordis::cli

@@ -1,0 +1,50 @@
+// tests/cli/table_test.cpp -- numbers on their way to a file.
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "cli/table/csv_file.h"
+
+namespace cordis::cli {
+namespace {
+
+std::string text_of_number(double value) {
+  std::string text;
+  append_number(text, value);
+  return text;
+}
+
+TEST(CsvNumber, ReadsBackAsTheSameDouble) {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 100'000; ++i) {
+    const double value = std::bit_cast<double>(random());
+    if (!std::isfinite(value)) continue;
+    const std::string text = text_of_number(value);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(std::strtod(text.c_str(), nullptr)),
+              std::bit_cast<std::uint64_t>(value))
+        << text;
+  }
+}
+
+TEST(CsvNumber, IsAsShortAsItCanBe) {
+  EXPECT_EQ(text_of_number(0.1), "0.1");
+  EXPECT_EQ(text_of_number(1.0), "1");
+  EXPECT_EQ(text_of_number(-2.5e-7), "-2.5e-07");
+  EXPECT_EQ(text_of_number(-std::nan("")), "nan");
+  EXPECT_EQ(text_of_number(-std::numeric_limits<double>::infinity()), "-inf");
+}
+
+TEST(CsvText, StandsInQuotesWhereItNeedsThem) {
+  std::string text;
+  append_text(text, "a[2]");
+  append_text(text, R"(a,"b")");
+  EXPECT_EQ(text, R"(a[2]"a,""b""")");
+}
+
+}  // namespace
+}  // namespace cordis::cli

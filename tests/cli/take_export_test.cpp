@@ -1,0 +1,164 @@
+// tests/cli/take_export_test.cpp -- what cordis export says of a take with gaps.
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "cli/export/export.h"
+#include "idl/scene.h"
+#include "idl/topics.h"
+#include "node/dds/payload.h"
+#include "record_node/mcap/reader.h"
+#include "record_node/mcap/writer.h"
+
+namespace cordis::cli {
+namespace {
+
+/// Two batches of one signal at 1 kHz, with steps 1..3 and 6..7, as a sound too, an event that was
+/// preceded by a batch that is not there, and a topic of another program.
+class TakeExport : public testing::Test {
+ protected:
+  TakeExport() : folder_(testing::TempDir() + "take_export." + std::to_string(getpid())) {
+    std::filesystem::create_directories(folder_);
+    begin("take.mcap");
+    put_values(1, {1.0, 2.0, 3.0});
+    put_values(6, {6.0, 7.0});
+    put_others();
+    EXPECT_EQ(writer_->close(), mcap::WriteStatus::kOk);
+  }
+  ~TakeExport() override { std::filesystem::remove_all(folder_); }
+
+  /// Begins a take with the description of its scene.
+  void begin(const std::string& name) {
+    writer_ = std::make_unique<mcap::Writer>(path(name));
+    batch_ = 0;
+    msg::SceneDescription scene;
+    scene.epoch(5);
+    scene.version(1);
+    scene.name("gaps");
+    scene.space(1);
+    scene.step_rate_hz(1000.0);
+    scene.gesture_rate_hz(1000.0);
+    msg::SignalDescription signal;
+    signal.name("bridge");
+    signal.unit("N");
+    signal.rate(msg::RATE_STEP);
+    signal.sound(true);
+    signal.full_scale(2.0);
+    scene.signals().push_back(signal);
+    put(msg::TOPIC_DESCRIPTION, "SceneDescription", scene);
+  }
+
+  void put_others() {
+    msg::SceneEvents events;
+    events.epoch(5);
+    events.version(1);
+    events.batch(2);
+    events.lost(3);
+    put(msg::TOPIC_EVENTS, "SceneEvents", events);
+    const std::uint16_t other = writer_->add_channel({0, 0, "rt/chatter", "cdr", {}});
+    const std::vector<std::byte> bytes(8);
+    EXPECT_EQ(writer_->write({other, 1, 1, 1, bytes}), mcap::WriteStatus::kOk);
+  }
+
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string text_of(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  void put_values(std::uint64_t first_step, const std::vector<double>& values) {
+    msg::SceneSignals signals;
+    signals.epoch(5);
+    signals.version(1);
+    signals.batch(++batch_);
+    signals.rate(msg::RATE_GESTURE);
+    signals.first_step(first_step);
+    signals.stride_steps(1);
+    signals.signal_count(1);
+    signals.value() = values;
+    put(msg::TOPIC_SIGNALS, "SceneSignals", signals);
+    msg::SceneSound sound;
+    sound.epoch(5);
+    sound.version(1);
+    sound.block(batch_);
+    sound.first_step(first_step);
+    sound.step_rate_hz(1000.0);
+    sound.sound_count(1);
+    sound.value().assign(values.begin(), values.end());
+    put(msg::TOPIC_SOUND, "SceneSound", sound);
+  }
+
+  template <class Message>
+  void put(const std::string& topic, const std::string& type, Message& message) {
+    const std::uint16_t schema =
+        writer_->add_schema({0, "cordis::msg::" + type, "omgidl", "module cordis {};"});
+    const std::uint16_t channel = writer_->add_channel({0, schema, topic, "cdr", {}});
+    const std::vector<std::byte> payload = dds::encode(message);
+    ++time_;
+    EXPECT_EQ(writer_->write({channel, 1, time_, time_, payload}), mcap::WriteStatus::kOk);
+  }
+
+  std::string folder_;
+  std::unique_ptr<mcap::Writer> writer_;
+  std::uint64_t batch_ = 0;
+  std::uint64_t time_ = 0;
+};
+
+TEST_F(TakeExport, CountsEachLossInOneSentence) {
+  const mcap::Reader take(path("take.mcap"));
+  ExportOptions options;
+  options.csv_file = path("take.csv");
+  options.events_file = path("events.csv");
+  options.wav_file = path("take.wav");
+  const ExportResult result = export_take(take, options);
+  EXPECT_EQ(text_of("take.csv"),
+            "time [s],bridge [N]\n0.001,1\n0.002,2\n0.003,3\n0.006,6\n0.007,7\n");
+  EXPECT_EQ(result.row_count, 5u);
+  EXPECT_DOUBLE_EQ(result.sound_s, 0.007);
+  EXPECT_THAT(
+      result.losses,
+      testing::ElementsAre("the take lacks 2 rows of signals", "the take lacks 1 batch of events",
+                           "3 events came too many at once: sim_node had no room",
+                           "0.002 s of the sound are missing, and silent in the file"));
+  EXPECT_THAT(result.notes, testing::ElementsAre("not exported, of other programs: rt/chatter"));
+}
+
+TEST_F(TakeExport, LeavesOutSoundBehindAGapOfMoreThanTenMinutes) {
+  begin("far.mcap");
+  put_values(1, {1.0, 2.0});
+  put_values(600'003, {3.0});  // 600 s are silent
+  put_values(1'200'005, {4.0, 5.0, 6.0});
+  ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
+  const mcap::Reader take(path("far.mcap"));
+  ExportOptions options;
+  options.wav_file = path("far.wav");
+  const ExportResult result = export_take(take, options);
+  EXPECT_DOUBLE_EQ(result.sound_s, 600.003);
+  EXPECT_THAT(result.losses, testing::ElementsAre(
+                                 "0.003 s of the sound are not in the file: they come after a gap "
+                                 "of more than 600 s",
+                                 "600 s of the sound are missing, and silent in the file"));
+  // no more than the silence that is allowed, at the rate of a sound card
+  EXPECT_LT(std::filesystem::file_size(path("far.wav")), 601u * 48'000u * sizeof(float));
+}
+
+TEST_F(TakeExport, TakesAPartOfTheTime) {
+  const mcap::Reader take(path("take.mcap"));
+  ExportOptions options;
+  options.csv_file = path("take.csv");
+  options.start_s = 0.001;
+  options.duration_s = 0.002;
+  EXPECT_EQ(export_take(take, options).row_count, 2u);
+  EXPECT_EQ(text_of("take.csv"), "time [s],bridge [N]\n0.002,2\n0.003,3\n");
+}
+
+}  // namespace
+}  // namespace cordis::cli

@@ -1,0 +1,542 @@
+// tests/integration/network_test.cpp -- one session on two hosts, with a bad cable between them.
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "idl/gesture.h"
+#include "idl/scene.h"
+#include "node/dds/participant_ports.h"
+#include "node/dds/reader.h"
+#include "node/dds/udp_address.h"
+#include "node/dds/writer.h"
+#include "node/time.h"
+#include "tests/integration/live_session.h"
+#include "tests/integration/scenes.h"
+#include "tests/integration/status_watch.h"
+#include "tests/support/two_hosts.h"
+
+namespace cordis::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kDomain = 7;  // each host has all domains for itself
+constexpr double kWatchdog = 0.12;
+constexpr double kForceLimit = 5.0;
+constexpr double kSlew = 100.0;     // [N/s]
+constexpr double kPressed = 2.0;    // the force of the wall, where the key is held [N]
+constexpr double kRounding = 1e-6;  // of the trace [N]
+
+/// A folder with the files of a session, and what runs on its two hosts.
+class Apart {
+ public:
+  explicit Apart(const std::string& clock, std::uint64_t seed = 1) : hosts(seed) {
+    std::string name = (std::filesystem::temp_directory_path() / "cordis-test-XXXXXX").string();
+    folder = mkdtemp(name.data());
+    add_file("launch.yaml", "cordis: 1\nsession: apart\ndomain: " + std::to_string(kDomain) +
+                                "\nnetwork: {peers: [192.168.5.1, 192.168.5.2]}\nclock: " + clock +
+                                R"(
+nodes:
+  sim: {node: sim_node, scene: scene.yaml}
+  keyboard: {node: device_node, device: key.yaml}
+  view: {node: viz_node, port: 0}
+)");
+    add_file("scene.yaml", wall_scene(200.0));
+    add_file("key.yaml", steady_key(-0.01, 0.0) + "force_limit_n: " + std::to_string(kForceLimit) +
+                             "\nslew_limit_n_per_s: " + std::to_string(kSlew) +
+                             "\nwatchdog_s: " + std::to_string(kWatchdog) + "\ntrace: {file: " +
+                             (folder / "trace.csv").string() + ", last_s: 120}\n");
+  }
+
+  ~Apart() {
+    for (const auto& process : processes) process->signal(SIGINT);
+    for (const auto& process : processes) process->wait(kPatience);
+    processes.clear();
+    std::filesystem::remove_all(folder);
+  }
+
+  void add_file(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name) << text;
+  }
+  std::string launch_file() const { return (folder / "launch.yaml").string(); }
+
+  /// Starts `cordis words...` on a host, whose user has a runtime folder of its own there.
+  ChildProcess& start(TwoHosts::Host host, std::vector<std::string> words) {
+    words.insert(words.begin(), program_path("cordis"));
+    const std::string runtime = (folder / ("host" + std::to_string(host))).string();
+    processes.push_back(std::make_unique<ChildProcess>(
+        hosts.on(host, words),
+        std::map<std::string, std::string>{{"CORDIS_RUNTIME_DIR", runtime}}));
+    return *processes.back();
+  }
+  /// Starts a line of a document on a host, in the folder of the sources.
+  ChildProcess& start_line(TwoHosts::Host host, const std::string& line) {
+    const std::string path = std::string(CORDIS_PROGRAM_DIR) + ":" + getenv("PATH");
+    const std::string runtime = (folder / ("host" + std::to_string(host))).string();
+    processes.push_back(std::make_unique<ChildProcess>(
+        hosts.on(host, {"bash", "-c", "cd " CORDIS_SOURCE_DIR " && exec " + line}),
+        std::map<std::string, std::string>{{"CORDIS_RUNTIME_DIR", runtime}, {"PATH", path}}));
+    return *processes.back();
+  }
+  ChildProcess& run(TwoHosts::Host host, const std::string& only,
+                    const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"run", launch_file(), "--no-color", "--only", only};
+    words.insert(words.end(), more.begin(), more.end());
+    return start(host, words);
+  }
+
+  /// A member of the session on a host.
+  std::unique_ptr<dds::Participant> observer(TwoHosts::Host host, bool lockstep = false) {
+    std::unique_ptr<dds::Participant> made;
+    hosts.run_on(host, [&] {
+      dds::ParticipantConfig config{kDomain, "apart", "observer", lockstep};
+      config.network.address = TwoHosts::address(host);
+      config.network.peers = {
+          TwoHosts::address(host == TwoHosts::kFirst ? TwoHosts::kSecond : TwoHosts::kFirst)};
+      made = std::make_unique<dds::Participant>(config);
+    });
+    return made;
+  }
+
+  TwoHosts hosts;
+  std::filesystem::path folder;
+  std::vector<std::unique_ptr<ChildProcess>> processes;
+};
+
+class Network : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string why_not = TwoHosts::why_not();
+    if (!why_not.empty()) GTEST_SKIP() << "two hosts are not permitted here: " << why_not;
+  }
+};
+
+/// Waits until the key feels the wall with its whole force.
+bool feels_the_wall(dds::Reader<msg::GestureForces>& forces) {
+  msg::GestureForces force;
+  return eventually(
+      [&] { return forces.take(force) && std::abs(force.force_n()[0] - kPressed) < 1e-9; });
+}
+
+struct Row {
+  std::int64_t time_nsec = 0;
+  double commanded = 0.0;
+};
+
+std::vector<Row> read_trace(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  std::vector<Row> rows;
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    Row row;
+    char comma = 0;
+    cells >> row.time_nsec >> comma >> row.commanded;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// No force moved faster than the slew limit. A row may be late, and its force with it; a decision
+/// and its row are less than half a period apart unless the machine takes the core away.
+void expect_slew_limit(const std::vector<Row>& rows) {
+  constexpr double kPeriod = 1e-3;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double passed = static_cast<double>(rows[i].time_nsec - rows[i - 1].time_nsec) * 1e-9;
+    const double longest = std::max(passed, kPeriod) + 0.5 * kPeriod;
+    ASSERT_LE(std::abs(rows[i].commanded - rows[i - 1].commanded), kSlew * longest + kRounding)
+        << "row " << i;
+  }
+}
+
+TEST_F(Network, TwoHostsPlayOneSessionWithEachOthersNodesAndTools) {
+  Apart apart("realtime");
+  apart.hosts.set({.delay = 200us});
+  ChildProcess& first = apart.run(TwoHosts::kFirst, "sim");
+  ASSERT_TRUE(first.wait_for_output(
+      "no launcher has started keyboard yet: start the rest with `cordis run", kPatience));
+  ChildProcess& second = apart.run(TwoHosts::kSecond, "keyboard,view");
+  const auto here = apart.observer(TwoHosts::kFirst);
+  dds::Reader<msg::GestureForces> forces(*here, dds::Topic::kForces);
+  StatusWatch status(*here);
+
+  EXPECT_TRUE(feels_the_wall(forces));
+  EXPECT_TRUE(first.wait_for_output("keyboard runs on ", kPatience));
+  EXPECT_TRUE(second.wait_for_output("sim runs on ", kPatience));
+  EXPECT_NE(
+      first.output().find("warning: this session is open to everybody who reaches 192.168.5.1"),
+      std::string::npos);
+  EXPECT_TRUE(second.wait_for_output("page of view: http://127.0.0.1:", kPatience));
+  EXPECT_TRUE(status.wait_for("keyboard", [](const msg::NodeStatus& keyboard) {
+    return keyboard.host().ends_with("(192.168.5.2)") && keyboard.link_samples() > 100 &&
+           keyboard.latency_p50_s() > 2 * 200e-6;
+  })) << "the round trip is that of the cable at least";
+  EXPECT_TRUE(status.wait_for("view", [](const msg::NodeStatus& view) {
+    return view.phase() == msg::PHASE_RUNNING && view.ticks() > 10;
+  })) << "frames come";
+
+  ChildProcess& pause = apart.start(TwoHosts::kSecond, {"ctl", apart.launch_file(), "pause"});
+  EXPECT_EQ(pause.wait(kPatience), 0);
+  EXPECT_TRUE(status.wait_for_phase("sim", msg::PHASE_PAUSED));
+  ChildProcess& list = apart.start(TwoHosts::kSecond, {"list"});
+  EXPECT_EQ(list.wait(kPatience), 0);
+  EXPECT_NE(list.output().find("keyboard,view"), std::string::npos) << list.output();
+
+  second.signal(SIGINT);
+  EXPECT_EQ(second.wait(kPatience), 0);
+  EXPECT_TRUE(first.wait_for_output("keyboard has ended on ", kPatience));
+}
+
+/// The lines of docs/network.md that start a part of a session.
+std::vector<std::string> documented_lines() {
+  std::vector<std::string> lines;
+  std::ifstream document(CORDIS_SOURCE_DIR "/docs/network.md");
+  for (std::string line; std::getline(document, line);) {
+    if (line.starts_with("cordis run ") && line.find(" --only ") != std::string::npos)
+      lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST_F(Network, TheExampleOfTheDocumentPlays) {
+  const std::vector<std::string> lines = documented_lines();
+  ASSERT_EQ(lines.size(), 2u);
+  Apart apart("realtime");
+  ChildProcess& first = apart.start_line(TwoHosts::kFirst, lines[0]);
+  ChildProcess& second = apart.start_line(TwoHosts::kSecond, lines[1]);
+
+  EXPECT_TRUE(first.wait_for_output("keyboard runs on ", kPatience));
+  EXPECT_TRUE(first.wait_for_output("view runs on ", kPatience));
+  EXPECT_TRUE(second.wait_for_output("sim runs on ", kPatience));
+  EXPECT_TRUE(second.wait_for_output("page of view: http://127.0.0.1:8080", kPatience));
+  EXPECT_TRUE(second.wait_for_output("role mass in scene 'plucked_string'", kPatience));
+  for (ChildProcess* part : {&second, &first}) {
+    part->signal(SIGINT);
+    EXPECT_EQ(part->wait(kPatience), 0);
+  }
+}
+
+TEST_F(Network, ForcesEndWithinTheWatchdogWhenTheCableIsCutAndComeBackByThemselves) {
+  Apart apart("realtime");
+  apart.hosts.set({.delay = 2ms, .jitter = 3ms, .loss = 0.1});
+  apart.run(TwoHosts::kFirst, "sim");
+  ChildProcess& second = apart.run(TwoHosts::kSecond, "keyboard");
+  const auto here = apart.observer(TwoHosts::kSecond);
+  dds::Reader<msg::GestureForces> forces(*here, dds::Topic::kForces);
+  StatusWatch status(*here);
+  ASSERT_TRUE(feels_the_wall(forces));
+  ASSERT_TRUE(status.wait_for("keyboard", [](const msg::NodeStatus& keyboard) {
+    return keyboard.link_unanswered() > 20;
+  })) << "losses of the link are counted";
+
+  ASSERT_TRUE(second.wait_for_output("sim runs on ", kPatience));
+  apart.hosts.set({.is_cut = true});
+  const std::int64_t cut_nsec = node::monotonic_nsec();
+  ASSERT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_LOST));
+  EXPECT_TRUE(second.wait_for_output("sim: no status for 5 s", kPatience));
+  ASSERT_TRUE(eventually([&] { return node::monotonic_nsec() - cut_nsec > 5'000'000'000; }));
+  const std::int64_t healed_nsec = node::monotonic_nsec();
+  apart.hosts.set({.delay = 2ms, .jitter = 3ms, .loss = 0.1});
+  EXPECT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING));
+  EXPECT_TRUE(second.wait_for_output("sim is back on ", kPatience));
+  EXPECT_TRUE(feels_the_wall(forces));
+  const std::uint64_t ramp_begun = status.of("keyboard").ticks();
+  EXPECT_TRUE(status.wait_for("keyboard", [&](const msg::NodeStatus& keyboard) {
+    return keyboard.ticks() > ramp_begun + 1000 && keyboard.phase() == msg::PHASE_RUNNING;
+  }));
+  second.signal(SIGINT);
+  EXPECT_EQ(second.wait(kPatience), 0);
+
+  const std::vector<Row> rows = read_trace(apart.folder / "trace.csv");
+  ASSERT_GT(rows.size(), 5000u);
+  expect_slew_limit(rows);
+  // From the watchdog on the force is zero; two periods more for the row and its period.
+  const auto silent_nsec = cut_nsec + static_cast<std::int64_t>(kWatchdog * 1e9) + 2'000'000 +
+                           5'000'000;  // what was under way
+  std::size_t zeros = 0;
+  double before = 0.0;
+  double after = 0.0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i].time_nsec < cut_nsec) before = std::max(before, std::abs(rows[i].commanded));
+    if (rows[i].time_nsec >= healed_nsec) after = std::max(after, std::abs(rows[i].commanded));
+    // The machine may take the core away between a decision and its row.
+    if (rows[i - 1].time_nsec < silent_nsec || rows[i].time_nsec >= healed_nsec) continue;
+    EXPECT_EQ(rows[i].commanded, 0.0) << "row " << i;
+    ++zeros;
+  }
+  EXPECT_GT(zeros, 1000u);
+  EXPECT_NEAR(before, kPressed, 0.01);
+  EXPECT_NEAR(after, kPressed, 0.01);
+}
+
+TEST_F(Network, ForcesStayWithinTheirLimitsOverASlowAndBadCable) {
+  Apart apart("realtime");
+  apart.hosts.set({.delay = 20ms, .jitter = 10ms, .loss = 0.3});
+  apart.run(TwoHosts::kFirst, "sim");
+  ChildProcess& second = apart.run(TwoHosts::kSecond, "keyboard");
+  const auto here = apart.observer(TwoHosts::kSecond);
+  dds::Reader<msg::GestureForces> forces(*here, dds::Topic::kForces);
+  StatusWatch status(*here);
+  ASSERT_TRUE(feels_the_wall(forces));
+  ASSERT_TRUE(status.wait_for("keyboard", [](const msg::NodeStatus& keyboard) {
+    return keyboard.link_samples() > 3000 && keyboard.latency_p50_s() > 0.040 &&
+           keyboard.link_unanswered() > keyboard.link_samples() / 5;
+  }));
+  second.signal(SIGINT);
+  EXPECT_EQ(second.wait(kPatience), 0);
+
+  const std::vector<Row> rows = read_trace(apart.folder / "trace.csv");
+  ASSERT_GT(rows.size(), 3000u);
+  expect_slew_limit(rows);
+  const auto pressed = static_cast<std::size_t>(std::count_if(
+      rows.begin(), rows.end(), [](const Row& row) { return std::abs(row.commanded) > 1.9; }));
+  EXPECT_GT(pressed, rows.size() / 4) << "such a link is bad, and not dead";
+}
+
+/// "state hash H after N steps" of a run.
+std::string hash_of(const std::string& output) {
+  std::smatch match;
+  EXPECT_TRUE(
+      std::regex_search(output, match, std::regex("state hash [0-9a-f]{16} after [0-9]+ steps")))
+      << output;
+  return match.str();
+}
+
+class NetworkLoss : public Network, public ::testing::WithParamInterface<double> {};
+
+TEST_P(NetworkLoss, ALockstepSessionGivesTheHashThatItGivesOnOneHost) {
+  Apart apart("lockstep");
+  apart.add_file("key.yaml", "cordis: 1\naxes: 1\nrate_hz: 1000\ndriver: mock\n");
+  ChildProcess& alone = apart.start(
+      TwoHosts::kFirst,
+      {"run", apart.launch_file(), "--no-color", "--only", "sim,keyboard", "--duration", "100ms"});
+  ASSERT_EQ(alone.wait(kPatience), 0);
+
+  apart.hosts.set({.delay = 500us, .jitter = 1ms, .loss = GetParam()});
+  ChildProcess& sim = apart.run(TwoHosts::kFirst, "sim", {"--duration", "100ms"});
+  apart.run(TwoHosts::kSecond, "keyboard");
+  ASSERT_EQ(sim.wait(kPatience), 0);
+
+  EXPECT_EQ(hash_of(sim.output()), hash_of(alone.output()));
+  EXPECT_EQ(apart.hosts.lost() > 0, GetParam() > 0.0);
+}
+
+/// Minutes long: tests/campaigns/network.sh runs it.
+TEST_F(Network, DISABLED_EveryDelayJitterAndLossGivesTheHashOfOneHost) {
+  Apart apart("lockstep");
+  apart.add_file("key.yaml", "cordis: 1\naxes: 1\nrate_hz: 1000\ndriver: mock\n");
+  ChildProcess& alone = apart.start(
+      TwoHosts::kFirst,
+      {"run", apart.launch_file(), "--no-color", "--only", "sim,keyboard", "--duration", "50ms"});
+  ASSERT_EQ(alone.wait(kPatience), 0);
+  const std::string hash = hash_of(alone.output());
+  for (const auto delay : {0ms, 5ms, 10ms, 20ms}) {
+    for (const double loss : {0.0, 0.1, 0.2, 0.3}) {
+      apart.hosts.set({.delay = delay, .jitter = delay / 2, .loss = loss});
+      ChildProcess& sim = apart.run(TwoHosts::kFirst, "sim", {"--duration", "50ms"});
+      ChildProcess& keyboard = apart.run(TwoHosts::kSecond, "keyboard");
+      ASSERT_EQ(sim.wait(kPatience), 0);
+      EXPECT_EQ(hash_of(sim.output()), hash) << delay.count() << " ms, loss " << loss;
+      keyboard.signal(SIGINT);
+      ASSERT_EQ(keyboard.wait(kPatience), 0);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shares, NetworkLoss, ::testing::Values(0.0, 0.1, 0.3));
+
+TEST_F(Network, AProcessOfAnotherHostIsNeverLookedUpHere) {
+  Apart apart("realtime");
+  const auto here = apart.observer(TwoHosts::kFirst);
+  const auto beside = apart.observer(TwoHosts::kSecond);
+  apart.run(TwoHosts::kFirst, "sim");
+  ChildProcess& second = apart.run(TwoHosts::kSecond, "keyboard");
+  const auto prefix_of = [](const dds::Participant& participant, const std::string& name) {
+    for (const dds::Peer& peer : participant.peers()) {
+      if (peer.name == name) return peer.prefix;
+    }
+    return dds::ParticipantPrefix{};
+  };
+  const auto knows = [](const dds::Participant& participant, const dds::ParticipantPrefix& one) {
+    const std::vector<dds::Peer> peers = participant.peers();
+    return std::any_of(peers.begin(), peers.end(),
+                       [&](const dds::Peer& peer) { return peer.prefix == one; });
+  };
+  dds::ParticipantPrefix killed{};
+  ASSERT_TRUE(eventually([&] {
+    killed = prefix_of(*here, "apart/keyboard");
+    return killed != dds::ParticipantPrefix{} && knows(*beside, killed) &&
+           prefix_of(*beside, "apart/sim") != dds::ParticipantPrefix{};
+  }));
+  EXPECT_TRUE(here->has_peers_elsewhere());
+
+  // The hosts of this test share their processes: whoever looked would see that it has ended.
+  const pid_t keyboard = process_of(second, "keyboard");
+  ASSERT_NE(keyboard, 0);
+  kill(keyboard, SIGKILL);
+  EXPECT_TRUE(eventually([&] { return !knows(*beside, killed); }))
+      << "on its own host it is looked up";
+  for (const dds::Peer& peer : here->peers()) {
+    const bool is_of_sim = peer.name.starts_with("apart/sim");
+    const bool is_of_keyboard = peer.name.starts_with("apart/keyboard");
+    if (is_of_sim || is_of_keyboard) {
+      EXPECT_EQ(peer.is_here(), is_of_sim) << peer.name;
+    }
+  }
+  EXPECT_TRUE(knows(*here, killed)) << "elsewhere only its own farewell counts";
+
+  // The launcher starts it again, and all find it.
+  StatusWatch status(*here);
+  EXPECT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING));
+  EXPECT_EQ(here->rejoin_count(), 0u);
+}
+
+TEST_F(Network, AHostThatWasDroppedIsFoundAgain) {
+  Apart apart("realtime");
+  const auto here = apart.observer(TwoHosts::kFirst);
+  const auto there = apart.observer(TwoHosts::kSecond);
+  dds::Writer<msg::SceneDescription> scene(*there, dds::Topic::kDescription);
+  dds::Reader<msg::SceneDescription> scenes(*here, dds::Topic::kDescription);
+  msg::SceneDescription description;
+  description.name("said once");
+  ASSERT_TRUE(scene.write(description));
+  ASSERT_TRUE(eventually([&] { return scenes.take(description); }));
+
+  apart.hosts.run_on(TwoHosts::kFirst, [&] { here->drop(here->peers().at(0)); });
+  EXPECT_TRUE(eventually([&] { return here->rejoin_count() > 0; }));
+
+  EXPECT_TRUE(eventually([&] { return scenes.take(description); }));
+  EXPECT_EQ(there->rejoin_count(), 0u);
+}
+
+/// Two members of a session that find each other by the network alone, each on its host.
+struct Members {
+  std::unique_ptr<dds::Participant> first;
+  std::unique_ptr<dds::Participant> second;
+};
+
+Members members(const TwoHosts& hosts, const std::function<void(dds::Network&)>& change) {
+  Members made;
+  for (const TwoHosts::Host host : {TwoHosts::kFirst, TwoHosts::kSecond}) {
+    hosts.run_on(host, [&] {
+      dds::ParticipantConfig config{kDomain, "apart", "member " + std::to_string(host)};
+      config.network.address = TwoHosts::address(host);
+      change(config.network);
+      (host == TwoHosts::kFirst ? made.first : made.second) =
+          std::make_unique<dds::Participant>(config);
+    });
+  }
+  return made;
+}
+
+bool receives(dds::Reader<msg::SceneDescription>& reader, const std::string& name) {
+  msg::SceneDescription description;
+  return eventually([&] { return reader.take(description) && description.name() == name; });
+}
+
+TEST_F(Network, MulticastFindsTheOtherHostWithoutItsAddress) {
+  const TwoHosts hosts;
+  const Members by_multicast =
+      members(hosts, [](dds::Network& network) { network.multicast = true; });
+
+  EXPECT_TRUE(eventually([&] {
+    return by_multicast.first->has_peers_elsewhere() && by_multicast.second->has_peers_elsewhere();
+  }));
+}
+
+TEST_F(Network, ADiscoveryServerMakesThemKnownToEachOther) {
+  if (std::system("command -v fast-discovery-server >/dev/null") != 0)
+    GTEST_SKIP() << "fast-discovery-server (package fastdds-tools) is not installed";
+  Apart apart("realtime");
+  const ChildProcess server(apart.hosts.on(
+      TwoHosts::kSecond, {"fast-discovery-server", "-i", "0", "-l", "192.168.5.2", "-p", "11811"}));
+
+  ChildProcess& part =
+      apart.start(TwoHosts::kFirst,
+                  {"run", apart.launch_file(), "--no-color",
+                   "network={discovery_server: '192.168.5.2:11811'}", "--only", "sim,keyboard"});
+
+  ASSERT_TRUE(part.wait_for_output("role mass in scene 'wall'", kPatience));
+  const pid_t keyboard = process_of(part, "keyboard");
+  ASSERT_NE(keyboard, 0);
+  kill(keyboard, SIGKILL);
+  EXPECT_TRUE(eventually([&] {
+    const std::string output = part.output();
+    return output.find("role mass", output.find("it starts again in")) != std::string::npos;
+  })) << "it is found again";
+}
+
+/// Minutes long: tests/campaigns/network.sh runs it.
+TEST_F(Network, DISABLED_AHostThatIsSilentForLongIsForgottenAndFoundAgain) {
+  TwoHosts hosts;
+  const Members both = members(hosts, [](dds::Network& network) {
+    network.peers = {TwoHosts::address(TwoHosts::kFirst), TwoHosts::address(TwoHosts::kSecond)};
+    std::erase(network.peers, network.address);
+  });
+  dds::Writer<msg::SceneDescription> scene(*both.first, dds::Topic::kDescription);
+  dds::Reader<msg::SceneDescription> scenes(*both.second, dds::Topic::kDescription);
+  msg::SceneDescription description;
+  description.name("before");
+  ASSERT_TRUE(scene.write(description));
+  ASSERT_TRUE(receives(scenes, "before"));
+
+  hosts.set({.is_cut = true});
+  const auto cut = std::chrono::steady_clock::now();
+  EXPECT_TRUE(
+      eventually([&] { return both.first->peers().empty() && both.second->peers().empty(); }));
+  EXPECT_GT(std::chrono::steady_clock::now() - cut, 50s) << "no short silence ends a session";
+  description.name("meanwhile");
+  EXPECT_TRUE(scene.write(description));
+  hosts.set({});
+
+  EXPECT_TRUE(receives(scenes, "meanwhile")) << "kept for late joiners";
+  EXPECT_TRUE(both.first->has_peers_elsewhere());
+  description.name("after");
+  EXPECT_TRUE(scene.write(description));
+  EXPECT_TRUE(receives(scenes, "after"));
+}
+
+TEST_F(Network, NoDatagramOfTheNetworkReachesASessionOfOneHost) {
+  Apart apart("realtime");
+  std::unique_ptr<dds::Participant> loopback;
+  apart.hosts.run_on(TwoHosts::kFirst, [&] {
+    loopback =
+        std::make_unique<dds::Participant>(dds::ParticipantConfig{kDomain, "apart", "loopback"});
+  });
+  const auto there = apart.observer(TwoHosts::kSecond);
+  // A whole RTPS header with a byte too many ends a process that receives it.
+  const std::string fatal = std::string("RTPS\x02\x03\x01\x0f", 8) + std::string(12, '\1') + "x";
+
+  apart.hosts.run_on(TwoHosts::kSecond, [&] {
+    const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    for (int index = 0; index < 2 * dds::kMaxParticipants; ++index) {
+      const sockaddr_in to =
+          dds::udp_address(static_cast<std::uint16_t>(dds::discovery_port(kDomain, 0) + index),
+                           dds::ipv4_of(TwoHosts::address(TwoHosts::kFirst)));
+      sendto(file, fatal.data(), fatal.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+             sizeof to);
+    }
+    close(file);
+  });
+  ASSERT_TRUE(eventually([&] { return apart.hosts.passed() >= 2 * dds::kMaxParticipants; }));
+
+  EXPECT_TRUE(loopback->peers().empty());
+}
+
+}  // namespace
+}  // namespace cordis::test

@@ -1,0 +1,226 @@
+// tests/integration/record_play_test.cpp -- a session is recorded, played, and recorded again.
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "idl/schema_text.h"
+#include "record_node/mcap/reader.h"
+#include "tests/support/child_process.h"
+#include "tests/support/eventually.h"
+#include "tests/support/test_domain.h"
+
+namespace cordis {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+using test::ChildProcess;
+using test::eventually;
+using test::kPatience;
+
+const std::string kCordis = std::string(CORDIS_PROGRAM_DIR) + "/cordis";
+const std::string kLaunch = std::string(CORDIS_SOURCE_DIR) + "/launch_configs/plucked_string.yaml";
+
+std::string domain_word() {
+  return "domain=" + std::to_string(test::own_domain());
+}
+
+/// A folder of this test alone.
+fs::path fresh_folder(const std::string& name) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("cordis_" + name + "_" + std::to_string(getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+std::vector<std::string> session_words(const fs::path& take) {
+  return {kCordis,       "run",
+          kLaunch,       "keyboard.driver=script",
+          "--only",      "sim,keyboard,record",
+          domain_word(), "--record",
+          take.string(), "--duration",
+          "4s"};
+}
+
+using Payloads = std::map<std::string, std::vector<std::string>>;
+
+/// The payloads of each topic, in the order of their writers' numbers.
+Payloads payloads_of(const fs::path& take) {
+  const mcap::Reader reader(take);
+  Payloads payloads;
+  mcap::MessageCursor cursor = reader.messages();
+  for (mcap::Message message; cursor.next(message);) {
+    payloads[reader.channels().at(message.channel_id).topic].emplace_back(
+        reinterpret_cast<const char*>(message.data.data()), message.data.size());
+  }
+  return payloads;
+}
+
+/// The take names versions, seeds, rates and the plan, and has one schema per type, with no more
+/// than the type needs.
+void expect_words_and_schemas(const mcap::Reader& take) {
+  std::map<std::string, std::map<std::string, std::string>> words;
+  for (const mcap::Metadata& metadata : take.metadata()) words[metadata.name] = metadata.values;
+  EXPECT_EQ(words["cordis.session"]["clock"], "realtime");
+  EXPECT_EQ(words["cordis.session"]["seed"], "1");
+  EXPECT_FALSE(words["cordis.session"]["host"].empty());
+  EXPECT_FALSE(words["cordis.session"]["cordis_version"].empty());
+  EXPECT_EQ(words["cordis.scene"]["name"], "plucked_string");
+  EXPECT_EQ(words["cordis.scene"]["gesture_rate_hz"], "1000");
+  EXPECT_EQ(words["cordis.scene"]["frame_rate_hz"], "25");
+  EXPECT_EQ(words["cordis.plan"]["step_rate_hz"], words["cordis.scene"]["step_rate_hz"]);
+  EXPECT_FALSE(words["cordis.plan"]["integrator"].empty());
+  EXPECT_FALSE(words["cordis.plan"]["hash_version"].empty());
+
+  std::set<std::string> types;
+  for (const auto& [id, schema] : take.schemas()) {
+    EXPECT_TRUE(types.insert(schema.name).second) << schema.name << " has two schemas";
+    EXPECT_EQ(schema.data, msg::schema_text_of(schema.name));
+  }
+  EXPECT_TRUE(types.contains("cordis::msg::NodeStatus"));
+  EXPECT_GT(take.channels().size(), types.size());  // sim_node and device_node share a schema
+}
+
+TEST(RecordPlay, GivesTheSamePayloadsWhenThePlayedSessionIsRecorded) {
+  const fs::path folder = fresh_folder("record_play");
+  const fs::path first = folder / "first.mcap";
+  const fs::path second = folder / "second.mcap";
+  ChildProcess session(session_words(first));
+  ASSERT_EQ(session.wait(kPatience), 0) << session.output();
+  const mcap::Reader take(first);
+  EXPECT_TRUE(take.is_whole()) << take.damage();
+  std::vector<std::string> attached;
+  for (const mcap::Attachment& file : take.attachments()) attached.push_back(file.name);
+  for (const char* file : {"plucked_string.yaml", "scenes/plucked_string.yaml"})
+    EXPECT_NE(std::find(attached.begin(), attached.end(), file), attached.end()) << file;
+
+  expect_words_and_schemas(take);
+
+  const std::string domain = std::to_string(test::own_domain());
+  ChildProcess recorder(
+      {kCordis, "record", "played_again", "--domain", domain, "-o", second.string()});
+  ASSERT_TRUE(recorder.wait_for_output("records into", kPatience));
+  ChildProcess player({kCordis, "play", first.string(), "--session", "played_again", "--domain",
+                       domain, "--wait-for-readers"});
+  ASSERT_EQ(player.wait(kPatience), 0) << player.output();
+  recorder.signal(SIGINT);
+  const int ended = recorder.wait(kPatience);
+  EXPECT_TRUE(ended == 0 || ended == 3) << recorder.output();
+
+  const Payloads before = payloads_of(first);
+  const Payloads after = payloads_of(second);
+  for (const char* topic :
+       {"scene/description", "device/description", "scene/signals", "scene/inputs"}) {
+    ASSERT_TRUE(before.contains(topic)) << topic;
+    ASSERT_TRUE(after.contains(topic)) << topic;
+    EXPECT_EQ(before.at(topic), after.at(topic)) << topic;
+  }
+  // 3: what was equal is not all, for frames may be lost on the way.
+  ChildProcess resim({kCordis, "resim", second.string()});
+  const int compared = resim.wait(kPatience);
+  EXPECT_TRUE(compared == 0 || compared == 3) << resim.output();
+  // Best effort: each that came is one that was played, and few are lost.
+  for (const char* topic : {"gesture/positions", "gesture/forces", "scene/frame"}) {
+    const std::vector<std::string>& played = before.at(topic);
+    const std::vector<std::string>& heard = after.at(topic);
+    EXPECT_GT(heard.size(), played.size() / 2) << topic;
+    std::size_t at = 0;
+    for (const std::string& payload : heard) {
+      while (at < played.size() && played[at] != payload) ++at;
+      ASSERT_LT(at, played.size()) << topic << ": a payload that was not played, or out of order";
+    }
+  }
+  fs::remove_all(folder);
+}
+
+TEST(RecordPlay, ARecorderSaysWhatItHasWhereTheDiskIsFull) {
+  const fs::path folder = fresh_folder("record_full");
+  const fs::path take = folder / "take.mcap";
+  std::string command = "trap '' XFSZ; ulimit -f 300; exec";  // a file may have 300 kB
+  for (const std::string& word : session_words(take)) command += " '" + word + "'";
+  ChildProcess session({"/bin/bash", "-c", command});
+  session.wait(kPatience);
+  const mcap::Reader reader(take);
+  EXPECT_TRUE(reader.is_whole()) << reader.damage();
+  const std::string stored = std::to_string(reader.statistics().message_count);
+  for (const std::string& sentence :
+       {"there is no room for more of " + take.string(),
+        take.string() + ": " + stored + " messages of ", std::string("dropped before a slow")})
+    EXPECT_NE(session.output().find(sentence), std::string::npos) << session.output();
+  fs::remove_all(folder);
+}
+
+TEST(RecordPlay, KeepsWhatWasWrittenBeforeARecorderIsKilled) {
+  const fs::path folder = fresh_folder("record_killed");
+  const fs::path take = folder / "take.mcap";
+  const fs::path part = take.string() + ".part";
+  std::vector<std::string> words = session_words(take);
+  words.back() = "1h";
+  ChildProcess session(words);
+  ASSERT_TRUE(eventually([&] { return fs::exists(part) && fs::file_size(part) > 200'000; }));
+  kill(test::process_of(session, "record"), SIGKILL);
+  // The launcher starts it again: into another file, beside the unfinished one.
+  ASSERT_TRUE(session.wait_for_output("was never finished", kPatience));
+  const fs::path again = folder / "take-2.mcap.part";
+  ASSERT_TRUE(eventually([&] { return fs::exists(again) && fs::file_size(again) > 50'000; }));
+  session.signal(SIGINT);
+  EXPECT_EQ(session.wait(kPatience), 0) << session.output();
+
+  const Payloads kept = payloads_of(part);
+  EXPECT_GT(kept.at("gesture/positions").size(), 100u);
+  EXPECT_TRUE(mcap::Reader(folder / "take-2.mcap").is_whole());
+  fs::remove_all(folder);
+}
+
+TEST(RecordPlay, DoesNotBeginASessionWhoseTakeHasNoPlace) {
+  const fs::path folder = fresh_folder("record_nowhere");
+  std::ofstream(folder / "file") << "no folder";
+  const std::string launch = (folder / "launch.yaml").string();
+  std::ofstream(launch) << "cordis: 1\n"
+                        << "session: nowhere\n"
+                        << "record: {out: file/take.mcap}\n"
+                        << "nodes: {sim: {node: sim_node, scene: "
+                        << CORDIS_SOURCE_DIR "/launch_configs/scenes/plucked_string.yaml}}\n";
+  ChildProcess named({kCordis, "run", launch, domain_word(), "--duration", "1s"});
+  EXPECT_EQ(named.wait(kPatience), 2) << named.output();
+  EXPECT_NE(named.output().find("launch.yaml:3:15: error: no take can be made in "),
+            std::string::npos)
+      << named.output();
+  EXPECT_EQ(named.output().find("session 'nowhere' in DDS domain"), std::string::npos);
+
+  ChildProcess braces({kCordis, "run", launch, domain_word(), "--duration", "1s", "--record",
+                       (folder / "{hour}.mcap").string()});
+  EXPECT_EQ(braces.wait(kPatience), 2) << braces.output();
+  EXPECT_NE(braces.output().find("{session} and {time} alone, not '{hour}'"), std::string::npos);
+
+  // A folder that is missing is made, but not before the session begins.
+  const fs::path made = folder / "new" / "takes";
+  ChildProcess good({kCordis, "run", launch, domain_word(), "--duration", "1s", "--record",
+                     (made / "take.mcap").string()});
+  EXPECT_EQ(good.wait(kPatience), 0) << good.output();
+  EXPECT_TRUE(mcap::Reader(made / "take.mcap").is_whole());
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 3);
+  fs::remove_all(folder);
+}
+
+TEST(RecordPlay, RefusesWhatIsNoTakeInOneSentence) {
+  ChildProcess player({kCordis, "play", kLaunch});
+  EXPECT_EQ(player.wait(kPatience), 2) << player.output();
+  ChildProcess missing({kCordis, "play", "/nowhere/take.mcap"});
+  EXPECT_EQ(missing.wait(kPatience), 2) << missing.output();
+}
+
+}  // namespace
+}  // namespace cordis

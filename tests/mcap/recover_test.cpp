@@ -1,0 +1,176 @@
+// tests/mcap/recover_test.cpp -- files that were cut, or of which a bit has flipped.
+#include "record_node/mcap/recover.h"
+
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "record_node/mcap/file_error.h"
+#include "record_node/mcap/take_check.h"
+#include "tests/mcap/random_take.h"
+#include "tests/mcap/take_folder.h"
+
+namespace cordis::mcap {
+namespace {
+
+constexpr Compression kPackings[] = {Compression::kNone, Compression::kLz4, Compression::kZstd};
+
+/// A take of about 30 chunks, its contents and where its chunks end.
+struct Original {
+  RandomTake take;
+  std::vector<char> bytes;
+  std::vector<ChunkIndex> chunks;
+  std::vector<std::uint64_t> messages_of_chunk;
+
+  Original(const TakeFolder& folder, unsigned seed) {
+    std::mt19937 random(seed);
+    WriterConfig config;
+    config.compression = kPackings[seed % 3];
+    config.chunk_bytes = 3000;
+    const auto path = folder / "original.mcap";
+    take = write_random_take(path, random, config, 500);
+    bytes = contents_of(path);
+    const Reader reader(path);
+    chunks = reader.chunks();
+    for (const ChunkIndex& chunk : chunks) {
+      MessageFilter filter;
+      filter.start_nsec = chunk.start_nsec;
+      filter.end_nsec = chunk.end_nsec;
+      messages_of_chunk.push_back(messages_of(reader, filter).size());
+    }
+    std::filesystem::remove(path);
+  }
+
+  /// Messages of the chunks that lie wholly before a place.
+  std::uint64_t messages_before(std::uint64_t place) const {
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+      if (chunks[i].offset + chunks[i].length <= place) count += messages_of_chunk[i];
+    }
+    return count;
+  }
+};
+
+/// Expects that `some` are messages of `all`, in order.
+void expect_part_of(const std::vector<OwnedMessage>& some, const std::vector<OwnedMessage>& all) {
+  auto next = all.begin();
+  for (const OwnedMessage& message : some) {
+    next = std::find(next, all.end(), message);
+    ASSERT_NE(next, all.end()) << "message " << message.sequence << " was never written";
+    ++next;
+  }
+}
+
+TEST(Recover, KeepsEveryWholeChunkOfACutFile) {
+  const TakeFolder folder;
+  const auto path = folder / "cut.mcap";
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const Original original(folder, seed);
+    ASSERT_GT(original.chunks.size(), 15u);
+    std::mt19937 random(seed);
+    std::set<std::size_t> cuts;
+    while (cuts.size() < 70) cuts.insert(kMagic.size() + random() % (original.bytes.size() - 8));
+    std::size_t kept_before = 0;
+    for (const std::size_t cut : cuts) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", cut at " + std::to_string(cut));
+      std::vector<char> torn(original.bytes.begin(),
+                             original.bytes.begin() + static_cast<std::ptrdiff_t>(cut));
+      write_file(path, torn);
+
+      const Reader before(path);
+      EXPECT_FALSE(before.is_whole());
+      const std::vector<OwnedMessage> readable = messages_of(before);
+      const Recovery recovery = recover(path);
+
+      const Reader after(path);
+      EXPECT_EQ(after.damage(), "");
+      const std::vector<OwnedMessage> kept = messages_of(after);
+      EXPECT_EQ(kept, readable);
+      EXPECT_EQ(kept.size(), original.messages_before(cut));
+      EXPECT_EQ(kept.size(), recovery.statistics.message_count);
+      EXPECT_GE(kept.size(), kept_before);  // more of the file never gives fewer messages
+      expect_part_of(kept, original.take.messages);
+      const TakeCheck check = check_take(path);
+      EXPECT_TRUE(check.faults.empty()) << check.faults.front().text;
+      EXPECT_TRUE(recover(path).was_whole);
+      kept_before = kept.size();
+    }
+  }
+}
+
+TEST(Recover, KeepsEveryChunkThatAFlippedBitLeavesWhole) {
+  const TakeFolder folder;
+  const auto path = folder / "flipped.mcap";
+  std::size_t losses = 0;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const Original original(folder, seed);
+    std::mt19937 random(seed);
+    for (int i = 0; i < 70; ++i) {
+      std::vector<char> flipped = original.bytes;
+      const std::size_t place = random() % flipped.size();
+      flipped[place] = static_cast<char>(flipped[place] ^ (1 << random() % 8));
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", byte " + std::to_string(place));
+      write_file(path, flipped);
+
+      EXPECT_FALSE(check_take(path).faults.empty());
+      static_cast<void>(messages_of(Reader(path)));
+      const Recovery recovery = recover(path);
+
+      const Reader after(path);
+      EXPECT_EQ(after.damage(), "");
+      const std::vector<OwnedMessage> kept = messages_of(after);
+      expect_part_of(kept, original.take.messages);
+      std::uint64_t lost = 0;  // with the chunk in which the bit lies
+      for (std::size_t k = 0; k < original.chunks.size(); ++k) {
+        const ChunkIndex& chunk = original.chunks[k];
+        if (place >= chunk.offset && place < chunk.offset + chunk.length)
+          lost = original.messages_of_chunk[k];
+      }
+      EXPECT_GE(kept.size() + lost, original.take.messages.size());
+      EXPECT_TRUE(recovery.has_loss() || kept.size() == original.take.messages.size());
+      losses += kept.size() < original.take.messages.size() ? 1 : 0;
+      const TakeCheck check = check_take(path);
+      EXPECT_TRUE(check.faults.empty()) << check.faults.front().text;
+    }
+  }
+  EXPECT_GT(losses, 50u);  // most bits lie in chunks
+}
+
+TEST(Recover, GivesATakeItsNameAndLeavesAWholeOneAlone) {
+  const TakeFolder folder;
+  std::mt19937 random(7);
+  const auto path = folder / "take.mcap";
+  write_random_take(path, random, {}, 100);
+  const std::vector<char> whole = contents_of(path);
+
+  EXPECT_TRUE(recover(path).was_whole);
+  EXPECT_EQ(contents_of(path), whole);
+
+  std::filesystem::rename(path, part_of(path));
+  EXPECT_EQ(recover(part_of(path)).path, path);
+  EXPECT_EQ(contents_of(path), whole);
+}
+
+TEST(Recover, RefusesAFileThatIsBeingRecorded) {
+  const TakeFolder folder;
+  const auto path = folder / "live.mcap";
+  Writer writer(path);
+
+  EXPECT_THROW(recover(part_of(path)), FileError);
+  EXPECT_EQ(writer.close(), WriteStatus::kOk);
+  EXPECT_TRUE(recover(path).was_whole);
+}
+
+TEST(Recover, RefusesWhatIsNoTake) {
+  const TakeFolder folder;
+  for (const std::string text : {"", "x", "not a take at all, but a text"}) {
+    write_file(folder / "text", {text.begin(), text.end()});
+    EXPECT_THROW(recover(folder / "text"), FileError);
+    EXPECT_EQ(contents_of(folder / "text").size(), text.size());
+  }
+  EXPECT_THROW(recover(folder / "absent"), FileError);
+}
+
+}  // namespace
+}  // namespace cordis::mcap

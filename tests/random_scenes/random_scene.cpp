@@ -1,0 +1,414 @@
+// tests/random_scenes/random_scene.cpp
+#include "tests/random_scenes/random_scene.h"
+
+#include <cmath>
+#include <initializer_list>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace cordis::test {
+namespace {
+
+/// What the integrator of a scene takes.
+enum class Matter { kAnything, kPotentials, kModes };
+
+/// Draws one number in each statement: the order of arguments is the compiler's.
+class SceneWriter {
+ public:
+  explicit SceneWriter(std::uint32_t seed) : random_(seed) {
+    space_ = 1 + static_cast<int>(below(3));
+    const std::uint32_t kind = below(16);
+    matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
+    if (matter_ == Matter::kModes) space_ = 1;
+    count_ = 1 + below(7);
+  }
+
+  std::string text() {
+    write_head();
+    write_masses();
+    write_port();
+    const std::uint32_t links = 1 + below(count_ + 2);
+    for (std::uint32_t l = 0; l < links; ++l) add_link(l);
+    if (matter_ != Matter::kModes && chance(0.35)) add_set();
+    return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
+           (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_;
+  }
+
+ private:
+  std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); }
+  bool chance(double share) { return between(0.0, 1.0) < share; }
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;
+  }
+  double decades(double low, double high) { return low * std::pow(high / low, between(0.0, 1.0)); }
+  template <class T>
+  T one_of(std::initializer_list<T> all) {
+    return *(all.begin() + below(static_cast<std::uint32_t>(all.size())));
+  }
+
+  /// A place in a box of this half width, or one number in 1 dimension.
+  std::string place(double half) {
+    if (space_ == 1) return fmt::format("{:.5g}", between(-half, half));
+    std::string text = "[";
+    for (int axis = 0; axis < space_; ++axis)
+      text += fmt::format("{}{:.5g}", axis > 0 ? ", " : "", between(-half, half));
+    return text + "]";
+  }
+
+  void write_head() {
+    std::string integrator;
+    if (matter_ == Matter::kModes) {
+      integrator = "modal";
+    } else if (matter_ == Matter::kPotentials) {
+      integrator = "symplectic4";
+    } else {
+      integrator =
+          one_of<const char*>({"cordis", "cordis", "cordis", "leapfrog", "leapfrog", "implicit"});
+    }
+    const bool freezes = integrator == "cordis" && chance(0.1);
+    head_ =
+        fmt::format("cordis: 1\nname: chance\nspace: {}\nstep: {{rate_hz: {}, integrator: {}{}}}\n",
+                    space_, one_of({1000, 2000, 5000, 20000, 44000}), integrator,
+                    freezes ? ", freeze: {tolerance_m: 1.0e-5}" : "");
+  }
+
+  std::string world() {
+    std::string text;
+    if (matter_ != Matter::kModes && chance(0.3)) {
+      text = "gravity_m_per_s2: [";
+      for (int axis = 0; axis < space_; ++axis)
+        text += fmt::format("{}{}", axis > 0 ? ", " : "", axis == space_ - 1 ? -9.81 : 0.0);
+      text += "]";
+    }
+    if (matter_ == Matter::kAnything && chance(0.2)) {
+      text += fmt::format("{}viscosity_n_s_per_m: {:.4g}", text.empty() ? "" : ", ",
+                          decades(1e-4, 0.3));
+    }
+    return text.empty() ? "" : "world: {" + text + "}\n";
+  }
+
+  void write_masses() {
+    const double speed = chance(0.3) ? 0.0 : decades(0.01, 1.0);
+    const double one_mass = decades(0.001, 0.1);
+    std::string places;
+    std::string weights;
+    std::string speeds;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const char* comma = i > 0 ? ", " : "";
+      places += comma + place(0.15);
+      weights += fmt::format("{}{:.4g}", comma,
+                             matter_ == Matter::kModes ? one_mass : decades(0.001, 0.1));
+      speeds += comma + place(speed);
+    }
+    masses_ =
+        fmt::format("  wall: {{kind: fixed, at_m: {}, ball: {{radius_m: 0.05}}}}\n", place(0.2));
+    masses_ += fmt::format(
+        "  p: {{kind: points, at_m: [{}], mass_kg: [{}], velocity_m_per_s: [{}], radius_m: "
+        "{:.4g}}}\n",
+        places, weights, speeds, between(0.02, 0.1));
+  }
+
+  void write_port() {
+    if (matter_ == Matter::kModes || !chance(0.25)) return;
+    const bool gives_forces = matter_ == Matter::kPotentials || chance(0.4);
+    has_port_ = true;
+    std::string more = gives_forces ? ", mass_kg: 0.05" : "";
+    if (!gives_forces && chance(0.4)) more = ", coupling: direct";
+    if (!gives_forces && more.empty() && chance(0.5)) {
+      const double z = decades(0.1, 3);
+      more = fmt::format(
+          ", coupling: {{stiffness_n_per_m: {:.4g}, viscosity_n_s_per_m: {:.4g}, mass_kg: 0.03}}",
+          decades(50, 1000), z);
+    }
+    port_ = fmt::format(
+        "  hand: {{device: hand, axes: [0], role: {}, at_m: {}{}{}, ball: {{radius_m: 0.02}}}}\n",
+        gives_forces ? "liaison" : "mass", place(0.1), space_ > 1 ? ", along: x" : "", more);
+  }
+
+  /// The name of a MAT, another than this one.
+  std::string mat_but(const std::string& other) {
+    for (;;) {
+      const std::uint32_t which = below(count_ + (has_port_ ? 2 : 1));
+      std::string name = which < count_    ? fmt::format("p[{}]", which)
+                         : which == count_ ? "wall"
+                                           : "hand";
+      if (name != other) return name;
+    }
+  }
+
+  double stiffness() { return decades(0.5, 3000.0); }
+  double viscosity() { return chance(0.4) ? decades(1e-4, 3.0) : 0.0; }
+
+  std::string expression(bool viscous) {
+    const auto term = [&]() -> std::string {
+      switch (below(viscous ? 3 : 9)) {
+        case 0:
+          return viscous ? fmt::format("{:.4g} * speed_m_per_s", decades(1e-4, 0.5))
+                         : fmt::format("{:.4g} * elongation_m", stiffness());
+        case 1: {
+          const double width = viscous ? decades(0.5, 30.0) : decades(1.0, 50.0);
+          const double height = viscous ? decades(1e-3, 1.0) : decades(0.01, 10);
+          return fmt::format("{:.4g} * tanh({:.4g} * {})", height, width,
+                             viscous ? "speed_m_per_s" : "elongation_m");
+        }
+        case 2:
+          return viscous ? fmt::format("{:.4g} * mass_a_kg * speed_m_per_s", decades(0.01, 3.0))
+                         : fmt::format("{:.4g} * elongation_m^3", decades(10.0, 1e5));
+        case 3: {
+          const double when_shorter = stiffness();
+          return fmt::format("if(elongation_m > 0, {:.4g}, {:.4g}) * elongation_m", stiffness(),
+                             when_shorter);
+        }
+        case 4: {
+          const double wave_number = decades(3, 60);
+          return fmt::format("{:.4g} * sin({:.4g} * distance_m)", between(-2, 2), wave_number);
+        }
+        case 5: {
+          const double decay = decades(3, 60);
+          return fmt::format("-{:.4g} * exp(-{:.4g} * distance_m)", decades(0.01, 3.0), decay);
+        }
+        case 6:
+          return fmt::format("{:.4g} * mass_a_kg * mass_b_kg / max(distance_m, 0.01)^2",
+                             decades(0.01, 10.0));
+        case 7:
+          return fmt::format("{:.4g} * speed_m_per_s", decades(1e-4, 0.5));
+        default: {
+          const double k = stiffness();
+          return fmt::format("-max({:.4g} - distance_m, 0) * {:.4g}", between(0.02, 0.2), k);
+        }
+      }
+    };
+    std::string text = term();
+    for (std::uint32_t more = below(3); more > 0; --more) text += " + " + term();
+    return "\"" + text + "\"";
+  }
+
+  std::string elasticity(bool potential) {
+    switch (below(potential ? 4 : 6)) {
+      case 0: {
+        const double right = between(0.02, 0.2);
+        const double left = between(0.02, 0.2);
+        const double at_right = decades(0.01, 30);
+        const double at_left = potential || chance(0.9) ? -decades(0.01, 30) : 1.0;
+        return fmt::format(
+            "{{kind: table, at_m: [{:.4g}, 0, {:.4g}], force_n: [{:.4g}, 0, {:.4g}]}}", -left,
+            right, at_left, at_right);
+      }
+      case 1: {
+        const double exponent = 0.5 * (potential ? 2 + below(7) : 1 + below(8));
+        const double sign = chance(0.95) ? 1.0 : -1.0;
+        return fmt::format("{{kind: power, coefficient: {:.4g}, exponent: {}}}",
+                           sign * decades(1.0, 1e4), exponent);
+      }
+      case 2: {
+        const double diameter = between(0.05, 0.2);
+        const double cut = diameter * between(1.2, 3.0);
+        return fmt::format(
+            "{{kind: lennard_jones, depth_j: {:.4g}, diameter_m: {:.4g}, cut_m: {:.4g}}}",
+            decades(1e-6, 1e-2), diameter, cut);
+      }
+      case 3: {
+        const double outer_radius = between(0.15, 0.4);
+        const double sign = chance(0.3) ? -1.0 : 1.0;
+        const double outer = sign * decades(0.1, 100.0);
+        const double inner_radius = between(0.05, 0.15);
+        return fmt::format(
+            "{{kind: rings, rings: [{{stiffness_n_per_m: {:.4g}, radius_m: {:.4g}}}, "
+            "{{stiffness_n_per_m: {:.4g}, radius_m: {:.4g}}}]}}",
+            stiffness(), inner_radius, outer, outer_radius);
+      }
+      default:
+        return expression(false);
+    }
+  }
+
+  std::string dissipation() {
+    switch (below(3)) {
+      case 0: {
+        const double slow = decades(0.001, 1.0);
+        return fmt::format(
+            "{{kind: table, at_m_per_s: [-1, -0.1, 0, 0.1, 1], force_n: [-{0:.4g}, -{1:.4g}, 0, "
+            "{1:.4g}, "
+            "{0:.4g}]}}",
+            decades(0.01, 1.0), slow);
+      }
+      case 1: {
+        const double exponent = one_of({0.5, 1.0, 1.5, 2.0, 3.0});
+        return fmt::format("{{kind: power, coefficient: {:.4g}, exponent: {}}}",
+                           decades(0.001, 1.0), exponent);
+      }
+      default:
+        return expression(true);
+    }
+  }
+
+  /// The keys of a state, without braces.
+  std::string state() {
+    const bool potential = matter_ == Matter::kPotentials;
+    std::string text;
+    const auto add = [&text](const std::string& key) { text += (text.empty() ? "" : ", ") + key; };
+    const bool law = chance(0.5);
+    if (!law || chance(0.5)) add(fmt::format("stiffness_n_per_m: {:.4g}", stiffness()));
+    if (law) add("elasticity: " + elasticity(potential));
+    if (potential) return text;
+    const double z = viscosity();
+    if (z > 0.0) add(fmt::format("viscosity_n_s_per_m: {:.4g}", z));
+    if (chance(0.15)) add("dissipation: " + dissipation());
+    if (chance(0.25)) add(chance(0.7) ? "pulls: false" : "pushes: false");
+    if (chance(0.1)) add(fmt::format("force_limit_n: {:.4g}", decades(0.01, 10.0)));
+    return text;
+  }
+
+  std::string condition() {
+    const double length = between(-0.05, 0.2);
+    const double speed = decades(0.01, 2.0);
+    switch (below(14)) {
+      case 0:
+        return fmt::format("elongation_m > {:.4g}", length);
+      case 1:
+        return fmt::format("elongation_m < {:.4g}", -length);
+      case 2:
+        return fmt::format("distance_m < {:.4g}", std::abs(length));
+      case 3:
+        return fmt::format("abs(elongation_m) > {:.4g} * rest_m", decades(0.1, 3.0));
+      case 4:
+        return fmt::format("speed_m_per_s < -{:.4g}", speed);
+      case 5:
+        return fmt::format("abs(speed_m_per_s) < {:.4g} and falling(abs(speed_m_per_s))", speed);
+      case 6:
+        return fmt::format("force_n > {:.4g}", decades(0.01, 10.0));
+      case 7:
+        return fmt::format("abs(force_n) < {:.4g}", decades(0.01, 1.0));
+      case 8:
+        return fmt::format("impulse_n_s > {:.4g}", decades(1e-4, 0.1));
+      case 9:
+        return fmt::format("age_s > {:.4g}", decades(1e-3, 1.0));
+      case 10:
+        return fmt::format("rising(elongation_m) and elongation_m > {:.4g}", length);
+      case 11:
+        return fmt::format("mass_a_kg < {:.4g} and age_s > 0.01", decades(0.001, 0.1));
+      case 12:
+        return space_ > 1 ? fmt::format("slip_m_per_s > {:.4g}", speed)
+                          : fmt::format("speed_x_m_per_s > {:.4g}", speed);
+      default:
+        return fmt::format("not (distance_m > {:.4g} or speed_m_per_s > 0)", std::abs(length));
+    }
+  }
+
+  std::string exit(const std::string& target) {
+    const std::string rest =
+        one_of<const char*>({"", "", ", rest: here", ", rest: \"0.5 * (rest_m + distance_m)\""});
+    return fmt::format("{{to: {}, when: \"{}\"{}}}", target, condition(), rest);
+  }
+
+  /// A liaison in braces.
+  std::string liaison() {
+    if (matter_ == Matter::kModes) {
+      const double k = stiffness();
+      return fmt::format(
+          "{{kind: spring_damper, stiffness_n_per_m: {:.4g}, viscosity_n_s_per_m: {:.4g}}}", k,
+          1e-5 * k);
+    }
+    if (matter_ == Matter::kPotentials) {
+      return chance(0.4) ? fmt::format("{{kind: spring, stiffness_n_per_m: {:.4g}}}", stiffness())
+                         : one_state();
+    }
+    switch (below(10)) {
+      case 0:
+        return fmt::format("{{kind: spring, stiffness_n_per_m: {:.4g}}}", stiffness());
+      case 1:
+        return fmt::format("{{kind: damper, viscosity_n_s_per_m: {:.4g}}}", decades(1e-3, 10.0));
+      case 2:
+        return spring_and_damper("spring_damper");
+      case 3:
+        return spring_and_damper("maxwell");
+      case 4:
+      case 5:
+      case 6:
+        return one_state();
+      default:
+        return state_machine();
+    }
+  }
+
+  std::string spring_and_damper(const char* kind) {
+    const double z = decades(1e-3, 10.0);
+    return fmt::format("{{kind: {}, stiffness_n_per_m: {:.4g}, viscosity_n_s_per_m: {:.4g}}}", kind,
+                       stiffness(), z);
+  }
+
+  std::string one_state() { return "{kind: state_machine, " + state() + "}"; }
+
+  std::string state_machine() {
+    const std::uint32_t states = 2 + below(2);
+    std::string text = "{states: {";
+    for (std::uint32_t s = 0; s < states; ++s) {
+      text += fmt::format("{}s{}: {{{}", s > 0 ? ", " : "", s, chance(0.15) ? "" : state());
+      if (text.back() != '{') text += ", ";
+      text += "exits: [" + exit(fmt::format("s{}", (s + 1) % states));
+      if (states > 2 && chance(0.3)) text += ", " + exit(fmt::format("s{}", (s + 2) % states));
+      text += "]}";
+    }
+    return text + "}}";
+  }
+
+  void add_link(std::uint32_t l) {
+    liaisons_ += fmt::format("  l{}: {}\n", l, liaison());
+    const std::string a = mat_but("");
+    std::string more;
+    // Half of all keep the distance of the start.
+    const bool has_rest =
+        liaisons_.find(fmt::format("l{}: {{kind: maxwell", l)) == std::string::npos &&
+        liaisons_.find(fmt::format("l{}: {{kind: damper", l)) == std::string::npos;
+    if (has_rest && chance(0.5)) {
+      more = fmt::format(", rest_m: {:.4g}", space_ == 1 ? between(-0.2, 0.3) : between(0.0, 0.3));
+    }
+    links_ +=
+        fmt::format("  - {{liaison: l{}, between: [\"{}\", \"{}\"]{}}}\n", l, a, mat_but(a), more);
+  }
+
+  void add_set() {
+    std::string law;
+    if (matter_ == Matter::kPotentials) {
+      law = one_state();
+    } else if (chance(0.3)) {
+      law = state_machine();
+    } else if (chance(0.5)) {
+      const double z = viscosity();
+      law = fmt::format(
+          "{{kind: state_machine, stiffness_n_per_m: {:.4g}, viscosity_n_s_per_m: {:.4g}, pulls: "
+          "false}}",
+          stiffness(), z);
+    } else {
+      law = one_state();
+    }
+    liaisons_ += "  of_set: " + law + "\n";
+    const double range = decades(0.03, 1.0);
+    const std::string rest =
+        chance(0.5) ? "rest: radii" : fmt::format("rest_m: {:.4g}", range * between(0.2, 1.0));
+    const std::string which = count_ == 1 || chance(0.4) ? "between_sets: [wall, p]" : "within: p";
+    links_ += fmt::format("  - {{liaison: of_set, {}, {}, range_m: {:.4g}}}\n", which, rest, range);
+  }
+
+  std::mt19937 random_;
+  int space_ = 3;
+  Matter matter_ = Matter::kAnything;
+  std::uint32_t count_ = 1;
+  bool has_port_ = false;
+  std::string head_;
+  std::string masses_;
+  std::string port_;
+  std::string liaisons_;
+  std::string links_;
+};
+
+}  // namespace
+
+std::string random_scene_text(std::uint32_t seed) {
+  return SceneWriter(seed).text();
+}
+
+}  // namespace cordis::test

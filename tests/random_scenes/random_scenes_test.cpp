@@ -1,0 +1,495 @@
+// tests/random_scenes/random_scenes_test.cpp -- what is promised, against random scenes.
+// CORDIS_RANDOM_SCENES=N tries so many, from CORDIS_RANDOM_SEED=S on.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/checks/partner_watch.h"
+#include "sim_node/engine/integrators/integrator_limits.h"
+#include "sim_node/engine/world.h"
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/reach_limit.h"
+#include "sim_node/plan/stability/start_tangent.h"
+#include "sim_node/scene/scene.h"
+#include "sim_node/scene/sections/scene_reader.h"
+#include "tests/random_scenes/random_scene.h"
+#include "tests/support/rounds.h"
+
+namespace cordis::test {
+namespace {
+
+using engine::Energy;
+using engine::MatKind;
+using engine::NetworkDescription;
+using engine::Vec3;
+using engine::World;
+
+std::uint32_t from_environment(const char* name, std::uint32_t otherwise) {
+  const char* text = std::getenv(name);
+  return text != nullptr ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : otherwise;
+}
+
+const std::uint32_t kFirst = from_environment("CORDIS_RANDOM_SEED", 1);
+const std::uint32_t kCount = from_environment("CORDIS_RANDOM_SCENES", rounds(2000));
+
+std::string named(std::uint32_t seed) {
+  return "seed " + std::to_string(seed) + "\n" + random_scene_text(seed);
+}
+
+scene::Scene scene_of(std::uint32_t seed) {
+  config::Problems problems;
+  scene::Scene scene =
+      scene::load_scene_text(random_scene_text(seed), "seed " + std::to_string(seed), problems);
+  EXPECT_FALSE(problems.has_errors()) << problems.text() << "\n" << random_scene_text(seed);
+  return scene;
+}
+
+plan::Stability stability_of(const NetworkDescription& network) {
+  return plan::stability_of(network, plan::liaison_graph(network));
+}
+
+World world_of(const NetworkDescription& network,
+               engine::VectorWidth width = engine::best_vector_width()) {
+  return World(std::make_shared<const engine::Network>(network), width);
+}
+
+/// A hand that moves the port of a scene to and fro, slower than 0.5 m/s and within 20 mm, or pushes
+/// it with 0.1 N.
+void play(const scene::Scene& scene, World& world, int n) {
+  constexpr double kPeriod = 2000.0;  // [steps]
+  const double turn = 2.0 * M_PI * n / kPeriod;
+  const double width = std::min(0.02, 0.5 * kPeriod * world.network().step() / (2.0 * M_PI));
+  for (const scene::Port& port : scene.ports) {
+    if (port.role == scene::Role::kMass) {
+      world.impose_position(port.mat, port.rest + width * std::sin(turn) * port.directions[0]);
+    } else {
+      world.set_external_force(port.mat, 0.1 * std::sin(turn) * port.directions[0]);
+    }
+  }
+}
+
+/// What start, ports, gravity, changes of state and wells have brought into a motion, at the most [J].
+class Brought {
+ public:
+  /// @param least  below which nothing counts
+  Brought(const Energy& start, double least)
+      : start_(start.kinetic + std::abs(start.elastic) + least), gravity_(start.gravity) {}
+
+  void look(const Energy& now) {
+    const double elastic = now.elastic - now.elastic_error;
+    fallen_ = std::max(fallen_, std::abs(now.gravity - gravity_));
+    well_ = std::max(well_, -elastic);
+    from_outside_ = std::max(from_outside_, std::abs(now.port_work));
+    switched_ = std::max(switched_, std::abs(now.switching));
+    pumped_ = std::max(pumped_, -now.dissipated);
+  }
+  double energy() const { return start_ + fallen_ + well_ + from_outside_ + switched_ + pumped_; }
+
+ private:
+  double start_;
+  double gravity_;
+  double fallen_ = 0.0;
+  double well_ = 0.0;
+  double from_outside_ = 0.0;
+  double switched_ = 0.0;
+  double pumped_ = 0.0;
+};
+
+/// The network at this part of the step that is certified for it, or none where nothing is.
+std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double part) {
+  NetworkDescription network = scene.network;
+  for (int round = 0; round < 8; ++round) {
+    const plan::Stability stability = stability_of(network);
+    if (network.integrator == engine::IntegratorKind::kModal) {
+      return stability.holds() ? std::optional(network) : std::nullopt;
+    }
+    const plan::LiaisonGraph graph = plan::liaison_graph(network);
+    constexpr double kLongest = 0.01;  // [s]: no session is slower
+    double step = part * std::min(stability.certified.step, kLongest);
+    const auto contact = plan::worst_contact_of(network, graph);
+    if (contact && contact->stiffness > 0.0) {
+      step = std::min(step, part * network.step / std::sqrt(contact->stiffness));
+    }
+    if (std::abs(step - network.step) < 1e-9 * step) {
+      return stability.holds() ? std::optional(network) : std::nullopt;
+    }
+    network.step = step;
+  }
+  return stability_of(network).holds() ? std::optional(network) : std::nullopt;
+}
+
+TEST(RandomScenes, AreReadAndNeverCertifiedAndDivergingAtOnce) {
+  std::uint32_t certain = 0;
+  for (std::uint32_t seed = kFirst; seed < kFirst + kCount; ++seed) {
+    const scene::Scene scene = scene_of(seed);
+    if (HasFailure()) return;
+    const plan::Stability stability = stability_of(scene.network);
+    EXPECT_FALSE(stability.holds() && stability.diverges()) << named(seed);
+    const bool crosses = stability.uncertainty && stability.uncertainty->why == plan::kLimitsCross;
+    EXPECT_FALSE(crosses) << named(seed);
+    certain += stability.uncertainty ? 0U : 1U;
+  }
+  EXPECT_GT(certain, kCount / 3);
+  RecordProperty("certain", static_cast<int>(certain));
+}
+
+/// Sees a link, or a pair of a set, turn about between two steps, for which no step is short enough
+/// (docs/stability.md). Links in 1 dimension never turn.
+class TurnWatch {
+ public:
+  explicit TurnWatch(const NetworkDescription& network) {
+    const bool turns = network.dimension > 1;
+    const auto add = [this](std::uint32_t a, std::uint32_t b) {
+      pairs_.push_back({a, b, Vec3::Zero()});
+    };
+    for (const auto& link : network.links) {
+      if (turns) add(link.mat_a, link.mat_b);
+    }
+    for (const auto& link : network.state_links) {
+      if (turns) add(link.mat_a, link.mat_b);
+    }
+    for (const auto& link : network.maxwell_links) {
+      if (turns) add(link.mat_a, link.mat_b);
+    }
+    for (const auto& set : network.sets) {
+      for (const std::uint32_t p : set.set_p) {
+        for (const std::uint32_t q : set.set_q.empty() ? set.set_p : set.set_q) {
+          if (p != q) add(p, q);
+        }
+      }
+    }
+  }
+
+  bool has_turned(const World& world) {
+    bool turned = false;
+    for (Pair& pair : pairs_) {
+      const Vec3 now = world.position(pair.b) - world.position(pair.a);
+      turned = turned || now.dot(pair.before) < 0.0;
+      pair.before = now;
+    }
+    return turned;
+  }
+
+ private:
+  struct Pair {
+    std::uint32_t a;
+    std::uint32_t b;
+    Vec3 before;
+  };
+  std::vector<Pair> pairs_;
+};
+
+/// What comes of a run.
+struct Outcome {
+  std::string growth;  // why it is not bounded
+  double worst = 0.0;  // integration error over what was brought in
+  int steps = 0;       // until something ended what is certified
+};
+
+Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network, int steps,
+                   double share) {
+  World world = world_of(network);
+  sim::PartnerWatch partners(network);
+  TurnWatch turns(network);
+  const plan::ReachLimit reach = plan::reach_limit(network);
+  // A hand that pushes 0.05 kg for one step.
+  const double push = 0.1 * network.step;
+  Brought brought(world.energy(), 1e-12 + push * push / 0.05);
+  Outcome run;
+  for (int n = 1; n <= steps; ++n) {
+    play(scene, world, n);
+    const engine::StepReport report = world.step();
+    partners.update(world);
+    if (partners.nearest() && partners.nearest()->is_passed()) return run;
+    if (turns.has_turned(world)) return run;
+    const bool is_within = reach.is_infinite();
+    if (report.non_finite_mats > 0) {
+      run.growth = "not finite at step " + std::to_string(n);
+      return run;
+    }
+    run.steps = n;
+    if (is_within && n % 100 > 0 && n > 100) continue;
+    const Energy energy = world.energy();
+    if (!is_within && energy.kinetic + std::max(energy.elastic, 0.0) > reach.energy) return run;
+    brought.look(energy);
+    constexpr double kOpen = 1e-9;
+    if (network.integrator == engine::IntegratorKind::kCordis &&
+        std::abs(energy.residual()) > kOpen * std::max(energy.largest, brought.energy())) {
+      run.growth = "the account is open by " + std::to_string(energy.residual() / energy.largest) +
+                   " at step " + std::to_string(n);
+      return run;
+    }
+    constexpr double kPumped = 1e30;  // [J]: changes of state bring in ever more
+    if (!(brought.energy() < kPumped)) return run;
+    const double error = energy.integration_error() / brought.energy();
+    run.worst = std::max(run.worst, error);
+    if (!(error < share)) {
+      run.growth = "made " + std::to_string(error) + " of the energy at step " + std::to_string(n);
+      return run;
+    }
+  }
+  return run;
+}
+
+/// By how much the energy of an oscillation of one mass swings, at most, where its step is up to this
+/// part of the certified one: of `cordis` 1 / (1 - part^2).
+double swing_of(engine::IntegratorKind integrator, double part) {
+  constexpr int kParts = 100;
+  double swing = 1.0;
+  for (int k = 0; k < 2 * kParts; ++k) {
+    const double speed = k % 2;
+    NetworkDescription scene;
+    scene.dimension = 1;
+    scene.step = 1e-3;
+    scene.integrator = integrator;
+    scene.mats = {{MatKind::kFixed, 0.0, Vec3::Zero(), Vec3::Zero()},
+                  {MatKind::kMass, 1.0, Vec3(1.0 - speed, 0, 0), Vec3(speed, 0, 0)}};
+    scene.state_machines.emplace_back();
+    scene.state_machines[0].states.emplace_back();
+    scene.state_machines[0].states[0].stiffness = 1.0;
+    scene.state_links = {{0, 1, 0, 0.0}};
+    scene.step = part * (k / 2 + 1) / kParts * stability_of(scene).certified.step;
+    World world = world_of(scene);
+    for (int n = 0; n < 500; ++n) {
+      world.step();
+      swing = std::max(swing, 1.0 + world.energy().integration_error() / 0.5);
+    }
+  }
+  return swing;
+}
+
+/// Visits the network of every seed that is certified at this part of the step.
+/// @return how many there were
+template <class Visit>
+std::uint32_t for_each_certified(double part, const Visit& visit) {
+  std::uint32_t count = 0;
+  for (std::uint32_t seed = kFirst; seed < kFirst + kCount; ++seed) {
+    const scene::Scene scene = scene_of(seed);
+    const auto network = certified_at(scene, part);
+    if (!network) continue;
+    ++count;
+    visit(seed, scene, *network);
+  }
+  return count;
+}
+
+TEST(RandomScenes, CertifiedRunsStayBounded) {
+  constexpr double kPart = 0.98;
+  std::map<engine::IntegratorKind, double> swings;
+  const int steps = rounds(20000);
+  std::uint32_t whole = 0;
+  double worst = 0.0;
+  const auto visit = [&](std::uint32_t seed, const scene::Scene& scene,
+                         const NetworkDescription& network) {
+    double& swing = swings[network.integrator];
+    if (swing == 0.0) swing = swing_of(network.integrator, kPart);
+    const Outcome run = outcome_of(scene, network, steps, std::max(1.1 * swing, 3.0));
+    worst = std::max(worst, run.worst / swing);
+    whole += run.steps == steps ? 1U : 0U;
+    EXPECT_EQ(run.growth, "") << "dt " << network.step << " " << named(seed);
+  };
+  const std::uint32_t held = for_each_certified(kPart, visit);
+  EXPECT_GT(held, kCount / 3);
+  EXPECT_GT(whole, kCount / 4);
+  RecordProperty("certified", static_cast<int>(held));
+  RecordProperty("to the end", static_cast<int>(whole));
+  RecordProperty("largest energy, in swings", std::to_string(worst));
+}
+
+/// A state machine of one state, the stiffest of a link where it starts, as StartTangent takes it.
+engine::StateMachine stiffest_alone(const engine::StateMachine& all, double rest_length,
+                                    double distance, double step) {
+  engine::StateMachine stiffest;
+  double largest = -1.0;
+  for (std::size_t s = 0; s < all.states.size(); ++s) {
+    engine::StateMachine one;
+    one.states = {all.states[s]};
+    engine::LinkState& state = one.states[0];
+    state.first_exit = state.last_exit = 0;
+    const plan::Tangent own = plan::stiffest_tangent(one, rest_length, distance, step);
+    const double touching = 1e-6 * std::abs(own.stiffness) * std::abs(distance);
+    const bool acts = (state.pulls || own.tension < -touching) &&
+                      (state.pushes || own.tension > touching) &&
+                      std::abs(own.tension) < state.force_limit;
+    if (s != all.start || !acts) {
+      state.elasticity = state.dissipation = {};
+      state.pulls = state.pushes = true;
+      state.force_limit = std::numeric_limits<double>::infinity();
+    }
+    const plan::Tangent tangent = plan::stiffest_tangent(one, rest_length, distance, step);
+    const double number = step * step * tangent.stiffness + 2.0 * step * tangent.viscosity;
+    if (number <= largest) continue;
+    largest = number;
+    stiffest = one;
+  }
+  return stiffest;
+}
+
+/// The scene at rest in the pose of its start, each link in its stiffest state, at this times the step
+/// beyond which that diverges; none where that step has no end.
+std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double times) {
+  NetworkDescription network = scene.network;
+  network.freeze_tolerance = 0.0;
+  if (network.integrator == engine::IntegratorKind::kModal) return std::nullopt;
+  for (int round = 0; round < 8; ++round) {
+    const double step = times * plan::StartTangent(network).diverging_step();
+    constexpr double kLongest = 10.0;  // [s]
+    if (!(step < kLongest)) return std::nullopt;
+    if (std::abs(step - network.step) < 1e-9 * step) break;
+    network.step = step;
+  }
+  if (network.step < 0.99 * times * plan::StartTangent(network).diverging_step())
+    return std::nullopt;
+  for (engine::Mat& mat : network.mats) mat.velocity.setZero();
+  std::vector<engine::StateMachine> alone;
+  for (engine::StateLink& link : network.state_links) {
+    const Vec3 along = network.mats[link.mat_b].position - network.mats[link.mat_a].position;
+    alone.push_back(stiffest_alone(network.state_machines[link.state_machine], link.rest_length,
+                                   network.dimension == 1 ? along.x() : along.norm(),
+                                   network.step));
+    link.state_machine =
+        static_cast<std::uint32_t>(network.state_machines.size() + alone.size() - 1);
+  }
+  for (engine::SetLiaison& set : network.sets) {
+    engine::StateMachine one;
+    const engine::StateMachine& all = network.state_machines[set.state_machine];
+    one.states = {all.states[all.start]};
+    one.states[0].first_exit = one.states[0].last_exit = 0;
+    alone.push_back(one);
+    set.state_machine =
+        static_cast<std::uint32_t>(network.state_machines.size() + alone.size() - 1);
+  }
+  network.state_machines.insert(network.state_machines.end(), alone.begin(), alone.end());
+  return network;
+}
+
+/// The network, with a constant force on every mass from far away, so that it stays where it is.
+NetworkDescription held_at_rest(NetworkDescription network) {
+  NetworkDescription still = network;  // shows the forces at rest
+  still.integrator = engine::IntegratorKind::kCordis;
+  still.step = 1e-9;
+  World probe = world_of(still);
+  probe.step();
+  constexpr double kFar = 1e6;  // [m]
+  const auto count = static_cast<std::uint32_t>(network.mats.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const engine::Mat mat = network.mats[i];
+    if (mat.kind != MatKind::kMass) continue;
+    const Vec3 force = -probe.link_force(i) - mat.mass * network.gravity_on(mat);
+    const bool signs = network.dimension == 1;  // of distances
+    const double pull = signs ? force.x() : force.norm();
+    if (pull == 0.0) continue;
+    const Vec3 along = signs ? Vec3(Vec3::UnitX()) : Vec3(force / pull);
+    const auto far = static_cast<std::uint32_t>(network.mats.size());
+    network.mats.push_back({MatKind::kFixed, 0.0, mat.position + kFar * along, Vec3::Zero()});
+    if (!network.radius.empty()) network.radius.push_back(0.0);
+    engine::StateMachine constant;
+    constant.states.emplace_back();
+    constant.states[0].elasticity = engine::Table({-1.0, 1.0}, {pull, pull});
+    network.state_links.push_back(
+        {i, far, static_cast<std::uint32_t>(network.state_machines.size()), kFar});
+    network.state_machines.push_back(constant);
+  }
+  return network;
+}
+
+/// By how much two motions that begin 1e-9 m apart about that rest part within 20,000 steps.
+double parting_of(const NetworkDescription& scene) {
+  const NetworkDescription network = held_at_rest(scene);
+  NetworkDescription disturbed = network;
+  std::mt19937 random(1);
+  for (engine::Mat& mat : disturbed.mats) {
+    if (mat.kind != MatKind::kMass) continue;
+    const auto little = [&random] {
+      return 1e-9 * (static_cast<double>(random()) / 2147483648.0 - 1.0);
+    };
+    for (int axis = 0; axis < network.dimension; ++axis) {
+      mat.position[axis] += little();
+      mat.velocity[axis] += little() / network.step;
+    }
+  }
+  World one = world_of(network);
+  World other = world_of(disturbed);
+  const auto distance = [&] {
+    double square = 0.0;
+    for (std::uint32_t i = 0; i < network.mats.size(); ++i)
+      square += (one.position(i) - other.position(i)).squaredNorm();
+    return std::sqrt(square);
+  };
+  const double before = distance();
+  double most = 0.0;
+  for (int n = 0; n < 20000 && most < 10.0 * before; ++n) {
+    one.step();
+    other.step();
+    const double now = distance();
+    most = std::isfinite(now) ? std::max(most, now) : std::numeric_limits<double>::infinity();
+  }
+  return most / before;
+}
+
+TEST(RandomScenes, SurelyUnstableStatesGrowTenfold) {
+  std::uint32_t tried = 0;
+  for (std::uint32_t seed = kFirst; seed < kFirst + kCount; ++seed) {
+    const auto network = diverging_at(scene_of(seed), 1.02);
+    if (!network) continue;
+    ++tried;
+    const double parting = parting_of(*network);
+    EXPECT_GE(parting, 10.0) << named(seed);
+  }
+  EXPECT_GT(tried, kCount / 2);
+}
+
+TEST(RandomScenes, HaveOneHashOnAllWidthsAndAfterRestore) {
+  constexpr int kHalf = 150;
+  for (std::uint32_t seed = kFirst; seed < kFirst + kCount; ++seed) {
+    const scene::Scene scene = scene_of(seed);
+    std::optional<std::uint64_t> hash;
+    for (const engine::VectorWidth width : engine::supported_vector_widths()) {
+      World world = world_of(scene.network, width);
+      for (int n = 1; n <= kHalf; ++n) {
+        play(scene, world, n);
+        world.step();
+      }
+      const engine::Snapshot snapshot = world.snapshot();
+      World restored = world_of(scene.network, width);
+      restored.restore(snapshot);
+      for (World* which : {&world, &restored}) {
+        for (int n = kHalf + 1; n <= 2 * kHalf; ++n) {
+          play(scene, *which, n);
+          which->step();
+        }
+        if (!hash) hash = which->state_hash();
+        EXPECT_EQ(*hash, which->state_hash()) << to_string(width) << " " << named(seed);
+      }
+    }
+  }
+}
+
+TEST(RandomScenes, MakeNoEnergyAtShortSteps) {
+  constexpr double kPart = 0.02;
+  double worst = 0.0;
+  const auto visit = [&](std::uint32_t seed, const scene::Scene& scene,
+                         const NetworkDescription& network) {
+    // `implicit` is of first order: it takes and makes more.
+    const bool is_implicit = network.integrator == engine::IntegratorKind::kImplicit;
+    const Outcome run = outcome_of(scene, network, rounds(500), is_implicit ? 0.2 : 0.05);
+    worst = std::max(worst, run.worst);
+    EXPECT_EQ(run.growth, "") << "dt " << network.step << " " << named(seed);
+  };
+  const std::uint32_t tried = for_each_certified(kPart, visit);
+  EXPECT_GT(tried, kCount / 3);
+  RecordProperty("largest error", std::to_string(worst));
+}
+
+}  // namespace
+}  // namespace cordis::test

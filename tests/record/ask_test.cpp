@@ -1,0 +1,97 @@
+// tests/record/ask_test.cpp -- the verbs that ask a running session, and how they end.
+#include <csignal>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/record/count_take.h"
+#include "tests/support/child_process.h"
+
+namespace cordis {
+namespace {
+
+using test::ChildProcess;
+using test::kPatience;
+
+const std::string kAsked = std::string(CORDIS_PROGRAM_DIR) + "/cordis";
+
+/// A session that counts, and questions to it as a shell puts them.
+class Ask : public ::testing::Test {
+ protected:
+  Ask() {
+    test::write_count_take(take_);
+    std::ofstream(idl_) << test::kCountIdl;
+    played_.emplace(std::vector<std::string>{kAsked, "play", take_, "--loop", "--session", name_,
+                                             "--domain", domain_});
+    EXPECT_TRUE(played_->wait_for_output("session '" + name_ + "'", kPatience));
+  }
+  ~Ask() override {
+    played_->signal(SIGINT);
+    EXPECT_EQ(played_->wait(kPatience), 0) << played_->output();
+  }
+
+  /// Ends with `code`, and says so much.
+  void ends(const std::string& question, int code, const std::string& says) const {
+    ChildProcess shell(
+        {"/bin/bash", "-c", "set -o pipefail; PATH=" CORDIS_PROGRAM_DIR ":$PATH; " + question});
+    EXPECT_EQ(shell.wait(kPatience), code) << question << "\n" << shell.output();
+    EXPECT_NE(shell.output().find(says), std::string::npos) << question << "\n" << shell.output();
+  }
+
+  mcap::TakeFolder folder_;
+  const std::string take_ = folder_ / "take.mcap";
+  const std::string idl_ = folder_ / "count.idl";
+  const std::string domain_ = std::to_string(test::own_domain());
+  const std::string name_ = "asked_" + domain_;  // others may run such tests beside this one
+  std::optional<ChildProcess> played_;
+};
+
+TEST_F(Ask, FindsTheSessionByItsName) {
+  ends("cordis list", 0, name_);
+  ends("cordis list --json", 0, "\"session\": \"" + name_ + "\"");
+  ends("cordis info " + name_ + " lab/count", 0, "lab::Count");
+  ends("cordis info " + name_ + " --domain " + domain_, 0, "in DDS domain " + domain_);
+  ends("cordis echo " + name_ + " lab/count -n 2 --idl " + idl_, 0, "number: ");
+  ends("cordis hz " + name_ + " --duration 500ms", 0, "lab/count");
+}
+
+TEST_F(Ask, SaysWhichWordIsWrong) {
+  for (const std::string verb :
+       {"info unheard_of", "echo unheard_of", "hz unheard_of", "get unheard_of a.b"})
+    ends("cordis " + verb, 1, "no session 'unheard_of' runs on this host");
+  ends("cordis info " + name_ + " nothing", 1, "no process writes 'nothing'");
+  ends("cordis hz " + name_ + " nothing --duration 200ms", 1,
+       "no message has come on 'nothing'; `cordis info " + name_ + "` lists the topics");
+  ends("cordis get " + name_ + " finger.stiffness_n_per_m", 2, "a take is played");
+  ends("cordis echo", 2, "which session?");
+  ends("cordis echo " + name_ + " -n 0", 2, "-n must be a whole number");
+  ends("cordis info " + name_ + " --json", 2, "--json is for takes");
+
+  ChildProcess echo({kAsked, "echo", name_, "nothing"});
+  EXPECT_TRUE(echo.wait_for_output("no message has come on 'nothing'", kPatience));
+  echo.signal(SIGINT);
+  EXPECT_EQ(echo.wait(kPatience), 0) << echo.output();
+}
+
+TEST_F(Ask, EndsWithoutAWordWhenItsReaderHasGone) {
+  for (const std::string& question :
+       {"echo " + name_ + " lab/count --idl " + idl_, "hz " + name_, "info " + name_}) {
+    ChildProcess shell(
+        {"/bin/bash", "-c",
+         "set -o pipefail; " + kAsked + " " + question + " | head -c 1 > /dev/null"});
+    EXPECT_EQ(shell.wait(kPatience), 0) << shell.output();
+    EXPECT_EQ(shell.output(), "") << question;
+  }
+}
+
+TEST_F(Ask, SaysWhenItsOutputFindsNoRoom) {
+  ends("cordis echo " + name_ + " lab/count --idl " + idl_ + " > /dev/full", 1,
+       "cannot write what came: No space left on device");
+  ends("cordis hz " + name_ + " > /dev/full", 1, "No space left on device");
+}
+
+}  // namespace
+}  // namespace cordis

@@ -1,0 +1,94 @@
+// tests/record/missed_test.cpp -- messages that a recorder misses are counted.
+#include <csignal>
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "record_node/mcap/reader.h"
+#include "tests/record/count_take.h"
+#include "tests/support/child_process.h"
+
+namespace cordis {
+namespace {
+
+using test::ChildProcess;
+using test::kPatience;
+
+const std::string kMissedCordis = std::string(CORDIS_PROGRAM_DIR) + "/cordis";
+
+TEST(MissedMessages, AreCountedInTheTakeAndReportedByInfo) {
+  const mcap::TakeFolder folder;
+  const std::string domain = std::to_string(test::own_domain());
+  const std::string played = folder / "played.mcap";
+  const std::string take = folder / "take.mcap";
+  test::write_count_take(played);
+  ChildProcess player({kMissedCordis, "play", played, "--loop", "--rate", "200", "--session",
+                       "missed", "--domain", domain});
+  ASSERT_TRUE(player.wait_for_output("session 'missed'", kPatience));
+  test::CountListener listener("missed");
+  const auto wait_for_more = [&](std::size_t count) {
+    const std::size_t end = listener.received().size() + count;
+    return test::eventually([&] { return listener.received().size() >= end; });
+  };
+  ASSERT_TRUE(wait_for_more(500)) << player.output();
+
+  ChildProcess recorder(
+      {kMissedCordis, "record", "missed", "--domain", domain, "--topics", "lab/count", "-o", take});
+  ASSERT_TRUE(recorder.wait_for_output("records into", kPatience));
+  ASSERT_TRUE(test::eventually([&] {
+    std::error_code absent;
+    const auto size = std::filesystem::file_size(take + ".part", absent);
+    return !absent && size > 3000;
+  }));
+  recorder.signal(SIGSTOP);
+  ASSERT_TRUE(wait_for_more(30000));  // more than DDS keeps and sockets hold
+  recorder.signal(SIGCONT);
+  ASSERT_TRUE(wait_for_more(2000));
+  recorder.signal(SIGINT);
+  EXPECT_EQ(recorder.wait(kPatience), 3) << recorder.output();
+  EXPECT_NE(recorder.output().find("lost on the way"), std::string::npos) << recorder.output();
+  player.signal(SIGINT);
+  EXPECT_EQ(player.wait(kPatience), 0) << player.output();
+
+  ChildProcess info({kMissedCordis, "info", take, "--json"});
+  EXPECT_EQ(info.wait(kPatience), 3);
+  const auto json = nlohmann::json::parse(info.output());
+  const auto missed = json["missed"];
+  EXPECT_GT(missed["lost"], 1000);
+  EXPECT_GT(missed["before"], 0);
+  EXPECT_EQ(missed["dropped"], 0);
+  const auto words = json["metadata"]["cordis.recording"];
+  EXPECT_EQ(words["lost lab/count"], std::to_string(missed["lost"].get<std::uint64_t>()));
+  // Every number of the writer is in one of the three counts.
+  const mcap::Reader reader(take);
+  mcap::MessageCursor cursor = reader.messages();
+  std::uint32_t last = 0;
+  for (mcap::Message message; cursor.next(message);) last = message.sequence;
+  EXPECT_EQ(last, missed["before"].get<std::uint64_t>() + missed["lost"].get<std::uint64_t>() +
+                      reader.statistics().message_count);
+}
+
+/// The end of `cordis info` on a take whose recorder has missed so many messages.
+void expect_info(const mcap::Metadata& missed, int code, const std::string& line) {
+  const mcap::TakeFolder folder;
+  const std::string take = folder / "take.mcap";
+  mcap::Writer writer(take, {});
+  ASSERT_EQ(writer.add_metadata(missed), mcap::WriteStatus::kOk);
+  ASSERT_EQ(writer.close(), mcap::WriteStatus::kOk);
+  ChildProcess info({kMissedCordis, "info", take});
+  EXPECT_EQ(info.wait(kPatience), code) << info.output();
+  EXPECT_NE(info.output().find(line), std::string::npos) << info.output();
+}
+
+TEST(MissedMessages, FramesThatNewerOnesReplaceAreNoLoss) {
+  expect_info({"cordis.recording", {{"messages_lost", "3"}, {"lost scene/frame", "3"}}}, 0,
+              "\n3 messages replaced by newer ones");
+  expect_info({"cordis.recording",
+               {{"messages_lost", "4"}, {"lost scene/frame", "3"}, {"lost scene/signals", "1"}}},
+              3, "\n1 message lost on the way\n3 messages replaced by newer ones");
+}
+
+}  // namespace
+}  // namespace cordis

@@ -1,0 +1,381 @@
+// tests/resim/resim_test.cpp -- takes that were kept, changed by hand, and computed again.
+#include "cli/resim/resim.h"
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cli/offline/offline_session.h"
+#include "cli/resim/rehash.h"
+#include "idl/topics.h"
+#include "node/dds/payload.h"
+#include "record_node/mcap/reader.h"
+#include "record_node/mcap/writer.h"
+#include "sim_node/engine/core/hash_version.h"
+#include "tests/mcap/take_folder.h"
+
+namespace cordis::cli {
+namespace {
+
+const std::string kGolden = CORDIS_GOLDEN_DIR "/";
+
+/// What becomes of the batches of a copy; false leaves one out.
+using Change = std::function<bool(msg::SceneInputs&)>;
+
+void copy_take(const std::filesystem::path& from, const std::filesystem::path& to,
+               const Change& change) {
+  const mcap::Reader take(from);
+  mcap::Writer writer(to);
+  std::map<std::uint16_t, std::uint16_t> channels;
+  for (const auto& [id, channel] : take.channels()) {
+    mcap::Channel copy = channel;
+    copy.schema_id = 0;
+    channels[id] = writer.add_channel(copy);
+  }
+  mcap::MessageCursor cursor = take.messages();
+  for (mcap::Message message; cursor.next(message);) {
+    std::vector<std::byte> payload;
+    if (take.channels().at(message.channel_id).topic == msg::TOPIC_INPUTS) {
+      msg::SceneInputs batch;
+      ASSERT_TRUE(dds::decode(message.data, batch));
+      if (!change(batch)) continue;
+      payload = dds::encode(batch);
+      message.data = payload;
+    }
+    message.channel_id = channels.at(message.channel_id);
+    ASSERT_EQ(writer.write(message), mcap::WriteStatus::kOk);
+  }
+  ASSERT_EQ(writer.close(), mcap::WriteStatus::kOk);
+}
+
+ResimResult resim_of(const std::filesystem::path& take) {
+  ResimOptions options;
+  options.take = take.string();
+  return resimulate(options);
+}
+
+class KeptTake : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(KeptTake, IsEqualHashForHash) {
+  const ResimResult result = resim_of(kGolden + GetParam());
+  EXPECT_EQ(result.by, FrameCheck::By::kHash);
+  EXPECT_TRUE(result.is_equal());
+  EXPECT_EQ(result.loss, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, KeptTake,
+                         ::testing::Values("realtime_key.mcap", "lockstep_thimbles.mcap",
+                                           "commands.mcap", "pushing_key.mcap"));
+
+TEST(Resim, FindsAChangedBitOfAnInputInTheFrameAfterIt) {
+  // 2e-4 of the position of the key at least.
+  constexpr std::uint64_t kBit = std::uint64_t{1} << 40;
+  const mcap::TakeFolder folder;
+  for (const std::uint64_t turn : {300u, 800u, 1300u}) {
+    const std::filesystem::path changed = folder / (std::to_string(turn) + ".mcap");
+    std::uint64_t changed_turn = 0;
+    copy_take(kGolden + "realtime_key.mcap", changed, [&](msg::SceneInputs& batch) {
+      for (msg::InputSample& sample : batch.sample()) {
+        const bool is_chosen = changed_turn == 0 ? sample.turn() >= turn && sample.value()[0] != 0.0
+                                                 : sample.turn() == changed_turn;
+        if (!is_chosen) continue;
+        changed_turn = sample.turn();
+        double& position = sample.value()[0];
+        position = std::bit_cast<double>(std::bit_cast<std::uint64_t>(position) ^ kBit);
+      }
+      return true;
+    });
+    ASSERT_NE(changed_turn, 0u);
+    const ResimResult result = resim_of(changed);
+    EXPECT_FALSE(result.is_equal());
+    ASSERT_TRUE(result.findings.first);
+    // 4 steps a turn and 40 turns a frame; a frame may have been left out on a busy machine.
+    const std::uint64_t first = result.findings.first->step;
+    EXPECT_GT(first, 4 * changed_turn);
+    std::uint64_t earlier = 0;  // the last frame before the change is equal
+    const mcap::Reader take(changed);
+    mcap::MessageFilter frames;
+    frames.topics = {msg::TOPIC_FRAME};
+    mcap::MessageCursor cursor = take.messages(frames);
+    msg::SceneFrame frame;
+    for (mcap::Message raw; cursor.next(raw);) {
+      ASSERT_TRUE(dds::decode(raw.data, frame));
+      if (frame.step() <= 4 * changed_turn) ++earlier;
+      if (frame.step() > 4 * changed_turn) {
+        EXPECT_EQ(first, frame.step());
+        break;
+      }
+    }
+    EXPECT_EQ(result.findings.equal, earlier);
+  }
+}
+
+/// The key of this take presses against the upper end of its travel. There the stop takes a difference
+/// away by sqrt(1 - 0.72) = 0.53 a step, 0.08 a turn: 12 turns later it is smaller than the float of a
+/// frame, and the hash sees the last bits alone.
+TEST(Resim, FindsAChangedForceInTheFrameAfterItAtTheEndOfATravel) {
+  const mcap::TakeFolder folder;
+  for (const auto& [turn, min_m, max_m] :
+       {std::tuple{719u, 1e-7, 1e-6}, std::tuple{717u, 1e-10, 1e-8}, std::tuple{700u, 0.0, 0.0}}) {
+    SCOPED_TRACE(turn);
+    const std::filesystem::path changed = folder / (std::to_string(turn) + ".mcap");
+    int changes = 0;
+    copy_take(kGolden + "pushing_key.mcap", changed, [&](msg::SceneInputs& batch) {
+      for (msg::InputSample& sample : batch.sample()) {
+        if (sample.turn() != turn) continue;
+        sample.value()[0] -= 0.5;  // half of the force
+        ++changes;
+      }
+      return true;
+    });
+    ASSERT_EQ(changes, 1);
+    const ResimResult result = resim_of(changed);
+    ASSERT_TRUE(result.findings.first);
+    EXPECT_GE(result.findings.first->step, 2880u) << "the frame of turn 720";
+    EXPECT_TRUE(min_m == 0.0 || result.findings.first->step == 2880u);
+    EXPECT_GE(result.findings.first->largest_m, min_m);
+    EXPECT_LE(result.findings.first->largest_m, max_m);
+  }
+}
+
+TEST(Resim, SaysWhichBatchIsMissingAndComparesWhatIsCertain) {
+  const mcap::TakeFolder folder;
+  copy_take(kGolden + "realtime_key.mcap", folder / "gap.mcap",
+            [](const msg::SceneInputs& batch) { return batch.batch() != 20; });
+  const ResimResult result = resim_of(folder / "gap.mcap");
+  EXPECT_GT(result.findings.frames, 5u);
+  EXPECT_EQ(result.findings.equal, result.findings.frames);
+  EXPECT_EQ(result.loss, "batch 20 of scene/inputs is missing");
+
+  copy_take(kGolden + "realtime_key.mcap", folder / "late.mcap",
+            [](const msg::SceneInputs& batch) { return batch.batch() > 3; });
+  const ResimResult late = resim_of(folder / "late.mcap");
+  EXPECT_EQ(late.findings.frames, 0u);
+  EXPECT_EQ(late.loss,
+            "the first 3 batches of scene/inputs are missing: the recording began too late");
+}
+
+TEST(Resim, ABatchThatWantsTooManyTurnsIsDamaged) {
+  const mcap::TakeFolder folder;
+  copy_take(kGolden + "realtime_key.mcap", folder / "turns.mcap", [](msg::SceneInputs& batch) {
+    if (batch.batch() == 20) batch.turns(std::uint64_t{1} << 63);
+    return true;
+  });
+  const ResimResult result = resim_of(folder / "turns.mcap");
+  EXPECT_EQ(result.findings.equal, result.findings.frames);
+  EXPECT_EQ(result.loss, "batch 20 of scene/inputs has more than 10000000 turns: it is damaged");
+}
+
+TEST(Resim, AMessageOfInputsHasAtMost16MiB) {
+  msg::SceneInputs batch;
+  batch.engine_version(std::string(15 << 20, 'x'));
+  EXPECT_TRUE(dds::decode(dds::encode(batch), batch));
+  batch.engine_version(std::string(17 << 20, 'x'));
+  EXPECT_FALSE(dds::decode(dds::encode(batch), batch));
+}
+
+TEST(Resim, SaysWhichInputFoundNoRoom) {
+  const mcap::TakeFolder folder;
+  std::uint64_t missing = 0;
+  copy_take(kGolden + "realtime_key.mcap", folder / "gap.mcap", [&](msg::SceneInputs& batch) {
+    if (batch.batch() < 10 || missing != 0 || batch.sample().empty()) return true;
+    missing = batch.sample().front().number();
+    batch.sample().erase(batch.sample().begin());
+    return true;
+  });
+  const ResimResult result = resim_of(folder / "gap.mcap");
+  EXPECT_EQ(result.findings.equal, result.findings.frames);
+  EXPECT_EQ(result.loss,
+            "input " + std::to_string(missing) + " is missing: sim_node had no room for it");
+}
+
+/// As a clock that is set back while a take is recorded leaves it.
+TEST(Resim, TimesThatGoBackDoNotChangeTheOrder) {
+  const mcap::TakeFolder folder;
+  const mcap::Reader take(kGolden + "realtime_key.mcap");
+  {
+    mcap::Writer writer(folder / "back.mcap");
+    std::map<std::uint16_t, std::uint16_t> channels;
+    for (const auto& [id, channel] : take.channels()) {
+      mcap::Channel copy = channel;
+      copy.schema_id = 0;
+      channels[id] = writer.add_channel(copy);
+    }
+    const mcap::Statistics& all = take.statistics();
+    const std::uint64_t middle = all.start_nsec + (all.end_nsec - all.start_nsec) / 2;
+    mcap::MessageCursor cursor = take.messages();
+    for (mcap::Message message; cursor.next(message);) {
+      if (message.log_time_nsec > middle) message.log_time_nsec -= 300'000'000;
+      message.channel_id = channels.at(message.channel_id);
+      ASSERT_EQ(writer.write(message), mcap::WriteStatus::kOk);
+    }
+    ASSERT_EQ(writer.close(), mcap::WriteStatus::kOk);
+  }
+  const ResimResult straight = resim_of(kGolden + "realtime_key.mcap");
+  const ResimResult result = resim_of(folder / "back.mcap");
+  EXPECT_TRUE(result.is_equal());
+  EXPECT_EQ(result.loss, "");
+  EXPECT_EQ(result.findings.frames, straight.findings.frames);
+}
+
+/// No later number shows that one is missing.
+TEST(Resim, SaysThatTheLastInputFoundNoRoom) {
+  const mcap::TakeFolder folder;
+  std::uint64_t last = 0;
+  copy_take(kGolden + "realtime_key.mcap", folder / "gap.mcap", [&](msg::SceneInputs& batch) {
+    if (batch.batch() < 10) {
+      for (const auto& scene : batch.scene()) last = std::max(last, scene.number());
+      for (const auto& reach : batch.reach()) last = std::max(last, reach.number());
+      for (const auto& sample : batch.sample()) last = std::max(last, sample.number());
+      for (const auto& event : batch.event()) last = std::max(last, event.number());
+      return true;
+    }
+    batch.reach().clear();
+    batch.sample().clear();
+    batch.event().clear();
+    batch.lost(1);
+    return true;
+  });
+  const ResimResult result = resim_of(folder / "gap.mcap");
+  EXPECT_GT(result.findings.frames, 0u);
+  EXPECT_EQ(result.findings.equal, result.findings.frames);
+  EXPECT_EQ(result.loss,
+            "input " + std::to_string(last + 1) + " is missing: sim_node had no room for it");
+}
+
+TEST(Resim, ComparesPositionsOfAnotherHashVersionUntilTheTakeIsRenewed) {
+  const mcap::TakeFolder folder;
+  const std::filesystem::path old = folder / "old.mcap";
+  copy_take(kGolden + "realtime_key.mcap", old, [](msg::SceneInputs& batch) {
+    batch.hash_version(engine::kHashVersion + 1);
+    return true;
+  });
+  const ResimResult before = resim_of(old);
+  EXPECT_EQ(before.by, FrameCheck::By::kPosition);
+  EXPECT_TRUE(before.is_equal());
+  ResimOptions options;
+  options.take = old.string();
+  options.keeps_computed = true;
+  rehash(old.string(), resimulate(options));
+  const ResimResult after = resim_of(old);
+  EXPECT_EQ(after.by, FrameCheck::By::kHash);
+  EXPECT_TRUE(after.is_equal());
+  EXPECT_EQ(after.findings.frames, before.findings.frames);
+}
+
+/// A second life counts its frames from 1 again.
+TEST(Resim, ATakeWithARestartIsNotRenewed) {
+  const mcap::TakeFolder folder;
+  const std::filesystem::path twice = folder / "twice.mcap";
+  {
+    const mcap::Reader once(kGolden + "realtime_key.mcap");
+    mcap::Writer writer(twice);
+    std::map<std::uint16_t, std::uint16_t> channels;
+    for (const auto& [id, channel] : once.channels()) {
+      mcap::Channel copy = channel;
+      copy.schema_id = 0;
+      channels[id] = writer.add_channel(copy);
+    }
+    for (const std::uint64_t life : {0u, 1u}) {
+      mcap::MessageCursor cursor = once.messages();
+      for (mcap::Message message; cursor.next(message);) {
+        std::vector<std::byte> payload(message.data.begin(), message.data.end());
+        const std::string& topic = once.channels().at(message.channel_id).topic;
+        if (msg::SceneInputs batch; life == 1 && topic == msg::TOPIC_INPUTS) {
+          ASSERT_TRUE(dds::decode(message.data, batch));
+          batch.epoch(batch.epoch() + 1);
+          payload = dds::encode(batch);
+        }
+        if (msg::SceneFrame frame; life == 1 && topic == msg::TOPIC_FRAME) {
+          ASSERT_TRUE(dds::decode(message.data, frame));
+          frame.epoch(frame.epoch() + 1);
+          payload = dds::encode(frame);
+        }
+        message.data = payload;
+        message.channel_id = channels.at(message.channel_id);
+        ASSERT_EQ(writer.write(message), mcap::WriteStatus::kOk);
+      }
+    }
+    ASSERT_EQ(writer.close(), mcap::WriteStatus::kOk);
+  }
+  const auto bytes = [&twice] {
+    std::ifstream file(twice, std::ios::binary);
+    return std::string((std::istreambuf_iterator<char>(file)), {});
+  };
+  const std::string before = bytes();
+  ResimOptions options;
+  options.take = twice.string();
+  options.keeps_computed = true;
+  ResimResult result = resimulate(options);
+  EXPECT_EQ(result.other_lives, 1u);
+  EXPECT_THROW(rehash(twice.string(), result), std::runtime_error);
+  EXPECT_EQ(bytes(), before);
+  result.other_lives = 0;  // frames of the other life are not those that were computed
+  EXPECT_THROW(rehash(twice.string(), result), std::runtime_error);
+  EXPECT_EQ(bytes(), before);
+  EXPECT_FALSE(std::filesystem::exists(twice.string() + ".renewed.part"));
+}
+
+TEST(Resim, ComparesAnotherModelUnderTheSameHand) {
+  ResimOptions options;
+  options.take = kGolden + "realtime_key.mcap";
+  options.integrator = "leapfrog";
+  const ResimResult other = resimulate(options);
+  EXPECT_TRUE(other.compares_models());
+  EXPECT_GT(other.findings.largest->largest_m, 0.0);
+  EXPECT_LT(other.findings.largest->largest_m, 1e-3);  // two schemes of second order
+  options.integrator = "cordis";                       // its own
+  EXPECT_EQ(resimulate(options).findings.largest->largest_m, 0.0);
+}
+
+TEST(Resim, RefusesASceneOfAnotherGestureRate) {
+  const mcap::TakeFolder folder;
+  const std::string scene = (folder / "slow.yaml").string();
+  std::ofstream(scene) << "cordis: 1\nname: slow\nspace: 1\n"
+                          "step: {rate_hz: 1000, gesture_rate_hz: 500}\n"
+                          "matter: {ball: {kind: mass, at_m: [0], mass_kg: 0.1}}\n";
+  ResimOptions options;
+  options.take = kGolden + "realtime_key.mcap";
+  options.scene_file = scene;
+  try {
+    resimulate(options);
+    FAIL() << "a take of 1000 Hz with a scene of 500 Hz";
+  } catch (const std::exception& error) {
+    EXPECT_EQ(std::string(error.what()), scene +
+                                             " has a gesture rate of 500 Hz, and the take one of "
+                                             "1000 Hz: give the scene 'gesture_rate_hz: 1000'");
+  }
+}
+
+/// The hand of a take of lockstep, in the same scene: driver, guards and exchange give the same bits.
+TEST(Resim, AHandThatIsReplayedGivesTheStateOfTheTake) {
+  const mcap::TakeFolder folder;
+  const std::string take = kGolden + "lockstep_thimbles.mcap";
+  const std::string configs = CORDIS_SOURCE_DIR "/launch_configs/";
+  std::ofstream(folder / "launch.yaml")
+      << "cordis: 1\nclock: lockstep\nnodes:\n  sim: {node: sim_node, scene: '" << configs
+      << "scenes/plasticine.yaml'}\n  thimbles: {node: device_node, device: '" << configs
+      << "devices/two_thimbles.yaml', driver: replay, replay: {take: '" << take << "'}}\n";
+  OfflineSession session((folder / "launch.yaml").string());
+  session.play_until(1.0);
+  EXPECT_EQ(session.world().step_count(), 4000u);
+  EXPECT_EQ(session.world().state_hash(), resim_of(take).state_hash);
+}
+
+TEST(Resim, RefusesWhatIsNoTake) {
+  EXPECT_ANY_THROW(resim_of(kGolden + "hashes.yaml"));
+  EXPECT_ANY_THROW(resim_of(kGolden + "absent.mcap"));
+}
+
+}  // namespace
+}  // namespace cordis::cli

@@ -1,0 +1,44 @@
+// tests/sim/rate_check_test.cpp -- scenes that have a rate and an accuracy.
+#include "sim_node/checks/rate_check.h"
+
+#include "tests/sim/loaded_scenes.h"
+
+namespace cordis::sim {
+namespace {
+
+/// A mass on a spring, 16 vibrations per second.
+scene::Scene settled(const std::string& step, config::Problems& problems) {
+  scene::Scene scene = scene::load_scene_text("cordis: 1\nspace: 1\nstep: {" + step +
+                                                  R"(gesture_rate_hz: 10, integrator: cordis}
+accuracy: {tolerance: 0.001, band_hz: 16}
+liaisons: {holder: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}}
+matter:
+  ground: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}
+links: [{liaison: holder, between: [ground, bob]}]
+)",
+                                              "t", problems);
+  select_rate(scene, problems);
+  return scene;
+}
+
+TEST(SettledRate, IsThatOfThePlanWhereTheSceneHasNone) {
+  config::Problems problems;
+  EXPECT_EQ(settled("", problems).step_rate_hz, 650.0);  // (w dt)^2 / 24 = 0.001
+  EXPECT_EQ(problems.text(), "");
+}
+
+TEST(SettledRate, IsThatOfTheSceneAndTooLowAWarning) {
+  config::Problems enough;
+  EXPECT_EQ(settled("rate_hz: 700, ", enough).step_rate_hz, 700.0);
+  EXPECT_EQ(enough.text(), "");
+
+  config::Problems too_low;
+  EXPECT_EQ(settled("rate_hz: 500, ", too_low).step_rate_hz, 500.0);
+  EXPECT_FALSE(too_low.has_errors());
+  EXPECT_NE(too_low.text().find("at 500 Hz the scene does not keep this"), std::string::npos);
+  EXPECT_NE(too_low.text().find("take a rate_hz of 650"), std::string::npos) << too_low.text();
+}
+
+}  // namespace
+}  // namespace cordis::sim

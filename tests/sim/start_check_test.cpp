@@ -1,0 +1,76 @@
+// tests/sim/start_check_test.cpp -- warnings of starts that no rate or rounding can follow.
+#include "sim_node/checks/start_check.h"
+
+#include "tests/sim/loaded_scenes.h"
+
+namespace cordis::sim {
+namespace {
+
+std::string warnings_of(const std::string& text) {
+  config::Problems problems;
+  const scene::Scene scene = scene::load_scene_text(text, "t", problems);
+  check_start(scene, problems);
+  return problems.text();
+}
+
+/// Balls of 1 g in a row, in a set or joined one to one.
+std::string balls(const std::string& spacing, bool as_set) {
+  const std::string link = as_set
+                               ? "{liaison: clay, within: row, name: hold}"
+                               : "{liaison: clay, between: [\"row[2]\", \"row[3]\"], name: hold}";
+  return R"(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+liaisons:
+  clay: {elasticity: {kind: lennard_jones, depth_j: 1.0e-5, diameter_m: 0.008, cut_m: 0.02}}
+matter:
+  row: {kind: points, mass_kg: 0.001, radius_m: 0.004, at_m: [[0, 0], [0.01, 0], [0.02, 0], [)" +
+         spacing + R"(, 0]]}
+links:
+  - )" + link +
+         "\n";
+}
+
+TEST(StartCheck, WarnsOfLennardJonesBallsThatTheFirstStepThrowsApart) {
+  for (const bool as_set : {true, false}) {
+    EXPECT_EQ(warnings_of(balls("0.028", as_set)), "") << as_set;
+    EXPECT_EQ(warnings_of(balls("0.0275", as_set)), "") << as_set;  // they overlap a little
+    const std::string text = warnings_of(balls("0.022", as_set));
+    EXPECT_EQ(text.find("t:9:"), 0u) << text;
+    EXPECT_NE(text.find("warning: row[2] and row[3] start 0.002 m apart, and hold"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("whose diameter is 0.008 m, pushes them with 4.03e+06 N: 8.05e+03 m in the "
+                        "first step"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("start them at least a diameter apart"), std::string::npos) << text;
+  }
+}
+
+std::string falling(const std::string& at, const std::string& step) {
+  return R"(cordis: 1
+space: 2
+step: {)" +
+         step + R"(}
+world: {gravity_m_per_s2: [0, -9.81]}
+matter:
+  near: {kind: mass, mass_kg: 0.1, at_m: [0, 0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: [0, )" +
+         at + "]}\n";
+}
+
+TEST(StartCheck, WarnsOfAPlaceWhoseRoundingSwallowsGravity) {
+  // half of what 1e6 m are rounded to is 5.8e-11 m, and g dt^2 9.8e-12 m at 1 MHz
+  const std::string text = warnings_of(falling("1e6", "rate_hz: 1000000, integrator: leapfrog"));
+  EXPECT_NE(text.find("t:7:3: warning: bob never begins to fall: 9.81e-12 m a step are less than "
+                      "half of what a position of 1e+06 m is rounded to"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(warnings_of(falling("1e4", "rate_hz: 1000000, integrator: leapfrog")), "");
+  EXPECT_EQ(warnings_of(falling("1e6", "rate_hz: 100000, integrator: leapfrog")), "");
+  EXPECT_EQ(warnings_of(falling("1e6", "rate_hz: 1000000, integrator: cordis")), "");
+}
+
+}  // namespace
+}  // namespace cordis::sim

@@ -1,0 +1,105 @@
+// tests/viz/request_filter_test.cpp
+#include "viz_node/web/request_filter.h"
+
+#include <gtest/gtest.h>
+
+namespace cordis::viz {
+namespace {
+
+constexpr bool kLoopbackOnly = true;
+constexpr bool kOpenToAll = false;
+
+Request page_load() {
+  return {.method = "GET", .target = "/", .host = "127.0.0.1:8080", .origin = "", .upgrade = false};
+}
+
+Request live() {
+  return {.method = "GET",
+          .target = "/live",
+          .host = "localhost:8080",
+          .origin = "http://localhost:8080",
+          .upgrade = true};
+}
+
+unsigned status_of(const Request& request, bool loopback_only = kLoopbackOnly) {
+  const auto refusal = refusal_of(request, loopback_only);
+  return refusal ? refusal->status : 0;
+}
+
+TEST(RequestFilter, LetsAPageAndItsWebSocketIn) {
+  EXPECT_EQ(status_of(page_load()), 0u);
+  EXPECT_EQ(status_of(live()), 0u);
+}
+
+TEST(RequestFilter, RefusesEveryMethodButGet) {
+  for (const std::string_view method : {"POST", "HEAD", "PUT", "OPTIONS", "get", ""}) {
+    Request request = page_load();
+    request.method = method;
+    EXPECT_EQ(status_of(request), 405u) << method;
+  }
+}
+
+TEST(RequestFilter, RefusesPathsThatNoPageHas) {
+  for (const std::string_view target :
+       {"/../etc/passwd", "/a/../../b", "/..", "/%2e%2e/x", "/a\\b", "/a\tb", "/\x80"}) {
+    Request request = page_load();
+    request.target = target;
+    EXPECT_EQ(status_of(request), 403u) << target;
+  }
+  Request request = page_load();
+  request.target = "http://127.0.0.1/";
+  EXPECT_EQ(status_of(request), 400u);
+}
+
+TEST(RequestFilter, LetsAnyQueryPass) {
+  Request request = page_load();
+  request.target = "/?next=%2e%2e/";
+  EXPECT_EQ(status_of(request), 0u);
+  EXPECT_EQ(path_of("/a.js?b#c"), "/a.js");
+}
+
+TEST(RequestFilter, RefusesForeignOrigins) {
+  for (const std::string_view origin :
+       {"http://elsewhere.example", "null", "http://localhost", "http://localhost:8081",
+        "http://localhost:8080.elsewhere.example", "ftp://localhost:8080", "localhost:8080"}) {
+    Request request = live();
+    request.origin = origin;
+    EXPECT_EQ(status_of(request), 403u) << origin;
+  }
+}
+
+TEST(RequestFilter, TakesTheOriginOfAProxyWithTlsAndProgramsWithoutOne) {
+  Request request = live();
+  request.origin = "https://LOCALHOST:8080";
+  EXPECT_EQ(status_of(request), 0u);
+  request.origin = "";
+  EXPECT_EQ(status_of(request), 0u);
+}
+
+TEST(RequestFilter, RefusesNamesThatWereMadeToPointHere) {
+  for (const std::string_view host :
+       {"elsewhere.example", "elsewhere.example:8080", "", "127.0.0.1.elsewhere.example",
+        "localhost.elsewhere.example:8080", "[::2]:8080"}) {
+    Request request = page_load();
+    request.host = host;
+    EXPECT_EQ(status_of(request), 403u) << host;
+    EXPECT_EQ(status_of(request, kOpenToAll), 0u) << host;
+  }
+  for (const std::string_view host : {"LocalHost:9", "127.0.0.1", "[::1]:8080", "[::1]"}) {
+    Request request = page_load();
+    request.host = host;
+    EXPECT_EQ(status_of(request), 0u) << host;
+  }
+}
+
+TEST(RequestFilter, KeepsTheWebSocketAtItsPath) {
+  Request request = live();
+  request.target = "/other";
+  EXPECT_EQ(status_of(request), 404u);
+  request.target = "/live";
+  request.upgrade = false;
+  EXPECT_EQ(status_of(request), 426u);
+}
+
+}  // namespace
+}  // namespace cordis::viz
