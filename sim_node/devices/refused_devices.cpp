@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <ranges>
 #include <utility>
 
 #include <fmt/format.h>
@@ -166,13 +167,12 @@ RefusedDevices::Verdict RefusedDevices::check(const Known& device) const {
 /// has sent last.
 std::vector<DeviceLoop> RefusedDevices::find_loops(std::string& delay_text) const {
   std::vector<DeviceLoop> loops;
-  std::vector<std::size_t> order;
-  for (std::size_t i = known_.size(); i-- > 0;) {
-    if (known_[i].is_there) order.push_back(i);
+  std::vector<std::pair<std::int64_t, std::size_t>> order;  // read once: the loop goes on writing
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (known_[i].is_there) order.emplace_back(newest_nsec(i), i);
   }
-  std::ranges::stable_sort(order, std::ranges::greater(),
-                           [this](std::size_t i) { return newest_nsec(i); });
-  for (const std::size_t i : order) {
+  std::ranges::sort(order, std::ranges::greater());
+  for (const std::size_t i : order | std::views::values) {
     const Known& device = known_[i];
     const auto demand = std::ranges::find(demands_, device.device_id, &PortDemand::device_id);
     if (demand == demands_.end()) continue;
