@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{1000};
 constexpr std::chrono::milliseconds kLookAtWork{10};
-constexpr auto kLastReply = std::chrono::milliseconds(200);
 
 }  // namespace
 
@@ -28,7 +27,7 @@ CommandListener::~CommandListener() {
   reader_.interrupt();
   if (!thread_.joinable()) return;
   thread_.join();
-  writer_.wait_until_acknowledged(kLastReply);  // the last reply reports what the node ended with
+  writer_.finish();  // the last reply reports what the node ended with
 }
 
 void CommandListener::start() {

@@ -16,7 +16,6 @@ namespace cordis::node {
 namespace {
 
 constexpr auto kPeriod = std::chrono::milliseconds(500);
-constexpr auto kLastStatus = std::chrono::milliseconds(300);
 // So long it may take until those who look on have found a node.
 constexpr auto kFound = std::chrono::milliseconds(500);
 
@@ -63,7 +62,7 @@ StatusPublisher::~StatusPublisher() {
   thread_.join();
   std::this_thread::sleep_until(begun_ + kFound);  // when the whole run was shorter
   publish();
-  writer_.wait_until_acknowledged(kLastStatus);
+  writer_.finish();
 }
 
 void StatusPublisher::publish_now() noexcept {

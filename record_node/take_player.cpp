@@ -39,7 +39,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kLongestWait = std::chrono::milliseconds(100);
 constexpr auto kLongestForReaders = std::chrono::seconds(60);
 constexpr auto kReadersSettle = std::chrono::milliseconds(200);
-constexpr auto kLastMessages = std::chrono::milliseconds(500);
 constexpr const char* kName = "play";
 constexpr double kMaxSteps = 1e6;
 // Every node speaks again within this time: so far before a jump lies the last status of each.
@@ -163,7 +162,7 @@ struct TakePlayer::Impl {
     changed.notify_one();
     thread.join();
     for (auto& [topic, writer] : writers) {
-      if (topic.reliable) writer->wait_until_acknowledged(kLastMessages);
+      if (topic.reliable) writer->finish();
     }
   }
 

@@ -10,7 +10,6 @@
 namespace cordis::sim {
 namespace {
 
-constexpr std::chrono::milliseconds kLastBatch{500};  // for readers to take it
 constexpr std::chrono::milliseconds kLookForReader{2};
 constexpr std::uint64_t kBatchesAhead = 8;  // of a reader that gets them all, of 32 that DDS keeps
 constexpr std::chrono::milliseconds kLongestPause{1000};  // of a scene whose reader takes nothing
@@ -53,8 +52,8 @@ FramePublisher::~FramePublisher() {
   ending_.store(true);
   wake_.release();
   thread_.join();
-  signal_writer_.wait_until_acknowledged(kLastBatch);
-  event_writer_.wait_until_acknowledged(kLastBatch);
+  signal_writer_.finish();
+  event_writer_.finish();
 }
 
 bool FramePublisher::wait_for_signal_reader(const std::string& node, bool is_paced,

@@ -16,7 +16,6 @@ static_assert(static_cast<int>(config::Clock::kRealtime) == msg::PACE_REALTIME);
 static_assert(static_cast<int>(config::Clock::kLockstep) == msg::PACE_LOCKSTEP);
 static_assert(static_cast<int>(config::Clock::kAsap) == msg::PACE_ASAP);
 
-constexpr auto kFarewell = 500ms;  // for the last batch to arrive
 constexpr std::size_t kInputsPerBatch = 1024;
 constexpr auto kBatchEvery = 30ms;  // so that a session that outruns time sends no flood of them
 
@@ -53,7 +52,7 @@ InputPublisher::InputPublisher(dds::Participant& participant, std::uint64_t epoc
 InputPublisher::~InputPublisher() {
   collect();
   static_cast<void>(write());
-  writer_.wait_until_acknowledged(kFarewell);
+  writer_.finish();
 }
 
 bool InputPublisher::publish() {

@@ -1,8 +1,6 @@
 // sim_node/sound_publisher.cpp
 #include "sim_node/sound_publisher.h"
 
-#include <chrono>
-
 namespace cordis::sim {
 
 SoundPublisher::SoundPublisher(dds::Participant& participant, std::uint64_t epoch)
@@ -15,8 +13,7 @@ SoundPublisher::~SoundPublisher() {
   ending_.store(true);
   wake_.release();
   thread_.join();
-  constexpr std::chrono::milliseconds kLastBlock{500};  // for readers to take it
-  writer_.wait_until_acknowledged(kLastBlock);
+  writer_.finish();
 }
 
 void SoundPublisher::submit(const LoadedScene& scene, bool waits, std::int64_t now_nsec) noexcept {

@@ -1,6 +1,7 @@
 // node/dds/participant.cpp
 #include "node/dds/participant.h"
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -82,6 +83,18 @@ std::string Participant::Impl::mismatch() const {
 void Participant::Impl::drop(const Peer& peer) const noexcept {
   const std::lock_guard lock(mutex_);
   presence_->drop(peer);
+}
+
+std::chrono::milliseconds Participant::Impl::farewell() noexcept {
+  using std::chrono::milliseconds;
+  const std::lock_guard lock(farewell_mutex_);
+  const auto now = std::chrono::steady_clock::now();
+  if (!farewell_end_) {
+    const std::lock_guard lock_of_presence(mutex_);
+    presence_->drop_who_is_gone();
+    farewell_end_ = now + kFarewell;
+  }
+  return std::max(milliseconds(0), std::chrono::ceil<milliseconds>(*farewell_end_ - now));
 }
 
 void Participant::Impl::add(Endpoint& endpoint) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <compare>
 #include <cstdint>
 #include <memory>
@@ -41,6 +42,10 @@ struct Peer {
 
 /// Looks, one per second, after which a participant of another host that says nothing is dropped.
 inline constexpr int kForgottenAfterLooks = 60;
+
+/// How long the writers of a participant wait, all together, for what they wrote last to arrive. A
+/// process that ends is to end within the patience of its launcher, whoever has stopped reading.
+inline constexpr std::chrono::milliseconds kFarewell{500};
 
 /// A writer of another participant, by its GUID in DDS.
 using WriterId = std::array<std::uint8_t, 16>;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -47,6 +48,10 @@ struct Participant::Impl {
   std::uint64_t rejoin_count() const noexcept { return rejoin_count_; }
   void drop(const Peer& peer) const noexcept;
 
+  /// How much of kFarewell is left. The first call begins it, and drops the readers of processes
+  /// that have ended, which acknowledge nothing any more.
+  std::chrono::milliseconds farewell() noexcept;
+
   /// @throws std::runtime_error when DDS refuses.
   void add(Endpoint& endpoint);
   /// @param delete_entity  called while no other presence can take its place
@@ -74,6 +79,8 @@ struct Participant::Impl {
   std::vector<Endpoint*> endpoints_;
   std::unique_ptr<Presence> presence_;
   std::atomic<std::uint64_t> rejoin_count_{0};
+  std::mutex farewell_mutex_;  // of the next
+  std::optional<std::chrono::steady_clock::time_point> farewell_end_;
   std::thread watch_;
 };
 

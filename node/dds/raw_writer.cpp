@@ -105,9 +105,10 @@ int RawWriter::matched_count() const noexcept {
   return status.current_count;
 }
 
-bool RawWriter::wait_until_acknowledged(std::chrono::milliseconds at_most) noexcept {
+void RawWriter::finish() noexcept {
+  const std::chrono::milliseconds at_most = impl_->participant.farewell();
   const std::lock_guard lock(impl_->in_use);
-  return wait_for_acknowledgments(*impl_->writer, at_most);
+  static_cast<void>(wait_for_acknowledgments(*impl_->writer, at_most));
 }
 
 }  // namespace cordis::dds

@@ -25,8 +25,9 @@ class RawWriter {
 
   int matched_count() const noexcept;  ///< readers there are now
 
-  /// Waits until all reliable readers have what was written, at most so long.
-  bool wait_until_acknowledged(std::chrono::milliseconds at_most) noexcept;
+  /// Waits, before the writer ends, until all reliable readers have what was written: within the
+  /// kFarewell that all writers of the participant share from the first call of any on.
+  void finish() noexcept;
 
  private:
   struct Impl;

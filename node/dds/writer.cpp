@@ -150,6 +150,11 @@ bool Writer<Message>::wait_until_acknowledged(std::chrono::milliseconds at_most)
   return wait_for_acknowledgments(*impl_->writer, at_most);
 }
 
+template <class Message>
+void Writer<Message>::finish() noexcept {
+  static_cast<void>(wait_until_acknowledged(impl_->participant.farewell()));
+}
+
 template class Writer<msg::GesturePositions>;
 template class Writer<msg::GestureForces>;
 template class Writer<msg::DeviceDescription>;

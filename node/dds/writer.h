@@ -32,6 +32,10 @@ class Writer {
   /// Waits until all reliable readers have what was written, at most so long.
   bool wait_until_acknowledged(std::chrono::milliseconds at_most) noexcept;
 
+  /// Waits likewise before the writer ends, within the kFarewell that all writers of the participant
+  /// share from the first call of any on.
+  void finish() noexcept;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

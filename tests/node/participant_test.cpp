@@ -187,6 +187,36 @@ std::set<std::string> local_addresses(const std::function<bool(int)>& wanted) {
   return addresses;
 }
 
+TEST(Participant, WaitsOnceForAllItsWritersWhenAProcessHasStoppedReading) {
+  Participant here(member("farewell", "here"));
+  Writer<msg::NodeStatus> statuses(here, Topic::kStatus);
+  Writer<msg::ControlReply> replies(here, Topic::kReply);
+  Writer<msg::SceneEvents> events(here, Topic::kEvents);
+  const auto stopped = speaker("farewell", "stopped");
+  ASSERT_TRUE(eventually([&] {
+    return statuses.matched_count() == 1 && replies.matched_count() == 1 &&
+           events.matched_count() == 1;
+  }));
+  stopped->signal(SIGSTOP);
+  msg::NodeStatus status;
+  msg::ControlReply reply;
+  msg::SceneEvents batch;
+  ASSERT_TRUE(eventually([&] {
+    return replies.write(reply) && !replies.wait_until_acknowledged(20ms);
+  })) << "it has stopped";
+  ASSERT_TRUE(statuses.write(status) && events.write(batch));
+
+  const auto begun = std::chrono::steady_clock::now();
+  statuses.finish();
+  const auto first = std::chrono::steady_clock::now() - begun;
+  replies.finish();
+  events.finish();
+  const auto all = std::chrono::steady_clock::now() - begun;
+
+  EXPECT_GT(first, kFarewell / 2) << "it waits for the process that has stopped";
+  EXPECT_LT(all, 2 * first) << "the others wait no more";
+}
+
 TEST(Participant, ListensOnLoopbackAloneAndToNoMulticast) {
   const Participant here(member("unicast", "here"));
 

@@ -1,9 +1,12 @@
-// tests/node/status_speaker.cpp -- a process of a session that publishes its status, as a child of
-// dds_test. usage: status_speaker DOMAIN SESSION NODE. Any signal that ends a process ends it.
+// tests/node/status_speaker.cpp -- a process of a session that publishes its status and has readers
+// of other topics, as a child of a test. usage: status_speaker DOMAIN SESSION NODE. Any signal that ends a process ends it.
 #include <cstdlib>
 
 #include <unistd.h>
 
+#include "idl/control.h"
+#include "idl/scene.h"
+#include "node/dds/reader.h"
 #include "node/status.h"
 #include "node/time.h"
 
@@ -14,5 +17,8 @@ int main(int argc, char** argv) {
   const node::StatusPublisher status(participant, msg::KIND_DEVICE_NODE,
                                      static_cast<std::uint64_t>(node::monotonic_nsec()),
                                      [](msg::NodeStatus& said) { said.phase(msg::PHASE_RUNNING); });
+  const dds::Reader<msg::NodeStatus> statuses(participant, dds::Topic::kStatus);
+  const dds::Reader<msg::ControlReply> replies(participant, dds::Topic::kReply);
+  const dds::Reader<msg::SceneEvents> events(participant, dds::Topic::kEvents);
   for (;;) pause();
 }
