@@ -64,7 +64,8 @@ StepReport World::step() noexcept {
 }
 
 void World::make_room() noexcept {
-  state_->sets.make_room();
+  const FloatMode mode;
+  state_->sets.make_room(state_->mats.force_columns().position);
 }
 
 void World::force_state(std::uint32_t state_link, std::uint32_t state) noexcept {

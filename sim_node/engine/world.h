@@ -60,9 +60,9 @@ class World {
   /// One step. Real time: O(MATs + links), no allocation, never throws.
   StepReport step() noexcept;
 
-  /// Makes room for the states of more pairs of sets: for all that may come into range in the next
-  /// steps. A call after every step that wants it keeps all bonds. Allocates; without memory the
-  /// room stays as it is.
+  /// Makes room for the states of more pairs of sets: for all that can come into range in the next
+  /// step. A call after every step that wants it keeps all bonds, however many pairs meet at once.
+  /// Allocates; without memory the room stays as it is.
   void make_room() noexcept;
 
   std::uint64_t step_count() const noexcept;        ///< steps done since step 0

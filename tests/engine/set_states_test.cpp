@@ -341,6 +341,22 @@ TEST(SetStates, NeverForgetABondThoughAllPairsBindAtOnce) {
   EXPECT_EQ(world.bound_pairs(0).size(), std::size_t{729 * 728 / 2});
 }
 
+TEST(SetStates, KeepAllBondsOfAStepInWhichAllBallsMeet) {
+  World world = make_world(balls_that_fly_together(9, 9.0));
+  std::size_t largest = 0;
+  std::size_t before = 0;
+  for (int n = 0; n < 110; ++n) {
+    const engine::StepReport report = world.step();
+    ASSERT_EQ(report.forgotten_pairs, 0u) << "step " << n;
+    if (report.wants_room) world.make_room();
+    const std::size_t bound = world.bound_pairs(0).size();
+    largest = std::max(largest, bound - std::min(bound, before));
+    before = bound;
+  }
+  EXPECT_GT(largest, 200000u) << "bonds of one step";
+  EXPECT_EQ(world.bound_pairs(0).size(), std::size_t{729 * 728 / 2});
+}
+
 TEST(SetStates, MakeRoomBetweenStepsForAllBonds) {
   const NetworkDescription scene = balls_that_fly_together(9, 0.05);
   World world = make_world(scene);

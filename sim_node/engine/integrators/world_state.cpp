@@ -97,7 +97,7 @@ StepReport WorldState::step() noexcept {
   report.non_finite_mats = moved.non_finite_mats;
   report.overflowed_sets = sets.overflowed_count();
   report.forgotten_pairs = sets.forgotten_count();
-  report.wants_room = sets.want_room();
+  report.wants_room = sets.want_room(mats.force_columns().position);
   report.lost_events = log.lost();
   return report;
 }
@@ -223,6 +223,7 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
   change.switching = stored_energy() - before;
   account.add(change);
   scheme->adopt(*this);
+  sets.make_room(mats.force_columns().position);
   replaced = true;
 }
 
@@ -247,6 +248,7 @@ void WorldState::take(std::span<const double> row) {
   serialize(Archive::restoring(row));
   scheme->restored(*this);
   if (freezing) freezing->restored(outside);
+  sets.make_room(mats.force_columns().position);
 }
 
 void WorldState::swap_table(StateTable& other, StateLinkArray& links_of_other) {

@@ -118,6 +118,21 @@ void NeighbourList::refresh(const double* position) noexcept {
   }
 }
 
+bool NeighbourList::covers(const double* position,
+                           const std::vector<std::uint32_t>& column) const noexcept {
+  if (!valid_ || !whole_) return false;
+  const double free_way = free_way_square(used_);
+  for (std::size_t m = 0; m < column.size(); ++m) {
+    const double* at = position + column[m];
+    const double* from = used_.from.data() + 4 * m;
+    const double x = at[0] - from[0];
+    const double y = at[1] - from[1];
+    const double z = at[2] - from[2];
+    if (!(x * x + y * y + z * z <= free_way)) return false;
+  }
+  return true;
+}
+
 /// The positive root u = s / r of D u^2 + (D - 1) b u - b = 0, see choose_skin().
 double NeighbourList::root_of_least_time(double speed, double part) const noexcept {
   const double b = kBuildOverUse * 2.0 * speed / (range_ * (1.0 - part));

@@ -57,6 +57,10 @@ class NeighbourList {
   /// The part after that; none after the last.
   NeighbourRows rows_after(const NeighbourRows& rows, const double* position) noexcept;
 
+  /// True if no pair that is in range with these positions is missing in the list in use.
+  /// @param position  columns of 4 values; member m is at position[column[m]]
+  bool covers(const double* position, const std::vector<std::uint32_t>& column) const noexcept;
+
   bool is_whole() const noexcept { return whole_; }    ///< one part holds all rows
   double skin() const noexcept { return used_.skin; }  ///< of the list in use [m]
   /// Lists that have been in use.

@@ -77,15 +77,15 @@ std::uint32_t SetLiaisons::forgotten_count() const noexcept {
   return count;
 }
 
-bool SetLiaisons::want_room() const noexcept {
+bool SetLiaisons::want_room(const double* position) const noexcept {
   bool wanted = false;
-  for (const SetPairs& set : sets_) wanted = wanted || set.wants_room();
+  for (const SetPairs& set : sets_) wanted = wanted || set.wants_room(position);
   return wanted;
 }
 
-void SetLiaisons::make_room() noexcept {
+void SetLiaisons::make_room(const double* position) noexcept {
   for (SetPairs& set : sets_) {
-    if (set.wants_room()) set.make_room();
+    if (set.wants_room(position)) set.make_room(position);
   }
 }
 

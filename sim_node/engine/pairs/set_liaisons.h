@@ -41,8 +41,8 @@ class SetLiaisons {
   void adopt(const StateTable& table);
   std::uint32_t overflowed_count() const noexcept;
   std::uint32_t forgotten_count() const noexcept;
-  bool want_room() const noexcept;
-  void make_room() noexcept;
+  bool want_room(const double* position) const noexcept;
+  void make_room(const double* position) noexcept;
   void make_room_of(std::size_t value_count) noexcept;
   void forget_partners() noexcept;
   void serialize(Archive& archive, const StateTable& table);

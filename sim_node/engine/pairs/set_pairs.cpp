@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim_node/engine/core/assert.h"
 
@@ -18,6 +19,16 @@ constexpr std::size_t kStatesPerMember = 16;  // at first, and what the start ta
 std::size_t all_pairs(const SetLiaison& set) {
   const std::size_t p = set.set_p.size();
   return set.set_q.empty() ? p * (p - 1) / 2 : p * set.set_q.size();
+}
+
+/// What ports do in the next step is not known between two steps.
+std::size_t pairs_of_ports(const NetworkDescription& description, const SetLiaison& set) {
+  const auto ports_of = [&](const std::vector<std::uint32_t>& half) {
+    return static_cast<std::size_t>(std::count_if(half.begin(), half.end(), [&](std::uint32_t mat) {
+      return description.mats[mat].kind == MatKind::kPort;
+    }));
+  };
+  return (ports_of(set.set_p) + ports_of(set.set_q)) * (set.set_p.size() + set.set_q.size());
 }
 
 std::size_t list_capacity(const NetworkDescription& description, const SetLiaison& set,
@@ -56,6 +67,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       state_machine_(description.sets[index].state_machine),
       count_p_(description.sets[index].set_p.size()),
       all_pairs_(all_pairs(description.sets[index])),
+      pairs_of_ports_(pairs_of_ports(description, description.sets[index])),
       rest_length_(description.sets[index].rest_length),
       range_(description.sets[index].range),
       share_(partner_share(description, description.sets[index])),
@@ -77,6 +89,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
   if (!radius_.empty()) radius_.resize(padded_count, 0.0);
   position_.resize(4 * padded_count, 0.0);
   moved_.resize(position_.size(), 0.0);
+  ahead_.resize(position_.size(), 0.0);
   force_.resize(position_.size(), 0.0);
   viscous_.resize(position_.size(), 0.0);
   if (description.freeze_tolerance > 0.0) {
@@ -129,9 +142,9 @@ StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& column
 }
 
 bool SetPairs::refresh() noexcept {
-  const std::size_t builds = neighbours_.build_count();
   neighbours_.refresh(position_.data());
-  return neighbours_.build_count() != builds;
+  const std::size_t builds_before = std::exchange(known_builds_, neighbours_.build_count());
+  return known_builds_ != builds_before;
 }
 
 StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept {
@@ -337,6 +350,8 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
     }
     return sum;
   }
+  // Before the first step the list may have been made for the positions of the next one.
+  if (state_machines_.has_states()) neighbours_.refresh(position_.data());
   for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
        rows = neighbours_.rows_after(rows, position_.data())) {
     for (std::size_t a = rows.first; a < rows.last; ++a) {
@@ -376,24 +391,41 @@ void SetPairs::start() noexcept {
 
 /// Room for the pairs remembered and for all that are listed, which may bind in the next step.
 std::size_t SetPairs::wanted_room() const noexcept {
-  if (!state_machines_.has_states()) return 0;
   const std::size_t remembered = state_machines_.states().count();
-  const std::size_t listed = neighbours_.is_whole() ? neighbours_.entry_count() : remembered;
-  return std::min(all_pairs_, remembered + listed + listed / 4);
+  const std::size_t listed = std::min(neighbours_.entry_count(), NeighbourList::kMaxEntries);
+  return std::min(all_pairs_, remembered + listed + listed / 4 + pairs_of_ports_);
 }
 
-bool SetPairs::wants_room() const noexcept {
-  return neighbours_.wants_room() || wanted_room() > state_machines_.states().capacity();
+bool SetPairs::wants_room(const double* position) const noexcept {
+  if (neighbours_.wants_room()) return true;
+  return may_lack_room() && (wanted_room() > state_machines_.states().capacity() ||
+                             !neighbours_.covers(position, column_));
 }
 
-void SetPairs::make_room() noexcept {
-  if (neighbours_.wants_room()) {
-    const std::size_t capacity = neighbours_.wanted_capacity();
-    if (active_.make_room(capacity)) neighbours_.make_room(capacity);
+void SetPairs::make_room(const double* position) noexcept {
+  make_list_room();
+  if (!may_lack_room()) return;
+  if (!neighbours_.covers(position, column_)) {
+    refresh_at(position);
+    make_list_room();
   }
-  if (wanted_room() <= state_machines_.states().capacity()) return;
-  const std::size_t twice = 2 * state_machines_.states().capacity();
-  state_machines_.make_room(std::min(all_pairs_, std::max(wanted_room(), twice)));
+  const std::size_t capacity = state_machines_.states().capacity();
+  if (wanted_room() <= capacity) return;
+  state_machines_.make_room(std::min(all_pairs_, std::max(wanted_room(), 2 * capacity)));
+}
+
+void SetPairs::make_list_room() noexcept {
+  if (!neighbours_.wants_room()) return;
+  const std::size_t capacity = neighbours_.wanted_capacity();
+  if (active_.make_room(capacity)) neighbours_.make_room(capacity);
+}
+
+/// The neighbour list counts all pairs that are in range there, though it may lack room for them.
+void SetPairs::refresh_at(const double* position) noexcept {
+  for (std::size_t m = 0; m < column_.size(); ++m) {
+    std::copy_n(position + column_[m], 3, ahead_.begin() + static_cast<std::ptrdiff_t>(4 * m));
+  }
+  neighbours_.refresh(ahead_.data());
 }
 
 void SetPairs::make_room_of(std::size_t value_count) noexcept {

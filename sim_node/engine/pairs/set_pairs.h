@@ -89,10 +89,13 @@ class SetPairs {
   /// True if the pairs found no room in the neighbour list in the last step, or to be remembered.
   bool is_overflowed() const noexcept;
   std::uint32_t forgotten_count() const noexcept { return state_machines_.forgotten(); }
-  /// True if the pairs of the neighbour list could bind and find no room beside those bound.
-  bool wants_room() const noexcept;
-  /// Makes that room, twice the present one at least. Allocates; without memory it stays.
-  void make_room() noexcept;
+  /// True if the neighbour list is short of room, or pairs could come into range in the next step
+  /// and find no room beside those remembered.
+  /// @param position  of all MATs as the next step begins, except for what ports do
+  bool wants_room(const double* position) const noexcept;
+  /// Makes that room, twice the present one at least, and the neighbour list for these positions.
+  /// Allocates; without memory the room stays.
+  void make_room(const double* position) noexcept;
   /// Makes room for all bonds that so many values of a saved state can hold. Allocates.
   void make_room_of(std::size_t value_count) noexcept;
   NeighbourList& neighbours() noexcept { return neighbours_; }
@@ -110,7 +113,12 @@ class SetPairs {
   }
   /// Precondition: the neighbour list is whole.
   PairsOfSet pairs() noexcept;
+  void make_list_room() noexcept;
+  void refresh_at(const double* position) noexcept;
   std::size_t wanted_room() const noexcept;
+  bool may_lack_room() const noexcept {
+    return state_machines_.has_states() && state_machines_.states().capacity() < all_pairs_;
+  }
   void clear_forces() noexcept;
   void step_active_rows(const PairStep& step) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) const noexcept;
@@ -128,6 +136,7 @@ class SetPairs {
   std::uint32_t state_machine_;
   std::size_t count_p_;
   std::size_t all_pairs_;
+  std::size_t pairs_of_ports_;         // at most
   std::vector<std::uint32_t> column_;  // of the MAT of each member
   std::vector<double> is_mass_;        // of each member: 1 or 0
   std::vector<double> radius_;         // of each member [m]; empty when the rest length is given
@@ -138,10 +147,12 @@ class SetPairs {
   LinearPair linear_;
   LennardJonesPair lennard_jones_;
   NeighbourList neighbours_;
+  std::size_t known_builds_ = 0;  // of the neighbour list, at the last refresh()
   PairBlock block_;
   PairStateMachines state_machines_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches and one batch more
   AlignedVector<double> moved_;
+  AlignedVector<double> ahead_;    // positions of the next step, for make_room()
   AlignedVector<double> force_;    // and as fourth value the number of partners
   AlignedVector<double> viscous_;  // the part of the force that stores no energy
   bool has_viscous_ = false;
