@@ -35,8 +35,9 @@ AxisLayout layout_of(const config::DeviceLimits& limits) {
 }
 
 /// The axes themselves when there is none, or when it is wrong.
-EndPiece read_end_piece(config::MappingReader& reader, int axis_count, config::Problems& problems) {
-  if (!reader.has("end_piece")) return EndPiece(axis_count);
+EndEffectorMap read_end_effector_map(config::MappingReader& reader, int axis_count,
+                                     config::Problems& problems) {
+  if (!reader.has("end_piece")) return EndEffectorMap(axis_count);
   config::MappingReader section(reader.optional_mapping("end_piece"), "end_piece", problems);
   const config::Value rows = section.required_sequence("map");
   section.finish();
@@ -47,12 +48,12 @@ EndPiece read_end_piece(config::MappingReader& reader, int axis_count, config::P
       numbers.push_back(config::read_number(entry, "an entry of the map", 0.0, {}, problems));
     }
   }
-  if (!section.ok() || problems.has_errors()) return EndPiece(axis_count);
+  if (!section.ok() || problems.has_errors()) return EndEffectorMap(axis_count);
   try {
     return {map, axis_count};
   } catch (const std::invalid_argument& error) {
     section.error_at("map", error.what());
-    return EndPiece(axis_count);
+    return EndEffectorMap(axis_count);
   }
 }
 
@@ -246,7 +247,8 @@ LoadedDevice read_device(const config::Value& mapping, const std::string& node,
   reader.optional_integer("cordis", 1, 1, 1);
   device.config.limits = config::read_device_limits(reader);
   device.config.layout = layout_of(device.config.limits);
-  device.config.end_piece = read_end_piece(reader, device.config.layout.count, problems);
+  device.config.end_effector_map =
+      read_end_effector_map(reader, device.config.layout.count, problems);
   read_guards(reader, device.config, problems);
   read_trace(reader, device.config.trace, problems);
   device.driver = read_drivers(reader, device.config, problems);

@@ -6,7 +6,7 @@
 
 #include "device_node/axis.h"
 #include "device_node/drivers/driver.h"
-#include "device_node/end_piece.h"
+#include "device_node/end_effector_map.h"
 #include "device_node/force_guard.h"
 #include "device_node/position_guard.h"
 #include "device_node/traced_driver.h"
@@ -24,7 +24,7 @@ struct DeviceConfig {
   int strength = 10;            ///< among the nodes that play this device
   config::DeviceLimits limits;  ///< as the file declares them, and as they are published
   AxisLayout layout;
-  EndPiece end_piece;                    ///< between the axes and the coordinates on the wire
+  EndEffectorMap end_effector_map;       ///< between the axes and the coordinates on the wire
   ForceGuardSettings force_guard;        ///< of role mass
   PositionGuardSettings position_guard;  ///< of role liaison
   TraceSettings trace;

@@ -33,7 +33,7 @@ Exchange::Exchange(const Setup& setup)
       sensed_nsec_(begun_nsec_) {
   sample_.epoch = setup.series.epoch;
   sample_.sample = setup.series.last_sample;
-  sample_.axis_count = static_cast<std::uint32_t>(config_.end_piece.coordinate_count());
+  sample_.axis_count = static_cast<std::uint32_t>(config_.end_effector_map.coordinate_count());
   meter_.set_phase(Phase::kWaiting);
   driver_.start(role_);
   present_ = driver_.read(sensed_) && all_finite(sensed_, kMaxAxes);
@@ -51,8 +51,8 @@ void Exchange::send_sample() noexcept {
   sample_.answered_epoch = commanded_answer_.epoch;
   sample_.answered_sample = commanded_answer_.sample;
   sample_.answered_time_nsec = commanded_answer_.time_nsec;
-  sample_.value = role_ == Role::kMass ? config_.end_piece.coordinates_of(sensed_)
-                                       : config_.end_piece.coordinate_forces_of(sensed_);
+  sample_.value = role_ == Role::kMass ? config_.end_effector_map.coordinates_of(sensed_)
+                                       : config_.end_effector_map.coordinate_forces_of(sensed_);
   sample_.time_nsec = driver_.changes_within_period() && !lockstep_ ? sensed_nsec_ : clock_();
   if (!channel_.send(sample_)) meter_.count_dropped();
 }
@@ -123,9 +123,10 @@ void Exchange::accept(const GestureMessage& answer) noexcept {
   late_[answer.answered_sample % late_.size()] = answer;
   // The ring holds the delay and one more: the next to be replaced is the oldest.
   applied_ = lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer;
-  const bool finite = role_ == Role::kMass
-                          ? force_guard_.accept(config_.end_piece.axis_forces_of(applied_.value))
-                          : position_guard_.accept(config_.end_piece.axes_of(applied_.value));
+  const bool finite =
+      role_ == Role::kMass
+          ? force_guard_.accept(config_.end_effector_map.axis_forces_of(applied_.value))
+          : position_guard_.accept(config_.end_effector_map.axes_of(applied_.value));
   if (!finite) meter_.count_dropped();
 }
 

@@ -28,7 +28,7 @@ std::string trouble_with(const msg::PortDescription& port, const DeviceConfig& d
                        device.name, static_cast<std::uint32_t>(port.role()));
   }
   for (const std::uint32_t axis : port.axes()) {
-    const int count = device.end_piece.coordinate_count();
+    const int count = device.end_effector_map.coordinate_count();
     if (axis >= static_cast<std::uint32_t>(count)) {
       return fmt::format("port '{}' wants axis {} of device '{}', which has {} (axes 0 to {})",
                          shown(port.name()), axis, device.name, count, count - 1);

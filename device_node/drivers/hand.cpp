@@ -17,7 +17,7 @@ Hand::Hand(const HandSettings& settings, Trajectory target)
 }
 
 void Hand::start() noexcept {
-  position_ = target_.at(0.0);
+  position_ = target_.value_at(0.0);
   speed_ = 0.0;
 }
 
@@ -30,9 +30,9 @@ double Hand::force_on_key_n(double key_m, double key_m_per_s) const noexcept {
 }
 
 void Hand::advance(double time_s, double h_s, double force_n) noexcept {
-  const double pull = settings_.stiffness_n_per_m * (target_.at(time_s) - position_) +
-                      settings_.viscosity_n_s_per_m * target_.rate_at(time_s) + force_n;
-  speed_ = (settings_.mass_kg * speed_ + h_s * pull) /
+  const double drive = settings_.stiffness_n_per_m * (target_.value_at(time_s) - position_) +
+                       settings_.viscosity_n_s_per_m * target_.rate_at(time_s) + force_n;
+  speed_ = (settings_.mass_kg * speed_ + h_s * drive) /
            (settings_.mass_kg + h_s * settings_.viscosity_n_s_per_m);
   position_ += h_s * speed_;
 }

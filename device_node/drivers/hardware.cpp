@@ -32,7 +32,7 @@ Hardware::~Hardware() {
 
 void Hardware::start(Role role) noexcept {
   role_ = role;
-  pull_.fill(0.0);
+  coupling_n_.fill(0.0);
   moving_ = false;
   guard_.start();
   const std::int64_t now = node::monotonic_nsec();
@@ -43,7 +43,7 @@ void Hardware::start(Role role) noexcept {
 bool Hardware::read(AxisValues& sensed) noexcept {
   sensed.fill(0.0);
   for (std::size_t a = 0; a < static_cast<std::size_t>(layout_.count); ++a) {
-    sensed[a] = role_ == Role::kMass ? position_[a] : -pull_[a];
+    sensed[a] = role_ == Role::kMass ? position_[a] : -coupling_n_[a];
   }
   return contact_ == Contact::kPresent;
 }
@@ -60,7 +60,7 @@ bool Hardware::write(const AxisValues& commanded) noexcept {
   if (was_released()) hold_motors(now + kLetGoFor);
   if (contact_ == Contact::kPresent) {
     const bool to_drive = !is_let_go_;
-    ask(!to_drive ? AxisValues{} : role_ == Role::kMass ? commanded : pull_to(commanded));
+    ask(!to_drive ? AxisValues{} : role_ == Role::kMass ? commanded : coupling_forces(commanded));
     late_ += !listen(now + nsec_of(settings_.answer_within_s));
   }
   if (contact_ != Contact::kLost && is_silent(node::monotonic_nsec())) lose();
@@ -71,7 +71,7 @@ bool Hardware::write(const AxisValues& commanded) noexcept {
 void Hardware::hold_motors(std::int64_t until_nsec) noexcept {
   let_go_until_nsec_ = std::max(let_go_until_nsec_, until_nsec);
   is_let_go_ = true;
-  pull_.fill(0.0);
+  coupling_n_.fill(0.0);
   guard_.start();
   moving_ = false;
 }
@@ -96,7 +96,7 @@ void Hardware::let_go() noexcept {
 }
 
 void Hardware::stop() noexcept {
-  pull_.fill(0.0);
+  coupling_n_.fill(0.0);
   if (contact_ == Contact::kPresent) ask({});
 }
 
@@ -199,25 +199,25 @@ void Hardware::lose() noexcept {
   if (contact_ == Contact::kPresent) wire_->release();
   wire_->close();
   contact_ = Contact::kLost;
-  pull_.fill(0.0);
+  coupling_n_.fill(0.0);
   guard_.start();
   moving_ = false;
 }
 
-AxisValues Hardware::pull_to(const AxisValues& wanted_m) noexcept {
-  AxisValues pull{};
+AxisValues Hardware::coupling_forces(const AxisValues& wanted_m) noexcept {
+  AxisValues force_n{};
   for (std::size_t a = 0; a < static_cast<std::size_t>(layout_.count); ++a) {
     const double gap = wanted_m[a] - position_[a];
     const double gap_before = moving_ ? wanted_before_[a] - position_before_[a] : gap;
-    pull[a] = settings_.coupling_n_per_m * gap +
-              settings_.coupling_n_s_per_m * (gap - gap_before) * layout_.rate_hz;
+    force_n[a] = settings_.coupling_n_per_m * gap +
+                 settings_.coupling_n_s_per_m * (gap - gap_before) * layout_.rate_hz;
   }
   wanted_before_ = wanted_m;
   position_before_ = position_;
   moving_ = true;
-  guard_.accept(pull);
-  pull_ = guard_.tick(age_s_, position_);
-  return pull_;
+  guard_.accept(force_n);
+  coupling_n_ = guard_.tick(age_s_, position_);
+  return coupling_n_;
 }
 
 HardwareSettings read_hardware(config::MappingReader& reader, const AxisLayout& layout,

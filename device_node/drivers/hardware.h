@@ -112,7 +112,7 @@ class Hardware : public Driver {
   bool listen(std::int64_t until) noexcept;
   bool take(std::span<const std::uint8_t> bytes) noexcept;
   void lose() noexcept;
-  AxisValues pull_to(const AxisValues& wanted_m) noexcept;
+  AxisValues coupling_forces(const AxisValues& wanted_m) noexcept;
 
   std::unique_ptr<Wire> wire_;
   HardwareSettings settings_;
@@ -127,9 +127,9 @@ class Hardware : public Driver {
   std::int64_t next_try_nsec_ = 0;
   std::int64_t next_greeting_nsec_ = 0;
   std::int64_t last_sample_nsec_ = 0;
-  AxisValues position_{};  // [m]
-  AxisValues pull_{};      // role liaison: on the handle [N]
-  double age_s_ = 0.0;     // of what is commanded
+  AxisValues position_{};    // [m]
+  AxisValues coupling_n_{};  // role liaison: on the handle [N]
+  double age_s_ = 0.0;       // of what is commanded
   AxisValues wanted_before_{};
   AxisValues position_before_{};
   bool moving_ = false;  // the two above are of the period before

@@ -26,9 +26,9 @@ namespace cordis::device {
 
 Replay::Replay(RecordedHand positions, RecordedHand forces, double rate_hz, double from_s,
                bool repeats)
-    : positions_(std::move(positions)),
+    : OpenLoopDriver(rate_hz),
+      positions_(std::move(positions)),
       forces_(std::move(forces)),
-      rate_hz_(rate_hz),
       from_s_(from_s),
       repeats_(repeats) {}
 
@@ -36,41 +36,25 @@ bool Replay::can_play(Role role) const noexcept {
   return !(role == Role::kMass ? positions_ : forces_).is_empty();
 }
 
-void Replay::start(Role role) noexcept {
-  role_ = role;
-  period_index_ = 0;
-  is_in_period_ = false;
-}
-
 bool Replay::read(AxisValues& sensed) noexcept {
   sensed.fill(0.0);
-  const RecordedHand& hand = role_ == Role::kMass ? positions_ : forces_;
+  const RecordedHand& hand = role() == Role::kMass ? positions_ : forces_;
   if (hand.is_empty()) return true;
   const auto count = static_cast<double>(hand.values.size());
   const double first = std::min(from_s_ * hand.rate_hz, count - 1.0);
-  double at = first + static_cast<double>(period_index_) * hand.rate_hz / rate_hz_;
-  if (repeats_) at = first + std::fmod(at - first, count - first);
-  if (at >= count) {
-    if (role_ == Role::kMass) sensed = hand.values.back();
+  double index = first + period_count() * hand.rate_hz / rate_hz();
+  if (repeats_) index = first + std::fmod(index - first, count - first);
+  if (index >= count) {
+    if (role() == Role::kMass) sensed = hand.values.back();
     return true;
   }
-  const auto before = static_cast<std::size_t>(at);
+  const auto before = static_cast<std::size_t>(index);
   const std::size_t after = std::min(before + 1, hand.values.size() - 1);
-  const double share = at - static_cast<double>(before);
+  const double share = index - static_cast<double>(before);
   for (std::size_t a = 0; a < sensed.size(); ++a) {
     const double from = hand.values[before][a];
     sensed[a] = share == 0.0 ? from : from + share * (hand.values[after][a] - from);
   }
-  return true;
-}
-
-bool Replay::write(const AxisValues&) noexcept {
-  ++period_index_;
-  return true;
-}
-
-bool Replay::begin_period() noexcept {
-  if (std::exchange(is_in_period_, true)) ++period_index_;
   return true;
 }
 

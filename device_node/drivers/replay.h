@@ -1,10 +1,10 @@
-// device_node/drivers/replay.h -- a device that plays the hand of a take, whatever it is answered.
+// device_node/drivers/replay.h -- a simulated device that plays the recorded hand of a take.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "device_node/drivers/driver.h"
+#include "device_node/drivers/open_loop_driver.h"
 #include "node/config/value.h"
 
 namespace cordis::device {
@@ -18,7 +18,7 @@ struct RecordedHand {
 
 /// The positions (role mass) or forces (role liaison) of a take, at the time that each has in it;
 /// joined by straight lines where rates differ. After the end positions stay, and forces are 0.
-class Replay final : public Driver {
+class Replay final : public OpenLoopDriver {
  public:
   /// @param positions  of role mass, may be empty
   /// @param forces     of role liaison, may be empty
@@ -27,23 +27,13 @@ class Replay final : public Driver {
   Replay(RecordedHand positions, RecordedHand forces, double rate_hz, double from_s, bool repeats);
 
   bool can_play(Role role) const noexcept override;
-  void start(Role role) noexcept override;
   bool read(AxisValues& sensed) noexcept override;
-  bool write(const AxisValues& commanded) noexcept override;
-  bool changes_within_period() const noexcept override { return true; }
-  bool begin_period() noexcept override;
-  bool change_command(const AxisValues&, double) noexcept override { return true; }
-  void stop() noexcept override {}  // it has no motor
 
  private:
   RecordedHand positions_;
   RecordedHand forces_;
-  double rate_hz_;
   double from_s_;
   bool repeats_;
-  Role role_ = Role::kMass;
-  std::uint64_t period_index_ = 0;  // periods lived since start()
-  bool is_in_period_ = false;       // in real time
 };
 
 /// Reads the mapping `replay:` of a device file, and the take that it names. Empty when there are

@@ -9,33 +9,17 @@
 namespace cordis::device {
 
 Script::Script(std::vector<Trajectory> positions, std::vector<Trajectory> forces, double rate_hz)
-    : positions_(std::move(positions)), forces_(std::move(forces)), rate_hz_(rate_hz) {}
+    : OpenLoopDriver(rate_hz), positions_(std::move(positions)), forces_(std::move(forces)) {}
 
 bool Script::can_play(Role role) const noexcept {
   return !(role == Role::kMass ? positions_ : forces_).empty();
 }
 
-void Script::start(Role role) noexcept {
-  role_ = role;
-  period_index_ = 0;
-  is_in_period_ = false;
-}
-
 bool Script::read(AxisValues& sensed) noexcept {
   sensed.fill(0.0);
-  const std::vector<Trajectory>& paths = role_ == Role::kMass ? positions_ : forces_;
-  const double time_s = static_cast<double>(period_index_) / rate_hz_;
-  for (std::size_t a = 0; a < paths.size(); ++a) sensed[a] = paths[a].at(time_s);
-  return true;
-}
-
-bool Script::write(const AxisValues&) noexcept {
-  ++period_index_;
-  return true;
-}
-
-bool Script::begin_period() noexcept {
-  if (std::exchange(is_in_period_, true)) ++period_index_;
+  const std::vector<Trajectory>& paths = role() == Role::kMass ? positions_ : forces_;
+  const double time_s = period_count() / rate_hz();
+  for (std::size_t a = 0; a < paths.size(); ++a) sensed[a] = paths[a].value_at(time_s);
   return true;
 }
 

@@ -44,7 +44,7 @@ Trajectory::Place Trajectory::locate(double time_s) const noexcept {
   return {from, move->to, move->duration_s, share};
 }
 
-double Trajectory::at(double time_s) const noexcept {
+double Trajectory::value_at(double time_s) const noexcept {
   const Place place = locate(time_s);
   if (place.duration_s == 0.0) return place.to;
   const double s = place.share;

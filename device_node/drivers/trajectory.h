@@ -35,8 +35,8 @@ class Trajectory {
   /// @throws std::invalid_argument when moves overlap, run backward, or do not fit the period
   Trajectory(double start, std::vector<Move> moves, Shape shape, double period_s);
 
-  double at(double time_s) const noexcept;       ///< value; that at 0 for an earlier time
-  double rate_at(double time_s) const noexcept;  ///< its derivative [1/s]
+  double value_at(double time_s) const noexcept;  ///< that of 0 s for an earlier time
+  double rate_at(double time_s) const noexcept;   ///< its derivative [1/s]
 
  private:
   struct Place {              // where in the path an instant falls

@@ -154,7 +154,7 @@ TEST(DeviceConfig, WatchdogOfASlowDeviceSpansItsPeriods) {
 TEST(DeviceConfig, ShippedDevicesAreRightWithEveryDriverTheyKnow) {
   EXPECT_EQ(launched("keyboard.yaml", {}).config.layout.count, 1);
   EXPECT_EQ(launched("keyboard_16.yaml", {}).config.layout.count, 16);
-  EXPECT_EQ(launched("handle.yaml", {}).config.end_piece.coordinate_count(), 2);
+  EXPECT_EQ(launched("handle.yaml", {}).config.end_effector_map.coordinate_count(), 2);
   int devices = 0;
   const std::filesystem::path folder = CORDIS_SOURCE_DIR "/launch_configs/devices";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

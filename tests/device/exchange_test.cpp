@@ -80,7 +80,7 @@ DeviceConfig config_of_two_axes(double watchdog_s = 0.02) {
   config.name = "keyboard";
   config.device_id = 4711;
   config.layout.count = 2;
-  config.end_piece = EndPiece(2);
+  config.end_effector_map = EndEffectorMap(2);
   config.force_guard.ramp_s = 0.0;
   config.force_guard.watchdog_s = watchdog_s;
   config.position_guard.watchdog_s = watchdog_s;
@@ -475,7 +475,7 @@ TEST(Exchange, FeelsEveryAnswerSoManyPeriodsLaterInLockstep) {
 TEST(Exchange, PutsTheEndPieceBetweenWireAndMotors) {
   now_nsec = 1000;
   DeviceConfig config = config_of_two_axes();
-  config.end_piece = EndPiece({{0.5, 0.5}}, 2);
+  config.end_effector_map = EndEffectorMap({{0.5, 0.5}}, 2);
   Rig rig(true, Role::kMass, {kEpoch, 0}, config);
   rig.exchange.send_sample();
   GestureMessage answer = rig.answer(3.0);

@@ -32,8 +32,8 @@ TEST(Gestures, MovesMayGiveEachAxisItsOwnPlace) {
       gesture_of("{start_m: 0, moves: [{at_s: 0, in_s: 1, to_m: [0.01, -0.02]}]}", 2);
 
   ASSERT_EQ(paths.size(), 2u);
-  EXPECT_EQ(paths[0].at(1.0), 0.01);
-  EXPECT_EQ(paths[1].at(1.0), -0.02);
+  EXPECT_EQ(paths[0].value_at(1.0), 0.01);
+  EXPECT_EQ(paths[1].value_at(1.0), -0.02);
 }
 
 TEST(Gestures, AMoveMayBeginWhenTheOneBeforeEnds) {
@@ -49,11 +49,11 @@ TEST(Gestures, PluckDrawsSlowlyAndLetsGoAtOnce) {
       "gesture: {kind: pluck, above_m: 0.005, depth_m: -0.02, after_s: 0.2, in_s: 1, stay_s: 0.5}",
       1);
 
-  EXPECT_EQ(paths[0].at(0.2), 0.005);
-  EXPECT_EQ(paths[0].at(1.2), -0.02);
-  EXPECT_EQ(paths[0].at(1.7), -0.02);
-  EXPECT_EQ(paths[0].at(1.76), 0.005);
-  EXPECT_EQ(paths[0].at(2.26 + 1.2), -0.02) << "and again";
+  EXPECT_EQ(paths[0].value_at(0.2), 0.005);
+  EXPECT_EQ(paths[0].value_at(1.2), -0.02);
+  EXPECT_EQ(paths[0].value_at(1.7), -0.02);
+  EXPECT_EQ(paths[0].value_at(1.76), 0.005);
+  EXPECT_EQ(paths[0].value_at(2.26 + 1.2), -0.02) << "and again";
 }
 
 TEST(Gestures, ReachAndPressComesUpAsItWentDown) {
@@ -62,9 +62,9 @@ TEST(Gestures, ReachAndPressComesUpAsItWentDown) {
       "in_s: 0.4, stay_s: 1, repeats: false}",
       1);
 
-  EXPECT_EQ(paths[0].at(0.9), -0.03);
-  EXPECT_NEAR(paths[0].at(1.6), 0.5 * (0.005 - 0.03), 1e-12);
-  EXPECT_EQ(paths[0].at(100.0), 0.005);
+  EXPECT_EQ(paths[0].value_at(0.9), -0.03);
+  EXPECT_NEAR(paths[0].value_at(1.6), 0.5 * (0.005 - 0.03), 1e-12);
+  EXPECT_EQ(paths[0].value_at(100.0), 0.005);
 }
 
 TEST(Gestures, BowStrokesAtItsSpeedWhileItPresses) {
@@ -73,8 +73,8 @@ TEST(Gestures, BowStrokesAtItsSpeedWhileItPresses) {
 
   ASSERT_EQ(paths.size(), 2u);
   EXPECT_NEAR(paths[0].rate_at(0.4), 0.2, 1e-12);
-  EXPECT_EQ(paths[1].at(0.4), -0.01);
-  EXPECT_NEAR(paths[0].at(0.7), 0.05, 1e-12) << "the end of a stroke of 0.5 s after 0.2 s";
+  EXPECT_EQ(paths[1].value_at(0.4), -0.01);
+  EXPECT_NEAR(paths[0].value_at(0.7), 0.05, 1e-12) << "the end of a stroke of 0.5 s after 0.2 s";
 }
 
 TEST(Gestures, GraspAndDragMovesTwoFingersTogether) {
@@ -84,10 +84,10 @@ TEST(Gestures, GraspAndDragMovesTwoFingersTogether) {
       4);
 
   ASSERT_EQ(paths.size(), 4u);
-  EXPECT_EQ(paths[2].at(1.0) - paths[0].at(1.0), 0.02) << "closed";
-  EXPECT_NEAR(paths[2].at(2.0) - paths[0].at(2.0), 0.02, 1e-15) << "on the way";
-  EXPECT_EQ(paths[1].at(2.0), 0.02);
-  EXPECT_NEAR(paths[0].at(2.0), 0.03 - 0.01, 1e-15);
+  EXPECT_EQ(paths[2].value_at(1.0) - paths[0].value_at(1.0), 0.02) << "closed";
+  EXPECT_NEAR(paths[2].value_at(2.0) - paths[0].value_at(2.0), 0.02, 1e-15) << "on the way";
+  EXPECT_EQ(paths[1].value_at(2.0), 0.02);
+  EXPECT_NEAR(paths[0].value_at(2.0), 0.03 - 0.01, 1e-15);
 }
 
 TEST(Gestures, KneadPressesAndPartsSeveralTimes) {
@@ -97,18 +97,18 @@ TEST(Gestures, KneadPressesAndPartsSeveralTimes) {
       4);
 
   for (const double begin : {0.0, 2.0, 4.0}) {
-    EXPECT_EQ(paths[2].at(begin + 1.0), 0.005);
-    EXPECT_EQ(paths[3].at(begin + 1.0), -0.02);
-    EXPECT_EQ(paths[2].at(begin + 2.0), 0.05);
+    EXPECT_EQ(paths[2].value_at(begin + 1.0), 0.005);
+    EXPECT_EQ(paths[3].value_at(begin + 1.0), -0.02);
+    EXPECT_EQ(paths[2].value_at(begin + 2.0), 0.05);
   }
-  EXPECT_EQ(paths[2].at(60.0), 0.05);
+  EXPECT_EQ(paths[2].value_at(60.0), 0.05);
 }
 
 TEST(Gestures, HoldStays) {
   const auto paths = gesture_of("gesture: {kind: hold, at_m: [0.01, -0.02]}", 2);
 
-  EXPECT_EQ(paths[0].at(5.0), 0.01);
-  EXPECT_EQ(paths[1].at(5.0), -0.02);
+  EXPECT_EQ(paths[0].value_at(5.0), 0.01);
+  EXPECT_EQ(paths[1].value_at(5.0), -0.02);
 }
 
 TEST(Gestures, ReportWhatIsWrong) {

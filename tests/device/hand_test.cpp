@@ -55,7 +55,7 @@ TEST(Hand, FollowsAMinimumJerkMoveAsItsEquationSays) {
         std::exp(-s * t) * (-p0 * std::cos(w * t) + (-p1 - s * p0) / w * std::sin(w * t));
     const double lag = p0 + t * (p1 + t * (p2 + t * p3)) + swing;
     // first order: half a sub-step late at 0.19 m/s
-    ASSERT_NEAR(hand.position_m(), target.at(t) + lag, 2e-6) << t;
+    ASSERT_NEAR(hand.position_m(), target.value_at(t) + lag, 2e-6) << t;
     largest_lag = std::max(largest_lag, std::abs(lag));
   }
   EXPECT_GT(largest_lag, 5e-4);  // or the comparison would show nothing

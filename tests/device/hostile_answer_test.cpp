@@ -64,8 +64,8 @@ class HeldKey : public Driver {
 };
 
 struct Rig {
-  Rig(Role role, bool lockstep, bool end_piece)
-      : exchange({.config = config_with(end_piece),
+  Rig(Role role, bool lockstep, bool has_map)
+      : exchange({.config = config_with(has_map),
                   .driver = driver,
                   .channel = line,
                   .meter = meter,
@@ -74,9 +74,10 @@ struct Rig {
                   .lockstep = lockstep,
                   .clock = &fake_clock}) {}
 
-  const DeviceConfig& config_with(bool end_piece) {
+  const DeviceConfig& config_with(bool has_map) {
     config.layout.count = 2;
-    config.end_piece = end_piece ? EndPiece({{0.5, 0.5}, {1.0, -1.0}}, 2) : EndPiece(2);
+    config.end_effector_map =
+        has_map ? EndEffectorMap({{0.5, 0.5}, {1.0, -1.0}}, 2) : EndEffectorMap(2);
     return config;
   }
 
@@ -128,13 +129,13 @@ GestureMessage spoilt(GestureMessage answer, Hostile& hostile) {
 class HostileAnswer : public ::testing::TestWithParam<std::tuple<Role, bool, bool>> {};
 
 TEST_P(HostileAnswer, NeverPassesTheGuardNorSilencesTheScene) {
-  const auto [role, lockstep, end_piece] = GetParam();
+  const auto [role, lockstep, has_map] = GetParam();
   const double value = role == Role::kMass ? 2.0 : -0.02;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(test::rounds(40)); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Hostile hostile(seed);
     fake_nsec = 1'000'000'000;
-    Rig rig(role, lockstep, end_piece);
+    Rig rig(role, lockstep, has_map);
     rig.exchange.send_sample();
     double before = 0.0;
     for (int period = 0; period < 1500; ++period) {
@@ -154,8 +155,8 @@ TEST_P(HostileAnswer, NeverPassesTheGuardNorSilencesTheScene) {
       ASSERT_LT(std::abs(rig.line.newest.work_j), 1e6);
     }
     const AxisValues wanted{value};
-    const double there = role == Role::kMass ? rig.config.end_piece.axis_forces_of(wanted)[0]
-                                             : rig.config.end_piece.axes_of(wanted)[0];
+    const double there = role == Role::kMass ? rig.config.end_effector_map.axis_forces_of(wanted)[0]
+                                             : rig.config.end_effector_map.axes_of(wanted)[0];
     EXPECT_NEAR(rig.driver.commanded[0], there, 1e-9)
         << "the answers of the scene are no longer taken";
     EXPECT_EQ(rig.meter.phase(), Phase::kRunning);
@@ -170,7 +171,7 @@ TEST(HostileAnswer, ThatEchoesATimeBeforeTheDeviceBeganIsDropped) {
   for (const std::int64_t time : {std::numeric_limits<std::int64_t>::min(), std::int64_t{0},
                                   std::numeric_limits<std::int64_t>::max()}) {
     fake_nsec = 1'000'000'000;
-    Rig rig(Role::kMass, /*lockstep=*/false, /*end_piece=*/false);
+    Rig rig(Role::kMass, /*lockstep=*/false, /*has_map=*/false);
     rig.exchange.send_sample();
     GestureMessage answer = rig.true_answer(2.0);
     answer.answered_time_nsec = time;

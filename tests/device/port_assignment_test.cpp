@@ -16,7 +16,7 @@ DeviceConfig keyboard_of(int axes) {
   config.device_id = kId;
   config.driver = "script";
   config.layout.count = axes;
-  config.end_piece = EndPiece(axes);
+  config.end_effector_map = EndEffectorMap(axes);
   return config;
 }
 

@@ -113,7 +113,7 @@ class PromptDriver : public Driver {
 DeviceConfig prompt_config() {
   DeviceConfig config;
   config.layout.count = 1;
-  config.end_piece = EndPiece(1);
+  config.end_effector_map = EndEffectorMap(1);
   config.force_guard.ramp_s = 0.0;
   config.force_guard.slew_n_per_s = kSlew;
   config.position_guard.ramp_s = 0.0;

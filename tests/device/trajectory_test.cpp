@@ -14,20 +14,20 @@ using Shape = Trajectory::Shape;
 TEST(Trajectory, RestsBeforeBetweenAndAfterItsMoves) {
   const Trajectory path(1.0, {{0.5, 0.25, 3.0}, {1.0, 0.5, -2.0}}, Shape::kMinimumJerk, 0.0);
 
-  EXPECT_EQ(path.at(-1.0), 1.0);
-  EXPECT_EQ(path.at(0.5), 1.0);
-  EXPECT_EQ(path.at(0.75), 3.0);
-  EXPECT_EQ(path.at(1.0), 3.0);
-  EXPECT_EQ(path.at(1.5), -2.0);
-  EXPECT_EQ(path.at(1000.0), -2.0);
+  EXPECT_EQ(path.value_at(-1.0), 1.0);
+  EXPECT_EQ(path.value_at(0.5), 1.0);
+  EXPECT_EQ(path.value_at(0.75), 3.0);
+  EXPECT_EQ(path.value_at(1.0), 3.0);
+  EXPECT_EQ(path.value_at(1.5), -2.0);
+  EXPECT_EQ(path.value_at(1000.0), -2.0);
   EXPECT_EQ(path.rate_at(0.9), 0.0);
 }
 
 TEST(Trajectory, GoesStraightWhenLinear) {
   const Trajectory path(0.0, {{1.0, 4.0, 2.0}}, Shape::kLinear, 0.0);
 
-  EXPECT_DOUBLE_EQ(path.at(2.0), 0.5);
-  EXPECT_DOUBLE_EQ(path.at(4.0), 1.5);
+  EXPECT_DOUBLE_EQ(path.value_at(2.0), 0.5);
+  EXPECT_DOUBLE_EQ(path.value_at(4.0), 1.5);
   EXPECT_DOUBLE_EQ(path.rate_at(2.0), 0.5);
 }
 
@@ -38,9 +38,9 @@ TEST(Trajectory, GoesWithTheLeastJerk) {
   const double duration = 0.4;
   const Trajectory path(0.0, {{0.0, duration, distance}}, Shape::kMinimumJerk, 0.0);
 
-  EXPECT_DOUBLE_EQ(path.at(duration / 2.0), distance / 2.0);
+  EXPECT_DOUBLE_EQ(path.value_at(duration / 2.0), distance / 2.0);
   EXPECT_DOUBLE_EQ(path.rate_at(duration / 2.0), 15.0 / 8.0 * distance / duration);
-  EXPECT_DOUBLE_EQ(path.at(0.1), distance * (10.0 / 64.0 - 15.0 / 256.0 + 6.0 / 1024.0));
+  EXPECT_DOUBLE_EQ(path.value_at(0.1), distance * (10.0 / 64.0 - 15.0 / 256.0 + 6.0 / 1024.0));
   const double early = 1e-4 * duration;
   EXPECT_LT(path.rate_at(early), 1e-6 * distance / duration);
   EXPECT_LT(path.rate_at(duration - early), 1e-6 * distance / duration);
@@ -52,20 +52,21 @@ TEST(Trajectory, HasTheRateOfItsValue) {
 
   for (double t = 0.01; t < 3.0; t += 0.0137) {
     // central difference: its error is h^2/6 times the third derivative, at most 60 * 3 / 0.3^3
-    EXPECT_NEAR(path.rate_at(t), (path.at(t + h) - path.at(t - h)) / (2.0 * h), 2e-7) << t;
+    EXPECT_NEAR(path.rate_at(t), (path.value_at(t + h) - path.value_at(t - h)) / (2.0 * h), 2e-7)
+        << t;
   }
 }
 
 TEST(Trajectory, RepeatsFromWhereItsLastMoveEnded) {
   const Trajectory path(9.0, {{0.1, 0.1, 1.0}, {0.3, 0.1, 2.0}}, Shape::kLinear, 0.5);
 
-  EXPECT_EQ(path.at(0.0), 9.0);
-  EXPECT_EQ(path.at(0.5), 2.0);
-  EXPECT_NEAR(path.at(0.65), 1.5, 1e-12);
+  EXPECT_EQ(path.value_at(0.0), 9.0);
+  EXPECT_EQ(path.value_at(0.5), 2.0);
+  EXPECT_NEAR(path.value_at(0.65), 1.5, 1e-12);
   for (int n = 1; n < 10000; ++n) {
     const double begin = 0.5 * n;
-    ASSERT_EQ(path.at(begin + 0.05), 2.0) << n;
-    ASSERT_EQ(path.at(begin + 0.25), 1.0) << n;
+    ASSERT_EQ(path.value_at(begin + 0.05), 2.0) << n;
+    ASSERT_EQ(path.value_at(begin + 0.25), 1.0) << n;
   }
 }
 
@@ -76,9 +77,9 @@ TEST(Trajectory, JumpsInTheVerySampleItsTimeNames) {
   const Trajectory short_one(0.0, {{0.0, 0.0, 1.0}, {0.05, 0.0, 0.0}}, Shape::kLinear, 0.1);
 
   for (int n = 0; n < 300000; ++n) {
-    ASSERT_EQ(first.at(n / 10.0), n % 3 == 0 ? 1.0 : 0.0) << n;
-    ASSERT_EQ(second.at(n / 10.0), n % 3 == 1 ? 1.0 : 0.0) << n;
-    ASSERT_EQ(short_one.at(n / 100.0), n % 10 < 5 ? 1.0 : 0.0) << n;
+    ASSERT_EQ(first.value_at(n / 10.0), n % 3 == 0 ? 1.0 : 0.0) << n;
+    ASSERT_EQ(second.value_at(n / 10.0), n % 3 == 1 ? 1.0 : 0.0) << n;
+    ASSERT_EQ(short_one.value_at(n / 100.0), n % 10 < 5 ? 1.0 : 0.0) << n;
   }
 }
 

@@ -1,5 +1,5 @@
-// device_node/end_piece.cpp
-#include "device_node/end_piece.h"
+// device_node/end_effector_map.cpp
+#include "device_node/end_effector_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,14 +41,15 @@ void solve(std::vector<std::vector<double>>& gram, std::vector<std::vector<doubl
 
 }  // namespace
 
-EndPiece::EndPiece(int axis_count) : coordinate_count_(axis_count), axis_count_(axis_count) {
+EndEffectorMap::EndEffectorMap(int axis_count)
+    : coordinate_count_(axis_count), axis_count_(axis_count) {
   for (std::size_t a = 0; a < static_cast<std::size_t>(axis_count); ++a) {
     map_[a][a] = 1.0;
     inverse_[a][a] = 1.0;
   }
 }
 
-EndPiece::EndPiece(const std::vector<std::vector<double>>& map, int axis_count)
+EndEffectorMap::EndEffectorMap(const std::vector<std::vector<double>>& map, int axis_count)
     : coordinate_count_(static_cast<int>(map.size())), axis_count_(axis_count), identity_(false) {
   const auto axes = static_cast<std::size_t>(axis_count);
   if (map.empty() || map.size() > kMaxCoordinates || map.size() > axes) {
@@ -98,19 +99,19 @@ AxisValues transposed_times(const Matrix& matrix, const AxisValues& coordinates,
 
 }  // namespace
 
-AxisValues EndPiece::coordinates_of(const AxisValues& axis_m) const noexcept {
+AxisValues EndEffectorMap::coordinates_of(const AxisValues& axis_m) const noexcept {
   return identity_ ? axis_m : times(map_, axis_m, coordinate_count_);
 }
 
-AxisValues EndPiece::axis_forces_of(const AxisValues& coordinate_n) const noexcept {
+AxisValues EndEffectorMap::axis_forces_of(const AxisValues& coordinate_n) const noexcept {
   return identity_ ? coordinate_n : transposed_times(map_, coordinate_n, coordinate_count_);
 }
 
-AxisValues EndPiece::axes_of(const AxisValues& coordinate_m) const noexcept {
+AxisValues EndEffectorMap::axes_of(const AxisValues& coordinate_m) const noexcept {
   return identity_ ? coordinate_m : transposed_times(inverse_, coordinate_m, coordinate_count_);
 }
 
-AxisValues EndPiece::coordinate_forces_of(const AxisValues& axis_n) const noexcept {
+AxisValues EndEffectorMap::coordinate_forces_of(const AxisValues& axis_n) const noexcept {
   return identity_ ? axis_n : times(inverse_, axis_n, coordinate_count_);
 }
 

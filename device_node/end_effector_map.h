@@ -1,4 +1,4 @@
-// device_node/end_piece.h -- a mechanical piece that joins several axes into one handle.
+// device_node/end_effector_map.h -- linear map from the axes to the coordinates of a handle.
 #pragma once
 
 #include <array>
@@ -8,8 +8,7 @@
 
 namespace cordis::device {
 
-inline constexpr int kMaxCoordinates =
-    12;  ///< degrees of freedom of a handle with an end-effector map
+inline constexpr int kMaxCoordinates = 12;  ///< of a handle with an end-effector map
 
 /// The morphology of a device as a linear map: coordinates of the handle q = A x, with x the
 /// positions of the axes. Forces go the other way, f = A^T F, so that the power F dq = f dx is the
@@ -18,15 +17,15 @@ inline constexpr int kMaxCoordinates =
 ///
 /// The coordinates are the axes when there is no map. Source: [Luc90 V.1 Force feedback gestual
 /// transducers], the end-effector maps fixed on the slices of the keyboard.
-class EndPiece {
+class EndEffectorMap {
  public:
   /// The axes themselves.
-  explicit EndPiece(int axis_count = 1);
+  explicit EndEffectorMap(int axis_count = 1);
 
   /// @param map  one row per coordinate, at most 12, each with one entry per axis; rows that do not
   ///             depend on each other
   /// @throws std::invalid_argument otherwise.
-  EndPiece(const std::vector<std::vector<double>>& map, int axis_count);
+  EndEffectorMap(const std::vector<std::vector<double>>& map, int axis_count);
 
   int coordinate_count() const noexcept { return coordinate_count_; }
   int axis_count() const noexcept { return axis_count_; }
