@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <deque>
 #include <mutex>
 #include <span>
 #include <stdexcept>
@@ -27,6 +26,7 @@
 #include "node/time.h"
 #include "record_node/idl/idl_parser.h"
 #include "record_node/idl/message_decoder.h"
+#include "record_node/last_messages.h"
 #include "record_node/mcap/reader.h"
 #include "record_node/mcap/topic_glob.h"
 #include "record_node/topic_words.h"
@@ -308,32 +308,27 @@ struct TakePlayer::Impl {
   }
   std::vector<std::uint8_t> buffer;
 
-  /// What a late joiner would find at this time: the last message of each kept topic and key, and
-  /// as many of scene/inputs as the sim_node keeps.
+  /// Publishes what a late joiner would find at this time: the last message of each kept topic and
+  /// key, and as many of scene/inputs as the sim_node keeps.
   void restore(std::uint64_t offset_nsec) {
-    const auto inputs_depth =
-        static_cast<std::size_t>(dds::qos_of(dds::Topic::kInputs, false, false).history_depth);
     if (kept.empty() || offset_nsec == 0) return;
-    const double status_from = static_cast<double>(offset_nsec) * 1e-9 - kStatusSearchS;
-    std::map<std::pair<std::uint16_t, std::uint32_t>, std::deque<std::vector<std::byte>>> last;
-    const auto search = [&](const std::vector<std::string>& names, std::uint64_t from) {
-      if (names.empty()) return;
-      mcap::MessageCursor cursor = take.messages(
-          {.topics = names, .start_nsec = first_nsec + from, .end_nsec = first_nsec + offset_nsec});
-      for (mcap::Message message; cursor.next(message);) {
-        const std::span<const std::uint8_t> bytes = bytes_of(message);
-        std::uint32_t key = 0;  // the first member, where it is a key
-        for (std::size_t i = 4; i < 8 && i < bytes.size(); ++i) key = key << 8 | bytes[i];
-        const bool is_input = take.channels().at(message.channel_id).topic == msg::TOPIC_INPUTS;
-        auto& newest = last[{message.channel_id, is_input ? 0 : key}];
-        if (newest.size() >= (is_input ? inputs_depth : 1)) newest.pop_front();
-        newest.emplace_back(message.data.begin(), message.data.end());
-      }
-    };
+    const std::uint64_t time_nsec = first_nsec + offset_nsec;
+    const double status_from_s = static_cast<double>(offset_nsec) * 1e-9 - kStatusSearchS;
+    std::vector<std::string> problems;
     std::vector<std::string> rare = kept;
-    std::erase(rare, msg::TOPIC_STATUS);
-    search(rare, 0);
-    if (rare.size() != kept.size()) search({msg::TOPIC_STATUS}, offset_of(status_from));
+    std::vector<std::string> statuses;
+    if (std::erase(rare, msg::TOPIC_STATUS) > 0) statuses.push_back(msg::TOPIC_STATUS);
+    const bool has_inputs = std::erase(rare, msg::TOPIC_INPUTS) > 0;
+    LastMessages last = last_of_each_key(take, rare, first_nsec, time_nsec, problems);
+    last.merge(last_of_each_key(take, statuses, first_nsec + offset_of(status_from_s), time_nsec,
+                                problems));
+    if (has_inputs) {
+      const auto depth =
+          static_cast<std::size_t>(dds::qos_of(dds::Topic::kInputs, false, false).history_depth);
+      last.merge(last_of_topic(take, msg::TOPIC_INPUTS, depth, time_nsec, problems));
+    }
+    for (const std::string& problem : problems)
+      spdlog::warn("{}: {}", config.take.string(), problem);
     for (const auto& [place, newest] : last) {
       for (const auto& data : newest) send({.channel_id = place.first, .data = data});
     }
@@ -436,10 +431,10 @@ struct TakePlayer::Impl {
     switch (command.verb()) {
       case msg::VERB_PAUSE:
         pause(true);
-        return {true, at()};
+        return {true, position_text()};
       case msg::VERB_RESUME:
         pause(false);
-        return {true, at()};
+        return {true, position_text()};
       case msg::VERB_STEP: {
         const double wanted = argument.empty() ? 1.0 : number.value_or(0.0);
         if (!(wanted >= 1.0) || wanted > kMaxSteps || wanted != std::floor(wanted))
@@ -449,17 +444,18 @@ struct TakePlayer::Impl {
           paused = true;
           add_steps(static_cast<std::uint64_t>(wanted));
         });
-        return {true, at() + (wanted > 1.0 ? fmt::format(", and plays {:.0f} messages", wanted)
-                                           : ", and plays the next message")};
+        return {true,
+                position_text() + (wanted > 1.0 ? fmt::format(", and plays {:.0f} messages", wanted)
+                                                : ", and plays the next message")};
       }
       case msg::VERB_RESET:
         jump(begin_nsec);
-        return {true, at()};
+        return {true, position_text()};
       case msg::VERB_SEEK:
         if (!number || !(*number >= 0.0))
           return {false, "'seek' needs a time in seconds, from 0 on"};
         jump(offset_of(*number));
-        return {true, at()};
+        return {true, position_text()};
       case msg::VERB_RATE:
         if (!number || *number < kSlowestRate || *number > kFastestRate)
           return {false, fmt::format("'rate' needs a number from {:g} to {:g}, got '{}'",
@@ -472,7 +468,7 @@ struct TakePlayer::Impl {
     }
   }
 
-  std::string at() const {
+  std::string position_text() const {
     const TakePlayerFigures now = figures();
     return fmt::format("{} at {:.3f} of {:.3f} s", now.paused ? "paused" : "goes on",
                        now.position_s, now.length_s);
