@@ -26,6 +26,12 @@ struct SessionWords {
   }
 };
 
+/// The two words of a verb that reads topics: a session, and a pattern of topics.
+inline void add_topic_words(Verb& verb, SessionWords& words, std::string& topic) {
+  verb.optional_word("SESSION", words.session, "The launch file, or the name of the session");
+  verb.optional_word("TOPIC", topic, "A topic, or a pattern: 'gesture/*'");
+}
+
 inline void add_session_options(Verb& verb, SessionWords& words) {
   verb.option("--domain", "N", words.domain,
               "DDS domain, for a session that another user or host began");

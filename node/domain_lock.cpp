@@ -10,16 +10,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "node/dds/participant_ports.h"
 #include "node/dds/udp_address.h"
 #include "node/instance_lock.h"
 
 namespace cordis::node {
 namespace {
 
-// RTPS: the ports of a domain, and the first that belongs to a single participant.
-constexpr int kFirstPort = 7400;
-constexpr int kPortsOfADomain = 250;
-constexpr int kFirstUnicast = 10;
 constexpr int kMaxHolders = 100;
 constexpr std::chrono::seconds kPatience{5};
 
@@ -33,13 +30,13 @@ int take_port(int port, in_addr_t address_to_bind) noexcept {
   return -1;
 }
 
-int first_port_of(int domain) noexcept {
-  return kFirstPort + kPortsOfADomain * domain;
+int end_of_ports(int domain) noexcept {
+  return dds::multicast_port(domain) + dds::kPortsPerDomain;
 }
 
 bool all_ports_are_free(int domain) noexcept {
-  const int first = first_port_of(domain);
-  for (int port = first + kFirstUnicast; port < first + kPortsOfADomain; ++port) {
+  const int end = end_of_ports(domain);
+  for (int port = dds::first_unicast_port(domain); port < end; ++port) {
     const int file = take_port(port, INADDR_ANY);
     if (file < 0) return false;
     close(file);
@@ -48,7 +45,7 @@ bool all_ports_are_free(int domain) noexcept {
 }
 
 int hold(int domain) noexcept {
-  const int last = first_port_of(domain) + kPortsOfADomain - 1;
+  const int last = end_of_ports(domain) - 1;
   for (int port = last; port > last - kMaxHolders; --port) {
     const int file = take_port(port, INADDR_LOOPBACK);
     if (file >= 0) return file;

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "node/config/nearest_word.h"
+#include "node/dds/participant_ports.h"
 #include "node/dds/udp_address.h"
 
 namespace cordis::node {
@@ -63,7 +64,7 @@ std::optional<std::string> address_of(const config::PlacedText& host, config::Pr
 std::optional<std::string> source_towards(const std::string& address) {
   const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (file < 0) return std::nullopt;
-  const sockaddr_in there = dds::udp_address(7400, dds::ipv4_of(address));
+  const sockaddr_in there = dds::udp_address(dds::multicast_port(0), dds::ipv4_of(address));
   sockaddr_in own{};
   socklen_t size = sizeof own;
   const bool found = connect(file, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 &&

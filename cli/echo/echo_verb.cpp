@@ -27,7 +27,7 @@ constexpr std::size_t kListed = 16;  // of a list in YAML, without --full
 constexpr auto kEchoWait = std::chrono::milliseconds(100);
 
 struct EchoWords {
-  SessionWords of;
+  SessionWords target;
   std::string topic;
   std::string format = "yaml";
   std::string count;
@@ -105,7 +105,7 @@ int echo(const EchoWords& words) {
   if (words.format == "csv" && words.topic.empty())
     throw UsageError("a table in CSV has one topic: name it behind the session");
   const std::optional<std::uint64_t> count = count_of(words.count);
-  const SessionAddress address = words.of.address();
+  const SessionAddress address = words.target.address();
   Printer printer(words);
   node::install_stop_signals();
   TopicListener listener(address, words.topic, true);
@@ -133,13 +133,12 @@ int echo(const EchoWords& words) {
 void add_echo_verb(CommandLine& line) {
   auto words = std::make_shared<EchoWords>();
   Verb& verb = line.verb("echo", "SESSION [TOPIC] [options]", "Print the messages of a session");
-  verb.optional_word("SESSION", words->of.session, "The launch file, or the name of the session");
-  verb.optional_word("TOPIC", words->topic, "A topic, or a pattern: 'gesture/*'");
+  add_topic_words(verb, words->target, words->topic);
   verb.option("--format", "FORMAT", words->format, "yaml, ndjson or csv (yaml)");
   verb.option("-n,--count", "N", words->count, "End after so many messages");
   verb.flag("--full", words->full, "In YAML, whole lists and not their first 16 elements");
   verb.list("--idl", "FILE,...", words->idl_files, "IDL files of types that Cordis does not have");
-  add_session_options(verb, words->of);
+  add_session_options(verb, words->target);
   verb.examples(
       "It prints until Ctrl-C. time_s counts from 1970, by the clock of the writer.\n"
       "--domain N without a session prints what all programs of the domain say.\n"

@@ -15,7 +15,7 @@ namespace cordis::cli {
 namespace {
 
 struct GetWords {
-  SessionWords of;
+  SessionWords target;
   std::vector<std::string> names;
   std::string timeout = "5s";
 };
@@ -23,7 +23,7 @@ struct GetWords {
 int get(const GetWords& words) {
   const ControlWords command = read_control_words("get", words.names);
   const auto timeout = parse_duration(words.timeout);
-  const SessionAddress address = words.of.address();
+  const SessionAddress address = words.target.address();
   ControlLine line(address);
   const auto replies = line.ask("sim_node", command.verb, command.argument, timeout);
   if (replies.empty())
@@ -43,11 +43,11 @@ void add_get_verb(CommandLine& line) {
   auto words = std::make_shared<GetWords>();
   Verb& verb = line.verb("get", "FILE|SESSION NAME[.PARAMETER] ... [options]",
                          "Ask a running session for its parameters");
-  verb.required_word("FILE|SESSION", words->of.session,
+  verb.required_word("FILE|SESSION", words->target.session,
                      "The launch file, or the name of the session");
   verb.more_words("NAME[.PARAMETER]", words->names,
                   "A liaison or named links, with a parameter or not");
-  add_session_options(verb, words->of);
+  add_session_options(verb, words->target);
   verb.option("--timeout", "TIME", words->timeout, "How long to wait for the reply (5s)");
   verb.examples(
       "One line for each value, as `cordis ctl SESSION set` takes it.\n"

@@ -27,7 +27,7 @@ constexpr auto kHzWait = std::chrono::milliseconds(100);
 constexpr auto kTable = std::chrono::seconds(1);
 
 struct HzWords {
-  SessionWords of;
+  SessionWords target;
   std::string topic;
   std::string duration;
 };
@@ -82,7 +82,7 @@ void print(std::map<std::string, Traffic>& topics, double seconds) {
 int hz(const HzWords& words) {
   std::optional<std::chrono::nanoseconds> duration;
   if (!words.duration.empty()) duration = parse_duration(words.duration);
-  const SessionAddress address = words.of.address();
+  const SessionAddress address = words.target.address();
   node::install_stop_signals();
   TopicListener listener(address, words.topic, false);
   SilenceNote silence("hz", address.session, words.topic);
@@ -112,10 +112,9 @@ void add_hz_verb(CommandLine& line) {
   auto words = std::make_shared<HzWords>();
   Verb& verb = line.verb("hz", "SESSION [TOPIC] [options]",
                          "Measure how often the topics of a session are written");
-  verb.optional_word("SESSION", words->of.session, "The launch file, or the name of the session");
-  verb.optional_word("TOPIC", words->topic, "A topic, or a pattern: 'gesture/*'");
+  add_topic_words(verb, words->target, words->topic);
   verb.option("--duration", "TIME", words->duration, "End after so long: 10s");
-  add_session_options(verb, words->of);
+  add_session_options(verb, words->target);
   verb.examples(
       "A table each second, until Ctrl-C: messages per second, the shortest and the longest time\n"
       "between two of one writer as they came here, and numbers of writers that did not come.\n"

@@ -29,7 +29,7 @@ namespace {
 constexpr auto kRecordProgress = std::chrono::milliseconds(250);
 
 struct RecordWords {
-  SessionWords of;
+  SessionWords target;
   std::string out;
   std::vector<std::string> topics;
   std::vector<std::string> excluded;
@@ -71,7 +71,7 @@ std::string progress(const record::RecorderFigures& now, double mb_per_s) {
 int record(const RecordWords& words) {
   std::optional<std::chrono::nanoseconds> longest;
   if (!words.max_duration.empty()) longest = parse_duration(words.max_duration);
-  const SessionAddress address = words.of.address();
+  const SessionAddress address = words.target.address();
   const record::RecorderConfig config = config_of(words, address);
   node::install_log("record");
   node::install_stop_signals();
@@ -122,7 +122,7 @@ void add_record_verb(CommandLine& line) {
   auto words = std::make_shared<RecordWords>();
   Verb& verb = line.verb("record", "FILE|SESSION [options]",
                          "Record the messages of a session into a file (MCAP)");
-  verb.optional_word("FILE|SESSION", words->of.session,
+  verb.optional_word("FILE|SESSION", words->target.session,
                      "The launch file, or the name of the session");
   verb.option("-o,--out", "TAKE", words->out, "Where to (takes/{session}-{time}.mcap)");
   verb.list("--topics", "GLOB,...", words->topics, "These topics alone: 'scene/*'");
@@ -131,7 +131,7 @@ void add_record_verb(CommandLine& line) {
             "IDL files of types that Cordis does not have: the take explains them");
   verb.option("--max-duration", "TIME", words->max_duration, "End after so long: 10s, 5min");
   verb.option("--compression", "NAME", words->compression, "zstd, lz4 or none (zstd)");
-  add_session_options(verb, words->of);
+  add_session_options(verb, words->target);
   verb.examples(
       "It records until Ctrl-C. Without a session, --domain N records all messages that programs\n"
       "of this host publish in that DDS domain, of whatever types.\n"

@@ -18,8 +18,7 @@ namespace cordis::dds {
 namespace {
 
 constexpr int kFirstPort = 7400;
-constexpr int kPortsPerDomain = 250;
-constexpr int kFirstDiscovery = 10;  // of a domain
+constexpr int kFirstUnicast = 10;  // of a domain
 
 /// Two processes that start together find the same port free: one of them holds the name.
 /// @return a socket, or -1 when another process holds it
@@ -44,8 +43,12 @@ std::uint16_t multicast_port(int domain) noexcept {
   return static_cast<std::uint16_t>(kFirstPort + kPortsPerDomain * domain);
 }
 
+std::uint16_t first_unicast_port(int domain) noexcept {
+  return static_cast<std::uint16_t>(multicast_port(domain) + kFirstUnicast);
+}
+
 std::uint16_t discovery_port(int domain, int index) noexcept {
-  return static_cast<std::uint16_t>(multicast_port(domain) + kFirstDiscovery + 2 * index);
+  return static_cast<std::uint16_t>(first_unicast_port(domain) + 2 * index);
 }
 
 bool has_address(const std::string& address) noexcept {

@@ -15,8 +15,14 @@ inline constexpr int kMaxParticipants = 64;
 /// many ports of each peer.
 inline constexpr int kMaxRemoteParticipants = 32;
 
+/// Ports of a domain [DDSI 9.6.1.1].
+inline constexpr int kPortsPerDomain = 250;
+
 /// The first port of a domain, on which a host is reached by multicast [DDSI 9.6.1.1].
 std::uint16_t multicast_port(int domain) noexcept;
+
+/// The first port of a domain that belongs to a single participant; the ports above it do, too.
+std::uint16_t first_unicast_port(int domain) noexcept;
 
 /// The port of a domain on which participant `index`, 0..kMaxParticipants - 1, is discovered [DDSI
 /// 9.6.1.1]; the next one takes its samples.
