@@ -100,9 +100,9 @@ class CsvSink final : public FieldSink {
  private:
   static std::string quoted(std::string_view text) {
     if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
-    std::string made = "\"";
-    for (const char c : text) made += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return made + "\"";
+    std::string cell = "\"";
+    for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return cell + "\"";
   }
   /// A value that is an element of a list gets the next number of it.
   void begin_value() {
@@ -129,7 +129,7 @@ class YamlText {
  public:
   explicit YamlText(std::size_t max_listed) : max_listed_(max_listed) {}
 
-  std::string of(const nlohmann::ordered_json& value) {
+  std::string text(const nlohmann::ordered_json& value) {
     put_members(value, 2);
     return std::move(text_);
   }
@@ -193,7 +193,7 @@ std::string json_of(const record::MessageType& type, std::span<const std::uint8_
 
 std::string yaml_of(const record::MessageType& type, std::span<const std::uint8_t> message,
                     std::size_t max_listed) {
-  return YamlText(max_listed).of(nlohmann::ordered_json::parse(json_of(type, message)));
+  return YamlText(max_listed).text(nlohmann::ordered_json::parse(json_of(type, message)));
 }
 
 FieldCells csv_of(const record::MessageType& type, std::span<const std::uint8_t> message) {

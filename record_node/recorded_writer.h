@@ -12,8 +12,8 @@
 namespace cordis::record {
 
 struct RecordedWriter {
-  RecordedWriter(dds::RawTopic of, const dds::WriterId& writer, std::uint32_t place)
-      : topic(std::move(of)), id(writer), number(place) {}
+  RecordedWriter(dds::RawTopic written, const dds::WriterId& writer, std::uint32_t place)
+      : topic(std::move(written)), id(writer), number(place) {}
 
   const dds::RawTopic topic;
   const dds::WriterId id;

@@ -84,16 +84,16 @@ struct SoundFile::Impl {
     std::size_t taken = 0;
     while (taken < frames) {
       std::size_t used = 0;
-      std::size_t made = 0;
+      std::size_t count = 0;
       soxr_process(resampler, waiting.data() + taken * channels.size(), frames - taken, &used,
-                   resampled.data(), room, &made);
+                   resampled.data(), room, &count);
       taken += used;
-      put(resampled.data(), made);
+      put(resampled.data(), count);
     }
     waiting.clear();
-    for (std::size_t made = 1; is_last && made > 0;) {
-      soxr_process(resampler, nullptr, 0, nullptr, resampled.data(), room, &made);
-      put(resampled.data(), made);
+    for (std::size_t count = 1; is_last && count > 0;) {
+      soxr_process(resampler, nullptr, 0, nullptr, resampled.data(), room, &count);
+      put(resampled.data(), count);
     }
   }
 

@@ -327,14 +327,14 @@ class Parser {
     lexer_.expect("sequence");
     if (++sequences_ > kMaxDepth) fail_deep("types");
     lexer_.expect("<");
-    auto made = std::make_shared<MessageType>();
-    made->kind = Kind::kSequence;
-    made->element = type();
-    put_in(*made->element, *made);
+    auto sequence_type = std::make_shared<MessageType>();
+    sequence_type->kind = Kind::kSequence;
+    sequence_type->element = type();
+    put_in(*sequence_type->element, *sequence_type);
     --sequences_;
     if (lexer_.skip(",")) number();
     lexer_.expect(">");
-    return made;
+    return sequence_type;
   }
 
   /// A type that needs no definition; nothing is taken when it is none.

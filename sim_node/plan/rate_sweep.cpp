@@ -16,9 +16,9 @@ double round_below(double value) {
   return decade;
 }
 
-bool is_multiple(double value, double of) {
+bool is_multiple(double value, double base) {
   constexpr double kRounding = 1e-9;
-  const double times = value / of;
+  const double times = value / base;
   return times >= 0.5 && std::abs(times - std::round(times)) < kRounding * times;
 }
 

@@ -97,7 +97,7 @@ node::Answer CommandExecutor::get(const std::vector<std::string>& names) const {
     const scene::Parameters::Values values = maker_.parameters().get(name);
     if (!values.problem.empty())
       return {false, values.problem + (values.hint.empty() ? "" : "; " + values.hint)};
-    for (const auto& [parameter, value] : values.of)
+    for (const auto& [parameter, value] : values.entries)
       text += (text.empty() ? "" : "\n") + parameter + " = " + config::number_text(value);
   }
   if (text.empty()) return {true, "no parameters"};

@@ -263,9 +263,9 @@ Parameters::Values Parameters::get(const std::string& what) const {
   for (const auto& [parameter, value] : values_of(name)) {
     words.push_back(parameter);
     if (name == what || what == name + "." + parameter)
-      found.of.emplace_back(name + "." + parameter, value);
+      found.entries.emplace_back(name + "." + parameter, value);
   }
-  if (name != what && found.of.empty()) {
+  if (name != what && found.entries.empty()) {
     const Outcome unknown = unknown_parameter(name, what.substr(dot + 1), words);
     found.problem = unknown.problem;
     found.hint = unknown.hint;

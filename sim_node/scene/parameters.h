@@ -59,8 +59,8 @@ class Parameters {
 
   /// Parameters with their values, or why there are none.
   struct Values {
-    std::vector<std::pair<std::string, double>> of;  ///< each with its whole name: finger.mass_kg
-    std::string problem;                             ///< as that of an Outcome
+    std::vector<std::pair<std::string, double>> entries;  ///< whole names: finger.mass_kg
+    std::string problem;                                  ///< as that of an Outcome
     std::string hint;
   };
 

@@ -190,7 +190,7 @@ TEST(Law, OfEveryKindIsRead) {
   };
   const auto table =
       std::get<engine::Table>(law("{kind: table, at_m: [-1, 0, 2], force_n: [-5, 0, 1]}"));
-  EXPECT_EQ(table.at(), (std::vector<double>{-1.0, 0.0, 2.0}));
+  EXPECT_EQ(table.argument(), (std::vector<double>{-1.0, 0.0, 2.0}));
   const auto power = std::get<engine::Power>(law("{kind: power, coefficient: 3e4, exponent: 1.5}"));
   EXPECT_EQ(power.coefficient, 3e4);
   EXPECT_EQ(power.exponent, 1.5);

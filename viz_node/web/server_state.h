@@ -37,8 +37,8 @@ class WebSocketSession;
 
 /// What all connections share. Lives in the server's thread, but for the latency.
 struct ServerState {
-  ServerState(SceneMirror& of, std::function<void(const PageCommand&)> call)
-      : mirror(of), execute(std::move(call)) {}
+  ServerState(SceneMirror& mirrored, std::function<void(const PageCommand&)> call)
+      : mirror(mirrored), execute(std::move(call)) {}
 
   SceneMirror& mirror;
   std::function<void(const PageCommand&)> execute;

@@ -223,7 +223,7 @@ void Freezing::list_mats(const MatArray& mats) noexcept {
   computed_.clear();
   some_.clear();
   for (std::uint32_t i = 0; i < asleep_.size(); ++i) {
-    const unsigned roles = roles_.of(i);
+    const unsigned roles = roles_.roles(i);
     if ((roles & (kWholeForce | kSomeForce)) == 0) continue;
     computed_.push_back(i);
     if ((roles & kIsMass) == 0) continue;

@@ -27,19 +27,20 @@ Turn turn(double angle) {
   int doublings = 0;
   for (; angle > 0.125; angle *= 0.5) ++doublings;
   const double square = angle * angle;
-  Turn made{angle, 0.5 * square};
+  Turn result{angle, 0.5 * square};
   double sine = 1.0;
   double versine = 1.0;
   for (int k = 6; k >= 1; --k) {
     sine = 1.0 - square / (2 * k * (2 * k + 1)) * sine;
     versine = 1.0 - square / ((2 * k + 1) * (2 * k + 2)) * versine;
   }
-  made.sine *= sine;
-  made.versine *= versine;
+  result.sine *= sine;
+  result.versine *= versine;
   for (; doublings > 0; --doublings) {
-    made = {2.0 * made.sine * (1.0 - made.versine), 2.0 * made.versine * (2.0 - made.versine)};
+    result = {2.0 * result.sine * (1.0 - result.versine),
+              2.0 * result.versine * (2.0 - result.versine)};
   }
-  return made;
+  return result;
 }
 
 bool is_of_block(const NetworkDescription& network, const Link& link) {

@@ -127,7 +127,7 @@ struct Bracket {
 
 /// Looks from `begin`, where the value is `at_begin`, towards the root: as far as a law that never
 /// falls can have it, in ever longer strides, then farther.
-bool find_bracket(TensionOverSpeed& of, double begin, double at_begin, double half_mobility,
+bool find_bracket(TensionOverSpeed& curve, double begin, double at_begin, double half_mobility,
                   double free_speed, Bracket& bracket) noexcept {
   constexpr int kLooks = 4;
   constexpr double kStride = 4.0;
@@ -137,9 +137,9 @@ bool find_bracket(TensionOverSpeed& of, double begin, double at_begin, double ha
     std::array<double, TensionOverSpeed::kCount> speeds{};
     double reach = far;
     for (std::size_t i = speeds.size(); i-- > 0; reach /= kStride) speeds[i] = begin + reach;
-    of.find(speeds);
+    curve.find(speeds);
     for (std::size_t i = 0; i < speeds.size(); ++i) {
-      const double value = speeds[i] - free_speed + half_mobility * of.tension(i);
+      const double value = speeds[i] - free_speed + half_mobility * curve.tension(i);
       if ((value < 0.0) != (at_begin < 0.0) || value == 0.0) {
         bracket.high = speeds[i];
         bracket.at_high = value;
@@ -154,7 +154,7 @@ bool find_bracket(TensionOverSpeed& of, double begin, double at_begin, double ha
 }
 
 /// Narrows it down to rounding; a jump of the law as well as a smooth place.
-double find_root(TensionOverSpeed& of, double half_mobility, double free_speed,
+double find_root(TensionOverSpeed& curve, double half_mobility, double free_speed,
                  Bracket bracket) noexcept {
   constexpr int kMaxLooks = 40;  // each takes three quarters away, where it finds no better
   constexpr double kNear = 1.0 / (1 << 13);
@@ -172,9 +172,9 @@ double find_root(TensionOverSpeed& of, double half_mobility, double free_speed,
                                                               bracket.low + 0.25 * width,
                                                               bracket.low + 0.5 * width,
                                                               bracket.low + 0.75 * width};
-    of.find(speeds);
+    curve.find(speeds);
     for (std::size_t i = 0; i < speeds.size(); ++i) {
-      const double value = speeds[i] - free_speed + half_mobility * of.tension(i);
+      const double value = speeds[i] - free_speed + half_mobility * curve.tension(i);
       if (value == 0.0) return speeds[i];
       bracket.narrow(speeds[i], value);
     }
@@ -260,10 +260,10 @@ void StiffFriction::prepare(WorldState& world, const Around& around, Solved& sol
                 Vec3::Map(around.extrapolated.data() + 4 * std::size_t{mat}));
   };
   solved.speed = solved.axis.dot(extrapolated(ends.mat_b) - extrapolated(ends.mat_a)) / dt_;
-  TensionOverSpeed of(world, solved.link);
-  of.find({solved.speed});
-  solved.elastic = of.tension(0) - of.viscous(0);
-  solved.viscous_power = of.viscous(0) * solved.speed;
+  TensionOverSpeed curve(world, solved.link);
+  curve.find({solved.speed});
+  solved.elastic = curve.tension(0) - curve.viscous(0);
+  solved.viscous_power = curve.viscous(0) * solved.speed;
   const double explicit_tension = world.state_links.tension(solved.link);
   if (!around.started) solved.tension = explicit_tension;
   add_tension(world, solved, solved.tension - explicit_tension);
@@ -296,16 +296,16 @@ double StiffFriction::free_speed(const WorldState& world, const Around& around,
 /// @return its speed; the tension stays when no root is found
 double StiffFriction::solve_one(const WorldState& world, const Solved& solved, double free_speed,
                                 double& tension) noexcept {
-  TensionOverSpeed of(world, solved.link);
-  of.find({solved.speed});
-  const double value = solved.speed - free_speed + solved.half_mobility * of.tension(0);
+  TensionOverSpeed curve(world, solved.link);
+  curve.find({solved.speed});
+  const double value = solved.speed - free_speed + solved.half_mobility * curve.tension(0);
   double speed = solved.speed;
   if (value != 0.0) {
     Bracket bracket{};
-    if (!find_bracket(of, solved.speed, value, solved.half_mobility, free_speed, bracket)) {
+    if (!find_bracket(curve, solved.speed, value, solved.half_mobility, free_speed, bracket)) {
       return solved.speed;
     }
-    speed = find_root(of, solved.half_mobility, free_speed, bracket);
+    speed = find_root(curve, solved.half_mobility, free_speed, bracket);
   }
   tension = (free_speed - speed) / solved.half_mobility;
   return speed;

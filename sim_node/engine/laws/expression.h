@@ -46,14 +46,14 @@ struct Expression {
   Term term() const noexcept { return {program.code.data(), program.code.size()}; }
 
   template <class Lanes>
-  static void add(const Term& program, const LawArguments& of, double* tension) noexcept {
+  static void add(const Term& program, const LawArguments& arguments, double* tension) noexcept {
     using Row = typename Lanes::Row;
     const double* quantity[kQuantityCount] = {};
-    quantity[static_cast<std::size_t>(Quantity::kDistance)] = of.distance;
-    quantity[static_cast<std::size_t>(Quantity::kElongation)] = of.elongation;
-    quantity[static_cast<std::size_t>(Quantity::kSpeed)] = of.speed;
-    quantity[static_cast<std::size_t>(Quantity::kMassA)] = of.mass_a;
-    quantity[static_cast<std::size_t>(Quantity::kMassB)] = of.mass_b;
+    quantity[static_cast<std::size_t>(Quantity::kDistance)] = arguments.distance;
+    quantity[static_cast<std::size_t>(Quantity::kElongation)] = arguments.elongation;
+    quantity[static_cast<std::size_t>(Quantity::kSpeed)] = arguments.speed;
+    quantity[static_cast<std::size_t>(Quantity::kMassA)] = arguments.mass_a;
+    quantity[static_cast<std::size_t>(Quantity::kMassB)] = arguments.mass_b;
     ProgramLoop<Lanes> loop;
     const double* value = loop.evaluate(program, {quantity, nullptr}, 0);
     const Row infinity = Lanes::every(__builtin_huge_val());

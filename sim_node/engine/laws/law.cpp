@@ -9,15 +9,15 @@
 namespace cordis::engine {
 
 LawArgument argument_of(const Law& law) noexcept {
-  return std::visit([](const auto& of) { return of.kArgument; }, law);
+  return std::visit([](const auto& alternative) { return alternative.kArgument; }, law);
 }
 
 bool stores_energy(const Law& law) noexcept {
-  return std::visit([](const auto& of) { return of.kStoresEnergy; }, law);
+  return std::visit([](const auto& alternative) { return alternative.kStoresEnergy; }, law);
 }
 
 void check_elasticity(const Law& law, const std::string& name) {
-  std::visit([&](const auto& of) { of.check(name); }, law);
+  std::visit([&](const auto& alternative) { alternative.check(name); }, law);
 }
 
 void check_dissipation(const Law& law, const std::string& name) {
@@ -27,22 +27,25 @@ void check_dissipation(const Law& law, const std::string& name) {
 }
 
 double elastic_tension(const Law& law, const LawPoint& link) noexcept {
-  return std::visit([&](const auto& of) { return scalar_tension(of, link, link.elongation); }, law);
+  return std::visit(
+      [&](const auto& alternative) { return scalar_tension(alternative, link, link.elongation); },
+      law);
 }
 
 double viscous_tension(const Law& law, const LawPoint& link) noexcept {
-  return std::visit([&](const auto& of) { return scalar_tension(of, link, link.speed); }, law);
+  return std::visit(
+      [&](const auto& alternative) { return scalar_tension(alternative, link, link.speed); }, law);
 }
 
 double potential(const Law& law, const LawPoint& link) noexcept {
-  const auto of_type = [&]<class Type>(const Type& of) {
+  const auto potential_of_type = [&]<class Type>(const Type& alternative) {
     if constexpr (std::is_same_v<Type, Expression>) {
-      return of.is_potential() ? of.potential(link) : 0.0;
+      return alternative.is_potential() ? alternative.potential(link) : 0.0;
     } else {
-      return of.potential(link.distance, link.elongation);
+      return alternative.potential(link.distance, link.elongation);
     }
   };
-  return std::visit(of_type, law);
+  return std::visit(potential_of_type, law);
 }
 
 const Expression* potential_expression(const Law& law) noexcept {
@@ -51,15 +54,16 @@ const Expression* potential_expression(const Law& law) noexcept {
 }
 
 LawSlope largest_slope(const Law& law, const LawRange& range) noexcept {
-  return std::visit([&](const auto& of) { return of.largest_slope(range); }, law);
+  return std::visit([&](const auto& alternative) { return alternative.largest_slope(range); }, law);
 }
 
 double smallest_slope(const Law& law, double elongation) noexcept {
-  return std::visit([&](const auto& of) { return of.smallest_slope(elongation); }, law);
+  return std::visit([&](const auto& alternative) { return alternative.smallest_slope(elongation); },
+                    law);
 }
 
 double range_of(const Law& law) noexcept {
-  return std::visit([](const auto& of) { return of.range(); }, law);
+  return std::visit([](const auto& alternative) { return alternative.range(); }, law);
 }
 
 }  // namespace cordis::engine

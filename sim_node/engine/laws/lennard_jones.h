@@ -42,7 +42,7 @@ struct LennardJones {
   Term term() const noexcept;
 
   template <class Lanes>
-  static void add(const Term& law, const LawArguments& of, double* tension) noexcept {
+  static void add(const Term& law, const LawArguments& arguments, double* tension) noexcept {
     using Row = typename Lanes::Row;
     const Row attraction = Lanes::every(law.attraction);
     const Row repulsion = Lanes::every(law.repulsion);
@@ -56,7 +56,7 @@ struct LennardJones {
           Lanes::both(Lanes::less(Lanes::magnitude(d), cutoff), Lanes::not_equal(d, Lanes::zero()));
       return p + Lanes::select(within, slope, Lanes::zero());
     };
-    LaneBatch<Lanes>::each(tension, sum, tension, of.distance);
+    LaneBatch<Lanes>::each(tension, sum, tension, arguments.distance);
   }
 
   /// Tension / distance of the square of a distance, without its root; the cutoff is up to the caller.

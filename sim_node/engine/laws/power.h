@@ -46,7 +46,7 @@ struct Power {
   Term term() const noexcept { return {coefficient, static_cast<std::uint32_t>(2.0 * exponent)}; }
 
   template <class Lanes>
-  static void add(const Term& law, const LawArguments& of, double* tension) noexcept {
+  static void add(const Term& law, const LawArguments& arguments, double* tension) noexcept {
     using Row = typename Lanes::Row;
     const Row coefficient = Lanes::every(law.coefficient);
     const auto sum = [&](Row p, Row u) {
@@ -60,7 +60,7 @@ struct Power {
       power = Lanes::select(Lanes::less(u, Lanes::zero()), -power, power);
       return p + Lanes::select(Lanes::equal(u, Lanes::zero()), Lanes::zero(), power);
     };
-    LaneBatch<Lanes>::each(tension, sum, tension, of.argument);
+    LaneBatch<Lanes>::each(tension, sum, tension, arguments.argument);
   }
 };
 

@@ -52,7 +52,7 @@ struct Rings {
   Term term() const noexcept { return {rings.data(), rings.size()}; }
 
   template <class Lanes>
-  static void add(const Term& law, const LawArguments& of, double* tension) noexcept {
+  static void add(const Term& law, const LawArguments& arguments, double* tension) noexcept {
     using Row = typename Lanes::Row;
     for (std::size_t r = 0; r < law.count; ++r) {
       const Row stiffness = Lanes::every(law.rings[r].stiffness);
@@ -60,7 +60,7 @@ struct Rings {
       const auto sum = [&](Row p, Row d) {
         return p - Lanes::select(Lanes::less(d, radius), stiffness * (radius - d), Lanes::zero());
       };
-      LaneBatch<Lanes>::each(tension, sum, tension, of.distance);
+      LaneBatch<Lanes>::each(tension, sum, tension, arguments.distance);
     }
   }
 };

@@ -12,9 +12,9 @@ namespace cordis::engine {
 template <class Type>
 double scalar_tension(const Type& law, const LawPoint& link, double argument) noexcept {
   double tension = 0.0;
-  const LawArguments of{&argument,   &link.distance, &link.elongation,
-                        &link.speed, &link.mass_a,   &link.mass_b};
-  Type::template add<ScalarLanes>(law.term(), of, &tension);
+  const LawArguments arguments{&argument,   &link.distance, &link.elongation,
+                               &link.speed, &link.mass_a,   &link.mass_b};
+  Type::template add<ScalarLanes>(law.term(), arguments, &tension);
   return tension;
 }
 

@@ -14,11 +14,11 @@ namespace cordis::engine {
 class Table {
  public:
   Table() = default;
-  /// @param at     elongation [m] or speed [m/s], strictly ascending
-  /// @param value  tension [N], one for each
-  Table(std::vector<double> at, std::vector<double> value);
+  /// @param argument  elongation [m] or speed [m/s], strictly ascending
+  /// @param value     tension [N], one for each
+  Table(std::vector<double> argument, std::vector<double> value);
 
-  const std::vector<double>& at() const noexcept { return at_; }
+  const std::vector<double>& argument() const noexcept { return argument_; }
   const std::vector<double>& value() const noexcept { return value_; }
 
   static constexpr const char* kName = "table";
@@ -27,7 +27,7 @@ class Table {
 
   template <class Self, class Visit>
   static void visit_fields(Self& law, Visit&& visit) {
-    visit(LawField{.key = nullptr, .ascends = true}, law.at_);
+    visit(LawField{.key = nullptr, .ascends = true}, law.argument_);
     visit(LawField{.key = "force_n", .as_many_as_first = true}, law.value_);
   }
   /// Follows a visit_fields() that has written them.
@@ -40,35 +40,37 @@ class Table {
   double range() const noexcept { return 0.0; }
 
   struct Term {
-    const double* at;
+    const double* argument;
     const double* value;
     const double* slope;  // to the next point; 0 at the last
     std::size_t count;
   };
-  Term term() const noexcept { return {at_.data(), value_.data(), slope_.data(), at_.size()}; }
+  Term term() const noexcept {
+    return {argument_.data(), value_.data(), slope_.data(), argument_.size()};
+  }
 
   template <class Lanes>
-  static void add(const Term& table, const LawArguments& of, double* tension) noexcept {
+  static void add(const Term& table, const LawArguments& arguments, double* tension) noexcept {
     using Row = typename Lanes::Row;
     using Batch = LaneBatch<Lanes>;
     alignas(64) double clamped[Batch::kRows];
-    alignas(64) double at[Batch::kRows];
+    alignas(64) double argument[Batch::kRows];
     alignas(64) double value[Batch::kRows];
     alignas(64) double slope[Batch::kRows];
-    const Row first = Lanes::every(table.at[0]);
-    const Row last = Lanes::every(table.at[table.count - 1]);
+    const Row first = Lanes::every(table.argument[0]);
+    const Row last = Lanes::every(table.argument[table.count - 1]);
     Batch::each(
         clamped, [&](Row u) { return Lanes::minimum(last, Lanes::maximum(first, u)); },
-        of.argument);
+        arguments.argument);
     for (std::size_t i = 0; i < Batch::kRows; ++i) {
       const std::size_t point = last_point_up_to<Lanes>(table, clamped[i]);
-      at[i] = table.at[point];
+      argument[i] = table.argument[point];
       value[i] = table.value[point];
       slope[i] = table.slope[point];
     }
     Batch::each(
         tension, [](Row p, Row u, Row a, Row v, Row s) { return p + (v + s * (u - a)); }, tension,
-        clamped, at, value, slope);
+        clamped, argument, value, slope);
   }
 
  private:
@@ -79,13 +81,13 @@ class Table {
     std::size_t count = table.count;
     while (count > 1) {
       const std::size_t half = count / 2;
-      first += table.at[first + half] <= argument ? half : 0;
+      first += table.argument[first + half] <= argument ? half : 0;
       count -= half;
     }
     return first;
   }
 
-  std::vector<double> at_;
+  std::vector<double> argument_;
   std::vector<double> value_;
   std::vector<double> slope_;
 };

@@ -135,14 +135,14 @@ class StateMachineLoop {
     Batch::each(
         speed, [&](Row g) { return g * rate; }, elongation_increment);
     stretch(rows_.elongation, elastic);
-    LawArguments of = arguments(rows_.elongation, speed);
-    if (stores_energy) LawLoop<Lanes>::add(state.elasticity, of, elastic);
+    LawArguments law_arguments = arguments(rows_.elongation, speed);
+    if (stores_energy) LawLoop<Lanes>::add(state.elasticity, law_arguments, elastic);
     const Row viscosity = Lanes::every(state.viscosity_over_dt);
     Batch::each(
         tension, [&](Row e, Row g) { return e + viscosity * g; }, elastic, elongation_increment);
-    if (!stores_energy) add_expression(state.elasticity, of, tension, elastic);
-    of.argument = speed;
-    LawLoop<Lanes>::add(state.dissipation, of, tension);
+    if (!stores_energy) add_expression(state.elasticity, law_arguments, tension, elastic);
+    law_arguments.argument = speed;
+    LawLoop<Lanes>::add(state.dissipation, law_arguments, tension);
 
     if (state.limited) limit(state, tension);
     if (state.elasticity.is_potential && state.limited) {
@@ -163,15 +163,15 @@ class StateMachineLoop {
   }
 
   /// Adds what an expression pulls; to the part that stores energy if it has a potential.
-  static void add_expression(const LawTerm& law, const LawArguments& of, double* tension,
+  static void add_expression(const LawTerm& law, const LawArguments& law_arguments, double* tension,
                              double* elastic) noexcept {
     if (!law.is_potential) {
-      LawLoop<Lanes>::add(law, of, tension);
+      LawLoop<Lanes>::add(law, law_arguments, tension);
       return;
     }
     alignas(64) double value[Batch::kRows];
     Batch::fill(value, -0.0);  // which changes no sum, not even 0
-    LawLoop<Lanes>::add(law, of, value);
+    LawLoop<Lanes>::add(law, law_arguments, value);
     const auto sum = [](Row p, Row v) { return p + v; };
     Batch::each(tension, sum, tension, value);
     Batch::each(elastic, sum, elastic, value);

@@ -34,9 +34,9 @@ namespace {
 
 /// Precondition: the law lives as long as what is made of it.
 ReadyLaw ready(const Law& law) {
-  const auto make = [&law](const auto& of) -> ReadyLaw {
-    const auto term = std::make_shared<const decltype(of.term())>(of.term());
-    return {{static_cast<std::uint32_t>(law.index()), of.kStoresEnergy,
+  const auto make = [&law](const auto& alternative) -> ReadyLaw {
+    const auto term = std::make_shared<const decltype(alternative.term())>(alternative.term());
+    return {{static_cast<std::uint32_t>(law.index()), alternative.kStoresEnergy,
              potential_expression(law) != nullptr, term.get()},
             term};
   };
@@ -90,7 +90,7 @@ void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
   first_state.push_back(first);
   for (const LinkState& state : state_machine.states) {
     for (const Law* law : {&state.elasticity, &state.dissipation}) {
-      if (const auto* of = std::get_if<Expression>(law)) record_needs(of->program);
+      if (const auto* expression = std::get_if<Expression>(law)) record_needs(expression->program);
     }
     state_machine_of.push_back(static_cast<std::uint32_t>(first_state.size() - 1));
     add_state(state, exits.back());

@@ -19,8 +19,8 @@ void ActiveLinks::choose(const std::uint32_t* column_a, const std::uint32_t* col
   for (std::size_t first = 0; first < count_; first += batch_) {
     unsigned of_batch = 0;
     for (std::size_t l = first; l < first + batch_; ++l) {
-      of_batch |= roles.of(column_a[l] / 4);
-      of_batch |= roles.of(column_b[l] / 4);
+      of_batch |= roles.roles(column_a[l] / 4);
+      of_batch |= roles.roles(column_b[l] / 4);
     }
     if ((of_batch & kWholeForce) == 0) continue;
     for (std::size_t l = first; l < first + batch_; ++l) {

@@ -31,14 +31,14 @@ class MatRoles {
 
   std::size_t count() const noexcept { return roles_.size(); }
   bool has(std::size_t mat, unsigned role) const noexcept { return (roles_[mat] & role) != 0; }
-  unsigned of(std::size_t mat) const noexcept { return roles_[mat]; }
+  unsigned roles(std::size_t mat) const noexcept { return roles_[mat]; }
   void set(std::size_t mat, unsigned roles) noexcept {
     roles_[mat] = static_cast<std::uint8_t>(roles);
   }
   void add(std::size_t mat, unsigned roles) noexcept {
     roles_[mat] = static_cast<std::uint8_t>(roles_[mat] | roles);
   }
-  /// There is a liaison between two MATs.
+  /// Records a liaison between two MATs.
   void join(std::size_t a, std::size_t b, const WakePropagation& pass) noexcept {
     if (has(a, pass.from) && has(b, kIsMass)) add(b, pass.to);
     if (has(b, pass.from) && has(a, kIsMass)) add(a, pass.to);

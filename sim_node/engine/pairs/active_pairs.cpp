@@ -33,7 +33,7 @@ bool ActivePairs::make_room(std::size_t capacity) noexcept {
 void ActivePairs::find_roles(const std::vector<std::uint32_t>& column,
                              const MatRoles& roles) noexcept {
   for (std::size_t m = 0; m < column.size(); ++m) {
-    role_[m] = static_cast<std::uint8_t>(roles.of(column[m] / 4));
+    role_[m] = static_cast<std::uint8_t>(roles.roles(column[m] / 4));
   }
 }
 

@@ -30,7 +30,7 @@ struct PairRest {
   double given = 0.0;
   const double* radius = nullptr;  // of each member; null when the rest length is given
 
-  double of(std::size_t a, std::size_t b) const noexcept {
+  double length(std::size_t a, std::size_t b) const noexcept {
     return radius == nullptr ? given : radius[a] + radius[b];
   }
 };

@@ -213,7 +213,7 @@ void SetPairs::find_rest_lengths() noexcept {
   const PairRows rows = block_.rows();
   double* rest_length = block_.rest_length();
   for (std::size_t i = 0; i < rows.count; ++i) {
-    rest_length[i] = rest().of(rows.column_a[i] / 4, rows.pairs.column[i] / 4);
+    rest_length[i] = rest().length(rows.column_a[i] / 4, rows.pairs.column[i] / 4);
   }
 }
 
@@ -345,7 +345,7 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
         sum += table.stored_energy(pair.state, distance(a, b), pair.rest_length, mass);
         // Less what it has where it comes into range, of the start and of all other states.
         if (path_ != Path::kLennardJones)
-          sum -= table.stored_energy(start, range_, rest_of.of(a, b), mass);
+          sum -= table.stored_energy(start, range_, rest_of.length(a, b), mass);
       }
     }
     return sum;
@@ -361,7 +361,7 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t b = row.column[i] / 4;
         const EndMasses mass = state_machines_.masses_of(a, b);
-        const double rest_length = rest_of.of(a, b);
+        const double rest_length = rest_of.length(a, b);
         sum += table.stored_energy(start, std::sqrt(row.square[i]), rest_length, mass);
         // Beyond the range there is no force, and the potential is 0; that of Lennard-Jones is 0
         // far away.

@@ -93,24 +93,24 @@ OdeSystem::Joined OdeSystem::joined(std::uint32_t set, NearPairs::Pair pair,
 }
 
 OdeSystem::Present OdeSystem::fresh(std::uint32_t set, NearPairs::Pair pair) const {
-  const engine::SetLiaison& of = network_.sets[set];
-  const double rest = of.rest_length < 0.0
+  const engine::SetLiaison& liaison = network_.sets[set];
+  const double rest = liaison.rest_length < 0.0
                           ? network_.radius[pair.first] + network_.radius[pair.second]
-                          : of.rest_length;
-  return {network_.state_machines[of.state_machine].start, rest, -1.0};
+                          : liaison.rest_length;
+  return {network_.state_machines[liaison.state_machine].start, rest, -1.0};
 }
 
 /// All pairs that are in range or bound, each with what it remembers.
 template <class Visit>
 void OdeSystem::each_pair(std::uint32_t set, const Values& values, Visit visit) {
-  Set& of = sets_[set];
+  Set& known = sets_[set];
   const double range = network_.sets[set].range;
-  for (const NearPairs::Pair& pair : of.near.near(values.data())) {
-    if (!of.bound.empty() && of.bound.contains(pair)) continue;
+  for (const NearPairs::Pair& pair : known.near.near(values.data())) {
+    if (!known.bound.empty() && known.bound.contains(pair)) continue;
     const Vec3 along = position(values, pair.second) - position(values, pair.first);
     if (along.squaredNorm() < range * range && !visit(pair, fresh(set, pair))) return;
   }
-  for (const auto& [pair, present] : of.bound) {
+  for (const auto& [pair, present] : known.bound) {
     if (!visit(pair, present)) return;
   }
 }

@@ -93,7 +93,7 @@ class Evaluation {
  public:
   explicit Evaluation(const LinkBox& box) : box_(box) {}
 
-  Enclosed of(const engine::Program& program) {
+  Enclosed enclose(const engine::Program& program) {
     std::vector<Enclosed> stack;
     for (const Instruction& instruction : program.code) {
       const std::size_t taken = engine::operand_count(instruction.operation);
@@ -240,20 +240,20 @@ class Evaluation {
     }
   }
 
-  Enclosed apply(const Instruction& instruction, const Enclosed* of) const {
+  Enclosed apply(const Instruction& instruction, const Enclosed* operands) const {
     const std::size_t count = engine::operand_count(instruction.operation);
     if (instruction.operation == Operation::kConstant) {
       return {{instruction.constant, instruction.constant}};
     }
     if (instruction.operation == Operation::kQuantity) return quantity(instruction.quantity);
-    if (count == 1) return one(instruction, of[0]);
+    if (count == 1) return one(instruction, operands[0]);
     if (instruction.operation == Operation::kSelect) {
-      const Interval& which = of[0].value;
-      if (!holds_zero(which)) return of[1];
-      if (is_point(which)) return of[2];
-      return of[1].jumps || of[2].jumps ? kUnknown : either(of[1], of[2]);
+      const Interval& which = operands[0].value;
+      if (!holds_zero(which)) return operands[1];
+      if (is_point(which)) return operands[2];
+      return operands[1].jumps || operands[2].jumps ? kUnknown : either(operands[1], operands[2]);
     }
-    return two(instruction.operation, of[0], of[1]);
+    return two(instruction.operation, operands[0], operands[1]);
   }
 
   Enclosed two(Operation operation, const Enclosed& u, const Enclosed& v) const {
@@ -330,7 +330,7 @@ double steepest(const engine::Program& program, const LinkBox& whole, std::size_
   constexpr int kBisections = 2000;
   constexpr double kNearEnough = 1.02;
   const auto sub_box = [&](const LinkBox& box) {
-    return SubBox{box, std::max(0.0, Evaluation(box).of(program).slope[variable].high)};
+    return SubBox{box, std::max(0.0, Evaluation(box).enclose(program).slope[variable].high)};
   };
   std::priority_queue<SubBox> boxes;
   boxes.push(sub_box(whole));
@@ -342,7 +342,7 @@ double steepest(const engine::Program& program, const LinkBox& whole, std::size_
     LinkBox place = top.box;
     place.distance.low = place.distance.high = 0.5 * (top.box.distance.low + top.box.distance.high);
     place.speed.low = place.speed.high = 0.5 * (top.box.speed.low + top.box.speed.high);
-    const double here = Evaluation(place).of(program).slope[variable].high;
+    const double here = Evaluation(place).enclose(program).slope[variable].high;
     if (std::isfinite(here)) reached = std::max(reached, here);
     const bool over_distance = (top.box.distance.high - top.box.distance.low) * speed >=
                                (top.box.speed.high - top.box.speed.low) * distance;
@@ -367,7 +367,7 @@ SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& bo
 }
 
 Interval values_of(const engine::Program& program, const LinkBox& box) {
-  return Evaluation(box).of(program).value;
+  return Evaluation(box).enclose(program).value;
 }
 
 }  // namespace cordis::plan

@@ -115,14 +115,14 @@ const QuantityWord* read_quantity(config::MappingReader& reader, Owner owner) {
 
 /// The direction of a position, velocity or force; a port of one axis needs no `axis`.
 void read_direction_of_signal(Assembly& assembly, config::MappingReader& reader,
-                              const Selection& of, Signal& signal) {
+                              const Selection& selection, Signal& signal) {
   const std::vector<std::string> words = axis_words(assembly.scene.space());
   if (reader.has("axis")) {
     signal.direction = Vec3::Unit(reader.required_choice("axis", words).front() - 'x');
     return;
   }
   for (const Port& port : assembly.scene.ports) {
-    const bool is_here = port.mat == of.indices[0] || port.tool == of.indices[0];
+    const bool is_here = port.mat == selection.indices[0] || port.tool == selection.indices[0];
     if (!is_here || port.directions.size() != 1) continue;
     signal.direction = port.directions.front();
     if (signal.quantity == Quantity::kPosition) signal.offset = signal.direction.dot(port.rest);
@@ -190,13 +190,13 @@ void read_count_of_links(config::MappingReader& reader, const std::string& name,
 void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Signal>& signals) {
   check_name(entry.key, entry.key_place, assembly.problems);
   config::MappingReader reader(entry.value, "signal '" + entry.key + "'", assembly.problems);
-  const Value of = reader.optional_value("of");
-  const auto set = assembly.named_sets.find(of.text());
+  const Value subject = reader.optional_value("of");
+  const auto set = assembly.named_sets.find(subject.text());
   if (set != assembly.named_sets.end())
     return read_signal_of_set(assembly, reader, entry.key, set->second, signals);
   std::optional<Selection> picked;
-  if (of.exists()) {
-    picked = select(of, "'of' in " + reader.what(), true, assembly.names, assembly.problems);
+  if (subject.exists()) {
+    picked = select(subject, "'of' in " + reader.what(), true, assembly.names, assembly.problems);
     if (!picked) return;  // whose signal it is decides what else it may say
   }
   const bool is_link = picked && picked->kind == Named::kLinks;
@@ -208,8 +208,8 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
   if (picked && picked->count() != 1 && !is_count) {
     reader.error_at("of",
                     "a signal is of one MAT or one link, and " +
-                        (of.text().empty() ? "this list" : "'" + of.text() + "'") + " has " +
-                        std::to_string(picked->count()),
+                        (subject.text().empty() ? "this list" : "'" + subject.text() + "'") +
+                        " has " + std::to_string(picked->count()),
                     "pick one: " + assembly.names.word_of(picked->indices[0], is_link));
   }
   Owner owner = Owner::kScene;
