@@ -247,7 +247,7 @@ void Exchange::play_period() noexcept {
 }
 
 void Exchange::use_late_answer(std::int64_t until_nsec) noexcept {
-  // Of a period that is half over too little is left to go to a position.
+  // A period that is half over leaves too little time to go to a position.
   const bool is_used = driver_.changes_within_period() && role_ == Role::kMass && present_ &&
                        leaving_age_s_ <= 0.0 && meter_.phase() == Phase::kRunning;
   if (is_used) apply_answers_until(until_nsec);

@@ -39,8 +39,8 @@ struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
     rtps::GUID_t writer;
   };
 
-  // With an arrival: what has been taken out of DDS, oldest first from mailbox_first on. Of a topic
-  // of which the newest message counts alone, it holds one of each device and writer.
+  // Messages taken out of DDS when arrivals are reported, oldest first from mailbox_first on. If
+  // only the newest message of a topic counts, the mailbox holds one of each device and writer.
   static constexpr std::size_t kMailboxRoom = 64;  // devices
   std::mutex mailbox_mutex;
   std::vector<Letter> mailbox;

@@ -17,7 +17,7 @@ bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph) 
   return !graph.uncertainty && network.step < certified_bound(network, graph).step;
 }
 
-/// To which a liaison was followed within its reach [J].
+/// The energy up to which a liaison was followed within its reach [J].
 double energy_followed(const engine::StateMachine& state_machine, const Reach& reach) {
   double energy = energy_at(reach);
   for (const engine::LinkState& state : state_machine.states) {

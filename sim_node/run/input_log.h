@@ -33,7 +33,7 @@ struct InputRecord {
   std::uint32_t device_id = 0;
   std::uint8_t bound = 0;  ///< of kReach a msg::ReachBound, of kLetGo a PassedBound
   bool is_supported = true;
-  // Of a sample, as in its message.
+  // Fields of a sample, as in its message.
   std::uint64_t epoch = 0;
   std::uint64_t sample = 0;
   std::uint64_t answered_epoch = 0;

@@ -119,7 +119,7 @@ inline void release(const ChildProcess& run, const std::string& node) {
   kill(pids_in(output.substr(output.find(node + " ")))[0], SIGUSR1);
 }
 
-/// Whether the process runs; one that has ended and waits for its parent to notice does not.
+/// True if the process runs; false if it has ended and its parent has not noticed yet.
 inline bool is_running(pid_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string text;

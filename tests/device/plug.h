@@ -36,11 +36,11 @@ class Plug {
   enum class Harm { kNone, kFlipped, kCut, kDropped, kLate };
   std::function<Harm(int)> harm = [](int) { return Harm::kNone; };
 
-  /// Of every ten answers one with a wrong bit, one that lacks a byte, one that never comes and one
-  /// that comes with the next; all bits and bytes get their turn.
+  /// Harms four of ten answers: a wrong bit, a missing byte, no answer, and one that comes with the
+  /// next. All bits and bytes get their turn.
   static Harm every_kind(int n);
 
-  /// Whether its thread has ever been held up for 50 ms.
+  /// True if its thread has ever been held up for 50 ms.
   bool has_stalled() const noexcept { return stalled_; }
 
   void say_nothing();  ///< an empty datagram

@@ -119,7 +119,7 @@ struct Behaving {
     ++state_machine.states.back().last_exit;
     return *this;
   }
-  /// With the value of an expression as the new rest length.
+  /// Adds an exit that sets the rest length to the value of an expression.
   Behaving& exit_to_rest(Term when, std::uint32_t target, Term rest_length) {
     exit(std::move(when), target, RestRule::kExpression);
     state_machine.exits.back().rest_length = std::move(rest_length.program);

@@ -113,7 +113,7 @@ NetworkDescription with_set(NetworkDescription scene, const StateMachine& state_
   return scene;
 }
 
-/// The same liaison, as a state link for each pair.
+/// Adds the liaison as one state link for each pair.
 NetworkDescription with_links(NetworkDescription scene, const StateMachine& state_machine,
                               double rest_length) {
   scene.state_machines = {state_machine};

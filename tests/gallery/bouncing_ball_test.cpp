@@ -14,7 +14,7 @@ namespace {
 constexpr double kRadius = 0.02;
 constexpr double kFall = 0.30;
 
-/// Of a spring-damper that ends where it began: e = exp(-pi zeta / sqrt(1 - zeta^2)).
+/// Restitution of a spring-damper that ends where it began: exp(-pi zeta / sqrt(1 - zeta^2)).
 double restitution(double viscosity) {
   const double zeta = viscosity / (2.0 * std::sqrt(800.0 * 0.02));
   return std::exp(-std::numbers::pi * zeta / std::sqrt(1.0 - zeta * zeta));

@@ -9,7 +9,7 @@
 namespace cordis::test {
 namespace {
 
-/// Of 40 masses between fixed ends, joined by 41 springs.
+/// Lowest frequency [Hz] of 40 masses between fixed ends, joined by 41 springs.
 double lowest_note_hz(const GallerySession& session) {
   const engine::NetworkDescription& network = session.world().network().description();
   const double omega = 2.0 * std::sqrt(network.links[0].stiffness / network.mats[1].mass) *

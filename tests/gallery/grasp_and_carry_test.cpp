@@ -20,7 +20,7 @@ struct Motion {
   engine::Vec3 velocity;
 };
 
-/// Of the centre of mass of balls of one mass.
+/// Motion of the centre of mass; all balls have one mass.
 Motion motion_of(const GallerySession& session, const std::string& name) {
   const scene::NamedRange body = session.mats(name);
   Motion sum{engine::Vec3::Zero(), engine::Vec3::Zero()};

@@ -27,7 +27,7 @@ Pairs neighbours(const GallerySession& session) {
   return pairs;
 }
 
-/// Of these pairs, how many are among the others too. Both ascend.
+/// Counts the pairs that both lists have. Both ascend.
 std::size_t in_common(const Pairs& some, const Pairs& others) {
   return static_cast<std::size_t>(std::count_if(some.begin(), some.end(), [&](const auto& pair) {
     return std::binary_search(others.begin(), others.end(), pair);

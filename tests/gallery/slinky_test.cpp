@@ -10,7 +10,7 @@
 namespace cordis::test {
 namespace {
 
-/// The same slinky with joints of a hundredth of a ring's mass, computed as it is written.
+/// A slinky with joints of a hundredth of a ring's mass, computed as it is written.
 ChangedScene written_out() {
   return {"slinky", {{"mass_kg: 0,", "mass_kg: 8.0e-5,"}, {"reduce: all", "reduce: none"}}};
 }

@@ -62,7 +62,7 @@ TEST(SoundingString, SoundsAnAWhenItIsPluckedAndSlipsOnceASwingUnderTheBow) {
   GallerySession session("sounding_string.yaml");
   bridge_until(session, 0.6);
   const std::vector<double> plucked = bridge_until(session, 2.6);
-  // Of 100 masses between fixed ends; the step raises it by 7e-6 of itself.
+  // Lowest frequency of 100 masses between fixed ends; the step raises it by 7e-6 of itself.
   const engine::NetworkDescription& network = session.world().network().description();
   const double note_hz = 2.0 * std::sqrt(network.links[0].stiffness / network.mats[1].mass) *
                          std::sin(std::numbers::pi / 202.0) / (2.0 * std::numbers::pi);

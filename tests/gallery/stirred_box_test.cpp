@@ -53,7 +53,7 @@ std::vector<std::uint32_t> ordered(const GallerySession& session) {
   return found;
 }
 
-/// Of the clusters of such balls, how many each has; the largest first.
+/// Number of balls of each cluster, the largest first.
 std::vector<std::size_t> cluster_sizes(const GallerySession& session) {
   const std::vector<std::uint32_t> balls = ordered(session);
   if (balls.empty()) return {};

@@ -13,8 +13,8 @@ namespace cordis::test {
 namespace {
 
 TEST(Sessions, OfOneDomainDoNotHearEachOther) {
-  // The same domain, the same names of nodes and devices; only the sessions' names and the
-  // stiffness differ.
+  // Domain and names of nodes and devices are equal; only the sessions' names and the stiffness
+  // differ.
   LiveSession soft("realtime", kSimAndKey, "soft");
   LiveSession stiff("realtime", kSimAndKey, "stiff");
   soft.add_file("scene.yaml", wall_scene(100.0));

@@ -20,7 +20,7 @@ void sleep_nsec(std::int64_t nsec) {
   nanosleep(&time, nullptr);
 }
 
-/// Of the calling thread.
+/// Processor time of the calling thread [ns].
 std::int64_t processor_nsec() {
   timespec used{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);

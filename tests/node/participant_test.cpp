@@ -54,7 +54,7 @@ Peer peer_named(const Participant& participant, const std::string& name) {
   return {};
 }
 
-/// Whether a status with a number above `number` comes, which then is the newest.
+/// Waits for a status with a number above `number`, and sets `number` to the newest.
 bool receives_more(Reader<msg::NodeStatus>& statuses, std::uint64_t& number) {
   return eventually([&] {
     msg::NodeStatus status;

@@ -22,7 +22,7 @@ using plan::largest_port_stiffness;
 using plan::PortLoop;
 
 TEST(PortLimit, OfPassivityIsThatOfTheReferenceTable) {
-  // With m = 1 and T = 1: device viscosity beta, port viscosity z, delay d.
+  // Rows hold for m = 1 and T = 1: device viscosity beta, port viscosity z, delay d.
   const std::vector<HapticBoundary> rows = haptic_boundaries();
   ASSERT_EQ(rows.size(), 252u);
   for (const HapticBoundary& row : rows) {

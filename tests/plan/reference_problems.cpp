@@ -383,7 +383,7 @@ ReferenceProblem cluster() {
 ReferenceProblem bounce() {
   // K = m = 1, v0 = 1, zeta = 0.1.
   const nlohmann::json row = reference("R12_bounce_restitution")["rows"][3];
-  // Of its position the reference says nothing: see OfABounceGoesToItsRestitution.
+  // The reference gives no position: see OfABounceGoesToItsRestitution.
   return {
       "R12 bounce, clamped",
       MotionKind::kSwitching,

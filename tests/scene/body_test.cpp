@@ -26,7 +26,7 @@ std::size_t link_count(const Scene& scene) {
   return scene.network.links.size();
 }
 
-/// Whether no two MATs are joined twice, and all hang together.
+/// True if no two MATs are joined twice and all MATs are connected.
 bool is_one_simple_piece(const Scene& scene) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
   std::vector<std::uint32_t> root(mat_count(scene));

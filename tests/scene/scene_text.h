@@ -30,7 +30,7 @@ inline Scene scene_with_bob(int space, const std::string& matter, const std::str
       space, "matter:\n" + matter + "  bob: {kind: mass, mass_kg: 1, at_m: " + at + "}\n" + rest);
 }
 
-/// Of any two MATs [m].
+/// The smallest distance between two MATs of the scene [m].
 inline double smallest_distance(const Scene& scene) {
   double smallest = 1e9;
   const auto& mats = scene.network.mats;

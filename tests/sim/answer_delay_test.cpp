@@ -119,7 +119,7 @@ TEST(AnswerDelays, CountABurstOfTenLostSamplesAsTen) {
     measured.lose(10);
     measured.answer(10.1e-3);  // the position before the burst was answered until now
   }
-  // Of 100 samples those of 2.1 to 10.1 ms are more than 5.
+  // More than 5 of 100 samples are those of 2.1 to 10.1 ms.
   EXPECT_GE(measured.at(kSecondNsec).value(), 5e-3);
   EXPECT_LE(measured.at(kSecondNsec).value(), 7e-3);
 }

@@ -24,7 +24,7 @@ constexpr double kSide = 0.02;    // so near to the boundary on either side
 
 using Row = test::HapticBoundary;
 
-/// Whether a motion grows: its largest excursion in the last quarter against the quarter before.
+/// A motion grows if its largest excursion in the last quarter exceeds that of the quarter before.
 class Growth {
  public:
   explicit Growth(int steps) : steps_(steps) {}

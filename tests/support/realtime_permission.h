@@ -8,7 +8,7 @@
 
 namespace cordis::test {
 
-/// Whether this process may have realtime priority at all; its own threads keep theirs.
+/// True if this process may have realtime priority; its threads keep their priorities.
 inline bool may_have_realtime_priority() {
   bool may = false;
   std::thread([&may] {

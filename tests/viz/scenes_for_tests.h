@@ -59,7 +59,7 @@ inline msg::SceneSignals signals_of_three(std::uint64_t first_step, std::size_t 
   return signals;
 }
 
-/// The same row, whose force is a sound.
+/// A row of three whose force is a sound.
 inline msg::SceneDescription sounding_row() {
   msg::SceneDescription description = row_of_three();
   description.signals()[1].rate(msg::RATE_STEP);

@@ -45,7 +45,7 @@ class SendQueue {
 
   FlowCredit& credit() noexcept { return credit_; }
 
-  /// Whether the page gets the blocks of sound that come from now on.
+  /// Starts or stops sending blocks of sound to the page.
   void listen(bool listens) {
     if (std::exchange(listens_, listens) == listens) return;
     if (listens) {

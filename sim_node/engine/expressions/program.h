@@ -24,13 +24,13 @@ void check_program(const Program& program, const std::string& name);
 
 /// How many values an operation takes from the stack.
 std::size_t operand_count(Operation operation) noexcept;
-/// Whether it is kRising or kFalling, which compare with the step before.
+/// True if it is kRising or kFalling, which compare with the step before.
 bool is_edge(Operation operation) noexcept;
 /// What an instruction makes of its operands, the lowest on the stack first, with the bits that the
 /// kernels find. Precondition: it is neither an edge nor one without operands.
 double apply(const Instruction& instruction, const double* operands) noexcept;
 
-/// Whether the program asks for this quantity.
+/// True if the program asks for this quantity.
 bool asks_for(const Program& program, Quantity quantity) noexcept;
 /// True when `rising` or `falling` stand in it.
 bool has_edge(const Program& program) noexcept;

@@ -46,7 +46,7 @@ ModalIntegrator::ModalIntegrator(const NetworkDescription& network)
   own_driven_ = static_cast<std::ptrdiff_t>(driven_.size());
 }
 
-/// There is room for all MATs.
+/// Does not allocate: the lists have room for all MATs.
 void ModalIntegrator::drive(std::uint32_t mat) {
   if (is_end_[mat] == 0) ends_.push_back(mat);
   is_end_[mat] = 1;

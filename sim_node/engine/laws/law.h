@@ -54,7 +54,7 @@ bool stores_energy(const Law& law) noexcept;
 /// @throws std::invalid_argument beginning with `name` when the law is not fit to be the elasticity
 /// of a state.
 void check_elasticity(const Law& law, const std::string& name);
-/// The same for its viscosity.
+/// Checks the law of a viscosity likewise.
 void check_dissipation(const Law& law, const std::string& name);
 
 /// The tension [N] of the elasticity of one link, with the bits that the kernels find. Precondition:

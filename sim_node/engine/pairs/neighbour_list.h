@@ -29,7 +29,7 @@ namespace cordis::engine {
 /// longer than the list needs; when all are found, members have moved by up to d, and pairs are
 /// kept that are nearer than range + s - 2 d now: whoever is was nearer than range + s before.
 ///
-/// There is room for `capacity` entries. When they do not suffice, the list first does without
+/// The list holds `capacity` entries. When they do not suffice, it first does without
 /// skin, and then is made part by part in each step, as many rows at a time as there is room for:
 /// slow, but with the same pairs in the same order, until make_room() is called.
 class NeighbourList {

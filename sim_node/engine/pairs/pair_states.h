@@ -53,7 +53,7 @@ class PairStates {
   std::size_t begin(std::size_t row) const noexcept { return written_.start[row]; }
   std::size_t end(std::size_t row) const noexcept { return written_.start[row + 1]; }
   const PairState& state(std::size_t index) const noexcept { return written_.states[index]; }
-  /// There is room for so many.
+  /// Number of pair states for which memory is reserved.
   std::size_t capacity() const noexcept { return written_.states.size(); }
   /// Makes room for more. Allocates. @return false when there is room, or no memory
   bool make_room(std::size_t capacity) noexcept;

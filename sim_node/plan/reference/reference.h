@@ -53,7 +53,7 @@ struct Reference {
 /// The fewest samples that distinguish a motion from rest.
 inline constexpr int kFewestSamples = 8;
 
-/// There is no motion to be referred to.
+/// Thrown when no reference motion exists.
 struct NothingMoves : std::runtime_error {
   NothingMoves() : std::runtime_error("nothing moves") {}
 };

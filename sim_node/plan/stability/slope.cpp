@@ -256,7 +256,7 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.bounded = largest.bounded && slope.bounded;
-    // Of several states each holds only where its exits let it: what one pulls beyond is no uncertainty.
+    // Each of several states holds only where its exits let it: its slope beyond is no uncertainty.
     const bool may_end = !state_machine.is_stateless() && slope.uncertainty == kPullsWhereEndsMeet;
     if (largest.uncertainty == nullptr && !may_end) largest.uncertainty = slope.uncertainty;
   }

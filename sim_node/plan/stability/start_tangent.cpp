@@ -85,7 +85,7 @@ Direction improve(Direction& present, Direction uphill, Direction last) {
   return moved;
 }
 
-/// Of unit length, the same each time; 0 for what is no mass.
+/// A direction of unit length, the same each time; 0 for a MAT that is no mass.
 Columns random_direction(const Eigen::RowVectorXd& root_of_inverse_mass, int dimension) {
   Columns x = Columns::Zero(3, root_of_inverse_mass.cols());
   std::mt19937 random(1);

@@ -150,7 +150,7 @@ RowWeights row_weights(const LiaisonGraph& graph, double step) {
 }
 
 StepBound edge_bound(const LiaisonGraph& graph) {
-  // With x = 1/2 the rows of edges and crowds are the sums d of their slopes.
+  // If x = 1/2, the rows of edges and contact bounds are the sums d of their slopes.
   const std::size_t count = graph.inverse_mass.size();
   Rows sums = times(graph, std::vector<double>(count, 0.5));
   for (std::size_t i = 0; i < count; ++i) {

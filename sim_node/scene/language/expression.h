@@ -44,7 +44,7 @@ struct Expression {
 std::optional<Expression> parse_expression(const config::Value& text, const std::string& what,
                                            config::Problems& problems);
 
-/// Whether a word may be the name of a parameter: letters, digits and '_', first a letter, and no
+/// True if a word may be the name of a parameter: letters, digits and '_', first a letter, and no
 /// word of the language.
 bool is_free_name(const std::string& word);
 

@@ -23,8 +23,8 @@ using engine::Operation;
 constexpr std::size_t kMaxParameters = 1'000;  // of a liaison
 constexpr std::size_t kMaxOpen = 64;           // parameters that wait for each other
 
-/// Whether a value is to be read as a number rather than as a formula: because it is one, or
-/// because what is said about a wrong number fits it best (.nan, 3 N, a sequence).
+/// True if a value is read as a number rather than as a formula: it is one, or the message about a
+/// wrong number fits it best (.nan, 3 N, a sequence).
 bool is_plain_number(const Value& value) {
   if (value.kind() != Value::Kind::kScalar) return true;
   if (value.quoted()) return false;

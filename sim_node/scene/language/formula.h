@@ -46,7 +46,7 @@ double read_formula(const config::Value& value, const std::string& what, double 
                     config::Range range, const ParameterValues& parameters,
                     config::Problems& problems);
 
-/// The same for a key of a mapping, with the fallback when it is absent.
+/// Reads a key of a mapping likewise; gives the fallback when the key is absent.
 double optional_formula(config::MappingReader& reader, const std::string& key, double fallback,
                         config::Range range, const ParameterValues& parameters,
                         config::Problems& problems);

@@ -14,7 +14,7 @@ export interface Quality {
 const SMOOTH_UP_TO = 5_000;
 const FULL_UP_TO = 15_000;
 
-/** Whether WebGL is drawn by the CPU here; null when there is no WebGL 2 at all. */
+/** Name of the WebGL renderer, and true if it is software; null without WebGL 2. */
 export function findRenderer(): { name: string; software: boolean } | null {
   const context = document.createElement('canvas').getContext('webgl2');
   if (context === null) return null;
