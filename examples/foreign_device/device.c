@@ -56,6 +56,7 @@ struct device {
   bool has_lost_answers;
   double force_n;        // role mass: on the motor
   double largest_n;      // that it has been
+  double max_rise_n;     // of its magnitude in a period
   double position_m;     // role liaison: where the motor has led the key
   double work_j;         // role liaison: that the hand has given
   double work_from_m;    // role liaison: where its work was counted last
@@ -174,7 +175,9 @@ static void act(struct device* device, double age_s) {
     const double limit_n = fmin(FORCE_LIMIT_N, SLEW_N_PER_S * (WATCHDOG_S - age_s));
     const double change_n = SLEW_N_PER_S / RATE_HZ;
     const double wanted_n = clamp(value, device->force_n - change_n, device->force_n + change_n);
+    const double before_n = device->force_n;
     device->force_n = clamp(wanted_n, -limit_n, limit_n);
+    device->max_rise_n = fmax(device->max_rise_n, fabs(device->force_n) - fabs(before_n));
     device->largest_n = fmax(device->largest_n, fabs(device->force_n));
     drive_with_force(device->force_n);
   } else {
@@ -277,8 +280,9 @@ static void play(struct device* device, const cordis_msg_PortDescription* port) 
          is_mass ? "mass" : "liaison");
   (device->lockstep ? play_in_lockstep : play_in_realtime)(device);
   drive_with_force(0.0);
-  printf("%llu samples answered, largest force %g N, last position %g m\n",
-         (unsigned long long)device->answered, device->largest_n, device->position_m);
+  printf("%llu samples answered, largest force %g N, raised by %g N a period, last position %g m\n",
+         (unsigned long long)device->answered, device->largest_n, device->max_rise_n,
+         device->position_m);
   dds_delete(device->waitset);
   dds_delete(device->reader);
   dds_delete(device->writer);

@@ -295,6 +295,29 @@ TEST(ForeignDevice, GivesNoForceBeyondItsLimitAndNoneForAnAnswerThatIsNoNumber) 
   EXPECT_EQ(number_in(device->output(), "largest force (\\S+) N"), 10.0) << device->output();
 }
 
+TEST(ForeignDevice, RaisesItsForceNoFasterThanItsSlewLimit) {
+  constexpr double kLargestRise = 5.0;  // 5000 N/s for 1 ms [N]
+  LiveSession session("realtime", kSimAlone);
+  session.add_file("scene.yaml", mass_scene());
+  session.start("sim_node", "sim");
+  const auto device = start_foreign("foreign_device", {"keyboard"});
+  ASSERT_TRUE(device->wait_for_output("answers come\n", kPatience));
+  HostileScene hostile(session.participant());
+  session.node("sim").signal(SIGSTOP);
+  ASSERT_TRUE(device->wait_for_output("no force\n", kPatience));
+  const std::string before = device->output();
+
+  // From no force to 8 N in one answer.
+  EXPECT_TRUE(eventually([&] {
+    hostile.answer(8.0);
+    return device->output().find("answers come\n", before.size()) != std::string::npos;
+  }));
+  EXPECT_EQ(end(*device), 0);
+  session.node("sim").signal(SIGCONT);
+  EXPECT_NEAR(number_in(device->output(), "raised by (\\S+) N a period"), kLargestRise, 1e-5)
+      << device->output();
+}
+
 TEST(ForeignDevice, IsInATakeThatIsComputedAgain) {
   LiveSession session("realtime", kSimAlone);
   session.add_file("scene.yaml", liaison_scene());
