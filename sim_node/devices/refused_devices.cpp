@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <ranges>
 #include <utility>
 
 #include <fmt/format.h>
@@ -172,7 +171,7 @@ std::vector<DeviceLoop> RefusedDevices::find_loops(std::string& delay_text) cons
     if (known_[i].is_there) order.emplace_back(newest_nsec(i), i);
   }
   std::ranges::sort(order, std::ranges::greater());
-  for (const std::size_t i : order | std::views::values) {
+  for (const auto& [newest, i] : order) {
     const Known& device = known_[i];
     const auto demand = std::ranges::find(demands_, device.device_id, &PortDemand::device_id);
     if (demand == demands_.end()) continue;

@@ -420,7 +420,7 @@ TEST_F(Kfb1Test, PullsToPlacesWithinTheLimitsOfItsFileAndLetsGoOfOldOnes) {
   const auto key = driver("kfb1", port(), layout);
   key->start(Role::kLiaison);
   double before = 0.0;
-  const auto pull = [&] {  // of the motor, in this period
+  const auto motor_force = [&] {  // of the motor, in this period
     AxisValues given{};
     static_cast<void>(key->read(given));
     EXPECT_LE(std::abs(given[0] - before), 0.4 + 1e-9) << "400 N/s in a millisecond";
@@ -430,21 +430,21 @@ TEST_F(Kfb1Test, PullsToPlacesWithinTheLimitsOfItsFileAndLetsGoOfOldOnes) {
   };
 
   // A coupling of 300 N/m wants 6 N at once, over 20 mm.
-  ASSERT_TRUE(until(*key, {0.0}, [&](bool) { return pull() == 4.0; }));
+  ASSERT_TRUE(until(*key, {0.0}, [&](bool) { return motor_force() == 4.0; }));
   EXPECT_TRUE(until(*key, {0.0}, [&](bool) {
-    pull();
+    motor_force();
     return std::abs(board.forces[0] - 0.4 * 32767) < 2;
   }));
 
   // The scene falls silent, and its last place stands.
   double age_s = 0.0;
   ASSERT_TRUE(until(*key, {0.0}, [&](bool) {
-    pull();
+    motor_force();
     key->record_age(age_s += 0.001);
     return age_s >= layout.watchdog_s;
   }));
   ASSERT_TRUE(key->write({0.0}));
-  EXPECT_EQ(pull(), 0.0);
+  EXPECT_EQ(motor_force(), 0.0);
   EXPECT_TRUE(until(*key, {0.0}, [&](bool) { return board.forces[0] == 0; }));
 }
 

@@ -387,15 +387,15 @@ NetworkDescription held_at_rest(NetworkDescription network) {
     if (mat.kind != MatKind::kMass) continue;
     const Vec3 force = -probe.link_force(i) - mat.mass * network.gravity_on(mat);
     const bool signs = network.dimension == 1;  // of distances
-    const double pull = signs ? force.x() : force.norm();
-    if (pull == 0.0) continue;
-    const Vec3 along = signs ? Vec3(Vec3::UnitX()) : Vec3(force / pull);
+    const double tension = signs ? force.x() : force.norm();
+    if (tension == 0.0) continue;
+    const Vec3 along = signs ? Vec3(Vec3::UnitX()) : Vec3(force / tension);
     const auto far = static_cast<std::uint32_t>(network.mats.size());
     network.mats.push_back({MatKind::kFixed, 0.0, mat.position + kFar * along, Vec3::Zero()});
     if (!network.radius.empty()) network.radius.push_back(0.0);
     engine::StateMachine constant;
     constant.states.emplace_back();
-    constant.states[0].elasticity = engine::Table({-1.0, 1.0}, {pull, pull});
+    constant.states[0].elasticity = engine::Table({-1.0, 1.0}, {tension, tension});
     network.state_links.push_back(
         {i, far, static_cast<std::uint32_t>(network.state_machines.size()), kFar});
     network.state_machines.push_back(constant);

@@ -93,11 +93,11 @@ bool jumps_at_range(const engine::StateMachine& state_machine, double rest_lengt
   constexpr double kJustWithin = 1.0 - 1e-9;
   const engine::LinkState& state = state_machine.states[state_machine.start];
   const double at = kJustWithin * range;
-  double pull = state.stiffness * (at - rest_length) +
-                elastic_tension(state.elasticity, {at, at - rest_length});
-  pull = std::clamp(pull, state.pushes ? -state.force_limit : 0.0,
-                    state.pulls ? state.force_limit : 0.0);
-  return std::abs(pull) > kShare * largest_slope * range;
+  double tension = state.stiffness * (at - rest_length) +
+                   elastic_tension(state.elasticity, {at, at - rest_length});
+  tension = std::clamp(tension, state.pushes ? -state.force_limit : 0.0,
+                       state.pulls ? state.force_limit : 0.0);
+  return std::abs(tension) > kShare * largest_slope * range;
 }
 
 void add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
