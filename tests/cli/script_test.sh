@@ -38,7 +38,7 @@ fake_ctest() {  # one test passes, one is skipped and one fails
   for name in 'good Test Passed.' 'left SKIP_RETURN_CODE=77' 'bad Test Failed.'; do
     end=${name#* }
     name=${name%% *}
-    printf '1/3 Testing: %s\nOutput:\n---\nwords of %s\n<end of output>\n%s\n"%s" end time: 1\n\n' \
+    printf '1/3 Testing: %s\nOutput:\n---\na_test.cpp:3: Failure\nwords of %s\n<end of output>\n%s\n"%s" end time: 1\n\n' \
       "$name" "$name" "$end" "$name" >>"$log"
   done
 }
@@ -54,7 +54,7 @@ fake_cmake() {  # -S SOURCE --preset PRESET
 case ${0##*/} in
   apt-get) fake_apt_get "$@"; exit ;;
   cmake) fake_cmake "$@"; exit ;;
-  cordis) printf 'program:'; printf ' [%s]' "$@"; printf '\n'; [[ $1 != test ]] || fake_ctest; exit 7 ;;
+  cordis) printf 'program:'; printf ' [%s]' "$@"; printf '\n'; [[ $1 != test ]] || fake_ctest; [[ $* == *until-pass* ]] || exit 7; exit 0 ;;
   dpkg-query) while read -r package; do printf '=installed=%s=' "$package"; done <"$PLACE/installed"; exit ;;
   ninja) fake_ninja "$@"; exit ;;
   npm) note "npm $1"; [[ ! -e $PLACE/offline ]] || exit 1; mkdir -p "$3/node_modules"; printf x >"$3/node_modules/.package-lock.json"; exit ;;
@@ -159,10 +159,15 @@ cordis: once more, what the tests that failed have printed (all: build/Testing/T
 1/3 Testing: bad
 Output:
 ---
+a_test.cpp:3: Failure
 words of bad
 <end of output>
 Test Failed.
 \"bad\" end time: 1
+their failed assertions:
+1/3 Testing: bad
+a_test.cpp:3: Failure
+words of bad
 cordis: building and testing took 0 min * s"
 expect 'tests are built only for test' "$calls" "*
 ninja release: tests/all
@@ -172,6 +177,14 @@ ninja asan: tests/all
 ninja tsan: tests/all"
 expect 'one CTest covers all' "$(<"$tree/build/CTestTestfile.cmake")" 'subdirs(release asan tsan)'
 expect 'the exit code is that of the tests' "$code" 7
+
+call test --repeat until-pass:2
+expect 'a test that passed when it ran again is named' "$output" "program: *
+1/3 Testing: bad
+*
+cordis: each of them passed when it ran a second time
+cordis: building and testing took 0 min * s"
+expect 'and is no failure' "$code" 0
 
 exec {held}>"$tree/build/.lock"
 flock "$held"  # as another ./cordis does that builds

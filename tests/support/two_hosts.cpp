@@ -125,20 +125,24 @@ struct TwoHosts::Cable {
   void carry() {
     while (!ending) {
       wait_for_packets();
+      const std::lock_guard lock(mutex);
       for (int from = 0; from < 2; ++from) take_all(from);
       deliver_due();
     }
   }
 
+  timespec until_next_is_due() {
+    const std::lock_guard lock(mutex);
+    if (waiting.empty()) return {1, 0};
+    const auto left =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(waiting.top().due - Clock::now());
+    const std::int64_t nsec = std::max<std::int64_t>(left.count(), 0);
+    return {nsec / 1'000'000'000, nsec % 1'000'000'000};
+  }
+
   void wait_for_packets() {
     std::array<pollfd, 3> files{{{ends[0], POLLIN, 0}, {ends[1], POLLIN, 0}, {wake, POLLIN, 0}}};
-    timespec limit{1, 0};
-    if (!waiting.empty()) {
-      const auto left =
-          std::chrono::duration_cast<std::chrono::nanoseconds>(waiting.top().due - Clock::now());
-      const std::int64_t nsec = std::max<std::int64_t>(left.count(), 0);
-      limit = {nsec / 1'000'000'000, nsec % 1'000'000'000};
-    }
+    const timespec limit = until_next_is_due();
     ppoll(files.data(), files.size(), &limit, nullptr);
   }
 
@@ -147,18 +151,13 @@ struct TwoHosts::Cable {
     for (;;) {
       const ssize_t size = read(ends[static_cast<std::size_t>(from)], block.data(), block.size());
       if (size <= 0) return;
-      CableFaults now;
-      {
-        const std::lock_guard lock(mutex);
-        now = faults;
-      }
-      if (now.is_cut || chance(random) < now.loss) {
+      if (faults.is_cut || chance(random) < faults.loss) {
         ++lost;
         continue;
       }
       const auto late = std::chrono::microseconds(
-          static_cast<std::int64_t>(chance(random) * static_cast<double>(now.jitter.count())));
-      waiting.push({Clock::now() + now.delay + late,
+          static_cast<std::int64_t>(chance(random) * static_cast<double>(faults.jitter.count())));
+      waiting.push({Clock::now() + faults.delay + late,
                     ++count,
                     1 - from,
                     {block.begin(), block.begin() + size}});
@@ -179,7 +178,7 @@ struct TwoHosts::Cable {
   int wake = -1;
   std::mt19937_64 random;
   std::uniform_real_distribution<double> chance{0.0, 1.0};
-  std::mutex mutex;  // of the next one
+  std::mutex mutex;  // of the next two
   CableFaults faults;
   std::priority_queue<Packet, std::vector<Packet>, LaterFirst> waiting;
   std::uint64_t count = 0;
@@ -217,6 +216,10 @@ TwoHosts::~TwoHosts() {
 void TwoHosts::set(const CableFaults& faults) {
   const std::lock_guard lock(cable_->mutex);
   cable_->faults = faults;
+  while (faults.is_cut && !cable_->waiting.empty()) {
+    cable_->waiting.pop();
+    ++cable_->lost;
+  }
 }
 
 std::uint64_t TwoHosts::passed() const noexcept {

@@ -37,6 +37,7 @@ class TwoHosts {
   TwoHosts(const TwoHosts&) = delete;
   TwoHosts& operator=(const TwoHosts&) = delete;
 
+  /// A cut loses what is under way: once this returns, nothing arrives.
   void set(const CableFaults& faults);
   /// Packets that have passed and that were lost, both ways.
   std::uint64_t passed() const noexcept;
