@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -132,6 +133,18 @@ bool feels_the_wall(dds::Reader<msg::GestureForces>& forces) {
       [&] { return forces.take(force) && std::abs(force.force_n()[0] - kPressed) < 1e-9; });
 }
 
+/// Waits until the key has played for a second since it was seen to play. Its start ramp takes 0.2 s.
+bool plays_for_a_second(StatusWatch& status) {
+  std::optional<std::uint64_t> begun;
+  return status.wait_for("keyboard", [&](const msg::NodeStatus& keyboard) {
+    if (keyboard.phase() != msg::PHASE_RUNNING)
+      begun.reset();
+    else if (!begun)
+      begun = keyboard.ticks();
+    return begun && keyboard.ticks() >= *begun + 1000;
+  });
+}
+
 struct Row {
   std::int64_t time_nsec = 0;
   double commanded = 0.0;
@@ -153,11 +166,14 @@ std::vector<Row> read_trace(const std::filesystem::path& path) {
 }
 
 /// No force moved faster than the slew limit. A row may be late, and its force with it; a decision
-/// and its row are less than half a period apart unless the machine takes the core away.
+/// and its row are less than half a period apart unless the machine takes the core away. A loop that
+/// the machine stops for 18 ms restarts from zero force, since its motors may have let go meanwhile.
 void expect_slew_limit(const std::vector<Row>& rows) {
   constexpr double kPeriod = 1e-3;
+  constexpr double kStall = 0.018 - kPeriod;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double passed = static_cast<double>(rows[i].time_nsec - rows[i - 1].time_nsec) * 1e-9;
+    if (passed > kStall && rows[i].commanded == 0.0) continue;
     const double longest = std::max(passed, kPeriod) + 0.5 * kPeriod;
     ASSERT_LE(std::abs(rows[i].commanded - rows[i - 1].commanded), kSlew * longest + kRounding)
         << "row " << i;
@@ -245,6 +261,7 @@ TEST_F(Network, ForcesEndWithinTheWatchdogWhenTheCableIsCutAndComeBackByThemselv
   })) << "losses of the link are counted";
 
   ASSERT_TRUE(second.wait_for_output("sim runs on ", kPatience));
+  ASSERT_TRUE(plays_for_a_second(status));
   apart.hosts.set({.is_cut = true});
   const std::int64_t cut_nsec = node::monotonic_nsec();
   ASSERT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_LOST));
@@ -254,11 +271,7 @@ TEST_F(Network, ForcesEndWithinTheWatchdogWhenTheCableIsCutAndComeBackByThemselv
   apart.hosts.set({.delay = 2ms, .jitter = 3ms, .loss = 0.1});
   EXPECT_TRUE(status.wait_for_phase("keyboard", msg::PHASE_RUNNING));
   EXPECT_TRUE(second.wait_for_output("sim is back on ", kPatience));
-  EXPECT_TRUE(feels_the_wall(forces));
-  const std::uint64_t ramp_begun = status.of("keyboard").ticks();
-  EXPECT_TRUE(status.wait_for("keyboard", [&](const msg::NodeStatus& keyboard) {
-    return keyboard.ticks() > ramp_begun + 1000 && keyboard.phase() == msg::PHASE_RUNNING;
-  }));
+  EXPECT_TRUE(plays_for_a_second(status));
   second.signal(SIGINT);
   EXPECT_EQ(second.wait(kPatience), 0);
 
@@ -266,8 +279,7 @@ TEST_F(Network, ForcesEndWithinTheWatchdogWhenTheCableIsCutAndComeBackByThemselv
   ASSERT_GT(rows.size(), 5000u);
   expect_slew_limit(rows);
   // From the watchdog on the force is zero; two periods more for the row and its period.
-  const auto silent_nsec = cut_nsec + static_cast<std::int64_t>(kWatchdog * 1e9) + 2'000'000 +
-                           5'000'000;  // what was under way
+  const auto silent_nsec = cut_nsec + static_cast<std::int64_t>(kWatchdog * 1e9) + 2'000'000;
   std::size_t zeros = 0;
   double before = 0.0;
   double after = 0.0;
