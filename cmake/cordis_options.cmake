@@ -6,6 +6,13 @@ target_include_directories(cordis_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(cordis_options INTERFACE
   -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 
+# No object file depends on the folder of the clone: ccache, where it is installed, serves every clone (./cordis sets it up).
+add_compile_options(-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
+find_program(CORDIS_CCACHE ccache)
+if(CORDIS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CORDIS_CCACHE})
+endif()
+
 # A newer compiler may warn of more: a warning ends only the builds of those who change Cordis, and of CI.
 option(CORDIS_WERROR "Treat warnings as errors" "$ENV{CORDIS_WERROR}")
 if(CORDIS_WERROR)
