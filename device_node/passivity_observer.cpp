@@ -29,19 +29,19 @@ void PassivityObserver::observe(const AxisValues& held_n, const AxisValues& posi
     return;
   }
   double moved_squared = 0.0;  // [m^2]
-  double given = 0.0;          // [J]
+  double work = 0.0;           // [J]
   for (std::size_t a = 0; a < position_m.size(); ++a) {
     const double moved = position_m[a] - last_[a];
     speed_[a] = moved / settings_.period_s;
-    given += held_n[a] * moved;
+    work += held_n[a] * moved;
     moved_squared += moved * moved;
   }
   last_ = position_m;
-  given_ += given;
-  account_ += given - settings_.viscosity_n_s_per_m * moved_squared / settings_.period_s;
+  given_ += work;
+  account_ += work - settings_.viscosity_n_s_per_m * moved_squared / settings_.period_s;
   account_ = std::max(account_, -settings_.tank_j);
   if (caught_) {
-    strict_ = std::max(strict_ + given, -settings_.tank_j);
+    strict_ = std::max(strict_ + work, -settings_.tank_j);
   } else if (settings_.active && account_ > settings_.budget_j + allowance_) {
     caught_ = true;
     strict_ = account_;

@@ -29,48 +29,49 @@ bool is_word(char c) {
 }
 
 /// Where the line of a place ends, behind its line feed.
-std::size_t line_end(std::string_view text, std::size_t at) {
-  const std::size_t end = text.find('\n', at);
+std::size_t line_end(std::string_view text, std::size_t offset) {
+  const std::size_t end = text.find('\n', offset);
   return end == std::string_view::npos ? text.size() : end + 1;
 }
 
 /// Reads the definition that begins at a place. @return the place behind it
-std::size_t read(std::string_view text, std::size_t at, Definition& definition) {
-  const std::size_t first = at;
+std::size_t read(std::string_view text, std::size_t offset, Definition& definition) {
+  const std::size_t first = offset;
   std::string_view last_word;
   std::string_view keyword;
   int depth = 0;
-  while (at < text.size()) {
-    if (text.substr(at, 2) == "//") {
-      const std::size_t end = line_end(text, at);
-      for (std::size_t from = at; from < end;) {
-        std::size_t to = from;
-        while (to < end && is_word(text[to])) ++to;
-        if (to > from) definition.names_in_remark.insert(text.substr(from, to - from));
-        from = to + 1;
+  while (offset < text.size()) {
+    if (text.substr(offset, 2) == "//") {
+      const std::size_t end = line_end(text, offset);
+      for (std::size_t begin = offset; begin < end;) {
+        std::size_t word_end = begin;
+        while (word_end < end && is_word(text[word_end])) ++word_end;
+        if (word_end > begin)
+          definition.names_in_remark.insert(text.substr(begin, word_end - begin));
+        begin = word_end + 1;
       }
-      at = end;
+      offset = end;
       continue;
     }
-    if (is_word(text[at])) {
-      const std::size_t from = at;
-      while (at < text.size() && is_word(text[at])) ++at;
-      last_word = text.substr(from, at - from);
+    if (is_word(text[offset])) {
+      const std::size_t begin = offset;
+      while (offset < text.size() && is_word(text[offset])) ++offset;
+      last_word = text.substr(begin, offset - begin);
       definition.names.insert(last_word);
-      if (keyword.empty() && text.substr(from == 0 ? 0 : from - 1, 1) != "@") keyword = last_word;
+      if (keyword.empty() && text.substr(begin == 0 ? 0 : begin - 1, 1) != "@") keyword = last_word;
       continue;
     }
-    const char c = text[at++];
+    const char c = text[offset++];
     const bool is_named = depth == 0 && (c == '{' || c == '[' || c == '=' || c == ';');
     if (is_named && definition.name.empty()) definition.name = last_word;
     if (c == '{') ++depth;
     if (c == '}') --depth;
     if (c == ';' && depth == 0) break;
   }
-  at = line_end(text, at);  // with the comment behind it
-  definition.text = text.substr(first, at - first);
+  offset = line_end(text, offset);  // with the comment behind it
+  definition.text = text.substr(first, offset - first);
   definition.is_struct = keyword == "struct";
-  return at;
+  return offset;
 }
 
 std::vector<Definition> definitions_of(std::string_view file) {
@@ -79,8 +80,9 @@ std::vector<Definition> definitions_of(std::string_view file) {
   std::string_view text = file.substr(head + kHead.size());
   text = text.substr(0, text.rfind(kTail));
   std::vector<Definition> definitions;
-  for (std::size_t at = 0; (at = text.find_first_not_of('\n', at)) != std::string_view::npos;)
-    at = read(text, at, definitions.emplace_back());
+  for (std::size_t offset = 0;
+       (offset = text.find_first_not_of('\n', offset)) != std::string_view::npos;)
+    offset = read(text, offset, definitions.emplace_back());
   return definitions;
 }
 

@@ -22,10 +22,10 @@ std::optional<msg::ControlReply> CommandServer::take(const msg::ControlCommand& 
   const std::string& target = command.target();
   if (target != "*" && target != node_ && target != word_of(kind_)) return std::nullopt;
 
-  const auto known = std::ranges::find_if(given_, [&command](const msg::ControlReply& reply) {
+  const auto known = std::ranges::find_if(replies_, [&command](const msg::ControlReply& reply) {
     return reply.command_id() == command.command_id() && reply.sender() == command.sender();
   });
-  if (known != given_.end()) return *known;
+  if (known != replies_.end()) return *known;
 
   Work work = find_work_ ? find_work_(command) : Work{};
   if (!work) return reply_to(command, [&] { return execute_(command); });
@@ -63,8 +63,8 @@ msg::ControlReply CommandServer::reply_to(const msg::ControlCommand& command,
   reply.node(node_);
   reply.accepted(answer.accepted);
   reply.text(std::move(answer.text));
-  given_.push_back(reply);
-  if (given_.size() > kRemembered) given_.pop_front();
+  replies_.push_back(reply);
+  if (replies_.size() > kRemembered) replies_.pop_front();
   return reply;
 }
 

@@ -53,7 +53,7 @@ class CommandServer {
   msg::NodeKind kind_;
   Execute execute_;
   FindWork find_work_;
-  std::deque<msg::ControlReply> given_;  // the newest replies, oldest first
+  std::deque<msg::ControlReply> replies_;  // the newest replies, oldest first
   msg::ControlCommand long_command_;
   std::future<Finish> work_;  // of long_command_; ends before the rest of this
 };

@@ -9,9 +9,9 @@ constexpr std::int64_t kMinNsec = 100'000'000;
 
 }  // namespace
 
-double TickRate::rate(const Look& from, const Look& to) noexcept {
-  return static_cast<double>(to.ticks - from.ticks) /
-         (static_cast<double>(to.nsec - from.nsec) * 1e-9);
+double TickRate::rate(const Look& older, const Look& newer) noexcept {
+  return static_cast<double>(newer.ticks - older.ticks) /
+         (static_cast<double>(newer.nsec - older.nsec) * 1e-9);
 }
 
 void TickRate::update(std::int64_t now_nsec, std::uint64_t ticks) noexcept {

@@ -21,7 +21,7 @@ class TickRate {
     std::int64_t nsec;
     std::uint64_t ticks;
   };
-  static double rate(const Look& from, const Look& to) noexcept;
+  static double rate(const Look& older, const Look& newer) noexcept;
 
   Look first_;  // when ticks had begun
   Look last_;

@@ -100,9 +100,9 @@ std::string local_time() {
 
 std::string filled_in(const std::string& pattern, const std::string& session) {
   std::string text;
-  for (std::size_t at = 0; at < pattern.size();) {
-    const std::size_t open = std::min(pattern.find('{', at), pattern.size());
-    text += pattern.substr(at, open - at);
+  for (std::size_t begin = 0; begin < pattern.size();) {
+    const std::size_t open = std::min(pattern.find('{', begin), pattern.size());
+    text += pattern.substr(begin, open - begin);
     if (open == pattern.size()) break;
     const std::size_t close = std::min(pattern.find('}', open), pattern.size());
     const std::string word = pattern.substr(open, close + 1 - open);
@@ -114,7 +114,7 @@ std::string filled_in(const std::string& pattern, const std::string& session) {
       throw std::runtime_error("the name of a take has {session} and {time} alone, not '" + word +
                                "'");
     }
-    at = close + 1;
+    begin = close + 1;
   }
   return text;
 }

@@ -59,7 +59,7 @@ std::span<const ArrivalRule::Device> ArrivalPace::sent(Simulation& simulation) {
   sent_.clear();
   for (const DeviceExchange& device : simulation.devices()) {
     sent_.push_back({.id = device.device_id(),
-                     .sent = device.new_count() + device.missed_count(),
+                     .sent = device.new_count() + device.lost_sample_count(),
                      .plays = device.has_received() && !device.is_silent()});
   }
   return sent_;

@@ -140,7 +140,7 @@ void DeviceLink::take(const Sample& sample, DeviceExchange& device, Simulation& 
   const bool is_for_good = undescribed_.is_recorded_for_good(sample.device_id(), sample.epoch());
   const bool is_described = !is_for_good && reaches_.knows(sample.device_id(), sample.epoch());
   // A described process plays it, or did a moment ago.
-  if (!is_described && (device.is_described() || !device.is_lost())) return device.refuse();
+  if (!is_described && (device.is_described() || !device.is_disconnected())) return device.refuse();
   if (!is_described) {
     undescribed_.record(sample.device_id(), sample.epoch(), clock_ == config::Clock::kLockstep,
                         node::monotonic_nsec());

@@ -38,9 +38,9 @@ bool is_of_cordis(const std::filesystem::path& file) {
   const config::FileBytes read = config::read_regular_file(file.string(), kMaxSceneBytes);
   if (!read.reason.empty()) return true;
   constexpr std::string_view kMark = "cordis:";
-  for (std::size_t at = read.bytes.find(kMark); at != std::string::npos;
-       at = read.bytes.find(kMark, at + 1)) {
-    if (at == 0 || read.bytes[at - 1] == '\n') return true;
+  for (std::size_t position = read.bytes.find(kMark); position != std::string::npos;
+       position = read.bytes.find(kMark, position + 1)) {
+    if (position == 0 || read.bytes[position - 1] == '\n') return true;
   }
   return false;
 }

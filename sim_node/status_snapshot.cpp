@@ -40,8 +40,8 @@ void StatusSnapshot::record(Runner& runner, const PartnersSeen& partners, std::u
   const bool has_devices = clock_ != config::Clock::kAsap && !simulation.devices().empty();
   bool has_sample = !has_devices;
   for (const DeviceExchange& device : simulation.devices()) {
-    dropped += device.refused_count() + device.missed_count();
-    has_sample = has_sample || !device.is_lost();
+    dropped += device.refused_count() + device.lost_sample_count();
+    has_sample = has_sample || !device.is_disconnected();
     passivity_ticks += device.passivity_ticks();
   }
   dropped_.store(dropped, std::memory_order_relaxed);

@@ -13,20 +13,20 @@ static_assert(std::endian::native == std::endian::little,
 /// Writes values one behind the other; the caller has reserved the room.
 class Packer {
  public:
-  explicit Packer(void* begin) noexcept : at_(static_cast<std::uint8_t*>(begin)) {}
+  explicit Packer(void* begin) noexcept : next_(static_cast<std::uint8_t*>(begin)) {}
 
   template <class Value>
   Packer& put(Value value) noexcept {
-    std::memcpy(at_, &value, sizeof value);
-    at_ += sizeof value;
+    std::memcpy(next_, &value, sizeof value);
+    next_ += sizeof value;
     return *this;
   }
 
   template <class Container>
   Packer& put_all(const Container& values) noexcept {
     const std::size_t bytes = values.size() * sizeof(typename Container::value_type);
-    if (bytes != 0) std::memcpy(at_, values.data(), bytes);
-    at_ += bytes;
+    if (bytes != 0) std::memcpy(next_, values.data(), bytes);
+    next_ += bytes;
     return *this;
   }
 
@@ -38,7 +38,7 @@ class Packer {
   }
 
  private:
-  std::uint8_t* at_;
+  std::uint8_t* next_;
 };
 
 }  // namespace

@@ -21,7 +21,7 @@ std::string seconds(double value) {
 }
 
 /// The place of a part, in brackets; nothing where there is none.
-std::string at(const scene::Called& called) {
+std::string location(const scene::Called& called) {
   return called.place.line > 0 ? " (" + place_text(called.place) + ")" : std::string();
 }
 
@@ -35,7 +35,8 @@ std::string limit_text(const SceneCheck& check) {
   const scene::Called liaison = scene::call_liaison(check.scene, bound.liaison);
   const scene::Called mat = scene::call_mat(check.scene, bound.mat);
   return fmt::format("limit       set by {}{} at the mass {} of {:.4g} kg{}\n", liaison.name,
-                     at(liaison), mat.name, check.scene.network.mats[bound.mat].mass, at(mat));
+                     location(liaison), mat.name, check.scene.network.mats[bound.mat].mass,
+                     location(mat));
 }
 
 /// True if no pose whatever has more partners than the step is certified for.
@@ -55,7 +56,7 @@ std::string partners_text(const SceneCheck& check, const plan::PartnerLimit& set
       "            stable as long as no mass of {}{}\n            touches more than {} others at "
       "once{}; "
       "{} at the start; watched during the run\n",
-      liaison.name, at(liaison), set.least, sizes, set.at_start);
+      liaison.name, location(liaison), set.least, sizes, set.at_start);
 }
 
 std::string stability_text(const SceneCheck& check) {
@@ -119,7 +120,7 @@ std::string choice_text(const SceneCheck& check) {
       "asked       {:.4g} of {}, up to {:.4g} Hz; contacts {:.3g} %{}\n", asked.tolerance,
       asked.over_s > 0.0 ? fmt::format("the amplitude for {:.4g} s", asked.over_s)
                          : std::string("pitch and decay"),
-      asked.band_hz, 100.0 * asked.contact_energy, at({"", asked.place}));
+      asked.band_hz, 100.0 * asked.contact_energy, location({"", asked.place}));
   if (check.keeps_accuracy()) {
     text += fmt::format("            {:.6g} Hz would do: because of {}", choice.needed_hz,
                         choice.because);
@@ -139,7 +140,7 @@ std::string contact_text(const SceneCheck& check) {
   if (!contact) return {};
   const scene::Called liaison = scene::call_liaison(check.scene, contact->liaison);
   return fmt::format("contacts    one collision gains {:.2g} % of its energy at worst: {}{}\n",
-                     100.0 * contact->worst, liaison.name, at(liaison));
+                     100.0 * contact->worst, liaison.name, location(liaison));
 }
 
 std::string needs_text(const scene::PortNeeds& needs) {

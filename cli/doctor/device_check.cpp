@@ -33,7 +33,7 @@ Finding check_devices(const machine::SystemFiles& files,
   std::string group;
   for (const char* beginning : {"ttyACM", "ttyUSB"}) {
     for (const std::string& name : files.names("dev", beginning)) {
-      const std::filesystem::path path = files.at("dev/" + name);
+      const std::filesystem::path path = files.full_path("dev/" + name);
       found.push_back("/dev/" + name);
       if (may_use(path)) continue;
       refused.push_back("/dev/" + name);

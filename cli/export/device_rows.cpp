@@ -119,8 +119,8 @@ void DeviceRows::play_turn() {
   steps_.push_back(ticks_.step());
   turns_.push_back(turn_ - 1);
   for (const Axis& axis : axes_) {
-    const std::vector<double>& given = devices_.at(axis.device_id).value;
-    const double value = axis.axis < given.size() ? given[axis.axis] : kNone;
+    const std::vector<double>& values = devices_.at(axis.device_id).value;
+    const double value = axis.axis < values.size() ? values[axis.axis] : kNone;
     values_.push_back(axis.gives_positions ? value : kNone);
     values_.push_back(axis.gives_positions ? kNone : value);
   }

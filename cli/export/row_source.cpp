@@ -80,9 +80,10 @@ bool FrameRowSource::next() {
   for (const PickedMat& mat : mats_) {
     for (int axis = 0; axis < space; ++axis) {
       const std::size_t shown = space == 1 ? 1 : static_cast<std::size_t>(axis);
-      const std::size_t at = 3 * std::size_t{mat.index} + shown;
-      values_.push_back(at < frame_.position_m().size() ? double{frame_.position_m()[at]}
-                                                        : std::numeric_limits<double>::quiet_NaN());
+      const std::size_t coordinate = 3 * std::size_t{mat.index} + shown;
+      values_.push_back(coordinate < frame_.position_m().size()
+                            ? double{frame_.position_m()[coordinate]}
+                            : std::numeric_limits<double>::quiet_NaN());
     }
   }
   return true;

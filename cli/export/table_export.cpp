@@ -125,10 +125,10 @@ class TableExport {
     ++row_count_;
   }
 
-  static double* put(double* to, const double* values, std::size_t count) {
+  static double* put(double* cell, const double* values, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i)
-      *to++ = values == nullptr ? std::numeric_limits<double>::quiet_NaN() : values[i];
-    return to;
+      *cell++ = values == nullptr ? std::numeric_limits<double>::quiet_NaN() : values[i];
+    return cell;
   }
 
   void report(ExportResult& result) {

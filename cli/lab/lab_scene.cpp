@@ -38,7 +38,7 @@ void record(OfflineSession& session, LabScene& lab) {
   if (played.empty()) return;
   session.play_until(lab.duration_s, [&] {
     for (std::size_t p = 0; p < played.size(); ++p) {
-      lab.trajectory.channels[p].value.push_back(session.given(*played[p]));
+      lab.trajectory.channels[p].value.push_back(session.device_value(*played[p]));
     }
   });
 }

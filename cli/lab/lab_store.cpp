@@ -121,7 +121,7 @@ void LabStore::keep(const plan::Reference& reference) {
   const std::filesystem::path path = folder_ / kReference;
   std::ofstream file(path, std::ios::binary);
   put(file, key_);
-  each_field(file, reference, [](auto& to, const auto& value) { put(to, value); });
+  each_field(file, reference, [](auto& field, const auto& value) { put(field, value); });
   put(file, std::vector<char>(reference.made_by.begin(), reference.made_by.end()));
   if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
   reference_ = reference;

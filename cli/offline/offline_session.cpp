@@ -33,7 +33,7 @@ class DirectChannel final : public device::GestureChannel {
       : exchange_(exchange), reach_(reach) {}
 
   bool send(const GestureMessage& sample) noexcept override {
-    given_ = sample.value;
+    values_ = sample.value;
     if (exchange_.role() == Role::kMass) {
       msg::GesturePositions positions;
       device::wire::put(sample, exchange_.device_id(), positions);
@@ -53,7 +53,7 @@ class DirectChannel final : public device::GestureChannel {
     has_answer_ = true;
   }
 
-  const device::AxisValues& given() const noexcept { return given_; }
+  const device::AxisValues& device_values() const noexcept { return values_; }
 
   bool receive(GestureMessage& answer, std::chrono::nanoseconds) noexcept override {
     if (!has_answer_) return false;
@@ -66,7 +66,7 @@ class DirectChannel final : public device::GestureChannel {
   sim::DeviceExchange& exchange_;
   sim::DeviceReach reach_;
   GestureMessage answer_;
-  device::AxisValues given_{};
+  device::AxisValues values_{};
   bool has_answer_ = false;
 };
 
@@ -98,7 +98,7 @@ class OfflineSession::SimulatedDevice {
              .clock = &no_time}) {}
 
   const device::DeviceConfig& config() const noexcept { return device_.config; }
-  const device::AxisValues& given() const noexcept { return channel_.given(); }
+  const device::AxisValues& device_values() const noexcept { return channel_.device_values(); }
   void send_sample() noexcept { exchange_.send_sample(); }
   void read_forces(const engine::World& world) {
     channel_.take_answer(world);
@@ -202,18 +202,19 @@ std::string OfflineSession::driver_of(const scene::Port& port) const {
   return device_of(port)->config().driver;
 }
 
-engine::Vec3 OfflineSession::given(const scene::Port& port) const {
+engine::Vec3 OfflineSession::device_value(const scene::Port& port) const {
   if (port.role == Role::kMass) return world().position(port.mat);
   engine::Vec3 force = engine::Vec3::Zero();
   for (std::size_t i = 0; i < port.axes.size(); ++i) {
-    force += device_of(port)->given()[port.axes[i]] * port.directions[i];
+    force += device_of(port)->device_values()[port.axes[i]] * port.directions[i];
   }
   return force;
 }
 
-double OfflineSession::given_on_axis(const scene::Port& port, std::size_t axis) const noexcept {
+double OfflineSession::device_value_on_axis(const scene::Port& port,
+                                            std::size_t axis) const noexcept {
   const SimulatedDevice* device = device_of(port);
-  return device == nullptr ? 0.0 : device->given()[port.axes[axis]];
+  return device == nullptr ? 0.0 : device->device_values()[port.axes[axis]];
 }
 
 bool OfflineSession::has_reached(double time_s) const noexcept {

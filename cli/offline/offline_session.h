@@ -52,9 +52,9 @@ class OfflineSession {
   bool plays(const scene::Port& port) const noexcept;
   std::string driver_of(const scene::Port& port) const;
   /// What the port was given in the last tick: its position [m], or the force on it [N].
-  engine::Vec3 given(const scene::Port& port) const;
+  engine::Vec3 device_value(const scene::Port& port) const;
   /// The number that its device gave for one of the axes of the port, 0 when none plays it.
-  double given_on_axis(const scene::Port& port, std::size_t axis) const noexcept;
+  double device_value_on_axis(const scene::Port& port, std::size_t axis) const noexcept;
 
   /// The changes of state of the last tick; how many there was no room for.
   std::span<const engine::LinkEvent> events() const noexcept { return events_.events(); }

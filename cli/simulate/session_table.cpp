@@ -58,13 +58,13 @@ const std::vector<double>& SessionTable::row() {
   *value++ = static_cast<double>(world.step_count()) / scene.step_rate_hz;
   scene.signals.read(world, value);
   value += scene.signals.count();
-  for (const PortAxis& at : port_axes_) {
-    const scene::Port& port = *at.port;
-    const engine::Vec3& direction = port.directions[at.axis];
+  for (const PortAxis& port_axis : port_axes_) {
+    const scene::Port& port = *port_axis.port;
+    const engine::Vec3& direction = port.directions[port_axis.axis];
     *value++ = (world.position(port.mat) - port.rest).dot(direction);
     const bool is_mass = port.role == scene::Role::kMass;
-    *value++ =
-        is_mass ? world.link_force(port.mat).dot(direction) : session_.given_on_axis(port, at.axis);
+    *value++ = is_mass ? world.link_force(port.mat).dot(direction)
+                       : session_.device_value_on_axis(port, port_axis.axis);
   }
   for (const std::uint32_t mat : mats_) {
     const engine::Vec3 position = shown_position(scene, world.position(mat));

@@ -28,8 +28,8 @@ void OutputFile::write(std::string_view bytes) {
   size_ += bytes.size();
 }
 
-void OutputFile::overwrite(std::uint64_t at, std::string_view bytes) {
-  if (fseeko(file_, static_cast<off_t>(at), SEEK_SET) != 0) fail();
+void OutputFile::overwrite(std::uint64_t offset, std::string_view bytes) {
+  if (fseeko(file_, static_cast<off_t>(offset), SEEK_SET) != 0) fail();
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
   if (fseeko(file_, 0, SEEK_END) != 0) fail();
 }

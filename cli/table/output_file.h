@@ -22,7 +22,7 @@ class OutputFile {
   /// @throws std::runtime_error when the file does not take it, as when the disk is full.
   void write(std::string_view bytes);
   /// Overwrites bytes that were written before, and goes on at the end. Precondition: not stdout.
-  void overwrite(std::uint64_t at, std::string_view bytes);
+  void overwrite(std::uint64_t offset, std::string_view bytes);
   /// Hands everything to the system. @throws likewise.
   void flush();
 

@@ -66,7 +66,7 @@ void ZipFile::end_entry() {
   put(sizes, entry.crc);
   put(sizes, entry.size);
   put(sizes, entry.size);
-  file_.overwrite(entry.at + kCrcInHeader, sizes);
+  file_.overwrite(entry.offset + kCrcInHeader, sizes);
 }
 
 void ZipFile::finish() {
@@ -88,7 +88,7 @@ void ZipFile::finish() {
     put(header, entry.size);
     put(header, static_cast<std::uint16_t>(entry.name.size()));
     header.append(12, '\0');  // no extra field, no comment, first disk, no attributes
-    put(header, static_cast<std::uint32_t>(entry.at));
+    put(header, static_cast<std::uint32_t>(entry.offset));
     file_.write(header + entry.name);
   }
   std::string end;

@@ -30,7 +30,7 @@ class ZipFile {
  private:
   struct Entry {
     std::string name;
-    std::uint64_t at = 0;
+    std::uint64_t offset = 0;
     std::uint32_t size = 0;
     std::uint32_t crc = 0;
   };

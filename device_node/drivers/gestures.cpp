@@ -24,11 +24,11 @@ class Score {
   void wait(double duration_s) { now_s_ += duration_s; }
 
   /// All axes go where they are sent, at the same time.
-  void go(const std::vector<double>& to, double duration_s) {
+  void go(const std::vector<double>& target, double duration_s) {
     for (std::size_t a = 0; a < moves_.size(); ++a) {
-      if (to[a] != here_[a]) moves_[a].push_back({now_s_, duration_s, to[a]});
+      if (target[a] != here_[a]) moves_[a].push_back({now_s_, duration_s, target[a]});
     }
-    here_ = to;
+    here_ = target;
     now_s_ += duration_s;
   }
 
@@ -66,12 +66,12 @@ Tempo read_tempo(MappingReader& reader) {
 }
 
 std::vector<Trajectory> hold(MappingReader& reader, std::size_t axis_count) {
-  std::vector<double> at = reader.required_numbers("at_m");
-  if (at.size() != 1 && at.size() != axis_count && reader.ok()) {
+  std::vector<double> position = reader.required_numbers("at_m");
+  if (position.size() != 1 && position.size() != axis_count && reader.ok()) {
     reader.error_at("at_m", "at_m must be one number, or one per axis of the hand");
   }
-  at.resize(axis_count, at.front());
-  return Score(at).paths(Trajectory::Shape::kMinimumJerk, false);
+  position.resize(axis_count, position.front());
+  return Score(position).paths(Trajectory::Shape::kMinimumJerk, false);
 }
 
 /// Down to a depth in a time, and up again in another: pressing and plucking.
@@ -96,18 +96,18 @@ std::vector<Trajectory> bow(MappingReader& reader, std::size_t axis_count) {
   const double middle = reader.optional_number("middle_m", 0.0, kPlace);
   const double above = reader.optional_number("above_m", 0.0, kPlace);
   const double depth = reader.optional_number("depth_m", 0.0, kPlace);
-  const auto at = [axis_count](double along, double press) {
+  const auto point = [axis_count](double along, double press) {
     std::vector<double> all(axis_count, press);
     all[0] = along;
     return all;
   };
-  Score score(at(middle - 0.5 * stroke, above));
+  Score score(point(middle - 0.5 * stroke, above));
   score.wait(tempo.after_s);
-  score.go(at(middle - 0.5 * stroke, depth), 0.2);
-  score.go(at(middle + 0.5 * stroke, depth), stroke / speed);
+  score.go(point(middle - 0.5 * stroke, depth), 0.2);
+  score.go(point(middle + 0.5 * stroke, depth), stroke / speed);
   score.wait(tempo.stay_s);
-  score.go(at(middle - 0.5 * stroke, depth), stroke / speed);
-  score.go(at(middle - 0.5 * stroke, above), 0.2);
+  score.go(point(middle - 0.5 * stroke, depth), stroke / speed);
+  score.go(point(middle - 0.5 * stroke, above), 0.2);
   return score.paths(Trajectory::Shape::kLinear, tempo.repeats);
 }
 
@@ -180,24 +180,25 @@ std::vector<Trajectory> read_moves(MappingReader& hand, std::size_t axis_count,
     MappingReader reader(item, "move", problems);
     const double begin_s = reader.required_number("at_s", Range::not_negative());
     const double duration_s = reader.required_number("in_s", Range::not_negative());
-    std::vector<double> to = reader.required_numbers("to_m");
+    std::vector<double> target = reader.required_numbers("to_m");
     reader.finish();
     if (reader.ok() && begin_s < free_from_s - Trajectory::kTimeGrain) {
       reader.error_at("at_s", "a move must not begin before the one before it has ended");
     }
-    if (reader.ok() && to.size() != 1 && to.size() != axis_count) {
+    if (reader.ok() && target.size() != 1 && target.size() != axis_count) {
       reader.error_at("to_m", "to_m must be one number, or one per axis of the hand: " +
                                   std::to_string(axis_count) + ", got " +
-                                  std::to_string(to.size()));
+                                  std::to_string(target.size()));
     }
-    for (const double value : to) {
+    for (const double value : target) {
       if (reader.ok() && !(value >= -1.0 && value <= 1.0)) {
         reader.error_at("to_m", "to_m must be within -1 and 1, got " + config::number_text(value));
       }
     }
     if (!reader.ok()) continue;
-    to.resize(axis_count, to.front());
-    for (std::size_t a = 0; a < axis_count; ++a) moves[a].push_back({begin_s, duration_s, to[a]});
+    target.resize(axis_count, target.front());
+    for (std::size_t a = 0; a < axis_count; ++a)
+      moves[a].push_back({begin_s, duration_s, target[a]});
     free_from_s = begin_s + duration_s;
   }
   const double repeat_s = hand.optional_number("repeat_s", 0.0, Range::not_negative());

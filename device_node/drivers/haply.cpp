@@ -16,14 +16,14 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kFarthestTurn = 4.0 * std::numbers::pi;  // no arm is wound up like that
 constexpr long kHaplyBaud = 57600;                        // without meaning: native USB
 
-void put_float(std::uint8_t* at, double value) noexcept {
+void put_float(std::uint8_t* bytes, double value) noexcept {
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
-  for (int i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(bits >> (8 * i) & 0xffu);
+  for (int i = 0; i < 4; ++i) bytes[i] = static_cast<std::uint8_t>(bits >> (8 * i) & 0xffu);
 }
 
-double get_float(const std::uint8_t* at) noexcept {
+double get_float(const std::uint8_t* bytes) noexcept {
   std::uint32_t bits = 0;
-  for (int i = 0; i < 4; ++i) bits |= static_cast<std::uint32_t>(at[i]) << (8 * i);
+  for (int i = 0; i < 4; ++i) bits |= static_cast<std::uint32_t>(bytes[i]) << (8 * i);
   return std::bit_cast<float>(bits);
 }
 

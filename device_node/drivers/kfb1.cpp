@@ -33,22 +33,22 @@ std::uint16_t crc_of(Bytes bytes) noexcept {
   return static_cast<std::uint16_t>(crc);
 }
 
-void put16(std::uint8_t* at, unsigned value) noexcept {
-  at[0] = static_cast<std::uint8_t>(value & 0xffu);
-  at[1] = static_cast<std::uint8_t>(value >> 8 & 0xffu);
+void put16(std::uint8_t* bytes, unsigned value) noexcept {
+  bytes[0] = static_cast<std::uint8_t>(value & 0xffu);
+  bytes[1] = static_cast<std::uint8_t>(value >> 8 & 0xffu);
 }
 
-void put32(std::uint8_t* at, std::uint32_t value) noexcept {
-  put16(at, value & 0xffffu);
-  put16(at + 2, value >> 16);
+void put32(std::uint8_t* bytes, std::uint32_t value) noexcept {
+  put16(bytes, value & 0xffffu);
+  put16(bytes + 2, value >> 16);
 }
 
-unsigned get16(Bytes bytes, std::size_t at) noexcept {
-  return bytes[at] | static_cast<unsigned>(bytes[at + 1]) << 8;
+unsigned get16(Bytes bytes, std::size_t offset) noexcept {
+  return bytes[offset] | static_cast<unsigned>(bytes[offset + 1]) << 8;
 }
 
-std::uint32_t get32(Bytes bytes, std::size_t at) noexcept {
-  return get16(bytes, at) | static_cast<std::uint32_t>(get16(bytes, at + 2)) << 16;
+std::uint32_t get32(Bytes bytes, std::size_t offset) noexcept {
+  return get16(bytes, offset) | static_cast<std::uint32_t>(get16(bytes, offset + 2)) << 16;
 }
 
 /// Adds the checksum, encodes and ends with 0. @return bytes written

@@ -44,22 +44,22 @@ uint8_t kfb1_decode(const uint8_t *in, uint8_t count, uint8_t *out) {
   return length;
 }
 
-static void put16(uint8_t *at, uint16_t value) {
-  at[0] = (uint8_t)value;
-  at[1] = (uint8_t)(value >> 8);
+static void put16(uint8_t *bytes, uint16_t value) {
+  bytes[0] = (uint8_t)value;
+  bytes[1] = (uint8_t)(value >> 8);
 }
 
-static void put32(uint8_t *at, uint32_t value) {
-  put16(at, (uint16_t)value);
-  put16(at + 2, (uint16_t)(value >> 16));
+static void put32(uint8_t *bytes, uint32_t value) {
+  put16(bytes, (uint16_t)value);
+  put16(bytes + 2, (uint16_t)(value >> 16));
 }
 
-static uint16_t get16(const uint8_t *at) {
-  return (uint16_t)(at[0] | (uint16_t)((uint16_t)at[1] << 8));
+static uint16_t get16(const uint8_t *bytes) {
+  return (uint16_t)(bytes[0] | (uint16_t)((uint16_t)bytes[1] << 8));
 }
 
-static uint32_t get32(const uint8_t *at) {
-  return get16(at) | ((uint32_t)get16(at + 2) << 16);
+static uint32_t get32(const uint8_t *bytes) {
+  return get16(bytes) | ((uint32_t)get16(bytes + 2) << 16);
 }
 
 /* The payload must have room for two bytes more. */

@@ -65,10 +65,10 @@ class Problems {
   std::vector<SourceFile> sources() const;
 
   /// From now on load_file() reads these files, under these paths alone, and none of the disk.
-  void read_from(std::vector<SourceFile> files) { given_ = std::move(files); }
+  void read_from(std::vector<SourceFile> files) { files_ = std::move(files); }
   /// nullptr: files are those of the disk.
   const std::vector<SourceFile>* given_files() const noexcept {
-    return given_ ? &*given_ : nullptr;
+    return files_ ? &*files_ : nullptr;
   }
 
   bool has_errors() const noexcept { return error_count_ > 0; }
@@ -93,7 +93,7 @@ class Problems {
 
   std::vector<Problem> problems_;
   std::vector<std::pair<std::string, std::vector<std::string>>> sources_;  // file, its lines
-  std::optional<std::vector<SourceFile>> given_;
+  std::optional<std::vector<SourceFile>> files_;
   std::size_t error_count_ = 0;
   std::size_t left_out_ = 0;
 };

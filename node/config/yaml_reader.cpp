@@ -79,10 +79,10 @@ std::string with_question_marks(std::string text) {
   return text;
 }
 
-Value read(const std::string& given, const std::string& name, bool one_word, Problems& problems) {
+Value read(const std::string& bytes, const std::string& name, bool one_word, Problems& problems) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   const std::string text =
-      given.starts_with(kByteOrderMark) ? given.substr(kByteOrderMark.size()) : given;
+      bytes.starts_with(kByteOrderMark) ? bytes.substr(kByteOrderMark.size()) : bytes;
   SourceText source(text, name, one_word);
   const std::optional<Place> wrong = source.place_of_no_text();
   if (!one_word) problems.remember_source(name, wrong ? with_question_marks(text) : text);
@@ -129,9 +129,9 @@ std::string hint_for_missing_file(const std::filesystem::path& path) {
 
 /// A file of the disk, or of those that the problems were given instead.
 FileBytes bytes_of(const std::string& path, const Problems& problems) {
-  const std::vector<SourceFile>* given = problems.given_files();
-  if (given == nullptr) return read_regular_file(path, kMaxBytes);
-  for (const SourceFile& file : *given) {
+  const std::vector<SourceFile>* files = problems.given_files();
+  if (files == nullptr) return read_regular_file(path, kMaxBytes);
+  for (const SourceFile& file : *files) {
     if (file.path == path) return {file.text, {}};
   }
   return {{}, "it is not among the files that were recorded"};

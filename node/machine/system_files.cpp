@@ -12,7 +12,7 @@
 namespace cordis::machine {
 
 std::optional<std::string> SystemFiles::text(const std::string& path) const {
-  std::ifstream file(at(path));
+  std::ifstream file(full_path(path));
   if (!file) return std::nullopt;
   std::ostringstream content;
   content << file.rdbuf();
@@ -23,7 +23,7 @@ std::optional<std::string> SystemFiles::text(const std::string& path) const {
 }
 
 std::optional<std::string> SystemFiles::gzip_text(const std::string& path) const {
-  const gzFile file = gzopen(at(path).c_str(), "rb");
+  const gzFile file = gzopen(full_path(path).c_str(), "rb");
   if (file == nullptr) return std::nullopt;
   std::string text;
   std::array<char, 65536> block{};
@@ -39,7 +39,7 @@ std::vector<std::string> SystemFiles::names(const std::string& folder,
                                             const std::string& beginning) const {
   std::vector<std::string> found;
   std::error_code error;
-  for (auto entry = std::filesystem::directory_iterator(at(folder), error);
+  for (auto entry = std::filesystem::directory_iterator(full_path(folder), error);
        !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
     std::string name = entry->path().filename().string();
     if (name.starts_with(beginning)) found.push_back(std::move(name));

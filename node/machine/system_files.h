@@ -15,7 +15,7 @@ class SystemFiles {
   explicit SystemFiles(std::filesystem::path root = "/") : root_(std::move(root)) {}
 
   /// @param path  from the root, without a leading slash: "proc/stat"
-  std::filesystem::path at(const std::string& path) const { return root_ / path; }
+  std::filesystem::path full_path(const std::string& path) const { return root_ / path; }
 
   /// The whole text without white space at its end; nothing when it cannot be read.
   std::optional<std::string> text(const std::string& path) const;

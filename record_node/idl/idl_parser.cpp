@@ -54,18 +54,19 @@ class Lexer {
   static bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
   void skip_space() {
-    while (at_ < text_.size()) {
-      const char c = text_[at_];
-      const bool line_comment = text_.compare(at_, 2, "//") == 0;
-      if (text_.compare(at_, 2, "/*") == 0) {
-        const std::size_t end = text_.find("*/", at_ + 2);
-        for (; at_ < text_.size() && at_ < end; ++at_) line_ += text_[at_] == '\n' ? 1 : 0;
-        at_ = std::min(at_ + 2, text_.size());
+    while (offset_ < text_.size()) {
+      const char c = text_[offset_];
+      const bool line_comment = text_.compare(offset_, 2, "//") == 0;
+      if (text_.compare(offset_, 2, "/*") == 0) {
+        const std::size_t end = text_.find("*/", offset_ + 2);
+        for (; offset_ < text_.size() && offset_ < end; ++offset_)
+          line_ += text_[offset_] == '\n' ? 1 : 0;
+        offset_ = std::min(offset_ + 2, text_.size());
       } else if (line_comment || c == '#') {
-        while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+        while (offset_ < text_.size() && text_[offset_] != '\n') ++offset_;
       } else if (std::isspace(static_cast<unsigned char>(c))) {
         line_ += c == '\n' ? 1 : 0;
-        ++at_;
+        ++offset_;
       } else {
         return;
       }
@@ -75,23 +76,23 @@ class Lexer {
   void advance() {
     skip_space();
     token_ = {"", line_};
-    if (at_ == text_.size()) return;
-    std::size_t end = at_ + 1;
-    if (is_word(text_[at_])) {
+    if (offset_ == text_.size()) return;
+    std::size_t end = offset_ + 1;
+    if (is_word(text_[offset_])) {
       while (end < text_.size() && (is_word(text_[end]) || text_[end] == '.')) ++end;
-    } else if (text_[at_] == '"') {
+    } else if (text_[offset_] == '"') {
       while (end < text_.size() && text_[end] != '"') ++end;
       end = std::min(end + 1, text_.size());
-    } else if (text_.compare(at_, 2, "::") == 0) {
-      end = at_ + 2;
+    } else if (text_.compare(offset_, 2, "::") == 0) {
+      end = offset_ + 2;
     }
-    token_.text = text_.substr(at_, end - at_);
-    at_ = end;
+    token_.text = text_.substr(offset_, end - offset_);
+    offset_ = end;
   }
 
   const std::string& text_;
   const std::string& source_;
-  std::size_t at_ = 0;
+  std::size_t offset_ = 0;
   int line_ = 1;
   Token token_;
 };

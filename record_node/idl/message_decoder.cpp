@@ -33,11 +33,11 @@ class CdrReader {
   template <class T>
   T number() {
     const std::size_t alignment = std::min(sizeof(T), largest_alignment_);
-    at_ = (at_ + alignment - 1) / alignment * alignment;
+    offset_ = (offset_ + alignment - 1) / alignment * alignment;
     std::array<std::uint8_t, sizeof(T)> raw{};
     need(sizeof(T));
-    std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), sizeof(T), raw.begin());
-    at_ += sizeof(T);
+    std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(offset_), sizeof(T), raw.begin());
+    offset_ += sizeof(T);
     if (swaps_) std::ranges::reverse(raw);
     return std::bit_cast<T>(raw);
   }
@@ -45,21 +45,21 @@ class CdrReader {
   std::string_view text() {
     const auto length = number<std::uint32_t>();  // with the zero at its end
     need(length);
-    const auto* begin = reinterpret_cast<const char*>(bytes_.data() + at_);
-    at_ += length;
+    const auto* begin = reinterpret_cast<const char*>(bytes_.data() + offset_);
+    offset_ += length;
     return {begin, length == 0 ? 0 : length - 1};
   }
 
   /// @throws DecodeError when fewer bytes are left
   void need(std::size_t count) const {
-    if (at_ > bytes_.size() || bytes_.size() - at_ < count)
+    if (offset_ > bytes_.size() || bytes_.size() - offset_ < count)
       throw DecodeError("a message of " + std::to_string(bytes_.size() + kEncapsulationBytes) +
                         " bytes is too short for its type");
   }
 
  private:
   std::span<const std::uint8_t> bytes_;
-  std::size_t at_ = 0;
+  std::size_t offset_ = 0;
   std::size_t largest_alignment_ = 8;
   bool swaps_ = false;
 };

@@ -16,9 +16,10 @@ MessageCursor::MessageCursor(Source source, const MessageFilter& filter)
   std::erase_if(source_.chunks, [this](const ChunkIndex& chunk) {
     if (chunk.end_nsec < filter_.start_nsec || chunk.start_nsec > filter_.end_nsec) return true;
     const auto& indexed = chunk.message_index_offsets;
-    return !indexed.empty() && std::none_of(indexed.begin(), indexed.end(), [this](const auto& at) {
-      return source_.channels.contains(at.first);
-    });
+    return !indexed.empty() &&
+           std::none_of(indexed.begin(), indexed.end(), [this](const auto& channel) {
+             return source_.channels.contains(channel.first);
+           });
   });
   std::stable_sort(
       source_.chunks.begin(), source_.chunks.end(),
@@ -76,12 +77,14 @@ void MessageCursor::open_next_chunk() {
   open->records = open->contents->records();
   open->rank = index.offset;
   open_bytes_ += open->records.size();
-  const bool is_whole = for_each_record(open->records, [&](const Record& each, std::uint64_t at) {
-    if (each.opcode != Opcode::kMessage) return true;
-    const auto message = parse_message(each.content);
-    if (message && is_wanted(*message)) open->entries.push_back({message->log_time_nsec, at});
-    return true;
-  });
+  const bool is_whole =
+      for_each_record(open->records, [&](const Record& each, std::uint64_t offset) {
+        if (each.opcode != Opcode::kMessage) return true;
+        const auto message = parse_message(each.content);
+        if (message && is_wanted(*message))
+          open->entries.push_back({message->log_time_nsec, offset});
+        return true;
+      });
   if (!is_whole) fail("it ends in the middle of a record");
   if (!std::is_sorted(open->entries.begin(), open->entries.end()))
     std::sort(open->entries.begin(), open->entries.end());

@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/scene/naming.h"
@@ -35,8 +36,8 @@ std::string short_text(double number) {
 }
 
 double inverse_mass(const NetworkDescription& network, std::uint32_t mat) {
-  const engine::Mat& at = network.mats[mat];
-  return at.kind == engine::MatKind::kMass ? 1.0 / at.mass : 0.0;
+  const engine::Mat& matter = network.mats[mat];
+  return matter.kind == engine::MatKind::kMass ? 1.0 / matter.mass : 0.0;
 }
 
 /// The law of the start, if it is Lennard-Jones.
@@ -125,6 +126,7 @@ void check_gravity(const scene::Scene& scene, config::Problems& problems) {
 }  // namespace
 
 void check_start(const scene::Scene& scene, config::Problems& problems) {
+  CORDIS_ASSERT(scene.network.step > 0.0);
   check_overlaps(scene, problems);
   check_gravity(scene, problems);
 }

@@ -16,13 +16,12 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
       role_(role),
       ports_(std::move(ports)),
       epoch_(epoch),
-      lost_after_ticks_(std::max(3, static_cast<int>(std::lround(kLostAfter * rate_hz)))),
-      lost_after_nsec_(std::llround(lost_after_ticks_ * 1e9 / rate_hz)),
+      patience_ticks_(std::max(3, static_cast<int>(std::lround(kDisconnectedAfter * rate_hz)))),
+      sequence_(rate_hz, patience_ticks_),
       rejoin_ticks_(std::max(1, static_cast<int>(std::lround(kRejoin * rate_hz)))),
-      max_jump_(static_cast<std::uint64_t>(std::max(1L, std::lround(kMaxJump * rate_hz)))),
       rate_hz_(rate_hz),
-      silent_ticks_(lost_after_ticks_ + 1),
-      unheard_ticks_(lost_after_ticks_ + 1),
+      silent_ticks_(patience_ticks_ + 1),
+      unheard_ticks_(patience_ticks_ + 1),
       described_ticks_(std::max(3, static_cast<int>(std::lround(kDescribed * rate_hz)))),
       undescribed_ticks_(described_ticks_) {
   for (const scene::Port& port : ports_) {
@@ -31,12 +30,9 @@ DeviceExchange::DeviceExchange(std::string device, std::uint32_t device_id, Role
 }
 
 void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexcept {
-  received_epoch_ = before.received_epoch_;
-  received_sample_ = before.received_sample_;
-  received_time_nsec_ = before.received_time_nsec_;
+  sequence_.continue_from(before.sequence_);
   answers_ = before.answers_;
   refused_count_ = before.refused_count_;
-  missed_count_ = before.missed_count_;
   if (before.is_described())
     undescribed_ticks_ = std::min(before.undescribed_ticks_, described_ticks_);
   if (role_ != before.role_) return;
@@ -58,29 +54,12 @@ void DeviceExchange::take_over(const DeviceExchange& before, bool at_once) noexc
 void DeviceExchange::let_go() noexcept {
   has_new_ = false;
   is_expected_ = false;
-  silent_ticks_ = lost_after_ticks_ + 1;
+  silent_ticks_ = patience_ticks_ + 1;
 }
 
 double DeviceExchange::force_share() const noexcept {
-  if (is_lost()) return 0.0;
+  if (is_disconnected()) return 0.0;
   return 1.0 - static_cast<double>(rejoin_left_) / static_cast<double>(rejoin_ticks_);
-}
-
-/// True if a sample of the current epoch follows the newest one; counts what was missed between
-/// them, and sees when the numbers restart.
-template <class Sample>
-bool DeviceExchange::goes_on(const Sample& sample) noexcept {
-  const bool later = sample.sample() > received_sample_;
-  const std::uint64_t jump =
-      later ? sample.sample() - received_sample_ : received_sample_ - sample.sample();
-  if (!later && jump <= max_jump_ && ++older_in_a_row_ < lost_after_ticks_) return false;
-  restarted_ = restarted_ || !later || jump > max_jump_;
-  if (!later || jump == 1) return true;
-  missed_count_ += std::min(jump - 1, max_jump_);
-  std::int64_t gap_nsec = 0;  // times are as hostile as numbers
-  const bool far = __builtin_sub_overflow(sample.time_nsec(), received_time_nsec_, &gap_nsec);
-  after_gap_ = after_gap_ || far || gap_nsec > lost_after_nsec_;
-  return true;
 }
 
 template <class Sample, class Values>
@@ -90,18 +69,16 @@ DeviceExchange::Reception DeviceExchange::receive(
   const auto count = static_cast<std::size_t>(sample.axis_count());
   bool usable = sample.epoch() != 0 && count >= axis_count_ && count <= kMaxAxes;
   for (std::size_t axis = 0; usable && axis < count; ++axis) usable = std::isfinite(values[axis]);
-  const bool same_epoch = sample.epoch() == received_epoch_;
-  if (usable && same_epoch && sample.sample() == received_sample_) return Reception::kRepeated;
-  if (!usable || (same_epoch && !goes_on(sample))) {
+  SampleSequence::Position position{.order = SampleSequence::Order::kOlder};
+  if (usable) position = sequence_.receive(sample.epoch(), sample.sample(), sample.time_nsec());
+  if (position.order == SampleSequence::Order::kRepeated) return Reception::kRepeated;
+  if (position.order == SampleSequence::Order::kOlder) {
     ++refused_count_;
     return Reception::kRefused;
   }
-  older_in_a_row_ = 0;
-  restarted_ = restarted_ || !same_epoch;
+  restarted_ = restarted_ || position.restarts;
+  after_gap_ = after_gap_ || position.after_gap;
   is_supported_ = is_supported;
-  received_epoch_ = sample.epoch();
-  received_sample_ = sample.sample();
-  received_time_nsec_ = sample.time_nsec();
   for (std::size_t axis = 0; axis < count; ++axis)
     newest_[axis] = std::clamp(values[axis], -most[axis], most[axis]);
   has_new_ = true;
@@ -120,11 +97,11 @@ DeviceExchange::Reception DeviceExchange::receive(const msg::GestureForces& samp
                                                   bool is_supported,
                                                   const DeviceReach& reach) noexcept {
   CORDIS_ASSERT(role_ == Role::kLiaison);
-  const std::uint64_t before = missed_count_;
+  const std::uint64_t lost_before = lost_sample_count();
   const Reception reception = receive(sample, sample.force_n(), is_supported, reach.force_n);
   if (reception != Reception::kNew) return reception;
   if (travel_stops_) travel_stops_->set_reach(reach);
-  take_work(sample, reach, missed_count_ - before + 1);
+  take_work(sample, reach, lost_sample_count() - lost_before + 1);
   return reception;
 }
 
@@ -154,24 +131,24 @@ void DeviceExchange::begin_tick() noexcept {
   } else if (has_new_ && std::exchange(refused_ticks_, 0) > restart_ticks) {
     restart_left_ = restart_ticks;
   }
-  unheard_ticks_ = has_new_ ? 0 : std::min(unheard_ticks_, lost_after_ticks_) + 1;
+  unheard_ticks_ = has_new_ ? 0 : std::min(unheard_ticks_, patience_ticks_) + 1;
   if (!is_supported_) {
     is_expected_ = false;
-    silent_ticks_ = lost_after_ticks_ + 1;
+    silent_ticks_ = patience_ticks_ + 1;
   } else if (has_new_) {
-    if (is_lost() || restarted_ || stood_still) {
+    if (is_disconnected() || restarted_ || stood_still) {
       rejoin_left_ = rejoin_ticks_;
       if (passivity_controller_) passivity_controller_->start();
     }
     restarted_ = false;
     is_expected_ = true;
     silent_ticks_ = 0;
-  } else if (!is_lost()) {
+  } else if (!is_disconnected()) {
     ++silent_ticks_;
   }
   has_new_ = false;
 
-  if (is_lost()) {
+  if (is_disconnected()) {
     // Positions are held where they are; the force of a hand that is gone is none.
     if (role_ == Role::kLiaison) to_.fill(0.0);
     if (passivity_controller_) passivity_controller_->start();
@@ -219,9 +196,9 @@ void DeviceExchange::fill_header(Answer& answer, std::int64_t now_nsec) noexcept
   answer.device_id(device_id_);
   answer.epoch(epoch_);
   answer.sample(++answers_);
-  answer.answered_epoch(received_epoch_);
-  answer.answered_sample(received_sample_);
-  answer.answered_time_nsec(received_time_nsec_);
+  answer.answered_epoch(sequence_.epoch());
+  answer.answered_sample(sequence_.number());
+  answer.answered_time_nsec(sequence_.time_nsec());
   answer.time_nsec(now_nsec);
   answer.axis_count(axis_count_);
 }

@@ -12,6 +12,7 @@
 #include "idl/gesture.h"
 #include "sim_node/devices/device_reach.h"
 #include "sim_node/devices/passivity_controller.h"
+#include "sim_node/devices/sample_sequence.h"
 #include "sim_node/devices/travel_stops.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/scene.h"
@@ -28,7 +29,7 @@ constexpr std::size_t kMaxAxes = msg::MAX_AXES;
 /// A new position is reached in a ramp over one period, and the answer holds the forces of its last
 /// sub-step, computed at the position of the sample itself: no virtual damping is lost, and no delay
 /// added. When the period ends between two sub-steps, that position is short of the sample by the
-/// part of the ramp that is left, and the next sub-step is on the next ramp. A device that was silent for kLostAfter is lost: its MATs hold
+/// part of the ramp that is left, and the next sub-step is on the next ramp. A device that is silent for kDisconnectedAfter is disconnected: its MATs hold
 /// still, its forces count as 0, and it is given none. When it is received again, or another
 /// process is received in its place, that takes over gradually, within kRejoin, and so do the
 /// forces it is given: neither side jumps. Both are counted in ticks. Likewise after a gap as long
@@ -36,17 +37,15 @@ constexpr std::size_t kMaxAxes = msg::MAX_AXES;
 /// time: every function but the constructor is O(axes), allocates nothing and does not throw.
 ///
 /// Whoever takes part in the session may write a sample, so no number of it is trusted. Positions
-/// and forces stay within the reach of the device. Numbers of samples that jump by more than
-/// kMaxJump, or go on for kLostAfter below the highest known one, restart:
-/// whatever came before, the samples of the device are taken again, and it takes over gradually.
+/// and forces stay within the reach of the device. When its SampleSequence restarts, the samples of
+/// the device are taken again, whatever came before, and it takes over gradually.
 class DeviceExchange {
  public:
-  static constexpr double kLostAfter = 0.02;  ///< [s]
-  static constexpr double kRejoin = 0.1;      ///< [s]
-  static constexpr double kMaxJump = 1.0;     ///< of the numbers of samples [s]
-  static constexpr double kRestart = 0.25;    ///< above the longest watchdog of a device [s]
-  static constexpr double kFastest = 10.0;    ///< of a hand that gives work [m/s]
-  static constexpr double kDescribed = 1.0;   ///< [s]
+  static constexpr double kDisconnectedAfter = 0.02;  ///< [s]
+  static constexpr double kRejoin = 0.1;              ///< [s]
+  static constexpr double kRestart = 0.25;   ///< above the longest watchdog of a device [s]
+  static constexpr double kFastest = 10.0;   ///< of a hand that gives work [m/s]
+  static constexpr double kDescribed = 1.0;  ///< [s]
 
   /// @param rate_hz  ticks per second
   /// @param epoch    of this sim_node; its messages carry it
@@ -64,7 +63,7 @@ class DeviceExchange {
   /// loss; with `at_once` it plays on as it did, when its role is the same.
   void take_over(const DeviceExchange& before, bool at_once) noexcept;
 
-  /// Lets go of the device as if it were lost: until its next sample that begin_tick() finds.
+  /// Lets go of the device as if it were disconnected: until its next sample that begin_tick() finds.
   void let_go() noexcept;
 
   /// What became of a message of the device.
@@ -74,7 +73,7 @@ class DeviceExchange {
     kRefused    ///< malformed, not finite, or older than what is known
   };
   /// Precondition: role mass. @param is_supported  false: the scene is beyond the limits of the
-  /// device; it counts as lost, though its samples are answered. @param reach  of the device
+  /// device; it counts as disconnected, though its samples are answered. @param reach  of the device
   Reception receive(const msg::GesturePositions& sample, bool is_supported = true,
                     const DeviceReach& reach = {}) noexcept;
   /// Precondition: role liaison.
@@ -109,25 +108,25 @@ class DeviceExchange {
   std::uint32_t device_id() const noexcept { return device_id_; }
   Role role() const noexcept { return role_; }
   bool has_new_sample() const noexcept { return has_new_; }
-  bool is_lost() const noexcept { return silent_ticks_ > lost_after_ticks_; }
-  /// True if no sample has come for kLostAfter, even if the device is not supported: one whose
-  /// answers are to be measured counts as lost, and is answered on arrival all the same.
-  bool is_silent() const noexcept { return unheard_ticks_ > lost_after_ticks_; }
+  bool is_disconnected() const noexcept { return silent_ticks_ > patience_ticks_; }
+  /// True if no sample has come for kDisconnectedAfter, even if the device is not supported: one whose
+  /// answers are to be measured counts as disconnected, and is answered on arrival all the same.
+  bool is_silent() const noexcept { return unheard_ticks_ > patience_ticks_; }
   /// True if the device was refused for longer than kRestart, and is supported now: no answer goes
   /// to it for kRestart (or 8 periods), so that its guard starts again, with forces that grow from 0
   /// and no energy in its account. One that was refused for a moment, because its description came
   /// a little after its first sample, still has the ramp of its start.
   bool is_restarting() const noexcept { return restart_left_ > 0; }
   /// True if a device was there, fell silent, and was not let go of.
-  bool is_missed() const noexcept { return is_expected_ && is_lost(); }
-  bool has_received() const noexcept { return received_epoch_ != 0; }
+  bool is_missed() const noexcept { return is_expected_ && is_disconnected(); }
+  bool has_received() const noexcept { return sequence_.epoch() != 0; }
   /// Samples received as Reception::kNew.
   std::uint64_t new_count() const noexcept { return new_count_; }
   /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
-  std::int64_t received_time_nsec() const noexcept { return received_time_nsec_; }
+  std::int64_t received_time_nsec() const noexcept { return sequence_.time_nsec(); }
   std::uint64_t refused_count() const noexcept { return refused_count_; }
-  /// Samples of the device never seen; of a jump of their numbers those of kMaxJump.
-  std::uint64_t missed_count() const noexcept { return missed_count_; }
+  /// Samples of the device that never came.
+  std::uint64_t lost_sample_count() const noexcept { return sequence_.lost_count(); }
   /// Ticks in which a port of role liaison was damped.
   std::uint64_t passivity_ticks() const noexcept {
     return passivity_controller_ ? passivity_controller_->passivity_ticks() : 0;
@@ -138,8 +137,6 @@ class DeviceExchange {
   template <class Sample, class Values>
   Reception receive(const Sample& sample, const Values& values, bool is_supported,
                     const std::array<double, kMaxAxes>& most) noexcept;
-  template <class Sample>
-  bool goes_on(const Sample& sample) noexcept;
   void take_work(const msg::GestureForces& sample, const DeviceReach& reach,
                  std::uint64_t periods) noexcept;
   template <class Answer>
@@ -153,29 +150,23 @@ class DeviceExchange {
   std::optional<PassivityController> passivity_controller_;
   std::optional<TravelStops> travel_stops_;
 
-  // The newest sample, and the numbers of the one that the last answer took into account.
+  int patience_ticks_;       // of silence, until the device counts as disconnected
+  SampleSequence sequence_;  // of the samples that were taken
   std::array<double, kMaxAxes> newest_{};
-  std::uint64_t received_epoch_ = 0;
-  std::uint64_t received_sample_ = 0;
-  std::int64_t received_time_nsec_ = 0;
   std::uint64_t echoed_answer_ = 0;  // role liaison: that the newest sample speaks of
   double hand_work_ = 0.0;           // what the hand had given there [J]
   bool has_new_ = false;
   bool restarted_ = false;  // it is the first of another process, or its numbers restart
   bool new_work_ =
       false;  // what it reports of its work does not follow from what it reported before
-  bool after_gap_ = false;  // it is the first after a gap of kLostAfter
+  bool after_gap_ = false;  // it is the first after a gap of kDisconnectedAfter
   bool is_supported_ = true;
   bool is_expected_ = false;  // it was there in a tick, and it has not been let go of since
 
   std::array<double, kMaxAxes> from_{};  // axis values at the beginning of the tick
   std::array<double, kMaxAxes> to_{};    // and at its end
-  int lost_after_ticks_;
-  std::int64_t lost_after_nsec_;
   int rejoin_ticks_;
-  std::uint64_t max_jump_;  // of the numbers of samples
   double rate_hz_;
-  int older_in_a_row_ = 0;  // samples that came since one was taken
   int silent_ticks_;
   int restart_left_ = 0;   // ticks without an answer
   int refused_ticks_ = 0;  // with a sample, in a row
@@ -189,7 +180,6 @@ class DeviceExchange {
   std::uint64_t answers_ = 0;
   std::uint64_t new_count_ = 0;
   std::uint64_t refused_count_ = 0;
-  std::uint64_t missed_count_ = 0;
   msg::GestureForces forces_;
   msg::GesturePositions positions_;
 };

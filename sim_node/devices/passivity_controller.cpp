@@ -57,35 +57,35 @@ void PassivityController::start() noexcept {
 
 Vec3 PassivityController::damping_force(std::size_t port, const engine::World& world,
                                         const Vec3& hand_force) noexcept {
-  DampedPort& at = ports_[port];
-  const Vec3 position = world.position(at.mat);
-  if (!std::exchange(at.moves, true)) at.now = at.before = position;
-  const Vec3 way = position - at.now;
-  const Vec3 way_before = at.now - at.before;
+  DampedPort& damped = ports_[port];
+  const Vec3 position = world.position(damped.mat);
+  if (!std::exchange(damped.moves, true)) damped.now = damped.before = position;
+  const Vec3 way = position - damped.now;
+  const Vec3 way_before = damped.now - damped.before;
   // f . (x(n+1) - x(n-1)) / 2, summed by ways instead of forces.
-  brought_ += 0.5 * (hand_force + at.force).dot(way);
+  brought_ += 0.5 * (hand_force + damped.force).dot(way);
   moved_ = std::max(moved_, std::abs(hand_force.dot(way)) * steps_per_tick_);
-  strict_ += 0.5 * at.damping_force.dot(way + way_before);
-  at.before = at.now;
-  at.now = position;
-  at.force = hand_force;
-  at.damping_force = Vec3::Zero();
-  const Vec3 moved = at.axes * way;
-  if (strict_ <= 0.0 || moved.squaredNorm() == 0.0) return at.damping_force;
-  const double damping = std::min(at.most, strict_ * dt_ / moved.squaredNorm());
-  at.damping_force = -damping / dt_ * moved;
+  strict_ += 0.5 * damped.damping_force.dot(way + way_before);
+  damped.before = damped.now;
+  damped.now = position;
+  damped.force = hand_force;
+  damped.damping_force = Vec3::Zero();
+  const Vec3 moved = damped.axes * way;
+  if (strict_ <= 0.0 || moved.squaredNorm() == 0.0) return damped.damping_force;
+  const double damping = std::min(damped.most, strict_ * dt_ / moved.squaredNorm());
+  damped.damping_force = -damping / dt_ * moved;
   is_damping_ = true;
-  return at.damping_force;
+  return damped.damping_force;
 }
 
 /// Once a tick: what the work of hands whose force bends between two samples may be less than
 /// their samples say [J].
 double PassivityController::uncertainty() noexcept {
   double sum = 0.0;
-  for (DampedPort& at : ports_) {
-    const double way = (at.now - std::exchange(at.place, at.now)).norm();
-    const Vec3 change = at.force - std::exchange(at.force_before, at.force);
-    const double bend = (change - std::exchange(at.change, change)).norm();
+  for (DampedPort& damped : ports_) {
+    const double way = (damped.now - std::exchange(damped.place, damped.now)).norm();
+    const Vec3 change = damped.force - std::exchange(damped.force_before, damped.force);
+    const double bend = (change - std::exchange(damped.change, change)).norm();
     sum += bend * way / 8.0;
   }
   return sum;

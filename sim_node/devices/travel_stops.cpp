@@ -58,16 +58,16 @@ double TravelStops::Stop::push(double place, double way, double back) noexcept {
 }
 
 Vec3 TravelStops::force(std::size_t port, const engine::World& world) noexcept {
-  StoppedPort& at = ports_[port];
-  const Vec3 moved = world.position(at.mat) - at.rest;
-  const Vec3 way = dt_ * world.velocity(at.mat);
+  StoppedPort& stopped = ports_[port];
+  const Vec3 moved = world.position(stopped.mat) - stopped.rest;
+  const Vec3 way = dt_ * world.velocity(stopped.mat);
   Vec3 force = Vec3::Zero();
-  for (Axis& axis : at.axes) {
+  for (Axis& axis : stopped.axes) {
     const double place = moved.dot(axis.direction);
     const double growth = way.dot(axis.direction);
     const double above = axis.upper.push(place, growth, kReturn * dt_);
     const double below = axis.lower.push(-place, -growth, kReturn * dt_);
-    force += at.strength * (below - above) * axis.direction;
+    force += stopped.strength * (below - above) * axis.direction;
   }
   return force;
 }

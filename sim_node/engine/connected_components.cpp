@@ -86,12 +86,12 @@ void ConnectedComponents::join_kept(double distance) noexcept {
   for (NeighbourRows rows = kept_->first_rows(position); rows.first < rows.last;
        rows = kept_->rows_after(rows, position)) {
     for (std::size_t a = rows.first; a < rows.last; ++a) {
-      const double* at = position + 4 * a;
+      const double* position_a = position + 4 * a;
       for (std::size_t i = rows.start[a]; i < rows.start[a + 1]; ++i) {
         const std::uint32_t column = rows.neighbour[i - rows.origin];
-        const double x = position[column] - at[0];
-        const double y = position[column + 1] - at[1];
-        const double z = position[column + 2] - at[2];
+        const double x = position[column] - position_a[0];
+        const double y = position[column + 1] - position_a[1];
+        const double z = position[column + 2] - position_a[2];
         if (!(x * x + y * y + z * z < distance * distance)) continue;
         join(static_cast<std::uint32_t>(a), column / 4);
       }

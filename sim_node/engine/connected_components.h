@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/pairs/cell_grid.h"
 #include "sim_node/engine/pairs/neighbour_list.h"
@@ -51,7 +52,10 @@ class ConnectedComponents {
   std::size_t find_linked(const World& world, std::span<const std::uint32_t> state_links) noexcept;
 
   /// Number of the piece of a member as last found, from 0 in the order of their first members.
-  std::uint32_t piece_of(std::size_t member) const noexcept { return piece_[member]; }
+  std::uint32_t piece_of(std::size_t member) const noexcept {
+    CORDIS_ASSERT(member < piece_.size());
+    return piece_[member];
+  }
   /// MATs of the set, P and then Q.
   std::span<const std::uint32_t> members() const noexcept { return mat_; }
 

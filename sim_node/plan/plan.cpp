@@ -38,8 +38,8 @@ double limit_of_one_contact(const engine::NetworkDescription& network, const Lia
 
 /// Step beyond which the tangent at the start, or one contact, diverges [s].
 double diverging_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
-  const auto limit_at = [&graph](const engine::NetworkDescription& at) {
-    return std::min(StartTangent(at).diverging_step(), limit_of_one_contact(at, graph));
+  const auto limit_at = [&graph](const engine::NetworkDescription& varied) {
+    return std::min(StartTangent(varied).diverging_step(), limit_of_one_contact(varied, graph));
   };
   return limit_of_all_steps(network, limit_at);
 }

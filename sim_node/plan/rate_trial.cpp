@@ -74,9 +74,10 @@ class SampledRuns {
     double square = 0.0;
     for (std::size_t i = 0; i < width; ++i) {
       double mean = 0.0;
-      for (std::size_t at = i; at < samples.size(); at += width) mean += samples[at] / samples_;
-      for (std::size_t at = i; at < samples.size(); at += width) {
-        square += (samples[at] - mean) * (samples[at] - mean);
+      for (std::size_t sample = i; sample < samples.size(); sample += width)
+        mean += samples[sample] / samples_;
+      for (std::size_t sample = i; sample < samples.size(); sample += width) {
+        square += (samples[sample] - mean) * (samples[sample] - mean);
       }
     }
     return square;

@@ -24,9 +24,9 @@ ChangeCounter::ChangeCounter(const std::vector<engine::StateMachine>& state_mach
 ChangeCounter::Counts ChangeCounter::count(const engine::World& world) const noexcept {
   Counts counts{};
   for (const Counted& counted : counted_) {
-    for (std::uint32_t from = 0; from < counted.state_count; ++from) {
-      for (std::uint32_t to = 0; to < counted.state_count; ++to)
-        counts[counted.place] += world.change_count(counted.state_machine, from, to);
+    for (std::uint32_t source = 0; source < counted.state_count; ++source) {
+      for (std::uint32_t target = 0; target < counted.state_count; ++target)
+        counts[counted.place] += world.change_count(counted.state_machine, source, target);
     }
   }
   return counts;

@@ -115,7 +115,7 @@ DeviceExchange* Simulation::find(std::uint32_t device_id) noexcept {
 std::int64_t Simulation::action_time_nsec() const noexcept {
   std::int64_t newest = 0;
   for (const DeviceExchange& device : devices_) {
-    if (!device.is_lost()) newest = std::max(newest, device.received_time_nsec());
+    if (!device.is_disconnected()) newest = std::max(newest, device.received_time_nsec());
   }
   return newest;
 }

@@ -22,7 +22,7 @@ Outcome refused(std::string problem, std::string hint = {}) {
 }
 
 /// Later values go before earlier ones.
-GivenParameters merged(GivenParameters values, const GivenParameters& later) {
+ParameterOverrides merged(ParameterOverrides values, const ParameterOverrides& later) {
   for (const auto& [name, value] : later) values[name] = value;
   return values;
 }
@@ -50,7 +50,7 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
-/// The parameters that links of a group may be given.
+/// The parameters that links of a group may override.
 std::vector<std::string> parameters_of_group(const LinkGroup& group, const Scene& scene) {
   const Liaison* const liaison =
       group.liaison.empty() ? nullptr : scene.liaisons->find(group.liaison);
@@ -88,15 +88,15 @@ struct Parameters::Target {
   std::vector<std::pair<Origin, std::uint32_t>> state_machines;
   std::vector<const LinkGroup*> groups;
 
-  /// Adds the changes that follow when each member is given `values_of(liaison, given)`.
+  /// Adds the changes that follow when each member takes `values_of(liaison, overrides)`.
   template <class ValuesOf>
   Outcome changes(const Scene& scene, ValuesOf values_of) const {
     Outcome outcome;
-    const auto add = [&](const std::string& liaison, const GivenParameters& given,
+    const auto add = [&](const std::string& liaison, const ParameterOverrides& overrides,
                          const std::string& part, const std::string& owner, Change change) {
       config::Problems problems;
       const std::optional<LinkLaw> law = read_liaison(
-          scene.liaisons->find(liaison)->definition, liaison, values_of(liaison, given, owner),
+          scene.liaisons->find(liaison)->definition, liaison, values_of(liaison, overrides, owner),
           *scene.liaisons, scene.space(), false, problems);
       const LinkLaw* const own = law ? part_of(*law, part) : nullptr;
       if (own == nullptr) {
@@ -116,7 +116,7 @@ struct Parameters::Target {
     for (const auto& [origin, index] : state_machines) {
       Change change;
       change.first = index;
-      if (!add(origin.liaison, origin.given, origin.part, origin.owner, change)) return outcome;
+      if (!add(origin.liaison, origin.overrides, origin.part, origin.owner, change)) return outcome;
     }
     for (const LinkGroup* group : groups) {
       Change change;
@@ -124,7 +124,7 @@ struct Parameters::Target {
           group->kind == LinkKind::kLinear ? Change::Kind::kLinks : Change::Kind::kMaxwellLinks;
       change.first = group->first;
       change.count = group->count;
-      if (!add(group->liaison, group->given, group->part, group->name, change)) return outcome;
+      if (!add(group->liaison, group->overrides, group->part, group->name, change)) return outcome;
     }
     return outcome;
   }
@@ -155,19 +155,20 @@ Outcome Parameters::set_of_liaison(const std::string& name, const std::string& p
   for (const auto& [origin, index] : scene.liaisons->pool().origins()) {
     if (origin.liaison != name) continue;
     used = true;
-    if (origin.given.count(parameter) == 0) target.state_machines.emplace_back(origin, index);
+    if (origin.overrides.count(parameter) == 0) target.state_machines.emplace_back(origin, index);
   }
   for (const LinkGroup& group : scene.link_groups) {
     if (group.liaison != name || group.kind == LinkKind::kState) continue;
     used = true;
-    if (group.given.count(parameter) == 0) target.groups.push_back(&group);
+    if (group.overrides.count(parameter) == 0) target.groups.push_back(&group);
   }
-  GivenParameters values = of_liaison_[name];
+  ParameterOverrides values = of_liaison_[name];
   values[parameter] = value;
   Outcome outcome = target.changes(
-      scene, [&](const std::string&, const GivenParameters& given, const std::string& owner) {
+      scene,
+      [&](const std::string&, const ParameterOverrides& overrides, const std::string& owner) {
         const auto own = of_links_.find(owner);
-        const GivenParameters before = merged(values, given);
+        const ParameterOverrides before = merged(values, overrides);
         return own == of_links_.end() ? before : merged(before, own->second);
       });
   if (!outcome.problem.empty()) return outcome;
@@ -232,12 +233,13 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
                    "set those of the liaison '" + target.state_machines.front().first.liaison +
                        "', or give these links a name of their own");
   }
-  GivenParameters values = of_links_[name];
+  ParameterOverrides values = of_links_[name];
   values[parameter] = value;
   Outcome outcome = target.changes(
-      scene, [&](const std::string& liaison, const GivenParameters& given, const std::string&) {
+      scene,
+      [&](const std::string& liaison, const ParameterOverrides& overrides, const std::string&) {
         const auto before = of_liaison_.find(liaison);
-        const GivenParameters own = merged(given, values);
+        const ParameterOverrides own = merged(overrides, values);
         return before == of_liaison_.end() ? own : merged(before->second, own);
       });
   if (!outcome.problem.empty()) return outcome;
@@ -276,21 +278,22 @@ Parameters::Values Parameters::get(const std::string& what) const {
 std::vector<std::pair<std::string, double>> Parameters::values_of(const std::string& name) const {
   const auto set_later = [](const auto& values, const std::string& key) {
     const auto known = values.find(key);
-    return known == values.end() ? GivenParameters{} : known->second;
+    return known == values.end() ? ParameterOverrides{} : known->second;
   };
   if (scene_->liaisons && scene_->liaisons->find(name) != nullptr)
     return values_of_liaison(name, set_later(of_liaison_, name));
 
-  const GivenParameters own = set_later(of_links_, name);
+  const ParameterOverrides own = set_later(of_links_, name);
   for (const LinkGroup& group : scene_->link_groups) {
     if (!is_of(group, name)) continue;
     if (!group.liaison.empty()) {
       return values_of_liaison(
-          group.liaison, merged(merged(set_later(of_liaison_, group.liaison), group.given), own));
+          group.liaison,
+          merged(merged(set_later(of_liaison_, group.liaison), group.overrides), own));
     }
     const engine::NetworkDescription& network = scene_->network;
-    GivenParameters values{{kStiffness, network.links[group.first].stiffness},
-                           {kViscosity, network.links[group.first].viscosity}};
+    ParameterOverrides values{{kStiffness, network.links[group.first].stiffness},
+                              {kViscosity, network.links[group.first].viscosity}};
     values = merged(std::move(values), own);
     return {values.begin(), values.end()};
   }
@@ -300,24 +303,25 @@ std::vector<std::pair<std::string, double>> Parameters::values_of(const std::str
       if (index != scene_->network.sets[s].state_machine) continue;
       return values_of_liaison(
           origin.liaison,
-          merged(merged(set_later(of_liaison_, origin.liaison), origin.given), own));
+          merged(merged(set_later(of_liaison_, origin.liaison), origin.overrides), own));
     }
   }
   return {};
 }
 
 std::vector<std::pair<std::string, double>> Parameters::values_of_liaison(
-    const std::string& liaison, const GivenParameters& given) const {
+    const std::string& liaison, const ParameterOverrides& overrides) const {
   const config::Value& definition = scene_->liaisons->find(liaison)->definition;
   config::Problems problems;  // none: the scene has been read
-  const ParameterValues values(definition.find("parameters"), given, nullptr, liaison, problems);
+  const ParameterValues values(definition.find("parameters"), overrides, nullptr, liaison,
+                               problems);
   std::vector<std::pair<std::string, double>> found;
   for (const std::string& name : parameters_of(definition)) {
-    const auto own = given.find(name);
+    const auto own = overrides.find(name);
     const std::optional<double> value = values.find(name);
     if (value) {
       found.emplace_back(name, *value);
-    } else if (own != given.end()) {
+    } else if (own != overrides.end()) {
       found.emplace_back(name, own->second);
     } else {
       found.emplace_back(name,

@@ -72,8 +72,8 @@ class Parameters {
   struct Target;
 
   std::vector<std::pair<std::string, double>> values_of(const std::string& name) const;
-  std::vector<std::pair<std::string, double>> values_of_liaison(const std::string& liaison,
-                                                                const GivenParameters& given) const;
+  std::vector<std::pair<std::string, double>> values_of_liaison(
+      const std::string& liaison, const ParameterOverrides& overrides) const;
 
   [[nodiscard]] Outcome set_of_liaison(const std::string& name, const std::string& parameter,
                                        double value);
@@ -82,8 +82,8 @@ class Parameters {
   std::vector<std::string> names() const;
 
   std::shared_ptr<const Scene> scene_;
-  std::map<std::string, GivenParameters> of_liaison_;  // values set since, by its name
-  std::map<std::string, GivenParameters> of_links_;    // by the name of the links
+  std::map<std::string, ParameterOverrides> of_liaison_;  // values set since, by its name
+  std::map<std::string, ParameterOverrides> of_links_;    // by the name of the links
 };
 
 }  // namespace cordis::scene

@@ -29,10 +29,10 @@ struct LinkGroup {
   LinkKind kind = LinkKind::kLinear;
   std::uint32_t first = 0;  ///< among those of its kind
   std::uint32_t count = 0;
-  std::string liaison;    ///< they are made from; empty when there is none
-  std::string part;       ///< of it, when it is a parallel one
-  config::Place place;    ///< where they are described
-  GivenParameters given;  ///< by the link
+  std::string liaison;           ///< they are made from; empty when there is none
+  std::string part;              ///< of it, when it is a parallel one
+  config::Place place;           ///< where they are described
+  ParameterOverrides overrides;  ///< by the link
 };
 
 /// The two roles of a device. [Luc90 V.1 Force feedback gestual transducers]

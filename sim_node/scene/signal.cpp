@@ -79,8 +79,9 @@ double changes_in(const engine::World& world) noexcept {
       world.network().description().state_machines;
   for (std::uint32_t b = 0; b < state_machines.size(); ++b) {
     const auto states = static_cast<std::uint32_t>(state_machines[b].states.size());
-    for (std::uint32_t from = 0; from < states; ++from) {
-      for (std::uint32_t to = 0; to < states; ++to) changes += world.change_count(b, from, to);
+    for (std::uint32_t source = 0; source < states; ++source) {
+      for (std::uint32_t target = 0; target < states; ++target)
+        changes += world.change_count(b, source, target);
     }
   }
   return static_cast<double>(changes);

@@ -33,7 +33,7 @@ Link spring_damper(std::uint32_t a, std::uint32_t b, double rest) {
   return {a, b, 100.0, 0.01, rest};
 }
 
-/// 100 x 100 masses, each tied to its right and its upper neighbour: 19,800 links; with diagonals
+/// 100 x 100 masses, each linked to its right and its upper neighbour: 19,800 links; with diagonals
 /// 29,601.
 NetworkDescription grid(int dimension, bool diagonals, std::uint32_t side = kSide) {
   NetworkDescription network;
@@ -145,7 +145,7 @@ BENCHMARK(step_by_integrator)
     ->ArgsProduct({{static_cast<long>(IntegratorKind::kLeapfrog)}, {1, 2}, {20, 60}, {2}})
     ->ArgsProduct({{static_cast<long>(IntegratorKind::kSymplectic4)}, {1, 2}, {20, 60, 100}, {0}});
 
-/// 400 modes of a string; so many of its points tied to a fixed one by a link with states.
+/// 400 modes of a string; so many of its points linked to a fixed one by a link with states.
 void step_of_modes(benchmark::State& state) {
   constexpr std::uint32_t kModes = 400;
   NetworkDescription network;

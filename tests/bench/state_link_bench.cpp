@@ -100,7 +100,7 @@ StateMachine collophane(Kind kind) {
   return state_machine;
 }
 
-/// 708 x 708 masses, each tied to its right and its upper neighbour: a million links.
+/// 708 x 708 masses, each linked to its right and its upper neighbour: a million links.
 std::shared_ptr<const Network> grid(int dimension, Kind kind) {
   constexpr std::uint32_t kLatticeSide = 708;
   NetworkDescription network;

@@ -57,7 +57,7 @@ async function start(session) {
 
 const cases = {};
 for (let i = 1; i <= SESSIONS; ++i) {
-  const order = NODES.map((_, at) => NODES[(at + i) % NODES.length]);
+  const order = NODES.map((_, offset) => NODES[(offset + i) % NODES.length]);
   for (const name of order) cases[`${i}: the view goes on after a stall of ${name}`] = stall(name);
   cases[`${i}: nothing went wrong in the page, and Ctrl-C ends the session`] = async (session) => {
     const { page, pageErrors } = session;

@@ -85,15 +85,18 @@ class FakeSession {
 /// How often `part` occurs in a text.
 inline std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t count = 0;
-  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++count;
+  for (std::size_t position = 0; (position = text.find(part, position)) != std::string::npos;
+       ++position)
+    ++count;
   return count;
 }
 
 /// Numbers N of all lines `... pid N` in the output.
 inline std::vector<pid_t> pids_in(const std::string& output) {
   std::vector<pid_t> pids;
-  for (std::size_t at = 0; (at = output.find("pid ", at)) != std::string::npos; ++at) {
-    pids.push_back(std::stoi(output.substr(at + 4)));
+  for (std::size_t position = 0; (position = output.find("pid ", position)) != std::string::npos;
+       ++position) {
+    pids.push_back(std::stoi(output.substr(position + 4)));
   }
   return pids;
 }

@@ -122,17 +122,17 @@ TEST_F(Lab, WritesATableAndAScriptForItsChart) {
 }
 
 TEST_F(Lab, TheNameOfASceneIsTextForGnuplot) {
-  const std::string made = place_ + ".made";
+  const std::string victim = place_ + ".made";
   std::ifstream in(options_.file);
   std::string text(std::istreambuf_iterator<char>(in), {});
-  text.replace(text.find("name: bob"), 9, "name: \"bo'b `touch " + made + "` \\\\\"");
+  text.replace(text.find("name: bob"), 9, "name: \"bo'b `touch " + victim + "` \\\\\"");
   std::ofstream(options_.file) << text;
 
   draw_chart(run(), options_.folder);
 
-  EXPECT_NE(read("chart.gp").find("'bo''b `touch " + made + "` \\ (2 MATs"), std::string::npos)
+  EXPECT_NE(read("chart.gp").find("'bo''b `touch " + victim + "` \\ (2 MATs"), std::string::npos)
       << read("chart.gp");
-  EXPECT_FALSE(std::filesystem::exists(made)) << "a shell was run";
+  EXPECT_FALSE(std::filesystem::exists(victim)) << "a shell was run";
 }
 
 TEST_F(Lab, NoNameCoversAnotherBesideTheCurves) {

@@ -27,7 +27,8 @@ TEST(LineSplitter, HandsOnWholeLinesHoweverTheBytesArrive) {
   const std::string text = "first\n\nthird line\nlast\n";
   for (std::size_t block = 1; block <= text.size(); ++block) {
     Collected collected;
-    for (std::size_t at = 0; at < text.size(); at += block) collected.feed(text.substr(at, block));
+    for (std::size_t begin = 0; begin < text.size(); begin += block)
+      collected.feed(text.substr(begin, block));
     EXPECT_EQ(collected.lines, (Lines{"first", "", "third line", "last"})) << "blocks of " << block;
   }
 }
@@ -46,7 +47,8 @@ TEST(LineSplitter, CutsALineThatIsTooLongWithoutLosingAByte) {
   const std::string text(2 * longest + 3, 'x');
   for (const std::size_t block : {std::size_t{1}, longest - 1, longest, longest + 1, text.size()}) {
     Collected collected;
-    for (std::size_t at = 0; at < text.size(); at += block) collected.feed(text.substr(at, block));
+    for (std::size_t begin = 0; begin < text.size(); begin += block)
+      collected.feed(text.substr(begin, block));
     collected.feed("\nnext\n");
     EXPECT_EQ(collected.lines,
               (Lines{std::string(longest, 'x'), std::string(longest, 'x'), "xxx", "next"}))

@@ -60,9 +60,9 @@ TEST(RespawnPolicy, NeverRestartsMoreThanFiveTimesInAnyMinuteWhateverHappens) {
     for (int death = 0; death < 100; ++death) {
       now +=
           std::chrono::duration_cast<milliseconds>(std::chrono::duration<double>(life_s(random)));
-      const auto in_last_minute = std::count_if(restarts.begin(), restarts.end(), [&](Time at) {
-        return at + RespawnPolicy::kWindow > now;
-      });
+      const auto in_last_minute =
+          std::count_if(restarts.begin(), restarts.end(),
+                        [&](Time restart) { return restart + RespawnPolicy::kWindow > now; });
       const std::optional<Time> restart = policy.died(now);
       ASSERT_EQ(restart.has_value(), in_last_minute < 5);
       if (!restart) continue;

@@ -84,10 +84,10 @@ class Simulate : public testing::Test {
     std::vector<std::vector<double>> rows;
     while (std::getline(lines, line)) {
       rows.emplace_back();
-      for (const char* at = line.c_str(); *at != '\0';) {
+      for (const char* cell = line.c_str(); *cell != '\0';) {
         char* end = nullptr;
-        rows.back().push_back(std::strtod(at, &end));
-        at = *end == ',' ? end + 1 : end;
+        rows.back().push_back(std::strtod(cell, &end));
+        cell = *end == ',' ? end + 1 : end;
       }
     }
     return rows;

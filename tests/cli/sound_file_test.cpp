@@ -36,9 +36,9 @@ struct WavData {
 };
 
 template <class Number>
-Number number_at(const std::string& bytes, std::size_t at) {
+Number number_at(const std::string& bytes, std::size_t offset) {
   Number number{};
-  std::memcpy(&number, bytes.data() + at, sizeof number);
+  std::memcpy(&number, bytes.data() + offset, sizeof number);
   return number;
 }
 
@@ -47,20 +47,21 @@ WavData read_wav(const std::string& path) {
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   WavData wav;
   if (bytes.substr(0, 4) != "RIFF" || bytes.substr(8, 4) != "WAVE") return wav;
-  for (std::size_t at = 12; at + 8 <= bytes.size();) {
-    const std::string name = bytes.substr(at, 4);
-    const auto size = number_at<std::uint32_t>(bytes, at + 4);
+  for (std::size_t offset = 12; offset + 8 <= bytes.size();) {
+    const std::string name = bytes.substr(offset, 4);
+    const auto size = number_at<std::uint32_t>(bytes, offset + 4);
     if (name == "fmt ") {
-      wav.format = number_at<std::uint16_t>(bytes, at + 8);
+      wav.format = number_at<std::uint16_t>(bytes, offset + 8);
       constexpr std::uint16_t kExtensible = 0xFFFE;
-      if (wav.format == kExtensible) wav.format = number_at<std::uint16_t>(bytes, at + 32);
-      wav.channels = number_at<std::uint16_t>(bytes, at + 10);
-      wav.rate_hz = number_at<std::uint32_t>(bytes, at + 12);
+      if (wav.format == kExtensible) wav.format = number_at<std::uint16_t>(bytes, offset + 32);
+      wav.channels = number_at<std::uint16_t>(bytes, offset + 10);
+      wav.rate_hz = number_at<std::uint32_t>(bytes, offset + 12);
     } else if (name == "data") {
       wav.samples.resize(size / sizeof(float));
-      std::memcpy(wav.samples.data(), bytes.data() + at + 8, wav.samples.size() * sizeof(float));
+      std::memcpy(wav.samples.data(), bytes.data() + offset + 8,
+                  wav.samples.size() * sizeof(float));
     }
-    at += 8 + size + size % 2;
+    offset += 8 + size + size % 2;
   }
   return wav;
 }

@@ -472,7 +472,7 @@ TEST(Exchange, FeelsEveryAnswerSoManyPeriodsLaterInLockstep) {
   }
 }
 
-TEST(Exchange, PutsTheEndPieceBetweenWireAndMotors) {
+TEST(Exchange, PutsTheEndEffectorMapBetweenWireAndMotors) {
   now_nsec = 1000;
   DeviceConfig config = config_of_two_axes();
   config.end_effector_map = EndEffectorMap({{0.5, 0.5}}, 2);

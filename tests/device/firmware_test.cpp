@@ -163,15 +163,15 @@ TEST(Firmware, LetsGoTwentyMillisecondsAfterTheLastForce) {
 TEST(Firmware, BelievesNoDamagedFrame) {
   Chip chip;
   const std::vector<std::uint8_t> good = force_frame(1, 20000, 20000);
-  for (std::size_t at = 0; at < good.size(); ++at) {
+  for (std::size_t damaged = 0; damaged < good.size(); ++damaged) {
     std::vector<std::uint8_t> bad = good;
-    bad[at] ^= 0x14;
+    bad[damaged] ^= 0x14;
     chip.said.clear();
     chip.receive(bad);
     chip.receive(0);
     chip.run(0.6);
-    EXPECT_EQ(chip.duty(0), 0) << at;
-    EXPECT_TRUE(chip.said.empty()) << at;
+    EXPECT_EQ(chip.duty(0), 0) << damaged;
+    EXPECT_TRUE(chip.said.empty()) << damaged;
   }
 
   chip.receive(good);

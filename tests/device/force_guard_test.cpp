@@ -166,7 +166,8 @@ TEST(ForceGuard, HoldsWhateverItIsGiven) {
     } else {
       age += guarded.period_s;
     }
-    for (double& at : position) at = 0.04 * share(random);  // a hand that jumps, up to 40 m/s
+    for (double& coordinate : position)
+      coordinate = 0.04 * share(random);  // a hand that jumps, up to 40 m/s
     const AxisValues& now = guard.tick(age, position);
     for (std::size_t a = 0; a < now.size(); ++a) {
       ASSERT_LE(std::abs(now[a]), 20.0) << n;

@@ -93,9 +93,9 @@ TEST(Pantograph, TorquesDoTheWorkOfTheForce) {
     Pantograph::Pair less = angle;
     more[k] += kTurn;
     less[k] -= kTurn;
-    const auto to = arms.forward(more).pen_m;
-    const auto from = arms.forward(less).pen_m;
-    const double work = force[0] * (to[0] - from[0]) + force[1] * (to[1] - from[1]);
+    const auto end = arms.forward(more).pen_m;
+    const auto begin = arms.forward(less).pen_m;
+    const double work = force[0] * (end[0] - begin[0]) + force[1] * (end[1] - begin[1]);
     EXPECT_NEAR(torque[k], work / (2.0 * kTurn), 1e-9);
   }
 }

@@ -400,11 +400,11 @@ TEST_F(Kfb1Test, PlaysRoleLiaisonByACoupling) {
   key->start(Role::kLiaison);
 
   // Commanded to -0.015 m: 300 N/m over 5 mm pull the key up with 1.5 N; the hand gives -1.5 N.
-  AxisValues given{};
+  AxisValues force{};
   EXPECT_TRUE(until(*key, {-0.015, -0.02}, [&](bool there) {
-    return there && key->read(given) && std::abs(given[0] + 1.5) < 0.01;
-  })) << given[0];
-  EXPECT_NEAR(given[1], 0.0, 0.01);
+    return there && key->read(force) && std::abs(force[0] + 1.5) < 0.01;
+  })) << force[0];
+  EXPECT_NEAR(force[1], 0.0, 0.01);
   EXPECT_TRUE(until(*key, {-0.015, -0.02},
                     [&](bool) { return std::abs(board.forces[0] - 0.15 * 32767) < 40; }));
 }
@@ -421,12 +421,12 @@ TEST_F(Kfb1Test, PullsToPlacesWithinTheLimitsOfItsFileAndLetsGoOfOldOnes) {
   key->start(Role::kLiaison);
   double before = 0.0;
   const auto motor_force = [&] {  // of the motor, in this period
-    AxisValues given{};
-    static_cast<void>(key->read(given));
-    EXPECT_LE(std::abs(given[0] - before), 0.4 + 1e-9) << "400 N/s in a millisecond";
-    EXPECT_LE(std::abs(given[0]), 4.0);
-    before = given[0];
-    return -given[0];
+    AxisValues force{};
+    static_cast<void>(key->read(force));
+    EXPECT_LE(std::abs(force[0] - before), 0.4 + 1e-9) << "400 N/s in a millisecond";
+    EXPECT_LE(std::abs(force[0]), 4.0);
+    before = force[0];
+    return -force[0];
   };
 
   // A coupling of 300 N/m wants 6 N at once, over 20 mm.

@@ -80,10 +80,10 @@ class PantographBoard {
       bytes_.clear();
     }
   }
-  float float_at(std::size_t at) const {
+  float float_at(std::size_t offset) const {
     std::uint32_t bits = 0;
     for (std::size_t i = 0; i < 4; ++i)
-      bits |= static_cast<std::uint32_t>(bytes_[at + i]) << (8 * i);
+      bits |= static_cast<std::uint32_t>(bytes_[offset + i]) << (8 * i);
     return std::bit_cast<float>(bits);
   }
   std::vector<std::uint8_t> bytes_;

@@ -70,10 +70,10 @@ struct Loop {
     force_ = guard.tick(0.0, position, part_)[0];
     const double start = key.position;
     key.step(before + hand_n, part_);
-    given += before * (key.position - start);
+    work += before * (key.position - start);
     const double middle = key.position;
     key.step(force_ + hand_n, 1.0 - part_);
-    given += force_ * (key.position - middle);
+    work += force_ * (key.position - middle);
     damped += guard.energy().is_damping();
   }
 
@@ -86,7 +86,7 @@ struct Loop {
   Key key;
   ForceGuard guard;
   int damped = 0;
-  double given = 0.0;  // to the hand, exactly [J]
+  double work = 0.0;  // to the hand, exactly [J]
 
  private:
   std::deque<double> past_;
@@ -109,7 +109,7 @@ TEST_P(Delays, APassiveWallIsNeverDamped) {
 
   EXPECT_EQ(loop.damped, 0);
   EXPECT_LT(deepest, -0.002) << "the hand has pressed the wall";
-  EXPECT_NEAR(loop.guard.energy().given_j(), loop.given, 5e-3 * std::abs(loop.given))
+  EXPECT_NEAR(loop.guard.energy().given_j(), loop.work, 5e-3 * std::abs(loop.work))
       << "the motion between two samples is nearly straight";
 }
 
@@ -211,9 +211,9 @@ TEST(PassivityObserver, TakesTheRampOfAPressedSpringForNoEnergyOfTheLoop) {
     AxisValues wanted{};
     wanted[0] = -stiffness * position;
     guard.accept(wanted);
-    AxisValues at{};
-    at[0] = position;
-    guard.tick(0.0, at);
+    AxisValues positions{};
+    positions[0] = position;
+    guard.tick(0.0, positions);
     damped += guard.energy().is_damping();
   }
 

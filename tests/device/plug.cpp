@@ -96,9 +96,9 @@ void Plug::say(std::span<const std::uint8_t> bytes) {
   const Harm harmed = harm(answers_++);
   if (harmed == Harm::kDropped) return;
   const auto turn = static_cast<std::size_t>(answers_ / 10);
-  const std::size_t at = turn % frame.size();
-  if (harmed == Harm::kFlipped) frame[at] ^= static_cast<std::uint8_t>(1u << turn * 3 % 8);
-  if (harmed == Harm::kCut) frame.erase(frame.begin() + static_cast<std::ptrdiff_t>(at));
+  const std::size_t harmed_byte = turn % frame.size();
+  if (harmed == Harm::kFlipped) frame[harmed_byte] ^= static_cast<std::uint8_t>(1u << turn * 3 % 8);
+  if (harmed == Harm::kCut) frame.erase(frame.begin() + static_cast<std::ptrdiff_t>(harmed_byte));
   late_.insert(late_.end(), frame.begin(), frame.end());
   if (harmed == Harm::kLate) return;  // comes together with the next one
   const ssize_t sent = udp_ ? sendto(wire_, late_.data(), late_.size(), 0,

@@ -62,12 +62,12 @@ TEST(PositionGuard, StaysWhereItIsWhenPositionsAreOldOrNotNumbers) {
   guard.accept(at_all_axes(-0.03));
   for (int n = 0; n < 5; ++n) guard.tick(0.0);
 
-  const AxisValues at = guard.tick(0.02);
-  EXPECT_NEAR(at[0], -0.01, kPositionRounding);
-  EXPECT_EQ(guard.tick(0.0), at);  // the old positions do not come back
+  const AxisValues limited = guard.tick(0.02);
+  EXPECT_NEAR(limited[0], -0.01, kPositionRounding);
+  EXPECT_EQ(guard.tick(0.0), limited);  // the old positions do not come back
 
   EXPECT_FALSE(guard.accept(at_all_axes(std::nan(""))));
-  EXPECT_EQ(guard.tick(0.0), at);
+  EXPECT_EQ(guard.tick(0.0), limited);
   EXPECT_TRUE(guard.accept(at_all_axes(-0.011)));
   EXPECT_NEAR(guard.tick(0.0)[0], -0.011, kPositionRounding);
 }

@@ -72,14 +72,14 @@ std::unique_ptr<Driver> replay_of(const std::string& text, const AxisLayout& lay
 
 /// What the next periods give on the first axis.
 std::vector<double> next(Driver& driver, int count) {
-  std::vector<double> given;
+  std::vector<double> forces;
   AxisValues values{};
   for (int i = 0; i < count; ++i) {
     EXPECT_TRUE(driver.read(values));
-    given.push_back(values[0]);
+    forces.push_back(values[0]);
     EXPECT_TRUE(driver.write({}));
   }
-  return given;
+  return forces;
 }
 
 TEST(ReplayDriver, GivesTheSamplesOfATakeAndFillsWhatWasLost) {

@@ -84,9 +84,9 @@ TEST_F(BlockedLine, NoMessageBeginsInTheMiddleOfAnother) {
 
   EXPECT_GE(all.size(), before + 10);
   ASSERT_EQ(all.size() % 10, 0u) << "whole messages alone";
-  for (std::size_t at = 0; at < all.size(); at += 10) {
-    const auto first = all.begin() + static_cast<std::ptrdiff_t>(at);
-    EXPECT_TRUE(std::all_of(first, first + 10, [&](auto byte) { return byte == *first; })) << at;
+  for (std::size_t begin = 0; begin < all.size(); begin += 10) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
+    EXPECT_TRUE(std::all_of(first, first + 10, [&](auto byte) { return byte == *first; })) << begin;
   }
   EXPECT_EQ(all.back(), 250);
 }

@@ -93,13 +93,13 @@ TEST(Contact, OfHertzGoesAsDeepAndLastsAsLongAsItMust) {
 
 TEST(Contact, OfABouncingBallKeepsItsHeightsAndTimes) {
   const nlohmann::json data = reference("R14_bouncing_ball");
-  const auto& of = data["params"];
+  const auto& params = data["params"];
   for (const bool clamped : {false, true}) {
     const double step = 1e-5;
-    NetworkDescription scene =
-        approach(contact(number(of["K"]), number(of["Z"]), clamped), number(of["m"]), step);
-    scene.gravity.x() = -number(of["g"]);
-    scene.mats[1].position.x() = number(of["h0"]);
+    NetworkDescription scene = approach(contact(number(params["K"]), number(params["Z"]), clamped),
+                                        number(params["m"]), step);
+    scene.gravity.x() = -number(params["g"]);
+    scene.mats[1].position.x() = number(params["h0"]);
     scene.mats[1].velocity.x() = 0.0;
     World world = make_world(scene);
     std::vector<double> heights;

@@ -70,14 +70,14 @@ TEST(ElementaryFunctions, AreWithinTwoUnitsInTheLastPlace) {
     for (const double range : function.ranges) {
       std::uniform_real_distribution<double> draw(-range, range);
       double worst = 0.0;
-      double at = 0.0;
+      double worst_argument = 0.0;
       for (int i = 0; i < kDraws; ++i) {
         const double x = draw(random);
         const double error = error_of(function.own(x), function.reference(x));
-        if (error > worst) at = x;
+        if (error > worst) worst_argument = x;
         worst = std::max(worst, error);
       }
-      EXPECT_LT(worst, kMaxError) << function.name << " at " << at;
+      EXPECT_LT(worst, kMaxError) << function.name << " at " << worst_argument;
     }
   }
 }

@@ -19,7 +19,7 @@ using engine::Energy;
 constexpr double kRounding = 2e-12;
 
 /// A string of 20 masses in 1 dimension between fixed ends, plucked.
-NetworkDescription string_in_line(double viscosity, double medium_viscosity) {
+NetworkDescription string_1d(double viscosity, double medium_viscosity) {
   NetworkDescription scene = string_in_space(20, viscosity, 2e-4);
   scene.dimension = 1;
   scene.medium_viscosity = medium_viscosity;
@@ -40,7 +40,7 @@ double largest_relative_residual(World& world, int step_count) {
 }
 
 TEST(Energy, IsKeptByAnUndampedStringForAHundredThousandSteps) {
-  World world = make_world(string_in_line(0.0, 0.0));
+  World world = make_world(string_1d(0.0, 0.0));
 
   EXPECT_LT(largest_relative_residual(world, 100'000), kRounding);
   EXPECT_EQ(world.energy().dissipated, 0.0);
@@ -48,7 +48,7 @@ TEST(Energy, IsKeptByAnUndampedStringForAHundredThousandSteps) {
 }
 
 TEST(Energy, IsKeptUpToTheLimitOfStability) {
-  NetworkDescription scene = string_in_line(0.0, 0.0);
+  NetworkDescription scene = string_1d(0.0, 0.0);
   scene.step = 0.99 * std::sqrt(0.001 / 400.0);  // K' = 0.98, of 1 for a string
   World world = make_world(scene);
 
@@ -56,7 +56,7 @@ TEST(Energy, IsKeptUpToTheLimitOfStability) {
 }
 
 TEST(Energy, OfADampedStringIsAllDissipated) {
-  World world = make_world(string_in_line(0.05, 0.002));
+  World world = make_world(string_1d(0.05, 0.002));
 
   EXPECT_LT(largest_relative_residual(world, 60'000), kRounding);
   const Energy energy = world.energy();
@@ -100,7 +100,7 @@ TEST(Energy, CountsTheFallIntoGravity) {
 }
 
 TEST(Energy, CountsTheWorkOfAPort) {
-  NetworkDescription scene = string_in_line(0.01, 0.0);
+  NetworkDescription scene = string_1d(0.01, 0.0);
   scene.mats[9].kind = MatKind::kPort;
   scene.mats[15].kind = MatKind::kPort;
   World world = make_world(scene);
@@ -126,7 +126,7 @@ TEST(Energy, CountsTheFirstPushOfAPortAgainstABentSpring) {
 }
 
 TEST(Energy, CountsTheWorkOfAnExternalForce) {
-  World world = make_world(string_in_line(0.01, 0.001));
+  World world = make_world(string_1d(0.01, 0.001));
 
   for (int n = 0; n < 5'000; ++n) {
     if (n % 100 == 0) world.set_external_force(5, Vec3(n % 200 == 0 ? 0.9 : -0.3, 0, 0));

@@ -120,10 +120,10 @@ void add_net(NetworkDescription& scene, Draw& draw) {
   const double mass_of_each = draw.decade(0.01, 0.1);
   for (std::uint32_t y = 0; y < high; ++y) {
     for (std::uint32_t x = 0; x < wide; ++x) {
-      const Vec3 at =
+      const Vec3 place =
           scene.dimension > 1 ? Vec3(0.1 * x, -0.1 * y, 0) : Vec3(0.1 * x + 0.03 * y, 0, 0);
       const bool hangs = y == 0 && (x == 0 || x + 1 == wide);
-      scene.mats.push_back(hangs ? fixed(at) : mass(mass_of_each, at));
+      scene.mats.push_back(hangs ? fixed(place) : mass(mass_of_each, place));
     }
   }
   for (std::uint32_t y = 0; y < high; ++y) {
@@ -157,8 +157,8 @@ void add_pendulum(NetworkDescription& scene, Draw& draw) {
   const Vec3 along(std::sin(slant), -std::cos(slant), 0);
   scene.mats.push_back(fixed(Vec3::Zero()));
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Vec3 at = 0.2 * (i + 1) * along;
-    scene.mats.push_back(mass(0.05, scene.dimension > 1 ? at : Vec3(0.2 * (i + 1), 0, 0)));
+    const Vec3 place = 0.2 * (i + 1) * along;
+    scene.mats.push_back(mass(0.05, scene.dimension > 1 ? place : Vec3(0.2 * (i + 1), 0, 0)));
     join(scene, i, i + 1, draw.decade(1e3, 3e4), 0.5);
   }
 }
@@ -171,10 +171,10 @@ void add_set(NetworkDescription& scene, Draw& draw) {
   const std::uint32_t high = scene.dimension > 1 ? 2 + draw.below(3) : 1;
   for (std::uint32_t y = 0; y < high; ++y) {
     for (std::uint32_t x = 0; x < wide; ++x) {
-      const Vec3 at(kSpacing * (x + 0.5 * (y % 2)), -std::sqrt(0.75) * kSpacing * y, 0);
+      const Vec3 place(kSpacing * (x + 0.5 * (y % 2)), -std::sqrt(0.75) * kSpacing * y, 0);
       set.set_p.push_back(static_cast<std::uint32_t>(scene.mats.size()));
       const bool hangs = scene.dimension > 1 ? y == 0 : x == 0;
-      scene.mats.push_back(hangs ? fixed(at) : mass(1e-3, at));
+      scene.mats.push_back(hangs ? fixed(place) : mass(1e-3, place));
     }
   }
   engine::LinkState bond;
@@ -191,9 +191,9 @@ void add_set(NetworkDescription& scene, Draw& draw) {
 void add_tangle(NetworkDescription& scene, Draw& draw) {
   const std::uint32_t count = 5 + draw.below(20);
   const auto point = [&] {
-    Vec3 at = Vec3::Zero();
-    for (int axis = 0; axis < scene.dimension; ++axis) at[axis] = draw.between(0.0, 1.0);
-    return at;
+    Vec3 place = Vec3::Zero();
+    for (int axis = 0; axis < scene.dimension; ++axis) place[axis] = draw.between(0.0, 1.0);
+    return place;
   };
   for (std::uint32_t i = 0; i < count; ++i) {
     scene.mats.push_back(mass(draw.decade(0.03, 0.3), point()));

@@ -77,9 +77,9 @@ NetworkDescription resting_network(std::uint32_t seed) {
     return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
   };
   const auto point = [&] {
-    Vec3 at = Vec3::Zero();
-    for (int axis = 0; axis < scene.dimension; ++axis) at[axis] = uniform(0.0, 1.0);
-    return at;
+    Vec3 place = Vec3::Zero();
+    for (int axis = 0; axis < scene.dimension; ++axis) place[axis] = uniform(0.0, 1.0);
+    return place;
   };
   const auto distance = [&scene](std::uint32_t a, std::uint32_t b) {
     const Vec3 along = scene.mats[b].position - scene.mats[a].position;

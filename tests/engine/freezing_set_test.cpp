@@ -75,8 +75,8 @@ NetworkDescription wall(std::uint32_t rows, const StateMachine& state_machine) {
   scene.medium_viscosity = 0.1;
   for (std::uint32_t row = 0; row < rows; ++row) {
     for (std::uint32_t i = 0; i < 24; ++i) {
-      const Vec3 at(kSpacing * (i + 0.5 * (row % 2)), std::sqrt(0.75) * kSpacing * row, 0);
-      scene.mats.push_back(row == 0 ? fixed(at) : mass(1e-3, at));
+      const Vec3 place(kSpacing * (i + 0.5 * (row % 2)), std::sqrt(0.75) * kSpacing * row, 0);
+      scene.mats.push_back(row == 0 ? fixed(place) : mass(1e-3, place));
     }
   }
   add_set_of_all(scene, state_machine);
@@ -148,9 +148,9 @@ NetworkDescription swarm_and_patch(const StateMachine& state_machine, int dimens
   scene.step = 1e-4;
   for (Mat& ball : scene.mats) ball.mass *= 1e-3;
   for (std::uint32_t i = 0; i < 12; ++i) {
-    const Vec3 at(kSpacing * (i % 4), dimension > 1 ? kSpacing * (i / 4) : 0.0, 0);
+    const Vec3 place(kSpacing * (i % 4), dimension > 1 ? kSpacing * (i / 4) : 0.0, 0);
     if (dimension == 1 && i >= 4) break;
-    scene.mats.push_back(mass(1e-3, at + Vec3(100, 0, 0)));
+    scene.mats.push_back(mass(1e-3, place + Vec3(100, 0, 0)));
   }
   add_set_of_all(scene, state_machine);
   return scene;

@@ -144,20 +144,20 @@ TEST(Ratchet, HoldsTheTeethItHasPassed) {
 
 /// A block on a belt: stuck to it by a stiff spring up to the static threshold, then dragged by
 /// the constant kinetic force until it is as fast as the belt.
-NetworkDescription block_on_a_belt(const nlohmann::json& of, double step) {
+NetworkDescription block_on_a_belt(const nlohmann::json& params, double step) {
   LinkState slipping;
-  slipping.dissipation = power_law(number(of["Fk"]), 0.0);
-  const double mass_kg = number(of["m"]);
-  const double hook = 1e5 * number(of["k"]);
+  slipping.dissipation = power_law(number(params["Fk"]), 0.0);
+  const double mass_kg = number(params["m"]);
+  const double hook = 1e5 * number(params["k"]);
   NetworkDescription scene;
   scene.dimension = 1;
   scene.step = step;
-  scene.mats = {fixed(Vec3::Zero()), mass(mass_kg, Vec3::Zero(), Vec3(number(of["V"]), 0, 0)),
+  scene.mats = {fixed(Vec3::Zero()), mass(mass_kg, Vec3::Zero(), Vec3(number(params["V"]), 0, 0)),
                 port(Vec3::Zero())};
-  scene.links = {{0, 1, number(of["k"]), 0.0, 0.0}};
+  scene.links = {{0, 1, number(params["k"]), 0.0, 0.0}};
   scene.state_machines = {Behaving()
                               .state(hook, 2.0 * std::sqrt(hook * mass_kg))
-                              .exit(size(q(Quantity::kForce)) > number(of["Fs"]), 1)
+                              .exit(size(q(Quantity::kForce)) > number(params["Fs"]), 1)
                               .state(slipping)
                               .exit(q(Quantity::kSpeed) >= 0.0, 0, RestRule::kHere)
                               .state_machine};
@@ -165,9 +165,9 @@ NetworkDescription block_on_a_belt(const nlohmann::json& of, double step) {
   return scene;
 }
 
-void expect_stick_slip(const nlohmann::json& of, const nlohmann::json& expected) {
+void expect_stick_slip(const nlohmann::json& params, const nlohmann::json& expected) {
   const double step = 1e-5;
-  World world = make_world(block_on_a_belt(of, step));
+  World world = make_world(block_on_a_belt(params, step));
   std::vector<double> slip_times;
   std::vector<double> stick_times;
   std::vector<double> belt_work;
@@ -175,7 +175,7 @@ void expect_stick_slip(const nlohmann::json& of, const nlohmann::json& expected)
   double nearest = 1.0;
   while (slip_times.size() < 4) {
     const double t = static_cast<double>(world.step_count()) * step;
-    world.impose_position(2, Vec3(number(of["V"]) * t, 0, 0));
+    world.impose_position(2, Vec3(number(params["V"]) * t, 0, 0));
     world.step();
     furthest = std::max(furthest, world.position(1).x());
     if (slip_times.size() >= 2) nearest = std::min(nearest, world.position(1).x());

@@ -27,8 +27,8 @@ NetworkDescription cable(double stiffness, double step) {
   scene.gravity = Vec3(0, 0, -9.81);
   scene.medium_viscosity = 0.02;
   for (std::uint32_t i = 0; i < 60; ++i) {
-    const Vec3 at(0.01 * i, 0, 0);
-    scene.mats.push_back(i == 0 ? fixed(at) : mass(0.01, at));
+    const Vec3 place(0.01 * i, 0, 0);
+    scene.mats.push_back(i == 0 ? fixed(place) : mass(0.01, place));
     if (i > 0) scene.links.push_back({i - 1, i, stiffness, 0.1, 0.01});
   }
   return scene;

@@ -33,13 +33,13 @@ double between(std::mt19937& random, double low, double high) {
 }
 
 Law random_table(std::mt19937& random) {
-  std::vector<double> at{between(random, -0.4, 0.0)};
+  std::vector<double> arguments{between(random, -0.4, 0.0)};
   std::vector<double> value{between(random, -5.0, 5.0)};
   for (auto left = random() % 6; left > 0; --left) {
-    at.push_back(at.back() + between(random, 0.01, 0.3));
+    arguments.push_back(arguments.back() + between(random, 0.01, 0.3));
     value.push_back(between(random, -5.0, 5.0));
   }
-  return engine::Table(at, value);
+  return engine::Table(arguments, value);
 }
 
 Law random_power(std::mt19937& random) {
@@ -117,9 +117,9 @@ TEST(Law, IsNowhereSteeperThanItsLargestSlope) {
     LawRange range{between(random, 0.1, 0.5), between(random, 0.5, 1.0), between(random, 0.0, 9.0)};
     range.viscous = argument_of(law) != LawArgument::kDistance && random() % 2 == 0;
     range.turns = !range.viscous && random() % 2 == 0;
-    const auto tension = [&](double at) {
-      return range.viscous ? viscous_tension(law, {range.rest_length, 0.0, at})
-                           : elastic_tension(law, {range.rest_length + at, at});
+    const auto tension = [&](double argument) {
+      return range.viscous ? viscous_tension(law, {range.rest_length, 0.0, argument})
+                           : elastic_tension(law, {range.rest_length + argument, argument});
     };
     double low = -range.argument;
     double high = range.argument;
@@ -140,13 +140,13 @@ TEST(Law, IsNowhereSteeperThanItsLargestSlope) {
     const double width = (high - low) / 400.0;
     ASSERT_TRUE(std::isfinite(largest.value));
     for (int i = 0; i < 400; ++i) {
-      const double at = low + width * i;
-      const double slope = (tension(at + width) - tension(at)) / width;
-      ASSERT_LE(slope, largest.value + 1e-9 * (1.0 + std::abs(tension(at)) + largest.value))
-          << "at " << at;
+      const double argument = low + width * i;
+      const double slope = (tension(argument + width) - tension(argument)) / width;
+      ASSERT_LE(slope, largest.value + 1e-9 * (1.0 + std::abs(tension(argument)) + largest.value))
+          << "at " << argument;
       if (!across || i == 0) continue;
-      ASSERT_LE(tension(at) / (range.rest_length + at), largest.value * (1.0 + 1e-9))
-          << "at " << at;
+      ASSERT_LE(tension(argument) / (range.rest_length + argument), largest.value * (1.0 + 1e-9))
+          << "at " << argument;
     }
   });
 }

@@ -36,7 +36,7 @@ TEST_P(LeapfrogOscillator, ConvergesToTheExactMotionWithTheSecondOrder) {
   const nlohmann::json problem = reference("R01_damped_oscillator");
   const auto regime =
       std::find_if(problem["cases"].begin(), problem["cases"].end(),
-                   [](const auto& given) { return given["name"] == GetParam().name; });
+                   [](const auto& entry) { return entry["name"] == GetParam().name; });
   ASSERT_NE(regime, problem["cases"].end());
   const auto& params = problem["params"];
   const auto largest_error = [&](double step) {

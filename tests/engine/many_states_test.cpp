@@ -25,9 +25,9 @@ void expect_same_states(const World& first, const World& second) {
   EXPECT_EQ(one.switching, other.switching);
   EXPECT_EQ(one.elastic_error, other.elastic_error);
   EXPECT_EQ(one.port_work, other.port_work);
-  for (std::uint32_t from = 0; from < 6; ++from) {
-    for (std::uint32_t to = 0; to < 6; ++to) {
-      EXPECT_EQ(first.change_count(0, from, to), second.change_count(0, from, to));
+  for (std::uint32_t source = 0; source < 6; ++source) {
+    for (std::uint32_t target = 0; target < 6; ++target) {
+      EXPECT_EQ(first.change_count(0, source, target), second.change_count(0, source, target));
     }
   }
   for (std::uint32_t l = 0; l < 76; ++l) {
@@ -41,10 +41,11 @@ TEST_P(ManyStates, AreAllVisited) {
   World world = make_world(network_of_many_states(GetParam()));
   stir(world, 1000);
 
-  for (std::uint32_t to = 0; to < 6; ++to) {
+  for (std::uint32_t target = 0; target < 6; ++target) {
     std::uint64_t entries = 0;
-    for (std::uint32_t from = 0; from < 6; ++from) entries += world.change_count(0, from, to);
-    EXPECT_GT(entries, 0U) << "state " << to;
+    for (std::uint32_t source = 0; source < 6; ++source)
+      entries += world.change_count(0, source, target);
+    EXPECT_GT(entries, 0U) << "state " << target;
   }
 }
 

@@ -30,18 +30,19 @@ class Members {
   Members(std::size_t count, int dimension, double side, std::uint32_t seed = 5)
       : count_(count), dimension_(dimension), random_(seed), position_((count + 7) / 8 * 32, 0.0) {
     for (std::size_t i = 0; i < count; ++i) {
-      for (int axis = 0; axis < dimension; ++axis) at(i)[axis] = side * (uniform() - 0.5);
+      for (int axis = 0; axis < dimension; ++axis) place(i)[axis] = side * (uniform() - 0.5);
     }
   }
 
-  double* at(std::size_t member) { return position_.data() + 4 * member; }
+  double* place(std::size_t member) { return position_.data() + 4 * member; }
   const double* data() const { return position_.data(); }
   std::size_t count() const { return count_; }
 
   /// Each member by up to `most` along each axis.
   void move(double most) {
     for (std::size_t i = 0; i < count_; ++i) {
-      for (int axis = 0; axis < dimension_; ++axis) at(i)[axis] += most * (2.0 * uniform() - 1.0);
+      for (int axis = 0; axis < dimension_; ++axis)
+        place(i)[axis] += most * (2.0 * uniform() - 1.0);
     }
   }
 
@@ -69,7 +70,7 @@ class Members {
   double square(std::size_t a, std::size_t b) {
     double sum = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-      sum += (at(b)[axis] - at(a)[axis]) * (at(b)[axis] - at(a)[axis]);
+      sum += (place(b)[axis] - place(a)[axis]) * (place(b)[axis] - place(a)[axis]);
     }
     return sum;
   }
@@ -149,9 +150,9 @@ TEST(NeighbourList, NeedsNoRoomForABallThatFliesAway) {
   for (const double far : {1e3, 1e6, 1e20, 1e300, -1e9}) {
     Members members(64, 3, 0.4);
     NeighbourList list(64, 0, 3, kRange, kPlenty, engine::pair_kernel(engine::best_vector_width()));
-    members.at(7)[0] = far;
-    members.at(8)[0] = far;  // with a companion
-    for (int axis = 1; axis < 3; ++axis) members.at(8)[axis] = members.at(7)[axis];
+    members.place(7)[0] = far;
+    members.place(8)[0] = far;  // with a companion
+    for (int axis = 1; axis < 3; ++axis) members.place(8)[axis] = members.place(7)[axis];
     for (int n = 0; n < 20; ++n) {
       members.move(0.01);
       list.refresh(members.data());
@@ -169,7 +170,7 @@ TEST(NeighbourList, LeavesOutWhatIsNotFinite) {
                          engine::pair_kernel(engine::best_vector_width()));
       for (int n = 0; n < 20; ++n) {
         members.move(0.003);
-        if (n >= n_wrong) members.at(3)[1] = wrong;
+        if (n >= n_wrong) members.place(3)[1] = wrong;
         list.refresh(members.data());
         ASSERT_EQ(listed(list, members), members.within(kRange, 64, false));
       }
@@ -189,9 +190,9 @@ TEST(NeighbourList, FindsPairsAcrossTheBordersOfCells) {
   for (const double spacing : {kRange * (1.0 - 1e-15), kRange}) {
     Members members(125, 3, 0.0);
     for (std::size_t i = 0; i < 125; ++i) {
-      members.at(i)[0] = spacing * static_cast<double>(i % 5);
-      members.at(i)[1] = spacing * static_cast<double>(i / 5 % 5);
-      members.at(i)[2] = spacing * static_cast<double>(i / 25);
+      members.place(i)[0] = spacing * static_cast<double>(i % 5);
+      members.place(i)[1] = spacing * static_cast<double>(i / 5 % 5);
+      members.place(i)[2] = spacing * static_cast<double>(i / 25);
     }
     NeighbourList list(125, 0, 3, kRange, kPlenty,
                        engine::pair_kernel(engine::best_vector_width()));
@@ -213,7 +214,7 @@ TEST(NeighbourList, WithoutEnoughRoomGivesTheSamePairsInParts) {
     }
     for (int n = 0; n < 300; ++n) {  // they drift apart, and there is room again
       for (std::size_t i = 0; i < members.count(); ++i) {
-        for (int axis = 0; axis < 3; ++axis) members.at(i)[axis] *= 1.01;
+        for (int axis = 0; axis < 3; ++axis) members.place(i)[axis] *= 1.01;
       }
       list.refresh(members.data());
       ASSERT_EQ(listed(list, members), members.within(kRange, 60, count_q > 0));

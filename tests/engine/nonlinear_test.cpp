@@ -83,13 +83,13 @@ TEST_P(Laws, OfATableMeetsItsPointsExactly) {
 }
 
 TEST_P(Laws, OfALongTableFindsEverySegment) {
-  std::vector<double> at;
+  std::vector<double> arguments;
   std::vector<double> value;
   for (int i = 0; i < 77; ++i) {
-    at.push_back(0.03 * i - 0.4);
+    arguments.push_back(0.03 * i - 0.4);
     value.push_back(i * i);
   }
-  const LinkState state = with(engine::Table(at, value));
+  const LinkState state = with(engine::Table(arguments, value));
   std::vector<double> distances;
   for (int i = 0; i < 76; ++i) distances.push_back(0.5 + 0.03 * (i + 0.5) - 0.4);
   const std::vector<double> found = tensions(state, distances, GetParam());

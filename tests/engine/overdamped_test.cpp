@@ -79,16 +79,16 @@ class LinearMotion {
   }
 
  private:
-  void add(const NetworkDescription& scene, std::uint32_t of, std::uint32_t other, const Link& link,
-           double rest) {
-    if (scene.mats[of].kind != MatKind::kMass) return;
+  void add(const NetworkDescription& scene, std::uint32_t member, std::uint32_t other,
+           const Link& link, double rest) {
+    if (scene.mats[member].kind != MatKind::kMass) return;
     const auto n = static_cast<Eigen::Index>(count_);
-    const double inverse = 1.0 / scene.mats[of].mass;
-    system_(n + of, other) += link.stiffness * inverse;
-    system_(n + of, of) -= link.stiffness * inverse;
-    system_(n + of, n + other) += link.viscosity * inverse;
-    system_(n + of, n + of) -= link.viscosity * inverse;
-    constant_[n + of] -= link.stiffness * rest * inverse;
+    const double inverse = 1.0 / scene.mats[member].mass;
+    system_(n + member, other) += link.stiffness * inverse;
+    system_(n + member, member) -= link.stiffness * inverse;
+    system_(n + member, n + other) += link.viscosity * inverse;
+    system_(n + member, n + member) -= link.viscosity * inverse;
+    constant_[n + member] -= link.stiffness * rest * inverse;
   }
 
   std::size_t count_;

@@ -50,10 +50,10 @@ struct Rows {
     rows.dt = 0.5;
     rows.rate = 2.0;
     rows.state = state.data();
-    rows.rest_length = of(Quantity::kRestLength).data();
-    rows.elongation = of(Quantity::kElongation).data();
-    rows.tension = of(Quantity::kForce).data();
-    rows.impulse = of(Quantity::kImpulse).data();
+    rows.rest_length = row(Quantity::kRestLength).data();
+    rows.elongation = row(Quantity::kElongation).data();
+    rows.tension = row(Quantity::kForce).data();
+    rows.impulse = row(Quantity::kImpulse).data();
     rows.entered = entered.data();
     rows.memory = memory.data();
     rows.memory_slots = kMaxSlots;
@@ -64,7 +64,7 @@ struct Rows {
   Rows& operator=(const Rows&) = delete;
   ~Rows() = default;
 
-  std::array<double, kStateBatch>& of(Quantity which) {
+  std::array<double, kStateBatch>& row(Quantity which) {
     return quantity[static_cast<std::size_t>(which)];
   }
 };
@@ -195,7 +195,7 @@ class Programs : public testing::TestWithParam<VectorWidth> {
     const engine::StateTable table({Behaving().state(0.0).exit_to_rest(1.0, 0, term).state_machine},
                                    rows.rows.dt);
     engine::state_kernel(GetParam()).step(table.terms(), rows.rows);
-    return rows.of(Quantity::kRestLength);
+    return rows.row(Quantity::kRestLength);
   }
   static bool holds(const Term& term) {
     Rows rows;
@@ -207,7 +207,7 @@ class Programs : public testing::TestWithParam<VectorWidth> {
   }
   static double value(const Term& term) {
     Rows rows;
-    rows.of(Quantity::kRestLength).fill(kUntouched);
+    rows.row(Quantity::kRestLength).fill(kUntouched);
     const auto all = values(term, rows);
     for (const double each : all) EXPECT_EQ(bits(each), bits(all[0]));
     return all[0];
@@ -307,14 +307,14 @@ TEST_P(Programs, RiseAndFallFromOneStepToTheNext) {
                                  rows.rows.dt);
   const auto step = [&] { engine::state_kernel(GetParam()).step(table.terms(), rows.rows); };
 
-  rows.of(Quantity::kSlip) = {1, 1, 1, 1, 1, 1, 1, 1};
+  rows.row(Quantity::kSlip) = {1, 1, 1, 1, 1, 1, 1, 1};
   step();
   EXPECT_EQ(rows.rows.changed, 0U) << "there is nothing yet to compare with";
-  rows.of(Quantity::kSlip) = {1, 2, 0, 1, 1, 3, 1, 1};
+  rows.row(Quantity::kSlip) = {1, 2, 0, 1, 1, 3, 1, 1};
   step();
   EXPECT_EQ(rows.rows.changed, 0b00100110U);
   EXPECT_EQ(rows.state, (std::array<engine::StateIndex, 8>{0, 1, 2, 0, 0, 1, 0, 0}));
-  rows.of(Quantity::kSlip) = {0, 9, 9, 1, 2, 9, 1, 1};
+  rows.row(Quantity::kSlip) = {0, 9, 9, 1, 2, 9, 1, 1};
   step();
   EXPECT_EQ(rows.state, (std::array<engine::StateIndex, 8>{2, 1, 2, 0, 1, 1, 0, 0}));
 }
@@ -326,7 +326,7 @@ TEST_P(Programs, RememberAnewAfterAnEntry) {
       rows.rows.dt);
   std::vector<bool> changes;
   for (const double slip : {1.0, 2.0, 3.0, 4.0, 5.0}) {
-    rows.of(Quantity::kSlip).fill(slip);
+    rows.row(Quantity::kSlip).fill(slip);
     engine::state_kernel(GetParam()).step(table.terms(), rows.rows);
     changes.push_back(rows.rows.changed == 0xff);
   }
@@ -389,7 +389,7 @@ TEST_P(Programs, AgreeWithTheirMeaningForTenThousandRandomOnes) {
       engine::LinkQuantities link{};
       for (std::size_t k = 0; k < kQuantityCount; ++k) link[k] = rows.quantity[k][i];
       ASSERT_EQ(bits(engine::value_of(term.program, link)), bits(value)) << "program " << n;
-      expected[i] = std::isfinite(value) ? value : rows.of(Quantity::kRestLength)[i];
+      expected[i] = std::isfinite(value) ? value : rows.row(Quantity::kRestLength)[i];
     }
 
     const auto found = values(term, rows);

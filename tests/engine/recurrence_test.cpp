@@ -19,14 +19,14 @@ class Recurrence : public testing::TestWithParam<VectorWidth> {};
 
 TEST_P(Recurrence, IsFollowedToRoundingInOneDimension) {
   const nlohmann::json problem = reference("R02_cordis_discrete_exact");
-  for (const auto& given : problem["cases"]) {
-    const double stiffness = number(given["Kp"]);
-    const double viscosity = number(given["Zp"]);
-    const double x0 = number(given["x0"]);
-    const double v0 = starting_speed(stiffness, viscosity, x0, number(given["xm1"]));
+  for (const auto& entry : problem["cases"]) {
+    const double stiffness = number(entry["Kp"]);
+    const double viscosity = number(entry["Zp"]);
+    const double x0 = number(entry["x0"]);
+    const double v0 = starting_speed(stiffness, viscosity, x0, number(entry["xm1"]));
     World world = make_world(oscillator(1.0, stiffness, viscosity, x0, v0, 1.0), GetParam());
 
-    for (const auto& row : given["n_x"]) {
+    for (const auto& row : entry["n_x"]) {
       const int n = row[0].get<int>();
       run(world, n - static_cast<int>(world.step_count()));
       // rounding: half an ulp a step, carried on undamped
@@ -40,18 +40,18 @@ TEST_P(Recurrence, IsFollowedToRoundingAlongADirectionInSpace) {
   const Vec3 direction(1.0 / 3.0, 2.0 / 3.0, -2.0 / 3.0);
   const double rest = 8.0;  // longer than any swing, so that the link never turns round
   const nlohmann::json problem = reference("R02_cordis_discrete_exact");
-  for (const auto& given : problem["cases"]) {
-    const double stiffness = number(given["Kp"]);
-    const double viscosity = number(given["Zp"]);
-    const double x0 = number(given["x0"]);
-    const double v0 = starting_speed(stiffness, viscosity, x0, number(given["xm1"]));
+  for (const auto& entry : problem["cases"]) {
+    const double stiffness = number(entry["Kp"]);
+    const double viscosity = number(entry["Zp"]);
+    const double x0 = number(entry["x0"]);
+    const double v0 = starting_speed(stiffness, viscosity, x0, number(entry["xm1"]));
     NetworkDescription scene;
     scene.step = 1.0;
     scene.mats = {fixed(Vec3::Zero()), mass(1.0, (rest + x0) * direction, v0 * direction)};
     scene.links = {{0, 1, stiffness, viscosity, rest}};
     World world = make_world(scene, GetParam());
 
-    for (const auto& row : given["n_x"]) {
+    for (const auto& row : entry["n_x"]) {
       const int n = row[0].get<int>();
       run(world, n - static_cast<int>(world.step_count()));
       const double elongation = world.position(1).dot(direction) - rest;

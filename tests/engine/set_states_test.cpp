@@ -158,9 +158,9 @@ TEST(SetStates, AreThoseOfALinkForEachPair) {
 
     EXPECT_GT(changes, 10U);
     EXPECT_GT(set.change_count(0, kBound, kFree) + set.change_count(0, kBound, 2), 0U);
-    for (std::uint32_t from = 0; from < 3; ++from) {
-      for (std::uint32_t to = 0; to < 3; ++to) {
-        EXPECT_EQ(set.change_count(0, from, to), links.change_count(0, from, to));
+    for (std::uint32_t source = 0; source < 3; ++source) {
+      for (std::uint32_t target = 0; target < 3; ++target) {
+        EXPECT_EQ(set.change_count(0, source, target), links.change_count(0, source, target));
       }
     }
     EXPECT_NEAR(set.energy().switching, links.energy().switching, 1e-8);
@@ -302,9 +302,9 @@ NetworkDescription balls_that_fly_together(std::uint32_t side, double spacing) {
   set.range = 0.1;
   const double middle = 0.5 * (side - 1);
   for (std::uint32_t i = 0; i < side * side * side; ++i) {
-    const Vec3 at =
+    const Vec3 place =
         spacing * Vec3(i % side - middle, i / side % side - middle, i / side / side - middle);
-    scene.mats.push_back(mass(0.001, at, -at / (100 * scene.step)));
+    scene.mats.push_back(mass(0.001, place, -place / (100 * scene.step)));
     set.set_p.push_back(i);
   }
   scene.state_machines = {sticking(1e-6, 0.0, 1e3)};

@@ -121,14 +121,14 @@ TEST(StiffFriction, CannotBeFrozen) {
 
 /// Bow friction [N] over the speed [m/s]: steep through 0, falling beyond 0.07 m/s.
 Law bow_law(double force) {
-  std::vector<double> at;
+  std::vector<double> speeds;
   std::vector<double> value;
   for (int i = -1000; i <= 1000; ++i) {
     const double speed = 1e-3 * i;
-    at.push_back(speed);
+    speeds.push_back(speed);
     value.push_back(force * std::sqrt(200.0) * speed * std::exp(-100.0 * speed * speed + 0.5));
   }
-  return engine::Table(at, value);
+  return engine::Table(speeds, value);
 }
 
 /// 60 masses of 84 mg, 100 Hz, drawn by a bow of 5 N at 0.1 m/s: while it sticks, 117 N s/m.

@@ -14,7 +14,7 @@ using engine::IntegratorKind;
 
 constexpr double kHoldStiffness = 500.0;  // [N/m]
 
-/// A tool tied to a port, and a free mass tied to the tool.
+/// A tool linked to a port, and a free mass linked to the tool.
 NetworkDescription held_tools(IntegratorKind integrator, double viscosity) {
   NetworkDescription scene;
   scene.dimension = 3;

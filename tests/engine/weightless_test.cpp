@@ -61,8 +61,7 @@ TEST_P(Weightless, CarriesWhatHangsOnItAndFallsNot) {
     EXPECT_NEAR(world.position(1).x(), sag, 1e-3 * std::abs(sag));
   }
   EXPECT_EQ(world.position(3).x(), 1.0);
-  if (GetParam().integrator !=
-      IntegratorKind::kModal) {  // which knows no mass that is tied to nothing
+  if (GetParam().integrator != IntegratorKind::kModal) {  // which knows no mass without a link
     const double time = kSteps * scene.step;
     EXPECT_NEAR(world.position(4).x(), 2.0 + 0.5 * kGravity * time * time, 0.05);
   }

@@ -260,7 +260,8 @@ TEST(ForeignDevice, GivesNoForceBeyondItsLimitAndNoneForAnAnswerThatIsNoNumber) 
   const auto count_of = [&](const std::string& line) {
     const std::string output = device->output();
     std::size_t count = 0;
-    for (auto at = output.find(line); at != std::string::npos; at = output.find(line, at + 1))
+    for (auto position = output.find(line); position != std::string::npos;
+         position = output.find(line, position + 1))
       ++count;
     return count;
   };

@@ -48,9 +48,9 @@ class ChangedScene {
     const std::string configs = std::string(CORDIS_SOURCE_DIR) + "/launch_configs/";
     std::ifstream file(configs + "scenes/" + name + ".yaml");
     std::string text{std::istreambuf_iterator<char>(file), {}};
-    for (const auto& [from, to] : words) {
-      EXPECT_NE(text.find(from), std::string::npos) << from;
-      replace(text, from, to);
+    for (const auto& [old_text, new_text] : words) {
+      EXPECT_NE(text.find(old_text), std::string::npos) << old_text;
+      replace(text, old_text, new_text);
     }
     replace(text, "../", configs);
     std::ofstream(path_) << text;
@@ -63,10 +63,10 @@ class ChangedScene {
   std::vector<std::string> overrides() const { return {"sim.scene=" + path_}; }
 
  private:
-  static void replace(std::string& text, const std::string& from, const std::string& to) {
-    for (std::size_t at = text.find(from); at != std::string::npos;
-         at = text.find(from, at + to.size())) {
-      text.replace(at, from.size(), to);
+  static void replace(std::string& text, const std::string& old_text, const std::string& new_text) {
+    for (std::size_t position = text.find(old_text); position != std::string::npos;
+         position = text.find(old_text, position + new_text.size())) {
+      text.replace(position, old_text.size(), new_text);
     }
   }
 

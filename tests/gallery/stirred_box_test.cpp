@@ -29,10 +29,10 @@ double circulation(const GallerySession& session, double radius) {
   double sum = 0.0;
   double count = 0.0;
   for (const std::uint32_t ball : crowd(session)) {
-    const engine::Vec3 at = session.world().position(ball);
-    if (std::abs(at.norm() - radius) > 0.01) continue;
+    const engine::Vec3 place = session.world().position(ball);
+    if (std::abs(place.norm() - radius) > 0.01) continue;
     const engine::Vec3 velocity = session.world().velocity(ball);
-    sum += (at.x() * velocity.y() - at.y() * velocity.x()) / at.norm();
+    sum += (place.x() * velocity.y() - place.y() * velocity.x()) / place.norm();
     count += 1.0;
   }
   return 2.0 * std::numbers::pi * radius * sum / count;

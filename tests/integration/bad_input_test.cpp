@@ -55,9 +55,9 @@ Outcome run(const std::string& scene, const std::string& key,
 }
 
 std::string with(std::string scene, const std::string& old_text, const std::string& new_text) {
-  const std::size_t at = scene.find(old_text);
-  EXPECT_NE(at, std::string::npos) << old_text;
-  return scene.replace(at, old_text.size(), new_text);
+  const std::size_t position = scene.find(old_text);
+  EXPECT_NE(position, std::string::npos) << old_text;
+  return scene.replace(position, old_text.size(), new_text);
 }
 
 void expect_bad_file(const Outcome& outcome, const std::string& place, const std::string& what) {

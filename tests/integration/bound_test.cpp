@@ -56,7 +56,7 @@ class Bound : public testing::Test {
 };
 
 /// 25 masses that are drawn to the middle of a square and push each other off from 20 mm on: the step
-/// is certified for 6 at once, and more come. A key is tied to a fixed point.
+/// is certified for 6 at once, and more come. A key is linked to a fixed point.
 const char* const kGathering = R"(cordis: 1
 name: gathering
 space: 2
@@ -89,7 +89,7 @@ TEST_F(Bound, ACrowdBeyondItsCertifiedPartnersLetsGoOfTheDevicesAndSaysWhy) {
 }
 
 /// A ball flies between two walls, each so stiff that a touch may gain energy: not certain. A key is
-/// tied to a fixed point.
+/// linked to a fixed point.
 const char* const kBouncing = R"(cordis: 1
 name: bouncing
 space: 1

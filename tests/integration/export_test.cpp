@@ -112,20 +112,20 @@ TEST_F(Export, GivesTheTableOfSimulate) {
     ASSERT_TRUE(simulated.contains(time)) << time;
     for (std::size_t i = 0; i < header.size(); ++i) {
       const std::string& expected = simulated.at(time).at(i);
-      const std::string at = header[i] + " at " + time + " s";
+      const std::string cell = header[i] + " at " + time + " s";
       if (row.at(i) == "nan") {
-        EXPECT_TRUE(header[i].starts_with("string[") || header[i].starts_with("keyboard.")) << at;
+        EXPECT_TRUE(header[i].starts_with("string[") || header[i].starts_with("keyboard.")) << cell;
         continue;
       }
       if (header[i].starts_with("string[")) {  // a frame has 32 bits per coordinate
-        ASSERT_EQ(std::stof(row[i]), static_cast<float>(std::stod(expected))) << at;
+        ASSERT_EQ(std::stof(row[i]), static_cast<float>(std::stod(expected))) << cell;
       } else if (header[i].starts_with("keyboard.position")) {
         // The scene takes a device in within 0.1 s; and rest + position - rest is rounded.
         if (std::stod(time) > 0.1) {
-          ASSERT_NEAR(std::stod(row[i]), std::stod(expected), 1e-16) << at;
+          ASSERT_NEAR(std::stod(row[i]), std::stod(expected), 1e-16) << cell;
         }
       } else if (!header[i].starts_with("keyboard.force") || std::stod(time) > 0.1) {
-        ASSERT_EQ(row[i], expected) << at;
+        ASSERT_EQ(row[i], expected) << cell;
       }
       ++compared[header[i]];
     }

@@ -251,9 +251,9 @@ double median_answer_delay(LiveSession& session, std::uint32_t device_id, double
   std::vector<double> delays;
   const std::int64_t begin = node::monotonic_nsec() / 1'000'000 * 1'000'000 + 50'000'000;
   for (int n = 1; n <= kSamples; ++n) {
-    const auto at = begin + static_cast<std::int64_t>((phase + n) * kPeriod);
+    const auto due = begin + static_cast<std::int64_t>((phase + n) * kPeriod);
     msg::GestureForces force;
-    for (std::int64_t now = node::monotonic_nsec(); now < at; now = node::monotonic_nsec()) {
+    for (std::int64_t now = node::monotonic_nsec(); now < due; now = node::monotonic_nsec()) {
       const std::uint32_t seen = arrival.count();
       while (forces.take(force)) {
         const bool answers = force.answered_epoch() == epoch &&
@@ -261,7 +261,7 @@ double median_answer_delay(LiveSession& session, std::uint32_t device_id, double
         if (answers)
           delays.push_back(static_cast<double>(node::monotonic_nsec() - sample.time_nsec()));
       }
-      arrival.wait_until(seen, at);
+      arrival.wait_until(seen, due);
     }
     sample.sample(static_cast<std::uint64_t>(n));
     sample.time_nsec(node::monotonic_nsec());

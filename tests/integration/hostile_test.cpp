@@ -110,8 +110,8 @@ TEST_F(Hostile, ADescriptionOfAnUnknownRoleIsRefusedAndTheDevicePlaysOn) {
   const std::string said = session_.node("keyboard").output();
   EXPECT_EQ(said.find('\033'), std::string::npos) << said;
   std::size_t times = 0;
-  for (std::size_t at = said.find("unknown role"); at != std::string::npos;
-       at = said.find("unknown role", at + 1)) {
+  for (std::size_t position = said.find("unknown role"); position != std::string::npos;
+       position = said.find("unknown role", position + 1)) {
     ++times;
   }
   EXPECT_EQ(times, 1u) << "it is reported once\n" << said;

@@ -102,15 +102,15 @@ nodes:
 
   /// A member of the session on a host.
   std::unique_ptr<dds::Participant> observer(TwoHosts::Host host, bool lockstep = false) {
-    std::unique_ptr<dds::Participant> made;
+    std::unique_ptr<dds::Participant> participant;
     hosts.run_on(host, [&] {
       dds::ParticipantConfig config{kDomain, "apart", "observer", lockstep};
       config.network.address = TwoHosts::address(host);
       config.network.peers = {
           TwoHosts::address(host == TwoHosts::kFirst ? TwoHosts::kSecond : TwoHosts::kFirst)};
-      made = std::make_unique<dds::Participant>(config);
+      participant = std::make_unique<dds::Participant>(config);
     });
-    return made;
+    return participant;
   }
 
   TwoHosts hosts;
@@ -443,17 +443,17 @@ struct Members {
 };
 
 Members members(const TwoHosts& hosts, const std::function<void(dds::Network&)>& change) {
-  Members made;
+  Members members;
   for (const TwoHosts::Host host : {TwoHosts::kFirst, TwoHosts::kSecond}) {
     hosts.run_on(host, [&] {
       dds::ParticipantConfig config{kDomain, "apart", "member " + std::to_string(host)};
       config.network.address = TwoHosts::address(host);
       change(config.network);
-      (host == TwoHosts::kFirst ? made.first : made.second) =
+      (host == TwoHosts::kFirst ? members.first : members.second) =
           std::make_unique<dds::Participant>(config);
     });
   }
-  return made;
+  return members;
 }
 
 bool receives(dds::Reader<msg::SceneDescription>& reader, const std::string& name) {
@@ -537,11 +537,11 @@ TEST_F(Network, NoDatagramOfTheNetworkReachesASessionOfOneHost) {
   apart.hosts.run_on(TwoHosts::kSecond, [&] {
     const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     for (int index = 0; index < 2 * dds::kMaxParticipants; ++index) {
-      const sockaddr_in to =
+      const sockaddr_in address =
           dds::udp_address(static_cast<std::uint16_t>(dds::discovery_port(kDomain, 0) + index),
                            dds::ipv4_of(TwoHosts::address(TwoHosts::kFirst)));
-      sendto(file, fatal.data(), fatal.size(), 0, reinterpret_cast<const sockaddr*>(&to),
-             sizeof to);
+      sendto(file, fatal.data(), fatal.size(), 0, reinterpret_cast<const sockaddr*>(&address),
+             sizeof address);
     }
     close(file);
   });

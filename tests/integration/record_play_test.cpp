@@ -136,10 +136,10 @@ TEST(RecordPlay, GivesTheSamePayloadsWhenThePlayedSessionIsRecorded) {
     const std::vector<std::string>& played = before.at(topic);
     const std::vector<std::string>& heard = after.at(topic);
     EXPECT_GT(heard.size(), played.size() / 2) << topic;
-    std::size_t at = 0;
+    std::size_t next = 0;
     for (const std::string& payload : heard) {
-      while (at < played.size() && played[at] != payload) ++at;
-      ASSERT_LT(at, played.size()) << topic << ": a payload that was not played, or out of order";
+      while (next < played.size() && played[next] != payload) ++next;
+      ASSERT_LT(next, played.size()) << topic << ": a payload that was not played, or out of order";
     }
   }
   fs::remove_all(folder);
@@ -206,11 +206,11 @@ TEST(RecordPlay, DoesNotBeginASessionWhoseTakeHasNoPlace) {
   EXPECT_NE(braces.output().find("{session} and {time} alone, not '{hour}'"), std::string::npos);
 
   // A folder that is missing is made, but not before the session begins.
-  const fs::path made = folder / "new" / "takes";
+  const fs::path new_folder = folder / "new" / "takes";
   ChildProcess good({kCordis, "run", launch, domain_word(), "--duration", "1s", "--record",
-                     (made / "take.mcap").string()});
+                     (new_folder / "take.mcap").string()});
   EXPECT_EQ(good.wait(kPatience), 0) << good.output();
-  EXPECT_TRUE(mcap::Reader(made / "take.mcap").is_whole());
+  EXPECT_TRUE(mcap::Reader(new_folder / "take.mcap").is_whole());
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 3);
   fs::remove_all(folder);
 }

@@ -108,7 +108,8 @@ class HandmadeDevice {
 
 std::size_t count_of(const std::string& part, const std::string& text) {
   std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+  for (std::size_t position = text.find(part); position != std::string::npos;
+       position = text.find(part, position + 1))
     ++count;
   return count;
 }

@@ -19,9 +19,9 @@ const seeStroke = (page, other = null) =>
   page.evaluate(
     ([keyMat, mat, place]) => {
       const { position, project, pixelAt } = window.viz;
-      const at = project(mat);
-      const colours = { colour: pixelAt(at.x, at.y), other: place && pixelAt(place.x, place.y) };
-      return { key: position(keyMat)[1], string: position(mat)[1], at, ...colours };
+      const point = project(mat);
+      const colours = { colour: pixelAt(point.x, point.y), other: place && pixelAt(place.x, place.y) };
+      return { key: position(keyMat)[1], string: position(mat)[1], point, ...colours };
     },
     [KEY, PLUCKED, other],
   );
@@ -40,8 +40,8 @@ const cases = {
       return seen.key > -0.102 && seen.string > -0.001 && seen;
     });
     const pulled = await until('the key is 10 mm down, and the string 4 mm', async () => {
-      const seen = await seeStroke(page, before.at);
-      return seen.key < -0.11 && seen.string < -0.004 && seen.at.y > before.at.y + BESIDE && seen;
+      const seen = await seeStroke(page, before.point);
+      return seen.key < -0.11 && seen.string < -0.004 && seen.point.y > before.point.y + BESIDE && seen;
     });
     assert.ok(!isDark(pulled.colour), `a mass is drawn at its new place: ${pulled.colour}`);
     assert.ok(isDark(pulled.other), `and no longer at the old one: ${pulled.other}`);

@@ -73,7 +73,8 @@ TEST(SchemaText, HasEveryStructOnce) {
   std::size_t structs = 0;
   for (const char* unit : {"control", "gesture", "inputs", "scene"}) {
     const std::string text = "\n" + idl_file(unit);
-    for (std::size_t at = 0; (at = text.find("\nstruct ", at)) != std::string::npos; ++at)
+    for (std::size_t position = 0;
+         (position = text.find("\nstruct ", position)) != std::string::npos; ++position)
       ++structs;
   }
   std::set<std::string_view> types;

@@ -162,9 +162,9 @@ TEST(Copy, SaysWhichChunkItCouldNotRead) {
   }
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(file)), {});
-  const std::size_t at = whole.find(mark);
-  ASSERT_NE(at, std::string::npos);
-  file.seekp(static_cast<std::streamoff>(at)).put('T');
+  const std::size_t position = whole.find(mark);
+  ASSERT_NE(position, std::string::npos);
+  file.seekp(static_cast<std::streamoff>(position)).put('T');
   file.close();
 
   const Reader reader(path);

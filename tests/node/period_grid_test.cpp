@@ -101,7 +101,7 @@ TEST(PeriodGrid, FollowsADeviceOfAnyPhaseAndAClockThatIsOffBy200Ppm) {
       EXPECT_EQ(played.at_the_end, 0u);
       EXPECT_EQ(played.skipped, 0u);
       // The error of a first-order loop against a drift r is r / gain: 200 ppm x 16 = 0.32 %.
-      for (const double at : played.phases) ASSERT_NEAR(at, 0.5, 0.004);
+      for (const double played_phase : played.phases) ASSERT_NEAR(played_phase, 0.5, 0.004);
       EXPECT_NEAR(played.time_nsec / kPeriod, 20'000 * (1.0 + drift), 0.01);
     }
   }

@@ -28,12 +28,12 @@ dds::Network network(const std::string& section, config::Problems& problems) {
 
 TEST(SessionNetwork, IsLoopbackWithoutASection) {
   config::Problems problems;
-  const dds::Network made = network("", problems);
+  const dds::Network config = network("", problems);
 
   EXPECT_EQ(problems.text(), "");
-  EXPECT_EQ(made, dds::Network{});
-  EXPECT_TRUE(made.is_loopback());
-  EXPECT_EQ(exposure_warning(made, 7), "");
+  EXPECT_EQ(config, dds::Network{});
+  EXPECT_TRUE(config.is_loopback());
+  EXPECT_EQ(exposure_warning(config, 7), "");
 }
 
 TEST(SessionNetwork, RefusesAnInterfaceThatThisHostHasNotAndNamesThoseItHas) {
@@ -99,12 +99,12 @@ TEST(SessionNetwork, TakesANameThatIsLoopbackHereForThisHost) {
   const std::string name = looped_name();
   if (name.empty()) GTEST_SKIP() << "no name of a host is an address of loopback here";
   config::Problems problems;
-  const dds::Network made = network(
+  const dds::Network config = network(
       "network: {peers: [" + name + ", 203.0.113.8], interface: " + interfaces[0].address + "}",
       problems);
   EXPECT_EQ(problems.text(), "");
-  EXPECT_EQ(made.address, interfaces[0].address);
-  EXPECT_EQ(made.peers, std::vector<std::string>{"203.0.113.8"});
+  EXPECT_EQ(config.address, interfaces[0].address);
+  EXPECT_EQ(config.peers, std::vector<std::string>{"203.0.113.8"});
 
   const dds::Network found =
       network("network: {peers: [" + name + ", " + interfaces[0].address + "]}", problems);
@@ -137,12 +137,12 @@ TEST(SessionNetwork, TakesTheWayToTheFirstPeerAndLeavesItsOwnAddressOut) {
   if (interfaces.empty()) GTEST_SKIP() << "this host has no interface besides loopback";
   const std::string own = interfaces[0].address;
   config::Problems problems;
-  const dds::Network made = network("network: {peers: [" + own + ", 203.0.113.8]}", problems);
+  const dds::Network config = network("network: {peers: [" + own + ", 203.0.113.8]}", problems);
 
   EXPECT_EQ(problems.text(), "");
-  EXPECT_EQ(made.address, own) << "the way to an address of this host is that address";
-  EXPECT_EQ(made.peers, std::vector<std::string>{"203.0.113.8"});
-  EXPECT_NE(exposure_warning(made, 7).find(own), std::string::npos);
+  EXPECT_EQ(config.address, own) << "the way to an address of this host is that address";
+  EXPECT_EQ(config.peers, std::vector<std::string>{"203.0.113.8"});
+  EXPECT_NE(exposure_warning(config, 7).find(own), std::string::npos);
 }
 
 TEST(SessionNetwork, RefusesADiscoveryServerOnThisHost) {

@@ -293,8 +293,8 @@ TEST(SessionRegistry, NeverGivesOneDomainToTwoSessionsWhateverHappens) {
       const int domain = registered->domain();
       ASSERT_GE(domain, 0) << "refused in round " << round;
       const std::pair session{who[0], who[1]};
-      const auto [at, is_new] = session_in.emplace(domain, session);
-      ASSERT_EQ(at->second, session) << "domain " << domain << " in round " << round;
+      const auto [entry, is_new] = session_in.emplace(domain, session);
+      ASSERT_EQ(entry->second, session) << "domain " << domain << " in round " << round;
       ASSERT_EQ(domain_of.emplace(session, domain).first->second, domain) << "round " << round;
       ++checked;
     }

@@ -108,9 +108,9 @@ TEST(Convergence, OfABounceGoesToItsRestitution) {
               1e-9);
   plan::ReferenceIntegrator balls(collision().network, 1e-12);
   balls.advance_to(0.05);
-  const nlohmann::json of = reference("R19_collisions")["case"];
-  EXPECT_NEAR(balls.velocity(0).x(), number(of["v1p"]), 1e-9);
-  EXPECT_NEAR(balls.velocity(1).x(), number(of["v2p"]), 1e-9);
+  const nlohmann::json params = reference("R19_collisions")["case"];
+  EXPECT_NEAR(balls.velocity(0).x(), number(params["v1p"]), 1e-9);
+  EXPECT_NEAR(balls.velocity(1).x(), number(params["v2p"]), 1e-9);
 }
 
 }  // namespace

@@ -38,18 +38,18 @@ inline NetworkDescription random_network(unsigned seed) {
 
 /// A state machine of one state: a spring and a law.
 inline engine::StateMachine state_machine(double stiffness, engine::Law elasticity = {}) {
-  engine::StateMachine made;
-  made.states.emplace_back();
-  made.states[0].stiffness = stiffness;
-  made.states[0].elasticity = std::move(elasticity);
-  return made;
+  engine::StateMachine machine;
+  machine.states.emplace_back();
+  machine.states[0].stiffness = stiffness;
+  machine.states[0].elasticity = std::move(elasticity);
+  return machine;
 }
 
 /// A spring that never pulls.
 inline engine::StateMachine contact(double stiffness) {
-  engine::StateMachine made = state_machine(stiffness);
-  made.states[0].pulls = false;
-  return made;
+  engine::StateMachine machine = state_machine(stiffness);
+  machine.states[0].pulls = false;
+  return machine;
 }
 
 }  // namespace cordis::test

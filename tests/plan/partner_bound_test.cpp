@@ -25,9 +25,9 @@ NetworkDescription lattice(int edge, double spacing, const engine::StateMachine&
   scene.state_machines.push_back(law);
   engine::SetLiaison set;
   for (int i = 0; i < edge * edge * edge; ++i) {
-    const Vec3 at(i % edge, i / edge % edge, i / (edge * edge));
+    const Vec3 cell(i % edge, i / edge % edge, i / (edge * edge));
     set.set_p.push_back(static_cast<std::uint32_t>(scene.mats.size()));
-    scene.mats.push_back(mass(0.001, spacing * at));
+    scene.mats.push_back(mass(0.001, spacing * cell));
   }
   set.rest_length = rest;
   set.range = range;
@@ -88,9 +88,9 @@ TEST(MaxInReach, IsNeverBelowTheTrueNumberAtAnyPlace) {
     const double bound = plan::max_in_reach(points, reach, dimension);
     std::size_t most = 0;
     for (int n = 0; n < 500; ++n) {
-      const Vec3 at = place();
+      const Vec3 centre = place();
       std::size_t count = 0;
-      for (const Vec3& point : points) count += (point - at).norm() < reach ? 1U : 0U;
+      for (const Vec3& point : points) count += (point - centre).norm() < reach ? 1U : 0U;
       most = std::max(most, count);
     }
     EXPECT_GE(bound, static_cast<double>(most)) << "seed " << seed;

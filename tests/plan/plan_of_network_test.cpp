@@ -53,12 +53,12 @@ TEST(Plan, SaysWhatASwitchingMayGain) {
 }
 
 /// A mass this far from a fixed point, with a law between them.
-NetworkDescription mass_on_law(int dimension, double weight, const Vec3& at, const Vec3& velocity,
-                               engine::StateMachine law, double rest) {
+NetworkDescription mass_on_law(int dimension, double weight, const Vec3& place,
+                               const Vec3& velocity, engine::StateMachine law, double rest) {
   NetworkDescription scene;
   scene.dimension = dimension;
   scene.step = 1e-3;
-  scene.mats = {fixed(Vec3::Zero()), mass(weight, at)};
+  scene.mats = {fixed(Vec3::Zero()), mass(weight, place)};
   scene.mats[1].velocity = velocity;
   scene.state_machines.push_back(std::move(law));
   scene.state_links = {{0, 1, 0, rest}};
@@ -154,11 +154,11 @@ engine::StateMachine random_state_machine(std::mt19937& random) {
     default:
       break;
   }
-  engine::StateMachine made = state_machine(random() % 2 == 0 ? between(0.0, 200.0) : 0.0, law);
-  made.states[0].viscosity = random() % 3 == 0 ? between(0.0, 0.5) : 0.0;
-  made.states[0].pulls = random() % 3 != 0;
-  made.states[0].pushes = !made.states[0].pulls || random() % 4 != 0;
-  return made;
+  engine::StateMachine machine = state_machine(random() % 2 == 0 ? between(0.0, 200.0) : 0.0, law);
+  machine.states[0].viscosity = random() % 3 == 0 ? between(0.0, 0.5) : 0.0;
+  machine.states[0].pulls = random() % 3 != 0;
+  machine.states[0].pushes = !machine.states[0].pulls || random() % 4 != 0;
+  return machine;
 }
 
 NetworkDescription random_scene(unsigned seed) {

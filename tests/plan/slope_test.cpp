@@ -128,11 +128,13 @@ TEST(Enclosure, IsNeverBelowTheSlopeAtAnyPlace) {
     constexpr double kNear = 1e-6;
     for (int i = 0; i < 60; ++i) {
       for (int j = 0; j < 60; ++j) {
-        const double at = 0.1 + i / 60.0;
+        const double elongation = 0.1 + i / 60.0;
         const double speed = -2.0 + 3.5 * j / 60.0;
         const auto tension = [&](double x, double y) { return elastic_tension(law, {x, x, y}); };
-        steepest = std::max(steepest, (tension(at + kNear, speed) - tension(at, speed)) / kNear);
-        viscous = std::max(viscous, (tension(at, speed + kNear) - tension(at, speed)) / kNear);
+        steepest = std::max(
+            steepest, (tension(elongation + kNear, speed) - tension(elongation, speed)) / kNear);
+        viscous = std::max(
+            viscous, (tension(elongation, speed + kNear) - tension(elongation, speed)) / kNear);
       }
     }
     EXPECT_GE(most.over_distance, steepest - 1e-4) << l;

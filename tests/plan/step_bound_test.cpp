@@ -52,8 +52,8 @@ NetworkDescription spinning_cube() {
   std::mt19937 random(5);
   const auto shiver = [&random] { return 1e-3 * (static_cast<double>(random()) / 4294967296.0); };
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 at(corner & 1 ? 0.1 : -0.1, corner & 2 ? 0.1 : -0.1, corner & 4 ? 0.1 : -0.1);
-    scene.mats.push_back(mass(0.01, at, spin.cross(at) + Vec3(shiver(), shiver(), shiver())));
+    const Vec3 place(corner & 1 ? 0.1 : -0.1, corner & 2 ? 0.1 : -0.1, corner & 4 ? 0.1 : -0.1);
+    scene.mats.push_back(mass(0.01, place, spin.cross(place) + Vec3(shiver(), shiver(), shiver())));
   }
   for (std::uint32_t a = 0; a < 8; ++a) {
     for (std::uint32_t b = a + 1; b < 8; ++b) {

@@ -157,8 +157,8 @@ TEST_F(Play, GivesWhatIsLeftOfATornTakeAndSaysSo) {
   EXPECT_EQ(player.wait(kPatience), 3) << player.output();
   EXPECT_NE(player.output().find("was not closed"), std::string::npos) << player.output();
   const std::string counted = " messages played";
-  const std::size_t at = player.output().find(counted);
-  ASSERT_NE(at, std::string::npos) << player.output();
+  const std::size_t position = player.output().find(counted);
+  ASSERT_NE(position, std::string::npos) << player.output();
   EXPECT_TRUE(test::eventually([&] { return !listener.received().empty(); }));
   EXPECT_TRUE(
       listener.receives(numbers(0, static_cast<std::uint32_t>(listener.received().back()) + 1)));

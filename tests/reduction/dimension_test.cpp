@@ -65,9 +65,9 @@ TEST(Dimension, ASceneThatMayLeaveItsPlaneStays) {
   std::string text = in_a_plane("[0, 0, -9.81]");
   text.replace(text.find("range: rest"), 11, "range_m: 0.04");
   EXPECT_EQ(reduced(text).space(), 2);
-  const auto with = [&](const std::string& from, const std::string& to) {
+  const auto with = [&](const std::string& old_text, const std::string& new_text) {
     std::string changed = text;
-    changed.replace(changed.find(from), from.size(), to);
+    changed.replace(changed.find(old_text), old_text.size(), new_text);
     return reduced(changed).space();
   };
   EXPECT_EQ(with("[0, 0, -9.81]", "[0, 1e-9, -9.81]"), 3);
@@ -116,7 +116,7 @@ TEST(Dimension, ALineIsComputedIn1DWhereTheSignOfItsLinksMakesNoDifference) {
   for (const char* name : {"bobs", "fast"}) {
     const auto before = motion(whole, name, 2000);
     auto after = motion(scene, name, 2000);
-    for (engine::Vec3& at : after) at.y() = 1.0;
+    for (engine::Vec3& place : after) place.y() = 1.0;
     EXPECT_GT(largest_distance(before), 0.3) << name;  // it passes the others
     EXPECT_LT(largest_difference(before, after), 1e-9) << name;
   }

@@ -6,7 +6,7 @@ namespace {
 
 /// A mass on three linear links to a wall, one of them from the other side.
 std::string on_three_links(int space, const std::string& signals = {}) {
-  const std::string at = space == 1 ? "0.12" : "[0.12, 0.05]";
+  const std::string place = space == 1 ? "0.12" : "[0.12, 0.05]";
   const std::string wall = space == 1 ? "0" : "[0, 0]";
   return "cordis: 1\nspace: " + std::to_string(space) +
          R"(
@@ -20,7 +20,7 @@ liaisons:
   c: {kind: damper, viscosity_n_s_per_m: 0.03}
 matter:
   wall: {kind: fixed, at_m: )" +
-         wall + "}\n  bob: {kind: mass, mass_kg: 0.1, at_m: " + at +
+         wall + "}\n  bob: {kind: mass, mass_kg: 0.1, at_m: " + place +
          R"(}
 links:
   - {liaison: a, between: [wall, bob], name: first}

@@ -80,7 +80,7 @@ inline double largest_difference(const std::vector<engine::Vec3>& a,
 
 inline double largest_distance(const std::vector<engine::Vec3>& a) {
   double largest = 0.0;
-  for (const engine::Vec3& at : a) largest = std::max(largest, (at - a.front()).norm());
+  for (const engine::Vec3& place : a) largest = std::max(largest, (place - a.front()).norm());
   return largest;
 }
 

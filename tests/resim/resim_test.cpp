@@ -32,10 +32,10 @@ const std::string kGolden = CORDIS_GOLDEN_DIR "/";
 /// What becomes of the batches of a copy; false leaves one out.
 using Change = std::function<bool(msg::SceneInputs&)>;
 
-void copy_take(const std::filesystem::path& from, const std::filesystem::path& to,
+void copy_take(const std::filesystem::path& source, const std::filesystem::path& target,
                const Change& change) {
-  const mcap::Reader take(from);
-  mcap::Writer writer(to);
+  const mcap::Reader take(source);
+  mcap::Writer writer(target);
   std::map<std::uint16_t, std::uint16_t> channels;
   for (const auto& [id, channel] : take.channels()) {
     mcap::Channel copy = channel;

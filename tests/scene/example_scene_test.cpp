@@ -250,12 +250,12 @@ TEST(DamagedScene, WithLostOrDoubledLinesIsASceneOrProblems) {
     for (std::string line; std::getline(stream, line);) lines.push_back(line + '\n');
     for (std::size_t round = 0; round < kDamagedScenes / scenes.size(); ++round) {
       std::vector<std::string> damaged = lines;
-      const auto at = [&] {
+      const auto any_line = [&] {
         return damaged.begin() + static_cast<std::ptrdiff_t>(random() % damaged.size());
       };
-      if (round % 3 == 0) damaged.erase(at());
-      if (round % 3 == 1) damaged.insert(at(), lines[random() % lines.size()]);
-      if (round % 3 == 2) std::swap(*at(), *at());
+      if (round % 3 == 0) damaged.erase(any_line());
+      if (round % 3 == 1) damaged.insert(any_line(), lines[random() % lines.size()]);
+      if (round % 3 == 2) std::swap(*any_line(), *any_line());
       std::string joined;
       for (const std::string& line : damaged) joined += line;
       read_damaged(joined, file);
@@ -273,10 +273,10 @@ TEST(DamagedScene, WithWordsOfTheWrongKindIsASceneOrProblems) {
   const auto scenes = small_scenes();
   for (const auto& [file, text] : scenes) {
     for (std::size_t round = 0; round < kDamagedScenes / 2 / scenes.size(); ++round) {
-      const std::size_t from = text.find_first_not_of(ends, random() % text.size());
-      if (from == std::string::npos) continue;
-      const std::size_t to = std::min(text.find_first_of(ends, from), text.size());
-      read_damaged(text.substr(0, from) + words[random() % words.size()] + text.substr(to), file);
+      const std::size_t begin = text.find_first_not_of(ends, random() % text.size());
+      if (begin == std::string::npos) continue;
+      const std::size_t end = std::min(text.find_first_of(ends, begin), text.size());
+      read_damaged(text.substr(0, begin) + words[random() % words.size()] + text.substr(end), file);
     }
   }
 }

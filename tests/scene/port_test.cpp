@@ -52,12 +52,12 @@ ports:
 
 TEST(Port, DirectionsAreUnitVectorsHoweverTheyAreWritten) {
   const auto directions = [](int space, const std::string& along) {
-    const std::string at = space == 1 ? "" : space == 2 ? ", at_m: [0, 0]" : ", at_m: [0, 0, 0]";
+    const std::string place = space == 1 ? "" : space == 2 ? ", at_m: [0, 0]" : ", at_m: [0, 0, 0]";
     const std::size_t axes = space == 1 || along.find("[[") == std::string::npos ? 1 : 2;
     return scene_with_bob(
                space, "",
                "ports:\n  p: {device: d, axes: " + std::string(axes == 1 ? "[0]" : "[0, 1]") +
-                   ", role: mass, coupling: direct" + at + ", along: " + along + "}\n")
+                   ", role: mass, coupling: direct" + place + ", along: " + along + "}\n")
         .ports.at(0)
         .directions;
   };

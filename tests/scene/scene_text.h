@@ -25,9 +25,9 @@ inline Scene sound_scene(int space, const std::string& body) {
 
 /// A scene with one bob of matter besides, so that it has a mass to move.
 inline Scene scene_with_bob(int space, const std::string& matter, const std::string& rest = {}) {
-  const std::string at = space == 1 ? "0" : space == 2 ? "[0, 9]" : "[0, 9, 9]";
-  return sound_scene(
-      space, "matter:\n" + matter + "  bob: {kind: mass, mass_kg: 1, at_m: " + at + "}\n" + rest);
+  const std::string place = space == 1 ? "0" : space == 2 ? "[0, 9]" : "[0, 9, 9]";
+  return sound_scene(space, "matter:\n" + matter +
+                                "  bob: {kind: mass, mass_kg: 1, at_m: " + place + "}\n" + rest);
 }
 
 /// The smallest distance between two MATs of the scene [m].

@@ -324,12 +324,12 @@ TEST(SignalReader, RefusesARateThatDoesNotGoWithASound) {
         problems);
     return problems.all().empty() ? std::string() : problems.all()[0].message;
   };
-  const std::string of = "  p: {of: a, quantity: position, ";
-  EXPECT_EQ(problem(of + "sound: true, rate: gesture}\n"), "a sound is taken after each step");
-  EXPECT_EQ(problem(of + "full_scale: 2}\n"), "'full_scale' is of a sound");
-  EXPECT_EQ(problem(of + "sound: true, full_scale: 0}\n"),
+  const std::string head = "  p: {of: a, quantity: position, ";
+  EXPECT_EQ(problem(head + "sound: true, rate: gesture}\n"), "a sound is taken after each step");
+  EXPECT_EQ(problem(head + "full_scale: 2}\n"), "'full_scale' is of a sound");
+  EXPECT_EQ(problem(head + "sound: true, full_scale: 0}\n"),
             "'full_scale' in signal 'p' must be > 0, got 0");
-  EXPECT_NE(problem(of + "rate: often}\n").find("often"), std::string::npos);
+  EXPECT_NE(problem(head + "rate: often}\n").find("often"), std::string::npos);
   std::string nine;
   for (int i = 0; i < 9; ++i)
     nine += "  p" + std::to_string(i) + ": {of: a, quantity: position, sound: true}\n";

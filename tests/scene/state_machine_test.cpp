@@ -72,13 +72,14 @@ TEST(StateMachine, IsOneForEachDistinctSetOfParameters) {
   - {liaison: collophane, between: [wall, bob], hold_m: 0.004, name: own}
 )");
   ASSERT_EQ(network.state_links.size(), 5u);
-  const auto of = [&](std::size_t link) { return network.state_links[link].state_machine; };
+  const auto machine_of = [&](std::size_t link) { return network.state_links[link].state_machine; };
   EXPECT_EQ(network.state_machines.size(), 3u);
-  EXPECT_EQ(of(0), of(1));
-  EXPECT_NE(of(0), of(2));
-  EXPECT_EQ(of(2), of(3));
-  EXPECT_NE(of(2), of(4));  // of its own, for it has a name by which it can be changed
-  const engine::StateMachine& held = network.state_machines[of(2)];
+  EXPECT_EQ(machine_of(0), machine_of(1));
+  EXPECT_NE(machine_of(0), machine_of(2));
+  EXPECT_EQ(machine_of(2), machine_of(3));
+  EXPECT_NE(machine_of(2),
+            machine_of(4));  // of its own, for it has a name by which it can be changed
+  const engine::StateMachine& held = network.state_machines[machine_of(2)];
   EXPECT_EQ(held.exits[0].when.code[2].constant, 0.004);
   EXPECT_EQ(held.exits[1].when.code[2].constant, 0.02);  // what depends on it follows
 }

@@ -71,9 +71,9 @@ std::vector<std::uint64_t> changes_under_a_finger(const Scene& scene) {
   std::vector<std::uint64_t> counts;
   for (std::uint32_t b = 0; b < scene.network.state_machines.size(); ++b) {
     const auto states = static_cast<std::uint32_t>(scene.network.state_machines[b].states.size());
-    for (std::uint32_t from = 0; from < states; ++from) {
-      for (std::uint32_t to = 0; to < states; ++to) {
-        if (from != to) counts.push_back(world.change_count(b, from, to));
+    for (std::uint32_t source = 0; source < states; ++source) {
+      for (std::uint32_t target = 0; target < states; ++target) {
+        if (source != target) counts.push_back(world.change_count(b, source, target));
       }
     }
   }
@@ -81,9 +81,9 @@ std::vector<std::uint64_t> changes_under_a_finger(const Scene& scene) {
 }
 
 void replace(std::string& text, const std::string& before, const std::string& after) {
-  const std::size_t at = text.find(before);
-  ASSERT_NE(at, std::string::npos) << before;
-  text.replace(at, before.size(), after);
+  const std::size_t position = text.find(before);
+  ASSERT_NE(position, std::string::npos) << before;
+  text.replace(position, before.size(), after);
 }
 
 }  // namespace

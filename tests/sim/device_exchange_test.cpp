@@ -92,7 +92,7 @@ TEST(DeviceExchange, ADeviceThatIsSupportedAtLastIsNotAnsweredUntilItsGuardHasLe
   tick(true);
   EXPECT_FALSE(device.is_restarting()) << "it was refused for a moment";
   for (int n = 0; n < 300; ++n) tick(false);
-  EXPECT_TRUE(device.is_lost());
+  EXPECT_TRUE(device.is_disconnected());
   EXPECT_FALSE(device.is_silent()) << "it is answered on arrival, and measured";
   EXPECT_FALSE(device.is_restarting());
 
@@ -290,7 +290,7 @@ TEST(DeviceExchange, GivesNoForceToADeviceThatCannotBearTheScene) {
     exchange.play(world, 1, 1.0);
     world.step();
   }
-  EXPECT_TRUE(exchange.is_lost());
+  EXPECT_TRUE(exchange.is_disconnected());
   EXPECT_DOUBLE_EQ(world.position(0).x(), 1.02) << "its MAT holds still";
   const msg::GestureForces& answer = exchange.answer_forces(world, true, 0);
   EXPECT_EQ(answer.force_n()[1], 0.0);
@@ -298,7 +298,7 @@ TEST(DeviceExchange, GivesNoForceToADeviceThatCannotBearTheScene) {
 
   exchange.receive(sample_at(++number, 0.03));
   exchange.begin_tick();
-  EXPECT_FALSE(exchange.is_lost());
+  EXPECT_FALSE(exchange.is_disconnected());
 }
 
 TEST(DeviceExchange, GivesItsForcesGraduallyToADeviceThatWasAway) {
@@ -356,13 +356,13 @@ TEST(DeviceExchange, HoldsItsMatsWhenTheDeviceFallsSilent) {
   engine::World world = world_with_a_port();
   DeviceExchange exchange = mass_exchange();
   settle(exchange, world, 0.02);
-  EXPECT_FALSE(exchange.is_lost());
+  EXPECT_FALSE(exchange.is_disconnected());
   for (int tick = 0; tick < 25; ++tick) {
     exchange.begin_tick();
     exchange.play(world, 1, 1.0);
     world.step();
   }
-  EXPECT_TRUE(exchange.is_lost());
+  EXPECT_TRUE(exchange.is_disconnected());
   EXPECT_DOUBLE_EQ(world.position(0).x(), 1.02);
 }
 
@@ -370,7 +370,7 @@ TEST(DeviceExchange, MissesADeviceThatFallsSilentUntilItIsBack) {
   engine::World world = world_with_a_port();
   DeviceExchange exchange = mass_exchange();
   for (int tick = 0; tick < 100; ++tick) exchange.begin_tick();
-  EXPECT_TRUE(exchange.is_lost());
+  EXPECT_TRUE(exchange.is_disconnected());
   EXPECT_FALSE(exchange.is_missed()) << "it was never there";
 
   const std::uint64_t number = settle(exchange, world, 0.0);
@@ -427,9 +427,9 @@ TEST(DeviceExchange, LetsGoOfAMassWhenTheForceFallsSilent) {
     exchange.play(world, 1, 1.0);
     world.step();
   }
-  const double speed_when_lost = world.velocity(2).y();
+  const double speed_when_disconnected = world.velocity(2).y();
   world.step();
-  EXPECT_NEAR(world.velocity(2).y(), speed_when_lost, 1e-12) << "no force acts any more";
+  EXPECT_NEAR(world.velocity(2).y(), speed_when_disconnected, 1e-12) << "no force acts any more";
 }
 
 TEST(DeviceExchange, RefusesWhatIsMalformedOrNotFinite) {
@@ -456,7 +456,7 @@ TEST(DeviceExchange, DistinguishesNewFromRepeatedAndOldSamples) {
   EXPECT_EQ(exchange.receive(sample_at(5, 0.0)), Reception::kRepeated);
   EXPECT_EQ(exchange.receive(sample_at(4, 0.0)), Reception::kRefused);
   EXPECT_EQ(exchange.receive(sample_at(9, 0.0)), Reception::kNew);
-  EXPECT_EQ(exchange.missed_count(), 3u);
+  EXPECT_EQ(exchange.lost_sample_count(), 3u);
   msg::GesturePositions of_a_new_epoch = sample_at(1, 0.0);
   of_a_new_epoch.epoch(kEpoch + 1);
   EXPECT_EQ(exchange.receive(of_a_new_epoch), Reception::kNew) << "the device was restarted";

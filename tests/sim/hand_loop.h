@@ -123,23 +123,23 @@ class Loop {
  private:
   struct Hand {
     std::deque<msg::GesturePositions> answers;
-    msg::GesturePositions felt;
+    msg::GesturePositions answer;
     Vec3 carried = Vec3::Zero();
     Vec3 force = Vec3::Zero();
     double work = 0.0;
 
     msg::GestureForces sample(const Vec3& stiffness, const Vec3& target, bool receives,
                               std::uint64_t number) {
-      if (receives) felt = answers.front();
+      if (receives) answer = answers.front();
       answers.pop_front();
       msg::GestureForces sample;
       sample.epoch(5);
       sample.sample(number);
-      sample.answered_epoch(felt.epoch());
-      sample.answered_sample(felt.sample());
+      sample.answered_epoch(answer.epoch());
+      sample.answered_sample(answer.sample());
       sample.axis_count(3);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const double now = felt.position_m()[static_cast<std::size_t>(axis)];
+        const double now = answer.position_m()[static_cast<std::size_t>(axis)];
         const double tension =
             std::clamp(stiffness[axis] * (target[axis] - now), -kMaxForce, kMaxForce);
         work += 0.5 * (tension + force[axis]) * (now - carried[axis]);

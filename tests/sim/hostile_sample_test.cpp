@@ -171,7 +171,7 @@ TYPED_TEST(HostileSample, OfTheHighestNumberDoesNotSilenceTheDevice) {
 
     EXPECT_GE(count, 1) << "after the number " << number << " the device is never taken again";
     EXPECT_LE(count, 20) << "after the number " << number;
-    EXPECT_LE(rig.key().missed_count(), 1000u) << "of a jump one second counts";
+    EXPECT_LE(rig.key().lost_sample_count(), 1000u) << "of a jump one second counts";
   }
 }
 

@@ -153,9 +153,9 @@ NetworkDescription random_set(unsigned seed) {
   const bool springs = !floor && random() % 2 == 0;
   const bool radii = !springs && random() % 2 == 0;
   const auto place = [&] {
-    Vec3 at = Vec3::Zero();
-    for (int axis = 0; axis < scene.dimension; ++axis) at[axis] = size * uniform();
-    return at;
+    Vec3 point = Vec3::Zero();
+    for (int axis = 0; axis < scene.dimension; ++axis) point[axis] = size * uniform();
+    return point;
   };
   const auto count = static_cast<std::uint32_t>(2 + random() % 30);
   engine::SetLiaison set;
@@ -173,11 +173,11 @@ NetworkDescription random_set(unsigned seed) {
     for (int i = -2; i < along; ++i) {
       for (int j = scene.dimension > 2 ? -2 : 0; j < (scene.dimension > 2 ? along : 1); ++j) {
         set.set_q.push_back(static_cast<std::uint32_t>(scene.mats.size()));
-        Vec3 at = Vec3::Zero();
-        if (scene.dimension > 1) at[0] = spacing * i;
-        if (scene.dimension > 2) at[1] = spacing * j;
-        if (scene.dimension == 1) at[0] = spacing * (i - along);
-        scene.mats.push_back(test::fixed(at));
+        Vec3 floor_place = Vec3::Zero();
+        if (scene.dimension > 1) floor_place[0] = spacing * i;
+        if (scene.dimension > 2) floor_place[1] = spacing * j;
+        if (scene.dimension == 1) floor_place[0] = spacing * (i - along);
+        scene.mats.push_back(test::fixed(floor_place));
       }
     }
   }

@@ -55,10 +55,10 @@ scene::Scene random_scene(Chance& chance) {
   for (std::uint32_t i = 1; i < masses; ++i) {
     mats.push_back(i + 1);  // behind the fixed point
     scene.network.mats.push_back(mass_at(Vec3::Zero(), chance.between(0.02, 0.3)));
-    const std::uint32_t to = mats[chance.below(i)];
+    const std::uint32_t other = mats[chance.below(i)];
     const double stiffness = chance.between(20.0, 3000.0);
     scene.network.links.push_back(
-        {to, i + 1, stiffness, chance.below(2) == 0 ? chance.between(0.05, 5.0) : 0.0, 0.0});
+        {other, i + 1, stiffness, chance.below(2) == 0 ? chance.between(0.05, 5.0) : 0.0, 0.0});
   }
   for (const std::uint32_t mat : mats) {
     if (masses > 1 && chance.below(2) == 0) continue;

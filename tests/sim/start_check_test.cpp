@@ -48,7 +48,7 @@ TEST(StartCheck, WarnsOfLennardJonesBallsThatTheFirstStepThrowsApart) {
   }
 }
 
-std::string falling(const std::string& at, const std::string& step) {
+std::string falling(const std::string& place, const std::string& step) {
   return R"(cordis: 1
 space: 2
 step: {)" +
@@ -57,7 +57,7 @@ world: {gravity_m_per_s2: [0, -9.81]}
 matter:
   near: {kind: mass, mass_kg: 0.1, at_m: [0, 0]}
   bob: {kind: mass, mass_kg: 0.1, at_m: [0, )" +
-         at + "]}\n";
+         place + "]}\n";
 }
 
 TEST(StartCheck, WarnsOfAPlaceWhoseRoundingSwallowsGravity) {

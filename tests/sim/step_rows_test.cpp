@@ -35,26 +35,26 @@ TEST(StepRows, HoldTheSignalAfterEachStepWithoutAllocating) {
 TEST(StepRows, BeyondTheBufferOfTheFramesAreCountedAndFollowEachOther) {
   const auto loaded = loaded_scene_of(swing_by_step());
   EventRoom events(0);
-  std::uint64_t made = 0;
+  std::uint64_t row_count = 0;
   for (int tick = 0; tick < 500; ++tick) {  // 12 frames and a half of 40 ticks
     loaded->step_rows.clear();
     loaded->simulation.advance(4, events, &loaded->step_rows);
     loaded->frames.add(loaded->step_rows);
-    made += 4;
+    row_count += 4;
   }
   loaded->frames.turn(loaded->simulation.world(), 0.0, 0);
   const std::uint64_t kept = loaded->frames.published().step_row_count;
   EXPECT_EQ(loaded->frames.published().first_step_row, 1u);
   EXPECT_EQ(loaded->frames.published().dropped_step_rows, 0u);
-  EXPECT_LT(kept, made);
-  EXPECT_GE(kept, made / 2);
+  EXPECT_LT(kept, row_count);
+  EXPECT_GE(kept, row_count / 2);
 
   loaded->step_rows.clear();
   loaded->simulation.advance(4, events, &loaded->step_rows);
   loaded->frames.add(loaded->step_rows);
   loaded->frames.turn(loaded->simulation.world(), 0.0, 0);
-  EXPECT_EQ(loaded->frames.published().dropped_step_rows, made - kept);
-  EXPECT_EQ(loaded->frames.published().first_step_row, made + 1);
+  EXPECT_EQ(loaded->frames.published().dropped_step_rows, row_count - kept);
+  EXPECT_EQ(loaded->frames.published().first_step_row, row_count + 1);
   EXPECT_EQ(loaded->frames.published().step_row_count, 4u);
 }
 

@@ -38,8 +38,8 @@ export const replied = (page, pattern) =>
 export const look = (page, mat, elsewhere = []) =>
   page.evaluate(
     ([index, places]) => {
-      const at = window.viz.project(index);
-      return { at, colour: window.viz.pixelAt(at.x, at.y), others: places.map(({ x, y }) => window.viz.pixelAt(x, y)) };
+      const point = window.viz.project(index);
+      return { point, colour: window.viz.pixelAt(point.x, point.y), others: places.map(({ x, y }) => window.viz.pixelAt(x, y)) };
     },
     [mat, elsewhere],
   );

@@ -11,7 +11,7 @@ namespace cordis::viz {
 namespace {
 
 template <class Value, class Bytes>
-Value at(const Bytes& bytes, std::size_t offset) {
+Value value_at(const Bytes& bytes, std::size_t offset) {
   Value value{};
   std::memcpy(&value, bytes.data() + offset, sizeof value);
   return value;
@@ -20,9 +20,9 @@ Value at(const Bytes& bytes, std::size_t offset) {
 template <class Bytes>
 void expect_prefix(const Bytes& bytes, MessageType type, std::size_t header_bytes) {
   EXPECT_EQ(std::memcmp(bytes.data(), "CDS1", 4), 0);
-  EXPECT_EQ(at<std::uint8_t>(bytes, 4), 1);
-  EXPECT_EQ(at<std::uint8_t>(bytes, 5), static_cast<std::uint8_t>(type));
-  EXPECT_EQ(at<std::uint16_t>(bytes, 6), header_bytes);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 4), 1);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 5), static_cast<std::uint8_t>(type));
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 6), header_bytes);
 }
 
 TEST(FrameEncoder, PutsTheFieldsOfAFrameWhereTheProtocolSays) {
@@ -39,17 +39,17 @@ TEST(FrameEncoder, PutsTheFieldsOfAFrameWhereTheProtocolSays) {
 
   expect_prefix(bytes, MessageType::kFrame, 72);
   ASSERT_EQ(bytes.size(), 72u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 8), 1u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 12), 2u);
-  EXPECT_EQ(at<std::uint64_t>(bytes, 16), 3u);
-  EXPECT_EQ(at<std::uint64_t>(bytes, 24), 4u);
-  EXPECT_EQ(at<std::int64_t>(bytes, 32), -5);
-  EXPECT_EQ(at<std::int64_t>(bytes, 40), 6);
-  EXPECT_EQ(at<double>(bytes, 48), 7.5);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 56), 8u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 60), 9u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 64), 10u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 68), 0u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 8), 1u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 12), 2u);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 16), 3u);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 24), 4u);
+  EXPECT_EQ(value_at<std::int64_t>(bytes, 32), -5);
+  EXPECT_EQ(value_at<std::int64_t>(bytes, 40), 6);
+  EXPECT_EQ(value_at<double>(bytes, 48), 7.5);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 56), 8u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 60), 9u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 64), 10u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 68), 0u);
 }
 
 TEST(FrameEncoder, PutsSignalsRowAfterRowWithTheTimeOfTheFirst) {
@@ -58,21 +58,21 @@ TEST(FrameEncoder, PutsSignalsRowAfterRowWithTheTimeOfTheFirst) {
 
   expect_prefix(bytes, MessageType::kSignals, 48);
   ASSERT_EQ(bytes.size(), 48u + 3 * 2 * 4);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 8), 7u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 12), 2u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 16), 3u);
-  EXPECT_EQ(at<std::uint64_t>(bytes, 24), 500u);
-  EXPECT_EQ(at<double>(bytes, 32), 0.25);   // 500 steps at 2000 Hz
-  EXPECT_EQ(at<double>(bytes, 40), 0.001);  // 2 steps at 2000 Hz
-  EXPECT_EQ(at<float>(bytes, 48 + 2 * 8), 2.0F);
-  EXPECT_EQ(at<float>(bytes, 48 + 2 * 8 + 4), -2.0F);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 8), 7u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 12), 2u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 16), 3u);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 24), 500u);
+  EXPECT_EQ(value_at<double>(bytes, 32), 0.25);   // 500 steps at 2000 Hz
+  EXPECT_EQ(value_at<double>(bytes, 40), 0.001);  // 2 steps at 2000 Hz
+  EXPECT_EQ(value_at<float>(bytes, 48 + 2 * 8), 2.0F);
+  EXPECT_EQ(value_at<float>(bytes, 48 + 2 * 8 + 4), -2.0F);
 }
 
 TEST(FrameEncoder, PutsTheMeanStrideOfRowsThatAreNotEvenlyApart) {
   msg::SceneSignals signals = signals_of_three(/*first_step=*/44, /*rows=*/11);
   signals.stride_steps(44);
   signals.row_step({0, 44, 88, 132, 176, 220, 264, 308, 352, 397, 441});
-  EXPECT_EQ(at<double>(encode_signals(signals, 7, 44'100.0), 40), 0.001);
+  EXPECT_EQ(value_at<double>(encode_signals(signals, 7, 44'100.0), 40), 0.001);
 }
 
 TEST(FrameEncoder, PutsRadiiEndsAndKindsIntoTheTopology) {
@@ -80,12 +80,12 @@ TEST(FrameEncoder, PutsRadiiEndsAndKindsIntoTheTopology) {
 
   expect_prefix(bytes, MessageType::kTopology, 24);
   ASSERT_EQ(bytes.size(), 24u + 3 * 4 + 4 * 4 + 3);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 8), 9u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 12), 3u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 16), 2u);
-  EXPECT_EQ(at<float>(bytes, 24 + 4), 0.25F);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 36 + 12), 2u);
-  EXPECT_EQ(at<std::uint8_t>(bytes, 52 + 2), 2);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 8), 9u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 12), 3u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 16), 2u);
+  EXPECT_EQ(value_at<float>(bytes, 24 + 4), 0.25F);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 36 + 12), 2u);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 52 + 2), 2);
 }
 
 TEST(FrameEncoder, PutsSoundStepAfterStepWithItsRate) {
@@ -95,14 +95,14 @@ TEST(FrameEncoder, PutsSoundStepAfterStepWithItsRate) {
 
   expect_prefix(bytes, MessageType::kSound, 48);
   ASSERT_EQ(bytes.size(), 48u + 4 * 4);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 8), 7u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 12), 2u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 16), 2u);
-  EXPECT_EQ(at<std::uint32_t>(bytes, 20), 3u);
-  EXPECT_EQ(at<std::uint64_t>(bytes, 24), 500u);
-  EXPECT_EQ(at<double>(bytes, 32), 2000.0);
-  EXPECT_EQ(at<std::int64_t>(bytes, 40), -7);
-  EXPECT_EQ(at<float>(bytes, 48 + 3 * 4), 3.0F);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 8), 7u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 12), 2u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 16), 2u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 20), 3u);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 24), 500u);
+  EXPECT_EQ(value_at<double>(bytes, 32), 2000.0);
+  EXPECT_EQ(value_at<std::int64_t>(bytes, 40), -7);
+  EXPECT_EQ(value_at<float>(bytes, 48 + 3 * 4), 3.0F);
 }
 
 }  // namespace

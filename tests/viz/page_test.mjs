@@ -44,8 +44,8 @@ const cases = {
     assert.ok(isAmber(tool.colour), `and so is what a hand holds: ${tool.colour}`);
 
     const later = await until('the middle has moved by 30 pixels', async () => {
-      const now = await look(page, MIDDLE, [first.at]);
-      return Math.abs(now.at.y - first.at.y) > 30 && now;
+      const now = await look(page, MIDDLE, [first.point]);
+      return Math.abs(now.point.y - first.point.y) > 30 && now;
     });
     assert.ok(later.colour[2] > 130, `it is drawn at its new place: ${later.colour}`);
     assert.ok(isDark(later.others[0]), `and no longer at the old one: ${later.others[0]}`);
@@ -57,8 +57,8 @@ const cases = {
     assert.ok(camera.orthographic);
     const stage = await page.locator('#stage').boundingBox();
     const [left, right] = [await look(page, 0), await look(page, 59)];
-    assert.ok(left.at.x > stage.x && right.at.x < stage.x + stage.width);
-    assert.ok(right.at.x - left.at.x > 0.7 * stage.width);
+    assert.ok(left.point.x > stage.x && right.point.x < stage.x + stage.width);
+    assert.ok(right.point.x - left.point.x > 0.7 * stage.width);
   },
 
   'a link has the colour of its state': async ({ page }) => {
@@ -238,14 +238,14 @@ const cases = {
     const stage = await page.locator('#stage').boundingBox();
     // Height of the middle [m] and its place on the page, of one frame.
     const middle = () =>
-      page.evaluate((mat) => ({ height: window.viz.position(mat)[1], at: window.viz.project(mat) }), MIDDLE);
+      page.evaluate((mat) => ({ height: window.viz.position(mat)[1], point: window.viz.project(mat) }), MIDDLE);
     const isLow = async () => {
       const now = await middle();
       return now.height < -0.4 && now;
     };
     await until('it has been low', isLow);
     await drawn(page, 10);
-    const { y } = (await until('it is low again', isLow)).at;
+    const { y } = (await until('it is low again', isLow)).point;
     assert.ok(y > stage.y && y < stage.y + stage.height, `the middle is at ${y}, the view at ${JSON.stringify(stage)}`);
     assert.ok((await viz(page, 'camera')).orthographic);
 

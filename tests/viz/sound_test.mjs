@@ -36,8 +36,8 @@ function error_db(hz, inHz, outHz, expected = (timeS) => AMPLITUDE * Math.sin(2 
   for (let i = 0; i < 4000; ++i) {
     const place = resampler.reach + 1 + (i * inHz) / outHz;
     if (place > ring.length - resampler.reach - 2) break;
-    const at = Math.floor(place);
-    largest = Math.max(largest, Math.abs(resampler.valueAt(ring, at, place - at) - expected(place / inHz)));
+    const first = Math.floor(place);
+    largest = Math.max(largest, Math.abs(resampler.valueAt(ring, first, place - first) - expected(place / inHz)));
   }
   return 20 * Math.log10(largest / AMPLITUDE);
 }

@@ -96,8 +96,8 @@ class Archive {
     const std::size_t value_count = records.size() * sizeof...(field);
     if (task_ == Task::kSave) {
       saved_->resize(saved_->size() + value_count);
-      double* to = saved_->data() + saved_->size() - value_count;
-      for (const Record& record : records) ((*to++ = static_cast<double>(record.*field)), ...);
+      double* target = saved_->data() + saved_->size() - value_count;
+      for (const Record& record : records) ((*target++ = static_cast<double>(record.*field)), ...);
     }
     if (task_ == Task::kMeasure) size_ += value_count;
     if (!reads()) return;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/expressions/program_kernel_body.h"
 #include "sim_node/engine/simd/lanes_scalar.h"
@@ -75,6 +76,7 @@ bool is_edge(Operation operation) noexcept {
 }
 
 double apply(const Instruction& instruction, const double* operands) noexcept {
+  CORDIS_ASSERT(!is_edge(instruction.operation) && operand_count(instruction.operation) > 0);
   std::array<Instruction, 4> code{};
   std::size_t count = 0;
   for (; count < operand_count(instruction.operation); ++count) {
@@ -103,6 +105,7 @@ double value_of(const Program& program, const LinkQuantities& now, const LinkQua
   std::size_t depth = 0;
   for (const Instruction& instruction : program.code) {
     const std::size_t taken = operand_count(instruction.operation);
+    CORDIS_ASSERT(taken <= depth && depth - taken < kMaxStack);
     const std::size_t place = depth - taken;
     double& value = stack[place];
     double& old = earlier[place];

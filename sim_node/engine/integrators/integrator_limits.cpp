@@ -26,21 +26,21 @@ std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
   for (const Mat& mat : network.mats) {
     if (mat.kind == MatKind::kPort) return IntegratorRefusal{"a port with the role mass", {}};
   }
-  const auto at = [](LiaisonKind kind, std::size_t index, const char* what) {
+  const auto refusal = [](LiaisonKind kind, std::size_t index, const char* what) {
     return IntegratorRefusal{what, LiaisonId{kind, static_cast<std::uint32_t>(index)}};
   };
   for (std::size_t l = 0; l < network.links.size(); ++l) {
-    if (network.links[l].viscosity > 0.0) return at(LiaisonKind::kLink, l, "viscosity");
+    if (network.links[l].viscosity > 0.0) return refusal(LiaisonKind::kLink, l, "viscosity");
   }
   for (std::size_t l = 0; l < network.state_links.size(); ++l) {
     const char* what =
         not_a_potential(network.state_machines[network.state_links[l].state_machine]);
-    if (what != nullptr) return at(LiaisonKind::kStateLink, l, what);
+    if (what != nullptr) return refusal(LiaisonKind::kStateLink, l, what);
   }
-  if (!network.maxwell_links.empty()) return at(LiaisonKind::kMaxwellLink, 0, "viscosity");
+  if (!network.maxwell_links.empty()) return refusal(LiaisonKind::kMaxwellLink, 0, "viscosity");
   for (std::size_t s = 0; s < network.sets.size(); ++s) {
     const char* what = not_a_potential(network.state_machines[network.sets[s].state_machine]);
-    if (what != nullptr) return at(LiaisonKind::kSet, s, what);
+    if (what != nullptr) return refusal(LiaisonKind::kSet, s, what);
   }
   return std::nullopt;
 }

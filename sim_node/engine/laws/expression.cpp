@@ -44,24 +44,26 @@ double Expression::distance_of_no_potential(const LawPoint& link) const noexcept
 
 double Expression::potential(const LawPoint& link) const noexcept {
   const double rest_length = link.distance - link.elongation;
-  const auto tension = [&](double at) {
-    return scalar_tension(*this, {at, at - rest_length, 0.0, link.mass_a, link.mass_b}, at);
+  const auto tension = [&](double argument) {
+    return scalar_tension(*this, {argument, argument - rest_length, 0.0, link.mass_a, link.mass_b},
+                          argument);
   };
   return integral_over_distance(tension, distance_of_no_potential(link), link.distance);
 }
 
 /// The largest rise between two samples.
 LawSlope Expression::largest_slope(const LawRange& range) const noexcept {
-  const auto tension = [&](double at) {
-    LawPoint point{range.rest_length, 0.0, at, range.mass, range.mass};
-    if (!range.viscous) point = {at + range.rest_length, at, 0.0, range.mass, range.mass};
-    return scalar_tension(*this, point, at);
+  const auto tension = [&](double argument) {
+    LawPoint point{range.rest_length, 0.0, argument, range.mass, range.mass};
+    if (!range.viscous)
+      point = {argument + range.rest_length, argument, 0.0, range.mass, range.mass};
+    return scalar_tension(*this, point, argument);
   };
   LawSlope slope{0.0, false};
   const double step = 2.0 * range.argument / range.samples;
   for (int i = 0; i < range.samples && step > 0.0; ++i) {
-    const double at = -range.argument + step * i;
-    const double rise = (tension(at + step) - tension(at)) / step;
+    const double argument = -range.argument + step * i;
+    const double rise = (tension(argument + step) - tension(argument)) / step;
     if (std::isfinite(rise)) slope.value = std::max(slope.value, rise);
   }
   return slope;

@@ -26,14 +26,14 @@ LennardJones::Term LennardJones::term() const noexcept {
 }
 
 double LennardJones::potential(double distance, double /*elongation*/) const noexcept {
-  const auto at = [this](double d) {
+  const auto energy_at = [this](double d) {
     const double ratio = diameter / d;
     const double cube = ratio * ratio * ratio;
     return 4.0 * well_depth * (cube * cube * cube * cube - cube * cube);
   };
   const double size = std::abs(distance);
   if (size == 0.0 || (cutoff > 0.0 && !(size < cutoff))) return 0.0;
-  return cutoff > 0.0 ? at(size) - at(cutoff) : at(size);
+  return cutoff > 0.0 ? energy_at(size) - energy_at(cutoff) : energy_at(size);
 }
 
 /// The slope of a pair that approaches with the energy E, in units of the well depth: the turning point is at

@@ -37,8 +37,8 @@ LawSlope Power::largest_slope(const LawRange& range) const noexcept {
   if (exponent == 0.0) return {0.0, true, is_root};  // a step has no tangent
   // The slope of a root has no end towards 0: below a hundredth of the range it is not followed.
   constexpr double kNearest = 0.01;
-  const double at = is_root ? kNearest * range.argument : range.argument;
-  return {coefficient * exponent * std::pow(at, exponent - 1.0), exponent == 1.0, is_root};
+  const double argument = is_root ? kNearest * range.argument : range.argument;
+  return {coefficient * exponent * std::pow(argument, exponent - 1.0), exponent == 1.0, is_root};
 }
 
 double Power::smallest_slope(double elongation) const noexcept {

@@ -16,19 +16,19 @@ class Quadrature {
  public:
   explicit Quadrature(Function f) : f_(f) {}
 
-  double integral(double from, double to) const noexcept {
+  double integral(double low, double high) const noexcept {
     struct Interval {
-      double from;
-      double to;
+      double low;
+      double high;
     };
     std::array<Interval, kMaxDepth + 1> left;  // still to be added
-    left[0] = {from, to};
+    left[0] = {low, high};
     std::size_t depth = 1;
     double sum = 0.0;
     double size = 0.0;
     for (int panels = 0; depth > 0; ++panels) {
       const Interval next = left[--depth];
-      const Panel panel = panel_of(next.from, next.to);
+      const Panel panel = panel_of(next.low, next.high);
       if (size == 0.0) size = std::abs(panel.kronrod);
       const bool is_last = panels >= kMaxPanels || depth + 2 > left.size();
       const double error = std::abs(panel.kronrod - panel.gauss);
@@ -36,9 +36,9 @@ class Quadrature {
         sum += panel.kronrod;
         continue;
       }
-      const double middle = 0.5 * (next.from + next.to);
-      left[depth++] = {middle, next.to};
-      left[depth++] = {next.from, middle};
+      const double middle = 0.5 * (next.low + next.high);
+      left[depth++] = {middle, next.high};
+      left[depth++] = {next.low, middle};
     }
     return sum;
   }
@@ -53,7 +53,7 @@ class Quadrature {
     double gauss;
   };
 
-  Panel panel_of(double from, double to) const noexcept {
+  Panel panel_of(double low, double high) const noexcept {
     constexpr std::array<double, 8> kNode = {
         0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
         0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
@@ -67,8 +67,8 @@ class Quadrature {
     constexpr std::array<double, 4> kGauss = {
         0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
         0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
-    const double centre = 0.5 * (from + to);
-    const double half = 0.5 * (to - from);
+    const double centre = 0.5 * (low + high);
+    const double half = 0.5 * (high - low);
     Panel sum{0.0, 0.0};
     for (std::size_t i = 0; i < kNode.size(); ++i) {
       const double away = half * kNode[i];
@@ -86,15 +86,15 @@ class Quadrature {
 /// The integral over a distance. Between two distances of one sign it is taken over their
 /// logarithm: laws of a distance are often powers of it.
 template <class Function>
-double integral_over_distance(Function f, double from, double to) noexcept {
-  if (!std::isfinite(from) || !std::isfinite(to) || from == to) return 0.0;
-  if (!(from * to > 0.0)) return Quadrature(f).integral(from, to);
-  const double sign = from > 0.0 ? 1.0 : -1.0;
+double integral_over_distance(Function f, double low, double high) noexcept {
+  if (!std::isfinite(low) || !std::isfinite(high) || low == high) return 0.0;
+  if (!(low * high > 0.0)) return Quadrature(f).integral(low, high);
+  const double sign = low > 0.0 ? 1.0 : -1.0;
   const auto of_logarithm = [&f, sign](double logarithm) {
-    const double at = sign * std::exp(logarithm);
-    return f(at) * at;
+    const double distance = sign * std::exp(logarithm);
+    return f(distance) * distance;
   };
-  return Quadrature(of_logarithm).integral(std::log(std::abs(from)), std::log(std::abs(to)));
+  return Quadrature(of_logarithm).integral(std::log(std::abs(low)), std::log(std::abs(high)));
 }
 
 }  // namespace cordis::engine

@@ -30,10 +30,11 @@ double Rings::potential(double distance, double /*elongation*/) const noexcept {
 /// Between two radii the slope is constant, and tension / distance is monotone.
 double Rings::slope_beyond(double distance, bool turns) const noexcept {
   double largest = 0.0;
-  const auto consider_across = [&](double at) {
+  const auto consider_across = [&](double length) {
     double tension = 0.0;
-    for (const Ring& ring : rings) tension -= ring.stiffness * std::max(ring.radius - at, 0.0);
-    if (tension > 0.0) largest = std::max(largest, tension / at);
+    for (const Ring& ring : rings)
+      tension -= ring.stiffness * std::max(ring.radius - length, 0.0);
+    if (tension > 0.0) largest = std::max(largest, tension / length);
   };
   if (turns) consider_across(distance);
   for (const Ring& inner : rings) {  // just inside this ring

@@ -42,9 +42,9 @@ double Table::potential(double /*distance*/, double elongation) const noexcept {
     const auto value_at = [&](double x) {
       return value_[i - 1] + slope_[i - 1] * (x - argument_[i - 1]);
     };
-    const double from = std::max(low, argument_[i - 1]);
-    const double to = std::min(high, argument_[i]);
-    if (from < to) area += 0.5 * (value_at(from) + value_at(to)) * (to - from);
+    const double begin = std::max(low, argument_[i - 1]);
+    const double end = std::min(high, argument_[i]);
+    if (begin < end) area += 0.5 * (value_at(begin) + value_at(end)) * (end - begin);
   }
   if (high > argument_.back()) area += value_.back() * (high - std::max(low, argument_.back()));
   return elongation < 0.0 ? -area : area;

@@ -115,17 +115,18 @@ StepEnergy StateLinkArray::add_forces(const StateKernel& kernel, const StateTabl
   };
   Entry entry{this, &table, &log, step, 0, 0.0};
   const auto on_change = [](void* owner, std::size_t first, const StateMachineRows& rows) noexcept {
-    auto& to = *static_cast<Entry*>(owner);
+    auto& target = *static_cast<Entry*>(owner);
     for (std::size_t i = 0; i < kStateBatch; ++i) {
       if ((rows.changed >> i & 1U) == 0) continue;
-      const std::size_t l = to.origin + first + i;
-      const StateIndex first_state = to.table->first_state(to.links->state_machine_[l]);
-      const double energy = to.table->change_energy(rows, i);
-      to.switching += energy;
-      to.log->add({to.step, static_cast<std::uint32_t>(l), to.links->column_a_[l] / 4,
-                   to.links->column_b_[l] / 4, to.links->state_machine_[l],
-                   rows.from[i] - first_state, rows.state[i] - first_state,
-                   to.table->triggered(rows.from[i], rows.exit[i]), rows.trigger_value[i], energy});
+      const std::size_t l = target.origin + first + i;
+      const StateIndex first_state = target.table->first_state(target.links->state_machine_[l]);
+      const double energy = target.table->change_energy(rows, i);
+      target.switching += energy;
+      target.log->add({target.step, static_cast<std::uint32_t>(l), target.links->column_a_[l] / 4,
+                       target.links->column_b_[l] / 4, target.links->state_machine_[l],
+                       rows.from[i] - first_state, rows.state[i] - first_state,
+                       target.table->triggered(rows.from[i], rows.exit[i]), rows.trigger_value[i],
+                       energy});
     }
   };
   LinkWork work;

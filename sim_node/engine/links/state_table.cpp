@@ -200,9 +200,9 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
   const StateTerm& term = content_->terms[index];
   const Expression& law = *potential_expression(state(index).elasticity);
   const double rest_length = link.distance - link.elongation;
-  const auto tension = [&](double at) {
-    const LawPoint point{at, at - rest_length, 0.0, link.mass_a, link.mass_b};
-    const double whole = term.stiffness * point.elongation + scalar_tension(law, point, at);
+  const auto tension = [&](double distance) {
+    const LawPoint point{distance, distance - rest_length, 0.0, link.mass_a, link.mass_b};
+    const double whole = term.stiffness * point.elongation + scalar_tension(law, point, distance);
     return std::min(term.max_tension, std::max(term.min_tension, whole));
   };
   return integral_over_distance(tension, law.distance_of_no_potential(link), link.distance);

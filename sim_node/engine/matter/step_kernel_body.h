@@ -111,8 +111,8 @@ void add_link_forces(const LinkRows& links, const ForceColumns& columns, LinkWor
   constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
   WorkRows<Lanes> work[kParts];
   for (std::size_t part = 0; part < kParts; ++part) {
-    const std::size_t at = part * Lanes::kWidth;
-    work[part] = {Lanes::load(sum.elastic + at), Lanes::load(sum.dissipated + at)};
+    const std::size_t lane = part * Lanes::kWidth;
+    work[part] = {Lanes::load(sum.elastic + lane), Lanes::load(sum.dissipated + lane)};
   }
 
   for (std::size_t l = 0; l < links.count; l += kLinkBatch) {
@@ -123,9 +123,9 @@ void add_link_forces(const LinkRows& links, const ForceColumns& columns, LinkWor
   }
 
   for (std::size_t part = 0; part < kParts; ++part) {
-    const std::size_t at = part * Lanes::kWidth;
-    Lanes::store(sum.elastic + at, work[part].elastic);
-    Lanes::store(sum.dissipated + at, work[part].dissipated);
+    const std::size_t lane = part * Lanes::kWidth;
+    Lanes::store(sum.elastic + lane, work[part].elastic);
+    Lanes::store(sum.dissipated + lane, work[part].dissipated);
   }
 }
 

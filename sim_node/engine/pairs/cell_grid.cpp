@@ -56,12 +56,12 @@ void CellGrid::fill(const double* position, std::size_t count, double reach) noe
   // begin_[c] runs to the end of cell c and so becomes the beginning of cell c + 1 ...
   for (std::size_t i = 0; i < count; ++i) {
     if (cell_[i] == kNoCell) continue;
-    const std::size_t at = begin_[cell_[i]]++;
-    x_[at] = position[4 * i];
-    y_[at] = position[4 * i + 1];
-    z_[at] = position[4 * i + 2];
-    number_[at] = static_cast<double>(i);
-    member_[at] = static_cast<std::uint32_t>(i);
+    const std::size_t slot = begin_[cell_[i]]++;
+    x_[slot] = position[4 * i];
+    y_[slot] = position[4 * i + 1];
+    z_[slot] = position[4 * i + 2];
+    number_[slot] = static_cast<double>(i);
+    member_[slot] = static_cast<std::uint32_t>(i);
   }
   // ... so that all move up by one
   std::copy_backward(begin_.begin(), begin_.begin() + static_cast<std::ptrdiff_t>(cells),
@@ -142,6 +142,7 @@ CellGrid::NeighbourCells CellGrid::around(const double* point, std::size_t last)
 }
 
 CellGrid::NeighbourCells CellGrid::around_cell(std::size_t cell, std::size_t last) const noexcept {
+  CORDIS_ASSERT(cell + 1 < begin_.size());
   NeighbourCells found;
   const auto bound = static_cast<double>(last);
   const std::array<std::size_t, kAxes> index{cell % extent_[0], cell / extent_[0] % extent_[1],

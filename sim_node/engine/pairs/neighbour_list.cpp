@@ -123,11 +123,11 @@ bool NeighbourList::covers(const double* position,
   if (!valid_ || !whole_) return false;
   const double free_way = free_way_square(used_);
   for (std::size_t m = 0; m < column.size(); ++m) {
-    const double* at = position + column[m];
+    const double* present = position + column[m];
     const double* from = used_.from.data() + 4 * m;
-    const double x = at[0] - from[0];
-    const double y = at[1] - from[1];
-    const double z = at[2] - from[2];
+    const double x = present[0] - from[0];
+    const double y = present[1] - from[1];
+    const double z = present[2] - from[2];
     if (!(x * x + y * y + z * z <= free_way)) return false;
   }
   return true;
@@ -326,13 +326,13 @@ std::size_t NeighbourList::keep_some(std::size_t members) noexcept {
   for (; done_ < end; ++done_) {
     const std::size_t b = count_q_ > 0 ? count_p_ + done_ : done_;
     std::uint32_t* found = found_.data() + found_begin_[b];
-    const double* at = position + 4 * b;
+    const double* centre = position + 4 * b;
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < next_.found_count[b]; ++i) {
       const double* other = position + 4 * std::size_t{found[i]};
-      const double x = other[0] - at[0];
-      const double y = other[1] - at[1];
-      const double z = other[2] - at[2];
+      const double x = other[0] - centre[0];
+      const double y = other[1] - centre[1];
+      const double z = other[2] - centre[2];
       found[kept] = found[i];
       kept += x * x + y * y + z * z < reach ? 1U : 0U;
     }

@@ -46,9 +46,11 @@ PairRows PairBlock::rows() noexcept {
 }
 
 PairRow PairBlock::row_at(std::size_t pair) noexcept {
-  const auto at = [this, pair](Array which) { return array(which) + pair; };
-  return {column_b_.data() + pair, at(kX), at(kY), at(kZ), at(kSquare), at(kLength), at(kInverse),
-          at(kElongationIncrement)};
+  const auto column_of = [this, pair](Array which) { return array(which) + pair; };
+  return {column_b_.data() + pair, column_of(kX),
+          column_of(kY),           column_of(kZ),
+          column_of(kSquare),      column_of(kLength),
+          column_of(kInverse),     column_of(kElongationIncrement)};
 }
 
 }  // namespace cordis::engine

@@ -239,9 +239,9 @@ void spread_rows(const PairRows& rows, const double* factor, double* force) noex
     for (std::size_t i = rows.start[a - rows.first]; i < end; i += kPairBatch) {
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
-        const std::size_t at = i + part * Lanes::kWidth;
-        if (at >= end) break;
-        spread_some<Lanes>(rows, at, end - at, factor, force, sum, part);
+        const std::size_t first = i + part * Lanes::kWidth;
+        if (first >= end) break;
+        spread_some<Lanes>(rows, first, end - first, factor, force, sum, part);
       }
     }
     give<Lanes>(sum, force + 4 * a);
@@ -287,12 +287,12 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
     for (std::size_t i = 0; i < count; i += kPairBatch) {
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
-        const std::size_t at = i + part * Lanes::kWidth;
-        const Row square = Lanes::load(row.square + at);
+        const std::size_t first = i + part * Lanes::kWidth;
+        const Row square = Lanes::load(row.square + first);
         const Row factor = LennardJones::tension_per_distance<Lanes>(attraction, repulsion, square);
         const auto touching =
             Lanes::both(Lanes::less(square, touch_square), Lanes::not_equal(square, Lanes::zero()));
-        spread<Lanes>(row, at, factor, touching, force, sum, part);
+        spread<Lanes>(row, first, factor, touching, force, sum, part);
       }
     }
     give<Lanes>(sum, force + 4 * a);

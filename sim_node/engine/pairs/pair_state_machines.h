@@ -27,11 +27,11 @@ struct PairStep {
 
 /// Rest length of a pair [m]: given, or the sum of two radii.
 struct PairRest {
-  double given = 0.0;
+  double fixed = 0.0;
   const double* radius = nullptr;  // of each member; null when the rest length is given
 
   double length(std::size_t a, std::size_t b) const noexcept {
-    return radius == nullptr ? given : radius[a] + radius[b];
+    return radius == nullptr ? fixed : radius[a] + radius[b];
   }
 };
 

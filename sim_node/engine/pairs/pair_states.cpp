@@ -35,16 +35,16 @@ bool PairStates::add(const PairState& state, const double* memory, std::size_t s
 }
 
 std::size_t PairStates::keep_rows(std::size_t first, std::size_t last) noexcept {
-  const std::size_t from = read_.start[first];
-  const std::size_t to = written_.count;
-  const std::size_t wanted = read_.start[last] - from;
-  const std::size_t kept = std::min(wanted, written_.states.size() - to);
-  std::copy_n(read_.states.data() + from, kept, written_.states.data() + to);
-  std::copy_n(read_.memory.data() + from * slot_count_, kept * slot_count_,
-              written_.memory.data() + to * slot_count_);
+  const std::size_t first_read = read_.start[first];
+  const std::size_t first_written = written_.count;
+  const std::size_t wanted = read_.start[last] - first_read;
+  const std::size_t kept = std::min(wanted, written_.states.size() - first_written);
+  std::copy_n(read_.states.data() + first_read, kept, written_.states.data() + first_written);
+  std::copy_n(read_.memory.data() + first_read * slot_count_, kept * slot_count_,
+              written_.memory.data() + first_written * slot_count_);
   written_.count += kept;
   for (std::size_t row = first; row < last; ++row) {
-    written_.start[row + 1] = to + std::min(read_.start[row + 1] - from, kept);
+    written_.start[row + 1] = first_written + std::min(read_.start[row + 1] - first_read, kept);
   }
   return wanted - kept;
 }

@@ -41,8 +41,8 @@ std::size_t list_capacity(const NetworkDescription& description, const SetLiaiso
   AlignedVector<double> position;
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
-      const Vec3& at = description.mats[mat].position;
-      position.insert(position.end(), {at.x(), at.y(), at.z(), 0.0});
+      const Vec3& place = description.mats[mat].position;
+      position.insert(position.end(), {place.x(), place.y(), place.z(), 0.0});
     }
   }
   position.resize(4 * padded(position.size() / 4, kPairBatch), 0.0);

@@ -19,8 +19,8 @@ StartPairCount count_start_pairs(const NetworkDescription& network, const SetLia
   position.reserve(4 * (count_p + set.set_q.size()));
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
-      const Vec3& at = network.mats[mat].position;
-      position.insert(position.end(), {at.x(), at.y(), at.z(), 0.0});
+      const Vec3& place = network.mats[mat].position;
+      position.insert(position.end(), {place.x(), place.y(), place.z(), 0.0});
     }
   }
   CellGrid grid(count_p, network.dimension);

@@ -18,8 +18,8 @@ double read_modes(const double* shape, const double* value, std::size_t count) n
   for (std::size_t m = 0; m < count; m += kModeBatch) {
 #pragma GCC unroll 4
     for (std::size_t part = 0; part < kParts; ++part) {
-      const std::size_t at = m + part * Lanes::kWidth;
-      sum[part] = sum[part] + Lanes::load(shape + at) * Lanes::load(value + at);
+      const std::size_t mode = m + part * Lanes::kWidth;
+      sum[part] = sum[part] + Lanes::load(shape + mode) * Lanes::load(value + mode);
     }
   }
   return LaneBatch<Lanes>::sum(sum);
@@ -47,30 +47,31 @@ double step_driven_modes(const ModeRows& modes) noexcept {
   for (std::size_t m = 0; m < rows.count; m += kModeBatch) {
 #pragma GCC unroll 4
     for (std::size_t part = 0; part < kParts; ++part) {
-      const std::size_t at = m + part * Lanes::kWidth;
+      const std::size_t mode = m + part * Lanes::kWidth;
       Row force = Lanes::zero();
       if constexpr (kDrives == kAnyDrives) {
         for (std::size_t k = 0; k < rows.drive_count; ++k) {
           force =
-              force + Lanes::every(rows.drives[k].force) * Lanes::load(rows.drives[k].shape + at);
+              force + Lanes::every(rows.drives[k].force) * Lanes::load(rows.drives[k].shape + mode);
         }
       }
 #pragma GCC unroll 4
       for (std::size_t k = 0; k < kFused; ++k) {
-        force = force + force_there[k] * Lanes::load(shape[k] + at);
+        force = force + force_there[k] * Lanes::load(shape[k] + mode);
       }
-      const Row place = Lanes::load(rows.place + at);
-      const Row moved = Lanes::load(rows.moved + at);
-      const Row moving = Lanes::load(rows.velocity_retention + at) * moved -
-                         Lanes::load(rows.stiffness + at) * place +
-                         (Lanes::load(rows.constant + at) + Lanes::load(rows.gain + at) * force);
+      const Row place = Lanes::load(rows.place + mode);
+      const Row moved = Lanes::load(rows.moved + mode);
+      const Row moving =
+          Lanes::load(rows.velocity_retention + mode) * moved -
+          Lanes::load(rows.stiffness + mode) * place +
+          (Lanes::load(rows.constant + mode) + Lanes::load(rows.gain + mode) * force);
       const Row next = place + moving;
-      taken[part] = taken[part] + Lanes::load(rows.dissipation + at) * (moved * (moved + moving));
-      Lanes::store(rows.moved + at, moving);
-      Lanes::store(rows.place + at, next);
+      taken[part] = taken[part] + Lanes::load(rows.dissipation + mode) * (moved * (moved + moving));
+      Lanes::store(rows.moved + mode, moving);
+      Lanes::store(rows.place + mode, next);
 #pragma GCC unroll 4
       for (std::size_t k = 0; k < kFused; ++k) {
-        found[k][part] = found[k][part] + Lanes::load(shape[k] + at) * next;
+        found[k][part] = found[k][part] + Lanes::load(shape[k] + mode) * next;
       }
     }
   }

@@ -18,22 +18,23 @@ alignas(32) constexpr std::int32_t kPackHalves[16][8] = {
 
 struct Avx2PairLanes : Avx2Lanes {
   static Row load_any(const double* values) noexcept { return _mm256_loadu_pd(values); }
-  static Row3 vectors(const double* columns, const std::uint32_t* at) noexcept {
-    return transposed(load(columns + at[0]), load(columns + at[1]), load(columns + at[2]),
-                      load(columns + at[3]));
+  static Row3 vectors(const double* columns, const std::uint32_t* offset) noexcept {
+    return transposed(load(columns + offset[0]), load(columns + offset[1]),
+                      load(columns + offset[2]), load(columns + offset[3]));
   }
   static Row3 neighbours(const double* columns) noexcept {
     return transposed(load(columns), load(columns + 4), load(columns + 8), load(columns + 12));
   }
-  static void subtract(double* columns, const std::uint32_t* at, const Row3& v, Row w) noexcept {
+  static void subtract(double* columns, const std::uint32_t* offset, const Row3& v,
+                       Row w) noexcept {
     const Row even_xy = _mm256_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2
     const Row odd_xy = _mm256_unpackhi_pd(v.x, v.y);   // x1 y1 x3 y3
     const Row even_z = _mm256_unpacklo_pd(v.z, w);
     const Row odd_z = _mm256_unpackhi_pd(v.z, w);
-    subtract_column(columns + at[0], _mm256_permute2f128_pd(even_xy, even_z, 0x20));
-    subtract_column(columns + at[1], _mm256_permute2f128_pd(odd_xy, odd_z, 0x20));
-    subtract_column(columns + at[2], _mm256_permute2f128_pd(even_xy, even_z, 0x31));
-    subtract_column(columns + at[3], _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
+    subtract_column(columns + offset[0], _mm256_permute2f128_pd(even_xy, even_z, 0x20));
+    subtract_column(columns + offset[1], _mm256_permute2f128_pd(odd_xy, odd_z, 0x20));
+    subtract_column(columns + offset[2], _mm256_permute2f128_pd(even_xy, even_z, 0x31));
+    subtract_column(columns + offset[3], _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
   }
 
   static void pack(double* out, Row v, unsigned chosen) noexcept {

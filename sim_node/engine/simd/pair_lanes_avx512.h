@@ -8,18 +8,19 @@ namespace {
 
 struct Avx512PairLanes : Avx512Lanes {
   static Row load_any(const double* values) noexcept { return _mm512_loadu_pd(values); }
-  static Row3 vectors(const double* columns, const std::uint32_t* at) noexcept {
-    return transposed(two_columns(columns + at[0], columns + at[4]),
-                      two_columns(columns + at[1], columns + at[5]),
-                      two_columns(columns + at[2], columns + at[6]),
-                      two_columns(columns + at[3], columns + at[7]));
+  static Row3 vectors(const double* columns, const std::uint32_t* offset) noexcept {
+    return transposed(two_columns(columns + offset[0], columns + offset[4]),
+                      two_columns(columns + offset[1], columns + offset[5]),
+                      two_columns(columns + offset[2], columns + offset[6]),
+                      two_columns(columns + offset[3], columns + offset[7]));
   }
   static Row3 neighbours(const double* columns) noexcept {
     return transposed(two_columns(columns, columns + 16), two_columns(columns + 4, columns + 20),
                       two_columns(columns + 8, columns + 24),
                       two_columns(columns + 12, columns + 28));
   }
-  static void subtract(double* columns, const std::uint32_t* at, const Row3& v, Row w) noexcept {
+  static void subtract(double* columns, const std::uint32_t* offset, const Row3& v,
+                       Row w) noexcept {
     const Row even_xy = _mm512_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2  x4 y4 x6 y6
     const Row odd_xy = _mm512_unpackhi_pd(v.x, v.y);
     const Row even_z = _mm512_unpacklo_pd(v.z, w);
@@ -28,14 +29,14 @@ struct Avx512PairLanes : Avx512Lanes {
     const Row c15 = first_pairs(odd_xy, odd_z);
     const Row c26 = second_pairs(even_xy, even_z);
     const Row c37 = second_pairs(odd_xy, odd_z);
-    subtract_column(columns + at[0], _mm512_castpd512_pd256(c04));
-    subtract_column(columns + at[1], _mm512_castpd512_pd256(c15));
-    subtract_column(columns + at[2], _mm512_castpd512_pd256(c26));
-    subtract_column(columns + at[3], _mm512_castpd512_pd256(c37));
-    subtract_column(columns + at[4], _mm512_extractf64x4_pd(c04, 1));
-    subtract_column(columns + at[5], _mm512_extractf64x4_pd(c15, 1));
-    subtract_column(columns + at[6], _mm512_extractf64x4_pd(c26, 1));
-    subtract_column(columns + at[7], _mm512_extractf64x4_pd(c37, 1));
+    subtract_column(columns + offset[0], _mm512_castpd512_pd256(c04));
+    subtract_column(columns + offset[1], _mm512_castpd512_pd256(c15));
+    subtract_column(columns + offset[2], _mm512_castpd512_pd256(c26));
+    subtract_column(columns + offset[3], _mm512_castpd512_pd256(c37));
+    subtract_column(columns + offset[4], _mm512_extractf64x4_pd(c04, 1));
+    subtract_column(columns + offset[5], _mm512_extractf64x4_pd(c15, 1));
+    subtract_column(columns + offset[6], _mm512_extractf64x4_pd(c26, 1));
+    subtract_column(columns + offset[7], _mm512_extractf64x4_pd(c37, 1));
   }
 
   static void pack(double* out, Row v, unsigned chosen) noexcept {

@@ -8,19 +8,20 @@ namespace {
 
 struct Sse2PairLanes : Sse2Lanes {
   static Row load_any(const double* values) noexcept { return _mm_loadu_pd(values); }
-  static Row3 vectors(const double* columns, const std::uint32_t* at) noexcept {
-    const Column u = load_column(columns + at[0]);
-    const Column v = load_column(columns + at[1]);
+  static Row3 vectors(const double* columns, const std::uint32_t* offset) noexcept {
+    const Column u = load_column(columns + offset[0]);
+    const Column v = load_column(columns + offset[1]);
     return transposed(u, v);
   }
   static Row3 neighbours(const double* columns) noexcept {
     return transposed(load_column(columns), load_column(columns + 4));
   }
-  static void subtract(double* columns, const std::uint32_t* at, const Row3& v, Row w) noexcept {
+  static void subtract(double* columns, const std::uint32_t* offset, const Row3& v,
+                       Row w) noexcept {
     const Column first{_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, w)};
     const Column second{_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, w)};
-    store_column(columns + at[0], load_column(columns + at[0]) - first);
-    store_column(columns + at[1], load_column(columns + at[1]) - second);
+    store_column(columns + offset[0], load_column(columns + offset[0]) - first);
+    store_column(columns + offset[1], load_column(columns + offset[1]) - second);
   }
 
   static void pack(double* out, Row v, unsigned chosen) noexcept {

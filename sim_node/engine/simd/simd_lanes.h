@@ -16,8 +16,9 @@ namespace cordis::engine {
 /// vectors x, y, z. Column: the 4 values of one MAT. Each + - * is rounded by itself: no operation
 /// may be contracted or reordered.
 template <class Lanes>
-concept SimdLanes = requires(double value, double* out, const double* in, const std::uint32_t* at,
-                             std::uint32_t bits, typename Lanes::Row row, typename Lanes::Mask mask,
+concept SimdLanes = requires(double value, double* out, const double* in,
+                             const std::uint32_t* offset, std::uint32_t bits,
+                             typename Lanes::Row row, typename Lanes::Mask mask,
                              typename Lanes::Row3 vectors, typename Lanes::Column column) {
   requires kBatchRows % Lanes::kWidth == 0;
   requires sizeof(row) == Lanes::kWidth * sizeof(double);
@@ -44,12 +45,12 @@ concept SimdLanes = requires(double value, double* out, const double* in, const 
   { Lanes::inverse_or_zero(row, row) } -> std::same_as<typename Lanes::Row>;
   // vectors from the columns at a to those at b: of one set of columns, of two, and their first
   // components
-  { Lanes::difference(in, at, at) } -> std::same_as<typename Lanes::Row3>;
-  Lanes::differences(in, in, at, at, vectors, vectors);
-  { Lanes::difference_1d(in, at, at) } -> std::same_as<typename Lanes::Row>;
+  { Lanes::difference(in, offset, offset) } -> std::same_as<typename Lanes::Row3>;
+  Lanes::differences(in, in, offset, offset, vectors, vectors);
+  { Lanes::difference_1d(in, offset, offset) } -> std::same_as<typename Lanes::Row>;
   // one link after the other: += at a, -= at b
-  Lanes::add_pairs(out, at, at, vectors);
-  Lanes::add_pairs_1d(out, at, at, row);
+  Lanes::add_pairs(out, offset, offset, vectors);
+  Lanes::add_pairs_1d(out, offset, offset, row);
   column = column + column - column * column;
   { Lanes::load_column(in) } -> std::same_as<typename Lanes::Column>;
   { Lanes::broadcast(value) } -> std::same_as<typename Lanes::Column>;
@@ -62,18 +63,18 @@ concept SimdLanes = requires(double value, double* out, const double* in, const 
 /// Lanes for the pairs of a set.
 template <class Lanes>
 concept SimdPairLanes = SimdLanes<Lanes> &&
-    requires(double* out, std::uint32_t* places, const double* in, const std::uint32_t* at,
+    requires(double* out, std::uint32_t* places, const double* in, const std::uint32_t* offset,
              unsigned chosen, typename Lanes::Row row, typename Lanes::Row3 vectors) {
   // loads values that need not be aligned
   { Lanes::load_any(in) } -> std::same_as<typename Lanes::Row>;
   // columns that begin at `at`, or follow one another, as x, y, z
-  { Lanes::vectors(in, at) } -> std::same_as<typename Lanes::Row3>;
+  { Lanes::vectors(in, offset) } -> std::same_as<typename Lanes::Row3>;
   { Lanes::neighbours(in) } -> std::same_as<typename Lanes::Row3>;
   // subtracts vectors and their fourth values from the columns at `at`, one after the other
-  Lanes::subtract(out, at, vectors, row);
+  Lanes::subtract(out, offset, vectors, row);
   // writes the chosen lanes one after the other, kWidth values in all
   Lanes::pack(out, row, chosen);
-  Lanes::pack(places, at, chosen);
+  Lanes::pack(places, offset, chosen);
 };
 
 }  // namespace cordis::engine

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "sim_node/engine/core/assert.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -47,6 +49,8 @@ class Renumbering {
 }  // namespace
 
 void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, scene::Scene& scene) {
+  CORDIS_ASSERT(mats.size() == scene.network.mats.size());
+  CORDIS_ASSERT(links.size() == scene.network.links.size());
   const Renumbering of_mats(mats);
   const Renumbering of_links(links);
   engine::NetworkDescription& network = scene.network;

@@ -8,7 +8,7 @@ using engine::Vec3;
 
 constexpr double kSkin = 0.4;  // of the range
 
-Vec3 at(const double* positions, std::uint32_t mat) {
+Vec3 position_of(const double* positions, std::uint32_t mat) {
   return Vec3::Map(positions + 3 * static_cast<std::size_t>(mat));
 }
 
@@ -25,7 +25,8 @@ bool NearPairs::has_strayed(const double* positions) const {
   std::size_t m = 0;
   for (const auto* half : {&set_p_, &set_q_}) {
     for (const std::uint32_t mat : *half) {
-      if ((at(positions, mat) - seen_[m++]).squaredNorm() > 0.25 * skin_ * skin_) return true;
+      if ((position_of(positions, mat) - seen_[m++]).squaredNorm() > 0.25 * skin_ * skin_)
+        return true;
     }
   }
   return false;
@@ -34,14 +35,14 @@ bool NearPairs::has_strayed(const double* positions) const {
 void NearPairs::update(const double* positions) {
   seen_.clear();
   for (const auto* half : {&set_p_, &set_q_}) {
-    for (const std::uint32_t mat : *half) seen_.push_back(at(positions, mat));
+    for (const std::uint32_t mat : *half) seen_.push_back(position_of(positions, mat));
   }
   pairs_.clear();
   const bool within = set_q_.empty();
   const std::vector<std::uint32_t>& others = within ? set_p_ : set_q_;
   for (std::size_t a = 0; a < set_p_.size(); ++a) {
     for (std::size_t b = within ? a + 1 : 0; b < others.size(); ++b) {
-      const Vec3 along = at(positions, others[b]) - at(positions, set_p_[a]);
+      const Vec3 along = position_of(positions, others[b]) - position_of(positions, set_p_[a]);
       if (along.squaredNorm() < reach_ * reach_) pairs_.emplace_back(set_p_[a], others[b]);
     }
   }

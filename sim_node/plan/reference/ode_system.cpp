@@ -133,11 +133,11 @@ OdeSystem::Geometry OdeSystem::geometry(const Values& values, const Joined& join
 double OdeSystem::tension(const Joined& joined, const Geometry& link) const {
   const engine::LinkState& state = joined.state_machine.states[joined.present.state];
   const double elongation = link.distance - joined.present.rest_length;
-  engine::LawPoint at{link.distance, elongation, 0.0, mass(joined.mat_a), mass(joined.mat_b)};
+  engine::LawPoint point{link.distance, elongation, 0.0, mass(joined.mat_a), mass(joined.mat_b)};
   double tension = state.stiffness * elongation + state.viscosity * link.speed +
-                   elastic_tension(state.elasticity, at);
-  at.speed = link.speed;
-  tension += viscous_tension(state.dissipation, at);
+                   elastic_tension(state.elasticity, point);
+  point.speed = link.speed;
+  tension += viscous_tension(state.dissipation, point);
   if (!state.pulls) tension = std::min(tension, 0.0);
   if (!state.pushes) tension = std::max(tension, 0.0);
   return std::clamp(tension, -state.force_limit, state.force_limit);
@@ -153,35 +153,35 @@ void OdeSystem::rate(const Values& values, Values& rate) {
   static const engine::StateMachine kNone;
   static const Present kNothing;
   for (const engine::Link& link : network_.links) {
-    const Geometry at = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
+    const Geometry line = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
     if (link.isotropic) {
       const Vec3 along = position(values, link.mat_b) - position(values, link.mat_a);
-      push(link.mat_a, link.mat_b, link.stiffness * along + link.viscosity * at.velocity);
+      push(link.mat_a, link.mat_b, link.stiffness * along + link.viscosity * line.velocity);
       continue;
     }
     const double tension =
-        link.stiffness * (at.distance - link.rest_length) + link.viscosity * at.speed;
-    push(link.mat_a, link.mat_b, tension * at.direction);
+        link.stiffness * (line.distance - link.rest_length) + link.viscosity * line.speed;
+    push(link.mat_a, link.mat_b, tension * line.direction);
   }
   for (std::uint32_t l = 0; l < states_.size(); ++l) {
     const Joined link = joined(l);
-    const Geometry at = geometry(values, link);
-    push(link.mat_a, link.mat_b, tension(link, at) * at.direction);
+    const Geometry line = geometry(values, link);
+    push(link.mat_a, link.mat_b, tension(link, line) * line.direction);
   }
   for (std::uint32_t s = 0; s < sets_.size(); ++s) {
     each_pair(s, values, [&](NearPairs::Pair pair, const Present& present) {
       const Joined link = joined(s, pair, present);
-      const Geometry at = geometry(values, link);
-      push(pair.first, pair.second, tension(link, at) * at.direction);
+      const Geometry line = geometry(values, link);
+      push(pair.first, pair.second, tension(link, line) * line.direction);
       return true;
     });
   }
   for (std::size_t l = 0; l < network_.maxwell_links.size(); ++l) {
     const engine::MaxwellLink& link = network_.maxwell_links[l];
-    const Geometry at = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
+    const Geometry line = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
     const double force = values[2 * n + l];
-    push(link.mat_a, link.mat_b, force * at.direction);
-    rate[2 * n + l] = link.stiffness * (at.speed - force / link.viscosity);
+    push(link.mat_a, link.mat_b, force * line.direction);
+    rate[2 * n + l] = link.stiffness * (line.speed - force / link.viscosity);
   }
   for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
     auto acceleration = Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(i));
@@ -273,11 +273,11 @@ void OdeSystem::change(const Change& change, double time, const Values& values) 
   const std::int64_t exit_index = exit_of(link, time, values);
   if (exit_index < 0) return;
   const engine::Transition& exit = link.state_machine.exits[static_cast<std::size_t>(exit_index)];
-  const Geometry at = geometry(values, link);
+  const Geometry line = geometry(values, link);
   if (exit.rest == engine::RestRule::kExpression) {
-    present.rest_length = value_of(exit.rest_length, quantities(link, time, at));
+    present.rest_length = value_of(exit.rest_length, quantities(link, time, line));
   } else if (exit.rest == engine::RestRule::kHere) {
-    present.rest_length = at.distance;
+    present.rest_length = line.distance;
   }
   present.state = exit.target;
   present.entered = time;

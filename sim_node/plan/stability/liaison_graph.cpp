@@ -92,9 +92,9 @@ bool jumps_at_range(const engine::StateMachine& state_machine, double rest_lengt
   constexpr double kShare = 0.1;
   constexpr double kJustWithin = 1.0 - 1e-9;
   const engine::LinkState& state = state_machine.states[state_machine.start];
-  const double at = kJustWithin * range;
-  double tension = state.stiffness * (at - rest_length) +
-                   elastic_tension(state.elasticity, {at, at - rest_length});
+  const double distance = kJustWithin * range;
+  double tension = state.stiffness * (distance - rest_length) +
+                   elastic_tension(state.elasticity, {distance, distance - rest_length});
   tension = std::clamp(tension, state.pushes ? -state.force_limit : 0.0,
                        state.pulls ? state.force_limit : 0.0);
   return std::abs(tension) > kShare * largest_slope * range;

@@ -62,22 +62,22 @@ auto limit_of_all_steps(const engine::NetworkDescription& network, LimitOf limit
   constexpr int kMaxRounds = 16;
   const std::vector<double> changes = changing_steps(network);
   auto limit = limit_of(network);
-  engine::NetworkDescription at;
+  engine::NetworkDescription varied;
   double before = network.step;
   for (int round = 0; round < kMaxRounds; ++round) {
     const auto after = std::lower_bound(changes.begin(), changes.end(), step_of(limit));
     if (after == changes.begin() || !(*(after - 1) >= before)) break;
-    if (at.mats.empty()) at = network;
-    before = at.step = *(after - 1) * (1.0 + 1e-9);
-    limit = limit_of(at);
+    if (varied.mats.empty()) varied = network;
+    before = varied.step = *(after - 1) * (1.0 + 1e-9);
+    limit = limit_of(varied);
   }
   // The chord of weigh_implicit_damping depends on the step too.
   constexpr double kSettled = 1e-6;
   for (int round = 0; round < kMaxRounds && std::isfinite(step_of(limit)); ++round) {
-    if (at.mats.empty()) at = network;
-    const double reached = at.step = step_of(limit);
-    if (!engine::damps_implicitly(at)) break;
-    limit = limit_of(at);
+    if (varied.mats.empty()) varied = network;
+    const double reached = varied.step = step_of(limit);
+    if (!engine::damps_implicitly(varied)) break;
+    limit = limit_of(varied);
     if (std::abs(step_of(limit) - reached) <= kSettled * reached) break;
   }
   return limit;

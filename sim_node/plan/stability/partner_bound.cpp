@@ -81,13 +81,13 @@ Others others_of(const NetworkDescription& network, const SetLiaison& set,
 
 /// The points along one axis in reach of a place on it.
 double max_on_a_line(const std::vector<Vec3>& points, double reach) {
-  std::vector<double> at;
-  for (const Vec3& point : points) at.push_back(point.x());
-  std::sort(at.begin(), at.end());
+  std::vector<double> place;
+  for (const Vec3& point : points) place.push_back(point.x());
+  std::sort(place.begin(), place.end());
   std::size_t most = 0;
   std::size_t first = 0;
-  for (std::size_t last = 0; last < at.size(); ++last) {
-    while (at[last] - at[first] > 2.0 * reach) ++first;
+  for (std::size_t last = 0; last < place.size(); ++last) {
+    while (place[last] - place[first] > 2.0 * reach) ++first;
     most = std::max(most, last - first + 1);
   }
   return static_cast<double>(most);
@@ -168,9 +168,9 @@ double max_in_reach(const std::vector<Vec3>& points, double reach, int dimension
   if (cells.size == 0.0) return static_cast<double>(points.size());
   std::vector<std::uint32_t> count(cells.extent[0] * cells.extent[1] * cells.extent[2], 0U);
   const double square = cells.radius * cells.radius * (1.0 + kRounding);
-  const auto first_cell = [&](double at, std::size_t axis) {
+  const auto first_cell = [&](double coordinate, std::size_t axis) {
     const double cell =
-        std::floor((at - cells.radius - cells.lowest[static_cast<int>(axis)]) / cells.size);
+        std::floor((coordinate - cells.radius - cells.lowest[static_cast<int>(axis)]) / cells.size);
     return axis < static_cast<std::size_t>(dimension)
                ? static_cast<std::size_t>(std::max(cell, 0.0))
                : std::size_t{0};
@@ -190,8 +190,8 @@ double max_in_reach(const std::vector<Vec3>& points, double reach, int dimension
     for (std::size_t i = first[0]; i < last[0]; ++i) {
       for (std::size_t j = first[1]; j < last[1]; ++j) {
         for (std::size_t k = first[2]; k < last[2]; ++k) {
-          const Vec3 at(centre(i, 0), centre(j, 1), centre(k, 2));
-          Vec3 away = point - at;
+          const Vec3 centre_point(centre(i, 0), centre(j, 1), centre(k, 2));
+          Vec3 away = point - centre_point;
           for (int axis = dimension; axis < 3; ++axis) away[axis] = 0.0;
           if (away.squaredNorm() <= square) {
             ++count[(i * cells.extent[1] + j) * cells.extent[2] + k];

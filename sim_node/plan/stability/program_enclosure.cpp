@@ -175,12 +175,12 @@ class Evaluation {
     const double n = v.value.low;
     if (!is_point(v.value) || u.value.low < 0.0) return kUnknown;
     if (n == 0.0) return {{1.0, 1.0}};
-    const auto at = [&](double exponent) {
+    const auto power_of_u = [&](double exponent) {
       const double low = std::pow(u.value.low, exponent);
       const double high = std::pow(u.value.high, exponent);
       return checked(std::min(low, high), std::max(low, high));
     };
-    return chain(u, at(n), Interval{n, n} * at(n - 1.0));
+    return chain(u, power_of_u(n), Interval{n, n} * power_of_u(n - 1.0));
   }
 
   Enclosed one(const Instruction& instruction, const Enclosed& u) const {

@@ -49,14 +49,14 @@ double stretch_of(const engine::LinkState& state, double rest_length, double ene
                   double scale, double last) {
   constexpr double kGrowth = 1.05;
   constexpr double kFarthest = 1e3;
-  const auto tension = [&](double at) {
-    const double e = sign * at;
+  const auto tension = [&](double argument) {
+    const double e = sign * argument;
     return sign * (state.stiffness * e + elastic_tension(state.elasticity, {e + rest_length, e}));
   };
   double stored = 0.0;
   double before = 0.0;
-  for (double at = 1e-9 * scale; at < kFarthest * scale; at *= kGrowth) {
-    const double reached = std::min(at, last);
+  for (double argument = 1e-9 * scale; argument < kFarthest * scale; argument *= kGrowth) {
+    const double reached = std::min(argument, last);
     stored += 0.5 * (tension(before) + tension(reached)) * (reached - before);
     if (stored >= energy || reached >= last) return reached;
     before = reached;
@@ -267,8 +267,9 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_
                          double distance, double step) {
   const double elongation = distance - rest_length;
   const double nearby = 1e-6 * std::max(std::abs(distance), 1e-6);
-  const auto rise = [nearby](const auto& tension, double at) {  // of a kink, the flatter side
-    return std::min(tension(at + nearby) - tension(at), tension(at) - tension(at - nearby)) /
+  const auto rise = [nearby](const auto& tension, double argument) {  // of a kink, the flatter side
+    return std::min(tension(argument + nearby) - tension(argument),
+                    tension(argument) - tension(argument - nearby)) /
            nearby;
   };
   Tangent stiffest;

@@ -49,8 +49,8 @@ StartPairs::StartPairs(const engine::NetworkDescription& network, const engine::
   engine::AlignedVector<double> position;
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
-      const engine::Vec3& at = network.mats[mat].position;
-      position.insert(position.end(), {at.x(), at.y(), at.z(), 0.0});
+      const engine::Vec3& place = network.mats[mat].position;
+      position.insert(position.end(), {place.x(), place.y(), place.z(), 0.0});
     }
   }
   position.resize(4 * engine::padded(count_p + count_q, engine::kPairBatch), 0.0);

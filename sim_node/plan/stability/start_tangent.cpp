@@ -252,9 +252,9 @@ double StartTangent::diverging_step() const {
       kFewestIterations,
       static_cast<int>(kWork / static_cast<double>(parts_.size() + root_of_inverse_mass_.size())));
   for (int round = 0; round < kRounds; ++round) {
-    const double at = std::max(step, kNoStep);  // a Maxwell element is softer at a larger step
-    const double stiffness = dot(x, times(x, 1.0, 0.0, at));
-    const double viscosity = dot(x, times(x, 0.0, 1.0, at));
+    const double period = std::max(step, kNoStep);  // a Maxwell element is softer at a larger step
+    const double stiffness = dot(x, times(x, 1.0, 0.0, period));
+    const double viscosity = dot(x, times(x, 0.0, 1.0, period));
     const double before = step;
     step = limit_step(std::max(stiffness, 0.0), viscosity);
     const bool settled = !std::isfinite(step) || std::abs(step - before) < 0.1 * kTolerance * step;

@@ -198,8 +198,8 @@ StepBound certified_bound_at(const engine::NetworkDescription& network, LiaisonG
 }  // namespace
 
 StepBound certified_bound(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
-  return limit_of_all_steps(network, [&graph](const engine::NetworkDescription& at) {
-    return certified_bound_at(at, graph);
+  return limit_of_all_steps(network, [&graph](const engine::NetworkDescription& varied) {
+    return certified_bound_at(varied, graph);
   });
 }
 

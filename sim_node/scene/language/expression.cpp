@@ -90,7 +90,7 @@ bool is_connective(std::string_view word) {
 
 /// Thrown at the first fault of an expression.
 struct Fault {
-  std::size_t at;
+  std::size_t offset;
   std::string message;
   std::string hint;
 };
@@ -100,7 +100,7 @@ enum class Type { kNumber, kTruth };
 
 struct Operand {
   Type type;
-  std::size_t at;
+  std::size_t offset;
 };
 
 /// Recursive descent, one function per level of precedence. Each leaves its words in postfix order.
@@ -111,7 +111,7 @@ class Parser {
   Type parse() {
     const Operand whole = read_or();
     skip_blanks();
-    if (at_ < text_.size()) fail_at_rest();
+    if (offset_ < text_.size()) fail_at_rest();
     return whole.type;
   }
 
@@ -119,10 +119,10 @@ class Parser {
 
  private:
   Operand read_or() {
-    if (++level_ > kMaxLevels) throw Fault{at_, "is nested too deeply", {}};
+    if (++level_ > kMaxLevels) throw Fault{offset_, "is nested too deeply", {}};
     Operand left = read_and();
-    for (std::size_t at = at_; take_word("or", at); at = at_) {
-      left = join(left, read_and(), Operation::kOr, Type::kTruth, Type::kTruth, at);
+    for (std::size_t offset = offset_; take_word("or", offset); offset = offset_) {
+      left = join(left, read_and(), Operation::kOr, Type::kTruth, Type::kTruth, offset);
     }
     --level_;
     return left;
@@ -130,41 +130,42 @@ class Parser {
 
   Operand read_and() {
     Operand left = read_not();
-    for (std::size_t at = at_; take_word("and", at); at = at_) {
-      left = join(left, read_not(), Operation::kAnd, Type::kTruth, Type::kTruth, at);
+    for (std::size_t offset = offset_; take_word("and", offset); offset = offset_) {
+      left = join(left, read_not(), Operation::kAnd, Type::kTruth, Type::kTruth, offset);
     }
     return left;
   }
 
   Operand read_not() {
-    std::size_t at = at_;
-    if (!take_word("not", at)) return read_comparison();
-    if (++level_ > kMaxLevels) throw Fault{at, "is nested too deeply", {}};
+    std::size_t offset = offset_;
+    if (!take_word("not", offset)) return read_comparison();
+    if (++level_ > kMaxLevels) throw Fault{offset, "is nested too deeply", {}};
     const Operand operand = read_not();
     --level_;
     require(operand, Type::kTruth, "not");
-    emit(Operation::kNot, at);
-    return {Type::kTruth, at};
+    emit(Operation::kNot, offset);
+    return {Type::kTruth, offset};
   }
 
   Operand read_comparison() {
     const Operand left = read_sum();
-    std::size_t at = at_;
-    const std::optional<Operation> comparison = take_comparison(at);
+    std::size_t offset = offset_;
+    const std::optional<Operation> comparison = take_comparison(offset);
     if (!comparison) return left;
-    const Operand both = join(left, read_sum(), *comparison, Type::kNumber, Type::kTruth, at);
-    if (take_comparison(at))
-      throw Fault{at, "compares three things at once", "write a < b and b < c"};
+    const Operand both = join(left, read_sum(), *comparison, Type::kNumber, Type::kTruth, offset);
+    if (take_comparison(offset))
+      throw Fault{offset, "compares three things at once", "write a < b and b < c"};
     return both;
   }
 
   Operand read_sum() {
     Operand left = read_product();
-    for (std::size_t at = at_;; at = at_) {
-      if (take("+", at)) {
-        left = join(left, read_product(), Operation::kAdd, Type::kNumber, Type::kNumber, at);
-      } else if (take("-", at)) {
-        left = join(left, read_product(), Operation::kSubtract, Type::kNumber, Type::kNumber, at);
+    for (std::size_t offset = offset_;; offset = offset_) {
+      if (take("+", offset)) {
+        left = join(left, read_product(), Operation::kAdd, Type::kNumber, Type::kNumber, offset);
+      } else if (take("-", offset)) {
+        left =
+            join(left, read_product(), Operation::kSubtract, Type::kNumber, Type::kNumber, offset);
       } else {
         return left;
       }
@@ -173,12 +174,12 @@ class Parser {
 
   Operand read_product() {
     Operand left = read_sign();
-    for (std::size_t at = at_;; at = at_) {
+    for (std::size_t offset = offset_;; offset = offset_) {
       if (begins_with("**")) return left;  // reported as what it is by fail_at_rest
-      if (take("*", at)) {
-        left = join(left, read_sign(), Operation::kMultiply, Type::kNumber, Type::kNumber, at);
-      } else if (take("/", at)) {
-        left = join(left, read_sign(), Operation::kDivide, Type::kNumber, Type::kNumber, at);
+      if (take("*", offset)) {
+        left = join(left, read_sign(), Operation::kMultiply, Type::kNumber, Type::kNumber, offset);
+      } else if (take("/", offset)) {
+        left = join(left, read_sign(), Operation::kDivide, Type::kNumber, Type::kNumber, offset);
       } else {
         return left;
       }
@@ -186,122 +187,123 @@ class Parser {
   }
 
   Operand read_sign() {
-    std::size_t at = at_;
-    const bool minus = take("-", at);
-    if (!minus && !take("+", at)) return read_power();
-    if (++level_ > kMaxLevels) throw Fault{at, "is nested too deeply", {}};
+    std::size_t offset = offset_;
+    const bool minus = take("-", offset);
+    if (!minus && !take("+", offset)) return read_power();
+    if (++level_ > kMaxLevels) throw Fault{offset, "is nested too deeply", {}};
     const Operand operand = read_sign();
     --level_;
     require(operand, Type::kNumber, minus ? "-" : "+");
-    if (minus) emit(Operation::kNegate, at);
-    return {Type::kNumber, at};
+    if (minus) emit(Operation::kNegate, offset);
+    return {Type::kNumber, offset};
   }
 
   /// The exponent may have a sign of its own, and powers are read from the right.
   Operand read_power() {
     const Operand base = read_primary();
-    std::size_t at = at_;
-    if (!take("^", at)) return base;
-    if (++level_ > kMaxLevels) throw Fault{at, "is nested too deeply", {}};
+    std::size_t offset = offset_;
+    if (!take("^", offset)) return base;
+    if (++level_ > kMaxLevels) throw Fault{offset, "is nested too deeply", {}};
     const Operand power =
-        join(base, read_sign(), Operation::kPower, Type::kNumber, Type::kNumber, at);
+        join(base, read_sign(), Operation::kPower, Type::kNumber, Type::kNumber, offset);
     --level_;
     return power;
   }
 
   Operand read_primary() {
     skip_blanks();
-    const std::size_t at = at_;
-    if (at_ >= text_.size()) throw Fault{at, "ends where a number or a name should follow", {}};
-    if (take("(", at_)) {
+    const std::size_t offset = offset_;
+    if (offset_ >= text_.size())
+      throw Fault{offset, "ends where a number or a name should follow", {}};
+    if (take("(", offset_)) {
       const Operand inner = read_or();
-      close_bracket(at);
-      return {inner.type, at};
+      close_bracket(offset);
+      return {inner.type, offset};
     }
-    if (is_digit(text_[at_]) || text_[at_] == '.') return read_number();
-    if (!is_letter(text_[at_])) fail_at_rest();
+    if (is_digit(text_[offset_]) || text_[offset_] == '.') return read_number();
+    if (!is_letter(text_[offset_])) fail_at_rest();
     const std::string_view word = peek_word();
     if (is_connective(word))
-      throw Fault{at, "needs something before '" + std::string(word) + "'", {}};
-    at_ += word.size();
+      throw Fault{offset, "needs something before '" + std::string(word) + "'", {}};
+    offset_ += word.size();
     skip_blanks();
-    if (at_ < text_.size() && text_[at_] == '(') return read_call(word, at);
+    if (offset_ < text_.size() && text_[offset_] == '(') return read_call(word, offset);
     if (find_function(word) != nullptr)
-      throw Fault{at, "needs brackets after '" + std::string(word) + "'",
+      throw Fault{offset, "needs brackets after '" + std::string(word) + "'",
                   "write " + std::string(word) + "(...)"};
-    add({ExpressionWord::Kind::kName, 0.0, std::string(word), Operation::kAdd, at});
-    return {Type::kNumber, at};
+    add({ExpressionWord::Kind::kName, 0.0, std::string(word), Operation::kAdd, offset});
+    return {Type::kNumber, offset};
   }
 
   Operand read_number() {
     double number = 0.0;
-    const char* const start = text_.data() + at_;
-    const auto [end, failure] = std::from_chars(start, text_.data() + text_.size(), number);
-    const std::size_t at = at_;
+    const char* const begin = text_.data() + offset_;
+    const auto [end, failure] = std::from_chars(begin, text_.data() + text_.size(), number);
+    const std::size_t offset = offset_;
     if (failure != std::errc{} || !std::isfinite(number))
-      throw Fault{at, "has a number that a computer cannot hold", {}};
-    at_ += static_cast<std::size_t>(end - start);
-    if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
-      throw Fault{at_, "has something right behind a number", "to multiply, write '*'"};
-    add({ExpressionWord::Kind::kNumber, number, {}, Operation::kAdd, at});
-    return {Type::kNumber, at};
+      throw Fault{offset, "has a number that a computer cannot hold", {}};
+    offset_ += static_cast<std::size_t>(end - begin);
+    if (offset_ < text_.size() && (is_letter(text_[offset_]) || text_[offset_] == '.'))
+      throw Fault{offset_, "has something right behind a number", "to multiply, write '*'"};
+    add({ExpressionWord::Kind::kNumber, number, {}, Operation::kAdd, offset});
+    return {Type::kNumber, offset};
   }
 
-  Operand read_call(std::string_view word, std::size_t at) {
+  Operand read_call(std::string_view word, std::size_t offset) {
     const FunctionWord* const function = find_function(word);
     if (function == nullptr) {
       std::vector<std::string> words;
       for (const FunctionWord& known : kFunctions) words.emplace_back(known.word);
       std::string hint = config::did_you_mean(std::string(word), words);
       if (hint.empty()) hint = "functions:" + list_of_functions();
-      throw Fault{at, "knows no function '" + std::string(word) + "'", hint};
+      throw Fault{offset, "knows no function '" + std::string(word) + "'", hint};
     }
-    const std::size_t bracket = at_++;
-    if (function->operation == Operation::kSelect) return read_choice(bracket, at);
+    const std::size_t bracket = offset_++;
+    if (function->operation == Operation::kSelect) return read_choice(bracket, offset);
     int count = 0;
     do {
       require(read_or(), Type::kNumber, function->word);
-      if (++count > 1 && function->of_two) emit(function->operation, at);
-    } while (take(",", at_));
+      if (++count > 1 && function->of_two) emit(function->operation, offset);
+    } while (take(",", offset_));
     close_bracket(bracket);
     if (function->of_two ? count < 2 : count != 1) {
-      throw Fault{at,
+      throw Fault{offset,
                   "gives '" + std::string(word) + "' " + std::to_string(count) +
                       (count == 1 ? " value" : " values"),
                   function->of_two ? "it wants at least two" : "it wants one"};
     }
-    if (!function->of_two) emit(function->operation, at);
-    return {function->is_truth ? Type::kTruth : Type::kNumber, at};
+    if (!function->of_two) emit(function->operation, offset);
+    return {function->is_truth ? Type::kTruth : Type::kNumber, offset};
   }
 
   /// if(condition, value, other value)
-  Operand read_choice(std::size_t bracket, std::size_t at) {
+  Operand read_choice(std::size_t bracket, std::size_t offset) {
     int count = 0;
     do {
       require(read_or(), count == 0 ? Type::kTruth : Type::kNumber, "if");
       ++count;
-    } while (take(",", at_));
+    } while (take(",", offset_));
     close_bracket(bracket);
     if (count != 3)
-      throw Fault{at, "gives 'if' a wrong number of values",
+      throw Fault{offset, "gives 'if' a wrong number of values",
                   "write if(condition, value, other value)"};
-    emit(Operation::kSelect, at);
-    return {Type::kNumber, at};
+    emit(Operation::kSelect, offset);
+    return {Type::kNumber, offset};
   }
 
   Operand join(Operand left, Operand right, Operation operation, Type wanted, Type result,
-               std::size_t at) {
-    const std::size_t length = is_letter(text_[at]) ? peek_word(at).size() : 1;
-    const std::string_view sign = text_.substr(at, text_[at + length] == '=' ? 2 : length);
+               std::size_t offset) {
+    const std::size_t length = is_letter(text_[offset]) ? peek_word(offset).size() : 1;
+    const std::string_view sign = text_.substr(offset, text_[offset + length] == '=' ? 2 : length);
     require(left, wanted, sign);
     require(right, wanted, sign);
-    emit(operation, at);
-    return {result, left.at};
+    emit(operation, offset);
+    return {result, left.offset};
   }
 
   void require(Operand part, Type type, std::string_view by) {
     if (part.type == type) return;
-    throw Fault{part.at,
+    throw Fault{part.offset,
                 "gives '" + std::string(by) + "' a " +
                     (type == Type::kTruth ? "number, it wants a comparison"
                                           : "comparison, it wants a number"),
@@ -309,69 +311,71 @@ class Parser {
   }
 
   void close_bracket(std::size_t opened) {
-    if (take(")", at_)) return;
-    if (at_ < text_.size()) fail_at_rest();
+    if (take(")", offset_)) return;
+    if (offset_ < text_.size()) fail_at_rest();
     throw Fault{opened, "has a '(' that is never closed", {}};
   }
 
   /// Says what stands at the present place and has no business there.
   [[noreturn]] void fail_at_rest() {
     for (const auto& [sign, hint] : kForeign) {
-      if (begins_with(sign)) throw Fault{at_, "has a '" + std::string(sign) + "'", hint};
+      if (begins_with(sign)) throw Fault{offset_, "has a '" + std::string(sign) + "'", hint};
     }
     std::size_t length = 1;
-    if (is_letter(text_[at_])) length = peek_word().size();
-    while (at_ + length < text_.size() &&
-           (static_cast<unsigned char>(text_[at_ + length]) & 0xc0) == 0x80)
+    if (is_letter(text_[offset_])) length = peek_word().size();
+    while (offset_ + length < text_.size() &&
+           (static_cast<unsigned char>(text_[offset_ + length]) & 0xc0) == 0x80)
       ++length;
-    throw Fault{at_, "does not expect '" + std::string(text_.substr(at_, length)) + "' here", {}};
+    throw Fault{
+        offset_, "does not expect '" + std::string(text_.substr(offset_, length)) + "' here", {}};
   }
 
-  void emit(Operation operation, std::size_t at) {
-    add({ExpressionWord::Kind::kOperation, 0.0, {}, operation, at});
+  void emit(Operation operation, std::size_t offset) {
+    add({ExpressionWord::Kind::kOperation, 0.0, {}, operation, offset});
   }
   void add(ExpressionWord word) {
-    if (words_.size() >= kMaxWords) throw Fault{word.at, "has more than 1000 words", {}};
+    if (words_.size() >= kMaxWords) throw Fault{word.offset, "has more than 1000 words", {}};
     words_.push_back(std::move(word));
   }
 
   void skip_blanks() {
-    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n'))
-      ++at_;
+    while (offset_ < text_.size() &&
+           (text_[offset_] == ' ' || text_[offset_] == '\t' || text_[offset_] == '\n'))
+      ++offset_;
   }
   bool begins_with(std::string_view sign) {
     skip_blanks();
-    return text_.substr(at_).starts_with(sign);
+    return text_.substr(offset_).starts_with(sign);
   }
-  std::string_view peek_word() const { return peek_word(at_); }
+  std::string_view peek_word() const { return peek_word(offset_); }
   std::string_view peek_word(std::size_t from) const {
     std::size_t end = from;
     while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
     return text_.substr(from, end - from);
   }
-  /// Takes the sign when it comes next. @param at  becomes its place.
-  bool take(std::string_view sign, std::size_t& at) {
+  /// Takes the sign when it comes next. @param offset  becomes its place.
+  bool take(std::string_view sign, std::size_t& offset) {
     if (!begins_with(sign)) return false;
-    at = at_;
-    at_ += sign.size();
+    offset = offset_;
+    offset_ += sign.size();
     return true;
   }
-  bool take_word(std::string_view word, std::size_t& at) {
+  bool take_word(std::string_view word, std::size_t& offset) {
     skip_blanks();
     if (peek_word() != word) return false;
-    at = at_;
-    at_ += word.size();
+    offset = offset_;
+    offset_ += word.size();
     return true;
   }
-  std::optional<Operation> take_comparison(std::size_t& at) {
+  std::optional<Operation> take_comparison(std::size_t& offset) {
     for (const auto& [sign, operation] : kComparisons) {
-      if (take(sign, at)) return operation;
+      if (take(sign, offset)) return operation;
     }
     return std::nullopt;
   }
 
   std::string_view text_;
-  std::size_t at_ = 0;
+  std::size_t offset_ = 0;
   int level_ = 0;
   std::vector<ExpressionWord> words_;
 };
@@ -392,7 +396,7 @@ std::optional<Expression> parse_expression(const Value& text, const std::string&
     expression.words = parser.take_words();
     return expression;
   } catch (const Fault& fault) {
-    problems.error(text.place_in_text(fault.at), what + " " + fault.message, fault.hint);
+    problems.error(text.place_in_text(fault.offset), what + " " + fault.message, fault.hint);
     return std::nullopt;
   }
 }

@@ -18,7 +18,7 @@ struct ExpressionWord {
   double number = 0.0;
   std::string name;
   engine::Operation operation = engine::Operation::kAdd;
-  std::size_t at = 0;  ///< byte in the text
+  std::size_t offset = 0;  ///< byte in the text
 };
 
 /// An expression in postfix order. What its names stand for is not known here.
@@ -27,7 +27,9 @@ struct Expression {
   std::vector<ExpressionWord> words;
   bool is_truth = false;  ///< a comparison or a connection of comparisons, not a number
 
-  config::Place place_of(const ExpressionWord& word) const { return text.place_in_text(word.at); }
+  config::Place place_of(const ExpressionWord& word) const {
+    return text.place_in_text(word.offset);
+  }
 };
 
 /// Parses

@@ -188,7 +188,7 @@ std::optional<double> evaluate(const Value& value, const std::string& what,
 /// Puts parameters to values, each after those it names.
 struct ParameterValues::Evaluation {
   const Value& section;
-  const std::map<std::string, double>& given;
+  const std::map<std::string, double>& overrides;
   const std::string& what;
   Problems& problems;
   ParameterValues& result;
@@ -197,7 +197,7 @@ struct ParameterValues::Evaluation {
   void put(const Value::Entry& entry) {
     if (result.values_.count(entry.key) != 0) return;
     const std::string name = "parameter '" + entry.key + "' of " + what;
-    if (const auto known = given.find(entry.key); known != given.end()) {
+    if (const auto known = overrides.find(entry.key); known != overrides.end()) {
       result.values_[entry.key] = known->second;
       return;
     }
@@ -249,7 +249,8 @@ struct ParameterValues::Evaluation {
   }
 };
 
-ParameterValues::ParameterValues(const Value& section, const std::map<std::string, double>& given,
+ParameterValues::ParameterValues(const Value& section,
+                                 const std::map<std::string, double>& overrides,
                                  const ParameterValues* outer, const std::string& what,
                                  Problems& problems)
     : outer_(outer) {
@@ -268,7 +269,7 @@ ParameterValues::ParameterValues(const Value& section, const std::map<std::strin
                      find_quantity(entry.key) != nullptr ? "it is a quantity of the link" : "");
     }
   }
-  Evaluation evaluation{section, given, what, problems, *this};
+  Evaluation evaluation{section, overrides, what, problems, *this};
   for (const Value::Entry& entry : section.entries()) evaluation.put(entry);
   for (const Value::Entry& entry : section.entries()) names_.push_back(entry.key);
 }

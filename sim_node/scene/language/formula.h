@@ -17,11 +17,11 @@ namespace cordis::scene {
 class ParameterValues {
  public:
   ParameterValues() = default;
-  /// @param section  the mapping `parameters` of the liaison; need not exist
-  /// @param given    values that stand for those of the section
-  /// @param outer    parameters that formulas may name besides; nullptr when there are none
-  /// @param what     names the liaison in messages
-  ParameterValues(const config::Value& section, const std::map<std::string, double>& given,
+  /// @param section    the mapping `parameters` of the liaison; need not exist
+  /// @param overrides  values that stand for those of the section
+  /// @param outer      parameters that formulas may name besides; nullptr when there are none
+  /// @param what       names the liaison in messages
+  ParameterValues(const config::Value& section, const std::map<std::string, double>& overrides,
                   const ParameterValues* outer, const std::string& what,
                   config::Problems& problems);
 

@@ -24,7 +24,7 @@ constexpr std::size_t kWordsTried = 200'000;  // of conditions in all tries of o
 constexpr int kDrawsOfATry = 16;              // of a link before and after it
 constexpr int kHalvings = 40;                 // of the way between them
 
-double& at(Quantities& quantities, engine::Quantity quantity) {
+double& value_in(Quantities& quantities, engine::Quantity quantity) {
   return quantities[static_cast<std::size_t>(quantity)];
 }
 
@@ -107,9 +107,10 @@ class Entries {
     for (const engine::Quantity quantity :
          {engine::Quantity::kSpeed, engine::Quantity::kSpeedX, engine::Quantity::kSpeedY,
           engine::Quantity::kSpeedZ, engine::Quantity::kSlip}) {
-      if (engine::asks_for(when, quantity)) at(drawn, quantity) = size() * dice_.between(-2.0, 2.0);
+      if (engine::asks_for(when, quantity))
+        value_in(drawn, quantity) = size() * dice_.between(-2.0, 2.0);
     }
-    at(drawn, engine::Quantity::kSlip) = std::abs(at(drawn, engine::Quantity::kSlip));
+    value_in(drawn, engine::Quantity::kSlip) = std::abs(value_in(drawn, engine::Quantity::kSlip));
     double elongation = size() * dice_.between(-2.0, 2.0);
     double force = size() * dice_.between(-2.0, 2.0);
     if (is_linear(from) && !engine::asks_for(when, engine::Quantity::kForce))
@@ -117,30 +118,33 @@ class Entries {
     const bool of_force = engine::asks_for(when, engine::Quantity::kForce) &&
                           !engine::asks_for(when, engine::Quantity::kElongation);
     if (is_linear(from) && of_force && from.stiffness > 0.0) elongation = force / from.stiffness;
-    at(drawn, engine::Quantity::kForce) = force;
-    at(drawn, engine::Quantity::kElongation) = elongation;
-    at(drawn, engine::Quantity::kRestLength) = size() * dice_.between(0.0, 2.0);
-    at(drawn, engine::Quantity::kDistance) = at(drawn, engine::Quantity::kRestLength) + elongation;
-    at(drawn, engine::Quantity::kImpulse) = size() * dice_.between(-2.0, 2.0);
-    at(drawn, engine::Quantity::kAge) = size() * dice_.between(0.0, 2.0);
-    at(drawn, engine::Quantity::kMassA) = size() * dice_.between(0.0, 2.0);
-    at(drawn, engine::Quantity::kMassB) = size() * dice_.between(0.0, 2.0);
+    value_in(drawn, engine::Quantity::kForce) = force;
+    value_in(drawn, engine::Quantity::kElongation) = elongation;
+    value_in(drawn, engine::Quantity::kRestLength) = size() * dice_.between(0.0, 2.0);
+    value_in(drawn, engine::Quantity::kDistance) =
+        value_in(drawn, engine::Quantity::kRestLength) + elongation;
+    value_in(drawn, engine::Quantity::kImpulse) = size() * dice_.between(-2.0, 2.0);
+    value_in(drawn, engine::Quantity::kAge) = size() * dice_.between(0.0, 2.0);
+    value_in(drawn, engine::Quantity::kMassA) = size() * dice_.between(0.0, 2.0);
+    value_in(drawn, engine::Quantity::kMassB) = size() * dice_.between(0.0, 2.0);
     return drawn;
   }
 
   Quantities entered(Quantities link, const Transition& exit) const {
-    const double distance = at(link, engine::Quantity::kDistance);
-    if (exit.rest == engine::RestRule::kHere) at(link, engine::Quantity::kRestLength) = distance;
+    const double distance = value_in(link, engine::Quantity::kDistance);
+    if (exit.rest == engine::RestRule::kHere)
+      value_in(link, engine::Quantity::kRestLength) = distance;
     if (exit.rest == engine::RestRule::kExpression)
-      at(link, engine::Quantity::kRestLength) = value_of(exit.rest_length, link);
+      value_in(link, engine::Quantity::kRestLength) = value_of(exit.rest_length, link);
     if (exit.rest != engine::RestRule::kKeep)
-      at(link, engine::Quantity::kElongation) = distance - at(link, engine::Quantity::kRestLength);
-    at(link, engine::Quantity::kAge) = 0.0;
-    at(link, engine::Quantity::kImpulse) = 0.0;
+      value_in(link, engine::Quantity::kElongation) =
+          distance - value_in(link, engine::Quantity::kRestLength);
+    value_in(link, engine::Quantity::kAge) = 0.0;
+    value_in(link, engine::Quantity::kImpulse) = 0.0;
     const LinkState& state = state_machine_.states[exit.target];
     if (is_linear(state))
-      at(link, engine::Quantity::kForce) =
-          tension_of(state, at(link, engine::Quantity::kElongation));
+      value_in(link, engine::Quantity::kForce) =
+          tension_of(state, value_in(link, engine::Quantity::kElongation));
     return link;
   }
 
@@ -204,8 +208,9 @@ void diagnose(const StateMachine& state_machine, const StateMachinePlaces& place
     for (std::uint32_t e = from.first_exit; e < from.last_exit; ++e) {
       const Transition& entry = state_machine.exits[e];
       const std::vector<Quantities> links = entries.through(from, entry);
-      const LinkState& to = state_machine.states[entry.target];
-      for (std::uint32_t next = to.first_exit; next < to.last_exit && !links.empty(); ++next) {
+      const LinkState& next_state = state_machine.states[entry.target];
+      for (std::uint32_t next = next_state.first_exit;
+           next < next_state.last_exit && !links.empty(); ++next) {
         const Transition& exit = state_machine.exits[next];
         const bool holds = std::all_of(links.begin(), links.end(), [&](const Quantities& link) {
           return value_of(exit.when, link) != 0.0;
@@ -213,7 +218,7 @@ void diagnose(const StateMachine& state_machine, const StateMachinePlaces& place
         if (!holds || !open[next]) continue;
         problems.warning(
             places.exits[next],
-            "this exit of state '" + to.name + "' of " + what +
+            "this exit of state '" + next_state.name + "' of " + what +
                 " holds already when the state is entered from '" + from.name +
                 "' by ends that move slowly: the link would change again in the next step, and "
                 "what comes of it would depend on the length of a step",

@@ -44,10 +44,10 @@ std::string kind_by_keys(const Value& definition) {
   return looks_like_state_machine(definition) ? "state_machine" : "";
 }
 
-/// The definition with given values in the place of those of its plain keys.
-Value with_given(const Value& definition, const GivenParameters& given) {
+/// The definition with overrides in the place of its plain keys.
+Value with_overrides(const Value& definition, const ParameterOverrides& overrides) {
   Value changed = definition;
-  for (const auto& [name, number] : given) {
+  for (const auto& [name, number] : overrides) {
     if (definition.find("parameters").find(name).exists()) continue;
     changed = config::with_value_at(
         changed, {name}, Value::scalar(config::number_text(number), definition.find(name).place()));
@@ -66,10 +66,10 @@ class LiaisonReader {
         with_diagnostics_(with_diagnostics),
         problems_(problems) {}
 
-  LinkLaw read(const Value& written, const std::string& what, const GivenParameters& given,
+  LinkLaw read(const Value& written, const std::string& what, const ParameterOverrides& overrides,
                const ParameterValues* outer) {
     LinkLaw law;
-    const Value definition = with_given(written, given);
+    const Value definition = with_overrides(written, overrides);
     MappingReader reader(definition, what, problems_);
     std::string kind = kind_by_keys(definition);
     if (kind.empty() || reader.has("kind")) {
@@ -81,7 +81,7 @@ class LiaisonReader {
     if (!reader.ok()) return law;
 
     const std::size_t errors_before = problems_.error_count();
-    const ParameterValues parameters(reader.optional_value("parameters"), given, outer, what,
+    const ParameterValues parameters(reader.optional_value("parameters"), overrides, outer, what,
                                      problems_);
     if (problems_.error_count() != errors_before) return law;
     if (kind == "parallel") {
@@ -262,11 +262,11 @@ class LiaisonReader {
 }  // namespace
 
 std::optional<LinkLaw> read_liaison(const Value& definition, const std::string& name,
-                                    const GivenParameters& given, const Liaisons& liaisons,
+                                    const ParameterOverrides& overrides, const Liaisons& liaisons,
                                     int space, bool with_diagnostics, Problems& problems) {
   const std::size_t errors_before = problems.error_count();
   LiaisonReader reader(liaisons, {name}, space, with_diagnostics, problems);
-  LinkLaw law = reader.read(definition, "liaison '" + name + "'", given, nullptr);
+  LinkLaw law = reader.read(definition, "liaison '" + name + "'", overrides, nullptr);
   if (problems.error_count() != errors_before) return std::nullopt;
   return law;
 }

@@ -13,12 +13,12 @@ namespace cordis::scene {
 /// Reads what a liaison is.
 /// @param definition  its mapping, complete
 /// @param name        of the liaison
-/// @param given       values that replace those of the definition: of `parameters`, and of the
+/// @param overrides   values that replace those of the definition: of `parameters`, and of the
 ///                    plain keys that parameters_of() lists
 /// @param space       of the scene
 /// @param with_diagnostics  whether things that may be meant so are warned of
 std::optional<LinkLaw> read_liaison(const config::Value& definition, const std::string& name,
-                                    const GivenParameters& given, const Liaisons& liaisons,
+                                    const ParameterOverrides& overrides, const Liaisons& liaisons,
                                     int space, bool with_diagnostics, config::Problems& problems);
 
 /// The words that a link may give values to: the parameters of the liaison, and those of its plain

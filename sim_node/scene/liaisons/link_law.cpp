@@ -98,26 +98,26 @@ void refuse_foreign_parameters(MappingReader& reader, const Value& definition,
 }
 
 /// Values that the use gives to parameters of the liaison.
-GivenParameters read_given(MappingReader& reader, const std::vector<std::string>& words) {
-  GivenParameters given;
+ParameterOverrides read_overrides(MappingReader& reader, const std::vector<std::string>& words) {
+  ParameterOverrides overrides;
   for (const std::string& word : words) {
     const bool has_range = word == kStiffness || word == kViscosity;
     reader.optional_value(word);
     if (!reader.has(word)) continue;
-    given[word] = reader.required_number(word, has_range ? Range::not_negative() : Range{});
+    overrides[word] = reader.required_number(word, has_range ? Range::not_negative() : Range{});
   }
-  return given;
+  return overrides;
 }
 
 /// Gives the states of a law their place in the network.
-void place_state_machines(const Use& use, const std::string& liaison, const GivenParameters& given,
-                          LinkLaw& law) {
+void place_state_machines(const Use& use, const std::string& liaison,
+                          const ParameterOverrides& overrides, LinkLaw& law) {
   const auto put = [&](LinkLaw& part) {
     part.liaison = liaison;
-    part.given = given;
+    part.overrides = overrides;
     if (part.kind != LinkKind::kState) return;
-    part.state_machine_index =
-        use.liaisons.pool().index_of({liaison, given, part.part, use.owner}, *part.state_machine);
+    part.state_machine_index = use.liaisons.pool().index_of(
+        {liaison, overrides, part.part, use.owner}, *part.state_machine);
   };
   put(law);
   for (LinkLaw& part : law.beside) put(part);
@@ -127,14 +127,14 @@ std::optional<LinkLaw> law_of_liaison(const Use& use, const Value& name, const L
   MappingReader& reader = use.reader;
   const std::vector<std::string> words = parameters_of(liaison.definition);
   refuse_foreign_parameters(reader, liaison.definition, words);
-  const GivenParameters given = read_given(reader, words);
+  const ParameterOverrides overrides = read_overrides(reader, words);
   LinkLaw law = liaison.law;
-  if (!given.empty() && reader.ok()) {
+  if (!overrides.empty() && reader.ok()) {
     Problems scratch;
-    std::optional<LinkLaw> changed = read_liaison(liaison.definition, name.text(), given,
+    std::optional<LinkLaw> changed = read_liaison(liaison.definition, name.text(), overrides,
                                                   use.liaisons, use.space, false, scratch);
     if (!changed) {
-      reader.error_at(given.begin()->first,
+      reader.error_at(overrides.begin()->first,
                       "the liaison '" + name.text() +
                           "' cannot have these parameters: " + scratch.all().front().message);
       return std::nullopt;
@@ -143,7 +143,7 @@ std::optional<LinkLaw> law_of_liaison(const Use& use, const Value& name, const L
   }
   read_rest(use, law);
   if (use.place == LawPlace::kMatter) read_tension(reader, law);
-  if (reader.ok()) place_state_machines(use, name.text(), given, law);
+  if (reader.ok()) place_state_machines(use, name.text(), overrides, law);
   return law;
 }
 
@@ -160,8 +160,8 @@ std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law)
 }
 
 bool StateMachinePool::Origin::operator<(const Origin& other) const {
-  return std::tie(liaison, given, part, owner) <
-         std::tie(other.liaison, other.given, other.part, other.owner);
+  return std::tie(liaison, overrides, part, owner) <
+         std::tie(other.liaison, other.overrides, other.part, other.owner);
 }
 
 std::uint32_t StateMachinePool::index_of(const Origin& origin,

@@ -31,7 +31,7 @@ struct Reach {
 };
 
 /// Values that a link gives to parameters of its liaison.
-using GivenParameters = std::map<std::string, double>;
+using ParameterOverrides = std::map<std::string, double>;
 
 /// A liaison with its parameters put to values: what one link of it consists of.
 struct LinkLaw {
@@ -47,7 +47,7 @@ struct LinkLaw {
   Reach reach;                            ///< of kState
   std::string part;                       ///< its name in a parallel liaison, else empty
   std::string liaison;                    ///< the name of that it was made from, or empty
-  GivenParameters given;                  ///< what the link gave to it
+  ParameterOverrides overrides;           ///< what the link gave to it
   std::vector<LinkLaw> beside;            ///< the others of a parallel liaison
 };
 
@@ -64,7 +64,7 @@ class StateMachinePool {
   /// Where a state machine of the pool comes from.
   struct Origin {
     std::string liaison;
-    GivenParameters given;
+    ParameterOverrides overrides;
     std::string part;   ///< of a parallel liaison
     std::string owner;  ///< the named links it belongs to alone, or empty
     bool operator<(const Origin& other) const;

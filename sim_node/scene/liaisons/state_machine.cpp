@@ -68,8 +68,8 @@ void read_rest(config::MappingReader& reader, const ExitSource& source, Transiti
 Transition read_exit(config::MappingReader& reader, const ExitSource& source,
                      std::uint32_t& next_slot) {
   Transition exit;
-  const std::string to = reader.required_choice("to", source.states);
-  const auto target = std::find(source.states.begin(), source.states.end(), to);
+  const std::string target_name = reader.required_choice("to", source.states);
+  const auto target = std::find(source.states.begin(), source.states.end(), target_name);
   exit.target = static_cast<std::uint32_t>(target - source.states.begin());
   const Value when = reader.required_value("when");
   const std::string what = "'when' in " + reader.what();

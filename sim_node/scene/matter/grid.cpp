@@ -64,8 +64,8 @@ void place_grid(GeneratedMatter& matter, const GridShape& shape, const PointSpec
       if (border == "fixed" && (on_row_end || on_column_end)) fix(matter.mats.back());
       if (border == "corners" && on_row_end && on_column_end) fix(matter.mats.back());
       if (space == 1) {
-        matter.layout.push_back({shape.layout.at.x + c * shape.layout.spacing,
-                                 shape.layout.at.z + r * shape.layout.spacing});
+        matter.layout.push_back({shape.layout.origin.x + c * shape.layout.spacing,
+                                 shape.layout.origin.z + r * shape.layout.spacing});
       }
     }
   }

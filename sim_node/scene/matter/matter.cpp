@@ -64,8 +64,8 @@ bool check_space(config::MappingReader& reader, const MatterKind& kind, int spac
 
 Layout read_layout(config::MappingReader& reader) {
   Layout layout;
-  const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
-  layout.at = {at[0], at[1]};
+  const std::vector<double> place = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
+  layout.origin = {place[0], place[1]};
   layout.spacing =
       reader.optional_number("layout_spacing_m", layout.spacing, {0.0, kFarthest, true});
   return layout;

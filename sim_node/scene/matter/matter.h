@@ -17,7 +17,7 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
 
 /// Where the MATs of a 1-D scene are shown: `layout_at_m` [x, z] and `layout_spacing_m`.
 struct Layout {
-  LayoutPoint at;
+  LayoutPoint origin;
   double spacing = 0.02;  ///< [m]
 };
 Layout read_layout(config::MappingReader& reader);

@@ -81,10 +81,13 @@ class Cells {
   /// Visits every ball of the cells around a point.
   template <class Visit>
   void around(const Vec3& point, Visit visit) const {
-    const std::array<int, 3> at = place(point);
-    for (int k = std::max(at[2] - 1, 0); k <= std::min(at[2] + 1, counts_[2] - 1); ++k) {
-      for (int j = std::max(at[1] - 1, 0); j <= std::min(at[1] + 1, counts_[1] - 1); ++j) {
-        for (int i = std::max(at[0] - 1, 0); i <= std::min(at[0] + 1, counts_[0] - 1); ++i) {
+    const std::array<int, 3> centre_cell = place(point);
+    for (int k = std::max(centre_cell[2] - 1, 0); k <= std::min(centre_cell[2] + 1, counts_[2] - 1);
+         ++k) {
+      for (int j = std::max(centre_cell[1] - 1, 0);
+           j <= std::min(centre_cell[1] + 1, counts_[1] - 1); ++j) {
+        for (int i = std::max(centre_cell[0] - 1, 0);
+             i <= std::min(centre_cell[0] + 1, counts_[0] - 1); ++i) {
           const std::size_t here = cell({i, j, k});
           for (std::uint32_t m = first_[here]; m < first_[here + 1]; ++m) visit(members_[m]);
         }
@@ -94,19 +97,19 @@ class Cells {
 
  private:
   std::array<int, 3> place(const Vec3& point) const {
-    std::array<int, 3> at{};
+    std::array<int, 3> place{};
     for (int axis = 0; axis < 3; ++axis) {
       const int along = static_cast<int>((point[axis] - lowest_[axis]) / width_);
       const auto a = static_cast<std::size_t>(axis);
-      at[a] = std::clamp(along, 0, counts_[a] - 1);
+      place[a] = std::clamp(along, 0, counts_[a] - 1);
     }
-    return at;
+    return place;
   }
-  std::size_t cell(const std::array<int, 3>& at) const {
-    return (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(counts_[1]) +
-            static_cast<std::size_t>(at[1])) *
+  std::size_t cell(const std::array<int, 3>& place) const {
+    return (static_cast<std::size_t>(place[2]) * static_cast<std::size_t>(counts_[1]) +
+            static_cast<std::size_t>(place[1])) *
                static_cast<std::size_t>(counts_[0]) +
-           static_cast<std::size_t>(at[0]);
+           static_cast<std::size_t>(place[0]);
   }
 
   Vec3 lowest_;

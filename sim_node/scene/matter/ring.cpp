@@ -32,7 +32,8 @@ GeneratedMatter read_ring(Source& source) {
     const double y = std::sin(angle);
     add_mass(matter, spec, flat ? center : center + radius * (x * plane.across + y * plane.along));
     if (flat)
-      matter.layout.push_back({layout.at.x + layout_radius * x, layout.at.z + layout_radius * y});
+      matter.layout.push_back(
+          {layout.origin.x + layout_radius * x, layout.origin.z + layout_radius * y});
     edges.emplace_back(i, static_cast<std::uint32_t>((i + 1) % count));
   }
   join_all(source, matter, *law, edges);

@@ -95,7 +95,7 @@ std::vector<LayoutPoint> row_layout(Source& source, std::size_t count) {
   if (source.space != 1) return points;
   const Layout layout = read_layout(source.reader);
   for (std::size_t i = 0; i < count; ++i) {
-    points.push_back({layout.at.x + static_cast<double>(i) * layout.spacing, layout.at.z});
+    points.push_back({layout.origin.x + static_cast<double>(i) * layout.spacing, layout.origin.z});
   }
   return points;
 }

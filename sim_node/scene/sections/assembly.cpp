@@ -59,7 +59,7 @@ void Assembly::add_group(const std::string& name, LinkKind kind, const LinkCount
   if (law != nullptr) {
     group.liaison = law->liaison;
     group.part = law->part;
-    group.given = law->given;
+    group.overrides = law->overrides;
   }
   scene.link_groups.push_back(std::move(group));
 }

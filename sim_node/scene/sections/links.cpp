@@ -42,24 +42,24 @@ void warn_of_coincident_ends(Assembly& assembly, const LinkLists& added,
 
 /// Adds the links between two selections: one to one, or one to many. @return false after a
 /// problem.
-bool join(Assembly& assembly, const Selection& from, const Selection& to, const LinkLaw& law,
+bool join(Assembly& assembly, const Selection& left, const Selection& right, const LinkLaw& law,
           const config::Place& place) {
-  if (from.count() != to.count() && from.count() != 1 && to.count() != 1) {
-    assembly.problems.error(
-        place,
-        std::to_string(from.count()) + " MATs cannot be joined with " + std::to_string(to.count()),
-        "join equally many, or one with many");
+  if (left.count() != right.count() && left.count() != 1 && right.count() != 1) {
+    assembly.problems.error(place,
+                            std::to_string(left.count()) + " MATs cannot be joined with " +
+                                std::to_string(right.count()),
+                            "join equally many, or one with many");
     return false;
   }
-  const std::uint32_t count = std::max(from.count(), to.count());
+  const std::uint32_t count = std::max(left.count(), right.count());
   if (sum(assembly.link_counts()) + count > kMaxLinks) {
     assembly.refuse_more(place, "the scene has more than " + std::to_string(kMaxLinks) + " links");
     return false;
   }
   LinkLists added;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t a = from.indices[from.count() == 1 ? 0 : i];
-    const std::uint32_t b = to.indices[to.count() == 1 ? 0 : i];
+    const std::uint32_t a = left.indices[left.count() == 1 ? 0 : i];
+    const std::uint32_t b = right.indices[right.count() == 1 ? 0 : i];
     if (a == b) {
       assembly.problems.error(
           place, "the link joins '" + assembly.names.word_of(a, false) + "' to itself");

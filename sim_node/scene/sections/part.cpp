@@ -116,12 +116,12 @@ const Part* Parts::find(const Value& name) const {
   return nullptr;
 }
 
-std::optional<PartBody> Parts::body(const Part& part, const Value& given,
+std::optional<PartBody> Parts::body(const Part& part, const Value& overrides,
                                     const config::Place& use_place) {
   const std::size_t errors_before = problems_.error_count();
   Substitution substitution(part, problems_);
   for (const Value::Entry& parameter : part.parameters.entries()) {
-    const Value use = given.find(parameter.key);
+    const Value use = overrides.find(parameter.key);
     // a default may be made of the parameters before it
     const Value value = use.exists() ? use : substitution(parameter.value);
     if (value.kind() == Value::Kind::kNothing) {
@@ -130,7 +130,7 @@ std::optional<PartBody> Parts::body(const Part& part, const Value& given,
     }
     substitution.set(parameter.key, value);
   }
-  for (const Value::Entry& entry : given.entries()) {
+  for (const Value::Entry& entry : overrides.entries()) {
     if (part.parameters.find(entry.key).exists()) continue;
     problems_.error(entry.key_place,
                     "part '" + part.name + "' has no parameter '" + entry.key + "'",

@@ -44,9 +44,9 @@ class Parts {
   const Part* find(const config::Value& name) const;
 
   /// The matter and links of a part with values for its parameters. Nothing after a problem.
-  /// @param given  a mapping of parameters to values; need not exist
-  /// @param use    where the part is used
-  std::optional<PartBody> body(const Part& part, const config::Value& given,
+  /// @param overrides  a mapping of parameters to values; need not exist
+  /// @param use        where the part is used
+  std::optional<PartBody> body(const Part& part, const config::Value& overrides,
                                const config::Place& use);
 
   /// How many values all bodies had together.

@@ -40,7 +40,7 @@ std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
   const Value name = reader.required_value("part");
   use.part = assembly.parts.find(name);
   use.placement = read_placement(reader, assembly.scene.space(), assembly.problems);
-  const Value given = reader.optional_mapping("parameters");
+  const Value overrides = reader.optional_mapping("parameters");
   const Value repeat = reader.optional_mapping("repeat");
   reader.finish();
   if (repeat.exists()) {
@@ -57,7 +57,7 @@ std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
                                            " levels within each other");
     return std::nullopt;
   }
-  const std::optional<PartBody> body = assembly.parts.body(*use.part, given, entry.key_place);
+  const std::optional<PartBody> body = assembly.parts.body(*use.part, overrides, entry.key_place);
   if (body && assembly.parts.value_count() > kMaxPartValues) {
     assembly.refuse_more(entry.key_place, "the parts of the scene put more than " +
                                               std::to_string(kMaxPartValues) + " values into it");

@@ -145,8 +145,8 @@ GeneratedMatter port_matter(config::MappingReader& reader, const Port& port, dou
   matter.radius_m.push_back(radius);
   read_drawing(reader, matter);
   if (space == 1) {
-    const std::vector<double> at = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
-    matter.layout.push_back({at[0], at[1]});
+    const std::vector<double> place = reader.optional_numbers("layout_at_m", {0.0, 0.0}, 2);
+    matter.layout.push_back({place[0], place[1]});
   }
   return matter;
 }

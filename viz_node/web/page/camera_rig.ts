@@ -181,8 +181,8 @@ export class CameraRig {
     this.camera.updateMatrixWorld();
     const ends = [box.min, box.max];
     for (let corner = 0; corner < 8; ++corner) {
-      const at = new THREE.Vector3(ends[corner & 1]!.x, ends[(corner >> 1) & 1]!.y, ends[corner >> 2]!.z).project(this.camera);
-      if (Math.abs(at.x) > 1 || Math.abs(at.y) > 1) return false;
+      const point = new THREE.Vector3(ends[corner & 1]!.x, ends[(corner >> 1) & 1]!.y, ends[corner >> 2]!.z).project(this.camera);
+      if (Math.abs(point.x) > 1 || Math.abs(point.y) > 1) return false;
     }
     return true;
   }

@@ -36,8 +36,8 @@ export class Ground {
       points.push(...from, ...to);
       colours.push(...colour, ...colour);
     };
-    const colourOf = (at: number) => {
-      const index = Math.round(at / cell);
+    const colourOf = (coordinate: number) => {
+      const index = Math.round(coordinate / cell);
       return index === 0 ? AXIS : index % 5 === 0 ? COARSE : FINE;
     };
     // Fine lines first: coarse ones are drawn over them.

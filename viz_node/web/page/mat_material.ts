@@ -74,9 +74,9 @@ const MAT_FRAGMENT = /* glsl */ `
   }
 
   void main() {
-    vec2 at = (gl_PointCoord * 2.0 - 1.0) * vec2(1.0, -1.0) * MARGIN;
+    vec2 point = (gl_PointCoord * 2.0 - 1.0) * vec2(1.0, -1.0) * MARGIN;
     if (shape == 1) {
-      float edge = max(abs(at.x), abs(at.y));
+      float edge = max(abs(point.x), abs(point.y));
       if (edge > 1.0) discard;
       pixel = vec4(edge > 0.62 ? colour : colour * 0.35, 1.0);
     #ifdef SPHERES
@@ -85,8 +85,8 @@ const MAT_FRAGMENT = /* glsl */ `
       return;
     }
     if (shape == 2) {
-      at *= 1.9;
-      float away = length(at);
+      point *= 1.9;
+      float away = length(point);
       if (away > 1.9) discard;
       if (away > 1.0) {
         if (away < 1.5) discard;
@@ -100,7 +100,7 @@ const MAT_FRAGMENT = /* glsl */ `
     #ifdef SPHERES
       // From the camera through the pixel to the sphere; its distance from the axis of the ray by subtraction of vectors,
       // which stays exact for small spheres far away.
-      vec3 on_plane = centre + vec3(at * size, 0.0);
+      vec3 on_plane = centre + vec3(point * size, 0.0);
       vec3 along = orthographic ? vec3(0.0, 0.0, -1.0) : normalize(on_plane);
       vec3 from = orthographic ? vec3(on_plane.xy, 0.0) : vec3(0.0);
       float reach = dot(centre - from, along);

@@ -207,7 +207,7 @@ export function decodeBinary(buffer: ArrayBuffer): Frame | Signals | Topology | 
   }
 }
 
-const u64 = (view: DataView, at: number) => Number(view.getBigUint64(at, true));
+const u64 = (view: DataView, offset: number) => Number(view.getBigUint64(offset, true));
 
 function checkLength(view: DataView, expected: number): void {
   if (view.byteLength !== expected) throw new Error(`message of ${view.byteLength} bytes, expected ${expected}`);

@@ -177,9 +177,9 @@ export class SceneView {
 
   /** Where MAT `index` is on the page [CSS pixels]. */
   project(index: number): { x: number; y: number } {
-    const at = new THREE.Vector3().fromArray(this.newest.array, 3 * index).project(this.rig.camera);
+    const point = new THREE.Vector3().fromArray(this.newest.array, 3 * index).project(this.rig.camera);
     const box = this.renderer.domElement.getBoundingClientRect();
-    return { x: box.left + (0.5 + 0.5 * at.x) * box.width, y: box.top + (0.5 - 0.5 * at.y) * box.height };
+    return { x: box.left + (0.5 + 0.5 * point.x) * box.width, y: box.top + (0.5 - 0.5 * point.y) * box.height };
   }
 
   /** Colour of one pixel of the view as it is drawn now, 0..255; a place on the page [CSS pixels]. */
@@ -221,9 +221,9 @@ export class SceneView {
     const box = new THREE.Box3();
     for (let axis = 0; axis < 3; ++axis) {
       for (let k = 0; k < count; ++k) {
-        const at = this.newest.array[3 * k * stride + axis]!;
-        low[k] = at - radii[k * stride]!;
-        high[k] = at + radii[k * stride]!;
+        const coordinate = this.newest.array[3 * k * stride + axis]!;
+        low[k] = coordinate - radii[k * stride]!;
+        high[k] = coordinate + radii[k * stride]!;
       }
       box.min.setComponent(axis, low.sort()[left] ?? 0);
       box.max.setComponent(axis, high.sort()[count - 1 - left] ?? 0);

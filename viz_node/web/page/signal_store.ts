@@ -61,9 +61,9 @@ export class SignalStore {
     this.firstRow = 0;
   }
 
-  private push(source: Float32Array | null, at: number): void {
+  private push(source: Float32Array | null, offset: number): void {
     const base = (this.nextRow % this.capacity) * this.signalCount;
-    for (let s = 0; s < this.signalCount; ++s) this.values[base + s] = source ? source[at + s]! : Number.NaN;
+    for (let s = 0; s < this.signalCount; ++s) this.values[base + s] = source ? source[offset + s]! : Number.NaN;
     ++this.nextRow;
     if (this.rowCount > this.capacity) this.firstRow = this.nextRow - this.capacity;
   }

@@ -43,16 +43,16 @@ export class Resampler {
   }
 
   /**
-   * The value `fraction` of a sample (0 to below 1) after sample `at` of a ring of samples whose length is a power of 2. The ring holds
-   * samples at - reach to at + reach + 1. Cost: 2 x reach products.
+   * The value `fraction` of a sample (0 to below 1) after sample `first` of a ring of samples whose length is a power of 2. The ring holds
+   * samples first - reach to first + reach + 1. Cost: 2 x reach products.
    */
-  valueAt(ring: Float32Array, at: number, fraction: number): number {
+  valueAt(ring: Float32Array, first: number, fraction: number): number {
     const mask = ring.length - 1;
     let sum = 0;
     for (let side = 0; side < 2; ++side) {
       const sign = side === 0 ? -1 : 1;
       let place = (side === 0 ? fraction : 1 - fraction) * this.perSample;
-      for (let i = 0, sample = at + side; i < this.reach; ++i, sample += sign, place += this.perSample) {
+      for (let i = 0, sample = first + side; i < this.reach; ++i, sample += sign, place += this.perSample) {
         const entry = Math.floor(place);
         const below = this.kernel[entry];
         if (below === undefined) break; // past the end of the kernel

@@ -97,8 +97,8 @@ export class SoundStream {
         out[i] = 0;
         continue;
       }
-      const at = Math.floor(this.position);
-      out[i] = limited(fade(this.level) * this.resampler.valueAt(this.ring, at, this.position - at));
+      const first = Math.floor(this.position);
+      out[i] = limited(fade(this.level) * this.resampler.valueAt(this.ring, first, this.position - first));
       this.position += step;
     }
   }
