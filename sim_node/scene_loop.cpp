@@ -129,11 +129,12 @@ void SceneLoop::take_steps(LoadedScene& loaded) noexcept {
 /// @param is_frame  a frame is due: then the energy is found, in real time by the status thread
 void SceneLoop::watch_bounds(bool is_frame) {
   LoadedScene& loaded = runner_.loaded_scene();
-  if (loaded.is_certain || is_forced_) return;
+  if (!loaded.watches_energy() || is_forced_) return;
   const bool is_realtime = clock_ == config::Clock::kRealtime;
-  const bool makes = is_realtime ? status_.makes_energy(*loaded.shadow)
-                                 : is_frame && makes_energy(simulation().world().energy());
-  const PassedBound bound = loaded.passed_bound(makes);
+  const BoundSigns signs = is_realtime ? status_.signs_of(*loaded.shadow)
+                           : is_frame  ? signs_of(simulation().world(), loaded.reach)
+                                       : BoundSigns{};
+  const PassedBound bound = loaded.passed_bound(signs);
   if (bound == PassedBound::kNone || simulation().passed_bound() != PassedBound::kNone) return;
   simulation().let_devices_go(bound);
   inputs_.let_go(bound, simulation().world().step_count());

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "node/time.h"
+#include "sim_node/run/bound_text.h"
 
 namespace cordis::sim {
 namespace {
@@ -15,22 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kCopyPatience = 10ms;  // of the status thread for a copy of the world
-
-/// For a person. Precondition: a bound is passed.
-std::string let_go_text(const Simulation& simulation) {
-  const std::string done = "has let go of the devices: ";
-  switch (simulation.passed_bound()) {
-    case PassedBound::kPartners:
-      return done + crowding_text(simulation.scene(), *simulation.partners().nearest());
-    case PassedBound::kNumber:
-      return done + "K' + 2 Z' came to 4, from where on the scene may be unstable";
-    case PassedBound::kEnergy:
-      return done + "the steps have made more than a tenth of the largest energy";
-    case PassedBound::kNone:
-      break;
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -68,12 +53,20 @@ void StatusSnapshot::record(Runner& runner, const PartnersSeen& partners, std::u
     figures_.crowding = crowding_text(simulation.scene(), partners);
   }
   figures_.partners = partners;
+  record_reach(loaded);
   record_let_go(simulation, let_go);
   if (!realtime || !is_looping_) figures_.of_world = figures_of(simulation.world());
   figures_.is_looping = is_looping_;
   figures_.troubles = simulation.troubles();
   figures_.version = version;
   figures_.changes = loaded.changes.count(simulation.world());
+}
+
+/// Precondition: the lock is held.
+void StatusSnapshot::record_reach(const LoadedScene& loaded) {
+  const bool is_new = loaded.is_beyond_reach && !figures_.is_beyond_reach;
+  figures_.is_beyond_reach = loaded.is_beyond_reach;
+  if (is_new) spdlog::warn("{}", kBeyondReach);
 }
 
 /// Precondition: the lock is held.
@@ -110,7 +103,8 @@ void StatusSnapshot::read_shadow() {
     shadow = shadow_;
   }
   const std::optional<WorldFigures> figures = shadow->read(kCopyPatience);
-  if (figures && sim::makes_energy(figures->energy)) makes_energy_ = shadow->id();
+  if (figures && figures->signs.makes_energy) makes_energy_ = shadow->id();
+  if (figures && figures->signs.is_beyond_reach) is_beyond_reach_ = shadow->id();
   const std::lock_guard lock(mutex_);
   if (figures && figures_.is_looping) figures_.of_world = *figures;
 }
@@ -131,6 +125,7 @@ void StatusSnapshot::fill(msg::NodeStatus& status, const std::string& refusal,
               : !figures_.let_go.empty()   ? figures_.let_go
               : !refusal.empty()           ? refusal
               : !figures_.crowding.empty() ? figures_.crowding
+              : figures_.is_beyond_reach   ? kBeyondReach
                                            : loops);
   fill_figures(status);
   report_integration_error(figures_.of_world.energy);

@@ -34,10 +34,9 @@ class StatusSnapshot {
   /// Loop: the figures of now; those under the lock only when the status thread does not hold it.
   /// @param partners  of the simulation @param dropped  messages and frames that got lost on DDS
   void record(Runner& runner, const PartnersSeen& partners, std::uint64_t dropped);
-  /// Loop in real time: true if the status thread has seen that the steps of this world have made
-  /// more than a tenth of the largest energy.
-  bool makes_energy(const ShadowWorld& world) const noexcept {
-    return makes_energy_.load() == world.id();
+  /// Loop in real time: what the status thread has ever seen of this world.
+  BoundSigns signs_of(const ShadowWorld& world) const noexcept {
+    return {makes_energy_.load() == world.id(), is_beyond_reach_.load() == world.id()};
   }
   /// Loop, at its end: why the scene diverged.
   void record_failure(std::string failure);
@@ -61,11 +60,13 @@ class StatusSnapshot {
     PartnersSeen partners{0, 0, msg::NO_INDEX};
     std::uint64_t version = 0;  // of the scene
     ChangeCounter::Counts changes{};
-    std::string failure;   // why the scene diverged
-    std::string crowding;  // more partners than certified
-    std::string let_go;    // why the devices were let go of
+    std::string failure;           // why the scene diverged
+    std::string crowding;          // more partners than certified
+    std::string let_go;            // why the devices were let go of
+    bool is_beyond_reach = false;  // LoadedScene::is_beyond_reach
   };
 
+  void record_reach(const LoadedScene& loaded);
   void record_let_go(const Simulation& simulation, bool let_go);
   void read_shadow();
   void fill_figures(msg::NodeStatus& status) const;
@@ -89,7 +90,8 @@ class StatusSnapshot {
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> passivity_ticks_{0};
   std::atomic<double> target_rate_hz_{0.0};
-  std::atomic<std::uint64_t> makes_energy_{0};  // id of that world
+  std::atomic<std::uint64_t> makes_energy_{0};     // id of that world
+  std::atomic<std::uint64_t> is_beyond_reach_{0};  // likewise
 };
 
 }  // namespace cordis::sim

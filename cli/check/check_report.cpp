@@ -89,7 +89,7 @@ std::string stability_text(const SceneCheck& check) {
   if (!stability.bounded) {
     text +=
         "            a law has no largest slope: certified for the energy and speeds of the start, "
-        "\n            and for a hand of 1 m/s\n";
+        "\n            and for a hand of 1 m/s; beyond them energy is watched during the run\n";
   }
   for (const plan::PartnerLimit& set : stability.sets) text += partners_text(check, set);
   return text + limit_text(check);

@@ -10,6 +10,7 @@
 #include "sim_node/checks/planned_scene.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/devices/device_reach.h"
+#include "sim_node/run/bound_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -239,9 +240,9 @@ bool OfflineSession::play_tick(const std::function<void()>& after_step) {
   }
   simulation().read_signals(row_.data());
   const bool is_frame = simulation().tick_count() % loaded_->ticks_per_frame == 0;
-  const bool watches = !loaded_->is_certain && is_frame;
+  const bool watches = loaded_->watches_energy() && is_frame;
   const sim::PassedBound bound =
-      loaded_->passed_bound(watches && sim::makes_energy(world().energy()));
+      loaded_->passed_bound(watches ? sim::signs_of(world(), loaded_->reach) : sim::BoundSigns{});
   if (bound != sim::PassedBound::kNone) simulation().let_devices_go(bound);
   for (const auto& device : devices_) device->read_forces(world());
   return true;
@@ -269,6 +270,10 @@ double OfflineSession::signal(const std::string& name) const {
     if (signals[i].name == name) return row_[i];
   }
   throw std::out_of_range("the scene has no signal '" + name + "'");
+}
+
+std::string OfflineSession::bound_text() const {
+  return sim::bound_text(*loaded_);
 }
 
 double OfflineSession::energy_residual() const {

@@ -69,6 +69,9 @@ class OfflineSession {
   /// A signal of the scene, as it was after the last tick. @throws std::out_of_range likewise.
   double signal(const std::string& name) const;
 
+  /// Why the devices were let go of, or that the scene is beyond its certificate; empty if neither.
+  std::string bound_text() const;
+
   /// What the energy account does not explain, relative to the largest of its entries.
   double energy_residual() const;
 

@@ -128,6 +128,7 @@ class Recording {
         {"lost_events", result.lost_events},
         {"complete", result.failure.empty() && !result.is_stopped},
         {"failure", result.failure},
+        {"passed_bound", result.bound},
         {"wall_s", result.wall_s},
         {"energy_j", energy.total()},
         {"energy_drift", energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0},
@@ -173,6 +174,7 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
     result.is_stopped = stops();
   }
   result.failure = session.simulation().failure();
+  result.bound = session.bound_text();
   result.wall_s = std::chrono::duration<double>(WallClock::now() - begun).count();
   result.simulated_s = session.time_s();
   result.step_count = session.world().step_count();

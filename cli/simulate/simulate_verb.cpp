@@ -35,6 +35,7 @@ int run(const SimulateOptions& options) {
   StopSignals signals;
   const SimulateResult result = simulate(options, [&signals] { return signals.take(); });
   for (const std::string& warning : result.warnings) std::fprintf(stderr, "%s\n", warning.c_str());
+  if (!result.bound.empty()) std::fprintf(stderr, "warning: %s\n", result.bound.c_str());
   const bool is_piped =
       options.csv_file == "-" || options.events_file == "-" || options.summary_file == "-";
   std::fputs(report_of(result).c_str(), is_piped ? stderr : stdout);

@@ -14,7 +14,7 @@ namespace {
 using engine::NetworkDescription;
 
 bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph) {
-  return !graph.uncertainty && network.step < certified_bound(network, graph).step;
+  return !uncertainty_of(network, graph) && network.step < certified_bound(network, graph).step;
 }
 
 /// The energy up to which a liaison was followed within its reach [J].
@@ -39,14 +39,12 @@ ReachLimit limit_at(const NetworkDescription& network, const LiaisonGraph& graph
     limit.energy =
         std::min(limit.energy, energy_followed(network.state_machines[link.state_machine], here));
   }
-  limit.of_pairs = limit.is_infinite();
-  if (!limit.of_pairs) return limit;
   for (const ContactBound& crowd : graph.crowds) {
     if (crowd.bounded) continue;
     const Reach here = reach_between(reach, network, crowd.members, crowd.others);
     const engine::SetLiaison& set = network.sets[crowd.set];
-    limit.energy =
-        std::min(limit.energy, energy_followed(network.state_machines[set.state_machine], here));
+    limit.pair_energy = std::min(limit.pair_energy,
+                                 energy_followed(network.state_machines[set.state_machine], here));
   }
   return limit;
 }
@@ -67,6 +65,27 @@ ReachLimit reach_limit(const NetworkDescription& network) {
     graph = std::move(wider);
   }
   return limit_at(network, graph, factor);
+}
+
+bool is_beyond(const ReachLimit& limit, const engine::World& world,
+               const engine::Energy& energy) noexcept {
+  if (limit.is_infinite()) return false;
+  double most = 0.0;  // kinetic energies of the two MATs that have the most [J]
+  double second = 0.0;
+  const auto& mats = world.network().description().mats;
+  for (std::uint32_t i = 0; i < mats.size(); ++i) {
+    if (mats[i].kind == engine::MatKind::kFixed) continue;
+    const double square = world.velocity(i).squaredNorm();
+    if (mats[i].kind == engine::MatKind::kPort) {
+      if (square > limit.speed * limit.speed) return true;
+      continue;
+    }
+    const double kinetic = 0.5 * mats[i].mass * square;
+    second = std::max(second, std::min(most, kinetic));
+    most = std::max(most, kinetic);
+  }
+  const double whole = energy.kinetic + std::max(energy.elastic, 0.0);
+  return whole > limit.energy || most + second > limit.pair_energy;
 }
 
 }  // namespace cordis::plan

@@ -51,18 +51,22 @@ LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
       is_certain(simulation.devices().empty() || is_certified(simulation.scene())),
+      reach(is_certain && !simulation.devices().empty()
+                ? plan::reach_limit(simulation.scene().network)
+                : plan::ReachLimit{}),
       watches_number(!is_certain && number_of_start(limits, simulation.world()) < 4.0),
-      shadow(std::make_shared<ShadowWorld>(simulation.world().shared_network())),
+      shadow(std::make_shared<ShadowWorld>(simulation.world().shared_network(), reach)),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}
 
-PassedBound LoadedScene::passed_bound(bool makes_energy) noexcept {
-  if (is_certain) return PassedBound::kNone;
+PassedBound LoadedScene::passed_bound(const BoundSigns& signs) noexcept {
+  is_beyond_reach = is_beyond_reach || signs.is_beyond_reach;
+  if (is_certain && !is_beyond_reach) return PassedBound::kNone;
   if (watches_number) {
     constexpr double kLimit = 4.0;
     limits.update(simulation.world());
     if (limits.largest() >= kLimit) return PassedBound::kNumber;
   }
-  return makes_energy ? PassedBound::kEnergy : PassedBound::kNone;
+  return signs.makes_energy ? PassedBound::kEnergy : PassedBound::kNone;
 }
 
 }  // namespace cordis::sim

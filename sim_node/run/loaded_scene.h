@@ -20,18 +20,24 @@ struct LoadedScene {
   LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch,
               std::uint64_t version);
 
+  /// True if the run of this scene needs its energy.
+  bool watches_energy() const noexcept { return !is_certain || !reach.is_infinite(); }
+
   /// The bound beyond which a scene that is not certain lets go of its devices, if K' + 2 Z' or its
-  /// energy passes it now. What is certified ends with the partners alone, which the simulation
+  /// energy passes it now. A scene that is certified within a reach is certain until it goes beyond
+  /// it, once and for all. What is certified ends with the partners too, which the simulation
   /// watches itself. Real time.
-  /// @param makes_energy  sim::makes_energy() of a moment of this scene
-  PassedBound passed_bound(bool makes_energy) noexcept;
+  /// @param signs  of a moment of this scene
+  PassedBound passed_bound(const BoundSigns& signs) noexcept;
 
   Simulation simulation;
   FrameStore frames;
   StepRows step_rows;  ///< of the present turn
   ChangeCounter changes;
   LimitWatch limits;
-  bool is_certain;      ///< the step is certified, or there is no device to let go of
+  bool is_certain;               ///< the step is certified, or there is no device to let go of
+  plan::ReachLimit reach;        ///< within which it is certain; infinite where it is not certain
+  bool is_beyond_reach = false;  ///< it has gone beyond its reach
   bool watches_number;  ///< K' + 2 Z' is below 4 at the start, and the step is not certified
   std::shared_ptr<ShadowWorld> shadow;
   std::uint64_t ticks_per_frame;

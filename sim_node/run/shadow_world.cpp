@@ -7,11 +7,12 @@
 
 namespace cordis::sim {
 
-WorldFigures figures_of(const engine::World& world) noexcept {
-  return {world.energy(), world.step_count(), world.state_hash()};
-}
-
 namespace {
+
+BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
+                    const plan::ReachLimit& reach) noexcept {
+  return {makes_energy(energy), plan::is_beyond(reach, world, energy)};
+}
 
 /// True if an error is above this share of the largest energy, and no rounding.
 bool is_above(double share, double error, const engine::Energy& energy) noexcept {
@@ -34,8 +35,18 @@ bool makes_energy(const engine::Energy& energy) noexcept {
   return is_above(0.1, energy.integration_error(), energy);
 }
 
-ShadowWorld::ShadowWorld(std::shared_ptr<const engine::Network> network) noexcept
-    : id_(next_id()), network_(std::move(network)) {}
+WorldFigures figures_of(const engine::World& world, const plan::ReachLimit& reach) noexcept {
+  const engine::Energy energy = world.energy();
+  return {energy, world.step_count(), world.state_hash(), signs_of(world, energy, reach)};
+}
+
+BoundSigns signs_of(const engine::World& world, const plan::ReachLimit& reach) noexcept {
+  return signs_of(world, world.energy(), reach);
+}
+
+ShadowWorld::ShadowWorld(std::shared_ptr<const engine::Network> network,
+                         const plan::ReachLimit& reach) noexcept
+    : id_(next_id()), network_(std::move(network)), reach_(reach) {}
 
 void ShadowWorld::hand_over(const engine::World& world) noexcept {
   if (copy_.load(std::memory_order_acquire) != Copy::kAsked) return;
@@ -69,7 +80,7 @@ std::optional<WorldFigures> ShadowWorld::read(std::chrono::milliseconds patience
   const bool fits = world_->take_state(room_, step_);
   copy_.store(Copy::kNone, std::memory_order_release);
   if (!fits) return std::nullopt;
-  return figures_of(*world_);
+  return figures_of(*world_, reach_);
 }
 
 }  // namespace cordis::sim

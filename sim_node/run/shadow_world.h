@@ -9,18 +9,26 @@
 #include <vector>
 
 #include "sim_node/engine/world.h"
+#include "sim_node/plan/reach_limit.h"
 
 namespace cordis::sim {
+
+/// What the energy of a moment says about the bounds of a scene.
+struct BoundSigns {
+  bool makes_energy = false;     ///< makes_energy()
+  bool is_beyond_reach = false;  ///< plan::is_beyond() its ReachLimit
+};
 
 /// What a status reports of one moment of a world.
 struct WorldFigures {
   engine::Energy energy;
   std::uint64_t step = 0;        ///< steps done
   std::uint64_t state_hash = 0;  ///< World::state_hash()
+  BoundSigns signs;
 };
 
 /// Real time: O(MATs + links + pairs), no allocation; much longer than a copy of the state.
-WorldFigures figures_of(const engine::World& world) noexcept;
+WorldFigures figures_of(const engine::World& world, const plan::ReachLimit& reach = {}) noexcept;
 
 /// True when the steps have made or taken more than 1 % of the largest energy. What a scene at rest
 /// makes by rounding, below 1e-20 J, does not count.
@@ -29,11 +37,16 @@ bool is_error_large(const engine::Energy& energy) noexcept;
 /// True when the steps have made more than a tenth of the largest energy.
 bool makes_energy(const engine::Energy& energy) noexcept;
 
+/// Real time: O(MATs + links + pairs), no allocation.
+BoundSigns signs_of(const engine::World& world, const plan::ReachLimit& reach) noexcept;
+
 /// A second world of a network, for a thread that reads the first one now and then. The loop
 /// that moves the first one copies its state, and only when the other thread has asked.
 class ShadowWorld {
  public:
-  explicit ShadowWorld(std::shared_ptr<const engine::Network> network) noexcept;
+  /// @param reach  that is_beyond_reach is about
+  explicit ShadowWorld(std::shared_ptr<const engine::Network> network,
+                       const plan::ReachLimit& reach = {}) noexcept;
 
   /// From 1 on; differs from that of every other one in this process. Any thread.
   std::uint64_t id() const noexcept { return id_; }
@@ -50,6 +63,7 @@ class ShadowWorld {
 
   std::uint64_t id_;
   std::shared_ptr<const engine::Network> network_;
+  plan::ReachLimit reach_;
   std::unique_ptr<engine::World> world_;  // made by the first read()
   std::vector<double> room_;              // of the loop while a copy is asked for
   std::size_t value_count_ = 0;           // likewise; of a state that is too large for the room

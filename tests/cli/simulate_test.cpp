@@ -51,6 +51,28 @@ links: [{liaison: steel, between: [wall, ball], rest_m: 0}]
 signals: {place: {of: ball, quantity: position}}
 )";
 
+/// A ball flies between two walls, each so stiff that a touch may gain energy: not certain. A key is
+/// tied to a fixed point.
+constexpr const char* kBouncing = R"(cordis: 1
+name: bouncing
+space: 1
+step: {rate_hz: 1000, integrator: cordis}
+liaisons:
+  hit: {kind: state_machine, stiffness_n_per_m: 19100, pulls: false}
+  wall: {kind: spring, stiffness_n_per_m: 100}
+matter:
+  low: {kind: fixed, at_m: -0.1}
+  high: {kind: fixed, at_m: 0.113}
+  ground: {kind: fixed, at_m: 0.5}
+  ball: {kind: mass, mass_kg: 0.01, at_m: 0, velocity_m_per_s: 1.234}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 0.6}
+links:
+  - {liaison: hit, between: [low, ball], rest_m: 0.03}
+  - {liaison: hit, between: [ball, high], rest_m: 0.03}
+  - {liaison: wall, between: [ground, key], rest_m: 0.1}
+)";
+
 class Simulate : public testing::Test {
  protected:
   Simulate() : folder_(testing::TempDir() + "simulate." + std::to_string(getpid())) {
@@ -130,6 +152,20 @@ TEST_F(Simulate, TakesRowsByTickByStepsAndByTime) {
     for (std::size_t i = 0; i < some.size(); ++i)
       EXPECT_EQ(some[i], all[(i + 1) * stride - 1]) << every;
   }
+}
+
+TEST_F(Simulate, SaysWhyTheDevicesWereLetGoOf) {
+  const std::string scene = put("bouncing.yaml", kBouncing);
+  ASSERT_EQ(run({scene, "--duration", "60s", "--summary", path("s.json")}), kSuccess) << error_;
+  const std::string reason =
+      "has let go of the devices: the steps have made more than a tenth of the largest energy";
+  EXPECT_THAT(error_, HasSubstr("warning: " + reason));
+  EXPECT_EQ(nlohmann::json::parse(text_of("s.json"))["passed_bound"], reason);
+
+  const std::string falling = put("fall.yaml", kFalling);
+  ASSERT_EQ(run({falling, "--duration", "1s", "--summary", path("f.json")}), kSuccess) << error_;
+  EXPECT_EQ(error_, "");
+  EXPECT_EQ(nlohmann::json::parse(text_of("f.json"))["passed_bound"], "");
 }
 
 TEST_F(Simulate, GivesTheStateOfTheSameStepsInAnyPortions) {

@@ -17,9 +17,9 @@ namespace {
 /// A session in lockstep with a key; it ends when the launcher is interrupted.
 class Bound : public testing::Test {
  protected:
-  void play(const char* scene) {
+  void play(const char* scene, const std::string& key = steady_key(-0.01, 0.0)) {
     session_.add_file("scene.yaml", scene);
-    session_.add_file("key.yaml", steady_key(-0.01, 0.0));
+    session_.add_file("key.yaml", key);
     launcher_ = &session_.start_launcher();
   }
 
@@ -119,6 +119,45 @@ TEST_F(Bound, StepsThatMakeEnergyLetGoOfTheDevicesAndSayWhy) {
   EXPECT_EQ(status_.of("sim").text(), reason);
   expect_zero_forces(1);
   end();
+}
+
+/// A ball between a wall and a paddle, which stiffen as they are pressed in: certified for the energy
+/// of the start, and for a hand of 1 m/s.
+const char* const kPaddle = R"(cordis: 1
+name: paddle
+space: 1
+step: {rate_hz: 1000, integrator: cordis}
+liaisons:
+  hit: {kind: state_machine, elasticity: {kind: power, coefficient: 3.0e+5, exponent: 2.5}, pulls: false}
+matter:
+  wall: {kind: fixed, at_m: -0.02}
+  ball: {kind: mass, mass_kg: 0.01, at_m: 0, velocity_m_per_s: 0.1}
+ports:
+  paddle: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 0.05}
+links:
+  - {liaison: hit, between: [wall, ball], rest_m: 0.01}
+  - {liaison: hit, between: [ball, paddle], rest_m: 0.01}
+)";
+
+/// Down and up by 40 mm in 40 ms: 2 m/s.
+std::string fast_key() {
+  return std::string(kScriptedKey) +
+         "    - {at_s: 0, m: 0}\n    - {at_s: 0.02, m: -0.04}\n    - {at_s: 0.04, m: 0}\n"
+         "  repeat_s: 0.04\n";
+}
+
+TEST_F(Bound, ACertifiedSceneBeyondItsReachSaysSoAndLetsGoOnceItMakesEnergy) {
+  play(kPaddle, fast_key());
+
+  const std::string reason = "has let go of the devices: the steps have made more than a tenth";
+  ASSERT_NO_FATAL_FAILURE(expect_let_go(reason));
+  expect_zero_forces(1);
+  const std::string output = end();
+  EXPECT_NE(
+      output.find("the scene has more energy, or a faster hand, than its step is certified for"),
+      std::string::npos)
+      << output;
+  EXPECT_NE(output.find(reason), std::string::npos) << output;
 }
 
 }  // namespace

@@ -220,7 +220,7 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
     run.steps = n;
     if (is_within && n % 100 > 0 && n > 100) continue;
     const Energy energy = world.energy();
-    if (!is_within && energy.kinetic + std::max(energy.elastic, 0.0) > reach.energy) return run;
+    if (plan::is_beyond(reach, world, energy)) return run;
     brought.look(energy);
     constexpr double kOpen = 1e-9;
     if (network.integrator == engine::IntegratorKind::kCordis &&

@@ -1,0 +1,26 @@
+// sim_node/run/bound_text.cpp
+#include "sim_node/run/bound_text.h"
+
+namespace cordis::sim {
+
+std::string let_go_text(const Simulation& simulation) {
+  const std::string done = "has let go of the devices: ";
+  switch (simulation.passed_bound()) {
+    case PassedBound::kPartners:
+      return done + crowding_text(simulation.scene(), *simulation.partners().nearest());
+    case PassedBound::kNumber:
+      return done + "K' + 2 Z' came to 4, from where on the scene may be unstable";
+    case PassedBound::kEnergy:
+      return done + "the steps have made more than a tenth of the largest energy";
+    case PassedBound::kNone:
+      break;
+  }
+  return {};
+}
+
+std::string bound_text(const LoadedScene& loaded) {
+  if (loaded.simulation.passed_bound() != PassedBound::kNone) return let_go_text(loaded.simulation);
+  return loaded.is_beyond_reach ? kBeyondReach : "";
+}
+
+}  // namespace cordis::sim

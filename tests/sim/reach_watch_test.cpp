@@ -1,0 +1,158 @@
+// tests/sim/reach_watch_test.cpp -- a scene that goes beyond its certified reach.
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/plan.h"
+#include "tests/sim/loaded_scenes.h"
+
+namespace cordis::sim {
+namespace {
+
+/// A ball between a wall and a paddle in a hand. The walls stiffen as they are pressed in: certified
+/// for the energy of the start, and for a hand of 1 m/s.
+const char* const kPaddle = R"(cordis: 1
+name: paddle
+space: 1
+step: {rate_hz: 1000}
+liaisons:
+  hit: {kind: state_machine, elasticity: {kind: power, coefficient: 3.0e+5, exponent: 2.5}, pulls: false}
+matter:
+  wall: {kind: fixed, at_m: -0.02}
+  ball: {kind: mass, mass_kg: 0.01, at_m: 0, velocity_m_per_s: 0.1}
+ports:
+  paddle: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 0.05}
+links:
+  - {liaison: hit, between: [wall, ball], rest_m: 0.01}
+  - {liaison: hit, between: [ball, paddle], rest_m: 0.01}
+)";
+
+/// A paddle that goes down by 40 mm and up again, and what its scene shows once a frame.
+class Paddle {
+ public:
+  explicit Paddle(double hertz) : hertz_(hertz), loaded_(loaded_scene_of(kPaddle)) {}
+
+  /// The bound that is passed, if any, in one second more.
+  std::optional<PassedBound> play() {
+    Simulation& simulation = loaded_->simulation;
+    for (int tick = 0; tick < 1000; ++tick) {
+      ++tick_;
+      const double phase = std::fmod(hertz_ * tick_ / 1000.0, 1.0);
+      const double position = -0.04 * (1.0 - std::abs(2.0 * phase - 1.0));
+      simulation.devices()[0].receive(key_sample(static_cast<std::uint64_t>(tick_), position));
+      simulation.advance(simulation.steps_of_tick(), events_);
+      if (tick % static_cast<int>(loaded_->ticks_per_frame) > 0) continue;
+      const PassedBound bound = loaded_->passed_bound(signs_of(simulation.world(), loaded_->reach));
+      if (bound != PassedBound::kNone) return bound;
+    }
+    return std::nullopt;
+  }
+
+  LoadedScene& scene() { return *loaded_; }
+
+ private:
+  double hertz_;
+  std::unique_ptr<LoadedScene> loaded_;
+  EventRoom events_{64};
+  int tick_ = 0;
+};
+
+TEST(ReachWatch, IsSilentWhileTheHandStaysWithinTheReach) {
+  Paddle paddle(0.5);  // 0.04 m/s
+  ASSERT_TRUE(paddle.scene().is_certain);
+  ASSERT_FALSE(paddle.scene().reach.is_infinite());
+
+  for (int second = 0; second < 5; ++second) EXPECT_FALSE(paddle.play());
+  EXPECT_FALSE(paddle.scene().is_beyond_reach);
+}
+
+TEST(ReachWatch, LetsGoOfNothingMerelyBecauseTheReachIsPassed) {
+  Paddle paddle(0.5);
+  paddle.scene().reach.energy = 1e-6;  // less than the ball has
+
+  EXPECT_FALSE(paddle.play());
+  EXPECT_TRUE(paddle.scene().is_beyond_reach);
+  EXPECT_TRUE(paddle.scene().is_certain);
+}
+
+TEST(ReachWatch, IsKeptByTheShadowOfAWorld) {
+  Paddle paddle(0.5);
+  const engine::World& world = paddle.scene().simulation.world();
+  plan::ReachLimit small;
+  small.energy = 0.99 * world.energy().total();
+  for (const bool is_small : {true, false}) {
+    ShadowWorld shadow(world.shared_network(), is_small ? small : paddle.scene().reach);
+    EXPECT_FALSE(shadow.read(std::chrono::milliseconds(0)));
+    shadow.hand_over(world);
+    const std::optional<WorldFigures> figures = shadow.read(std::chrono::milliseconds(0));
+    ASSERT_TRUE(figures);
+    EXPECT_EQ(figures->signs.is_beyond_reach, is_small);
+    EXPECT_FALSE(figures->signs.makes_energy);
+  }
+}
+
+TEST(ReachWatch, LetsGoOnceTheStepsMakeEnergyBeyondTheReach) {
+  Paddle paddle(25.0);  // 2 m/s
+  std::optional<PassedBound> bound;
+  for (int second = 0; second < 20 && !bound; ++second) bound = paddle.play();
+
+  EXPECT_TRUE(paddle.scene().is_beyond_reach);
+  ASSERT_TRUE(bound);
+  EXPECT_EQ(*bound, PassedBound::kEnergy);
+  EXPECT_FALSE(paddle.scene().simulation.failed()) << "in time";
+}
+
+TEST(ReachWatch, TakesNoEnergyForABoundWithinTheReach) {
+  Paddle paddle(0.5);
+  EXPECT_EQ(paddle.scene().passed_bound({true, false}), PassedBound::kNone);
+  EXPECT_EQ(paddle.scene().passed_bound({true, true}), PassedBound::kEnergy);
+  EXPECT_EQ(paddle.scene().passed_bound({false, false}), PassedBound::kNone);
+}
+
+TEST(ReachWatch, SeesAPortThatIsFasterThanTheReach) {
+  Paddle paddle(25.0);
+  engine::World& world = paddle.scene().simulation.world();
+  const plan::ReachLimit reach = paddle.scene().reach;
+  EXPECT_FALSE(signs_of(world, reach).is_beyond_reach);
+  world.impose_position(paddle.scene().simulation.scene().ports[0].mat,
+                        engine::Vec3(0.05 + 1.01e-3 * reach.speed, 0, 0));
+  world.step();
+  EXPECT_TRUE(signs_of(world, reach).is_beyond_reach);
+}
+
+/// Atoms in a row. Within a reach are the two fastest of them, not all together.
+TEST(ReachWatch, OfASetHoldsTheTwoFastestAgainstTheEnergyOfAPair) {
+  const auto loaded = loaded_scene_of(R"(cordis: 1
+name: atoms
+space: 1
+step: {rate_hz: 20000, gesture_rate_hz: 1000}
+liaisons:
+  lj: {kind: state_machine, elasticity: {kind: lennard_jones, depth_j: 1.0e-4, diameter_m: 0.01, cut_m: 0.025}}
+  spring: {kind: spring, stiffness_n_per_m: 1}
+matter:
+  atoms: {kind: mass, mass_kg: 0.001, at_m: [0, 0.0112, 0.0224, 0.0336, 0.0448], velocity_m_per_s: 0.1}
+  ground: {kind: fixed, at_m: -1}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: -2}
+links:
+  - {liaison: lj, within: atoms, rest_m: 0, range_m: 0.025}
+  - {liaison: spring, between: [ground, key]}
+)");
+  const engine::World& world = loaded->simulation.world();
+  ASSERT_FALSE(std::isinf(loaded->reach.pair_energy));
+  ASSERT_TRUE(std::isinf(loaded->reach.energy)) << "no link has such a law";
+  plan::ReachLimit reach = loaded->reach;
+  const double one = 0.5 * 0.001 * 0.1 * 0.1;
+  reach.pair_energy = 2.01 * one;
+  EXPECT_FALSE(plan::is_beyond(reach, world, world.energy()));
+  reach.pair_energy = 1.99 * one;
+  EXPECT_TRUE(plan::is_beyond(reach, world, world.energy()));
+  reach.pair_energy = loaded->reach.pair_energy;
+  reach.energy = 4.99 * one;
+  EXPECT_TRUE(plan::is_beyond(reach, world, world.energy())) << "all five";
+}
+
+}  // namespace
+}  // namespace cordis::sim
