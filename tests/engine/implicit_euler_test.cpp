@@ -186,5 +186,38 @@ TEST(ImplicitEuler, GivesAPortTheForceOfItsLinks) {
   EXPECT_NEAR(world.energy().kinetic, 0.5 * 0.1 * 0.01, 1e-5);
 }
 
+/// Two masses in 2 dimensions, each on a spring of its own.
+NetworkDescription two_apart() {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    const Vec3 anchor(10.0 * i, 0, 0);
+    scene.mats.push_back(fixed(anchor));
+    scene.mats.push_back(mass(0.01, anchor + Vec3(0.1, 0.02, 0)));
+    scene.links.push_back({2 * i, 2 * i + 1, 1e5, 0.1, 0.09});
+  }
+  return scene;
+}
+
+TEST(ImplicitEuler, KeepsWhatIsNotJoinedToAMassThatIsNoLongerFinite) {
+  for (const std::uint32_t lost : {1U, 3U}) {
+    const std::uint32_t other = 4 - lost;
+    World sound = make_world(by_implicit(two_apart()));
+    World world = make_world(by_implicit(two_apart()));
+    world.set_external_force(lost, Vec3(1e308, 0, 0));
+    run(sound, 100);
+    run(world, 50);
+    ASSERT_FALSE(world.position(lost).allFinite());
+    World restored = make_world(by_implicit(two_apart()));
+    restored.restore(world.snapshot());
+    run(world, 50);
+    run(restored, 50);
+
+    EXPECT_EQ(world.position(other), sound.position(other)) << lost;
+    EXPECT_EQ(restored.position(other), sound.position(other)) << lost;
+  }
+}
+
 }  // namespace
 }  // namespace cordis::test

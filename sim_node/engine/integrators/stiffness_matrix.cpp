@@ -193,9 +193,11 @@ void StiffnessMatrix::subtract_stiffness_times(const MatArray& mats, const doubl
   }
 }
 
-/// The numeric phase of Davis's LDL, row by row of L.
+/// The numeric phase of Davis's LDL, row by row of L. A pivot that is not finite spoils the rows that
+/// are joined to it, and no others.
 bool StiffnessMatrix::factor() noexcept {
   const std::size_t count = pivot_.size();
+  bool is_positive = true;
   std::fill(flag_.begin(), flag_.end(), -1);
   std::fill(filled_.begin(), filled_.end(), 0);
   for (std::size_t k = 0; k < count; ++k) {
@@ -227,12 +229,9 @@ bool StiffnessMatrix::factor() noexcept {
       ++filled_[i];
     }
     pivot_[k] = pivot;
-    if (!(pivot > 0.0)) {
-      std::fill(work_.begin(), work_.end(), 0.0);
-      return false;
-    }
+    is_positive = is_positive && pivot > 0.0;
   }
-  return true;
+  return is_positive;
 }
 
 void StiffnessMatrix::solve(double* columns) noexcept {
