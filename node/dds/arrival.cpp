@@ -31,8 +31,12 @@ bool Arrival::wait_until(std::uint32_t seen, std::int64_t until_nsec) noexcept {
   is_awaited_.store(true);
   const std::int64_t until = std::max<std::int64_t>(until_nsec, 0);
   const timespec limit{until / 1'000'000'000, until % 1'000'000'000};
-  syscall(SYS_futex, &count_, FUTEX_WAIT_BITSET_PRIVATE, seen, &limit, nullptr,
-          FUTEX_BITSET_MATCH_ANY);
+  // The wake-up of a message that the thread took before it slept may come while it sleeps again.
+  bool is_woken = true;
+  while (is_woken && count() == seen) {
+    is_woken = syscall(SYS_futex, &count_, FUTEX_WAIT_BITSET_PRIVATE, seen, &limit, nullptr,
+                       FUTEX_BITSET_MATCH_ANY) == 0;
+  }
   is_awaited_.store(false);
   return count() != seen;
 }

@@ -196,6 +196,31 @@ TEST_F(Kfb1Test, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
   }
 }
 
+TEST_F(Kfb1Test, BelievesNoFrameWithAWrongChecksum) {
+  Kfb1Board board;
+  board.positions[0] = 8192;
+  board.plug.into_serial_line(link());
+  const auto key = std::make_unique<Kfb1>(wire_at(port()), patient(), layout_of(2));
+  key->start(Role::kMass);
+  const double place = -0.02 + 0.02 * 8192 / 32767.0;
+  AxisValues sensed{};
+  const auto reads_its_place = [&](bool there) {
+    return there && key->read(sensed) && std::abs(sensed[0] - place) < 1e-9;
+  };
+  ASSERT_TRUE(until(*key, {}, reads_its_place));
+
+  board.miscounts = true;
+  ASSERT_TRUE(until(*key, {}, [&, n = 0](bool) mutable {
+    if (key->read(sensed)) {
+      EXPECT_NEAR(sensed[0], place, 1e-9);
+    }
+    return ++n == 200;
+  }));
+
+  board.miscounts = false;
+  EXPECT_TRUE(until(*key, {}, reads_its_place)) << "it is still the same board";
+}
+
 /// A line that never falls silent, and never says anything.
 class Babble final : public Wire {
  protected:

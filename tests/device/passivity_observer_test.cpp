@@ -92,6 +92,27 @@ struct Loop {
   std::deque<double> past_;
 };
 
+TEST(PassivityObserver, LetsALoopGiveItsBudgetAndNoMore) {
+  for (const double budget : {0.0005, 0.001, 0.02}) {
+    PassivitySettings settings;
+    settings.active = true;
+    settings.budget_j = budget;
+    PassivityObserver observer(settings);
+    observer.start();
+    AxisValues force{};
+    AxisValues position{};
+    force[0] = 2.0;
+    observer.observe(force, position);
+    constexpr double kStepsToBudget = 20.0;
+    for (int n = 1; n <= 40; ++n) {
+      position[0] += budget / (kStepsToBudget * force[0]);  // each step gives a 20th of the budget
+      observer.observe(force, position);
+      if (n == 20) continue;  // just at the budget
+      ASSERT_EQ(observer.is_damping(), n > 20) << budget << ", step " << n;
+    }
+  }
+}
+
 class Delays : public ::testing::TestWithParam<double> {};
 
 TEST_P(Delays, APassiveWallIsNeverDamped) {

@@ -146,6 +146,26 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"across_space", 3, 30, 80, 0.4}, Case{"one_to_many", 2, 1, 90, 0.4}),
     [](const auto& scene) { return scene.param.name; });
 
+TEST(NeighbourList, HoldsAPairThatComesInRangeFromJustOutsideItsSkin) {
+  for (const VectorWidth width : engine::supported_vector_widths()) {
+    for (const double skin : {0.01, 0.05, 0.2}) {
+      for (double way = 0.40; way < 0.70; way += 0.01) {  // of each of the two, in skins
+        Members members(2, 3, 0.0);
+        members.place(0)[0] = -0.5 * (kRange + 1.001 * skin);
+        members.place(1)[0] = 0.5 * (kRange + 1.001 * skin);
+        NeighbourList list(2, 0, 3, kRange, kPlenty, engine::pair_kernel(width));
+        list.hold_skin(skin);
+        list.refresh(members.data());
+        members.place(0)[0] += way * skin;
+        members.place(1)[0] -= way * skin;
+        list.refresh(members.data());
+        ASSERT_EQ(listed(list, members), members.within(kRange, 2, false))
+            << engine::to_string(width) << ", skin " << skin << ", way " << way;
+      }
+    }
+  }
+}
+
 TEST(NeighbourList, NeedsNoRoomForABallThatFliesAway) {
   for (const double far : {1e3, 1e6, 1e20, 1e300, -1e9}) {
     Members members(64, 3, 0.4);

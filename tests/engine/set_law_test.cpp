@@ -12,6 +12,7 @@
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/pairs/set_pairs.h"
 #include "tests/engine/balls.h"
+#include "tests/engine/programs.h"
 #include "tests/support/allocation_guard.h"
 
 namespace cordis::test {
@@ -277,8 +278,9 @@ TEST(SetLiaison, HasNoForceBetweenBallsAtTheSamePlace) {
 
 TEST(SetLiaison, OfMorePairsThanAreTakenTogetherIsTheSumOverAllPairs) {
   const LawCase law = laws()[3];
+  constexpr double kNear = 0.1;
   NetworkDescription scene = cloud(400, 0.8, 0.3, 2);
-  add_set(scene, law.state, kRange, law.rest_length, 400);
+  add_set(scene, law.state, kNear, law.rest_length, 400);
   World world = make_world(scene);
   run(world, 20);
   std::vector<Vec3> now;
@@ -287,7 +289,7 @@ TEST(SetLiaison, OfMorePairsThanAreTakenTogetherIsTheSumOverAllPairs) {
   for (std::uint32_t i = 0; i < 400; ++i) {
     now.push_back(world.position(i));
     before.push_back(world.position(i) - scene.step * world.velocity(i));
-    for (std::uint32_t j = 0; j < i; ++j) pairs += (now[i] - now[j]).norm() < kRange ? 1U : 0U;
+    for (std::uint32_t j = 0; j < i; ++j) pairs += (now[i] - now[j]).norm() < kNear ? 1U : 0U;
   }
   ASSERT_GT(pairs, 3000U);
 

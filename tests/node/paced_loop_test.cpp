@@ -59,6 +59,16 @@ TEST(PacedLoop, SkipsAndCountsDeadlinesMissedInsteadOfCatchingUp) {
   EXPECT_GE(monotonic_nsec() - start, static_cast<std::int64_t>(deadlines - 1) * 1'000'000);
 }
 
+TEST(PacedLoop, CountsATickThatBeginsOneAndAHalfPeriodsLate) {
+  PacedLoop loop(100.0);
+  loop.wait();
+  const std::uint64_t before = loop.overruns();
+  sleep_nsec(25'000'000);  // the next deadline is 10 ms after the last one
+
+  EXPECT_GE(loop.wait(), 1u);
+  EXPECT_EQ(loop.overruns(), before + 1);
+}
+
 TEST(PacedLoop, TakesATickThatComputesTooLongForTheCauseOfALateOne) {
   constexpr std::int64_t kPeriod = 1'000'000;
   PacedLoop loop(1000.0);
