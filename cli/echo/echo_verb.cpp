@@ -144,7 +144,7 @@ void add_echo_verb(CommandLine& line) {
       "--domain N without a session prints what all programs of the domain say.\n"
       "Exit code: 0 done, 1 no such session or failed, 2 bad command line, 3 messages left out.\n\n"
       "Examples:\n"
-      "  cordis echo plucked_string scene/events\n"
+      "  cordis echo plucked_string scene/signals\n"
       "  cordis echo plucked_string gesture/positions --format csv -n 1000\n"
       "  cordis echo plucked_string 'scene/*' --format ndjson\n");
   verb.action([words] { return echo(*words); });
