@@ -2,6 +2,7 @@
 #include "sim_node/plan/stability/start_tangent.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -78,6 +79,42 @@ TEST(StartTangent, KnowsThatATieTakesEveryDirectionAlike) {
   EXPECT_NEAR(StartTangent(space).diverging_step(), limit, 1e-3 * limit);
   EXPECT_EQ(plan::certified_bound(space, plan::liaison_graph(space)).step,
             plan::certified_bound(line, plan::liaison_graph(line)).step);
+}
+
+/// A mass on a spring and a damper, and on a liaison of one state beside them.
+NetworkDescription mass_on_two(double stiffness, double viscosity, const engine::LinkState& state) {
+  NetworkDescription scene = oscillator(0.03, stiffness, viscosity, 1e-3, 0.0, 1e-3);
+  scene.state_machines.emplace_back();
+  scene.state_machines[0].states = {state};
+  scene.state_links = {{0, 1, 0, 0.0}};
+  return scene;
+}
+
+TEST(StartTangent, CountsTheFallOfALaw) {
+  engine::LinkState falling;
+  falling.elasticity = engine::Table({-1.0, 1.0}, {40.0, -40.0});
+  const NetworkDescription scene = mass_on_two(100.0, 0.0, falling);
+
+  const double limit = 2.0 * std::sqrt(0.03 / 60.0);
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), limit, 1e-6 * limit);
+}
+
+TEST(StartTangent, IsNotSureOfWhatImplicitSpringsHold) {
+  // 4 m + dt^2 (K - 28) + 2 dt (Z - 1.6) is above 0 for every step.
+  engine::LinkState damped;
+  damped.stiffness = 28.0;
+  damped.viscosity = 1.6;
+  NetworkDescription scene = mass_on_two(220.0, 1.2, damped);
+  scene.integrator = engine::IntegratorKind::kImplicit;
+
+  EXPECT_EQ(StartTangent(scene).diverging_step(), std::numeric_limits<double>::infinity());
+  scene.step = 0.16;
+  EXPECT_LT(largest_excursion(scene, 4000), 1.0);
+  scene.links[0].stiffness = 0.0;
+  const double sure = StartTangent(scene).diverging_step();
+  ASSERT_LT(sure, 1.0);
+  scene.step = 1.02 * sure;
+  EXPECT_GT(largest_excursion(scene, 4000), 1e6);
 }
 
 TEST(StartTangent, NeverEndsWhereNothingPulls) {

@@ -310,7 +310,7 @@ TEST(RandomScenes, CertifiedRunsStayBounded) {
 engine::StateMachine stiffest_alone(const engine::StateMachine& all, double rest_length,
                                     double distance, double step) {
   engine::StateMachine stiffest;
-  double largest = -1.0;
+  double largest = -std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < all.states.size(); ++s) {
     engine::StateMachine one;
     one.states = {all.states[s]};

@@ -296,8 +296,6 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_
     stiffest.stiffness = stiffness;
     stiffest.viscosity = viscosity;
   }
-  stiffest.stiffness = std::max(stiffest.stiffness, 0.0);
-  stiffest.viscosity = std::max(stiffest.viscosity, 0.0);
   const engine::LinkState& first = state_machine.states.front();
   if (state_machine.is_stateless()) {
     const double tension =

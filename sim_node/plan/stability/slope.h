@@ -43,8 +43,8 @@ double stored_in(const engine::StateMachine& state_machine, double rest_length, 
 /// The tangent of a liaison at one distance of its ends and no speed, in the state that is the
 /// stiffest at a step. Laws count in the state of the start alone.
 struct Tangent {
-  double stiffness = 0.0;  ///< along the link [N/m]
-  double viscosity = 0.0;  ///< [N s/m]
+  double stiffness = 0.0;  ///< along the link, below 0 where a law falls [N/m]
+  double viscosity = 0.0;  ///< likewise [N s/m]
   double tension = 0.0;    ///< of a state machine of one state, else 0 [N]
 };
 

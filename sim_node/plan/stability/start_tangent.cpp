@@ -248,6 +248,7 @@ double StartTangent::diverging_step() const {
   // The step at which one direction diverges is not below the limit; going from direction to
   // direction, each time at that step, it comes down to it.
   double step = 0.0;
+  bool is_sure = true;
   int left = std::max(
       kFewestIterations,
       static_cast<int>(kWork / static_cast<double>(parts_.size() + root_of_inverse_mass_.size())));
@@ -257,12 +258,14 @@ double StartTangent::diverging_step() const {
     const double viscosity = dot(x, times(x, 0.0, 1.0, period));
     const double before = step;
     step = limit_step(std::max(stiffness, 0.0), viscosity);
+    // Springs that are solved implicitly may hold the direction, at a longer step too.
+    is_sure = stiffness * step * step > -kTolerance;
     const bool settled = !std::isfinite(step) || std::abs(step - before) < 0.1 * kTolerance * step;
     if (settled || left <= 0) break;
     // The first rounds only bring the step near, and take a part of the work.
     left -= climb(x, step, std::min({left, kMaxIterations, round < 2 ? kFewestIterations : left}));
   }
-  return step;
+  return is_sure ? step : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace cordis::plan
