@@ -1,5 +1,4 @@
-// sim_node/devices/sample_sequence.h -- the numbers of a device's samples: what is new, and how many
-// samples were lost.
+// sim_node/devices/sample_sequence.h -- the newest sample of a device, and how many were lost.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +35,7 @@ class SampleSequence {
   /// Goes on behind the newest sample of `before`, with its count of lost samples.
   void continue_from(const SampleSequence& before) noexcept;
 
-  /// Of the newest sample; 0 before the first one.
+  /// Epoch and number of the newest sample; 0 before the first one.
   std::uint64_t epoch() const noexcept { return epoch_; }
   std::uint64_t number() const noexcept { return number_; }
   /// When it was taken, by the clock of its device [ns].

@@ -32,8 +32,7 @@ double Rings::slope_beyond(double distance, bool turns) const noexcept {
   double largest = 0.0;
   const auto consider_across = [&](double length) {
     double tension = 0.0;
-    for (const Ring& ring : rings)
-      tension -= ring.stiffness * std::max(ring.radius - length, 0.0);
+    for (const Ring& ring : rings) tension -= ring.stiffness * std::max(ring.radius - length, 0.0);
     if (tension > 0.0) largest = std::max(largest, tension / length);
   };
   if (turns) consider_across(distance);
