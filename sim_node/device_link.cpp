@@ -212,6 +212,7 @@ void DeviceLink::answer(DeviceExchange& device, const Simulation& simulation) {
   const auto send = [&](auto& writer, auto& answer) {
     if (!is_withheld && !writer.write(answer)) ++unwritten_;
   };
+  if (!is_withheld) delays_.answer(device.received_epoch(), device.received_sample(), now);
   if (device.role() == Role::kMass) {
     send(force_writer_, device.answer_forces(world, safe, now));
   } else {

@@ -106,13 +106,17 @@ void AnswerDelays::record(std::uint64_t epoch, const Report& report,
   process.newest_nsec.store(now_nsec, std::memory_order_relaxed);
   const Report before = std::exchange(process.before, report);
   const bool is_first = std::exchange(process.seen_epoch, epoch) != epoch;
+  if (is_first) process.turns = {};
+  process.taken_sample = report.sample;
+  process.taken_nsec = now_nsec;
   const bool is_new = is_first || before.answered_sample != report.answered_sample;
   const double period_s = 1.0 / process.rate_hz.load();
   const bool follows = !is_first && report.sample > before.sample;
   const std::uint64_t lost = follows ? std::min(report.sample - before.sample - 1, kMaxLost) : 0;
   process.waited_s = is_new ? 0.0 : process.waited_s + static_cast<double>(lost + 1) * period_s;
   if (!(report.delay_s > 0.0 && report.delay_s <= AnswerDelayHistogram::kLongest)) return;
-  const double delay_s = std::max(report.delay_s, kFastestAnswer);
+  const double delay_s = std::max(report.delay_s, min_delay_s(process, report.answered_sample));
+  process.before.delay_s = delay_s;
   const double given_up_s = std::max(kGivenUp, kGivenUpPeriods * period_s);
   // At each lost sample the position that is felt was a period younger than at the next.
   const double min_s = std::max(std::min(delay_s, before.delay_s), kFastestAnswer);
@@ -122,6 +126,21 @@ void AnswerDelays::record(std::uint64_t epoch, const Report& report,
     const double then_s = delay_s + process.waited_s - ago_s;
     process.delays.record(i == 0 ? then_s : std::max(then_s, min_s));
   }
+}
+
+void AnswerDelays::answer(std::uint64_t epoch, std::uint64_t sample,
+                          std::int64_t now_nsec) noexcept {
+  Process* process = find(epoch);
+  if (process == nullptr || process->seen_epoch != epoch || process->taken_sample != sample) return;
+  Turn& turn = process->turns[sample % process->turns.size()];
+  if (turn.sample == sample) return;
+  turn = {sample, static_cast<double>(now_nsec - process->taken_nsec) * 1e-9};
+}
+
+/// The least that the delay of an answer can have been.
+double AnswerDelays::min_delay_s(const Process& process, std::uint64_t answered_sample) noexcept {
+  const Turn& turn = process.turns[answered_sample % process.turns.size()];
+  return turn.sample == answered_sample ? std::max(kFastestAnswer, turn.took_s) : kFastestAnswer;
 }
 
 void AnswerDelays::leave_out(std::uint64_t epoch, std::int64_t now_nsec) noexcept {

@@ -52,7 +52,8 @@ class AnswerDelayHistogram {
 /// when it went to the motors. Samples without a new answer leave the force of the answer before on
 /// the motors: a period more counts for each of them, until the force is kGivenUp old and the
 /// device has taken it off. A sample that is lost on its way counts as one that was a period younger
-/// than the next.
+/// than the next. No report is believed that is shorter than the time in which this process had the
+/// sample before it answered it: that is measured here.
 class AnswerDelays {
  public:
   static constexpr std::size_t kMaxProcesses = 16;  ///< measured at once
@@ -76,9 +77,14 @@ class AnswerDelays {
   void add(std::uint64_t epoch, double rate_hz, std::int64_t now_nsec) noexcept;
 
   /// Loop: a new sample of the process. A delay that is no number, not above 0, or above 1 s is
-  /// left out; one below kFastestAnswer counts as that. O(kMaxProcesses + samples lost, at most
-  /// kMaxLost), no lock, no allocation.
+  /// left out; one below kFastestAnswer, or below what answer() has measured of the sample that is
+  /// answered, counts as that. O(kMaxProcesses + samples lost, at most kMaxLost), no lock, no
+  /// allocation.
   void record(std::uint64_t epoch, const Report& report, std::int64_t now_nsec) noexcept;
+
+  /// Loop: the answer to a sample goes out. Its delay is at least the time since record() was called
+  /// with it. Only the first answer to a sample counts. O(kMaxProcesses), no lock, no allocation.
+  void answer(std::uint64_t epoch, std::uint64_t sample, std::int64_t now_nsec) noexcept;
 
   /// Loop: a new sample that reports nothing. What comes next follows from no report before.
   void leave_out(std::uint64_t epoch, std::int64_t now_nsec) noexcept;
@@ -89,6 +95,11 @@ class AnswerDelays {
   double quantile() const noexcept { return quantile_; }
 
  private:
+  /// How long the answer to a sample took here.
+  struct Turn {
+    std::uint64_t sample = 0;
+    double took_s = 0.0;
+  };
   struct Process {
     std::atomic<std::uint64_t> epoch{0};
     std::atomic<double> rate_hz{0.0};
@@ -98,7 +109,11 @@ class AnswerDelays {
     std::uint64_t seen_epoch = 0;
     Report before;
     double waited_s = 0.0;  // since the newest answer was new
+    std::uint64_t taken_sample = 0;
+    std::int64_t taken_nsec = 0;
+    std::array<Turn, 64> turns{};  // of the last answers, by the sample that they answer
   };
+  static double min_delay_s(const Process& process, std::uint64_t answered_sample) noexcept;
   static constexpr std::uint64_t kMaxLost = 64;  // in a row that count
   Process* find(std::uint64_t epoch) noexcept;
 

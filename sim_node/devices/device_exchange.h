@@ -120,6 +120,9 @@ class DeviceExchange {
   /// True if a device was there, fell silent, and was not let go of.
   bool is_missed() const noexcept { return is_expected_ && is_disconnected(); }
   bool has_received() const noexcept { return sequence_.epoch() != 0; }
+  /// Epoch and number of the newest sample; 0 when there is none.
+  std::uint64_t received_epoch() const noexcept { return sequence_.epoch(); }
+  std::uint64_t received_sample() const noexcept { return sequence_.number(); }
   /// Samples received as Reception::kNew.
   std::uint64_t new_count() const noexcept { return new_count_; }
   /// When the newest sample was taken, by the clock of its device; 0 when there is none [ns].
