@@ -11,6 +11,7 @@
 #include "node/dds/reader.h"
 #include "node/dds/topics.h"
 #include "node/dds/writer.h"
+#include "node/processor_time.h"
 #include "node/repeated_event.h"
 #include "node/time.h"
 
@@ -31,7 +32,7 @@ class DdsChannel final : public GestureChannel {
 
   bool send(const GestureMessage& sample) noexcept override {
     wire::put(sample, device_id_, sent_);
-    if (is_awaiting_) record_wait(false);
+    if (is_awaiting_) record_wait(AnswerPoll::Wait::kInVain);
     is_awaiting_ = poll_nsec_ > 0;
     poll_until_ = node::monotonic_nsec() + poll_nsec_;
     return writer_.write(sent_);
@@ -44,33 +45,38 @@ class DdsChannel final : public GestureChannel {
       while (reader_.take(received_)) {
         if (received_.device_id() != device_id_) continue;  // another device of the session
         wire::take(received_, answer);
-        if (is_awaiting_) record_wait(node::monotonic_nsec() < poll_until_);
+        if (is_awaiting_) {
+          const bool is_in_time = node::monotonic_nsec() < poll_until_;
+          record_wait(is_in_time ? AnswerPoll::Wait::kInTime : AnswerPoll::Wait::kLate);
+        }
         return true;
       }
       const std::int64_t now = node::monotonic_nsec();
       if (at_most.count() <= 0 || now >= deadline) return false;
       if (is_awaiting_ && poll_.is_on() && now < poll_until_) {
+        const std::int64_t begun = node::thread_processor_nsec();
         arrival_.poll_until(seen, std::min(poll_until_, deadline));
+        polled_nsec_ += node::thread_processor_nsec() - begun;
       } else {
         arrival_.wait_until(seen, deadline);
       }
     }
   }
 
+  double polled_s() const noexcept override { return static_cast<double>(polled_nsec_) * 1e-9; }
+
  private:
-  /// @param came  the answer to the sample sent last, before polling ended
-  void record_wait(bool came) noexcept {
+  /// The wait for the answer to the sample sent last is over.
+  void record_wait(AnswerPoll::Wait wait) noexcept {
     is_awaiting_ = false;
-    const bool paid = poll_.pays();
-    poll_.record(came);
-    if (poll_.pays() == paid) return;
-    const std::int64_t now = node::monotonic_nsec();
-    node::RepeatedEvent& event = paid ? sleeps_ : polls_;
-    if (!event.record(now)) return;
-    if (paid) {
-      spdlog::info("sleeps until its answers come: polling no longer finds them in time");
-    } else {
+    if (!poll_.record(wait)) return;
+    const bool pays = poll_.verdict() == AnswerPoll::Verdict::kPays;
+    node::RepeatedEvent& event = pays ? polls_ : sleeps_;
+    if (!event.record(node::monotonic_nsec())) return;
+    if (pays) {
       spdlog::info("polls for its answers, for {} us of a period at most", poll_nsec_ / 1000);
+    } else {
+      spdlog::info("sleeps until its answers come: polling does not find them in time");
     }
   }
 
@@ -80,6 +86,7 @@ class DdsChannel final : public GestureChannel {
   std::uint32_t device_id_;
   std::int64_t poll_nsec_;
   std::int64_t poll_until_ = 0;
+  std::int64_t polled_nsec_ = 0;
   bool is_awaiting_ = false;  // the answer to the sample sent last
   AnswerPoll poll_;
   node::RepeatedEvent polls_{"polls for its answers again", spdlog::level::info};

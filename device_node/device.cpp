@@ -14,6 +14,7 @@
 #include "device_node/drivers/guardian.h"
 #include "node/paced_loop.h"
 #include "node/stop.h"
+#include "node/tick_cost.h"
 #include "node/time.h"
 
 namespace cordis::device {
@@ -106,6 +107,8 @@ void Device::play(Role role) {
   const bool lockstep = clock_ == config::Clock::kLockstep;
   const bool may_poll =
       !lockstep && driver_->changes_within_period() && std::thread::hardware_concurrency() > 1;
+  if (!lockstep && driver_->changes_within_period() && std::thread::hardware_concurrency() < 2)
+    spdlog::info("sleeps until its answers come: polling needs a second core");
   const double poll_s = std::min(kLongestPoll, Exchange::kAnswerShare / config_.layout.rate_hz);
   const auto channel = make_dds_channel(for_loop_, role, config_.device_id, config_.strength,
                                         may_poll ? std::llround(poll_s * 1e9) : 0);
@@ -120,12 +123,16 @@ void Device::play(Role role) {
                      .clock = &node::monotonic_nsec,
                      .since_boot = &since_boot_nsec});
   phases_.start();
+  const node::TickCost cost;
+  const std::uint64_t ticks_before = meter_.ticks();
   if (lockstep) {
     play_in_lockstep(exchange);
   } else {
     play_paced(exchange);
   }
   leave(exchange);
+  const std::string cost_text = cost.text(meter_.ticks() - ticks_before, channel->polled_s());
+  if (!cost_text.empty()) spdlog::info("{}", cost_text);
   series_.last_sample = exchange.last_sample();
   meter_.set_phase(Phase::kWaiting);
 }

@@ -37,6 +37,9 @@ class GestureChannel {
   /// none came. Entries past axis_count are 0; nothing else about it has been checked.
   [[nodiscard]] virtual bool receive(GestureMessage& answer,
                                      std::chrono::nanoseconds at_most) noexcept = 0;
+
+  /// Processor time in which receive() has polled instead of sleeping [s].
+  virtual double polled_s() const noexcept { return 0.0; }
 };
 
 }  // namespace cordis::device

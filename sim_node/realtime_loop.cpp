@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "node/paced_loop.h"
+#include "node/tick_cost.h"
 #include "sim_node/arrival_pace.h"
 
 namespace cordis::sim {
@@ -19,9 +20,12 @@ void run_realtime(SceneLoop& loop) {
                grant.fifo ? "granted" : "not permitted, going on without",
                grant.memory_locked ? "locked" : "not locked");
   ArrivalPace pace(loop.simulation().scene().gesture_rate_hz);
+  const node::TickCost cost;
+  std::uint64_t ticks = 0;
   while (!loop.finished()) {
     loop.status().late_ticks().count(pace.wait(loop.simulation(), loop.devices(), loop.inputs()));
     if (loop.finished()) break;
+    ++ticks;
     const bool plays = loop.execute();
     if (pace.rate_hz() != loop.simulation().scene().gesture_rate_hz)
       pace.restart(loop.simulation().scene().gesture_rate_hz);
@@ -33,6 +37,7 @@ void run_realtime(SceneLoop& loop) {
     if (plays) loop.show(complete);
     loop.runner().loaded_scene().shadow->hand_over(loop.simulation().world());
   }
+  if (ticks > 0) spdlog::info("{}", cost.text(ticks));
 }
 
 }  // namespace cordis::sim
