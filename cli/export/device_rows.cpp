@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "cli/numbered_messages.h"
 #include "idl/control.h"
 #include "idl/gesture.h"
 #include "idl/topics.h"
@@ -66,10 +67,17 @@ std::vector<Column> DeviceRows::columns() const {
 
 void DeviceRows::read_inputs(const mcap::Reader& take, const TakeScene& scene, ReadLoss& loss) {
   MessageSource<msg::SceneInputs> source(take, msg::TOPIC_INPUTS, loss);
+  const auto read = [&](msg::SceneInputs& one) {
+    while (source.next(one))
+      if (one.epoch() == scene.description.epoch()) return true;
+    return false;
+  };
+  const auto number = [](const msg::SceneInputs& one) { return one.batch(); };
+  NumberedMessages<msg::SceneInputs> batches;
   msg::SceneInputs batch;
   std::uint64_t newest = 0;
-  while (gap_.empty() && source.next(batch)) {
-    if (batch.epoch() != scene.description.epoch() || batch.batch() <= newest) continue;
+  while (gap_.empty() && batches.next(read, number, batch)) {
+    if (batch.batch() <= newest) continue;
     if (batch.batch() != newest + 1) {
       gap_ = newest == 0 ? "scene/inputs begins too late: devices have no values"
                          : "scene/inputs has a gap: from there on devices have no values";

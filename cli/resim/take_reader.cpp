@@ -10,11 +10,6 @@
 #include "node/dds/payload.h"
 
 namespace cordis::cli {
-namespace {
-
-constexpr std::size_t kWaiting = 256;  // messages: some seconds of inputs, and of frames
-
-}  // namespace
 
 TakeReader::TakeReader(const std::string& path)
     : file_(path),
@@ -70,26 +65,15 @@ bool TakeReader::read(mcap::MessageCursor& cursor, Message& message) {
   return false;
 }
 
-/// The one with the least number of those that come next.
-template <class Message, class Number>
-bool TakeReader::next(mcap::MessageCursor& cursor, std::map<std::uint64_t, Message>& waiting,
-                      Number number, Message& message) {
-  while (waiting.size() < kWaiting && read(cursor, message))
-    waiting.emplace(number(message), message);
-  if (waiting.empty()) return false;
-  message = std::move(waiting.begin()->second);
-  waiting.erase(waiting.begin());
-  return true;
-}
-
 bool TakeReader::next(msg::SceneInputs& batch) {
-  return next(
-      inputs_, waiting_inputs_, [](const msg::SceneInputs& one) { return one.batch(); }, batch);
+  return numbered_inputs_.next([this](msg::SceneInputs& one) { return read(inputs_, one); },
+                               [](const msg::SceneInputs& one) { return one.batch(); }, batch);
 }
 
 bool TakeReader::next(msg::SceneFrame& frame) {
+  const auto read_frame = [this](msg::SceneFrame& one) { return read(frames_, one); };
   const auto number = [](const msg::SceneFrame& one) { return one.frame(); };
-  while (next(frames_, waiting_frames_, number, frame)) {
+  while (numbered_frames_.next(read_frame, number, frame)) {
     if (frame.frame() <= newest_frame_) continue;  // received twice
     newest_frame_ = frame.frame();
     return true;

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "cli/numbered_messages.h"
 #include "idl/inputs.h"
 #include "idl/scene.h"
 #include "record_node/mcap/reader.h"
@@ -39,15 +40,12 @@ class TakeReader {
   void read_descriptions();
   template <class Message>
   bool read(mcap::MessageCursor& cursor, Message& message);
-  template <class Message, class Number>
-  bool next(mcap::MessageCursor& cursor, std::map<std::uint64_t, Message>& waiting, Number number,
-            Message& message);
 
   mcap::Reader file_;
   mcap::MessageCursor inputs_;
   mcap::MessageCursor frames_;
-  std::map<std::uint64_t, msg::SceneInputs> waiting_inputs_;  // by number
-  std::map<std::uint64_t, msg::SceneFrame> waiting_frames_;   // likewise
+  NumberedMessages<msg::SceneInputs> numbered_inputs_;
+  NumberedMessages<msg::SceneFrame> numbered_frames_;
   std::uint64_t epoch_ = 0;
   std::uint64_t newest_frame_ = 0;
   std::size_t other_epochs_ = 0;

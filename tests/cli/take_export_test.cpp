@@ -12,6 +12,8 @@
 #include <unistd.h>
 
 #include "cli/export/export.h"
+#include "idl/gesture.h"
+#include "idl/inputs.h"
 #include "idl/scene.h"
 #include "idl/topics.h"
 #include "node/dds/payload.h"
@@ -35,8 +37,8 @@ class TakeExport : public testing::Test {
   }
   ~TakeExport() override { std::filesystem::remove_all(folder_); }
 
-  /// Begins a take with the description of its scene.
-  void begin(const std::string& name) {
+  /// Begins a take with the description of its scene, which may have a port.
+  void begin(const std::string& name, bool has_port = false) {
     writer_ = std::make_unique<mcap::Writer>(path(name));
     batch_ = 0;
     msg::SceneDescription scene;
@@ -53,6 +55,15 @@ class TakeExport : public testing::Test {
     signal.sound(true);
     signal.full_scale(2.0);
     scene.signals().push_back(signal);
+    if (has_port) {
+      msg::PortDescription port;
+      port.name("key");
+      port.device("keyboard");
+      port.device_id(3);
+      port.role(msg::ROLE_MASS);
+      port.axes() = {0};
+      scene.ports().push_back(port);
+    }
     put(msg::TOPIC_DESCRIPTION, "SceneDescription", scene);
   }
 
@@ -94,6 +105,35 @@ class TakeExport : public testing::Test {
     sound.sound_count(1);
     sound.value().assign(values.begin(), values.end());
     put(msg::TOPIC_SOUND, "SceneSound", sound);
+  }
+
+  /// One sample of the port, which takes effect in a turn of its own.
+  void put_input(std::uint64_t number, double position) {
+    msg::InputSample sample;
+    sample.number(number + 1);  // of a scene before it
+    sample.turn(number - 1);
+    sample.device_id(3);
+    sample.gives_positions(true);
+    sample.epoch(9);
+    sample.sample(number);
+    sample.axis_count(1);
+    sample.value() = {position};
+    msg::SceneInputs inputs;
+    inputs.epoch(5);
+    inputs.batch(number);
+    inputs.turns(number);
+    inputs.sample().push_back(sample);
+    put(msg::TOPIC_INPUTS, "SceneInputs", inputs);
+  }
+  void put_answer(std::uint64_t number, double force) {
+    msg::GestureForces forces;
+    forces.device_id(3);
+    forces.epoch(5);
+    forces.sample(number);
+    forces.answered_epoch(9);
+    forces.answered_sample(number);
+    forces.force_n()[0] = force;
+    put(msg::TOPIC_FORCES, "GestureForces", forces);
   }
 
   template <class Message>
@@ -148,6 +188,27 @@ TEST_F(TakeExport, LeavesOutSoundBehindAGapOfMoreThanTenMinutes) {
                                  "600 s of the sound are missing, and silent in the file"));
   // no more than the silence that is allowed, at the rate of a sound card
   EXPECT_LT(std::filesystem::file_size(path("far.wav")), 601u * 48'000u * sizeof(float));
+}
+
+TEST_F(TakeExport, HasTheDevicesOfATakeThatBeginsInMidSession) {
+  begin("joined.mcap", /*has_port=*/true);
+  put_values(3, {3.0, 4.0});
+  put_input(3, 0.3);  // the newest comes first, and then what was kept for the recorder
+  put_input(1, 0.1);
+  put_input(2, 0.2);
+  put_input(4, 0.4);
+  put_answer(3, -3.0);
+  put_answer(4, -4.0);
+  ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
+  const mcap::Reader take(path("joined.mcap"));
+  ExportOptions options;
+  options.csv_file = path("joined.csv");
+  const ExportResult result = export_take(take, options);
+  EXPECT_EQ(text_of("joined.csv"),
+            "time [s],bridge [N],keyboard.position[0] [m],keyboard.force[0] [N]\n"
+            "0.003,3,0.3,-3\n0.004,4,0.4,-4\n");
+  EXPECT_THAT(result.losses,
+              testing::ElementsAre("the take begins late: its first row is at 0.003 s"));
 }
 
 TEST_F(TakeExport, TakesAPartOfTheTime) {
