@@ -12,6 +12,7 @@
 #include "node/status.h"
 #include "node/stop.h"
 #include "record_node/mcap/writer.h"
+#include "record_node/plan_report.h"
 #include "record_node/record_config.h"
 #include "record_node/recorder.h"
 
@@ -99,6 +100,7 @@ record::RecorderConfig config_of(const node::NodeStart& start,
   config.compression = section.compression;
   config.attached = record::files_of(start.launch);
   config.about = record::about_session(start.launch, config.attached);
+  config.plan_command = record::plan_command(start.launch.file, record::own_overrides());
   return config;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include <unistd.h>
@@ -34,12 +33,17 @@ std::vector<std::string> read_words(config::MappingReader& reader, const std::st
   return words;
 }
 
+std::vector<std::string> own_words() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  return words;
+}
+
 /// The words of this process, with blanks between them.
 std::string own_command_line() {
-  std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  std::string line{std::istreambuf_iterator<char>(file), {}};
-  while (!line.empty() && line.back() == '\0') line.pop_back();
-  std::replace(line.begin(), line.end(), '\0', ' ');
+  std::string line;
+  for (const std::string& word : own_words()) line += (line.empty() ? "" : " ") + word;
   return line;
 }
 
@@ -71,6 +75,16 @@ std::map<std::string, std::string> read_idl_files(const std::vector<std::string>
     texts[path] = read.bytes;
   }
   return texts;
+}
+
+std::vector<std::string> own_overrides() {
+  const std::vector<std::string> words = own_words();
+  std::vector<std::string> overrides;
+  for (std::size_t i = 2; i < words.size(); ++i) {  // the program and the launch file stand first
+    if (words[i].find('=') != std::string::npos && words[i][0] != '-')
+      overrides.push_back(words[i]);
+  }
+  return overrides;
 }
 
 std::map<std::string, std::string> about_session(const config::Launch& launch,

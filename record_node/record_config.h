@@ -27,6 +27,9 @@ RecordSection read_record_section(const config::LaunchNode& node, config::Proble
 std::map<std::string, std::string> read_idl_files(const std::vector<std::string>& files,
                                                   const std::filesystem::path& base);
 
+/// The words `name.key=value` of the command line of this process, which is that of a node.
+std::vector<std::string> own_overrides();
+
 /// What a take says of its session: host, versions, clock, launch file, command line, how the clock
 /// of the messages (CLOCK_MONOTONIC) stands to that of the file (UTC), and each seed that a file
 /// names, as `seed FILE: KEY`; `seed` is that of all others.

@@ -11,6 +11,7 @@
 
 #include "idl/topics.h"
 #include "record_node/mcap/topic_glob.h"
+#include "record_node/plan_report.h"
 #include "record_node/recorded_writer.h"
 #include "record_node/sample_queue.h"
 #include "record_node/take_writer.h"
@@ -34,8 +35,10 @@ struct Recorder::Impl {
   explicit Impl(RecorderConfig wanted)
       : config(std::move(wanted)),
         queue(config.queue_bytes),
+        plan(config.plan_command),
         participant(member_of(config)),
-        file(config, queue, writers, [this](const dds::WriterId& id) { return origin_of(id); }),
+        file(config, plan, queue, writers,
+             [this](const dds::WriterId& id) { return origin_of(id); }),
         follower(
             participant, [this](const std::string& topic) { return is_wanted(topic); },
             [this](const dds::RawTopic& topic, const dds::RawSample& sample) {
@@ -48,6 +51,7 @@ struct Recorder::Impl {
   const Clock::time_point began = Clock::now();
   SampleQueue queue;
   RecordedWriters writers;
+  PlanReport plan;  // begins before there are sockets that its process would inherit
   dds::Participant participant;
   TakeWriter file;
   std::mutex known_mutex;

@@ -29,6 +29,7 @@ struct RecorderConfig {
   std::size_t queue_bytes = std::size_t{12} << 20;
   std::map<std::string, std::string> about;  ///< of the session: `cordis.session` of the take
   std::vector<AttachedFile> attached;
+  std::vector<std::string> plan_command;  ///< its output is attached as plan.txt; empty: none
 };
 
 /// What a recorder has done so far.

@@ -16,6 +16,7 @@ namespace cordis::record {
 namespace {
 
 constexpr auto kWritePeriod = std::chrono::milliseconds(50);
+constexpr auto kWaitForPlan = std::chrono::milliseconds(500);  // at the end of the take
 
 std::uint64_t utc_nsec() {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -34,9 +35,10 @@ std::map<std::string, std::string> known_types(const std::map<std::string, std::
 
 }  // namespace
 
-TakeWriter::TakeWriter(const RecorderConfig& config, SampleQueue& queue, RecordedWriters& writers,
-                       FindOrigin find_origin)
-    : queue_(queue),
+TakeWriter::TakeWriter(const RecorderConfig& config, PlanReport& plan, SampleQueue& queue,
+                       RecordedWriters& writers, FindOrigin find_origin)
+    : plan_(plan),
+      queue_(queue),
       writers_(writers),
       find_origin_(std::move(find_origin)),
       types_(known_types(config.idl)),
@@ -61,6 +63,16 @@ void TakeWriter::begin(const RecorderConfig& config) {
   }
 }
 
+void TakeWriter::attach_plan(std::chrono::milliseconds at_most) {
+  const std::optional<std::string> report = plan_.take(at_most);
+  if (!report || over_) return;
+  note(file_.attach({.name = "plan.txt",
+                     .media_type = "text/plain",
+                     .log_time_nsec = utc_nsec(),
+                     .create_time_nsec = utc_nsec(),
+                     .data = std::as_bytes(std::span(*report))}));
+}
+
 void TakeWriter::close() {
   if (!thread_.joinable()) return;
   ending_ = true;
@@ -74,8 +86,14 @@ std::string TakeWriter::problem() const {
 }
 
 void TakeWriter::loop() {
-  while (!ending_) write_waiting(kWritePeriod);
+  while (!ending_) {
+    write_waiting(kWritePeriod);
+    attach_plan(std::chrono::milliseconds(0));
+  }
   write_waiting(std::chrono::milliseconds(0));
+  attach_plan(kWaitForPlan);
+  if (plan_.is_under_way())
+    spdlog::warn("the plan of the session is not evaluated yet: the take lacks plan.txt");
   end();
 }
 

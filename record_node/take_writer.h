@@ -12,6 +12,7 @@
 
 #include "node/dds/participant.h"
 #include "record_node/mcap/writer.h"
+#include "record_node/plan_report.h"
 #include "record_node/recorded_writer.h"
 #include "record_node/recorder.h"
 #include "record_node/sample_queue.h"
@@ -29,11 +30,11 @@ class TakeWriter {
   };
   using FindOrigin = std::function<Origin(const dds::WriterId&)>;
 
-  /// @param queue, writers  outlive it
+  /// @param plan, queue, writers  outlive it
   /// @throws mcap::FileError when the file cannot be made, IdlError for a text of `config.idl` that
   /// is not understood
-  TakeWriter(const RecorderConfig& config, SampleQueue& queue, RecordedWriters& writers,
-             FindOrigin find_origin);
+  TakeWriter(const RecorderConfig& config, PlanReport& plan, SampleQueue& queue,
+             RecordedWriters& writers, FindOrigin find_origin);
   ~TakeWriter();
   TakeWriter(const TakeWriter&) = delete;
   TakeWriter& operator=(const TakeWriter&) = delete;
@@ -52,6 +53,7 @@ class TakeWriter {
  private:
   void begin(const RecorderConfig& config);
   void loop();
+  void attach_plan(std::chrono::milliseconds at_most);
   void write_waiting(std::chrono::milliseconds at_most);
   bool write(const QueuedSample& sample);
   std::uint16_t channel_of(RecordedWriter& writer);
@@ -61,6 +63,7 @@ class TakeWriter {
   std::map<std::string, std::string> counts() const;
   void end();
 
+  PlanReport& plan_;
   SampleQueue& queue_;
   RecordedWriters& writers_;
   FindOrigin find_origin_;

@@ -364,7 +364,7 @@ std::string text_of(const SceneCheck& check) {
   text += freezing_text(scene.network.freeze_tolerance);
   text += choice_text(check) + stability_text(check) + accuracy_text(check) + contact_text(check);
   for (const PortCheck& port : check.ports) text += port_text(check, port);
-  return text + load_text(check);
+  return check.measured_steps > 0 ? text + load_text(check) : text;
 }
 
 std::string json_of(const SceneCheck& check) {
@@ -392,8 +392,8 @@ std::string json_of(const SceneCheck& check) {
                         {"decay_error", edge.error.decay}}},
                       {"ports", ports_json(check)},
                       {"problems", problems_json(check.problems)},
-                      {"reductions", reductions_json(check.scene.reductions)},
-                      {"load", load_json(check)}};
+                      {"reductions", reductions_json(check.scene.reductions)}};
+  if (check.measured_steps > 0) json["load"] = load_json(check);
   const double tolerance = check.scene.network.freeze_tolerance;
   if (tolerance > 0.0) {
     json["freezing"] = {{"tolerance_m", tolerance}, {"largest_error_m", kLargestError * tolerance}};

@@ -49,7 +49,8 @@ int run(const CheckOptions& options) {
   const std::string problems = check.problems.text();
   std::fflush(stdout);
   if (!problems.empty()) std::fprintf(stderr, "%s\n", problems.c_str());
-  const int others = check.launch ? check_other_nodes(*check.launch, options.overrides) : kSuccess;
+  const bool asks_others = check.launch && !options.plan_alone;
+  const int others = asks_others ? check_other_nodes(*check.launch, options.overrides) : kSuccess;
   return check.problems.has_errors() ? kBadInput : others;
 }
 
@@ -72,6 +73,8 @@ void add_check_verb(CommandLine& line) {
   verb.option("--json", "FILE", options.json_file, "Also write it for a program; - for stdout");
   verb.option("--band", "HZ", words->band,
               "Where pitch and decay are evaluated [that of the scene, or 100]");
+  verb.flag("--plan", options.plan_alone,
+            "The plan alone: no load, which is measured, and no other nodes");
   verb.flag("--force", options.force,
             "Warn of a scene that is unstable, as sim_node does with force=true");
   verb.examples(

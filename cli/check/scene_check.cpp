@@ -109,6 +109,7 @@ SceneCheck check_scene(const CheckOptions& options) {
   }
   for (const sim::DeviceAtPort& device : devices)
     check.ports[device.port].devices.push_back(device);
+  if (options.plan_alone) return check;
   const plan::StepLoad load = plan::measure_steps(network);
   check.step_nsec = load.median_nsec;
   check.worst_step_nsec = load.worst_nsec;

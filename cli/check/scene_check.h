@@ -24,6 +24,7 @@ struct CheckOptions {
   /// The upper end of the band that matters; 0: that of the scene's `accuracy`, or 100 Hz.
   double band_hz = 0.0;
   bool force = false;
+  bool plan_alone = false;  ///< nothing is measured, and no other node asked
 };
 
 /// The loop through one port, in its role.
@@ -44,7 +45,7 @@ struct SceneCheck {
   plan::Plan plan;
   std::optional<plan::RateSelection> choice;  ///< for the `accuracy` of the scene
   std::vector<PortCheck> ports;
-  double step_nsec = 0.0;        ///< median, measured on this machine
+  double step_nsec = 0.0;        ///< median, measured on this machine; 0: not measured
   double worst_step_nsec = 0.0;  ///< of the same trial
   std::size_t measured_steps = 0;
 

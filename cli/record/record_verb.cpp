@@ -20,6 +20,7 @@
 #include "node/stop.h"
 #include "record_node/idl/idl_parser.h"
 #include "record_node/mcap/writer.h"
+#include "record_node/plan_report.h"
 #include "record_node/record_config.h"
 #include "record_node/recorder.h"
 
@@ -59,6 +60,8 @@ record::RecorderConfig config_of(const RecordWords& words, const SessionAddress&
   const config::Launch launch = running_launch(address, unread);
   if (!launch.file.empty()) config.attached = record::files_of(launch);
   config.about = record::about_session(launch, config.attached);
+  config.plan_command =
+      record::plan_command(launch.file, {std::string("clock=") + config::clock_word(launch.clock)});
   return config;
 }
 

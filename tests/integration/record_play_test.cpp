@@ -93,6 +93,21 @@ void expect_words_and_schemas(const mcap::Reader& take) {
   EXPECT_GT(take.channels().size(), types.size());  // sim_node and device_node share a schema
 }
 
+/// The take holds what `cordis check` says of the session that it is of. On a machine too busy for
+/// that, the log says that it does not.
+void expect_plan(const mcap::Reader& take, const std::string& log) {
+  ChildProcess check({kCordis, "check", "--plan", kLaunch, "keyboard.driver=script"});
+  ASSERT_EQ(check.wait(kPatience), 0) << check.output();
+  EXPECT_NE(check.output().find("integrator"), std::string::npos) << check.output();
+  for (const mcap::Attachment& file : take.attachments()) {
+    if (file.name != "plan.txt") continue;
+    const std::string text(reinterpret_cast<const char*>(file.data.data()), file.data.size());
+    EXPECT_EQ(text, check.output());
+    return;
+  }
+  EXPECT_NE(log.find("the take lacks plan.txt"), std::string::npos) << log;
+}
+
 TEST(RecordPlay, GivesTheSamePayloadsWhenThePlayedSessionIsRecorded) {
   const fs::path folder = fresh_folder("record_play");
   const fs::path first = folder / "first.mcap";
@@ -107,6 +122,7 @@ TEST(RecordPlay, GivesTheSamePayloadsWhenThePlayedSessionIsRecorded) {
     EXPECT_NE(std::find(attached.begin(), attached.end(), file), attached.end()) << file;
 
   expect_words_and_schemas(take);
+  expect_plan(take, session.output());
 
   const std::string domain = std::to_string(test::own_domain());
   ChildProcess recorder(
