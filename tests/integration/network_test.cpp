@@ -304,9 +304,12 @@ TEST_F(Network, ForcesStayWithinTheirLimitsOverASlowAndBadCable) {
   const auto here = apart.observer(TwoHosts::kSecond);
   dds::Reader<msg::GestureForces> forces(*here, dds::Topic::kForces);
   StatusWatch status(*here);
+  // Its description may need many attempts on such a cable; until it comes there is no force.
   ASSERT_TRUE(feels_the_wall(forces));
-  ASSERT_TRUE(status.wait_for("keyboard", [](const msg::NodeStatus& keyboard) {
-    return keyboard.link_samples() > 3000 && keyboard.latency_p50_s() > 0.040 &&
+  std::optional<std::uint64_t> begun;
+  ASSERT_TRUE(status.wait_for("keyboard", [&begun](const msg::NodeStatus& keyboard) {
+    if (!begun) begun = keyboard.link_samples();
+    return keyboard.link_samples() > *begun + 3000 && keyboard.latency_p50_s() > 0.040 &&
            keyboard.link_unanswered() > keyboard.link_samples() / 5;
   }));
   second.signal(SIGINT);
@@ -315,9 +318,10 @@ TEST_F(Network, ForcesStayWithinTheirLimitsOverASlowAndBadCable) {
   const std::vector<Row> rows = read_trace(apart.folder / "trace.csv");
   ASSERT_GT(rows.size(), 3000u);
   expect_slew_limit(rows);
-  const auto pressed = static_cast<std::size_t>(std::count_if(
-      rows.begin(), rows.end(), [](const Row& row) { return std::abs(row.commanded) > 1.9; }));
-  EXPECT_GT(pressed, rows.size() / 4) << "such a link is bad, and not dead";
+  const auto presses = [](const Row& row) { return std::abs(row.commanded) > 1.9; };
+  const auto first = std::find_if(rows.begin(), rows.end(), presses);
+  EXPECT_GT(std::count_if(first, rows.end(), presses), (rows.end() - first) / 4)
+      << "such a link is bad, and not dead";
 }
 
 /// "state hash H after N steps" of a run.
