@@ -31,16 +31,12 @@ fake_ninja() {  # -C TREE, then -n or -j N, then targets
   printf x >"$built"
 }
 
-fake_ctest() {  # one test passes, one is skipped and one fails
-  local name end log=${0%/*/bin/*}/Testing/Temporary/LastTest.log
-  mkdir -p "${log%/*}"
-  printf 'Start testing: Nov 22\n---\n' >"$log"
-  for name in 'good Test Passed.' 'left SKIP_RETURN_CODE=77' 'bad Test Failed.'; do
-    end=${name#* }
-    name=${name%% *}
-    printf '1/3 Testing: %s\nOutput:\n---\na_test.cpp:3: Failure\nwords of %s\n<end of output>\n%s\n"%s" end time: 1\n\n' \
-      "$name" "$name" "$end" "$name" >>"$log"
-  done
+fake_ctest() {  # ... --output-log LOG: one test passes, one is skipped and one fails
+  local log=${*: -1}
+  printf '    Start 1: good\n1/3 Test #1: good ....   Passed    0.01 sec\n' >"$log"
+  printf '    Start 2: left\n2/3 Test #2: left ....***Skipped   0.01 sec\nwords of left\n' >>"$log"
+  printf '    Start 3: bad\n3/3 Test #3: bad ....***Failed   0.01 sec\na_test.cpp:3: Failure\nwords of bad\n' >>"$log"
+  printf '\n66%% tests passed, 1 tests failed out of 3\n' >>"$log"
 }
 
 fake_cmake() {  # -S SOURCE --preset PRESET
@@ -54,7 +50,7 @@ fake_cmake() {  # -S SOURCE --preset PRESET
 case ${0##*/} in
   apt-get) fake_apt_get "$@"; exit ;;
   cmake) fake_cmake "$@"; exit ;;
-  cordis) printf 'program:'; printf ' [%s]' "$@"; printf '\n'; [[ $1 != test ]] || fake_ctest; [[ $* == *until-pass* ]] || exit 7; exit 0 ;;
+  cordis) printf 'program:'; printf ' [%s]' "$@"; printf '\n'; [[ $1 != test ]] || fake_ctest "$@"; [[ $* == *until-pass* ]] || exit 7; exit 0 ;;
   dpkg-query) while read -r package; do printf '=installed=%s=' "$package"; done <"$PLACE/installed"; exit ;;
   ninja) fake_ninja "$@"; exit ;;
   npm) note "npm $1"; [[ ! -e $PLACE/offline ]] || exit 1; mkdir -p "$3/node_modules"; printf x >"$3/node_modules/.package-lock.json"; exit ;;
@@ -154,20 +150,17 @@ cordis: configuring (asan)
 cordis: building (asan)*
 cordis: configuring (tsan)
 cordis: building (tsan)*
-program: \[test\] \[-R\] \[a b\]
-cordis: once more, what the tests that failed have printed (all: build/Testing/Temporary/LastTest.log)
-1/3 Testing: bad
-Output:
----
+program: \[test\] \[-R\] \[a b\] \[--output-log\] \[*/build/tests.log\]
+cordis: once more, what the tests that failed have printed (all: build/tests.log)
+3/3 Test #3: bad ....\*\*\*Failed   0.01 sec
 a_test.cpp:3: Failure
 words of bad
-<end of output>
-Test Failed.
-\"bad\" end time: 1
+
 their failed assertions:
-1/3 Testing: bad
+3/3 Test #3: bad ....\*\*\*Failed   0.01 sec
 a_test.cpp:3: Failure
 words of bad
+
 cordis: building and testing took 0 min * s"
 expect 'tests are built only for test' "$calls" "*
 ninja release: tests/all
@@ -180,7 +173,7 @@ expect 'the exit code is that of the tests' "$code" 7
 
 call test --repeat until-pass:2
 expect 'a test that passed when it ran again is named' "$output" "program: *
-1/3 Testing: bad
+3/3 Test #3: bad *
 *
 cordis: each of them passed when it ran a second time
 cordis: building and testing took 0 min * s"
