@@ -33,10 +33,12 @@ fake_ninja() {  # -C TREE, then -n or -j N, then targets
 
 fake_ctest() {  # ... --output-log LOG: one test passes, one is skipped and one fails
   local log=${*: -1}
-  printf '    Start 1: good\n1/3 Test #1: good ....   Passed    0.01 sec\n' >"$log"
-  printf '    Start 2: left\n2/3 Test #2: left ....***Skipped   0.01 sec\nwords of left\n' >>"$log"
-  printf '    Start 3: bad\n3/3 Test #3: bad ....***Failed   0.01 sec\na_test.cpp:3: Failure\nwords of bad\n' >>"$log"
-  printf '\n66%% tests passed, 1 tests failed out of 3\n' >>"$log"
+  {
+    printf '    Start 1: good\n1/3 Test #1: good ....   Passed    0.01 sec\n'
+    printf '    Start 2: left\n2/3 Test #2: left ....***Skipped   0.01 sec\nwords of left\n'
+    printf '    Start 3: bad\n3/3 Test #3: bad ....***Failed   0.01 sec\na_test.cpp:3: Failure\nwords of bad\n'
+    printf '\n66%% tests passed, 1 tests failed out of 3\n'
+  } >"$log"
 }
 
 fake_cmake() {  # -S SOURCE --preset PRESET
