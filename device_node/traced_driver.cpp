@@ -32,7 +32,7 @@ TracedDriver::~TracedDriver() {
   for (const char* what : {"commanded", "sensed"}) {
     for (std::size_t a = 0; a < axis_count_; ++a) file << ',' << what << '_' << a;
   }
-  file << '\n';
+  file << ",age_s\n";
   const std::size_t kept = std::min(count_, rows_.size());
   for (std::size_t n = count_ - kept; n < count_; ++n) {
     const Row& row = rows_[n % rows_.size()];
@@ -40,7 +40,7 @@ TracedDriver::~TracedDriver() {
     for (const AxisValues* values : {&row.commanded, &row.sensed}) {
       for (std::size_t a = 0; a < axis_count_; ++a) line += fmt::format(",{:.9g}", (*values)[a]);
     }
-    file << line << '\n';
+    file << line << fmt::format(",{:.9g}\n", row.age_s);
   }
   file.flush();
   if (!file) spdlog::error("cannot write the trace '{}'", settings_.file);
@@ -48,13 +48,18 @@ TracedDriver::~TracedDriver() {
 
 void TracedDriver::begin_row(const AxisValues& commanded) noexcept {
   ++count_;
-  newest() = {node::monotonic_nsec(), commanded, {}};
+  newest() = {node::monotonic_nsec(), commanded, {}, age_s_};
 }
 
 bool TracedDriver::read(AxisValues& sensed) noexcept {
   const bool there = driver_->read(sensed);
   if (count_ > 0) newest().sensed = sensed;
   return there;
+}
+
+void TracedDriver::record_age(double age_s) noexcept {
+  age_s_ = age_s;
+  driver_->record_age(age_s);
 }
 
 bool TracedDriver::write(const AxisValues& commanded) noexcept {
@@ -70,6 +75,7 @@ bool TracedDriver::change_command(const AxisValues& commanded, double share) noe
 /// Motors off counts as a command of nothing.
 void TracedDriver::stop() noexcept {
   driver_->stop();
+  age_s_ = 0.0;
   begin_row({});
 }
 

@@ -16,9 +16,9 @@ struct TraceSettings {
 };
 
 /// Any driver, with its last samples kept in memory and written as CSV when the device ends:
-///   time_nsec,commanded_0,...,sensed_0,...
+///   time_nsec,commanded_0,...,sensed_0,...,age_s
 /// one line per write() or change_command() to the driver: when it was (CLOCK_MONOTONIC), what it was given, what its
-/// sensors then said. Real time: a copy of two rows per period.
+/// sensors then said, and how old the sample was that the command answers. Real time: a copy of two rows per period.
 class TracedDriver final : public Driver {
  public:
   TracedDriver(std::unique_ptr<Driver> driver, TraceSettings settings, const AxisLayout& layout);
@@ -27,7 +27,7 @@ class TracedDriver final : public Driver {
   bool can_play(Role role) const noexcept override { return driver_->can_play(role); }
   void start(Role role) noexcept override { driver_->start(role); }
   bool read(AxisValues& sensed) noexcept override;
-  void record_age(double age_s) noexcept override { driver_->record_age(age_s); }
+  void record_age(double age_s) noexcept override;
   bool write(const AxisValues& commanded) noexcept override;
   bool changes_within_period() const noexcept override { return driver_->changes_within_period(); }
   bool begin_period() noexcept override { return driver_->begin_period(); }
@@ -43,6 +43,7 @@ class TracedDriver final : public Driver {
     std::int64_t time_nsec = 0;
     AxisValues commanded{};
     AxisValues sensed{};
+    double age_s = 0.0;
   };
   Row& newest() noexcept { return rows_[(count_ - 1) % rows_.size()]; }
   void begin_row(const AxisValues& commanded) noexcept;
@@ -52,6 +53,7 @@ class TracedDriver final : public Driver {
   std::size_t axis_count_;
   std::vector<Row> rows_;  // a ring
   std::size_t count_ = 0;  // rows ever begun
+  double age_s_ = 0.0;     // of the command that comes next
 };
 
 /// The driver itself when nothing is to be kept.

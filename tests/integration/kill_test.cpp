@@ -26,7 +26,7 @@ std::vector<Row> read_trace(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::string line;
   std::getline(file, line);
-  EXPECT_EQ(line, "time_nsec,commanded_0,sensed_0");
+  EXPECT_EQ(line, "time_nsec,commanded_0,sensed_0,age_s");
   std::vector<Row> rows;
   while (std::getline(file, line)) {
     std::istringstream cells(line);
