@@ -3,13 +3,16 @@
 //
 // usage: force_loop_bench [seconds of the realtime part, 60]
 //        force_loop_bench --rates [seconds of a run, 10] [FOLDER WIRE]
+//        force_loop_bench --chart FILE.svg [seconds of a run, 20]
 // The first prints lockstep exchanges per second and round trip, realtime overruns with the page
 // open in Chromium (where there is one), resident memory. The second prints the delay from sensor to
-// motor and the processor time of each tick in real time, at 1, 2 and 4 kHz; with the folder of
-// another build's executables, and the WIRE_VERSION that they speak, those of both in turns.
+// motor and the processor time of each tick in real time, at 1, 2 and 4 kHz, polling apart; with the
+// folder of another build's executables, and the WIRE_VERSION that they speak, those of both in turns.
+// The third draws how often which delay occurs.
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -20,11 +23,13 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
 
 #include "node/status_words.h"
+#include "tests/bench/delay_chart.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/status_watch.h"
 
@@ -128,10 +133,21 @@ struct Measured {
   double p50_s = 0.0;
   double p99_s = 0.0;
   double max_s = 0.0;
-  double sim_cpu_s = 0.0;     // of a tick
-  double device_cpu_s = 0.0;  // of a tick
-  double late = 0.0;          // share of the ticks of both
+  double sim_cpu_s = 0.0;      // of a tick
+  double device_cpu_s = 0.0;   // of a tick, without polling
+  double polling_s = 0.0;      // of a tick of the device
+  double late = 0.0;           // share of the ticks of both
+  std::vector<double> ages_s;  // of the samples that the commands answer, where they were asked for
 };
+
+/// What an ended device_node has logged of its polling, of a tick [s]; 0: nothing.
+double polling_s(const std::string& log) {
+  const std::string end = " us of polling";
+  const std::size_t found = log.rfind(end);
+  if (found == std::string::npos) return 0.0;
+  const std::size_t begin = log.rfind(' ', found - 1) + 1;
+  return std::stod(log.substr(begin, found - begin)) * 1e-6;
+}
 
 /// Processor time of a process [s].
 double processor_s(pid_t process) {
@@ -167,16 +183,20 @@ std::string text_of(const char* format, int first, int second) {
 
 /// A key and a string of 40 masses, four steps per period.
 std::optional<Measured> realtime_run(int rate_hz, std::chrono::seconds duration,
-                                     const cordis::test::Build& build) {
+                                     const cordis::test::Build& build, bool keeps_ages = false) {
   LiveSession session("realtime",
                       "  sim: {node: sim_node, scene: scene.yaml}\n"
                       "  keyboard: {node: device_node, device: key.yaml}\n",
                       "bench", build);
+  const std::filesystem::path trace = session.folder() / "trace.csv";
   session.add_file("scene.yaml", text_of(kKeyScene, 4 * rate_hz, rate_hz));
   session.add_file(
       "key.yaml",
       "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nrate_hz: " + std::to_string(rate_hz) +
-          "\ndriver: mock\nmock: {hand: {moves: [{at_s: 0.5, in_s: 0.5, to_m: -0.02}]}}\n");
+          "\ndriver: mock\nmock: {hand: {moves: [{at_s: 0.5, in_s: 0.5, to_m: -0.02}]}}\n" +
+          (keeps_ages ? "trace: {file: " + trace.string() +
+                            ", last_s: " + std::to_string(duration.count()) + "}\n"
+                      : ""));
   StatusWatch status(session.participant());
   cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
   cordis::test::ChildProcess& device = session.start("device_node", "keyboard");
@@ -212,15 +232,20 @@ std::optional<Measured> realtime_run(int rate_hz, std::chrono::seconds duration,
   measured.max_s = key->latency_max_s();
   measured.late = static_cast<double>(end->overruns() + key->overruns()) /
                   static_cast<double>(end->ticks() + key->ticks());
+  device.signal(SIGINT);
+  if (device.wait(30s) != 0) return std::nullopt;
+  measured.polling_s = polling_s(device.output());
+  measured.device_cpu_s -= measured.polling_s;
+  if (keeps_ages) measured.ages_s = cordis::test::read_ages(trace);
   return measured;
 }
 
 void print_run(const char* name, int rate_hz, const Measured& run) {
   std::printf(
       "  %-6s %5d Hz  p50 %5.0f us  p99 %6.0f us  max %7.0f us  late %6.3f %%  "
-      "processor per tick: scene %5.1f us, device %5.1f us\n",
+      "processor per tick: scene %5.1f us, device %5.1f us + %5.1f us polling\n",
       name, rate_hz, run.p50_s * 1e6, run.p99_s * 1e6, run.max_s * 1e6, 100.0 * run.late,
-      run.sim_cpu_s * 1e6, run.device_cpu_s * 1e6);
+      run.sim_cpu_s * 1e6, run.device_cpu_s * 1e6, run.polling_s * 1e6);
   std::fflush(stdout);
 }
 
@@ -254,6 +279,18 @@ bool rates(std::chrono::seconds duration, const cordis::test::Build& other) {
   return true;
 }
 
+/// A run at each rate, and the chart of all.
+bool chart(const std::string& file, std::chrono::seconds duration) {
+  std::vector<cordis::test::DelayCurve> curves;
+  for (const int rate_hz : {1000, 2000, 4000}) {
+    std::optional<Measured> run = realtime_run(rate_hz, duration, {}, true);
+    if (!run || run->ages_s.empty()) return false;
+    print_run("this", rate_hz, *run);
+    curves.push_back({std::to_string(rate_hz / 1000) + " kHz", std::move(run->ages_s)});
+  }
+  return cordis::test::draw_delays(curves, file);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -264,6 +301,13 @@ int main(int argc, char** argv) {
       other.wire_version = static_cast<std::uint32_t>(std::atoi(argv[4]));
     }
     return rates(std::chrono::seconds(argc > 2 ? std::atoi(argv[2]) : 10), other) ? 0 : 1;
+  }
+  if (argc > 2 && std::strcmp(argv[1], "--chart") == 0) {
+    if (!cordis::test::has_gnuplot()) {
+      std::fprintf(stderr, "gnuplot, which draws the chart, is not installed\n");
+      return 77;
+    }
+    return chart(argv[2], std::chrono::seconds(argc > 3 ? std::atoi(argv[3]) : 20)) ? 0 : 1;
   }
   const int seconds = argc > 1 ? std::atoi(argv[1]) : 60;
   return lockstep() && realtime(std::chrono::seconds(seconds)) ? 0 : 1;
