@@ -33,6 +33,7 @@ DeviceLink::DeviceLink(dds::Participant& participant, dds::Participant& loop_par
       force_writer_(loop_participant, dds::Topic::kForces),
       delays_(delay_quantile),
       refused_(delay_periods_of(clock), clock == config::Clock::kRealtime ? &delays_ : nullptr),
+      participant_(participant),
       device_reader_(participant, dds::Topic::kDevice) {
   repeated_.reserve(64);  // as many devices as a scene has at most
 }
@@ -51,13 +52,27 @@ void DeviceLink::listen() {
   msg::DeviceDescription description;
   while (!ending_) {
     while (device_reader_.take(description)) {
-      if (refused_.receive(description))
-        reaches_.put(description.device_id(), description.epoch(), reach_of(description));
+      if (!refused_.receive(description)) continue;
+      reaches_.put(description.device_id(), description.epoch(), reach_of(description));
+      described_[{device_reader_.last_writer(), description.device_id()}] = description.epoch();
+      keep_described();
     }
     refused_.measure(node::monotonic_nsec());
     refused_.report_repeats();
     undescribed_.report();
     if (!ending_) device_reader_.wait(kLongestWait);
+  }
+}
+
+/// Keeps the devices whose processes are there: one on standby sends nothing. Of each process the newest epoch counts.
+void DeviceLink::keep_described() {
+  const std::vector<dds::Peer> peers = participant_.peers();
+  std::erase_if(described_, [&peers](const auto& entry) {
+    return std::ranges::find(peers, entry.first.first, &dds::Peer::prefix) == peers.end();
+  });
+  for (const auto& [device, epoch] : described_) {
+    refused_.keep(epoch);
+    reaches_.keep(epoch);
   }
 }
 

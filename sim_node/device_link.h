@@ -4,8 +4,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "idl/gesture.h"
@@ -83,6 +85,10 @@ class DeviceLink {
   void answer(DeviceExchange& device, const Simulation& simulation);
   bool may_repeat(const DeviceExchange& device) noexcept;
   void listen();
+  void keep_described();
+
+  /// A process, and a device that it has described.
+  using Described = std::pair<dds::ParticipantPrefix, std::uint32_t>;
 
   std::uint64_t epoch_;
   config::Clock clock_;
@@ -101,7 +107,9 @@ class DeviceLink {
   UndescribedDevices undescribed_{reaches_};
   std::vector<HeldSample<msg::GesturePositions>> held_positions_;  // in lockstep
   std::vector<HeldSample<msg::GestureForces>> held_forces_;
+  dds::Participant& participant_;
   dds::Reader<msg::DeviceDescription> device_reader_;
+  std::map<Described, std::uint64_t> described_;  // with their epoch; of the listener
   std::atomic<bool> ending_{false};
   std::thread listener_;  // uses what stands above but the samples
 };

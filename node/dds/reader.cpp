@@ -202,6 +202,11 @@ bool Reader<Message>::is_of_this_host() const {
 }
 
 template <class Message>
+ParticipantPrefix Reader<Message>::last_writer() const noexcept {
+  return impl_->last_writer;
+}
+
+template <class Message>
 bool Reader<Message>::wait(std::chrono::nanoseconds at_most) noexcept {
   std::unique_lock lock(impl_->mutex);
   impl_->arrived.wait_for(lock, at_most, [this] { return impl_->pending || impl_->interrupted; });

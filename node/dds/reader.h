@@ -34,6 +34,9 @@ class Reader {
   /// In the thread that takes. Takes a lock.
   bool is_of_this_host() const;
 
+  /// Who wrote the message taken last. In the thread that takes.
+  ParticipantPrefix last_writer() const noexcept;
+
   /// Waits until a message arrives, or was there already, at most so long; false when none is
   /// there. Also ends when interrupt() is called.
   bool wait(std::chrono::nanoseconds at_most) noexcept;

@@ -64,6 +64,13 @@ void ReachTable::put(std::uint32_t device_id, std::uint64_t epoch,
   row.epoch.store(epoch, std::memory_order_release);
 }
 
+void ReachTable::keep(std::uint64_t epoch) const noexcept {
+  for (const Row& row : rows_) {
+    if (row.epoch.load(kRelaxed) == epoch)
+      row.used.store(uses_.fetch_add(1, kRelaxed) + 1, kRelaxed);
+  }
+}
+
 bool ReachTable::knows(std::uint32_t device_id, std::uint64_t epoch) const noexcept {
   return std::any_of(rows_.begin(), rows_.end(), [device_id, epoch](const Row& row) {
     return row.epoch.load(std::memory_order_acquire) == epoch &&

@@ -47,6 +47,9 @@ class ReachTable {
   /// not been put or found for longest: a device that plays stays, however often others restart.
   void put(std::uint32_t device_id, std::uint64_t epoch, const DeviceReach& reach) noexcept;
 
+  /// The process of this epoch is there: it counts as found.
+  void keep(std::uint64_t epoch) const noexcept;
+
   /// True if the device has described its reach. Real time: no lock.
   bool knows(std::uint32_t device_id, std::uint64_t epoch) const noexcept;
 

@@ -67,12 +67,15 @@ bool RefusedDevices::receive(const msg::DeviceDescription& description, std::int
                std::nullopt,
                std::nullopt,
                true};
-  Row& row = known_.size() < kMaxKnown ? rows_[known_.size()]
-                                       : *std::ranges::min_element(rows_, {}, [](const Row& old) {
-                                           return old.newest_nsec.load(std::memory_order_relaxed);
-                                         });
+  Row& row =
+      known_.size() < kMaxKnown
+          ? rows_[known_.size()]
+          : *std::ranges::min_element(rows_, {}, [](const Row& old) {
+              return std::max(old.newest_nsec.load(std::memory_order_relaxed), old.kept_nsec);
+            });
   row.is_refused.store(true);
   row.newest_nsec.store(now_nsec);
+  row.kept_nsec = now_nsec;
   row.epoch.store(description.epoch());
   if (known_.size() < kMaxKnown) {
     known_.push_back(std::move(device));
@@ -82,6 +85,12 @@ bool RefusedDevices::receive(const msg::DeviceDescription& description, std::int
   if (delays_ != nullptr) delays_->add(description.epoch(), description.rate_hz(), now_nsec);
   evaluate(now_nsec);
   return true;
+}
+
+void RefusedDevices::keep(std::uint64_t epoch, std::int64_t now_nsec) noexcept {
+  for (Row& row : rows_) {
+    if (row.epoch.load() == epoch) row.kept_nsec = now_nsec;
+  }
 }
 
 void RefusedDevices::measure(std::int64_t now_nsec) {

@@ -31,7 +31,7 @@ struct DeviceLoop {
 /// A device that does not support it is refused: it is given no force, and its MATs hold still.
 /// A verdict follows the measured delay: see DelayInUse. A process that has sent nothing
 /// for AnswerDelays::kSilentNsec, ended or on standby, keeps its verdict and is not reported. Of
-/// more than kMaxKnown the one that has sent nothing for longest is forgotten.
+/// more than kMaxKnown the one that has sent nothing, and was not kept, for longest is forgotten.
 ///
 /// One thread decides, and holds no lock that the others wait for: the loop asks without any, and
 /// the reports are those of the last decision. Cost of a decision: per device whose delay has
@@ -51,6 +51,10 @@ class RefusedDevices {
   /// process has reported something before. @return whether it is believed
   bool receive(const msg::DeviceDescription& description,
                std::int64_t now_nsec = node::monotonic_nsec());
+
+  /// The process of this epoch is there, though it may send nothing, as on standby. In the thread of
+  /// receive().
+  void keep(std::uint64_t epoch, std::int64_t now_nsec = node::monotonic_nsec()) noexcept;
 
   /// Takes over what is measured, at every device whose delay has changed. To be called several
   /// times a second; in the thread of receive().
@@ -96,6 +100,7 @@ class RefusedDevices {
     std::atomic<std::uint64_t> epoch{0};
     std::atomic<bool> is_refused{true};
     std::atomic<std::int64_t> newest_nsec{0};  ///< sample, or the description
+    std::int64_t kept_nsec = 0;                ///< of the thread that decides
   };
   void evaluate(std::int64_t now_nsec);
   Verdict check(const Known& device) const;

@@ -57,6 +57,13 @@ class HandmadeDevice {
     EXPECT_TRUE(descriptions_.write(description));
   }
 
+  /// The device plays on as another process.
+  void restart(std::uint64_t epoch) {
+    sample_.epoch(epoch);
+    sample_.sample(0);
+    describe();
+  }
+
   /// Sends the next sample with a value of its axis.
   void send(double value) {
     sample_.sample(sample_.sample() + 1);
@@ -218,6 +225,35 @@ TEST(UndescribedDevice, DoesNotTakeThePlaceOfADescribedOneThatIsAwayForAMoment) 
   }));
   if (longest > 900'000'000) GTEST_SKIP() << "this machine stalled for " << longest << " ns";
   EXPECT_EQ(of_stranger, 0);
+}
+
+/// Sends a value until it is answered with a force that is not zero.
+bool is_given_force(HandmadeDevice<msg::GesturePositions>& device, double value) {
+  return eventually([&] {
+    device.send(value);
+    return device.is_answered() && std::abs(device.answer()) > 0.0;
+  });
+}
+
+TEST(DescribedDevice, OnStandbyIsKnownHoweverOftenOthersRestart) {
+  LiveSession session("realtime", kSimAlone);
+  session.add_file("scene.yaml", wall_scene(200.0));
+  ChildProcess& sim = session.start("sim_node", "sim");
+  const dds::ParticipantConfig& config = session.participant().config();
+  dds::Participant standby_process({config.domain, config.session, "standby"});
+  HandmadeDevice<msg::GesturePositions> standby(standby_process, 7);
+  standby.describe();
+  ASSERT_TRUE(is_given_force(standby, -0.01));
+
+  constexpr std::uint64_t kMoreThanAreKnown = 80;
+  HandmadeDevice<msg::GesturePositions> other(session.participant(), 8);
+  for (std::uint64_t epoch = 100; epoch < 100 + kMoreThanAreKnown; ++epoch) {
+    other.restart(epoch);
+    ASSERT_TRUE(is_given_force(other, -0.01)) << epoch;
+  }
+
+  EXPECT_TRUE(is_given_force(standby, -0.01));
+  EXPECT_EQ(count_of(kUnknown, sim.output()), 0u);
 }
 
 /// When a device in lockstep describes itself.

@@ -272,5 +272,17 @@ TEST(ReachTable, KeepsADeviceThatPlaysHoweverOftenOthersRestart) {
   }
 }
 
+TEST(ReachTable, KeepsAStandbyThatIsThereHoweverOftenOthersRestart) {
+  ReachTable table;
+  table.put(1, 1, described_reach());
+  for (std::uint64_t epoch = 2; epoch < 500; ++epoch) {
+    table.put(1, epoch, DeviceReach());
+    table.keep(1);
+    EXPECT_TRUE(table.knows(1, 1)) << epoch;
+  }
+  for (std::uint64_t epoch = 500; epoch < 600; ++epoch) table.put(1, epoch, DeviceReach());
+  EXPECT_FALSE(table.knows(1, 1)) << "it has ended";
+}
+
 }  // namespace
 }  // namespace cordis::sim

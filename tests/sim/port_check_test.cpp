@@ -389,6 +389,25 @@ TEST(RefusedDevices, ARefusalOutlivesAnyNumberOfOtherDescriptions) {
   EXPECT_TRUE(session.refuses(9999)) << "never described";
 }
 
+TEST(RefusedDevices, AStandbyThatIsThereIsKeptHoweverOftenOthersRestart) {
+  MeasuredDevices session;
+  session.devices.play(walls_of("501"));  // the limit is 1001 N/m
+  session.join(1, 3.0);
+  const auto restart_others = [&session](std::uint64_t first, bool is_kept) {
+    for (std::uint64_t epoch = first; epoch < first + 200; ++epoch) {
+      session.join(epoch, 1.5);
+      session.now_nsec += 1000;
+      if (is_kept) session.devices.keep(1, session.now_nsec);
+    }
+  };
+  restart_others(100, true);
+  EXPECT_FALSE(session.refuses(1)) << "it takes over";
+
+  session.now_nsec += 1000;
+  restart_others(300, false);
+  EXPECT_TRUE(session.refuses(1)) << "it has ended, and is forgotten";
+}
+
 TEST(RefusedDevices, ARefusedOneIsNeverLetThroughWhileOthersAreChecked) {
   RefusedDevices devices(1);
   devices.play(walls_of("501"));
