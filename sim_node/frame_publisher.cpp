@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "node/stop.h"
-#include "sim_node/engine/core/state_hash.h"
+#include "sim_node/run/frame_message.h"
 
 namespace cordis::sim {
 namespace {
@@ -112,19 +112,8 @@ void FramePublisher::count(bool written) noexcept {
 }
 
 void FramePublisher::publish_frame(const FrameShape& shape, const FrameBuffer& buffer) {
-  std::vector<float>& position = frame_.position_m();
-  position.resize(3 * shape.mat_count);
-  for (std::size_t mat = 0; mat < shape.mat_count; ++mat) {
-    shape.layout.show(mat, buffer.positions.data() + 4 * mat, position.data() + 3 * mat);
-  }
-  frame_.link_state() = buffer.link_state;
-  frame_.version(shape.version);
+  put_frame(shape, buffer, frame_);
   frame_.frame(frame_.frame() + 1);
-  frame_.step(buffer.step);
-  frame_.time_nsec(buffer.time_nsec);
-  frame_.action_time_nsec(buffer.action_time_nsec);
-  frame_.simulated_s(buffer.simulated_s);
-  frame_.position_hash(engine::hash_of(buffer.positions));
   count(frame_writer_.write(frame_));
 }
 

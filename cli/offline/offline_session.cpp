@@ -11,6 +11,8 @@
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/devices/device_reach.h"
 #include "sim_node/run/bound_text.h"
+#include "sim_node/run/describe.h"
+#include "sim_node/run/frame_message.h"
 
 namespace cordis::cli {
 namespace {
@@ -20,6 +22,7 @@ using scene::Role;
 
 constexpr std::uint64_t kSimEpoch = 1;
 constexpr std::uint64_t kDeviceEpoch = 2;
+constexpr std::uint64_t kVersion = 1;
 
 std::int64_t no_time() noexcept {
   return 0;
@@ -151,7 +154,7 @@ void OfflineSession::load_scene(const std::string& file) {
 
 void OfflineSession::make(scene::Scene&& scene) {
   loaded_ = std::make_unique<sim::LoadedScene>(
-      std::make_shared<const scene::Scene>(std::move(scene)), kSimEpoch, /*version=*/1);
+      std::make_shared<const scene::Scene>(std::move(scene)), kSimEpoch, kVersion);
 }
 
 void OfflineSession::load_launch(const std::string& file,
@@ -274,6 +277,19 @@ double OfflineSession::signal(const std::string& name) const {
 
 std::string OfflineSession::bound_text() const {
   return sim::bound_text(*loaded_);
+}
+
+msg::SceneDescription OfflineSession::description() const {
+  return sim::describe(scene(), kSimEpoch, kVersion);
+}
+
+msg::SceneFrame OfflineSession::frame() {
+  loaded_->frames.turn(world(), time_s(), 0);
+  msg::SceneFrame message;
+  message.epoch(kSimEpoch);
+  message.frame(++frame_count_);
+  sim::put_frame(loaded_->frames.shape(), loaded_->frames.published(), message);
+  return message;
 }
 
 double OfflineSession::energy_residual() const {

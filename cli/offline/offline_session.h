@@ -2,6 +2,7 @@
 // simulated devices, without DDS and without clocks.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "device_node/exchange.h"
+#include "idl/scene.h"
 #include "sim_node/run/event_room.h"
 #include "sim_node/run/loaded_scene.h"
 #include "sim_node/sim_config.h"
@@ -66,8 +68,14 @@ class OfflineSession {
   engine::Vec3 position(const std::string& name, std::uint32_t index = 0) const;
   engine::Vec3 velocity(const std::string& name, std::uint32_t index = 0) const;
 
+  /// The scene as it is now, as sim_node publishes it: its description and its frame.
+  msg::SceneDescription description() const;
+  msg::SceneFrame frame();
+
   /// A signal of the scene, as it was after the last tick. @throws std::out_of_range likewise.
   double signal(const std::string& name) const;
+  /// All of them, in their order.
+  const std::vector<double>& signals() const noexcept { return row_; }
 
   /// Why the devices were let go of, or that the scene is beyond its certificate; empty if neither.
   std::string bound_text() const;
@@ -88,6 +96,7 @@ class OfflineSession {
   std::vector<double> row_;
   std::vector<std::string> warnings_;
   double duration_s_ = 0.0;
+  std::uint64_t frame_count_ = 0;
   sim::EventRoom events_;
 };
 
