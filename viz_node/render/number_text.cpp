@@ -1,0 +1,41 @@
+// viz_node/render/number_text.cpp
+#include "viz_node/render/number_text.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace cordis::viz {
+namespace {
+
+constexpr std::array<Prefix, 7> kPrefixes = {
+    {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1.0, ""}, {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}}};
+
+}  // namespace
+
+Prefix prefix_of(double size) noexcept {
+  const double magnitude = std::abs(size) * (1.0 + 1e-9);
+  if (magnitude == 0.0 || !std::isfinite(size)) return {};
+  for (const Prefix& prefix : kPrefixes) {
+    if (magnitude >= prefix.factor) return prefix;
+  }
+  return kPrefixes.back();
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  if (unit.empty() || unit == "1") return fmt::format("{:.3g}", value);
+  const Prefix prefix = prefix_of(value);
+  return fmt::format("{:.3g} {}{}", value / prefix.factor, prefix.letter, unit);
+}
+
+std::string short_text(double value, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.find('.') != std::string::npos) {
+    while (text.back() == '0') text.pop_back();
+    if (text.back() == '.') text.pop_back();
+  }
+  return text == "-0" ? "0" : text;
+}
+
+}  // namespace cordis::viz

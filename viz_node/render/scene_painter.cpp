@@ -1,0 +1,315 @@
+// viz_node/render/scene_painter.cpp
+#include "viz_node/render/scene_painter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace cordis::viz {
+namespace {
+
+constexpr std::size_t kFewMats = 3000;  // which are drawn larger than they are, to be seen
+constexpr double kFade = 0.985;         // of the fastest speed, per frame
+constexpr double kGridCells = 24.0;     // across the larger side of the scene, about
+constexpr double kRingGap = 1.7;        // radius of the ring of a port, in radii of its ball
+
+/// Smallest radii by look [pixels].
+constexpr std::array<double, 5> kFewSizes = {3.2, 3.2, 6.0, 5.0, 3.2};
+constexpr std::array<double, 5> kManySizes = {1.2, 1.2, 5.0, 2.0, 1.2};
+
+Point point_of(const msg::SceneFrame& frame, std::size_t mat) noexcept {
+  const float* at = frame.position_m().data() + 3 * mat;
+  return {at[0], at[1], at[2]};
+}
+
+double distance(const Point& a, const Point& b) noexcept {
+  const double x = a[0] - b[0];
+  const double y = a[1] - b[1];
+  const double z = a[2] - b[2];
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+/// The first part of a name: `stack` of `stack[2].balls`.
+std::string body_name(const std::string& name) {
+  return name.substr(0, name.find_first_of(".["));
+}
+
+/// True if a range is the virtual tool of a port: the MAT that has its name and is not its own.
+bool is_tool(const msg::SceneDescription& description, const msg::NamedRange& range) {
+  return range.count() == 1 &&
+         std::ranges::any_of(description.ports(), [&range](const msg::PortDescription& port) {
+           return range.name() == port.name() && range.first() != port.mat();
+         });
+}
+
+}  // namespace
+
+double round_length(double length) noexcept {
+  double decade = 1.0;
+  while (decade > length) decade /= 10.0;
+  while (10.0 * decade <= length) decade *= 10.0;
+  const double digit = length / decade;
+  return decade * (digit >= 5.0 ? 5.0 : digit >= 2.0 ? 2.0 : 1.0);
+}
+
+ScenePainter::ScenePainter(const msg::SceneDescription& description, Theme theme)
+    : palette_(palette_of(theme)),
+      space_(description.space()),
+      radius_(description.mat_radius_m()),
+      link_ends_(description.link_ends()) {
+  find_looks(description);
+  find_bodies(description);
+}
+
+void ScenePainter::find_looks(const msg::SceneDescription& description) {
+  for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
+    const std::uint8_t kind = description.mat_kind()[mat];
+    const bool is_punctual = radius_[mat] == 0.0f;
+    look_.push_back(kind == msg::MAT_PORT    ? Look::kPort
+                    : kind != msg::MAT_FIXED ? Look::kMass
+                    : is_punctual            ? Look::kFixedPoint
+                                             : Look::kFixedBall);
+  }
+  for (const msg::NamedRange& range : description.matter()) {
+    if (is_tool(description, range)) look_[range.first()] = Look::kTool;
+  }
+  // A port of role liaison plays a mass.
+  for (const msg::PortDescription& port : description.ports()) {
+    if (look_[port.mat()] == Look::kMass) look_[port.mat()] = Look::kTool;
+  }
+  has_fixed_ = std::ranges::any_of(
+      look_, [](Look look) { return look == Look::kFixedBall || look == Look::kFixedPoint; });
+  has_ports_ = !description.ports().empty();
+}
+
+void ScenePainter::find_bodies(const msg::SceneDescription& description) {
+  body_.assign(radius_.size(), 0);
+  std::map<std::string, std::uint32_t> numbers;
+  for (const msg::NamedRange& range : description.matter()) {
+    const auto begin = look_.begin() + range.first();
+    if (std::none_of(begin, begin + range.count(), [](Look look) { return look == Look::kMass; }))
+      continue;
+    const std::string name = body_name(range.name());
+    const auto [found, is_new] =
+        numbers.try_emplace(name, static_cast<std::uint32_t>(numbers.size()));
+    if (is_new) bodies_.push_back({name, palette_.bodies[found->second % palette_.bodies.size()]});
+    std::fill_n(body_.begin() + range.first(), range.count(), found->second);
+  }
+  if (bodies_.empty()) bodies_.push_back({"mass", palette_.bodies.front()});
+}
+
+void ScenePainter::start(const msg::SceneFrame& frame) {
+  std::vector<double> lengths;
+  for (std::size_t link = 0; 2 * link < link_ends_.size(); ++link) {
+    lengths.push_back(
+        distance(point_of(frame, link_ends_[2 * link]), point_of(frame, link_ends_[2 * link + 1])));
+  }
+  std::ranges::sort(lengths);
+  const double extent = std::max(bounds(frame).diagonal(), 1e-9);
+  const double usual = lengths.empty() ? extent / 100.0 : lengths[lengths.size() / 2];
+  const double shown = std::min(std::max(0.3 * usual, extent / 2000.0), extent / 80.0);
+  for (float& radius : radius_) {
+    if (radius == 0.0f) radius = static_cast<float>(shown);
+  }
+}
+
+Box ScenePainter::bounds(const msg::SceneFrame& frame, double outliers) const {
+  const std::size_t count = radius_.size();
+  Box box;
+  if (count == 0) return box;
+  const auto left_out =
+      std::min(static_cast<std::size_t>(outliers * static_cast<double>(count)), (count - 1) / 2);
+  std::vector<float> low(count);
+  std::vector<float> high(count);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t mat = 0; mat < count; ++mat) {
+      const float at = frame.position_m()[3 * mat + axis];
+      low[mat] = at - radius_[mat];
+      high[mat] = at + radius_[mat];
+    }
+    const auto first = low.begin() + static_cast<std::ptrdiff_t>(left_out);
+    const auto last = high.begin() + static_cast<std::ptrdiff_t>(count - 1 - left_out);
+    std::ranges::nth_element(low, first);
+    std::ranges::nth_element(high, last);
+    box.low[axis] = *first;
+    box.high[axis] = *last;
+  }
+  return box;
+}
+
+void ScenePainter::measure_speeds(const msg::SceneFrame& frame) {
+  const double elapsed_s = frame.simulated_s() - before_s_;
+  if (before_.size() == frame.position_m().size() && elapsed_s > 0.0) {
+    speed_.resize(radius_.size());
+    fastest_ *= kFade;
+    for (std::size_t mat = 0; mat < speed_.size(); ++mat) {
+      const float* then = before_.data() + 3 * mat;
+      speed_[mat] = distance(point_of(frame, mat), {then[0], then[1], then[2]}) / elapsed_s;
+      if (look_[mat] == Look::kMass) fastest_ = std::max(fastest_, speed_[mat]);
+    }
+  }
+  before_ = frame.position_m();
+  before_s_ = frame.simulated_s();
+}
+
+Colour ScenePainter::colour_of(std::size_t mat, double strength) const {
+  Colour colour = palette_.port;
+  if (look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint) colour = palette_.fixed;
+  if (look_[mat] == Look::kMass) {
+    colour = bodies_[body_[mat]].colour;
+    if (colour_by_ == ColourBy::kSpeed) {
+      const std::vector<Colour>& speeds = palette_.speeds;
+      const double share = fastest_ > 0.0 && !speed_.empty() ? speed_[mat] / fastest_ : 0.0;
+      const double at = std::min(share, 1.0) * static_cast<double>(speeds.size() - 1);
+      const std::size_t below = std::min(static_cast<std::size_t>(at), speeds.size() - 1);
+      const std::size_t above = std::min(below + 1, speeds.size() - 1);
+      colour = mix(speeds[below], speeds[above], at - static_cast<double>(below));
+    }
+  }
+  return strength < 1.0 ? mix(palette_.background, colour, strength) : colour;
+}
+
+bool ScenePainter::is_shown(std::size_t link, const msg::SceneFrame& frame) const {
+  return link >= frame.link_state().size() || frame.link_state()[link] < msg::LINK_IS_IDLE;
+}
+
+Colour ScenePainter::colour_of_link(std::size_t link, const msg::SceneFrame& frame,
+                                    double strength) const {
+  const std::size_t state = link < frame.link_state().size() ? frame.link_state()[link] : 0;
+  const Colour& colour = palette_.link_states[state % palette_.link_states.size()];
+  return strength < 1.0 ? mix(palette_.background, colour, strength) : colour;
+}
+
+void ScenePainter::project_all(const ViewOptions& options, const ViewCamera& camera,
+                               const msg::SceneFrame& frame) {
+  const auto& sizes = radius_.size() <= kFewMats ? kFewSizes : kManySizes;
+  place_.resize(radius_.size());
+  size_.resize(radius_.size());
+  for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
+    Projected at = camera.project(point_of(frame, mat));
+    const double size = camera.radius_of(at, radius_[mat]);
+    size_[mat] = std::max(size, options.mark_scale * sizes[static_cast<std::size_t>(look_[mat])]);
+    at.x += options.inner.x;
+    at.y += options.inner.y;
+    place_[mat] = at;
+  }
+}
+
+void ScenePainter::draw_ball(Canvas& canvas, const ViewOptions& options, std::size_t mat) const {
+  const Projected& at = place_[mat];
+  if (at.scale <= 0.0) return;
+  const double size = size_[mat];
+  const Rectangle& area = options.area;
+  const double reach = kRingGap * size + 2.0;
+  if (at.x + reach < area.x || at.x - reach > area.x + area.width || at.y + reach < area.y ||
+      at.y - reach > area.y + area.height)
+    return;
+  const Colour colour = colour_of(mat, options.strength);
+  if (look_[mat] != Look::kFixedPoint) {
+    canvas.ball({at.x, at.y, at.depth}, size, colour);
+    return;
+  }
+  canvas.fill({at.x - size, at.y - size, 2.0 * size, 2.0 * size}, colour);
+  const double inside = 0.62 * size;
+  canvas.fill({at.x - inside, at.y - inside, 2.0 * inside, 2.0 * inside},
+              mix(palette_.background, colour, 0.35));
+}
+
+void ScenePainter::draw_link(Canvas& canvas, const ViewOptions& options, std::size_t link,
+                             const msg::SceneFrame& frame) const {
+  const std::size_t a = link_ends_[2 * link];
+  const std::size_t b = link_ends_[2 * link + 1];
+  const Projected& from = place_[a];
+  const Projected& to = place_[b];
+  if (from.scale <= 0.0 || to.scale <= 0.0) return;
+  const double x = to.x - from.x;
+  const double y = to.y - from.y;
+  const double depth = to.depth - from.depth;
+  const double length = std::sqrt(x * x + y * y + depth * depth);
+  // From skin to skin: what is inside of its own balls is hidden.
+  if (length <= size_[a] + size_[b]) return;
+  const double begin = size_[a] / length;
+  const double end = 1.0 - size_[b] / length;
+  const auto between = [&](double share) {
+    return Place{from.x + share * x, from.y + share * y, from.depth + share * depth};
+  };
+  canvas.link(between(begin), between(end), 1.4 * options.mark_scale,
+              colour_of_link(link, frame, options.strength));
+}
+
+void ScenePainter::draw_grid(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
+                             const Box& home) const {
+  const bool flat = is_flat();
+  const std::size_t second = flat ? 1 : 2;
+  const Point size = home.size();
+  const Point centre = home.centre();
+  const double across = std::max({size[0], size[second], 1e-6});
+  const double cell = round_length(2.0 * across / kGridCells);
+  const double level = flat ? home.low[2] - 0.001 * across : home.low[1] - 0.25 * across;
+  const auto half = static_cast<long>(std::ceil((flat ? 3.0 : 1.0) * across / cell));
+  const long first_u = std::lround(centre[0] / cell);
+  const long first_v = std::lround(centre[second] / cell);
+  const auto place = [&](double u, double v) {
+    const Projected at = camera.project(flat ? Point{u, v, level} : Point{u, level, v});
+    return std::pair{at.scale > 0.0, Place{at.x + options.inner.x, at.y + options.inner.y, -1e20}};
+  };
+  const auto draw_line = [&](double u, double v, double to_u, double to_v, const Colour& colour) {
+    const auto [begins, from] = place(u, v);
+    const auto [ends, to] = place(to_u, to_v);
+    if (begins && ends) canvas.link(from, to, 1.0, colour);
+  };
+  const auto colour_at = [this](long index) -> const Colour& {
+    return index == 0       ? palette_.grid_axis
+           : index % 5 == 0 ? palette_.grid_coarse
+                            : palette_.grid_fine;
+  };
+  const double extent = static_cast<double>(half) * cell;
+  const double u = static_cast<double>(first_u) * cell;
+  const double v = static_cast<double>(first_v) * cell;
+  // Fine lines first: coarse ones are drawn over them.
+  for (const Colour* colour : {&palette_.grid_fine, &palette_.grid_coarse, &palette_.grid_axis}) {
+    for (long k = -half; k <= half; ++k) {
+      const double offset = static_cast<double>(k) * cell;
+      if (&colour_at(first_u + k) == colour)
+        draw_line(u + offset, v - extent, u + offset, v + extent, *colour);
+      if (&colour_at(first_v + k) == colour)
+        draw_line(u - extent, v + offset, u + extent, v + offset, *colour);
+    }
+  }
+}
+
+void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
+                        const Box& home, const msg::SceneFrame& frame) {
+  if (colour_by_ == ColourBy::kSpeed) measure_speeds(frame);
+  project_all(options, camera, frame);
+  canvas.begin_view(options.area, options.words);
+  if (options.shows_grid) draw_grid(canvas, options, camera, home);
+  marks_.clear();
+  for (std::size_t link = 0; 2 * link < link_ends_.size(); ++link) {
+    if (!is_shown(link, frame)) continue;
+    const double depth =
+        0.5 * (place_[link_ends_[2 * link]].depth + place_[link_ends_[2 * link + 1]].depth);
+    marks_.push_back({depth, static_cast<std::uint32_t>(link), false});
+  }
+  for (std::size_t mat = 0; mat < radius_.size(); ++mat)
+    marks_.push_back({place_[mat].depth, static_cast<std::uint32_t>(mat), true});
+  std::ranges::stable_sort(marks_, {}, &Mark::depth);
+  for (const Mark& mark : marks_) {
+    if (mark.is_ball)
+      draw_ball(canvas, options, mark.index);
+    else
+      draw_link(canvas, options, mark.index, frame);
+  }
+  // The ring of a port is seen through everything.
+  for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
+    if (look_[mat] != Look::kPort || place_[mat].scale <= 0.0) continue;
+    canvas.ring({place_[mat].x, place_[mat].y, place_[mat].depth},
+                size_[mat] + std::max(0.25 * size_[mat], 3.0 * options.mark_scale),
+                2.0 * options.mark_scale, colour_of(mat, options.strength));
+  }
+  canvas.end_view();
+}
+
+}  // namespace cordis::viz

@@ -1,0 +1,115 @@
+// viz_node/render/scene_painter.h -- a scene as the page shows it: balls, links, fixed points, ports
+// and the grid behind them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "idl/scene.h"
+#include "viz_node/render/canvas.h"
+#include "viz_node/render/palette.h"
+#include "viz_node/render/view_camera.h"
+
+namespace cordis::viz {
+
+/// What the colours of masses say.
+enum class ColourBy : std::uint8_t { kBody, kSpeed };
+
+/// A body of the scene: all MATs whose names begin alike, as `stack` of `stack[2].balls`.
+struct Body {
+  std::string name;
+  Colour colour;
+};
+
+/// Where a view is drawn, and how.
+struct ViewOptions {
+  Rectangle area;           ///< nothing is drawn outside
+  Rectangle inner;          ///< what the camera was made for
+  double mark_scale = 1.0;  ///< of the smallest marks and of lines
+  double strength = 1.0;    ///< of the colours against the background, 0..1
+  bool shows_grid = true;
+  std::string words{};  ///< attributes of the view, as for Canvas::begin_view()
+};
+
+/// Draws frames of one scene. The description has been checked (scene_check.h).
+class ScenePainter {
+ public:
+  ScenePainter(const msg::SceneDescription& description, Theme theme);
+
+  /// Takes the sizes of punctual MATs from a first frame: a share of the usual length of a link.
+  void start(const msg::SceneFrame& frame);
+  void colour_by(ColourBy what) noexcept { colour_by_ = what; }
+
+  /// The box around the MATs with their radii.
+  /// @param outliers  share of the MATs left out at either end of each axis, 0..0.5
+  Box bounds(const msg::SceneFrame& frame, double outliers = 0.0) const;
+  /// Share of outliers that a view does not follow.
+  static constexpr double kOutliers = 0.01;
+
+  bool is_flat() const noexcept { return space_ < 3; }
+  /// The view of the page when it opens.
+  ViewPreset first_view() const noexcept {
+    return is_flat() ? ViewPreset::kFront : ViewPreset::kFree;
+  }
+
+  /// Draws a frame. @param home  the box that the grid is laid for
+  void draw(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera, const Box& home,
+            const msg::SceneFrame& frame);
+
+  /// The bodies that have masses; those after the last colour have the first again.
+  const std::vector<Body>& bodies() const noexcept { return bodies_; }
+  bool has_fixed() const noexcept { return has_fixed_; }
+  bool has_ports() const noexcept { return has_ports_; }
+  const Palette& palette() const noexcept { return palette_; }
+  /// The speed that has the last colour [m/s]; 0 before two frames were drawn.
+  double fastest_speed() const noexcept { return fastest_; }
+
+ private:
+  /// How a MAT is drawn.
+  enum class Look : std::uint8_t { kMass, kFixedBall, kPort, kFixedPoint, kTool };
+  /// A ball or a link on its way from back to front.
+  struct Mark {
+    double depth;
+    std::uint32_t index;
+    bool is_ball;
+  };
+
+  void find_bodies(const msg::SceneDescription& description);
+  void find_looks(const msg::SceneDescription& description);
+  void measure_speeds(const msg::SceneFrame& frame);
+  Colour colour_of(std::size_t mat, double strength) const;
+  Colour colour_of_link(std::size_t link, const msg::SceneFrame& frame, double strength) const;
+  bool is_shown(std::size_t link, const msg::SceneFrame& frame) const;
+  void project_all(const ViewOptions& options, const ViewCamera& camera,
+                   const msg::SceneFrame& frame);
+  void draw_ball(Canvas& canvas, const ViewOptions& options, std::size_t mat) const;
+  void draw_link(Canvas& canvas, const ViewOptions& options, std::size_t link,
+                 const msg::SceneFrame& frame) const;
+  void draw_grid(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
+                 const Box& home) const;
+
+  const Palette& palette_;
+  std::uint32_t space_;
+  std::vector<float> radius_;        // [m], of punctual MATs 0 until start()
+  std::vector<Look> look_;           // per MAT
+  std::vector<std::uint32_t> body_;  // per MAT
+  std::vector<Body> bodies_;
+  std::vector<std::uint32_t> link_ends_;
+  bool has_fixed_ = false;
+  bool has_ports_ = false;
+  ColourBy colour_by_ = ColourBy::kBody;
+  std::vector<float> before_;     // positions of the frame drawn last
+  double before_s_ = 0.0;         // its time
+  std::vector<double> speed_;     // per MAT [m/s]
+  double fastest_ = 0.0;          // [m/s]
+  std::vector<Projected> place_;  // per MAT, in the canvas
+  std::vector<double> size_;      // per MAT [pixels]
+  std::vector<Mark> marks_;
+};
+
+/// The largest of 1, 2, 5, 10, 20 ... that is not above `length`. Precondition: length > 0.
+double round_length(double length) noexcept;
+
+}  // namespace cordis::viz

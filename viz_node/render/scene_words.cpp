@@ -1,0 +1,64 @@
+// viz_node/render/scene_words.cpp
+#include "viz_node/render/scene_words.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "viz_node/render/number_text.h"
+#include "viz_node/render/text_shape.h"
+
+namespace cordis::viz {
+namespace {
+
+enum class Sign { kBall, kFixed, kPort };
+
+struct Entry {
+  Sign sign;
+  std::string name;
+  Colour colour;
+};
+
+std::vector<Entry> entries_of(const ScenePainter& painter) {
+  std::vector<Entry> entries;
+  const std::size_t colours = painter.palette().bodies.size();
+  for (const Body& body : painter.bodies()) {
+    if (entries.size() < colours) entries.push_back({Sign::kBall, body.name, body.colour});
+  }
+  if (painter.has_fixed()) entries.push_back({Sign::kFixed, "fixed", painter.palette().fixed});
+  if (painter.has_ports()) entries.push_back({Sign::kPort, "port", painter.palette().port});
+  return entries;
+}
+
+}  // namespace
+
+void draw_legend(Canvas& canvas, const ScenePainter& painter, const Place& at, double size,
+                 double width) {
+  const double radius = 0.36 * size;
+  double x = at.x;
+  for (const Entry& entry : entries_of(painter)) {
+    const double length = text_width(entry.name, size);
+    if (x + 1.4 * size + length > at.x + width) return;
+    const Place centre{x + 0.5 * size, at.y - 0.36 * size, 0.0};
+    canvas.ball(centre, entry.sign == Sign::kPort ? 0.75 * radius : radius, entry.colour);
+    if (entry.sign == Sign::kPort) canvas.ring(centre, 1.3 * radius, 0.1 * size, entry.colour);
+    canvas.text({x + 1.3 * size, at.y, 0.0}, size, Anchor::kStart, painter.palette().quiet,
+                entry.name);
+    x += 1.3 * size + length + 1.2 * size;
+  }
+}
+
+void draw_ruler(Canvas& canvas, const Palette& palette, double metres_per_pixel, const Place& at,
+                double size, double longest) {
+  const double length = round_length(longest * metres_per_pixel);
+  const double end = at.x + length / metres_per_pixel;
+  const double tick = 0.3 * size;
+  canvas.line(
+      {{at.x, at.y - tick, 0.0}, {at.x, at.y, 0.0}, {end, at.y, 0.0}, {end, at.y - tick, 0.0}},
+      0.1 * size, palette.quiet);
+  canvas.text({end + 0.6 * size, at.y, 0.0}, size, Anchor::kStart, palette.quiet,
+              with_unit(length, "m"));
+}
+
+}  // namespace cordis::viz

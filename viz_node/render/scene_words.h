@@ -1,0 +1,20 @@
+// viz_node/render/scene_words.h -- what stands beside a scene: the legend and a length to measure by.
+#pragma once
+
+#include "viz_node/render/canvas.h"
+#include "viz_node/render/scene_painter.h"
+
+namespace cordis::viz {
+
+/// Draws the legend of bodies, fixed points and ports in one row, as many as there is room for.
+/// @param at     the left end of the row, on its base line
+/// @param size   of the font [pixels]
+/// @param width  of the row [pixels]
+void draw_legend(Canvas& canvas, const ScenePainter& painter, const Place& at, double size,
+                 double width);
+
+/// Draws a ruler of a round length, at most `longest` pixels, with its length behind it.
+void draw_ruler(Canvas& canvas, const Palette& palette, double metres_per_pixel, const Place& at,
+                double size, double longest);
+
+}  // namespace cordis::viz
