@@ -2,11 +2,13 @@
 #include "cli/verbs.h"
 
 #include "cli/check/check_verb.h"
+#include "cli/chronogram/chronogram_verb.h"
 #include "cli/ctl/ctl_verb.h"
 #include "cli/cut/cut_verb.h"
 #include "cli/doctor/doctor_verb.h"
 #include "cli/echo/echo_verb.h"
 #include "cli/export/export_verb.h"
+#include "cli/film/film_verb.h"
 #include "cli/get/get_verb.h"
 #include "cli/hz/hz_verb.h"
 #include "cli/info/info_verb.h"
@@ -14,6 +16,7 @@
 #include "cli/list/list_verb.h"
 #include "cli/merge/merge_verb.h"
 #include "cli/play/play_verb.h"
+#include "cli/plot/plot_verb.h"
 #include "cli/record/record_verb.h"
 #include "cli/recover/recover_verb.h"
 #include "cli/resim/resim_verb.h"
@@ -30,6 +33,9 @@ void add_verbs(CommandLine& line) {
   add_simulate_verb(line);
   add_resim_verb(line);
   add_export_verb(line);
+  add_film_verb(line);
+  add_chronogram_verb(line);
+  add_plot_verb(line);
   add_list_verb(line);
   add_echo_verb(line);
   add_hz_verb(line);

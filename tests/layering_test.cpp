@@ -91,6 +91,12 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
      {"cli/", "node/", "idl/", "sim_node/", "device_node/"}},
     {"cli/simulate/",  // likewise
      {"cli/", "node/", "idl/", "sim_node/", "device_node/"}},
+    {"cli/scene_source/",  // shows a session that is played in one process, a take, or a live one
+     {"cli/", "node/", "idl/", "sim_node/", "device_node/", "record_node/mcap/", "viz_node/render/",
+      "viz_node/scene_check.h"}},
+    {"cli/film/", {"cli/", "node/", "idl/", "viz_node/render/"}},
+    {"cli/chronogram/", {"cli/", "node/", "idl/", "viz_node/render/"}},
+    {"cli/plot/", {"cli/", "node/", "idl/", "viz_node/render/"}},
     {"cli/check/",  // checks a launch file as sim_node does
      {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/plan/", "sim_node/checks/",
       "sim_node/sim_config.h", "sim_node/engine/core/", "record_node/mcap/"}},

@@ -1,0 +1,46 @@
+// cli/scene_source/take_source.h -- a scene as it was recorded.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/export/message_source.h"
+#include "cli/export/take_scene.h"
+#include "cli/scene_source/frame_picker.h"
+#include "cli/scene_source/scene_source.h"
+
+namespace cordis::cli {
+
+class TakeSource final : public SceneSource {
+ public:
+  /// @param scene  number in the take, from 1
+  /// @throws UsageError when the take has no such scene, or no frames of it
+  TakeSource(const std::string& verb, const std::string& file, std::size_t scene);
+
+  const msg::SceneDescription& description() const noexcept override { return scene_.description; }
+  double first_s() override { return first_s_; }
+  double duration_s() override { return last_s_ - first_s_; }
+  std::optional<msg::SceneFrame> frame_at(double time_s) override;
+  void read_signals(double from_s, double to_s, SignalRows& rows,
+                    const std::function<bool(double)>& progress) override;
+  std::vector<std::string> notes() const override;
+
+ private:
+  void find_ends();
+  bool next(msg::SceneFrame& frame);
+
+  std::unique_ptr<mcap::Reader> take_;
+  TakeScene scene_;
+  ReadLoss loss_;
+  MessageSource<msg::SceneFrame> frames_;
+  FramePicker picker_;
+  std::uint64_t newest_frame_ = 0;
+  std::uint64_t refused_ = 0;  // frames that do not fit the description
+  double first_s_ = 0.0;
+  double last_s_ = 0.0;
+};
+
+}  // namespace cordis::cli
