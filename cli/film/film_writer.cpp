@@ -128,13 +128,13 @@ void FilmWriter::write(const viz::Image& image) {
     file.flush();
     return;
   }
-  const std::uint8_t* at = image.bytes().data();
+  const std::uint8_t* rest = image.bytes().data();
   std::size_t left = image.bytes().size();
   while (left > 0) {
-    const ssize_t written = ::write(pipe_, at, left);
+    const ssize_t written = ::write(pipe_, rest, left);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) fail();
-    at += written;
+    rest += written;
     left -= static_cast<std::size_t>(written);
   }
 }

@@ -1,5 +1,4 @@
-// cli/scene_source/scene_source.h -- where views get a scene from: a take, a file that is simulated on
-// the spot, or a session that runs.
+// cli/scene_source/scene_source.h -- views of a take, of a file simulated at once, or of a session
 #pragma once
 
 #include <cstddef>

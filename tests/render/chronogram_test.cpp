@@ -94,10 +94,10 @@ TEST(Chronogram, FitsIntoItsFigure) {
       const std::regex clip(
           R"re(<clipPath id="c\d+"><rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)")re");
       int views = 0;
-      for (auto at = std::sregex_iterator(svg.begin(), svg.end(), clip);
-           at != std::sregex_iterator(); ++at, ++views) {
-        EXPECT_LE(std::stod((*at)[1]) + std::stod((*at)[3]), figure.width());
-        EXPECT_LE(std::stod((*at)[2]) + std::stod((*at)[4]), figure.height());
+      for (auto match = std::sregex_iterator(svg.begin(), svg.end(), clip);
+           match != std::sregex_iterator(); ++match, ++views) {
+        EXPECT_LE(std::stod((*match)[1]) + std::stod((*match)[3]), figure.width());
+        EXPECT_LE(std::stod((*match)[2]) + std::stod((*match)[4]), figure.height());
       }
       EXPECT_EQ(views, count);
     }

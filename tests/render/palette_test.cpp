@@ -26,9 +26,9 @@ std::vector<Colour> shares_in(const std::string& text, const std::string& before
     return static_cast<std::uint8_t>(std::lround(255.0 * std::stod(share)));
   };
   std::vector<Colour> colours;
-  for (auto at = std::sregex_iterator(text.begin(), text.end(), shares);
-       at != std::sregex_iterator(); ++at) {
-    colours.push_back({byte((*at)[1]), byte((*at)[2]), byte((*at)[3])});
+  for (auto match = std::sregex_iterator(text.begin(), text.end(), shares);
+       match != std::sregex_iterator(); ++match) {
+    colours.push_back({byte((*match)[1]), byte((*match)[2]), byte((*match)[3])});
   }
   return colours;
 }

@@ -74,10 +74,10 @@ double outline_area(const std::vector<OutlineStep>& outline) {
     const double from_y = y;
     for (int i = 1; i < 64 && step.kind == OutlineStep::Kind::kCurve; ++i) {
       const double t = i / 64.0;
-      const auto at = [t](double a, double b, double c) {
+      const auto curve = [t](double a, double b, double c) {
         return (1 - t) * (1 - t) * a + 2 * t * (1 - t) * b + t * t * c;
       };
-      go(at(from_x, step.control_x, step.x), at(from_y, step.control_y, step.y));
+      go(curve(from_x, step.control_x, step.x), curve(from_y, step.control_y, step.y));
     }
     go(step.x, step.y);
   }
@@ -132,11 +132,11 @@ TEST(PixelCanvas, DrawsNothingOutsideOfAView) {
   canvas.ball({20.0, 30.0, 0.0}, 30.0, kWhite);
   canvas.link({0.0, 0.0, 0.0}, {60.0, 60.0, 0.0}, 5.0, kWhite);
   canvas.end_view();
-  for (int at = 0; at < 60; ++at) {
-    EXPECT_EQ(canvas.image().at(at, 19), kBlack) << at;
-    EXPECT_EQ(canvas.image().at(at, 40), kBlack) << at;
-    EXPECT_EQ(canvas.image().at(19, at), kBlack) << at;
-    EXPECT_EQ(canvas.image().at(40, at), kBlack) << at;
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_EQ(canvas.image().at(i, 19), kBlack) << i;
+    EXPECT_EQ(canvas.image().at(i, 40), kBlack) << i;
+    EXPECT_EQ(canvas.image().at(19, i), kBlack) << i;
+    EXPECT_EQ(canvas.image().at(40, i), kBlack) << i;
   }
   EXPECT_GT(canvas.image().at(30, 30).red, 100);
 }
@@ -152,21 +152,21 @@ TEST(PixelCanvas, TakesMarksThatAreFarOutside) {
   EXPECT_EQ(white_area(canvas.image()), 0.0);
 }
 
-std::uint32_t number_at(const std::string& bytes, std::size_t at) {
+std::uint32_t number_at(const std::string& bytes, std::size_t offset) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i)
-    value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    value = value << 8 | static_cast<unsigned char>(bytes[offset + i]);
   return value;
 }
 
 /// The pixels of a PNG file with 8 bits and no interlacing, by the filters of its specification.
 std::vector<std::uint8_t> decode(const std::string& file, std::size_t width, std::size_t height) {
   std::string packed;
-  for (std::size_t at = 8; at + 12 <= file.size(); at += 12 + number_at(file, at)) {
-    const std::uint32_t size = number_at(file, at);
-    const auto* type = reinterpret_cast<const Bytef*>(file.data() + at + 4);
-    EXPECT_EQ(number_at(file, at + 8 + size), crc32(0, type, size + 4));
-    if (file.substr(at + 4, 4) == "IDAT") packed += file.substr(at + 8, size);
+  for (std::size_t begin = 8; begin + 12 <= file.size(); begin += 12 + number_at(file, begin)) {
+    const std::uint32_t size = number_at(file, begin);
+    const auto* type = reinterpret_cast<const Bytef*>(file.data() + begin + 4);
+    EXPECT_EQ(number_at(file, begin + 8 + size), crc32(0, type, size + 4));
+    if (file.substr(begin + 4, 4) == "IDAT") packed += file.substr(begin + 8, size);
   }
   const std::size_t row = 3 * width;
   std::vector<std::uint8_t> raw((row + 1) * height);
@@ -220,8 +220,8 @@ TEST(PdfCanvas, PointsToItsObjects) {
   ASSERT_EQ(file.substr(table, 4), "xref");
   for (std::size_t object = 1; object <= 4; ++object) {
     const std::size_t entry = table + std::string("xref\n0 5\n").size() + 20 * object;
-    const std::size_t at = std::stoul(file.substr(entry, 10));
-    EXPECT_EQ(file.substr(at, 7), std::to_string(object) + " 0 obj");
+    const std::size_t offset = std::stoul(file.substr(entry, 10));
+    EXPECT_EQ(file.substr(offset, 7), std::to_string(object) + " 0 obj");
   }
 }
 

@@ -28,11 +28,14 @@ std::string svg_of(const SignalPlot& plot) {
 
 /// The heights of the places of a curve of this colour; more than one line where it has gaps.
 std::vector<std::vector<double>> heights_of(const std::string& svg, const std::string& colour) {
-  const std::regex curve("stroke=\"" + colour + "\" stroke-width=\"1.6\"[^>]*points=\"([^\"]*)\"");
+  // Not by std::regex, which recurses with each letter of a long list of places.
+  const std::string begin = "stroke=\"" + colour + "\" stroke-width=\"1.6\"";
+  const std::string list = "points=\"";
   std::vector<std::vector<double>> lines;
-  for (auto at = std::sregex_iterator(svg.begin(), svg.end(), curve); at != std::sregex_iterator();
-       ++at) {
-    std::istringstream places((*at)[1]);
+  for (std::size_t curve = svg.find(begin); curve != std::string::npos;
+       curve = svg.find(begin, curve + 1)) {
+    const std::size_t first = svg.find(list, curve) + list.size();
+    std::istringstream places(svg.substr(first, svg.find('"', first) - first));
     lines.emplace_back();
     for (std::string place; places >> place;)
       lines.back().push_back(std::stod(place.substr(place.find(',') + 1)));
@@ -80,6 +83,26 @@ TEST(SignalPlot, DrawsWhatNeverChangesAndWhatIsNowhere) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
   EXPECT_EQ(heights_of(svg, hex_of(plot.palette().signals[0])).size(), 1u);
+}
+
+/// The texts of the marks of the value axis, which end at the plot.
+std::vector<std::string> marks_of(const std::string& svg) {
+  const std::regex mark("text-anchor=\"end\"[^>]*>([^<]*)<");
+  std::vector<std::string> marks;
+  for (auto found = std::sregex_iterator(svg.begin(), svg.end(), mark);
+       found != std::sregex_iterator(); ++found)
+    marks.push_back((*found)[1]);
+  return marks;
+}
+
+TEST(SignalPlot, GivesASignalThatStandsStillAnAxisWithDifferentMarks) {
+  for (const double value : {0.0, 0.25, -3e-7, 1e-30}) {
+    const SignalPlot plot({0, 1}, {{"still", "m", {value, value}}}, {});
+    std::vector<std::string> marks = marks_of(svg_of(plot));
+    ASSERT_GE(marks.size(), 3u) << value;
+    std::ranges::sort(marks);
+    EXPECT_EQ(std::ranges::adjacent_find(marks), marks.end()) << value;
+  }
 }
 
 TEST(AxisMarks, AreRoundNumbers) {

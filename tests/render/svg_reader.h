@@ -22,16 +22,16 @@ inline std::vector<SvgView> views_of(const std::string& svg) {
   const std::regex element(
       R"re(data-time-s="([^"]+)" data-metres-per-pixel="([^"]+)"|<circle cx="([^"]+)" cy="([^"]+)"|(</svg>|<text|<polyline))re");
   bool is_inside = false;
-  for (auto at = std::sregex_iterator(svg.begin(), svg.end(), element);
-       at != std::sregex_iterator(); ++at) {
-    if ((*at)[5].matched) is_inside = false;  // what follows a view
-    if ((*at)[1].matched) {
-      views.push_back({std::stod((*at)[1]), std::stod((*at)[2]), {}, {}});
+  for (auto match = std::sregex_iterator(svg.begin(), svg.end(), element);
+       match != std::sregex_iterator(); ++match) {
+    if ((*match)[5].matched) is_inside = false;  // what follows a view
+    if ((*match)[1].matched) {
+      views.push_back({std::stod((*match)[1]), std::stod((*match)[2]), {}, {}});
       is_inside = true;
     }
-    if ((*at)[3].matched && is_inside) {
-      views.back().x.push_back(std::stod((*at)[3]));
-      views.back().y.push_back(std::stod((*at)[4]));
+    if ((*match)[3].matched && is_inside) {
+      views.back().x.push_back(std::stod((*match)[3]));
+      views.back().y.push_back(std::stod((*match)[4]));
     }
   }
   return views;

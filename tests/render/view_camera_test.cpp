@@ -16,11 +16,11 @@ TEST(ViewCamera, ShowsLengthsAtOneScaleInParallel) {
 
   // 2 m and an eighth more of room, on 448 pixels: 200 pixels per metre.
   EXPECT_NEAR(camera.metres_per_pixel(), 0.005, 1e-12);
-  const Projected at = camera.project({0.5, 0.25, 0.1});
-  EXPECT_NEAR(at.x, 224.0 + 100.0, 1e-9);
-  EXPECT_NEAR(at.y, 224.0 - 50.0, 1e-9);
-  EXPECT_NEAR(at.depth, 20.0, 1e-9);
-  EXPECT_NEAR(camera.radius_of(at, 0.02), 4.0, 1e-9);
+  const Projected place = camera.project({0.5, 0.25, 0.1});
+  EXPECT_NEAR(place.x, 224.0 + 100.0, 1e-9);
+  EXPECT_NEAR(place.y, 224.0 - 50.0, 1e-9);
+  EXPECT_NEAR(place.z, 20.0, 1e-9);
+  EXPECT_NEAR(camera.radius_of(place, 0.02), 4.0, 1e-9);
 }
 
 TEST(ViewCamera, ShowsWhatIsFartherSmaller) {
@@ -29,7 +29,7 @@ TEST(ViewCamera, ShowsWhatIsFartherSmaller) {
   const Projected near = camera.project({0.0, 0.0, 0.25});
   const Projected far = camera.project({0.0, 0.0, -0.25});
   EXPECT_GT(near.scale, far.scale);
-  EXPECT_GT(near.depth, far.depth);
+  EXPECT_GT(near.z, far.z);
   EXPECT_NEAR(camera.project({0.0, 0.0, 0.0}).scale * camera.metres_per_pixel(), 1.0, 0.2);
 }
 
@@ -47,14 +47,14 @@ TEST(ViewCamera, HasEveryBoxInViewFromEverySide) {
       for (const bool is_parallel : {true, false}) {
         const ViewCamera camera(preset, is_parallel, box, 800.0, 450.0);
         for (unsigned corner = 0; corner < 8; ++corner) {
-          const Projected at = camera.project({corner & 1 ? box.high[0] : box.low[0],
-                                               corner & 2 ? box.high[1] : box.low[1],
-                                               corner & 4 ? box.high[2] : box.low[2]});
-          ASSERT_GT(at.scale, 0.0) << "round " << round;
-          ASSERT_GE(at.x, 0.0) << "round " << round;
-          ASSERT_LE(at.x, 800.0) << "round " << round;
-          ASSERT_GE(at.y, 0.0) << "round " << round;
-          ASSERT_LE(at.y, 450.0) << "round " << round;
+          const Projected place = camera.project({corner & 1 ? box.high[0] : box.low[0],
+                                                  corner & 2 ? box.high[1] : box.low[1],
+                                                  corner & 4 ? box.high[2] : box.low[2]});
+          ASSERT_GT(place.scale, 0.0) << "round " << round;
+          ASSERT_GE(place.x, 0.0) << "round " << round;
+          ASSERT_LE(place.x, 800.0) << "round " << round;
+          ASSERT_GE(place.y, 0.0) << "round " << round;
+          ASSERT_LE(place.y, 450.0) << "round " << round;
         }
       }
     }

@@ -14,7 +14,7 @@ namespace cordis::viz {
 struct Place {
   double x = 0.0;
   double y = 0.0;
-  double depth = 0.0;
+  double z = 0.0;
 };
 
 /// An upright rectangle [pixels].

@@ -167,20 +167,20 @@ void visit_line(const Place& from, const Place& to, double width, const Window& 
     float left = std::min(x_from, x_from + along_x) - reach;
     float right = std::max(x_from, x_from + along_x) + reach;
     if (std::abs(along_y) > 0.01f) {  // where the line passes this row
-      const float at = x_from + along_x * down / along_y;
+      const float middle = x_from + along_x * down / along_y;
       const float wide = reach * std::sqrt(square) / std::abs(along_y);
-      left = std::max(left, at - wide);
-      right = std::min(right, at + wide);
+      left = std::max(left, middle - wide);
+      right = std::min(right, middle + wide);
     }
     const int begin = bounded(std::floor(left), within.left, within.right);
     const int end = bounded(std::ceil(right), within.left, within.right);
     for (int x = begin; x < end; ++x) {
       const float across = static_cast<float>(x) + 0.5f - x_from;
-      const float at = square > 0.0f
-                           ? std::clamp((across * along_x + down * along_y) / square, 0.0f, 1.0f)
-                           : 0.0f;
-      const float away_x = across - at * along_x;
-      const float away_y = down - at * along_y;
+      const float part = square > 0.0f
+                             ? std::clamp((across * along_x + down * along_y) / square, 0.0f, 1.0f)
+                             : 0.0f;
+      const float away_x = across - part * along_x;
+      const float away_y = down - part * along_y;
       const float share = half + 0.5f - std::sqrt(away_x * away_x + away_y * away_y);
       if (share > 0.0f) visit(x, y, std::min(share, 1.0f));
     }
@@ -236,14 +236,13 @@ void PixelCanvas::blend(int x, int y, const Colour& colour, float share) noexcep
   pixel[2] = mixed(pixel[2], colour.blue);
 }
 
-void PixelCanvas::blend_deep(int x, int y, const Colour& colour, float share,
-                             float depth) noexcept {
+void PixelCanvas::blend_deep(int x, int y, const Colour& colour, float share, float z) noexcept {
   float& known = depth_[static_cast<std::size_t>(y) * image_.width() + x];
-  const float nearer = depth - known + 0.5f;  // a step of one pixel of depth is smoothed
+  const float nearer = z - known + 0.5f;  // a step of one pixel of depth is smoothed
   if (nearer <= 0.0f) return;
   share *= std::min(nearer, 1.0f);
   blend(x, y, colour, share);
-  if (share >= 0.5f) known = std::max(known, depth);
+  if (share >= 0.5f) known = std::max(known, z);
 }
 
 void PixelCanvas::fill(const Rectangle& area, const Colour& colour) {
@@ -265,7 +264,7 @@ void PixelCanvas::ball(const Place& centre, double radius, const Colour& colour)
   const float to_cell = 0.5f * kLightSize / size;
   const float inside = size > 0.5f ? (size - 0.5f) * (size - 0.5f) : -1.0f;
   const float outside = (size + 0.5f) * (size + 0.5f);
-  const auto depth = static_cast<float>(centre.depth);
+  const auto z = static_cast<float>(centre.z);
   for (int y = within.top; y < within.bottom; ++y) {
     const float down = static_cast<float>(y) + 0.5f - static_cast<float>(centre.y);
     const std::size_t row =
@@ -278,7 +277,7 @@ void PixelCanvas::ball(const Place& centre, double radius, const Colour& colour)
       const Light& light = table[row + cell_of(to_cell * across + 0.5f * kLightSize)];
       const float bulge = size * size - square;
       blend_deep(x, y, lit(colour, light), std::min(share, 1.0f),
-                 depth + (bulge > 0.0f ? std::sqrt(bulge) : 0.0f));
+                 z + (bulge > 0.0f ? std::sqrt(bulge) : 0.0f));
     }
   }
 }
@@ -307,9 +306,9 @@ void PixelCanvas::link(const Place& from, const Place& to, double width, const C
   const double square = along_x * along_x + along_y * along_y;
   visit_line(from, to, width, clip_, [&](int x, int y, float share) {
     const double across = (x + 0.5 - from.x) * along_x + (y + 0.5 - from.y) * along_y;
-    const double at = square > 0.0 ? std::clamp(across / square, 0.0, 1.0) : 0.0;
-    const double depth = from.depth + at * (to.depth - from.depth);
-    blend_deep(x, y, colour, share * strength, static_cast<float>(depth));
+    const double part = square > 0.0 ? std::clamp(across / square, 0.0, 1.0) : 0.0;
+    const double z = from.z + part * (to.z - from.z);
+    blend_deep(x, y, colour, share * strength, static_cast<float>(z));
   });
 }
 
@@ -354,31 +353,31 @@ void PixelCanvas::fill_outline(const std::vector<OutlineStep>& outline, double x
                                 static_cast<float>(y - step_y - row)};
   };
   std::array<float, 2> begin{};
-  std::array<float, 2> at{};
-  const auto go = [&](const std::array<float, 2>& to) {
-    area.add(at[0], at[1], to[0], to[1]);
-    at = to;
+  std::array<float, 2> pen{};
+  const auto draw_to = [&](const std::array<float, 2>& end) {
+    area.add(pen[0], pen[1], end[0], end[1]);
+    pen = end;
   };
   for (const OutlineStep& step : outline) {
     const std::array<float, 2> to = place(step.x, step.y);
     if (step.kind == OutlineStep::Kind::kMove) {
-      go(begin);
-      begin = at = to;
+      draw_to(begin);
+      begin = pen = to;
       continue;
     }
     if (step.kind == OutlineStep::Kind::kCurve) {
-      const std::array<float, 2> from = at;
+      const std::array<float, 2> from = pen;
       const std::array<float, 2> control = place(step.control_x, step.control_y);
       for (int i = 1; i < kCurvePieces; ++i) {
         const float t = static_cast<float>(i) / kCurvePieces;
         const float rest = 1.0f - t;
-        go({rest * rest * from[0] + 2.0f * rest * t * control[0] + t * t * to[0],
-            rest * rest * from[1] + 2.0f * rest * t * control[1] + t * t * to[1]});
+        draw_to({rest * rest * from[0] + 2.0f * rest * t * control[0] + t * t * to[0],
+                 rest * rest * from[1] + 2.0f * rest * t * control[1] + t * t * to[1]});
       }
     }
-    go(to);
+    draw_to(to);
   }
-  go(begin);
+  draw_to(begin);
   area.visit([&](int across, int down, float share) {
     const int pixel_x = column + across;
     const int pixel_y = row + down;

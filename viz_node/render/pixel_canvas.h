@@ -39,7 +39,7 @@ class PixelCanvas final : public Canvas {
   Window window(double left, double top, double right, double bottom) const noexcept;
   void blend(int x, int y, const Colour& colour, float share) noexcept;
   /// Blends the smooth step of depth too, and keeps the nearer depth.
-  void blend_deep(int x, int y, const Colour& colour, float share, float depth) noexcept;
+  void blend_deep(int x, int y, const Colour& colour, float share, float z) noexcept;
   void fill_outline(const std::vector<OutlineStep>& outline, double x, double y,
                     const Colour& colour);
 

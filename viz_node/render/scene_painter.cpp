@@ -20,8 +20,8 @@ constexpr std::array<double, 5> kFewSizes = {3.2, 3.2, 6.0, 5.0, 3.2};
 constexpr std::array<double, 5> kManySizes = {1.2, 1.2, 5.0, 2.0, 1.2};
 
 Point point_of(const msg::SceneFrame& frame, std::size_t mat) noexcept {
-  const float* at = frame.position_m().data() + 3 * mat;
-  return {at[0], at[1], at[2]};
+  const float* position = frame.position_m().data() + 3 * mat;
+  return {position[0], position[1], position[2]};
 }
 
 double distance(const Point& a, const Point& b) noexcept {
@@ -125,9 +125,9 @@ Box ScenePainter::bounds(const msg::SceneFrame& frame, double outliers) const {
   std::vector<float> high(count);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t mat = 0; mat < count; ++mat) {
-      const float at = frame.position_m()[3 * mat + axis];
-      low[mat] = at - radius_[mat];
-      high[mat] = at + radius_[mat];
+      const float middle = frame.position_m()[3 * mat + axis];
+      low[mat] = middle - radius_[mat];
+      high[mat] = middle + radius_[mat];
     }
     const auto first = low.begin() + static_cast<std::ptrdiff_t>(left_out);
     const auto last = high.begin() + static_cast<std::ptrdiff_t>(count - 1 - left_out);
@@ -162,10 +162,10 @@ Colour ScenePainter::colour_of(std::size_t mat, double strength) const {
     if (colour_by_ == ColourBy::kSpeed) {
       const std::vector<Colour>& speeds = palette_.speeds;
       const double share = fastest_ > 0.0 && !speed_.empty() ? speed_[mat] / fastest_ : 0.0;
-      const double at = std::min(share, 1.0) * static_cast<double>(speeds.size() - 1);
-      const std::size_t below = std::min(static_cast<std::size_t>(at), speeds.size() - 1);
+      const double index = std::min(share, 1.0) * static_cast<double>(speeds.size() - 1);
+      const std::size_t below = std::min(static_cast<std::size_t>(index), speeds.size() - 1);
       const std::size_t above = std::min(below + 1, speeds.size() - 1);
-      colour = mix(speeds[below], speeds[above], at - static_cast<double>(below));
+      colour = mix(speeds[below], speeds[above], index - static_cast<double>(below));
     }
   }
   return strength < 1.0 ? mix(palette_.background, colour, strength) : colour;
@@ -188,32 +188,32 @@ void ScenePainter::project_all(const ViewOptions& options, const ViewCamera& cam
   place_.resize(radius_.size());
   size_.resize(radius_.size());
   for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
-    Projected at = camera.project(point_of(frame, mat));
-    const double size = camera.radius_of(at, radius_[mat]);
+    Projected place = camera.project(point_of(frame, mat));
+    const double size = camera.radius_of(place, radius_[mat]);
     size_[mat] = std::max(size, options.mark_scale * sizes[static_cast<std::size_t>(look_[mat])]);
-    at.x += options.inner.x;
-    at.y += options.inner.y;
-    place_[mat] = at;
+    place.x += options.inner.x;
+    place.y += options.inner.y;
+    place_[mat] = place;
   }
 }
 
 void ScenePainter::draw_ball(Canvas& canvas, const ViewOptions& options, std::size_t mat) const {
-  const Projected& at = place_[mat];
-  if (at.scale <= 0.0) return;
+  const Projected& place = place_[mat];
+  if (place.scale <= 0.0) return;
   const double size = size_[mat];
   const Rectangle& area = options.area;
   const double reach = kRingGap * size + 2.0;
-  if (at.x + reach < area.x || at.x - reach > area.x + area.width || at.y + reach < area.y ||
-      at.y - reach > area.y + area.height)
+  if (place.x + reach < area.x || place.x - reach > area.x + area.width ||
+      place.y + reach < area.y || place.y - reach > area.y + area.height)
     return;
   const Colour colour = colour_of(mat, options.strength);
   if (look_[mat] != Look::kFixedPoint) {
-    canvas.ball({at.x, at.y, at.depth}, size, colour);
+    canvas.ball({place.x, place.y, place.z}, size, colour);
     return;
   }
-  canvas.fill({at.x - size, at.y - size, 2.0 * size, 2.0 * size}, colour);
+  canvas.fill({place.x - size, place.y - size, 2.0 * size, 2.0 * size}, colour);
   const double inside = 0.62 * size;
-  canvas.fill({at.x - inside, at.y - inside, 2.0 * inside, 2.0 * inside},
+  canvas.fill({place.x - inside, place.y - inside, 2.0 * inside, 2.0 * inside},
               mix(palette_.background, colour, 0.35));
 }
 
@@ -226,14 +226,14 @@ void ScenePainter::draw_link(Canvas& canvas, const ViewOptions& options, std::si
   if (from.scale <= 0.0 || to.scale <= 0.0) return;
   const double x = to.x - from.x;
   const double y = to.y - from.y;
-  const double depth = to.depth - from.depth;
-  const double length = std::sqrt(x * x + y * y + depth * depth);
+  const double z = to.z - from.z;
+  const double length = std::sqrt(x * x + y * y + z * z);
   // From skin to skin: what is inside of its own balls is hidden.
   if (length <= size_[a] + size_[b]) return;
   const double begin = size_[a] / length;
   const double end = 1.0 - size_[b] / length;
   const auto between = [&](double share) {
-    return Place{from.x + share * x, from.y + share * y, from.depth + share * depth};
+    return Place{from.x + share * x, from.y + share * y, from.z + share * z};
   };
   canvas.link(between(begin), between(end), 1.4 * options.mark_scale,
               colour_of_link(link, frame, options.strength));
@@ -251,13 +251,14 @@ void ScenePainter::draw_grid(Canvas& canvas, const ViewOptions& options, const V
   const auto half = static_cast<long>(std::ceil((flat ? 3.0 : 1.0) * across / cell));
   const long first_u = std::lround(centre[0] / cell);
   const long first_v = std::lround(centre[second] / cell);
-  const auto place = [&](double u, double v) {
-    const Projected at = camera.project(flat ? Point{u, v, level} : Point{u, level, v});
-    return std::pair{at.scale > 0.0, Place{at.x + options.inner.x, at.y + options.inner.y, -1e20}};
+  const auto projected = [&](double u, double v) {
+    const Projected place = camera.project(flat ? Point{u, v, level} : Point{u, level, v});
+    return std::pair{place.scale > 0.0,
+                     Place{place.x + options.inner.x, place.y + options.inner.y, -1e20}};
   };
   const auto draw_line = [&](double u, double v, double to_u, double to_v, const Colour& colour) {
-    const auto [begins, from] = place(u, v);
-    const auto [ends, to] = place(to_u, to_v);
+    const auto [begins, from] = projected(u, v);
+    const auto [ends, to] = projected(to_u, to_v);
     if (begins && ends) canvas.link(from, to, 1.0, colour);
   };
   const auto colour_at = [this](long index) -> const Colour& {
@@ -289,13 +290,12 @@ void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCa
   marks_.clear();
   for (std::size_t link = 0; 2 * link < link_ends_.size(); ++link) {
     if (!is_shown(link, frame)) continue;
-    const double depth =
-        0.5 * (place_[link_ends_[2 * link]].depth + place_[link_ends_[2 * link + 1]].depth);
-    marks_.push_back({depth, static_cast<std::uint32_t>(link), false});
+    const double z = 0.5 * (place_[link_ends_[2 * link]].z + place_[link_ends_[2 * link + 1]].z);
+    marks_.push_back({z, static_cast<std::uint32_t>(link), false});
   }
   for (std::size_t mat = 0; mat < radius_.size(); ++mat)
-    marks_.push_back({place_[mat].depth, static_cast<std::uint32_t>(mat), true});
-  std::ranges::stable_sort(marks_, {}, &Mark::depth);
+    marks_.push_back({place_[mat].z, static_cast<std::uint32_t>(mat), true});
+  std::ranges::stable_sort(marks_, {}, &Mark::z);
   for (const Mark& mark : marks_) {
     if (mark.is_ball)
       draw_ball(canvas, options, mark.index);
@@ -305,7 +305,7 @@ void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCa
   // The ring of a port is seen through everything.
   for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
     if (look_[mat] != Look::kPort || place_[mat].scale <= 0.0) continue;
-    canvas.ring({place_[mat].x, place_[mat].y, place_[mat].depth},
+    canvas.ring({place_[mat].x, place_[mat].y, place_[mat].z},
                 size_[mat] + std::max(0.25 * size_[mat], 3.0 * options.mark_scale),
                 2.0 * options.mark_scale, colour_of(mat, options.strength));
   }

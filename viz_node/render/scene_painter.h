@@ -1,5 +1,4 @@
-// viz_node/render/scene_painter.h -- a scene as the page shows it: balls, links, fixed points, ports
-// and the grid behind them.
+// viz_node/render/scene_painter.h -- a scene as the page shows it, with its grid
 #pragma once
 
 #include <cstddef>
@@ -71,7 +70,7 @@ class ScenePainter {
   enum class Look : std::uint8_t { kMass, kFixedBall, kPort, kFixedPoint, kTool };
   /// A ball or a link on its way from back to front.
   struct Mark {
-    double depth;
+    double z;
     std::uint32_t index;
     bool is_ball;
   };

@@ -1,4 +1,4 @@
-// viz_node/render/scene_words.h -- what stands beside a scene: the legend and a length to measure by.
+// viz_node/render/scene_words.h -- the legend of a scene and its ruler
 #pragma once
 
 #include "viz_node/render/canvas.h"

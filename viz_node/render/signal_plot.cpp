@@ -23,6 +23,12 @@ constexpr double kPlotHeight = 170.0;
 constexpr double kPlotAxis = 48.0;     // of the time, below the last
 constexpr std::size_t kMaxCurves = 6;  // of a plot
 
+/// The number at a mark of an axis; marks below the smallest prefix keep their digits.
+std::string axis_text(double value) {
+  return value == 0.0 || std::abs(value) >= 1e-3 ? short_text(value, 6)
+                                                 : fmt::format("{:.3g}", value);
+}
+
 }  // namespace
 
 std::vector<double> axis_marks(double low, double high, int count) {
@@ -65,9 +71,10 @@ SignalPlot::Range SignalPlot::range_of(const Group& group) const {
       high = std::max(high, value);
     }
   }
-  if (!(low <= high)) return {-1.0, 1.0};
-  const double size = std::max({std::abs(low), std::abs(high), 1e-12});
-  const double room = std::max(0.06 * (high - low), 1e-6 * size);
+  const double size = std::max(std::abs(low), std::abs(high));
+  if (!(low <= high) || size == 0.0) return {-1.0, 1.0};
+  // A constant signal is drawn in the middle of a wide range, so that its rounding does not show.
+  const double room = high - low > 1e-9 * size ? 0.06 * (high - low) : 0.5 * size;
   return {low - room, high + room};
 }
 
@@ -110,7 +117,7 @@ void SignalPlot::draw_group(Canvas& canvas, const Group& group, const Rectangle&
                                                                             : palette_.grid_coarse;
     canvas.line({{area.x, y_of(mark), 0.0}, {area.x + area.width, y_of(mark), 0.0}}, unit_, colour);
     canvas.text({area.x - 8.0 * unit_, y_of(mark) + 0.36 * small, 0.0}, small, Anchor::kEnd,
-                palette_.quiet, short_text(mark / prefix.factor, 6));
+                palette_.quiet, axis_text(mark / prefix.factor));
   }
   if (is_last) {
     canvas.text({area.x + 0.5 * area.width, area.y + area.height + 38.0 * unit_, 0.0}, 13.0 * unit_,

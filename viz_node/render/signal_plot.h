@@ -1,4 +1,4 @@
-// viz_node/render/signal_plot.h -- signals over time as a figure: one plot per unit, one below the other.
+// viz_node/render/signal_plot.h -- signals over time as a figure, one plot per unit
 #pragma once
 
 #include <cstddef>

@@ -33,14 +33,15 @@ std::uint32_t next_code(std::string_view& text) noexcept {
 std::vector<OutlineStep> text_outline(std::string_view text, double size) {
   const double scale = size / kLetterTable.units_per_size;
   std::vector<OutlineStep> outline;
-  double at = 0.0;
+  double advance = 0.0;
   while (!text.empty()) {
     const Letter& letter = letter_of(next_code(text));
     for (const LetterStep& step : kLetterTable.steps.subspan(letter.first, letter.count)) {
-      outline.push_back({static_cast<OutlineStep::Kind>(step.kind), scale * (at + step.x),
-                         scale * step.y, scale * (at + step.control_x), scale * step.control_y});
+      outline.push_back({static_cast<OutlineStep::Kind>(step.kind), scale * (advance + step.x),
+                         scale * step.y, scale * (advance + step.control_x),
+                         scale * step.control_y});
     }
-    at += letter.advance;
+    advance += letter.advance;
   }
   return outline;
 }

@@ -22,9 +22,9 @@ constexpr double kCircle = 0.5522847498;  // control points of a quarter of a ci
 
 /// The light of a ball: a bright place towards the lamp, and a darker edge.
 struct LightStop {
-  double at;
-  double share;  // of the colour
-  int shine;     // added, of 255
+  double offset;  // from the bright place to the edge, 0..1
+  double share;   // of the colour
+  int shine;      // added, of 255
 };
 constexpr std::array<LightStop, 4> kLightStops = {
     {{0.0, 1.04, 45}, {0.25, 1.03, 10}, {0.7, 0.86, 0}, {1.0, 0.6, 0}}};
@@ -77,7 +77,7 @@ std::string SvgCanvas::text() const {
       text += fmt::format("<radialGradient id=\"b{}\" fx=\"{}\" fy=\"{}\">", number,
                           short_number(0.5 + 0.5 * kLampX), short_number(0.5 + 0.5 * kLampY));
       for (const LightStop& stop : kLightStops) {
-        text += fmt::format("<stop offset=\"{}\" stop-color=\"{}\"/>", short_number(stop.at),
+        text += fmt::format("<stop offset=\"{}\" stop-color=\"{}\"/>", short_number(stop.offset),
                             hex_of(lit(colour_of(hex), stop)));
       }
       text += "</radialGradient>\n";
@@ -160,8 +160,9 @@ void SvgCanvas::line(const std::vector<Place>& places, double width, const Colou
       "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" "
       "points=\"",
       hex_of(colour), short_number(width));
-  for (const Place& at : places)
-    body_ += short_number(at.x) + "," + short_number(at.y) + (&at == &places.back() ? "" : " ");
+  for (const Place& place : places)
+    body_ +=
+        short_number(place.x) + "," + short_number(place.y) + (&place == &places.back() ? "" : " ");
   body_ += "\"/>\n";
 }
 
@@ -191,7 +192,7 @@ std::string shading_of(const Colour& colour) {
     functions += fmt::format("<</FunctionType 2/Domain[0 1]/C0[{}]/C1[{}]/N 1>>",
                              parts_of(lit(colour, kLightStops[i])),
                              parts_of(lit(colour, kLightStops[i + 1])));
-    if (i > 0) bounds += fmt::format(" {}", kLightStops[i].at);
+    if (i > 0) bounds += fmt::format(" {}", kLightStops[i].offset);
     encode += " 0 1";
   }
   return fmt::format(
@@ -261,10 +262,10 @@ std::string PdfCanvas::bytes() const {
     table += fmt::format("{:010} 00000 n \n", file.size());
     file += fmt::format("{} 0 obj\n{}\nendobj\n", i + 1, objects[i]);
   }
-  const std::size_t at = file.size();
+  const std::size_t table_offset = file.size();
   return file + table +
          fmt::format("trailer\n<</Size {}/Root 1 0 R>>\nstartxref\n{}\n%%EOF\n", objects.size() + 1,
-                     at);
+                     table_offset);
 }
 
 void PdfCanvas::begin_view(const Rectangle& area, const std::string&) {
@@ -303,9 +304,9 @@ void PdfCanvas::link(const Place& from, const Place& to, double width, const Col
 
 void PdfCanvas::line(const std::vector<Place>& places, double width, const Colour& colour) {
   body_ += fmt::format("{} RG {} w ", parts_of(colour), short_number(width));
-  for (const Place& at : places) {
-    body_ += fmt::format("{} {} {} ", short_number(at.x), short_number(at.y),
-                         &at == places.data() ? "m" : "l");
+  for (const Place& place : places) {
+    body_ += fmt::format("{} {} {} ", short_number(place.x), short_number(place.y),
+                         &place == places.data() ? "m" : "l");
   }
   body_ += "S\n";
 }

@@ -27,7 +27,7 @@ enum class ViewPreset : std::uint8_t { kFront, kSide, kTop, kFree };
 struct Projected {
   double x = 0.0;
   double y = 0.0;
-  double depth = 0.0;
+  double z = 0.0;
   double scale = 0.0;  ///< pixels per metre at this place; 0 behind the viewer
 };
 
