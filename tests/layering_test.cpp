@@ -184,6 +184,7 @@ TEST(Layering, EveryQuotedIncludeIsSpelledFromTheRoot) {
   for (const Include& include : all_includes()) {
     if (!include.quoted || include.target.starts_with("idl/")) continue;  // idl/ is generated
     if (include.target.starts_with("cordis/")) continue;                  // of include/
+    if (fs::exists(kRoot / (include.target + ".in"))) continue;           // configured by CMake
     EXPECT_TRUE(fs::exists(kRoot / include.target))
         << include.file << ":" << include.line << " includes \"" << include.target << "\"";
   }
@@ -202,10 +203,11 @@ TEST(Layering, HeadersOfAForeignLibraryStandInOnePlace) {
       {"CLI/", {"cli/"}},
       {"sndfile.h", {"cli/table/"}},
       {"soxr.h", {"cli/table/"}},
-      {"ft2build.h", {"viz_node/render/letter_table."}},
+      {"ft2build.h", {"viz_node/render/letter_table/"}},
       {"zlib.h",
        {"record_node/mcap/crc32.", "node/machine/system_files.", "cli/table/zip_file.",
-        "viz_node/render/image.", "viz_node/render/vector_canvas."}},
+        "viz_node/render/vector_canvas."}},
+      {"png.h", {"viz_node/render/image."}},
       {"zstd.h", {"record_node/mcap/compression."}},
       {"lz4frame.h", {"record_node/mcap/compression."}},
   };

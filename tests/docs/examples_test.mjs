@@ -306,6 +306,21 @@ test('cordis simulate', async () => {
   }
 });
 
+test('cordis film, chronogram and plot', async () => {
+  rmSync(join(folder, 'take.mcap'), { force: true });
+  await runs('cordis run launch_configs/plucked_string.yaml clock=lockstep --only sim,keyboard,record --record take.mcap --duration 2s',
+    'a take with frames and signals');
+  for (const verb of ['film', 'chronogram', 'plot']) {
+    await someAtOnce(ofVerb(verb), async ([line, origin]) => {
+      const quick = isOfTake(line) ? line : line.replace(/--duration \S+/, '--duration 300ms');
+      await runs(quick, origin);
+      const [, out] = / -o (\S+)/.exec(line);
+      const first = out.endsWith('/') ? join(out, 'frame_00001.png') : out;
+      assert.ok(readFileSync(join(folder, first)).length > 0, `${origin}: ${out}`);
+    });
+  }
+});
+
 test('cordis export', async () => {
   const take = join(folder, 'take.mcap');
   rmSync(take, { force: true });
@@ -336,7 +351,7 @@ test('cordis test lists what it would run', async () => {
 test('no verb has examples that nothing runs', () => {
   const RUN = [
     'run', 'ctl', 'check', 'lab', 'simulate', 'doctor', 'resim', 'test', 'cut', 'merge', 'info', 'recover',
-    'export', 'record', 'play', 'list', 'echo', 'hz', 'get',
+    'export', 'record', 'play', 'list', 'echo', 'hz', 'get', 'film', 'chronogram', 'plot',
   ];
   for (const [line, origin] of all) assert.ok(RUN.includes(line.split(' ')[1]), `${origin}: ${line}`);
   for (const verb of RUN) assert.ok(ofVerb(verb).length > 0, verb);

@@ -47,14 +47,14 @@ TEST(ViewCamera, HasEveryBoxInViewFromEverySide) {
       for (const bool is_parallel : {true, false}) {
         const ViewCamera camera(preset, is_parallel, box, 800.0, 450.0);
         for (unsigned corner = 0; corner < 8; ++corner) {
-          const Projected place = camera.project({corner & 1 ? box.high[0] : box.low[0],
-                                                  corner & 2 ? box.high[1] : box.low[1],
-                                                  corner & 4 ? box.high[2] : box.low[2]});
-          ASSERT_GT(place.scale, 0.0) << "round " << round;
-          ASSERT_GE(place.x, 0.0) << "round " << round;
-          ASSERT_LE(place.x, 800.0) << "round " << round;
-          ASSERT_GE(place.y, 0.0) << "round " << round;
-          ASSERT_LE(place.y, 450.0) << "round " << round;
+          const Projected projected = camera.project({corner & 1 ? box.high[0] : box.low[0],
+                                                      corner & 2 ? box.high[1] : box.low[1],
+                                                      corner & 4 ? box.high[2] : box.low[2]});
+          ASSERT_GT(projected.scale, 0.0) << "round " << round;
+          ASSERT_GE(projected.x, 0.0) << "round " << round;
+          ASSERT_LE(projected.x, 800.0) << "round " << round;
+          ASSERT_GE(projected.y, 0.0) << "round " << round;
+          ASSERT_LE(projected.y, 450.0) << "round " << round;
         }
       }
     }

@@ -1,4 +1,4 @@
-// viz_node/render/letter_table/main.cpp -- a program of the build: writes the outlines of a font as C++.
+// viz_node/render/letter_table/main.cpp -- writes the outlines of a font as C++, at build time
 //
 // usage: letter_table FONT.ttf OUT.cpp
 #include <cstdint>
