@@ -30,6 +30,35 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// The words of an option or, with its dashes, of a name that is none: "start-offset" has two.
+std::vector<std::string> words_of_option(const std::string& name) {
+  return CLI::detail::split(name.substr(std::min(name.find_first_not_of('-'), name.size())), '-');
+}
+
+/// The one option that has all words of this name and more, as --playback-duration has those of
+/// --duration; else the one that is spelled like it; else nothing.
+std::string did_you_mean_option(const std::string& name, const std::vector<std::string>& options) {
+  const std::vector<std::string> words = words_of_option(name);
+  std::vector<std::string> longer;
+  std::vector<std::string> bare;  // dashes are no letters that two options share
+  for (const std::string& option : options) {
+    const std::vector<std::string> all = words_of_option(option);
+    if (std::ranges::all_of(words, [&](const std::string& word) {
+          return std::ranges::find(all, word) != all.end();
+        }))
+      longer.push_back(option);
+    bare.push_back(option.substr(2));
+  }
+  std::string near;
+  if (longer.size() == 1) {
+    near = longer.front().substr(2);
+  } else {
+    near =
+        config::nearest_word(name.substr(std::min(name.find_first_not_of('-'), name.size())), bare);
+  }
+  return near.empty() ? "" : ", did you mean '--" + near + "'?";
+}
+
 void put(std::FILE* stream, const std::string& text) {
   std::fputs(text.c_str(), stream);
 }
@@ -43,7 +72,8 @@ void refuse_leftovers(const CLI::App& app) {
   for (const std::string& word : app.remaining()) {
     if (!word.starts_with("-")) throw UsageError("unexpected word '" + word + "'");
     const std::string name = word.substr(0, word.find('='));
-    throw UsageError("unknown option '" + name + "'" + did_you_mean(name, option_names(app)));
+    throw UsageError("unknown option '" + name + "'" +
+                     did_you_mean_option(name, option_names(app)));
   }
 }
 

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "node/config/launch.h"
+#include "node/last_take.h"
 #include "node/runtime_folder.h"
 #include "node/session_network.h"
 #include "node/session_registry.h"
@@ -78,8 +80,11 @@ SessionAddress address_of(const std::string& named, const std::string& domain,
                              node::domains_text(running) + ": name one with --domain");
   if (launch.domain)
     return {launch.session, *launch.domain, file, network_in(running, launch, is_any)};
+  const std::optional<std::filesystem::path> take =
+      node::last_take(node::runtime_folder(), launch.session);
   throw std::runtime_error("no session '" + launch.session +
-                           "' runs on this host: start it with `cordis run`, or name its --domain");
+                           "' runs on this host: start it with `cordis run`, or name its --domain" +
+                           (take ? "; its last take is " + take->string() : std::string()));
 }
 
 }  // namespace cordis::cli

@@ -8,7 +8,9 @@
 
 #include "node/command_listener.h"
 #include "node/instance_lock.h"
+#include "node/last_take.h"
 #include "node/node_main.h"
+#include "node/runtime_folder.h"
 #include "node/status.h"
 #include "node/stop.h"
 #include "record_node/mcap/writer.h"
@@ -134,6 +136,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   Ending ending(recorder, config.out);
   const std::string file = config.out.string();
   spdlog::info("records into {}", file);
+  node::remember_take(node::runtime_folder(), joined.session, config.out);
   {
     dds::Participant participant(joined);
     const node::StatusPublisher publisher(

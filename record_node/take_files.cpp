@@ -160,22 +160,39 @@ std::vector<AttachedFile> files_of(const config::Launch& launch) {
   return std::move(collector).files();
 }
 
-fs::path take_path(const std::string& pattern, const std::string& session, const fs::path& base) {
+fs::path wanted_take_path(const std::string& pattern, const std::string& session,
+                          const fs::path& base) {
   fs::path path = base / filled_in(pattern, session);
   if (path.extension() != ".mcap") path += ".mcap";
-  if (!path.parent_path().empty()) {
-    std::error_code fault;
-    fs::create_directories(path.parent_path(), fault);
-    if (fault)
-      throw std::runtime_error("cannot make the folder " + path.parent_path().string() + ": " +
-                               fault.message());
-  }
-  fs::path free = path;
+  return path;
+}
+
+fs::path free_take_path(const fs::path& wanted) {
+  fs::path free = wanted;
   for (int number = 2; is_taken(free) && number < kMaxSameName; ++number) {
-    free = path;
-    free.replace_filename(path.stem().string() + "-" + std::to_string(number) + ".mcap");
+    free = wanted;
+    free.replace_filename(wanted.stem().string() + "-" + std::to_string(number) + ".mcap");
   }
   return free;
+}
+
+void make_take_folder(const fs::path& take) {
+  const fs::path folder = take.parent_path();
+  if (folder.empty()) return;
+  std::error_code fault;
+  fs::create_directories(folder, fault);
+  if (fault)
+    throw std::runtime_error("cannot make the folder " + folder.string() + ": " + fault.message());
+}
+
+std::string existing_take_text(const fs::path& wanted, const fs::path& free) {
+  return wanted.string() + " is there already: the take goes to " + free.string();
+}
+
+fs::path take_path(const std::string& pattern, const std::string& session, const fs::path& base) {
+  const fs::path wanted = wanted_take_path(pattern, session, base);
+  make_take_folder(wanted);
+  return free_take_path(wanted);
 }
 
 std::string no_take_because(const std::string& pattern, const std::string& session,

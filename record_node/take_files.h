@@ -31,11 +31,26 @@ std::map<std::string, std::string> seeds_of(const config::Launch& launch,
 /// What is wrong with the name of a take, in one sentence; empty when nothing is.
 std::string fault_of_pattern(const std::string& pattern);
 
-/// The path of a take: `{session}` and `{time}` (20260524-173005) are filled in, `.mcap` is added
-/// where it is missing, and -2, -3, ... where a take of that name exists, finished or not. Makes
-/// the folder.
+/// The path of a take as it is asked for: `{session}` and `{time}` (20260524-173005) are filled in, and
+/// `.mcap` is added where it is missing. A take of that name may exist.
 /// @param base  where a relative path starts
-/// @throws std::runtime_error for another word in braces, or a folder that cannot be made.
+/// @throws std::runtime_error for another word in braces
+std::filesystem::path wanted_take_path(const std::string& pattern, const std::string& session,
+                                       const std::filesystem::path& base);
+
+/// The path itself or, where a take of that name exists, finished or not, the first free one of
+/// those with -2, -3, ...
+std::filesystem::path free_take_path(const std::filesystem::path& wanted);
+
+/// Makes the folder of a take. @throws std::runtime_error when it cannot
+void make_take_folder(const std::filesystem::path& take);
+
+/// "FILE is there already: the take goes to FREE"
+std::string existing_take_text(const std::filesystem::path& wanted,
+                               const std::filesystem::path& free);
+
+/// free_take_path() of wanted_take_path(). Makes the folder.
+/// @throws std::runtime_error as wanted_take_path(), and for a folder that cannot be made.
 std::filesystem::path take_path(const std::string& pattern, const std::string& session,
                                 const std::filesystem::path& base);
 

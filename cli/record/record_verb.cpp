@@ -16,7 +16,9 @@
 #include "cli/progress_line.h"
 #include "cli/session_launch.h"
 #include "cli/session_words.h"
+#include "node/last_take.h"
 #include "node/log.h"
+#include "node/runtime_folder.h"
 #include "node/stop.h"
 #include "record_node/idl/idl_parser.h"
 #include "record_node/mcap/writer.h"
@@ -52,10 +54,6 @@ record::RecorderConfig config_of(const RecordWords& words, const SessionAddress&
   config.topics = words.topics;
   config.excluded = words.excluded;
   config.idl = record::read_idl_files(words.idl_files, {});
-  const std::string name =
-      address.session.empty() ? "domain-" + std::to_string(address.domain) : address.session;
-  config.out = record::take_path(words.out.empty() ? record::kUsualTake : words.out, name,
-                                 std::filesystem::current_path());
   config::Problems unread;  // a file that has errors by now explains nothing of the session
   const config::Launch launch = running_launch(address, unread);
   if (!launch.file.empty()) config.attached = record::files_of(launch);
@@ -63,6 +61,19 @@ record::RecorderConfig config_of(const RecordWords& words, const SessionAddress&
   config.plan_command =
       record::plan_command(launch.file, {std::string("clock=") + config::clock_word(launch.clock)});
   return config;
+}
+
+/// Makes its folder. Says where the take goes when its name is taken.
+std::filesystem::path take_of(const RecordWords& words, const SessionAddress& address) {
+  const std::string name =
+      address.session.empty() ? "domain-" + std::to_string(address.domain) : address.session;
+  const std::filesystem::path wanted = record::wanted_take_path(
+      words.out.empty() ? record::kUsualTake : words.out, name, std::filesystem::current_path());
+  record::make_take_folder(wanted);
+  const std::filesystem::path free = record::free_take_path(wanted);
+  if (free != wanted)
+    std::fprintf(stderr, "cordis record: %s\n", record::existing_take_text(wanted, free).c_str());
+  return free;
 }
 
 std::string progress(const record::RecorderFigures& now, double mb_per_s) {
@@ -75,7 +86,8 @@ int record(const RecordWords& words) {
   std::optional<std::chrono::nanoseconds> longest;
   if (!words.max_duration.empty()) longest = parse_duration(words.max_duration);
   const SessionAddress address = words.target.address();
-  const record::RecorderConfig config = config_of(words, address);
+  record::RecorderConfig config = config_of(words, address);
+  config.out = take_of(words, address);
   node::install_log("record");
   node::install_stop_signals();
   for (const auto& part : record::unfinished_takes(config.out.parent_path()))
@@ -84,6 +96,8 @@ int record(const RecordWords& words) {
                  part.c_str());
   record::Recorder recorder(config);
   std::fprintf(stderr, "records into %s; Ctrl-C ends it\n", config.out.c_str());
+  if (!address.session.empty())
+    node::remember_take(node::runtime_folder(), address.session, config.out);
   ProgressLine line;
   record::RecorderFigures before;
   while (!node::wait_for_stop(kRecordProgress)) {

@@ -117,6 +117,7 @@ ResimResult resimulate(const ResimOptions& options) {
   }
   const sim::Simulation* simulation = resimulation.simulation();
   if (simulation == nullptr) return result;  // the gap says why
+  result.has_begun = true;
   result.scene = simulation->scene().name;
   result.steps = simulation->world().step_count();
   result.state_hash = simulation->world().state_hash();
@@ -127,6 +128,7 @@ ResimResult resimulate(const ResimOptions& options) {
 
 std::string text_of(const ResimResult& result, const ResimOptions& options) {
   const FrameFindings& findings = result.findings;
+  if (!result.has_begun) return options.take + " cannot be computed again: " + result.loss + "\n";
   std::string text = fmt::format(
       "{}: '{}', {:.6g} s in {}, {}, {}, recorded with Cordis {}, integrator {}\n", options.take,
       result.scene, result.played_s, pace_text(result.clock),

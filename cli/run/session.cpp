@@ -9,6 +9,7 @@
 
 #include "cli/duration.h"
 #include "cli/exit_code.h"
+#include "cli/run/existing_takes.h"
 #include "cli/run/machine_watch.h"
 #include "cli/run/node_output.h"
 #include "cli/run/other_nodes.h"
@@ -73,6 +74,7 @@ class Session : public Watcher {
                 (network.is_loopback() ? "" : " on " + network.address));
     const std::string warning = node::exposure_warning(network, registration.domain());
     if (!warning.empty()) output_.say("warning: " + warning);
+    for (const std::string& sentence : existing_takes(launch, plan)) output_.say(sentence);
   }
 
   void line(std::size_t process, Stream stream, std::string_view text) override {

@@ -67,7 +67,8 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   std::string text;
   if (status.phase() == msg::PHASE_FAILED && !status.text().empty()) {
     text += fmt::format("{} failed: {}\n", node, status.text());
-  } else if (status.kind() == msg::KIND_SIM_NODE && !status.text().empty()) {
+  } else if ((status.kind() == msg::KIND_SIM_NODE || status.kind() == msg::KIND_RECORD_NODE) &&
+             !status.text().empty()) {
     text += fmt::format("{}: {}\n", node, status.text());
   }
   if (status.kind() == msg::KIND_DEVICE_NODE &&

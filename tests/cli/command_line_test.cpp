@@ -95,6 +95,26 @@ TEST(CommandLine, ExplainsAVerbOnStdout) {
   EXPECT_NE(program.out.find("Usage: cordis test [options of ctest]"), std::string::npos);
 }
 
+TEST(CommandLine, NamesTheOptionThatHasTheWordsOfAnUnknownOne) {
+  Program program;
+  Verb& play = program.line.verb("play", "TAKE", "Summary of play");
+  std::string ignored;
+  for (const char* option : {"--playback-duration", "--domain", "--start-offset", "--start-rate"})
+    play.option(option, "X", ignored, "Help");
+  const auto hint = [&](const std::string& option) {
+    EXPECT_EQ(program({"play", option, "1s"}), kBadInput);
+    const std::string before = "cordis play: unknown option '" + option + "'";
+    EXPECT_TRUE(program.error.starts_with(before)) << program.error;
+    const std::string rest = program.error.substr(before.size());
+    return rest.substr(0, rest.find(" (see"));
+  };
+  EXPECT_EQ(hint("--duration"), ", did you mean '--playback-duration'?");
+  EXPECT_EQ(hint("--offset"), ", did you mean '--start-offset'?");
+  EXPECT_EQ(hint("--start"), "") << "two options have that word";
+  EXPECT_EQ(hint("--domian"), ", did you mean '--domain'?");
+  EXPECT_EQ(hint("--durably"), "") << "dashes make no two options alike";
+}
+
 TEST(CommandLine, RefusesInOneLineWithTheNearestWord) {
   const std::vector<std::pair<Words, std::string>> cases{
       {{"rnu", "a.yaml"}, "cordis: unknown verb 'rnu', did you mean 'run'? (see cordis --help)\n"},

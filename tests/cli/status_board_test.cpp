@@ -174,6 +174,15 @@ TEST(StatusTable, ReportsWhyANodeFailed) {
             std::string::npos);
 }
 
+TEST(StatusTable, SaysWhereTheTakeIs) {
+  StatusBoard board(0);
+  msg::NodeStatus record = status_of("record", msg::KIND_RECORD_NODE, 1);
+  record.text("/takes/take-2.mcap, 3.1 MB");
+  board.put(record);
+  EXPECT_NE(status_table({"record"}, board).find("record: /takes/take-2.mcap, 3.1 MB\n"),
+            std::string::npos);
+}
+
 TEST(StatusTable, WritesTheWholeHash) {
   StatusBoard board(0);
   msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);

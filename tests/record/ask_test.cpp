@@ -2,6 +2,7 @@
 #include <csignal>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "tests/record/count_take.h"
 #include "tests/support/child_process.h"
+#include "tests/support/eventually.h"
 
 namespace cordis {
 namespace {
@@ -58,6 +60,39 @@ TEST_F(Ask, FindsTheSessionByItsName) {
   ends("cordis hz " + name_ + " --duration 500ms", 0, "lab/count");
 }
 
+/// The row of a topic in the last table of `cordis hz`.
+struct TrafficRow {
+  double rate_hz = 0.0;
+  double min_msec = 0.0;
+  double max_msec = 0.0;
+  double kilobytes_per_s = 0.0;
+  int missing = -1;
+};
+
+TrafficRow last_row_of(const std::string& output, const std::string& topic) {
+  TrafficRow row;
+  const std::size_t begin = output.rfind("\n" + topic + " ");
+  if (begin == std::string::npos || output.find('\n', begin + 1) == std::string::npos) return row;
+  std::istringstream words(output.substr(begin + 1 + topic.size()));
+  words >> row.rate_hz >> row.min_msec >> row.max_msec >> row.kilobytes_per_s >> row.missing;
+  return row;
+}
+
+/// The take has 40 messages of 8 bytes, 20 ms apart, and begins again 0 to 20 ms after the last.
+TEST_F(Ask, MeasuresRateIntervalsAndBytesOfATopic) {
+  ChildProcess hz({kAsked, "hz", name_, "lab/count"});
+  TrafficRow row;
+  EXPECT_TRUE(test::eventually([&] {
+    row = last_row_of(hz.output(), "lab/count");
+    return row.rate_hz > 47.0 && row.rate_hz < 54.0 && row.min_msec < 20.5 && row.max_msec > 19.5 &&
+           row.max_msec < 80.0;
+  })) << hz.output();
+  EXPECT_NEAR(row.kilobytes_per_s, 8e-3 * row.rate_hz, 0.051) << "it is rounded to 0.1";
+  EXPECT_EQ(row.missing, 0) << hz.output();
+  hz.signal(SIGINT);
+  EXPECT_EQ(hz.wait(kPatience), 0) << hz.output();
+}
+
 TEST_F(Ask, SaysWhichWordIsWrong) {
   for (const std::string verb :
        {"info unheard_of", "echo unheard_of", "hz unheard_of", "get unheard_of a.b"})
@@ -74,6 +109,37 @@ TEST_F(Ask, SaysWhichWordIsWrong) {
   EXPECT_TRUE(echo.wait_for_output("no message has come on 'nothing'", kPatience));
   echo.signal(SIGINT);
   EXPECT_EQ(echo.wait(kPatience), 0) << echo.output();
+}
+
+TEST_F(Ask, NamesTheLastTakeOfASessionThatHasEnded) {
+  const std::string take = folder_ / "copy.mcap";
+  for (const std::string& file : {take, (folder_ / "copy-2.mcap").string()}) {
+    ChildProcess recorder({kAsked, "record", name_, "-o", take});
+    ASSERT_TRUE(recorder.wait_for_output("records into " + file, kPatience));
+    if (file != take) {
+      EXPECT_NE(recorder.output().find(take + " is there already: the take goes to " + file),
+                std::string::npos)
+          << recorder.output();
+    }
+    recorder.signal(SIGINT);
+    EXPECT_NE(recorder.wait(kPatience), -1) << recorder.output();
+  }
+  ChildProcess other({kAsked, "play", take_, "--start-paused", "--session", name_ + "_other",
+                      "--domain", domain_});
+  ASSERT_TRUE(other.wait_for_output("session '" + name_, kPatience));
+  other.signal(SIGINT);
+  EXPECT_EQ(other.wait(kPatience), 0) << other.output();
+  played_->signal(SIGINT);
+  EXPECT_EQ(played_->wait(kPatience), 0) << played_->output();
+
+  for (const std::string verb : {"info ", "echo ", "hz ", "record "}) {
+    ends("cordis " + verb + name_, 1,
+         "no session '" + name_ +
+             "' runs on this host: start it with `cordis run`, or name its "
+             "--domain; its last take is " +
+             (folder_ / "copy-2.mcap").string() + "\n");
+    ends("cordis " + verb + name_ + "_other", 1, "or name its --domain\n");
+  }
 }
 
 TEST_F(Ask, EndsWithoutAWordWhenItsReaderHasGone) {

@@ -63,6 +63,11 @@ TEST_F(PlayGuard, LetsNoSceneAndNoDeviceJoinATakeThatIsPlayed) {
   EXPECT_EQ(player.wait(test::kPatience), 0) << player.output();
 }
 
+TEST_F(PlayGuard, NamesTheOptionOfALength) {
+  refuses(words("play", take_, {"--duration", "1s"}), 2,
+          "unknown option '--duration', did you mean '--playback-duration'?");
+}
+
 TEST_F(PlayGuard, RefusesToRepeatWhatHasNoLength) {
   refuses(words("play", take_, {"--loop", "--start-offset", "780ms"}), 1, "has no length");
 }

@@ -163,6 +163,11 @@ TEST(Resim, SaysWhichBatchIsMissingAndComparesWhatIsCertain) {
   EXPECT_EQ(late.findings.frames, 0u);
   EXPECT_EQ(late.loss,
             "the first 3 batches of scene/inputs are missing: the recording began too late");
+  ResimOptions options;
+  options.take = "late.mcap";
+  EXPECT_EQ(text_of(late, options),
+            "late.mcap cannot be computed again: the first 3 batches of scene/inputs are missing: "
+            "the recording began too late\n");
 }
 
 TEST(Resim, ABatchThatWantsTooManyTurnsIsDamaged) {
