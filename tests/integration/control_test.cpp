@@ -181,6 +181,29 @@ TEST_P(Control, SetChangesAParameterAndTheKeyFeelsIt) {
   ASSERT_TRUE(feels(3.5, forces, force));
 }
 
+TEST_P(Control, GetSaysWhatParametersAreNow) {
+  start();
+  const auto get = [&](const std::string& name) -> Outcome {
+    ChildProcess process(
+        {program_path("cordis"), "get", session_.launch_file(), name, "--timeout", "60s"});
+    const int code = process.wait(kPatience);
+    return {code, process.output()};
+  };
+  for (const std::string name : {"wall", "wall.stiffness_n_per_m"}) {
+    const Outcome before = get(name);
+    EXPECT_EQ(before.code, 0);
+    EXPECT_EQ(before.output, "wall.stiffness_n_per_m = 200\n");
+  }
+  expect_done({"set", "wall.stiffness_n_per_m=350"}, "sim: wall.stiffness_n_per_m = 350 at step ");
+  EXPECT_EQ(get("wall").output, "wall.stiffness_n_per_m = 350\n");
+  expect_done({"load", "stiff.yaml"}, "sim: ");
+  EXPECT_EQ(get("wall").output, "wall.stiffness_n_per_m = 400\n");
+
+  const Outcome mistyped = get("wal");
+  EXPECT_EQ(mistyped.code, 2);
+  EXPECT_NE(mistyped.output.find("did you mean 'wall'?"), std::string::npos) << mistyped.output;
+}
+
 /// A link of a liaison with states, put into its other state by hand.
 TEST(ControlOfStates, StatePutsALinkIntoAStateAndAnEventReports) {
   LiveSession session("asap", "  sim: {node: sim_node, scene: scene.yaml}\n");

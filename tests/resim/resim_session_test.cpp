@@ -26,6 +26,12 @@ std::string sim_of(const std::string& scene, const std::string& more = "") {
   return "  sim: {node: sim_node, scene: '" + scene + "'" + more + "}\n";
 }
 
+std::string kneading_thimbles() {
+  return "  thimbles: {node: device_node, device: '" + kLaunches +
+         "devices/two_thimbles.yaml', driver: mock, mock: {hand: {gesture: {kind: knead, open_m: "
+         "0.015, grip_m: -0.06, in_s: 0.7, stay_s: 0.3}}}}\n";
+}
+
 /// A session that is recorded from its start to its end.
 class RecordedSession {
  public:
@@ -100,14 +106,28 @@ TEST(ResimSession, AHandOnAKeyInRealtime) {
 TEST(ResimSession, TwoThimblesOfRoleMassInLockstep) {
   RecordedSession session(
       "lockstep",
-      sim_of(kLaunches + "scenes/plasticine.yaml", ", duration_s: 1") +
-          "  thimbles: {node: device_node, device: '" + kLaunches +
-          "devices/two_thimbles.yaml', driver: mock, mock: {hand: {gesture: {kind: knead, open_m: "
-          "0.015, grip_m: -0.06, in_s: 0.7, stay_s: 0.3}}}}\n");
+      sim_of(kLaunches + "scenes/plasticine.yaml", ", duration_s: 1") + kneading_thimbles());
   session.live().start("device_node", "thimbles");
   session.live().start("sim_node", "sim");
   session.wait();
   expect_equal(session.resim(), 10);
+}
+
+/// 3 s of it, or as many as CORDIS_RESIM_S says: 60 is the long form.
+TEST(ResimSession, PlasticineThatIsKneadedInRealtime) {
+  const char* longer = std::getenv("CORDIS_RESIM_S");
+  const int seconds = longer == nullptr ? 3 : std::atoi(longer);
+  ASSERT_GT(seconds, 0);
+  RecordedSession session("realtime", sim_of(kLaunches + "scenes/plasticine.yaml",
+                                             ", duration_s: " + std::to_string(seconds)) +
+                                          kneading_thimbles());
+  session.live().start("device_node", "thimbles");
+  session.live().start("sim_node", "sim");
+  session.wait();
+  const cli::ResimResult result = session.resim();
+  expect_equal(result, static_cast<std::uint64_t>(2 * seconds));
+  EXPECT_GE(result.played_s, seconds - 0.001);
+  EXPECT_GT(result.samples, 100u);
 }
 
 class ResimRole : public ::testing::TestWithParam<const char*> {};
