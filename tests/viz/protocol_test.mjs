@@ -155,11 +155,33 @@ const cases = {
     }
   },
 
-  'nothing but GET is answered': async ({ url }) => {
+  'HEAD has the fields of GET, and no text': async ({ url }) => {
+    const [got, headed] = [await ask(url, '/page.js'), await ask(url, '/page.js', { method: 'HEAD' })];
+    assert.deepEqual([headed.status, headed.text], [200, '']);
+    for (const field of ['content-length', 'content-type']) assert.equal(headed.headers[field], got.headers[field]);
+    assert.equal((await ask(url, '/none.js', { method: 'HEAD' })).status, 404);
+  },
+
+  'the page takes less than 200 kB on the wire': async ({ url }) => {
+    for (const [accepted, encoding] of [['gzip, deflate, br', 'br'], ['gzip', 'gzip']]) {
+      let bytes = 0;
+      for (const path of ['/', '/page.js', '/page.css', '/sound.js']) {
+        const { headers } = await ask(url, path, { method: 'HEAD', headers: { 'Accept-Encoding': accepted } });
+        assert.equal(headers['content-encoding'], encoding);
+        bytes += Number(headers['content-length']);
+      }
+      assert.ok(bytes > 50_000 && bytes < 200_000, `${encoding}: ${bytes} bytes`);
+    }
+    const plain = await ask(url, '/page.css', { headers: { 'Accept-Encoding': 'br;q=0, identity' } });
+    assert.equal(plain.headers['content-encoding'], undefined);
+    assert.match(plain.text, /#stage/);
+  },
+
+  'nothing but GET and HEAD is answered': async ({ url }) => {
     for (const method of ['POST', 'PUT', 'DELETE', 'OPTIONS']) {
       const { status, headers } = await ask(url, '/', { method, body: 'x'.repeat(3000) });
       assert.equal(status, 405, method);
-      assert.equal(headers.allow, 'GET');
+      assert.equal(headers.allow, 'GET, HEAD');
     }
   },
 

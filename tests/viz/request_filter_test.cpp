@@ -31,8 +31,11 @@ TEST(RequestFilter, LetsAPageAndItsWebSocketIn) {
   EXPECT_EQ(status_of(live()), 0u);
 }
 
-TEST(RequestFilter, RefusesEveryMethodButGet) {
-  for (const std::string_view method : {"POST", "HEAD", "PUT", "OPTIONS", "get", ""}) {
+TEST(RequestFilter, RefusesEveryMethodButGetAndHead) {
+  Request head = page_load();
+  head.method = "HEAD";
+  EXPECT_EQ(status_of(head), 0u);
+  for (const std::string_view method : {"POST", "head", "PUT", "OPTIONS", "get", ""}) {
     Request request = page_load();
     request.method = method;
     EXPECT_EQ(status_of(request), 405u) << method;

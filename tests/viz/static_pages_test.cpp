@@ -40,6 +40,28 @@ TEST_F(StaticPagesTest, ServesTheFilesOfItsFolderWithTheirTypes) {
   EXPECT_EQ(pages.find("/page.js")->type, "text/javascript; charset=utf-8");
 }
 
+TEST_F(StaticPagesTest, GivesTheShortestFormThatABrowserTakes) {
+  for (const char* name : {"index.html", "page.js"}) {
+    write(root / "page" / name, "plain");
+    write(root / "page" / (std::string(name) + ".gz"), "gzipped");
+  }
+  write(root / "page" / "page.js.br", "brotli");
+  const StaticPages pages(root / "page");
+  const auto content = [&pages](const char* path, const char* accepted) {
+    const StaticPage* const page = pages.find(path, accepted);
+    return page == nullptr ? "none" : page->content + "," + page->encoding + "," + page->type;
+  };
+  const std::string js = "text/javascript; charset=utf-8";
+
+  EXPECT_EQ(content("/page.js", ""), "plain,," + js);
+  EXPECT_EQ(content("/page.js", "gzip, deflate, br"), "brotli,br," + js);
+  EXPECT_EQ(content("/page.js", "deflate,gzip;q=0.5"), "gzipped,gzip," + js);
+  EXPECT_EQ(content("/page.js", "br;q=0, gzip"), "gzipped,gzip," + js);
+  EXPECT_EQ(content("/page.js", "brotli, x-gzip"), "plain,," + js);
+  EXPECT_EQ(content("/", "br, gzip"), "gzipped,gzip,text/html; charset=utf-8");
+  EXPECT_EQ(content("/page.js.br", "br"), "none") << "it is no page of its own";
+}
+
 TEST_F(StaticPagesTest, FindsNothingOutsideItsFolder) {
   write(root / "page" / "index.html", "<p>");
   const StaticPages pages(root / "page");

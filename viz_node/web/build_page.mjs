@@ -1,9 +1,10 @@
 // viz_node/web/build_page.mjs -- bundles the page into the folder given: node build_page.mjs
 // OUT_FOLDER
 import { build } from 'esbuild';
-import { copyFile, mkdir } from 'node:fs/promises';
+import { copyFile, mkdir, readFile, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { brotliCompressSync, gzipSync } from 'node:zlib';
 
 const sources = join(dirname(fileURLToPath(import.meta.url)), 'page');
 const out = process.argv[2];
@@ -28,3 +29,10 @@ await build({
   logLevel: 'warning',
 });
 await copyFile(join(sources, 'index.html'), join(out, 'index.html'));
+
+// viz_node sends these to browsers that take them: a third of the bytes.
+for (const name of ['index.html', 'page.js', 'page.css', 'sound.js']) {
+  const content = await readFile(join(out, name));
+  await writeFile(join(out, `${name}.gz`), gzipSync(content, { level: 9 }));
+  await writeFile(join(out, `${name}.br`), brotliCompressSync(content));
+}

@@ -63,21 +63,26 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
           ->start(http::request<http::empty_body>(request));
       return;
     }
-    const StaticPage* page = pages_.find(path_of(target));
+    const StaticPage* page = pages_.find(path_of(target), field(http::field::accept_encoding));
     if (page == nullptr) return reply(404, "text/plain; charset=utf-8", "there is no such page\n");
-    reply(200, page->type, page->content);
+    reply(200, page->type, page->content, page->encoding);
   }
 
-  void reply(unsigned status, const std::string& type, const std::string& content) {
+  void reply(unsigned status, const std::string& type, const std::string& content,
+             const std::string& encoding = {}) {
     response_ = {};
+    if (!encoding.empty()) response_.set(http::field::content_encoding, encoding);
+    response_.set(http::field::vary, "Accept-Encoding");
     response_.result(status);
     response_.set(http::field::content_type, type);
     response_.set(http::field::cache_control, "no-cache");
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Content-Security-Policy", kContentPolicy);
-    if (status == 405) response_.set(http::field::allow, "GET");
+    if (status == 405) response_.set(http::field::allow, "GET, HEAD");
     response_.body() = content;
     response_.prepare_payload();
+    // HEAD: the fields of the answer to GET, and nothing behind them.
+    if (parser_->get().method() == http::verb::head) response_.body().clear();
     response_.keep_alive(status == 200 && parser_->get().keep_alive());
     http::async_write(stream_, response_,
                       [self = shared_from_this()](ErrorCode error, std::size_t) {

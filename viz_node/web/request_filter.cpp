@@ -45,7 +45,8 @@ std::string_view path_of(std::string_view target) noexcept {
 
 std::optional<Refusal> refusal_of(const Request& request, bool loopback_only) {
   const std::string_view path = path_of(request.target);
-  if (request.method != "GET") return Refusal{405, "only GET is answered here\n"};
+  if (request.method != "GET" && request.method != "HEAD")
+    return Refusal{405, "only GET and HEAD are answered here\n"};
   if (!path.starts_with('/')) return Refusal{400, "the target of a request is a path\n"};
   if (!is_plain(path)) return Refusal{403, "no page has such a name\n"};
   if (loopback_only && !is_this_machine(request.host))

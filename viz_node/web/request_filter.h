@@ -29,7 +29,7 @@ inline constexpr std::string_view kLivePath = "/live";
 std::string_view path_of(std::string_view target) noexcept;
 
 /// Refuses
-///   405  anything but GET
+///   405  anything but GET and HEAD
 ///   400  a target that is no path
 ///   403  a path with "..", "%", "\" or a control character: no file of the page has such a name
 ///   403  a Host that is not this machine while the server listens on loopback only, so that a
