@@ -20,7 +20,7 @@ void FullStepIntegrator::find_forces(WorldState& world, const double* extrapolat
 }
 
 void FullStepIntegrator::take_half(double half, StepEnergy& energy) noexcept {
-  energy.dissipated += half;
+  if (started_) energy.dissipated += half;
   pending_.dissipated += half;
 }
 

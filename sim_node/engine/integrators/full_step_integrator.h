@@ -28,7 +28,8 @@ class FullStepIntegrator : public Integrator {
   /// Puts other forces in the place of some of them. @return half of what that changes in what
   /// viscosity takes in a period [J]
   virtual double correct_forces(WorldState&) noexcept { return 0.0; }
-  /// Enters one half of a loss that lies about the moment; the other is pending.
+  /// Enters one half of a loss that lies about the moment; the other is pending. In the first step,
+  /// whose moment is the start, no half lies before it.
   void take_half(double half, StepEnergy& energy) noexcept;
   /// After the MATs have moved.
   void end_step(WorldState& world) noexcept;
