@@ -49,7 +49,6 @@ std::uint64_t PacedLoop::wait() noexcept {
   const std::int64_t used = thread_processor_nsec();  // nothing of it while it slept
   const std::int64_t computed = is_first ? 0 : used - woken_processor_nsec_;
   woken_processor_nsec_ = used;
-  lateness_.record(late);
   late_cause_ = LateCause::kNone;
   if (late < period) return 0;
   late_cause_ = computed < period ? LateCause::kMachine : LateCause::kWork;

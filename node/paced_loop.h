@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "node/late_ticks.h"
-#include "node/latency.h"
 
 namespace cordis::node {
 
@@ -49,9 +48,6 @@ class PacedLoop {
   /// The next deadline [ns]; after a wait().
   std::int64_t next_nsec() const noexcept { return deadline(deadline_index_ + 1); }
   double rate_hz() const noexcept { return rate_hz_; }
-  const LatencyHistogram& lateness() const noexcept {
-    return lateness_;
-  }  ///< begin of tick after its deadline
 
  private:
   double rate_hz_;
@@ -61,7 +57,6 @@ class PacedLoop {
   std::uint64_t overruns_ = 0;
   LateCause late_cause_ = LateCause::kNone;
   std::int64_t woken_processor_nsec_ = 0;  // of the thread, when the present tick began
-  LatencyHistogram lateness_;
 
   std::int64_t deadline(std::int64_t index) const noexcept;
 };

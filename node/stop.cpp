@@ -61,8 +61,4 @@ bool wait_for_stop(std::chrono::nanoseconds at_most) noexcept {
   return stop_requested();
 }
 
-int stop_file_descriptor() noexcept {
-  return event_file;
-}
-
 }  // namespace cordis::node

@@ -18,7 +18,4 @@ void request_stop() noexcept;
 /// Sleeps until a stop is requested, at most so long; true when it was.
 bool wait_for_stop(std::chrono::nanoseconds at_most) noexcept;
 
-/// Becomes readable when a stop is requested, for poll(); never read from it.
-int stop_file_descriptor() noexcept;
-
 }  // namespace cordis::node

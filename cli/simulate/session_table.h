@@ -22,9 +22,6 @@ class SessionTable {
   SessionTable(const OfflineSession& session, const std::vector<std::string>& mats);
 
   const std::vector<Column>& columns() const noexcept { return columns_; }
-  /// The first column of the signals, and behind the last one.
-  std::size_t first_signal() const noexcept { return 1; }
-  std::size_t signals_end() const noexcept { return 1 + session_.scene().signals.count(); }
 
   /// The values of now.
   const std::vector<double>& row();

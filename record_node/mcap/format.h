@@ -17,8 +17,6 @@ namespace cordis::mcap {
 inline constexpr std::array<unsigned char, 8> kMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 /// Bytes of an opcode and a length, which begin every record.
 inline constexpr std::size_t kRecordHead = 9;
-/// Bytes of a message before its data.
-inline constexpr std::size_t kMessageHead = 22;
 /// Bytes of a footer record.
 inline constexpr std::size_t kFooterSize = kRecordHead + 20;
 

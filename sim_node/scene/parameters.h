@@ -29,11 +29,6 @@ struct Change {
   std::optional<double> viscosity;     ///< of links [N s/m]; as it is when there is none
 };
 
-/// True if a change can be made without a new Network.
-inline bool is_live(const Change& change) noexcept {
-  return change.kind == Change::Kind::kStateMachine;
-}
-
 /// Makes a change in a description: a World of a Network made from it is as if the scene had been
 /// written so.
 void apply(const Change& change, engine::NetworkDescription& network);

@@ -26,8 +26,6 @@ class StiffnessMatrix {
   /// Solves for 4 x N columns in place; what is no mass becomes 0.
   void solve(double* columns) noexcept;
 
-  std::size_t factor_size() const noexcept { return factor_.size(); }
-
  private:
   struct MatrixLink {
     std::uint32_t mat_a;

@@ -133,7 +133,6 @@ class MatArray {
   }
   /// Says that the last forces were computed at x(n), not at x(n-1) as by moving since.
   void set_forces_are_present(bool present) noexcept { forces_are_present_ = present; }
-  bool forces_are_present() const noexcept { return forces_are_present_; }
   void set_force(std::uint32_t mat, const Vec3& force) noexcept;
 
   /// Where the links find the positions and leave their forces.

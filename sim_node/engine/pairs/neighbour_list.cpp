@@ -69,11 +69,6 @@ void NeighbourList::hold_skin(double skin) noexcept {
   valid_ = false;
 }
 
-double NeighbourList::take_largest_slice() noexcept {
-  const std::size_t work = std::exchange(largest_slice_, 0);
-  return static_cast<double>(work) / static_cast<double>(whole_work());
-}
-
 double NeighbourList::reach_square(const Listing& listing) const noexcept {
   const double reach = range_ + listing.skin;
   return reach * reach * (1.0 + kMargin);
@@ -169,7 +164,6 @@ std::size_t NeighbourList::whole_work() const noexcept {
 }
 
 void NeighbourList::build(const double* position, double skin) noexcept {
-  ++whole_build_count_;
   is_at_once_ = true;
   begin_next(position, skin);
   advance_next(position, whole_work());
@@ -206,8 +200,7 @@ void NeighbourList::advance_next(const double* position, std::size_t work) noexc
     if (done_ == find_count_) end_find(position);
   }
   if (stage_ == Stage::kKeep) done += kKeepWork * keep_some(members(kKeepWork));
-  if (stage_ == Stage::kSort) done += kSortWork * sort_some(members(kSortWork));
-  largest_slice_ = std::max(largest_slice_, done);
+  if (stage_ == Stage::kSort) sort_some(members(kSortWork));
 }
 
 void NeighbourList::use_next() noexcept {

@@ -65,11 +65,6 @@ class NeighbourList {
   double skin() const noexcept { return used_.skin; }  ///< of the list in use [m]
   /// Lists that have been in use.
   std::size_t build_count() const noexcept { return build_count_; }
-  /// Lists that were made at once, in one refresh.
-  std::size_t whole_build_count() const noexcept { return whole_build_count_; }
-  /// The largest part of a list that one refresh has made since the last call of this function: 1
-  /// for a whole one.
-  double take_largest_slice() noexcept;
   /// How many pairs it found when it was last made, whether or not there was room for them.
   std::size_t entry_count() const noexcept { return used_.start[count_p_]; }
   /// The number of others that were nearer than range + skin to one member then.
@@ -165,8 +160,6 @@ class NeighbourList {
   bool valid_ = false;
   bool whole_ = true;
   std::size_t build_count_ = 0;
-  std::size_t whole_build_count_ = 0;
-  std::size_t largest_slice_ = 0;
 };
 
 }  // namespace cordis::engine
