@@ -1,7 +1,6 @@
 // sim_node/session.cpp
 #include "sim_node/session.h"
 
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -9,11 +8,8 @@
 
 #include "node/config/count_text.h"
 #include "sim_node/asap_loop.h"
-#include "sim_node/checks/stability_check.h"
 #include "sim_node/lockstep_loop.h"
 #include "sim_node/realtime_loop.h"
-#include "sim_node/run/describe.h"
-#include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
 
@@ -30,42 +26,19 @@ Session::Session(const node::NodeStart& start, SimConfig config)
                 std::make_shared<const scene::Scene>(std::move(config.scene)), start.epoch, 1),
             std::move(config.source), config.duration_s, config.force, participant_, devices_,
             snapshot_),
-      description_writer_(participant_, dds::Topic::kDescription),
       status_(participant_, msg::KIND_SIM_NODE, start.epoch,
               [this](msg::NodeStatus& status) {
                 snapshot_.fill(status, devices_.refusal(), devices_.loops());
                 status.lost_events(loop_.lost_events());
               }),
-      executor_(
-          loop_.mailbox(), loop_.simulation().shared_scene(), start.epoch,
-          [this, force = config.force](const std::string& path, config::Problems& problems) {
-            return load_next_scene(start_.launch, path, force, problems);
-          },
-          [force = config.force](const scene::Scene& scene, config::Problems& problems) {
-            check_stability(scene, force, problems);
-          },
-          [this](const scene::Scene& scene, std::uint64_t version) {
-            publish_scene(scene, version);
-          }),
-      commands_(
-          participant_, msg::KIND_SIM_NODE,
-          [this](const msg::ControlCommand& command) {
-            return execute([&] { return executor_.execute(command); });
-          },
-          [this](const msg::ControlCommand& command) -> node::Work {
-            node::Work work = executor_.work_of(command);
-            if (!work) return {};
-            return [this, work = std::move(work)]() -> node::Finish {
-              return [this, finish = work()] { return execute(finish); };
-            };
-          }) {}
+      control_(start, config.force, participant_, devices_, snapshot_, loop_) {}
 
 int Session::run() {
-  publish_scene(loop_.simulation().scene(), 1);
+  control_.publish_first_scene();
   loop_.record_state();
   devices_.play(loop_.simulation().scene());
   devices_.start();
-  commands_.start();
+  control_.start();
 
   if (!signals_for_.empty()) loop_.wait_for_signal_reader(signals_for_);
   snapshot_.begin();
@@ -98,25 +71,6 @@ void Session::run_loop() {
     case config::Clock::kAsap:
       return run_asap(loop_);
   }
-}
-
-/// In the thread of the commands.
-node::Answer Session::execute(const std::function<node::Answer()>& command) {
-  const auto before = executor_.scene();
-  node::Answer answer = command();
-  if (executor_.scene() != before) devices_.play(*executor_.scene());
-  snapshot_.change_shadow(loop_.runner().loaded_scene().shadow);
-  return answer;
-}
-
-void Session::publish_scene(const scene::Scene& scene, std::uint64_t version) {
-  snapshot_.change_scene(scene, version);
-  msg::SceneDescription description = describe(scene, start_.epoch, version);
-  if (!description_writer_.write(description))
-    spdlog::error("DDS did not take the description of scene '{}'", scene.name);
-  spdlog::info("scene '{}': {}, {} steps per second, {} per gesture", scene.name,
-               scene::size_text(scene), scene.step_rate_hz,
-               config::number_text(scene.step_rate_hz / scene.gesture_rate_hz));
 }
 
 }  // namespace cordis::sim

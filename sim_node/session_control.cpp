@@ -1,0 +1,66 @@
+// sim_node/session_control.cpp
+#include "sim_node/session_control.h"
+
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "sim_node/checks/stability_check.h"
+#include "sim_node/run/describe.h"
+#include "sim_node/scene/naming.h"
+#include "sim_node/sim_config.h"
+
+namespace cordis::sim {
+
+SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
+                               dds::Participant& participant, DeviceLink& devices,
+                               StatusSnapshot& snapshot, SceneLoop& loop)
+    : epoch_(start.epoch),
+      devices_(devices),
+      snapshot_(snapshot),
+      loop_(loop),
+      description_writer_(participant, dds::Topic::kDescription),
+      executor_(
+          loop.mailbox(), loop.simulation().shared_scene(), start.epoch,
+          [&launch = start.launch, is_forced](const std::string& path, config::Problems& problems) {
+            return load_next_scene(launch, path, is_forced, problems);
+          },
+          [is_forced](const scene::Scene& scene, config::Problems& problems) {
+            check_stability(scene, is_forced, problems);
+          },
+          [this](const scene::Scene& scene, std::uint64_t version) {
+            publish_scene(scene, version);
+          }),
+      commands_(
+          participant, msg::KIND_SIM_NODE,
+          [this](const msg::ControlCommand& command) {
+            return execute([&] { return executor_.execute(command); });
+          },
+          [this](const msg::ControlCommand& command) -> node::Work {
+            node::Work work = executor_.work_of(command);
+            if (!work) return {};
+            return [this, work = std::move(work)]() -> node::Finish {
+              return [this, finish = work()] { return execute(finish); };
+            };
+          }) {}
+
+/// In the thread of the commands.
+node::Answer SessionControl::execute(const std::function<node::Answer()>& command) {
+  const auto before = executor_.scene();
+  node::Answer answer = command();
+  if (executor_.scene() != before) devices_.play(*executor_.scene());
+  snapshot_.change_shadow(loop_.runner().loaded_scene().shadow);
+  return answer;
+}
+
+void SessionControl::publish_scene(const scene::Scene& scene, std::uint64_t version) {
+  snapshot_.change_scene(scene, version);
+  msg::SceneDescription description = describe(scene, epoch_, version);
+  if (!description_writer_.write(description))
+    spdlog::error("DDS did not take the description of scene '{}'", scene.name);
+  spdlog::info("scene '{}': {}, {} steps per second, {} per gesture", scene.name,
+               scene::size_text(scene), scene.step_rate_hz,
+               config::number_text(scene.step_rate_hz / scene.gesture_rate_hz));
+}
+
+}  // namespace cordis::sim
