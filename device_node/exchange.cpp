@@ -5,15 +5,6 @@
 #include <utility>
 
 namespace cordis::device {
-namespace {
-
-// Limits of a stall of the loop itself, safely below the watchdog of 20 ms that boards have.
-constexpr double kStall = 0.018;  // [s]
-// Two commands of a slow device are apart by one period and a half at most: one follows an answer at
-// the beginning of a period, the next waits for kAnswerShare of its own.
-constexpr double kStallPeriods = 1.9;
-
-}  // namespace
 
 Exchange::Exchange(const Setup& setup)
     : config_(setup.config),
@@ -23,14 +14,12 @@ Exchange::Exchange(const Setup& setup)
       channel_(setup.channel),
       meter_(setup.meter),
       clock_(setup.clock),
-      since_boot_(setup.since_boot != nullptr ? setup.since_boot : setup.clock),
+      stalls_(setup.since_boot != nullptr ? setup.since_boot : setup.clock, config_.layout.rate_hz),
       force_guard_(config_.force_guard),
       position_guard_(config_.position_guard),
-      late_(static_cast<std::size_t>(config_.limits.delay_periods) + 1),
-      first_sample_(setup.series.last_sample + 1),
-      begun_nsec_(clock_()),
-      stepped_nsec_(since_boot_()),
-      sensed_nsec_(begun_nsec_) {
+      sensed_nsec_(clock_()),
+      answers_({setup.series.epoch, setup.series.last_sample + 1, sensed_nsec_}, lockstep_,
+               config_.limits.delay_periods) {
   sample_.epoch = setup.series.epoch;
   sample_.sample = setup.series.last_sample;
   sample_.axis_count = static_cast<std::uint32_t>(config_.end_effector_map.coordinate_count());
@@ -85,76 +74,41 @@ void Exchange::leave() noexcept {
   leaving_age_s_ = std::max(age_s(), guard.watchdog_s - guard.limit_n / guard.slew_n_per_s);
 }
 
-/// True if an answer is well formed, answers this process, and is newer than the one in use.
-/// A new epoch of the scene is recognised by what it answers alone.
+/// Takes an answer into use. @return false when the filter leaves it
 bool Exchange::consider(const GestureMessage& answer) noexcept {
-  if (answer.answered_epoch == 0) return false;  // the scene has not received this device yet
-  if (answer.answered_epoch != sample_.epoch) {
-    other_answered_ = true;
-    other_answered_nsec_ = clock_();
-    return false;
-  }
-  const bool well_formed = answer.axis_count >= 1 && answer.axis_count <= kMaxAxes &&
-                           answer.answered_time_nsec >= begun_nsec_ &&
-                           answer.answered_time_nsec <= clock_();
-  const bool answers_us =
-      answer.answered_sample >= first_sample_ && answer.answered_sample <= sample_.sample;
-  // Between two samples of this device the scene may answer twice: the later answer counts.
-  const bool later = answer.epoch != used_.epoch || answer.sample > used_.sample;
-  const bool newer = !any_answer_ || answer.answered_sample > used_.answered_sample ||
-                     (answer.answered_sample == used_.answered_sample && later && !lockstep_);
-  if (!well_formed || !answers_us || !newer) {
-    meter_.count_dropped();
-    return false;
-  }
-  accept(answer);
-  return true;
-}
-
-void Exchange::accept(const GestureMessage& answer) noexcept {
-  if (!any_answer_ || answer.answered_sample > used_.answered_sample) {
+  const AnswerFilter::Outcome outcome = answers_.consider(answer, sample_.sample, clock_());
+  if (outcome == AnswerFilter::Outcome::kRefused) meter_.count_dropped();
+  if (outcome != AnswerFilter::Outcome::kTaken) return false;
+  if (answers_.newly_answered() > 0) {
     unapplied_ = true;
     unanswered_periods_ = 0;
-    meter_.record_answer(any_answer_ ? answer.answered_sample - used_.answered_sample : 1);
+    meter_.record_answer(answers_.newly_answered());
   }
-  any_answer_ = true;
-  unfelt_ = true;
-  used_ = answer;
-  late_[answer.answered_sample % late_.size()] = answer;
-  // The ring holds the delay and one more: the next to be replaced is the oldest.
-  applied_ = lockstep_ ? late_[(answer.answered_sample + 1) % late_.size()] : answer;
-  const bool finite =
-      role_ == Role::kMass
-          ? force_guard_.accept(config_.end_effector_map.axis_forces_of(applied_.value))
-          : position_guard_.accept(config_.end_effector_map.axes_of(applied_.value));
+  pending_ = true;
+  const AxisValues& value = answers_.in_use().value;
+  const bool finite = role_ == Role::kMass
+                          ? force_guard_.accept(config_.end_effector_map.axis_forces_of(value))
+                          : position_guard_.accept(config_.end_effector_map.axes_of(value));
   if (!finite) meter_.count_dropped();
+  return true;
 }
 
 double Exchange::age_s() const noexcept {
   if (lockstep_) {
-    return static_cast<double>(sample_.sample - used_.answered_sample) / config_.layout.rate_hz;
+    return static_cast<double>(sample_.sample - answers_.newest().answered_sample) /
+           config_.layout.rate_hz;
   }
-  return static_cast<double>(clock_() - used_.answered_time_nsec) * 1e-9;
+  return static_cast<double>(clock_() - answers_.newest().answered_time_nsec) * 1e-9;
 }
 
-bool Exchange::has_stalled() noexcept {
-  const std::int64_t now = since_boot_();
-  const auto since_s = static_cast<double>(now - std::exchange(stepped_nsec_, now)) * 1e-9;
-  return !lockstep_ && since_s > std::max(kStall, kStallPeriods / config_.layout.rate_hz);
-}
-
-/// Work of a hand that was carried, its force known before and after: f dx, exact for one that is a
-/// spring. At the end of the travel the scene goes on under the force of a hand that cannot: that
-/// counts as if it did, for it is not the age of the force that makes the difference.
-void Exchange::add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept {
+/// At the end of the travel the scene goes on under the force of a hand that cannot: that counts as
+/// if it did, for it is not the age of the force that makes the difference.
+void Exchange::add_work(const AxisValues& force_before_n) noexcept {
+  AxisValues where_m = commanded_;
   const AxisValues& beyond_m = position_guard_.beyond_m();
-  for (std::size_t a = 0; a < carried_m.size(); ++a) {
-    const double where_m = carried_m[a] + beyond_m[a];
-    const double before_m = std::exchange(carried_[a], where_m);
-    if (is_carried_)
-      sample_.work_j += 0.5 * (force_before_n[a] + sensed_[a]) * (where_m - before_m);
-  }
-  is_carried_ = true;
+  for (std::size_t a = 0; a < where_m.size(); ++a) where_m[a] += beyond_m[a];
+  work_.carry(where_m, force_before_n, sensed_);
+  sample_.work_j = work_.work_j();
 }
 
 /// The age of the newest answer as the guards count it; also counts the time since leave().
@@ -163,7 +117,8 @@ double Exchange::age_for_guard() noexcept {
     leaving_s_ += 1.0 / config_.layout.rate_hz;
     leaving_age_s_ += 1.0 / config_.layout.rate_hz;
   }
-  const double least = has_stalled() ? config_.force_guard.watchdog_s : leaving_age_s_;
+  const double least =
+      stalls_.has_stalled() && !lockstep_ ? config_.force_guard.watchdog_s : leaving_age_s_;
   return std::max(age_s(), least);
 }
 
@@ -179,15 +134,15 @@ const AxisValues& Exchange::command(double age_s, double share, double since_s) 
   commanded_ = role_ == Role::kMass ? force_guard_.tick(age_s, sensed_, share, since_s)
                                     : position_guard_.tick(age_s, since_s);
   is_commanded_ = true;
-  commanded_answer_ = applied_;
+  commanded_answer_ = answers_.in_use();
   driver_.record_age(age_s);
   return commanded_;
 }
 
 /// The newest answer is at the motors now.
 void Exchange::record_application() noexcept {
-  if (!std::exchange(unfelt_, false)) return;
-  const std::int64_t delay_nsec = clock_() - used_.answered_time_nsec;
+  if (!std::exchange(pending_, false)) return;
+  const std::int64_t delay_nsec = clock_() - answers_.newest().answered_time_nsec;
   if (!lockstep_) sample_.answer_delay_s = static_cast<double>(delay_nsec) * 1e-9;
   if (std::exchange(unapplied_, false)) meter_.record_latency(delay_nsec);
 }
@@ -196,7 +151,7 @@ void Exchange::record_application() noexcept {
 bool Exchange::sense() noexcept {
   const bool sensed = driver_.read(sensed_) && all_finite(sensed_, config_.layout.count);
   if (!sensed) sensed_ = last_sensed_;  // a hand does not jump
-  if (role_ == Role::kLiaison && is_commanded_) add_work(last_sensed_, commanded_);
+  if (role_ == Role::kLiaison && is_commanded_) add_work(last_sensed_);
   last_sensed_ = sensed_;
   return sensed;
 }
@@ -207,7 +162,8 @@ void Exchange::end_tick(double age_s) noexcept {
   meter_.record_energy(role_ == Role::kMass ? monitor.given_j() : -sample_.work_j,
                        role_ == Role::kMass && monitor.is_damping());
   if (!present_) force_guard_.let_go();  // a device that comes back is ramped up again
-  if (leaving_age_s_ <= 0.0) record_phase(any_answer_ && age_s < config_.force_guard.watchdog_s);
+  if (leaving_age_s_ <= 0.0)
+    record_phase(answers_.has_any() && age_s < config_.force_guard.watchdog_s);
 }
 
 void Exchange::step() noexcept {
@@ -274,7 +230,7 @@ void Exchange::apply() noexcept {
     ticked_age_s_ = age_s();
     commanded_ = role_ == Role::kMass ? force_guard_.tick_again(ticked_age_s_, share, since_s)
                                       : position_guard_.tick_again(ticked_age_s_, since_s);
-    commanded_answer_ = applied_;
+    commanded_answer_ = answers_.in_use();
     driver_.record_age(ticked_age_s_);
     written_ = driver_.change_command(commanded_, share) && written_;
   }
@@ -288,16 +244,15 @@ double Exchange::share_now() const noexcept {
 }
 
 void Exchange::record_phase(bool in_time) noexcept {
-  const double since_other_s = static_cast<double>(clock_() - other_answered_nsec_) * 1e-9;
-  const bool other = other_answered_ && since_other_s < config_.force_guard.watchdog_s;
+  const bool other = answers_.answers_another(config_.force_guard.watchdog_s, clock_());
   const double unanswered_s = static_cast<double>(++unanswered_periods_) / config_.layout.rate_hz;
   misses_scene_ =
-      present_ && any_answer_ && !other && unanswered_s > config_.force_guard.watchdog_s;
+      present_ && answers_.has_any() && !other && unanswered_s > config_.force_guard.watchdog_s;
   if (present_ && in_time) {
     meter_.set_phase(Phase::kRunning);
   } else if (present_ && other) {
     meter_.set_phase(Phase::kStandby);
-  } else if (!present_ || any_answer_) {
+  } else if (!present_ || answers_.has_any()) {
     meter_.set_phase(driver_.is_let_go() ? Phase::kDisconnected : Phase::kLost);
   }
 }

@@ -3,11 +3,13 @@
 
 #include <chrono>
 #include <cstdint>
-#include <vector>
 
+#include "device_node/answer_filter.h"
 #include "device_node/device_config.h"
 #include "device_node/gesture_channel.h"
+#include "device_node/hand_work.h"
 #include "device_node/loop_meter.h"
+#include "device_node/stall_watch.h"
 
 namespace cordis::device {
 
@@ -32,7 +34,7 @@ namespace cordis::device {
 /// its own (docs/kfb1.md).
 class Exchange {
  public:
-  using ClockFunction = std::int64_t (*)() noexcept;  ///< CLOCK_MONOTONIC [ns]
+  using ClockFunction = StallWatch::ClockFunction;  ///< CLOCK_MONOTONIC [ns]
 
   /// What identifies the samples of this process.
   struct Series {
@@ -69,9 +71,7 @@ class Exchange {
   void send_sample() noexcept;
   void repeat_sample() noexcept;  ///< the same message once more
 
-  /// Takes all answers that are there. Bad, foreign and outdated ones are counted as dropped, and
-  /// those that echo what this exchange has not sent: whoever takes part in the session may write
-  /// an answer, and no number of it is trusted.
+  /// Takes all answers that are there. What the filter refuses is counted as dropped.
   void receive() noexcept;
 
   /// Waits until the sample sent last is answered, or `silence` has passed since the newest
@@ -118,9 +118,7 @@ class Exchange {
   void begin_period() noexcept;
   void apply_answers_until(std::int64_t nsec) noexcept;
   void apply() noexcept;
-  bool is_answered() const noexcept {
-    return any_answer_ && used_.answered_sample == sample_.sample;
-  }
+  bool is_answered() const noexcept { return answers_.has_answered(sample_.sample); }
   double share_now() const noexcept;
   double age_for_guard() noexcept;
   double since_command_s() noexcept;
@@ -130,10 +128,8 @@ class Exchange {
   void end_tick(double age_s) noexcept;
 
   bool consider(const GestureMessage& answer) noexcept;
-  void accept(const GestureMessage& answer) noexcept;
   double age_s() const noexcept;
-  bool has_stalled() noexcept;
-  void add_work(const AxisValues& force_before_n, const AxisValues& carried_m) noexcept;
+  void add_work(const AxisValues& force_before_n) noexcept;
   void record_phase(bool in_time) noexcept;
 
   const DeviceConfig& config_;
@@ -143,37 +139,28 @@ class Exchange {
   GestureChannel& channel_;
   LoopMeter& meter_;
   ClockFunction clock_;
-  ClockFunction since_boot_;
+  StallWatch stalls_;
   ForceGuard force_guard_;
   PositionGuard position_guard_;
-  GestureMessage sample_;                 // the sample sent last
-  GestureMessage used_;                   // the newest good answer
-  GestureMessage applied_;                // that which goes to the motors: older with a delay
-  GestureMessage commanded_answer_;       // that which the newest command follows from
-  AxisValues commanded_{};                // the newest command
-  bool is_commanded_ = false;             // there has been any
-  bool written_ = true;                   // the driver has taken it
-  bool is_ticked_ = false;                // real time: the guard has ticked in this period
-  double ticked_age_s_ = 0.0;             // of the answer that it was given [s]
-  AxisValues sensed_{};                   // for the next sample
-  AxisValues last_sensed_{};              // all finite
-  std::vector<GestureMessage> late_;      // the last answers, by the sample they answer
-  AxisValues carried_{};                  // role liaison: where the hand is, or would be [m]
-  bool is_carried_ = false;               // it is anywhere yet
-  std::uint64_t first_sample_;            // of this exchange
-  std::int64_t begun_nsec_;               // when it began
-  std::int64_t other_answered_nsec_ = 0;  // when an answer to another node came
-  bool other_answered_ = false;           // ever
-  std::int64_t stepped_nsec_;             // when a command was found last
-  std::int64_t sensed_nsec_;              // when the sensors were read last
-  std::int64_t commanded_nsec_ = 0;       // when the motors got a command within a period
-  double leaving_s_ = 0.0;                // since leave()
-  double leaving_age_s_ = 0.0;            // that the last answer is given; 0: it has its own
-  bool present_ = false;                  // the driver has its device
-  bool any_answer_ = false;
+  GestureMessage sample_;            // the sample sent last
+  GestureMessage commanded_answer_;  // that which the newest command follows from
+  AxisValues commanded_{};           // the newest command
+  bool is_commanded_ = false;        // there has been any
+  bool written_ = true;              // the driver has taken it
+  bool is_ticked_ = false;           // real time: the guard has ticked in this period
+  double ticked_age_s_ = 0.0;        // of the answer that it was given [s]
+  AxisValues sensed_{};              // for the next sample
+  AxisValues last_sensed_{};         // all finite
+  std::int64_t sensed_nsec_;         // when the sensors were read last
+  AnswerFilter answers_;
+  HandWork work_;                    // role liaison
+  std::int64_t commanded_nsec_ = 0;  // when the motors got a command within a period
+  double leaving_s_ = 0.0;           // since leave()
+  double leaving_age_s_ = 0.0;       // that the last answer is given; 0: it has its own
+  bool present_ = false;             // the driver has its device
   bool misses_scene_ = false;
   std::int64_t unanswered_periods_ = 0;  // since an answer to a new sample
-  bool unfelt_ = false;                  // the newest answer has not been handed to the driver yet
+  bool pending_ = false;                 // the newest answer has not been handed to the driver yet
   bool unapplied_ = false;               // and it is the first to its sample
 };
 

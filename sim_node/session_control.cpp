@@ -5,6 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "node/config/number.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/run/describe.h"
 #include "sim_node/scene/naming.h"
