@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLiaison{states("      ^and: {}\n"), "'and' cannot be the name of a state", ""}));
 
 INSTANTIATE_TEST_SUITE_P(
-    Lints, BadLiaisons,
+    Diagnostics, BadLiaisons,
     testing::Values(
         BadLiaison{states(R"(      x: {exits: [{to: x, when: elongation_m > hold_m, rest: here}]}
       ^yy: {}

@@ -149,7 +149,7 @@ void Freezing::rouse(std::uint32_t mat) noexcept {
     --asleep_count_;
     movers_changed_ = true;
     // those beside it may need their whole forces in the next step
-    (roles_.has(mat, kMayStir) ? changed_ : woken_) = true;
+    (roles_.has(mat, kMayWake) ? changed_ : woken_) = true;
   }
   asleep_[mat] = 0;
   quiet_[mat] = 0;
@@ -201,8 +201,8 @@ void Freezing::choose_liaisons(WorldState& world, bool sets_changed) noexcept {
 void Freezing::choose_roles(WorldState& world) noexcept {
   for (std::uint32_t i = 0; i < asleep_.size(); ++i) {
     const bool is_mass = mass_over_dt2_[i] > 0.0;
-    const bool stirs = kept_awake_[i] || (is_mass && asleep_[i] < kLeftOut);
-    roles_.set(i, (is_mass ? kIsMass : 0U) | (stirs ? kActive | kMayStir | kWholeForce : 0U));
+    const bool is_active = kept_awake_[i] || (is_mass && asleep_[i] < kLeftOut);
+    roles_.set(i, (is_mass ? kIsMass : 0U) | (is_active ? kActive | kMayWake | kWholeForce : 0U));
   }
   for (const WakePropagation& pass : {kToThoseBeside, kToThoseBeyond}) {
     world.links.mark_neighbours(pass, roles_);

@@ -11,10 +11,10 @@ namespace cordis::engine {
 namespace {
 
 // Parts of a period: push, drift, push, ... ; the second half runs backward.
-constexpr double kPush1 = 0.0829844064174052;
-constexpr double kPush2 = 0.396309801498368;
-constexpr double kPush3 = -0.0390563049223486;
-constexpr double kPush4 = 1.0 - 2.0 * (kPush1 + kPush2 + kPush3);
+constexpr double kKick1 = 0.0829844064174052;
+constexpr double kKick2 = 0.396309801498368;
+constexpr double kKick3 = -0.0390563049223486;
+constexpr double kKick4 = 1.0 - 2.0 * (kKick1 + kKick2 + kKick3);
 constexpr double kDrift1 = 0.245298957184271;
 constexpr double kDrift2 = 0.604872665711080;
 constexpr double kDrift3 = 0.5 - (kDrift1 + kDrift2);
@@ -23,12 +23,12 @@ struct Stage {
   double kick;
   double drift;  // at the velocity after the push
 };
-constexpr std::array<Stage, 6> kStages{{{kPush1, kDrift1},
-                                        {kPush2, kDrift2},
-                                        {kPush3, kDrift3},
-                                        {kPush4, kDrift3},
-                                        {kPush3, kDrift2},
-                                        {kPush2, kDrift1}}};
+constexpr std::array<Stage, 6> kStages{{{kKick1, kDrift1},
+                                        {kKick2, kDrift2},
+                                        {kKick3, kDrift3},
+                                        {kKick4, kDrift3},
+                                        {kKick3, kDrift2},
+                                        {kKick2, kDrift1}}};
 
 }  // namespace
 
@@ -41,7 +41,7 @@ double symplectic4_trace(double stiffness) noexcept {
       moved -= stage.kick * stiffness * place;
       place += stage.drift * moved;
     }
-    moved -= kPush1 * stiffness * place;
+    moved -= kKick1 * stiffness * place;
     trace += displaced ? place : moved;
   }
   return trace;
@@ -74,7 +74,7 @@ Moved Symplectic4::step(WorldState& world) noexcept {
     add_forces(world);
   }
   world.outside.kick(mats);
-  mats.kick(world.kernel, kPush1, velocity_);
+  mats.kick(world.kernel, kKick1, velocity_);
   moved.energy.port_work = 2.0 * world.outside.release(mats);  // over the way from x(n)
   moved.non_finite_mats = mats.delay_by(world.kernel, velocity_);
   return moved;

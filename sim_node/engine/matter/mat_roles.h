@@ -13,16 +13,16 @@ inline constexpr unsigned kIsMass = 1;  ///< may have to move: not a fixed point
 inline constexpr unsigned kActive = 2;  ///< moves, or may begin to in this step
 inline constexpr unsigned kWholeForce = 4;  ///< each of its liaisons is computed
 inline constexpr unsigned kSomeForce = 8;   ///< some are, along with those of others
-inline constexpr unsigned kMayStir = 16;    ///< and so is each of those of its neighbours
+inline constexpr unsigned kMayWake = 16;    ///< and so is each of those of its neighbours
 
-/// Who passes what on to the masses beside it: those beside what stirs may wake, and so those
+/// What a mass passes on to the masses beside it: those beside an active mass may wake, and so those
 /// beside them need their whole forces.
 struct WakePropagation {
   unsigned from;
   unsigned to;
 };
-inline constexpr WakePropagation kToThoseBeside{kActive, kMayStir | kWholeForce};
-inline constexpr WakePropagation kToThoseBeyond{kMayStir, kWholeForce};
+inline constexpr WakePropagation kToThoseBeside{kActive, kMayWake | kWholeForce};
+inline constexpr WakePropagation kToThoseBeyond{kMayWake, kWholeForce};
 
 /// The roles of all MATs.
 class MatRoles {

@@ -150,7 +150,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     add(link.mat_a, link.mat_b, network, weights.stiffness * link.stiffness,
         weights.stiffness * std::min(link.start_force, 0.0), 0.0,
-        weights.stiffness * link.viscosity);  // a pull may fade before it turns anything
+        weights.stiffness * link.viscosity);  // a tension may fade before it turns anything
   }
   for (const engine::SetLiaison& set : network.sets) {
     add_set(network, set, weights.stiffness, weights.viscosity);

@@ -245,7 +245,7 @@ export function linkLine(node: NodeState): string {
 }
 
 function writeRow(row: HTMLElement, node: NodeState): void {
-  const device = `${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.passivity_ticks)} ticks braked`;
+  const device = `${joined(withUnit(node.port_energy_j, 'J'))} given to the hand, ${count(node.passivity_ticks)} passivity ticks`;
   row.dataset.state = node.state;
   const parts = node.kind === 'device_node' ? [node.text, device, linkLine(node)] : [node.text];
   row.title = [...parts, `on ${node.host}`].filter((part) => part !== '').join('; ');
