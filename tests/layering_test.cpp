@@ -147,6 +147,12 @@ const std::vector<std::vector<std::vector<std::string>>> kFloors = {
      {"sim_node/devices/"},
      {"sim_node/run/"},
      {"sim_node/"}},
+    {{"node/config/", "node/dds/"}, {"node/"}, {"node/machine/"}},
+    {{"device_node/axis.", "device_node/passivity_observer.", "device_node/force_guard."},
+     {"device_node/drivers/"},
+     {"device_node/"}},
+    {{"record_node/mcap/", "record_node/idl/"}, {"record_node/"}},
+    {{"viz_node/"}, {"viz_node/web/"}, {"viz_node/main."}},
 };
 
 /// The floor of a file; -1 when it belongs to none.
@@ -165,9 +171,10 @@ int floor_of(const std::vector<std::vector<std::string>>& floors, const std::str
 }
 
 TEST(Layering, NoFileIncludesAFloorAboveItsOwn) {
+  const std::vector<Include> includes = all_includes();
   for (const auto& floors : kFloors) {
     int checked = 0;
-    for (const Include& include : all_includes()) {
+    for (const Include& include : includes) {
       if (!include.quoted) continue;
       const int own = floor_of(floors, include.file);
       const int other = floor_of(floors, include.target);
