@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "idl/inputs.h"
+#include "idl/scene.h"
 #include "idl/topics.h"
 #include "node/config/name_hash.h"
 #include "node/config/yaml_reader.h"
