@@ -3,11 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <variant>
+#include <vector>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/modal_block.h"
+#include "sim_node/engine/integrators/stiff_friction.h"
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/start_tangent.h"
 
@@ -36,9 +41,21 @@ double limit_of_one_contact(const engine::NetworkDescription& network, const Lia
   return limit;
 }
 
+/// The first state link that `leapfrog` solves for its speed beside implicit dampers. It sees the
+/// speed of these, which knows how the forces change: at the root -1 its friction is not 0, adds to a
+/// spring where the dampers are light and takes from it where they are heavy. No limit is known then.
+std::optional<std::uint32_t> friction_beside_dampers(const engine::NetworkDescription& network) {
+  if (!engine::damps_implicitly(network) || !engine::solves_stiff_friction(network)) return {};
+  const std::vector<double> steps = engine::largest_extrapolated_steps(network);
+  const auto solved =
+      std::find_if(steps.begin(), steps.end(), [&](double step) { return network.step > step; });
+  return static_cast<std::uint32_t>(solved - steps.begin());
+}
+
 /// Step beyond which the tangent at the start, or one contact, diverges [s].
 double diverging_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   const auto limit_at = [&graph](const engine::NetworkDescription& varied) {
+    if (friction_beside_dampers(varied)) return std::numeric_limits<double>::infinity();
     return std::min(StartTangent(varied).diverging_step(), limit_of_one_contact(varied, graph));
   };
   return limit_of_all_steps(network, limit_at);
@@ -155,6 +172,11 @@ double Stability::margin() const noexcept {
 std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& network,
                                           const LiaisonGraph& graph) {
   if (graph.uncertainty) return graph.uncertainty;
+  if (const auto solved = friction_beside_dampers(network)) {
+    return Uncertainty{
+        LiaisonId{LiaisonKind::kStateLink, *solved},
+        "its friction is solved beside implicit dampers, for which no limit is known"};
+  }
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
   if (!contact || contact->stiffness <= kCertainContact) return {};
   return Uncertainty{contact->liaison, "each touch of it may gain energy, for its K' is above 1"};

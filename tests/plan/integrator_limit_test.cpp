@@ -46,6 +46,28 @@ TEST_P(EveryIntegrator, DivergesOnRandomNetworksWhereThePlanSays) {
   }
 }
 
+// m = 1 and dt = 1. Without the friction one mass is stable up to K' = 4 at Z' = 0, up to 5.4 at 5.
+TEST(IntegratorLimit, OfFrictionSolvedBesideDampersIsNotCertain) {
+  struct Case {
+    double stiffness;
+    double viscosity;
+    bool diverges;
+  };
+  for (const Case& one : {Case{3.0, 0.0, true}, Case{6.0, 5.0, false}}) {
+    NetworkDescription scene = oscillator(1.0, one.stiffness, one.viscosity, 1.0, 0.0, 1.0);
+    scene.integrator = IntegratorKind::kLeapfrog;
+    scene.mats.push_back(mass(1.0, Vec3(2.0, 0, 0)));  // has a heavy damper in both cases
+    scene.links.push_back({0, 2, 0.0, 1.0, 0.0});
+    scene.state_machines.push_back(state_machine(0.0));
+    scene.state_machines[0].states[0].viscosity = 10.0;
+    scene.state_links = {{0, 1, 0, 0.0}};
+    const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
+    EXPECT_TRUE(stability.uncertainty.has_value()) << one.stiffness;
+    EXPECT_FALSE(stability.diverges()) << one.stiffness;
+    EXPECT_EQ(largest_excursion(scene, 4000) > 1e3, one.diverges) << one.stiffness;
+  }
+}
+
 TEST(IntegratorLimit, OfModesIsWhatIsFastenedToThem) {
   NetworkDescription scene = string_in_space(20, 0.01, 4e-4);
   scene.dimension = 1;

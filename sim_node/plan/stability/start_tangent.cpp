@@ -8,6 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "sim_node/engine/integrators/integrator_limits.h"
+#include "sim_node/engine/integrators/stiff_friction.h"
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
@@ -114,7 +116,8 @@ bool acts(const engine::LinkState& state, const Tangent& tangent, double distanc
 StartTangent::StartTangent(const engine::NetworkDescription& network)
     : root_of_inverse_mass_(static_cast<Eigen::Index>(network.mats.size())),
       medium_viscosity_(network.medium_viscosity),
-      dimension_(network.dimension) {
+      dimension_(network.dimension),
+      has_limit_(!engine::damps_implicitly(network) || !engine::solves_stiff_friction(network)) {
   for (std::size_t i = 0; i < network.mats.size(); ++i) {
     const engine::Mat& mat = network.mats[i];
     root_of_inverse_mass_[static_cast<Eigen::Index>(i)] =
@@ -150,7 +153,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     add(link.mat_a, link.mat_b, network, weights.stiffness * link.stiffness,
         weights.stiffness * std::min(link.start_force, 0.0), 0.0,
-        weights.stiffness * link.viscosity);  // a tension may fade before it turns anything
+        weights.stiffness * link.viscosity);  // a pull may fade before it turns anything
   }
   for (const engine::SetLiaison& set : network.sets) {
     add_set(network, set, weights.stiffness, weights.viscosity);
@@ -243,7 +246,7 @@ int StartTangent::climb(Columns& x, double step, int max_iterations) const {
 
 double StartTangent::diverging_step() const {
   Columns x = random_direction(root_of_inverse_mass_, dimension_);
-  if (x.norm() == 0.0) return std::numeric_limits<double>::infinity();
+  if (x.norm() == 0.0 || !has_limit_) return std::numeric_limits<double>::infinity();
 
   // The step at which one direction diverges is not below the limit; going from direction to
   // direction, each time at that step, it comes down to it.

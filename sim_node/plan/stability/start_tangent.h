@@ -23,7 +23,8 @@ class StartTangent {
   /// Beyond this step [s] the network diverges: 4 M - dt^2 K - 2 dt Z then has a direction below 0,
   /// that is an eigenvalue of the scheme below -1. Comes down to the true limit: for up to some
   /// thousand links to within 1e-7 of it, for many as near as a tenth of a second of work allows.
-  /// Infinite where nothing pulls.
+  /// Infinite where nothing pulls, and where `leapfrog` solves friction beside implicit dampers, for
+  /// which no limit is known.
   double diverging_step() const;
 
  private:
@@ -55,6 +56,7 @@ class StartTangent {
   Eigen::RowVectorXd root_of_inverse_mass_;
   double medium_viscosity_;
   int dimension_;
+  bool has_limit_;
 };
 
 }  // namespace cordis::plan
