@@ -109,8 +109,9 @@ void Chronogram::draw(Canvas& canvas) {
   const bool is_overlay = options_.layout == ChronogramLayout::kOverlay;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const std::size_t cell = is_overlay ? 0 : i;
+    const std::size_t row = cell / columns_;
     const Rectangle area{first_.x + static_cast<double>(cell % columns_) * column_step_,
-                         first_.y + static_cast<double>(cell / columns_) * row_step_, first_.width,
+                         first_.y + static_cast<double>(row) * row_step_, first_.width,
                          first_.height};
     const double share =
         frames_.size() > 1 ? static_cast<double>(i) / static_cast<double>(frames_.size() - 1) : 1.0;

@@ -34,7 +34,7 @@ class Image {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// The bytes of a PNG file. @throws std::runtime_error when zlib refuses.
+/// The bytes of a PNG file. @throws std::runtime_error when libpng refuses.
 std::string png_of(const Image& image);
 
 }  // namespace cordis::viz

@@ -2,6 +2,7 @@
 #include "viz_node/render/palette.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
@@ -51,7 +52,7 @@ const Palette& palette_of(Theme theme) {
 
 Colour mix(const Colour& first, const Colour& second, double share) noexcept {
   const auto between = [share](std::uint8_t a, std::uint8_t b) {
-    return static_cast<std::uint8_t>(a + (b - a) * share + 0.5);
+    return static_cast<std::uint8_t>(std::lround(a + (b - a) * share));
   };
   return {between(first.red, second.red), between(first.green, second.green),
           between(first.blue, second.blue)};

@@ -41,8 +41,8 @@ Light light_on(const Normal& normal) noexcept {
   const float fill = 0.5f + 0.5f * normal.y;
   float shine = facing(normal, normalized(-0.3f, 0.5f, 0.9f));
   for (int i = 0; i < 5; ++i) shine *= shine;  // its 32nd power
-  return {static_cast<std::uint16_t>(256.0f * (0.38f + 0.18f * fill + 0.52f * key) + 0.5f),
-          static_cast<std::uint16_t>(255.0f * 0.22f * shine + 0.5f)};
+  return {static_cast<std::uint16_t>(std::lround(256.0f * (0.38f + 0.18f * fill + 0.52f * key))),
+          static_cast<std::uint16_t>(std::lround(255.0f * 0.22f * shine))};
 }
 
 LightTable make_lights() noexcept {
@@ -227,7 +227,7 @@ void PixelCanvas::end_view() {
 
 void PixelCanvas::blend(int x, int y, const Colour& colour, float share) noexcept {
   std::uint8_t* pixel = image_.pixel(x, y);
-  const int part = static_cast<int>(256.0f * share + 0.5f);
+  const int part = static_cast<int>(std::lround(256.0f * share));
   const auto mixed = [part](int below, int above) {
     return static_cast<std::uint8_t>(below + (((above - below) * part + 128) >> 8));
   };
