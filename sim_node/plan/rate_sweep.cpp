@@ -16,6 +16,14 @@ double round_below(double value) {
   return decade;
 }
 
+/// The smallest of 1, 2, 5, 10, 20, ... that is not below the value.
+double round_above(double value) {
+  const double below = round_below(value);
+  if (below >= value) return below;
+  const double digit = below / std::pow(10.0, std::floor(std::log10(below)));
+  return below * (digit > 1.5 && digit < 2.5 ? 2.5 : 2.0);
+}
+
 bool is_multiple(double value, double base) {
   constexpr double kRounding = 1e-9;
   const double times = value / base;
@@ -28,9 +36,14 @@ RateSweep make_rate_sweep(double limit_hz, const RateSweepOptions& options) {
   constexpr double kLowest = 0.35;  // of the limit, half of the lowest rate
   constexpr double kNoLimit = 0.1;  // of the scene's own rate, likewise
   double base = round_below(limit_hz > 0.0 ? kLowest * limit_hz : kNoLimit * options.own_hz);
+  // A run of few periods of the base has too few samples; begin higher, where that is still below the limit.
+  const double fewest = round_above(kFewestSamples / options.duration);
+  if (base < fewest && 2.0 * fewest <= limit_hz) base = fewest;
   const double lowest = 2.0 * base;
   for (int finer = 0; finer < 9 && !is_multiple(options.own_hz, base); ++finer) {
-    base = round_below(0.999 * base);
+    const double next = round_below(0.999 * base);
+    if (base >= fewest && next < fewest) break;
+    base = next;
   }
   const double highest = options.highest_factor * std::max(limit_hz, lowest);
   RateSweep sweep;

@@ -1,0 +1,49 @@
+// tests/plan/rate_sweep_test.cpp -- the rates of a lab run and the moments at which they are sampled.
+#include "sim_node/plan/rate_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace cordis::plan {
+namespace {
+
+TEST(RateSweep, SamplesAtMomentsThatAllRatesHave) {
+  std::mt19937 random(20261124);
+  std::uniform_real_distribution<double> decade(0.0, 5.0);
+  for (int round = 0; round < 2000; ++round) {
+    const double limit_hz = round % 5 == 0 ? 0.0 : std::pow(10.0, decade(random));
+    const RateSweepOptions options{.duration = std::pow(10.0, decade(random) - 4.0),
+                                   .own_hz = std::round(std::pow(10.0, 1.0 + decade(random)))};
+    const RateSweep sweep = make_rate_sweep(limit_hz, options);
+    ASSERT_FALSE(sweep.rates_hz.empty()) << limit_hz << " Hz, " << options.duration << " s";
+    EXPECT_TRUE(std::ranges::is_sorted(sweep.rates_hz));
+    EXPECT_GE(sweep.sampling.duration(), options.duration * (1.0 - 1e-9));
+    for (const double rate : sweep.rates_hz) {
+      const double steps = rate * sweep.sampling.period;
+      EXPECT_NEAR(steps, std::round(steps), 1e-6 * steps) << rate << " Hz, " << options.duration;
+      EXPECT_GE(steps, 0.999) << rate << " Hz, " << options.duration;
+    }
+    if (limit_hz > 0.0) {
+      EXPECT_LE(sweep.rates_hz.front(), 1.01 * limit_hz) << "begins above what diverges";
+    }
+  }
+}
+
+TEST(RateSweep, BeginsHigherWhereARunWouldHaveTooFewSamples) {
+  // 0.25 s of a scene that diverges below 133 Hz: 20 Hz, a third of that, gives 5 samples.
+  for (const double own_hz : {600.0, 1403.0}) {
+    const RateSweep sweep = make_rate_sweep(133.0, {.duration = 0.25, .own_hz = own_hz});
+    EXPECT_GE(sweep.sampling.count, kFewestSamples) << own_hz;
+    EXPECT_LE(sweep.rates_hz.front(), 133.0) << own_hz;
+  }
+
+  // No rate below the limit gives enough of them in a hundredth of a second.
+  EXPECT_LT(make_rate_sweep(133.0, {.duration = 0.01, .own_hz = 600.0}).sampling.count,
+            kFewestSamples);
+}
+
+}  // namespace
+}  // namespace cordis::plan
