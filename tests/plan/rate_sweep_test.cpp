@@ -1,4 +1,4 @@
-// tests/plan/rate_sweep_test.cpp -- the rates of a lab run and the moments at which they are sampled.
+// tests/plan/rate_sweep_test.cpp -- the rates of a lab run and when they are sampled
 #include "sim_node/plan/rate_sweep.h"
 
 #include <algorithm>
