@@ -186,7 +186,7 @@ void make_take_folder(const fs::path& take) {
 }
 
 std::string existing_take_text(const fs::path& wanted, const fs::path& free) {
-  return wanted.string() + " is there already: the take goes to " + free.string();
+  return wanted.string() + " exists already: the take goes to " + free.string();
 }
 
 fs::path take_path(const std::string& pattern, const std::string& session, const fs::path& base) {

@@ -45,7 +45,7 @@ std::filesystem::path free_take_path(const std::filesystem::path& wanted);
 /// Makes the folder of a take. @throws std::runtime_error when it cannot
 void make_take_folder(const std::filesystem::path& take);
 
-/// "FILE is there already: the take goes to FREE"
+/// "FILE exists already: the take goes to FREE"
 std::string existing_take_text(const std::filesystem::path& wanted,
                                const std::filesystem::path& free);
 

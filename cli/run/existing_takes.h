@@ -9,7 +9,7 @@
 
 namespace cordis::cli {
 
-/// One sentence for each recorder of the plan whose file is there already: where its take goes instead.
+/// For each recorder of the plan whose file exists already, a sentence that names the file of its take.
 std::vector<std::string> existing_takes(const config::Launch& launch, const RunPlan& plan);
 
 }  // namespace cordis::cli

@@ -47,7 +47,7 @@ class ReachTable {
   /// not been put or found for longest: a device that plays stays, however often others restart.
   void put(std::uint32_t device_id, std::uint64_t epoch, const DeviceReach& reach) noexcept;
 
-  /// The process of this epoch is there: it counts as found.
+  /// The process of this epoch is alive: its device counts as found.
   void keep(std::uint64_t epoch) const noexcept;
 
   /// True if the device has described its reach. Real time: no lock.

@@ -52,7 +52,7 @@ class RefusedDevices {
   bool receive(const msg::DeviceDescription& description,
                std::int64_t now_nsec = node::monotonic_nsec());
 
-  /// The process of this epoch is there, though it may send nothing, as on standby. In the thread of
+  /// The process of this epoch is alive, though it may send nothing, as on standby. In the thread of
   /// receive().
   void keep(std::uint64_t epoch, std::int64_t now_nsec = node::monotonic_nsec()) noexcept;
 

@@ -25,7 +25,7 @@ std::string table_of_delays(const std::vector<double>& delays_s);
 bool has_gnuplot();
 
 /// Draws table_of_delays() of each curve on a logarithmic scale, with gnuplot.
-/// @return whether the chart is there
+/// @return true if the chart was written
 bool draw_delays(const std::vector<DelayCurve>& curves, const std::string& svg);
 
 }  // namespace cordis::test

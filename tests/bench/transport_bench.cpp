@@ -75,7 +75,7 @@ struct Sample {
   double values[24] = {};
 };
 
-/// Without a key: data sharing refuses one.
+/// It has no key, for data sharing refuses messages with a key.
 class SampleType final : public fast::TopicDataType {
  public:
   SampleType() {

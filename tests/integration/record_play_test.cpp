@@ -304,7 +304,7 @@ TEST(RecordPlay, SaysWhereTheTakeGoesWhenItsNameIsTaken) {
   const std::string third = (folder / "take-3.mcap").string();
   for (const std::string& file : {second, third}) {
     const std::string said = record();
-    EXPECT_NE(said.find("cordis | " + take + " is there already: the take goes to " + file + "\n"),
+    EXPECT_NE(said.find("cordis | " + take + " exists already: the take goes to " + file + "\n"),
               std::string::npos)
         << said;
     EXPECT_NE(said.find("\nrecord: " + file + ", "), std::string::npos) << said;

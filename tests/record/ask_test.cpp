@@ -117,7 +117,7 @@ TEST_F(Ask, NamesTheLastTakeOfASessionThatHasEnded) {
     ChildProcess recorder({kAsked, "record", name_, "-o", take});
     ASSERT_TRUE(recorder.wait_for_output("records into " + file, kPatience));
     if (file != take) {
-      EXPECT_NE(recorder.output().find(take + " is there already: the take goes to " + file),
+      EXPECT_NE(recorder.output().find(take + " exists already: the take goes to " + file),
                 std::string::npos)
           << recorder.output();
     }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include "viz_node/render/number_text.h"
 #include "viz_node/render/text_shape.h"
 
 namespace cordis::viz {
@@ -38,12 +39,9 @@ Colour lit(const Colour& colour, const LightStop& stop) noexcept {
   return {one(colour.red), one(colour.green), one(colour.blue)};
 }
 
-/// At most two decimals, no more than it takes.
-std::string short_number(double value) {
-  std::string text = fmt::format("{:.2f}", value);
-  while (text.back() == '0') text.pop_back();
-  if (text.back() == '.') text.pop_back();
-  return text == "-0" ? "0" : text;
+/// A coordinate or a length [pixels].
+std::string place_text(double value) {
+  return short_text(value, 2);
 }
 
 std::string escaped(std::string_view words) {
@@ -70,14 +68,14 @@ std::string SvgCanvas::text() const {
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
       "{1}\" font-family=\"DejaVu Sans, Verdana, sans-serif\">\n",
-      short_number(width_), short_number(height_));
+      place_text(width_), place_text(height_));
   if (!lights_.empty() || !clips_.empty()) {
     text += "<defs>\n" + clips_;
     for (const auto& [hex, number] : lights_) {
       text += fmt::format("<radialGradient id=\"b{}\" fx=\"{}\" fy=\"{}\">", number,
-                          short_number(0.5 + 0.5 * kLampX), short_number(0.5 + 0.5 * kLampY));
+                          place_text(0.5 + 0.5 * kLampX), place_text(0.5 + 0.5 * kLampY));
       for (const LightStop& stop : kLightStops) {
-        text += fmt::format("<stop offset=\"{}\" stop-color=\"{}\"/>", short_number(stop.offset),
+        text += fmt::format("<stop offset=\"{}\" stop-color=\"{}\"/>", place_text(stop.offset),
                             hex_of(lit(colour_of(hex), stop)));
       }
       text += "</radialGradient>\n";
@@ -108,8 +106,8 @@ void SvgCanvas::begin_view(const Rectangle& area, const std::string& words) {
   close();
   clips_ += fmt::format(
       "<clipPath id=\"c{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
-      clip_count_, short_number(area.x), short_number(area.y), short_number(area.width),
-      short_number(area.height));
+      clip_count_, place_text(area.x), place_text(area.y), place_text(area.width),
+      place_text(area.height));
   body_ += fmt::format("<g clip-path=\"url(#c{})\"{}{}>\n", clip_count_++, words.empty() ? "" : " ",
                        words);
 }
@@ -122,8 +120,8 @@ void SvgCanvas::end_view() {
 void SvgCanvas::fill(const Rectangle& area, const Colour& colour) {
   close();
   body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n",
-                       short_number(area.x), short_number(area.y), short_number(area.width),
-                       short_number(area.height), hex_of(colour));
+                       place_text(area.x), place_text(area.y), place_text(area.width),
+                       place_text(area.height), hex_of(colour));
 }
 
 void SvgCanvas::ball(const Place& centre, double radius, const Colour& colour) {
@@ -133,8 +131,8 @@ void SvgCanvas::ball(const Place& centre, double radius, const Colour& colour) {
     paint = fmt::format("url(#b{})", found->second);
   }
   goes_on("<g fill=\"" + paint + "\">\n", "</g>\n");
-  body_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", short_number(centre.x),
-                       short_number(centre.y), short_number(radius));
+  body_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", place_text(centre.x),
+                       place_text(centre.y), place_text(radius));
 }
 
 void SvgCanvas::ring(const Place& centre, double radius, double width, const Colour& colour) {
@@ -142,16 +140,16 @@ void SvgCanvas::ring(const Place& centre, double radius, double width, const Col
   body_ += fmt::format(
       "<circle class=\"ring\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"{}\" "
       "stroke-width=\"{}\"/>\n",
-      short_number(centre.x), short_number(centre.y), short_number(radius), hex_of(colour),
-      short_number(width));
+      place_text(centre.x), place_text(centre.y), place_text(radius), hex_of(colour),
+      place_text(width));
 }
 
 void SvgCanvas::link(const Place& from, const Place& to, double width, const Colour& colour) {
   goes_on(fmt::format("<path stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" d=\"",
-                      hex_of(colour), short_number(width)),
+                      hex_of(colour), place_text(width)),
           "\"/>\n");
-  body_ += fmt::format("M{} {}L{} {}", short_number(from.x), short_number(from.y),
-                       short_number(to.x), short_number(to.y));
+  body_ += fmt::format("M{} {}L{} {}", place_text(from.x), place_text(from.y), place_text(to.x),
+                       place_text(to.y));
 }
 
 void SvgCanvas::line(const std::vector<Place>& places, double width, const Colour& colour) {
@@ -159,10 +157,10 @@ void SvgCanvas::line(const std::vector<Place>& places, double width, const Colou
   body_ += fmt::format(
       "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" "
       "points=\"",
-      hex_of(colour), short_number(width));
+      hex_of(colour), place_text(width));
   for (const Place& place : places)
     body_ +=
-        short_number(place.x) + "," + short_number(place.y) + (&place == &places.back() ? "" : " ");
+        place_text(place.x) + "," + place_text(place.y) + (&place == &places.back() ? "" : " ");
   body_ += "\"/>\n";
 }
 
@@ -172,7 +170,7 @@ void SvgCanvas::text(const Place& at, double size, Anchor anchor, const Colour& 
   const char* anchors[] = {"start", "middle", "end"};
   body_ += fmt::format(
       "<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{}\" text-anchor=\"{}\">{}</text>\n",
-      short_number(at.x), short_number(at.y), short_number(size), hex_of(colour),
+      place_text(at.x), place_text(at.y), place_text(size), hex_of(colour),
       anchors[static_cast<std::size_t>(anchor)], escaped(words));
 }
 
@@ -214,19 +212,18 @@ std::string deflated(const std::string& text) {
 
 std::string circle_of(const Place& centre, double radius) {
   const double near = kCircle * radius;
-  std::string path =
-      fmt::format("{} {} m ", short_number(centre.x + radius), short_number(centre.y));
+  std::string path = fmt::format("{} {} m ", place_text(centre.x + radius), place_text(centre.y));
   double x = 1.0;
   double y = 0.0;
   for (int quarter = 0; quarter < 4; ++quarter) {
     const double next_x = -y;
     const double next_y = x;
-    path += fmt::format("{} {} {} {} {} {} c ", short_number(centre.x + radius * x + near * next_x),
-                        short_number(centre.y + radius * y + near * next_y),
-                        short_number(centre.x + radius * next_x + near * x),
-                        short_number(centre.y + radius * next_y + near * y),
-                        short_number(centre.x + radius * next_x),
-                        short_number(centre.y + radius * next_y));
+    path +=
+        fmt::format("{} {} {} {} {} {} c ", place_text(centre.x + radius * x + near * next_x),
+                    place_text(centre.y + radius * y + near * next_y),
+                    place_text(centre.x + radius * next_x + near * x),
+                    place_text(centre.y + radius * next_y + near * y),
+                    place_text(centre.x + radius * next_x), place_text(centre.y + radius * next_y));
     x = next_x;
     y = next_y;
   }
@@ -239,7 +236,7 @@ PdfCanvas::PdfCanvas(double width, double height, const Colour& background)
     : width_(width), height_(height) {
   // The origin is the lower left corner of the page, and y goes up.
   body_ = fmt::format("{0} 0 0 -{0} 0 {1} cm 1 J 1 j\n", kPointsPerPixel,
-                      short_number(kPointsPerPixel * height));
+                      place_text(kPointsPerPixel * height));
   fill({0.0, 0.0, width, height}, background);
 }
 
@@ -252,7 +249,7 @@ std::string PdfCanvas::bytes() const {
       "<</Type/Catalog/Pages 2 0 R>>", "<</Type/Pages/Kids[3 0 R]/Count 1>>",
       fmt::format("<</Type/Page/Parent 2 0 R/MediaBox[0 0 {} {}]/Contents 4 0 R"
                   "/Resources<</Shading<<{}>>>>>>",
-                  short_number(kPointsPerPixel * width_), short_number(kPointsPerPixel * height_),
+                  place_text(kPointsPerPixel * width_), place_text(kPointsPerPixel * height_),
                   shadings),
       fmt::format("<</Length {}/Filter/FlateDecode>>\nstream\n", content.size()) + content +
           "\nendstream"};
@@ -269,8 +266,8 @@ std::string PdfCanvas::bytes() const {
 }
 
 void PdfCanvas::begin_view(const Rectangle& area, const std::string&) {
-  body_ += fmt::format("q {} {} {} {} re W n\n", short_number(area.x), short_number(area.y),
-                       short_number(area.width), short_number(area.height));
+  body_ += fmt::format("q {} {} {} {} re W n\n", place_text(area.x), place_text(area.y),
+                       place_text(area.width), place_text(area.height));
 }
 
 void PdfCanvas::end_view() {
@@ -278,8 +275,8 @@ void PdfCanvas::end_view() {
 }
 
 void PdfCanvas::fill(const Rectangle& area, const Colour& colour) {
-  body_ += fmt::format("{} rg {} {} {} {} re f\n", parts_of(colour), short_number(area.x),
-                       short_number(area.y), short_number(area.width), short_number(area.height));
+  body_ += fmt::format("{} rg {} {} {} {} re f\n", parts_of(colour), place_text(area.x),
+                       place_text(area.y), place_text(area.width), place_text(area.height));
 }
 
 void PdfCanvas::ball(const Place& centre, double radius, const Colour& colour) {
@@ -289,12 +286,12 @@ void PdfCanvas::ball(const Place& centre, double radius, const Colour& colour) {
   }
   const auto [found, is_new] =
       lights_.try_emplace(hex_of(colour), static_cast<int>(lights_.size()));
-  body_ += fmt::format("q {0} 0 0 {0} {1} {2} cm /B{3} sh Q\n", short_number(radius),
-                       short_number(centre.x), short_number(centre.y), found->second);
+  body_ += fmt::format("q {0} 0 0 {0} {1} {2} cm /B{3} sh Q\n", place_text(radius),
+                       place_text(centre.x), place_text(centre.y), found->second);
 }
 
 void PdfCanvas::ring(const Place& centre, double radius, double width, const Colour& colour) {
-  body_ += fmt::format("{} RG {} w {}S\n", parts_of(colour), short_number(width),
+  body_ += fmt::format("{} RG {} w {}S\n", parts_of(colour), place_text(width),
                        circle_of(centre, radius));
 }
 
@@ -303,9 +300,9 @@ void PdfCanvas::link(const Place& from, const Place& to, double width, const Col
 }
 
 void PdfCanvas::line(const std::vector<Place>& places, double width, const Colour& colour) {
-  body_ += fmt::format("{} RG {} w ", parts_of(colour), short_number(width));
+  body_ += fmt::format("{} RG {} w ", parts_of(colour), place_text(width));
   for (const Place& place : places) {
-    body_ += fmt::format("{} {} {} ", short_number(place.x), short_number(place.y),
+    body_ += fmt::format("{} {} {} ", place_text(place.x), place_text(place.y),
                          &place == places.data() ? "m" : "l");
   }
   body_ += "S\n";
@@ -326,13 +323,12 @@ void PdfCanvas::text(const Place& at, double size, Anchor anchor, const Colour& 
       const double control_x = left + step.control_x;
       const double control_y = at.y - step.control_y;
       const auto third = [](double end, double control) { return (end + 2.0 * control) / 3.0; };
-      body_ +=
-          fmt::format("{} {} {} {} {} {} c ", short_number(third(x, control_x)),
-                      short_number(third(y, control_y)), short_number(third(to_x, control_x)),
-                      short_number(third(to_y, control_y)), short_number(to_x), short_number(to_y));
+      body_ += fmt::format("{} {} {} {} {} {} c ", place_text(third(x, control_x)),
+                           place_text(third(y, control_y)), place_text(third(to_x, control_x)),
+                           place_text(third(to_y, control_y)), place_text(to_x), place_text(to_y));
     } else {
       const char* word = step.kind == OutlineStep::Kind::kMove ? "m" : "l";
-      body_ += fmt::format("{} {} {} ", short_number(to_x), short_number(to_y), word);
+      body_ += fmt::format("{} {} {} ", place_text(to_x), place_text(to_y), word);
     }
     x = to_x;
     y = to_y;
