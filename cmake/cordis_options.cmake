@@ -27,7 +27,7 @@ endif()
 if(CORDIS_SANITIZE)
   target_compile_options(cordis_options INTERFACE
     -fsanitize=${CORDIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    -Wno-maybe-uninitialized)  # g++ 12 gives false alarms about the standard library under sanitizers
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # g++ 12 has false alarms about the standard library
   target_link_options(cordis_options INTERFACE -fsanitize=${CORDIS_SANITIZE})
 endif()
 

@@ -6,6 +6,7 @@
 
 #include "record_node/mcap/byte_reader.h"
 #include "record_node/mcap/chunk_contents.h"
+#include "record_node/mcap/stored_summary.h"
 
 namespace cordis::mcap {
 namespace {
@@ -72,7 +73,10 @@ bool is_same(const MessageIndex& a, const MessageIndex& b) {
 
 class Scanner {
  public:
-  explicit Scanner(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  explicit Scanner(std::span<const std::byte> bytes) : bytes_(bytes) {
+    const std::string why = read_stored_summary(bytes, stored_);
+    if (!why.empty() && why != kIncompleteSummary) stored_ = {};
+  }
 
   Scan run();
 
@@ -92,6 +96,8 @@ class Scanner {
                        std::span<const std::byte> content);
   bool add_schema(std::span<const std::byte> content);
   bool add_channel(std::span<const std::byte> content);
+  bool knows_schema(std::uint16_t id);
+  bool knows_channel(std::uint16_t id);
   std::string read_chunk(const ChunkView& chunk, Statistics& statistics);
   void end_chunk();
   bool is_plausible(std::uint64_t offset) const;
@@ -103,6 +109,7 @@ class Scanner {
   }
 
   std::span<const std::byte> bytes_;
+  Summary stored_;  // of the file, where it is sound
   std::uint64_t position_ = 0;
   Scan scan_;
   ChunkContents contents_;
@@ -139,9 +146,28 @@ bool Scanner::add_schema(std::span<const std::byte> content) {
 
 bool Scanner::add_channel(std::span<const std::byte> content) {
   auto channel = parse_channel(content);
-  if (channel && channel->schema_id != 0 && !scan_.summary.schemas.contains(channel->schema_id))
-    return false;
+  if (channel && channel->schema_id != 0 && !knows_schema(channel->schema_id)) return false;
   return add_description(scan_.summary.channels, std::move(channel), content);
+}
+
+/// True if a schema was found. One whose record is damaged is that of the summary of the file.
+bool Scanner::knows_schema(std::uint16_t id) {
+  if (scan_.summary.schemas.contains(id)) return true;
+  const auto stored = stored_.schemas.find(id);
+  if (stored == stored_.schemas.end()) return false;
+  scan_.summary.schemas.insert(*stored);
+  return true;
+}
+
+/// As knows_schema(), of a channel.
+bool Scanner::knows_channel(std::uint16_t id) {
+  if (scan_.summary.channels.contains(id)) return true;
+  const auto stored = stored_.channels.find(id);
+  if (stored == stored_.channels.end()) return false;
+  const std::uint16_t schema = stored->second.schema_id;
+  if (schema != 0 && !knows_schema(schema)) return false;
+  scan_.summary.channels.insert(*stored);
+  return true;
 }
 
 /// Counts the messages of a chunk and collects their index. @return what is wrong
@@ -161,7 +187,7 @@ std::string Scanner::read_chunk(const ChunkView& chunk, Statistics& statistics) 
         if (!message) {
           problem = "a message in it is too short";
         } else if (last == nullptr || last->channel_id != message->channel_id) {
-          if (!scan_.summary.channels.contains(message->channel_id))
+          if (!knows_channel(message->channel_id))
             problem =
                 "channel " + std::to_string(message->channel_id) + " of a message is not known";
           last = &entries_[message->channel_id];
@@ -264,7 +290,7 @@ Scanner::Next Scanner::visit_attachment(const Record& record) {
 
 Scanner::Next Scanner::visit_message(const Record& record) {
   const auto message = parse_message(record.content);
-  if (!message || !scan_.summary.channels.contains(message->channel_id)) return Next::kDamaged;
+  if (!message || !knows_channel(message->channel_id)) return Next::kDamaged;
   scan_.loose.push_back({message->log_time_nsec, position_});
   count(scan_.summary.statistics, *message);
   return Next::kGoOn;

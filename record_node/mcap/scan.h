@@ -27,7 +27,7 @@ struct MissingIndex {
   std::map<std::uint16_t, MessageIndex> entries;
 };
 
-/// What a file holds, found without its summary.
+/// What a file holds, found by reading all of it.
 struct Scan {
   Summary summary;                    ///< as it would have to be
   std::vector<MissingIndex> missing;  ///< of chunks
@@ -45,7 +45,8 @@ struct Scan {
 /// True if the bytes begin as a file of MCAP does; one wrong byte is accepted.
 bool is_mcap(std::span<const std::byte> bytes) noexcept;
 
-/// Reads every record and unpacks every chunk. Chunks whose CRC does not fit are damages.
+/// Reads every record and unpacks every chunk. Chunks whose CRC does not fit are damages. A channel
+/// or schema whose record is damaged is taken from the summary of the file, where that is sound.
 /// Precondition: is_mcap().
 Scan scan(std::span<const std::byte> bytes);
 

@@ -2,6 +2,7 @@
 #include "record_node/mcap/stored_summary.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -47,11 +48,25 @@ bool read_record(const Record& record, Summary& summary) {
   }
 }
 
-/// True if the summary says where all its messages are.
+/// How many messages the indexes of the chunks list at most; nothing when a chunk has no index.
+std::optional<std::uint64_t> indexed_count(const std::vector<ChunkIndex>& chunks) {
+  constexpr std::uint64_t kHead = kRecordHead + 2 + 4;  // of the index of one channel
+  std::uint64_t count = 0;
+  for (const ChunkIndex& chunk : chunks) {
+    const std::uint64_t heads = kHead * chunk.message_index_offsets.size();
+    if (heads == 0 || chunk.message_index_length < heads) return std::nullopt;
+    count += (chunk.message_index_length - heads) / sizeof(MessageEntry);
+  }
+  return count;
+}
+
+/// True if the summary says where all its messages are. None may stand outside the chunks.
 bool is_complete(const Summary& summary) {
   const Statistics& statistics = summary.statistics;
   std::set<std::uint64_t> offsets;
   for (const ChunkIndex& chunk : summary.chunks) offsets.insert(chunk.offset);
+  const auto indexed = indexed_count(summary.chunks);
+  if (indexed && *indexed < statistics.message_count) return false;
   return offsets.size() == summary.chunks.size() &&
          statistics.chunk_count == summary.chunks.size() &&
          (statistics.message_count == 0 || !summary.chunks.empty()) &&
@@ -88,7 +103,7 @@ std::string read_stored_summary(std::span<const std::byte> file, Summary& summar
     return is_readable;
   });
   if (!is_whole || !is_readable) return "its summary is damaged";
-  return is_complete(summary) ? "" : "its summary is incomplete";
+  return is_complete(summary) ? "" : kIncompleteSummary;
 }
 
 }  // namespace cordis::mcap

@@ -12,6 +12,9 @@ namespace cordis::mcap {
 /// What read_stored_summary() says of a file that was made without one.
 inline constexpr const char* kNoSummary = "it has no summary";
 
+/// What it says of one that does not say where all messages are. What it describes is sound.
+inline constexpr const char* kIncompleteSummary = "its summary is incomplete";
+
 /// Reads the summary at the end of a file. @return why there is none that can be used; empty: read
 std::string read_stored_summary(std::span<const std::byte> file, Summary& summary);
 
