@@ -163,6 +163,7 @@ Vec3 World::link_force(std::uint32_t mat) const noexcept {
 const Columns& World::positions() const noexcept {
   const FloatMode mode;
   state_->scheme->show_all(*state_);
+  state_->mats.update_columns();
   return state_->positions;
 }
 

@@ -28,7 +28,7 @@ function processOf(launcher, name) {
 
 /** Waits until the page draws, every node runs, and the scene and the device have done more than before. */
 async function goesOn(page) {
-  const before = (await viz(page, 'lastFrame')).step;
+  const before = (await until('the page has a frame', () => viz(page, 'lastFrame'))).step;
   await drawn(page, 5);
   await banner(page, '');
   await until('every node runs', async () => {

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "sim_node/engine/links/link_runs.h"
+
 namespace cordis::engine {
 namespace {
 
@@ -28,15 +30,15 @@ VectorWidth require(VectorWidth width) {
 }
 
 /// Linear links, less the ones that `modal` takes as modes.
-SpringDamperArray stepped_links(const NetworkDescription& network) {
+SpringDamperArray stepped_links(const NetworkDescription& network, const MatLayout& layout) {
   constexpr auto kAlong = SpringDamperArray::Kind::kAlong;
-  if (network.integrator != IntegratorKind::kModal) return {network, kAlong};
+  if (network.integrator != IntegratorKind::kModal) return {network, kAlong, layout};
   NetworkDescription stepped = network;
   std::erase_if(stepped.links, [&network](const Link& link) {
     return network.mats[link.mat_a].kind != MatKind::kPort &&
            network.mats[link.mat_b].kind != MatKind::kPort;
   });
-  return {stepped, kAlong};
+  return {stepped, kAlong, layout};
 }
 
 /// The state machines of a snapshot: those of the network unless one has been replaced.
@@ -64,10 +66,10 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       width(require(width_of_step)),
       kernel(step_kernel(width)),
       state_machines(state_kernel(width)),
-      mats(description()),
+      mats(description(), layout_of(description())),
       positions(mats.position()),
-      links(stepped_links(description())),
-      vector_springs(description(), SpringDamperArray::Kind::kVectorSpring),
+      links(stepped_links(description(), mats.layout())),
+      vector_springs(description(), SpringDamperArray::Kind::kVectorSpring, mats.layout()),
       table(make_table(description().state_machines)),
       state_links(description(), table),
       maxwell_links(description()),

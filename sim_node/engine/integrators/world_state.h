@@ -107,7 +107,7 @@ struct WorldState {
   const StepKernel& kernel;
   const StateKernel& state_machines;
   MatArray mats;
-  Columns positions;  // of mats
+  Columns positions;  // of mats, as of the last update_columns()
   SpringDamperArray links;
   SpringDamperArray vector_springs;
   StateTable table;

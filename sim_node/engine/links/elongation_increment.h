@@ -13,11 +13,12 @@ namespace cordis::engine {
 /// axis of the columns alone [m].
 inline double half_elongation_increment(const MatArray& mats, std::uint32_t column_a,
                                         std::uint32_t column_b, bool is_1d) noexcept {
-  const std::uint32_t a = column_a / 4;
-  const std::uint32_t b = column_b / 4;
+  const MatLayout& layout = mats.layout();
+  const std::uint32_t a = layout.mat_of(column_a);
+  const std::uint32_t b = layout.mat_of(column_b);
   const Vec3 before = mats.delayed_at_rest(b) - mats.delayed_at_rest(a);
   const Vec3 moved = mats.position(b) - mats.position(a) - before;
-  return 0.5 * (is_1d ? moved[column_a % 4] : before.dot(moved));
+  return 0.5 * (is_1d ? moved[layout.axis_of(column_a)] : before.dot(moved));
 }
 
 }  // namespace cordis::engine

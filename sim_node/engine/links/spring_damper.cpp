@@ -2,7 +2,9 @@
 #include "sim_node/engine/links/spring_damper.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/links/elongation_increment.h"
 
 namespace cordis::engine {
@@ -18,40 +20,82 @@ std::size_t axes_of(Kind kind, const NetworkDescription& description) {
   return kind == Kind::kVectorSpring ? static_cast<std::size_t>(description.dimension) : 1;
 }
 
-std::size_t row_count(Kind kind, const NetworkDescription& description) {
-  const auto links =
-      std::count_if(description.links.begin(), description.links.end(),
-                    [&](const Link& link) { return is_of(kind, description, link); });
-  return static_cast<std::size_t>(links) * axes_of(kind, description);
+std::vector<Link> links_of(Kind kind, const NetworkDescription& description) {
+  std::vector<Link> links;
+  for (const Link& link : description.links) {
+    if (!is_of(kind, description, link)) continue;
+    links.insert(links.end(), axes_of(kind, description), link);
+  }
+  return links;
 }
 
 }  // namespace
 
-// A row of padding joins a MAT to itself without stiffness or viscosity: its force is 0.
-SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind)
-    : is_1d_(description.dimension == 1 || kind == Kind::kVectorSpring),
-      column_a_(padded(row_count(kind, description), kLinkBatch), 0U),
-      column_b_(column_a_.size(), 0U),
-      stiffness_(column_a_.size(), 0.0),
-      viscosity_over_dt_(column_a_.size(), 0.0),
-      rest_length_(column_a_.size(), 0.0),
-      viscous_factor_(column_a_.size(), 0.0),
-      elastic_factor_(is_1d_ ? 0 : column_a_.size(), 0.0),
-      active_(column_a_.size(), kLinkBatch) {
-  std::size_t l = 0;
-  for (const Link& link : description.links) {
-    if (!is_of(kind, description, link)) continue;
-    for (std::uint32_t axis = 0; axis < axes_of(kind, description); ++axis, ++l) {
-      column_a_[l] = 4 * link.mat_a + axis;
-      column_b_[l] = 4 * link.mat_b + axis;
-      stiffness_[l] = link.stiffness;
-      viscosity_over_dt_[l] = link.viscosity / description.step;
-      rest_length_[l] = link.rest_length;
-    }
-    viscous_ = viscous_ || link.viscosity > 0.0;
+SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind,
+                                     const MatLayout& layout)
+    : layout_(layout),
+      dimension_(description.dimension),
+      is_1d_(description.dimension == 1 || kind == Kind::kVectorSpring),
+      active_(0, kLinkBatch) {
+  const std::vector<Link> links = links_of(kind, description);
+  const bool by_axis = layout.is_by_axis();
+  LinkArrangement arrangement = arrange_links(links, by_axis && kind == Kind::kAlong);
+  const std::size_t row_count = arrangement.link_of_row.size();
+  for (auto* columns : {&column_a_, &column_b_}) columns->assign(row_count, 0U);
+  for (auto* values : {&stiffness_, &viscosity_over_dt_, &rest_length_, &viscous_factor_}) {
+    values->assign(row_count, 0.0);
   }
-  for (; l < column_a_.size(); ++l) {
-    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
+  if (!is_1d_) elastic_factor_.assign(row_count, 0.0);
+
+  const std::size_t axes = axes_of(kind, description);
+  for (std::size_t row = 0; row < row_count; ++row) {
+    const std::uint32_t l = arrangement.link_of_row[row];
+    if (l == LinkArrangement::kEmpty) {
+      pad_row(row, description.mats.size());
+    } else {
+      fill_row(row, links[l], static_cast<std::uint32_t>(l % axes), description.step);
+    }
+  }
+  active_ = ActiveLinks(row_count, kLinkBatch);
+  if (!by_axis) return;
+  find_equal_parameters(arrangement);
+  runs_ = std::move(arrangement.runs);
+  used_rows_ = std::move(arrangement.used_rows);
+}
+
+void SpringDamperArray::fill_row(std::size_t row, const Link& link, std::uint32_t axis,
+                                 double step) noexcept {
+  column_a_[row] = static_cast<std::uint32_t>(layout_.offset(link.mat_a, axis));
+  column_b_[row] = static_cast<std::uint32_t>(layout_.offset(link.mat_b, axis));
+  stiffness_[row] = link.stiffness;
+  viscosity_over_dt_[row] = link.viscosity / step;
+  rest_length_[row] = link.rest_length;
+  viscous_ = viscous_ || link.viscosity > 0.0;
+}
+
+/// A row of padding joins a MAT to itself without stiffness or viscosity: its force is 0.
+void SpringDamperArray::pad_row(std::size_t row, std::size_t mat_count) noexcept {
+  column_a_[row] = column_b_[row] =
+      static_cast<std::uint32_t>(layout_.offset(mat_of_padding(row, mat_count)));
+}
+
+void SpringDamperArray::find_equal_parameters(const LinkArrangement& arrangement) {
+  for (const LinkRun& run : arrangement.runs) {
+    equal_.push_back(kNoneEqual);
+    if (run.is_gathered) continue;
+    bool are_equal = true;
+    const std::size_t first = run.first_row;  // never empty
+    for (std::size_t row = first; row < first + run.row_count; ++row) {
+      if (arrangement.link_of_row[row] == LinkArrangement::kEmpty) continue;
+      are_equal = are_equal && stiffness_[row] == stiffness_[first] &&
+                  viscosity_over_dt_[row] == viscosity_over_dt_[first] &&
+                  rest_length_[row] == rest_length_[first];
+    }
+    if (!are_equal) continue;
+    equal_.back() = equal_parameters_.size();
+    for (const auto* values : {&stiffness_, &viscosity_over_dt_, &rest_length_}) {
+      equal_parameters_.insert(equal_parameters_.end(), kLinkBatch, (*values)[first]);
+    }
   }
 }
 
@@ -67,16 +111,62 @@ LinkRows SpringDamperArray::rows(const ActiveLinks::Run& run) noexcept {
           is_1d_ ? nullptr : elastic_factor_.data() + first};
 }
 
+RunRows SpringDamperArray::rows(std::size_t run) noexcept {
+  const std::size_t first = runs_[run].first_row;
+  RunRows rows;
+  rows.count = runs_[run].row_count;
+  rows.first_a = runs_[run].first_a;
+  rows.first_b = runs_[run].first_b;
+  rows.used_rows = used_rows_.data() + first / kLinkBatch;
+  rows.viscous_factor = viscous_factor_.data() + first;
+  rows.elastic_factor = is_1d_ ? nullptr : elastic_factor_.data() + first;
+  if (equal_[run] == kNoneEqual) {
+    rows.stiffness = stiffness_.data() + first;
+    rows.viscosity_over_dt = viscosity_over_dt_.data() + first;
+    rows.rest_length = rest_length_.data() + first;
+    rows.parameter_step = kLinkBatch;
+  } else {
+    rows.stiffness = equal_parameters_.data() + equal_[run];
+    rows.viscosity_over_dt = rows.stiffness + kLinkBatch;
+    rows.rest_length = rows.viscosity_over_dt + kLinkBatch;
+  }
+  return rows;
+}
+
 StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces,
                                   const ForceColumns& columns) noexcept {
   if (column_a_.empty()) return {};
+  CORDIS_ASSERT(!layout_.is_by_axis());
   LinkWork work;
   for (const ActiveLinks::Run& run : active_.runs()) add_link_forces(rows(run), columns, work);
   return half_of(work);
 }
 
+StepEnergy SpringDamperArray::add_by_axis(const StepKernel& kernel,
+                                          const ForceColumns& rows_of_mats) noexcept {
+  const AddLinkForces gathered_1d = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
+  const AddLinkForces gathered_nd =
+      viscous_ ? kernel.gathered_spring_dampers_by_axis : kernel.gathered_springs_by_axis;
+  const AddLinkForces gathered = is_1d_ ? gathered_1d : gathered_nd;
+  const RunLoops& loops = kernel.runs[dimension_ - 1];
+  const AddRunForces chained = viscous_ ? loops.chained_spring_dampers : loops.chained_springs;
+  const AddRunForces along = viscous_ ? loops.spring_dampers : loops.springs;
+
+  LinkWork work;
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    const LinkRun& run = runs_[i];
+    if (run.is_gathered) {
+      gathered(rows(ActiveLinks::Run{run.first_row, run.row_count}), rows_of_mats, work);
+    } else {
+      (run.first_b == run.first_a + 1 ? chained : along)(rows(i), rows_of_mats, work);
+    }
+  }
+  return half_of(work);
+}
+
 StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel,
                                          const ForceColumns& columns) noexcept {
+  if (layout_.is_by_axis()) return add_by_axis(kernel, columns);
   const AddLinkForces forces_1d = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
   const AddLinkForces forces_nd = viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
   return add(is_1d_ ? forces_1d : forces_nd, columns);
@@ -116,9 +206,9 @@ StepEnergy SpringDamperArray::work_since_last_call(const MatArray& mats) const n
 double SpringDamperArray::potential_energy(const MatArray& mats) const noexcept {
   double sum = 0.0;
   for (std::size_t l = 0; l < column_a_.size(); ++l) {
-    const Vec3 along =
-        mats.position_of_forces(column_b_[l] / 4) - mats.position_of_forces(column_a_[l] / 4);
-    const double distance = is_1d_ ? along[column_a_[l] % 4] : along.norm();
+    const Vec3 along = mats.position_of_forces(layout_.mat_of(column_b_[l])) -
+                       mats.position_of_forces(layout_.mat_of(column_a_[l]));
+    const double distance = is_1d_ ? along[layout_.axis_of(column_a_[l])] : along.norm();
     const double elongation = distance - rest_length_[l];
     sum += stiffness_[l] * elongation * elongation;
   }
@@ -131,7 +221,7 @@ void SpringDamperArray::start() noexcept {
 
 void SpringDamperArray::drop_viscosity() noexcept {
   std::fill(viscosity_over_dt_.begin(), viscosity_over_dt_.end(), 0.0);
-  viscous_ = false;
+  viscous_ = false;  // so that none of a run is read
 }
 
 void SpringDamperArray::serialize(Archive& archive) {

@@ -7,6 +7,7 @@
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/links/link_runs.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
@@ -25,9 +26,10 @@ class SpringDamperArray {
     kAlong,        ///< all links in 1 dimension, those that are not isotropic in 2 and 3
     kVectorSpring  ///< the others
   };
-  SpringDamperArray(const NetworkDescription& description, Kind kind);
+  SpringDamperArray(const NetworkDescription& description, Kind kind, const MatLayout& layout);
 
-  /// Adds the force of every link to its two MATs, in link order.
+  /// Adds the force of every link to its two MATs, in link order. Where the MATs are stored by axis, the
+  /// links of a run are added without looking up their ends, with the same bits.
   /// @return the work [J] that went into the links with the forces of the last call, from then to
   ///         now, and with these, from the last call to now; half of each, as a force f(n) does in
   ///         this scheme the work f(n) . (x(n+1) - x(n-1)) / 2. In line without that of the
@@ -37,6 +39,7 @@ class SpringDamperArray {
 
   /// Adds the forces for an account at full steps: only the energy [J] that the viscous forces
   /// take in a period at the velocity (x - delayed) / dt is returned, and nothing remembered.
+  /// Precondition: the arrays are stored by MAT.
   StepEnergy add_forces_at_full_step(const StepKernel& kernel,
                                      const ForceColumns& columns) noexcept;
 
@@ -66,15 +69,28 @@ class SpringDamperArray {
   void serialize(Archive& archive);
 
  private:
-  LinkRows rows(const ActiveLinks::Run& run) noexcept;
-  StepEnergy add(AddLinkForces add_link_forces, const ForceColumns& columns) noexcept;
+  static constexpr std::size_t kNoneEqual = ~std::size_t{0};
 
-  bool is_1d_;                             // 1 dimension, or vector springs
-  bool viscous_ = false;                   // a link has viscosity
-  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index, + axis of a vector spring
+  void fill_row(std::size_t row, const Link& link, std::uint32_t axis, double step) noexcept;
+  void pad_row(std::size_t row, std::size_t mat_count) noexcept;
+  void find_equal_parameters(const LinkArrangement& arrangement);
+  LinkRows rows(const ActiveLinks::Run& run) noexcept;
+  RunRows rows(std::size_t run) noexcept;
+  StepEnergy add(AddLinkForces add_link_forces, const ForceColumns& columns) noexcept;
+  StepEnergy add_by_axis(const StepKernel& kernel, const ForceColumns& rows) noexcept;
+
+  MatLayout layout_;
+  int dimension_;
+  bool is_1d_;                              // 1 dimension, or vector springs
+  bool viscous_ = false;                    // a link has viscosity
+  std::vector<LinkRun> runs_;               // by axis: all rows; else none
+  std::vector<std::uint8_t> used_rows_;     // by axis: as of LinkArrangement
+  std::vector<std::size_t> equal_;          // by run: where its parameters begin, or kNoneEqual
+  AlignedVector<double> equal_parameters_;  // of runs: 8 times K, 8 times Z / dt, 8 times rest
   AlignedVector<std::uint32_t>
-      column_b_;                     // all arrays: one per link, padded to a multiple of kLinkBatch
-  AlignedVector<double> stiffness_;  // K [N/m]
+      column_a_;  // offset by the MatLayout, of the axis of a vector spring
+  AlignedVector<std::uint32_t> column_b_;    // all arrays: one per row, a multiple of kLinkBatch
+  AlignedVector<double> stiffness_;          // K [N/m]
   AlignedVector<double> viscosity_over_dt_;  // Z / dt [N/m]
   AlignedVector<double> rest_length_;        // [m]
   AlignedVector<double> viscous_factor_;     // [N/m]; in line the viscous tension itself [N]

@@ -3,33 +3,32 @@
 
 #include <algorithm>
 
+#include "sim_node/engine/core/assert.h"
+
 namespace cordis::engine {
-namespace {
 
-void set_column(AlignedVector<double>& columns, std::size_t mat, const Vec3& value) noexcept {
-  std::copy_n(value.data(), 3, columns.data() + 4 * mat);
-}
-
-}  // namespace
-
-MatArray::MatArray(const NetworkDescription& description)
-    : position_(4 * description.mats.size(), 0.0),
+MatArray::MatArray(const NetworkDescription& description, const MatLayout& layout)
+    : layout_(layout),
+      dimension_(static_cast<std::size_t>(description.dimension)),
+      position_(layout.value_count(description.mats.size()), 0.0),
       delayed_(position_.size(), 0.0),
       force_(position_.size(), 0.0),
       moved_(description.integrator == IntegratorKind::kCordis ? position_.size() : 0, 0.0),
+      columns_(layout.is_by_axis() ? 4 * description.mats.size() : 0, 0.0),
       dt2_over_mass_(description.mats.size(), 0.0),
       velocity_retention_(description.mats.size(), 1.0),
       dt_(description.step),
       weight_step_(description.gravity * description.step * description.step),
       medium_viscosity_over_dt_(description.medium_viscosity / description.step) {
+  CORDIS_ASSERT(!layout.is_by_axis() || description.integrator == IntegratorKind::kCordis);
   const double dt = description.step;
 
   std::vector<Range> masses;
   for (std::size_t i = 0; i < description.mats.size(); ++i) {
     const Mat& mat = description.mats[i];
-    set_column(position_, i, mat.position);
-    set_column(delayed_, i, mat.position - dt * mat.velocity);
-    if (!moved_.empty()) set_column(moved_, i, dt * mat.velocity);
+    set(position_, i, mat.position);
+    set(delayed_, i, mat.position - dt * mat.velocity);
+    if (!moved_.empty()) set(moved_, i, dt * mat.velocity);
     if (mat.kind == MatKind::kPort) ports_.push_back(static_cast<std::uint32_t>(i));
     mass_.push_back(mat.kind == MatKind::kMass ? mat.mass : 0.0);
     if (mat.kind != MatKind::kMass) continue;
@@ -56,8 +55,8 @@ void MatArray::start() noexcept {
       const Vec3 before = moved(mat);  // v0 dt
       const Vec3 pushed =              // a0 dt^2
           kick_at_half_step(mat) - (1.0 - velocity_retention_[i]) * before;
-      set_column(delayed_, i, position(mat) - (before - 0.5 * pushed));
-      if (!moved_.empty()) set_column(moved_, i, before - 0.5 * pushed);
+      set(delayed_, i, position(mat) - (before - 0.5 * pushed));
+      if (!moved_.empty()) set(moved_, i, before - 0.5 * pushed);
     }
   }
   clear_forces();
@@ -80,11 +79,17 @@ Vec3 MatArray::next_velocity_increment(std::uint32_t mat,
 }
 
 void MatArray::clear_forces() noexcept {
-  std::fill(force_.begin(), force_.end(), 0.0);
+  const std::size_t used = layout_.is_by_axis() ? layout_.offset(0, dimension_) : force_.size();
+  std::fill_n(force_.begin(), used, 0.0);
+}
+
+void MatArray::update_columns() noexcept {
+  if (!layout_.is_by_axis()) return;
+  for (std::uint32_t i = 0; i < count(); ++i) column(columns_, i) = position(i);
 }
 
 void MatArray::clear_forces(std::span<const std::uint32_t> of_mats) noexcept {
-  for (const std::uint32_t mat : of_mats) set_column(force_, mat, Vec3::Zero());
+  for (const std::uint32_t mat : of_mats) set(force_, mat, Vec3::Zero());
 }
 
 void MatArray::move_only(std::span<const Range> rows) noexcept {
@@ -106,21 +111,24 @@ void MatArray::list_by_weight(std::span<const Range> rows,
 }
 
 void MatArray::halt(std::uint32_t mat) noexcept {
-  set_column(delayed_, mat, vector(position_, mat));
-  if (!moved_.empty()) set_column(moved_, mat, Vec3::Zero());
+  set(delayed_, mat, vector(position_, mat));
+  if (!moved_.empty()) set(moved_, mat, Vec3::Zero());
 }
 
 AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
   const bool in_medium = medium_viscosity_over_dt_ > 0.0;
+  const Advance advance_by_axis =
+      in_medium ? kernel.advance_by_axis_in_medium : kernel.advance_by_axis;
+  const Advance advance_by_mat = in_medium ? kernel.advance_in_medium : kernel.advance;
   bool all_finite = true;
-  AdvanceReport report =
-      advance_rows(in_medium ? kernel.advance_in_medium : kernel.advance, nullptr, 0.5, all_finite);
+  AdvanceReport report = advance_rows(layout_.is_by_axis() ? advance_by_axis : advance_by_mat,
+                                      nullptr, 0.5, all_finite);
   // What does not move has one place in both.
   position_.swap(delayed_);
   for (const std::uint32_t port : ports_) {
-    std::swap_ranges(position_.data() + 4 * std::size_t{port},
-                     position_.data() + 4 * std::size_t{port} + 4,
-                     delayed_.data() + 4 * std::size_t{port});
+    const Vec3 position = vector(position_, port);
+    set(position_, port, vector(delayed_, port));
+    set(delayed_, port, position);
   }
   if (!all_finite) report.non_finite_mats = count_non_finite();
   return report;
@@ -146,7 +154,9 @@ MassColumns MatArray::columns(double* extrapolated) noexcept {
           dt2_over_mass_.data(),
           velocity_retention_.data(),
           extrapolated,
-          moved_.data()};
+          moved_.data(),
+          layout_.axis_stride,
+          dimension_};
 }
 
 /// @param range  of one weight
@@ -199,8 +209,8 @@ std::uint32_t MatArray::move_by(const AlignedVector<double>& displacement) noexc
   for (const Range& range : masses_) {
     for (std::size_t i = range.first; i < range.last; ++i) {
       const Vec3 now = vector(position_, static_cast<std::uint32_t>(i));
-      set_column(delayed_, i, now);
-      set_column(position_, i, now + Vec3::Map(displacement.data() + 4 * i));
+      set(delayed_, i, now);
+      set(position_, i, now + Vec3::Map(displacement.data() + 4 * i));
     }
   }
   return count_non_finite();
@@ -231,9 +241,8 @@ double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
   for (const Range& range : masses_) {
     for (std::size_t i = range.first; i < range.last; ++i) {
       const Vec3 moved = Vec3::Map(displacement.data() + 4 * i);
-      set_column(kick, i,
-                 dt_ * dt_ * force(static_cast<std::uint32_t>(i)) + mass_[i] * weight_step(i) -
-                     dt_viscosity * moved);
+      column(kick, i) = dt_ * dt_ * force(static_cast<std::uint32_t>(i)) +
+                        mass_[i] * weight_step(i) - dt_viscosity * moved;
       product += moved.x() * moved.x() + moved.y() * moved.y() + moved.z() * moved.z();
     }
   }
@@ -245,36 +254,28 @@ void MatArray::add_forces(const AlignedVector<double>& more) noexcept {
 }
 
 void MatArray::move_port(std::uint32_t mat, const Vec3& position) noexcept {
-  set_column(delayed_, mat, vector(position_, mat));
-  set_column(position_, mat, position);
+  set(delayed_, mat, vector(position_, mat));
+  set(position_, mat, position);
 }
 
 void MatArray::set_force(std::uint32_t mat, const Vec3& force) noexcept {
-  set_column(force_, mat, force);
+  set(force_, mat, force);
 }
 
 ForceColumns MatArray::force_columns() noexcept {
-  return {position_.data(), delayed_.data(), force_.data()};
+  return {position_.data(), delayed_.data(), force_.data(), layout_.axis_stride};
 }
 
 void MatArray::serialize(Archive& archive) {
   for (auto* columns : {&position_, &delayed_, &force_, &moved_}) archive.reals(*columns);
   if (!archive.hashes()) return;
-  if (!moved_.empty()) {
-    const Columns moved = view(moved_);
-    for (Eigen::Index i = 0; i < moved.cols(); ++i) archive.hash({moved.col(i).data(), 3});
+  for (const auto* values : {&moved_, &position_, &delayed_}) {
+    if (values->empty()) continue;
+    for (std::uint32_t i = 0; i < count(); ++i) {
+      const Vec3 of_mat = vector(*values, i);
+      archive.hash({of_mat.data(), 3});
+    }
   }
-  for (const Columns& columns : {position(), delayed()}) {
-    for (Eigen::Index i = 0; i < columns.cols(); ++i) archive.hash({columns.col(i).data(), 3});
-  }
-}
-
-Columns MatArray::view(const AlignedVector<double>& columns) const noexcept {
-  return {columns.data(), 4, static_cast<Eigen::Index>(count())};
-}
-
-Vec3 MatArray::vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept {
-  return Vec3::Map(columns.data() + 4 * static_cast<std::size_t>(mat));
 }
 
 std::uint32_t MatArray::count_non_finite() const noexcept {

@@ -8,14 +8,19 @@
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/matter/mat_layout.h"
 #include "sim_node/engine/matter/step_kernel.h"
 
 namespace cordis::engine {
 
-/// Where the column begins of the MAT that a row of padding joins to itself: another for the next
-/// row, so that none waits until the one before it has added its 0.
+/// The MAT that a row of padding joins to itself: another for the next row, so that none waits until
+/// the one before it has added its 0.
+inline std::uint32_t mat_of_padding(std::size_t row, std::size_t mat_count) noexcept {
+  return static_cast<std::uint32_t>(row % mat_count);
+}
+/// Where its column begins.
 inline std::uint32_t column_of_padding(std::size_t row, std::size_t mat_count) noexcept {
-  return 4 * static_cast<std::uint32_t>(row % mat_count);
+  return 4 * mat_of_padding(row, mat_count);
 }
 
 /// What moving the masses by one step reports.
@@ -29,13 +34,14 @@ struct AdvanceReport {
 ///     x(n+1) = 2 x(n) - x(n-1) + (dt^2 / m) (f(n) + m g - Z (x(n) - x(n-1)) / dt),   Z of the
 ///     medium
 ///
-/// Masses move by this law, fixed points never, port masses by move_port alone. Every array is 4 x
-/// N, column i belonging to MAT i, 32-byte aligned, its fourth value 0. Source: [Luc90 III.2.1
-/// Matter modelisation].
+/// Masses move by this law, fixed points never, port masses by move_port alone. Positions, delayed
+/// positions, forces and carried displacements are stored as their MatLayout says; every other array
+/// named here is 4 x N, column i belonging to MAT i. By axis, only `cordis` moves them. Source:
+/// [Luc90 III.2.1 Matter modelisation].
 class MatArray {
  public:
   /// Positions of step 0; delayed positions one period at the velocity v0 before them.
-  explicit MatArray(const NetworkDescription& description);
+  explicit MatArray(const NetworkDescription& description, const MatLayout& layout = {});
 
   /// Takes the forces of step 0, computed with the delayed positions of the constructor, for a
   /// start of second order: the delayed positions become those of the half-step velocity v0 - a0 dt
@@ -81,8 +87,8 @@ class MatArray {
   [[nodiscard]] std::uint32_t move_by(const AlignedVector<double>& displacement) noexcept;
   /// Puts a mass of a network in 1 dimension somewhere.
   void set_motion(std::uint32_t mat, double position, double delayed) noexcept {
-    position_[4 * std::size_t{mat}] = position;
-    delayed_[4 * std::size_t{mat}] = delayed;
+    position_[layout_.offset(mat)] = position;
+    delayed_[layout_.offset(mat)] = delayed;
   }
   /// The delayed positions become the present ones, and those of the masses a period at these
   /// velocities before them. @return how many positions are not finite
@@ -111,9 +117,14 @@ class MatArray {
 
   std::size_t count() const noexcept { return dt2_over_mass_.size(); }
   bool is_mass(std::uint32_t mat) const noexcept { return dt2_over_mass_[mat] > 0.0; }
-  Columns position() const noexcept { return view(position_); }  ///< x(n) [m]
-  Columns delayed() const noexcept { return view(delayed_); }    ///< x(n-1) [m]
-  Columns force() const noexcept { return view(force_); }        ///< f(n) [N]
+  const MatLayout& layout() const noexcept { return layout_; }
+  /// x(n), 4 x N, by axis as of the last update_columns() [m].
+  Columns position() const noexcept {
+    return {layout_.is_by_axis() ? columns_.data() : position_.data(), 4,
+            static_cast<Eigen::Index>(count())};
+  }
+  /// Brings position() to x(n). Real time: O(N) by axis, else nothing.
+  void update_columns() noexcept;
 
   Vec3 position(std::uint32_t mat) const noexcept { return vector(position_, mat); }
   Vec3 delayed(std::uint32_t mat) const noexcept { return vector(delayed_, mat); }
@@ -150,14 +161,21 @@ class MatArray {
   }
   AdvanceReport advance_rows(Advance advance_row, double* extrapolated, double share,
                              bool& all_finite) noexcept;
-  Columns view(const AlignedVector<double>& columns) const noexcept;
-  static Vec3 vector(const AlignedVector<double>& columns, std::uint32_t mat) noexcept;
+  Vec3 vector(const AlignedVector<double>& values, std::uint32_t mat) const noexcept {
+    return layout_.vector(values.data(), mat);
+  }
+  void set(AlignedVector<double>& values, std::size_t mat, const Vec3& vector) noexcept {
+    layout_.set_vector(values.data(), mat, vector);
+  }
   std::uint32_t count_non_finite() const noexcept;
 
+  MatLayout layout_;
+  std::size_t dimension_;
   AlignedVector<double> position_;
   AlignedVector<double> delayed_;
   AlignedVector<double> force_;
   AlignedVector<double> moved_;               // of masses [m]; empty unless `cordis`
+  AlignedVector<double> columns_;             // x(n) for position() [m]; empty unless by axis
   AlignedVector<double> dt2_over_mass_;       // [s^2/kg], 0 unless a mass
   AlignedVector<double> velocity_retention_;  // 1 - dt Z / m
   std::vector<double> mass_;                  // [kg], 0 unless a mass

@@ -30,11 +30,27 @@ struct LinkRows {
   double* elastic_factor = nullptr;  // the same of the elastic force; not in 1 dimension
 };
 
-/// The state the forces follow from, and where they are added; 4 x N, columns 32-byte aligned.
+/// Spring-dampers in a run, one row per link: row i joins MAT first_a + i to MAT first_b + i. Whole
+/// batches; the arrays of parameters and factors are 64-byte aligned.
+struct RunRows {
+  std::size_t count = 0;  // rows, empty ones included
+  std::size_t first_a = 0;
+  std::size_t first_b = 0;
+  const std::uint8_t* used_rows = nullptr;    // of each batch: bit i when its row i is a link
+  const double* stiffness = nullptr;          // K [N/m]
+  const double* viscosity_over_dt = nullptr;  // Z / dt [N/m]
+  const double* rest_length = nullptr;        // [m]
+  std::size_t parameter_step = 0;  // from batch to batch: 8, or 0 where 8 values serve all of them
+  double* viscous_factor = nullptr;  // as of LinkRows
+  double* elastic_factor = nullptr;
+};
+
+/// The state the forces follow from, and where they are added, as a MatLayout says.
 struct ForceColumns {
   const double* position = nullptr;  // x(n) [m]
   const double* delayed = nullptr;   // x(n-1) [m]
   double* force = nullptr;           // f(n) [N]
+  std::size_t axis_stride = 1;
 };
 
 /// Twice the work [J] that forces of the links took: half of the last step's and half of this
@@ -50,6 +66,17 @@ struct alignas(64) LinkWork {
 /// Adds the forces of all links in link order, and their works.
 using AddLinkForces = void (*)(const LinkRows& links, const ForceColumns& columns,
                                LinkWork& work) noexcept;
+/// Adds the forces of the links of a run, and their works; the MATs are stored by axis.
+using AddRunForces = void (*)(const RunRows& run, const ForceColumns& rows,
+                              LinkWork& work) noexcept;
+
+/// The loops over runs of one dimension.
+struct RunLoops {
+  AddRunForces springs = nullptr;  // no link has viscosity
+  AddRunForces spring_dampers = nullptr;
+  AddRunForces chained_springs = nullptr;  // first_b = first_a + 1
+  AddRunForces chained_spring_dampers = nullptr;
+};
 
 /// A row of neighbouring masses, and what moves them.
 struct MassColumns {
@@ -63,6 +90,8 @@ struct MassColumns {
   double* extrapolated = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
   double* moved =
       nullptr;  // x(n) - x(n-1) before it was rounded, then that of n + 1; of `advance` [m]
+  std::size_t axis_stride = 1;             // as of a MatLayout
+  std::size_t axis_count = 3;              // so many components move; by axis alone
   alignas(32) double weight_step[4] = {};  // gravity * dt^2 [m]
 };
 
@@ -107,9 +136,14 @@ struct StepKernel {
   AddLinkForces moment_spring_dampers_1d = nullptr;  // of springs_1d there is only one
   AddLinkForces moment_springs_3d = nullptr;
   AddLinkForces moment_spring_dampers_3d = nullptr;
+  AddLinkForces gathered_springs_by_axis = nullptr;  // in 2 and 3 dimensions; in 1 as by MAT
+  AddLinkForces gathered_spring_dampers_by_axis = nullptr;
+  RunLoops runs[3];  // of 1, 2 and 3 dimensions
   Advance advance =
       nullptr;  // without a medium: velocity retention is not read, moved_product stays 0
   Advance advance_in_medium = nullptr;
+  Advance advance_by_axis = nullptr;  // for MATs stored by axis
+  Advance advance_by_axis_in_medium = nullptr;
   Advance extrapolate = nullptr;  // of `leapfrog`
   Advance extrapolate_in_medium = nullptr;
   Kick kick = nullptr;

@@ -52,55 +52,134 @@ struct Links1d {
 
 /// tension = K (d - rest) + Z (elongation increment of the link along its axis) / dt; none while d is
 /// 0, for lack of a direction.
-template <class Lanes, bool kViscous, Works kWorks>
-struct LinksNd {
+template <class Lanes, int kAxes, bool kViscous, Works kWorks>
+struct TensionNd {
+  using Row = typename Lanes::Row;
+  struct Parameters {
+    Row stiffness;
+    Row viscosity_over_dt;
+    Row rest_length;
+  };
+  /// As of LinkRows.
+  struct Factors {
+    double* viscous;
+    double* elastic;
+  };
+
+  static Row product(const Row* u, const Row* v) noexcept {
+    Row sum = u[0] * v[0];
+#pragma GCC unroll 3
+    for (int axis = 1; axis < kAxes; ++axis) sum = sum + u[axis] * v[axis];
+    return sum;
+  }
+
+  /// @return tension / d, from the vector from a to b now and a period before
+  static Row over_length(const Parameters& parameters, const Row* along, const Row* before,
+                         const Factors& factors, WorkRows<Lanes>& work) noexcept {
+    const Row square = product(along, along);
+    const Row length = Lanes::sqrt(square);
+    const Row inverse = Lanes::inverse_or_zero(square, length);
+    Row moved[kAxes];
+#pragma GCC unroll 3
+    for (int axis = 0; axis < kAxes; ++axis) moved[axis] = along[axis] - before[axis];
+    const Row along_moved = product(along, moved);
+
+    const Row elastic_factor = parameters.stiffness * (length - parameters.rest_length) * inverse;
+    Row before_moved = Lanes::zero();
+    if constexpr (kWorks == Works::kHalfStep) {
+      before_moved = product(before, moved);
+      work.elastic = work.elastic +
+                     (elastic_factor * along_moved + Lanes::load(factors.elastic) * before_moved);
+      Lanes::store(factors.elastic, elastic_factor);
+    }
+    Row factor = elastic_factor;
+    if constexpr (kViscous) {
+      const Row elongation_increment = along_moved * inverse;
+      const Row viscous_tension = parameters.viscosity_over_dt * elongation_increment;
+      const Row viscous_factor = viscous_tension * inverse;
+      if constexpr (kWorks == Works::kHalfStep) {
+        work.dissipated = work.dissipated + (viscous_tension * elongation_increment +
+                                             Lanes::load(factors.viscous) * before_moved);
+        Lanes::store(factors.viscous, viscous_factor);
+      } else {
+        work.dissipated = work.dissipated + viscous_tension * elongation_increment;
+      }
+      factor = factor + viscous_factor;
+    }
+    return factor;
+  }
+};
+
+/// Ends of gathered links; the arrays are stored by MAT.
+template <class Lanes>
+struct EndsByMat {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
+
+  static void find(const ForceColumns& columns, const std::uint32_t* a, const std::uint32_t* b,
+                   Row* along, Row* before) noexcept {
+    Row3 now;
+    Row3 then;
+    Lanes::differences(columns.position, columns.delayed, a, b, now, then);
+    along[0] = now.x, along[1] = now.y, along[2] = now.z;
+    before[0] = then.x, before[1] = then.y, before[2] = then.z;
+  }
+  static void find(const ForceColumns& columns, const std::uint32_t* a, const std::uint32_t* b,
+                   Row* along) noexcept {
+    const Row3 now = Lanes::difference(columns.position, a, b);
+    along[0] = now.x, along[1] = now.y, along[2] = now.z;
+  }
+  static void add(const ForceColumns& columns, const std::uint32_t* a, const std::uint32_t* b,
+                  const Row* along, Row factor) noexcept {
+    Lanes::add_pairs(columns.force, a, b,
+                     Row3{along[0] * factor, along[1] * factor, along[2] * factor});
+  }
+};
+
+/// Ends of gathered links; the arrays are stored by axis.
+template <class Lanes>
+struct EndsByAxis {
+  using Row = typename Lanes::Row;
+
+  static void find(const ForceColumns& rows, const std::uint32_t* a, const std::uint32_t* b,
+                   Row* along, Row* before) noexcept {
+    for (int axis = 0; axis < 3; ++axis) {
+      along[axis] = Lanes::difference_1d(rows.position + axis * rows.axis_stride, a, b);
+      before[axis] = Lanes::difference_1d(rows.delayed + axis * rows.axis_stride, a, b);
+    }
+  }
+  static void add(const ForceColumns& rows, const std::uint32_t* a, const std::uint32_t* b,
+                  const Row* along, Row factor) noexcept {
+    for (int axis = 0; axis < 3; ++axis) {
+      Lanes::add_pairs_1d(rows.force + axis * rows.axis_stride, a, b, along[axis] * factor);
+    }
+  }
+};
+
+template <class Lanes, bool kViscous, Works kWorks, class Ends = EndsByMat<Lanes>>
+struct LinksNd {
+  using Row = typename Lanes::Row;
+  using Tension = TensionNd<Lanes, 3, kViscous, kWorks>;
 
   static void add_forces(const LinkRows& links, const ForceColumns& columns, std::size_t l,
                          WorkRows<Lanes>& work) noexcept {
     const std::uint32_t* a = links.column_a + l;
     const std::uint32_t* b = links.column_b + l;
 
-    constexpr bool kMoves = kViscous || kWorks == Works::kHalfStep;
-    Row3 along;
-    Row3 before;
-    if constexpr (kMoves) {
-      Lanes::differences(columns.position, columns.delayed, a, b, along, before);
+    Row along[3];
+    Row before[3];
+    if constexpr (kViscous || kWorks == Works::kHalfStep) {
+      Ends::find(columns, a, b, along, before);
     } else {
-      along = before = Lanes::difference(columns.position, a, b);
+      Ends::find(columns, a, b, along);
+      for (int axis = 0; axis < 3; ++axis) before[axis] = along[axis];
     }
-    const Row square = along.x * along.x + along.y * along.y + along.z * along.z;
-    const Row length = Lanes::sqrt(square);
-    const Row inverse = Lanes::inverse_or_zero(square, length);
-    const Row3 moved{along.x - before.x, along.y - before.y, along.z - before.z};
-    const Row along_moved = along.x * moved.x + along.y * moved.y + along.z * moved.z;
-
-    const Row elastic_factor =
-        Lanes::load(links.stiffness + l) * (length - Lanes::load(links.rest_length + l)) * inverse;
-    Row before_moved = Lanes::zero();
-    if constexpr (kWorks == Works::kHalfStep) {
-      before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
-      work.elastic = work.elastic + (elastic_factor * along_moved +
-                                     Lanes::load(links.elastic_factor + l) * before_moved);
-      Lanes::store(links.elastic_factor + l, elastic_factor);
-    }
-    Row factor = elastic_factor;
-    if constexpr (kViscous) {
-      const Row elongation_increment = along_moved * inverse;
-      const Row viscous_tension = Lanes::load(links.viscosity_over_dt + l) * elongation_increment;
-      const Row viscous_factor = viscous_tension * inverse;
-      if constexpr (kWorks == Works::kHalfStep) {
-        work.dissipated = work.dissipated + (viscous_tension * elongation_increment +
-                                             Lanes::load(links.viscous_factor + l) * before_moved);
-        Lanes::store(links.viscous_factor + l, viscous_factor);
-      } else {
-        work.dissipated = work.dissipated + viscous_tension * elongation_increment;
-      }
-      factor = factor + viscous_factor;
-    }
-    Lanes::add_pairs(columns.force, a, b,
-                     Row3{along.x * factor, along.y * factor, along.z * factor});
+    const typename Tension::Parameters parameters{Lanes::load(links.stiffness + l),
+                                                  Lanes::load(links.viscosity_over_dt + l),
+                                                  Lanes::load(links.rest_length + l)};
+    const Row factor = Tension::over_length(
+        parameters, along, before, {links.viscous_factor + l, links.elastic_factor + l}, work);
+    Ends::add(columns, a, b, along, factor);
   }
 };
 
@@ -153,6 +232,86 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
     nonfinite = Lanes::unite(nonfinite, next - next);  // NOLINT(misc-redundant-expression)
   }
   return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(nonfinite)};
+}
+
+/// The masses of one axis; 8 of them at a time, then those that are left.
+template <class Lanes, bool kMedium>
+struct AxisAdvance {
+  using Row = typename Lanes::Row;
+  static constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
+
+  const double* position;
+  double* delayed;
+  double* moved;
+  const double* force;
+  double weight_step;
+  Row product[kParts];  // by the place in the batch
+  Row nonfinite;        // 0 for finite values, else NaN
+
+  void step(const MassColumns& masses, std::size_t i, std::size_t part) noexcept {
+    const Row before = Lanes::load_any(moved + i);
+    const Row pushed = Lanes::load_any(force + i) * Lanes::load_any(masses.dt2_over_mass + i) +
+                       Lanes::every(weight_step);
+    Row moving = before + pushed;
+    if constexpr (kMedium) {
+      moving = before * Lanes::load_any(masses.velocity_retention + i) + pushed;
+      product[part] = product[part] + before * (before + moving);
+    }
+    const Row next = Lanes::load_any(position + i) + moving;
+    Lanes::store_any(delayed + i, next);
+    Lanes::store_any(moved + i, moving);
+    nonfinite = nonfinite + (next - next);  // NOLINT(misc-redundant-expression)
+  }
+  /// @param in_place  sums by the place in the batch @return 0, or NaN if it is not finite
+  double step_one(const MassColumns& masses, std::size_t i, double& in_place) noexcept {
+    const double before = moved[i];
+    const double pushed = force[i] * masses.dt2_over_mass[i] + weight_step;
+    double moving = before + pushed;
+    if constexpr (kMedium) {
+      moving = before * masses.velocity_retention[i] + pushed;
+      in_place = in_place + before * (before + moving);
+    }
+    const double next = position[i] + moving;
+    delayed[i] = next;
+    moved[i] = moving;
+    return next - next;  // NOLINT(misc-redundant-expression)
+  }
+};
+
+template <class Lanes, bool kMedium>
+AdvanceResult advance_masses_by_axis(const MassColumns& masses) noexcept {
+  constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
+  AdvanceResult result;
+  for (std::size_t axis = 0; axis < masses.axis_count; ++axis) {
+    const std::size_t row = axis * masses.axis_stride;
+    AxisAdvance<Lanes, kMedium> advance{
+        masses.position + row, masses.delayed + row,     masses.moved + row,
+        masses.force + row,    masses.weight_step[axis], {},
+        Lanes::zero()};
+    for (std::size_t part = 0; part < kParts; ++part) advance.product[part] = Lanes::zero();
+    std::size_t i = masses.first;
+    for (; i + kLinkBatch <= masses.last; i += kLinkBatch) {
+#pragma GCC unroll 4
+      for (std::size_t part = 0; part < kParts; ++part) {
+        advance.step(masses, i + part * Lanes::kWidth, part);
+      }
+    }
+
+    alignas(64) double product[kLinkBatch];
+    alignas(64) double nonfinite[Lanes::kWidth];
+    for (std::size_t part = 0; part < kParts; ++part) {
+      Lanes::store(product + part * Lanes::kWidth, advance.product[part]);
+    }
+    Lanes::store(nonfinite, advance.nonfinite);
+    double all_nonfinite = 0.0;
+    for (std::size_t place = 0; i < masses.last; ++i, ++place) {
+      all_nonfinite += advance.step_one(masses, i, product[place]);
+    }
+    for (const double value : nonfinite) all_nonfinite += value;
+    for (const double value : product) result.moved_product += value;
+    result.all_finite = result.all_finite && all_nonfinite == 0.0;
+  }
+  return result;
 }
 
 template <class Lanes, bool kMedium>
@@ -225,24 +384,177 @@ AdvanceResult delay_masses(const MassColumns& masses, const double* velocity, do
   return AdvanceResult{0.0, Lanes::is_zero(nonfinite)};
 }
 
+/// Links of a run; the MATs are stored by axis. Of those that share a MAT the one before in link
+/// order adds its force first: where a is below b the forces on b of a batch precede those on a, and
+/// the other way round. In a chain, b = a + 1, each MAT is read and written once: the force of the
+/// link before comes from a register.
+template <class Lanes, int kAxes, bool kViscous, bool kChained>
+struct RunLoop {
+  using Row = typename Lanes::Row;
+  using Tension = TensionNd<Lanes, kAxes, kViscous, Works::kHalfStep>;
+  static constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
+  static constexpr std::uint32_t kAllRows = (1U << kLinkBatch) - 1U;
+
+  const RunRows& run;
+  const ForceColumns& rows;
+  WorkRows<Lanes> work[kParts];
+  Row carried[kAxes];  // the last lane: force of the last link, not yet subtracted at its end b
+
+  static Row tension_1d(const typename Tension::Parameters& parameters, Row along, Row before,
+                        const typename Tension::Factors& factors, WorkRows<Lanes>& work) noexcept {
+    Row tension = parameters.stiffness * (along - parameters.rest_length);
+    if constexpr (kViscous) {
+      const Row elongation_increment = along - before;
+      const Row viscous_tension = parameters.viscosity_over_dt * elongation_increment;
+      work.dissipated =
+          work.dissipated + (viscous_tension + Lanes::load(factors.viscous)) * elongation_increment;
+      Lanes::store(factors.viscous, viscous_tension);
+      tension = tension + viscous_tension;
+    }
+    return tension;
+  }
+
+  /// The rows of a batch from l on; only those of `used` are links.
+  template <bool kAllUsed>
+  void find_forces(std::size_t l, std::size_t part, std::uint32_t used, Row* force) noexcept {
+    const std::size_t i = l + part * Lanes::kWidth;
+    const std::size_t a = run.first_a + i;
+    const std::size_t b = run.first_b + i;
+    const std::size_t p = l / kLinkBatch * run.parameter_step + part * Lanes::kWidth;
+    const typename Lanes::Mask links = Lanes::mask(used >> (part * Lanes::kWidth));
+    Row along[kAxes];
+    Row before[kAxes];
+#pragma GCC unroll 3
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const double* position = rows.position + axis * rows.axis_stride;
+      const double* delayed = rows.delayed + axis * rows.axis_stride;
+      along[axis] = Lanes::load_any(position + b) - Lanes::load_any(position + a);
+      before[axis] = Lanes::load_any(delayed + b) - Lanes::load_any(delayed + a);
+      if constexpr (kAllUsed) continue;
+      along[axis] = Lanes::select(links, along[axis], Lanes::zero());
+      before[axis] = Lanes::select(links, before[axis], Lanes::zero());
+    }
+    const typename Tension::Parameters parameters{Lanes::load(run.stiffness + p),
+                                                  Lanes::load(run.viscosity_over_dt + p),
+                                                  Lanes::load(run.rest_length + p)};
+    const typename Tension::Factors factors{run.viscous_factor + i,
+                                            kAxes == 1 ? nullptr : run.elastic_factor + i};
+    if constexpr (kAxes == 1) {
+      force[0] = tension_1d(parameters, along[0], before[0], factors, work[part]);
+      if constexpr (!kAllUsed) force[0] = Lanes::select(links, force[0], Lanes::zero());
+    } else {
+      const Row factor = Tension::over_length(parameters, along, before, factors, work[part]);
+#pragma GCC unroll 3
+      for (int axis = 0; axis < kAxes; ++axis) force[axis] = along[axis] * factor;
+    }
+  }
+
+  void add(std::size_t first, const Row* force) noexcept {
+#pragma GCC unroll 3
+    for (int axis = 0; axis < kAxes; ++axis) {
+      double* sum = rows.force + axis * rows.axis_stride + first;
+      Lanes::store_any(sum, Lanes::load_any(sum) + force[axis]);
+    }
+  }
+  void subtract(std::size_t first, const Row* force) noexcept {
+#pragma GCC unroll 3
+    for (int axis = 0; axis < kAxes; ++axis) {
+      double* sum = rows.force + axis * rows.axis_stride + first;
+      Lanes::store_any(sum, Lanes::load_any(sum) - force[axis]);
+    }
+  }
+  void add_chained(std::size_t first, const Row* force) noexcept {
+#pragma GCC unroll 3
+    for (int axis = 0; axis < kAxes; ++axis) {
+      double* sum = rows.force + axis * rows.axis_stride + first;
+      const Row of_link_before = Lanes::shifted(carried[axis], force[axis]);
+      carried[axis] = force[axis];
+      Lanes::store_any(sum, Lanes::load_any(sum) - of_link_before + force[axis]);
+    }
+  }
+
+  template <bool kAllUsed>
+  void step(std::size_t l, std::uint32_t used) noexcept {
+    Row force[kParts][kAxes];
+#pragma GCC unroll 4
+    for (std::size_t part = 0; part < kParts; ++part) {
+      find_forces<kAllUsed>(l, part, used, force[part]);
+      if constexpr (kChained) {
+        add_chained(run.first_a + l + part * Lanes::kWidth, force[part]);
+      } else if (run.first_a < run.first_b) {
+        subtract(run.first_b + l + part * Lanes::kWidth, force[part]);
+        add(run.first_a + l + part * Lanes::kWidth, force[part]);
+      } else {
+        add(run.first_a + l + part * Lanes::kWidth, force[part]);
+        subtract(run.first_b + l + part * Lanes::kWidth, force[part]);
+      }
+    }
+  }
+
+  void subtract_carried() noexcept {
+    for (int axis = 0; axis < kAxes; ++axis) {
+      alignas(64) double lane[Lanes::kWidth];
+      Lanes::store(lane, carried[axis]);
+      rows.force[axis * rows.axis_stride + run.first_a + run.count] -= lane[Lanes::kWidth - 1];
+    }
+  }
+
+  static void add_forces(const RunRows& run, const ForceColumns& rows, LinkWork& sum) noexcept {
+    RunLoop loop{run, rows, {}, {}};
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::size_t place = part * Lanes::kWidth;
+      loop.work[part] = {Lanes::load(sum.elastic + place), Lanes::load(sum.dissipated + place)};
+    }
+    for (int axis = 0; axis < kAxes; ++axis) loop.carried[axis] = Lanes::zero();
+    for (std::size_t l = 0; l < run.count; l += kLinkBatch) {
+      const std::uint32_t used = run.used_rows[l / kLinkBatch];
+      if (used == kAllRows) {
+        loop.template step<true>(l, used);
+      } else {
+        loop.template step<false>(l, used);
+      }
+    }
+    if constexpr (kChained) loop.subtract_carried();
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::size_t place = part * Lanes::kWidth;
+      Lanes::store(sum.elastic + place, loop.work[part].elastic);
+      Lanes::store(sum.dissipated + place, loop.work[part].dissipated);
+    }
+  }
+};
+
+template <class Lanes, int kAxes>
+constexpr RunLoops make_run_loops() noexcept {
+  return {RunLoop<Lanes, kAxes, false, false>::add_forces,
+          RunLoop<Lanes, kAxes, true, false>::add_forces,
+          RunLoop<Lanes, kAxes, false, true>::add_forces,
+          RunLoop<Lanes, kAxes, true, true>::add_forces};
+}
+
 template <class Lanes>
 constexpr StepKernel make_step_kernel() noexcept {
   constexpr Works kHalf = Works::kHalfStep;
   constexpr Works kFull = Works::kFullStep;
-  return StepKernel{add_link_forces<Lanes, Links1d<Lanes, false, kHalf>>,
-                    add_link_forces<Lanes, Links1d<Lanes, true, kHalf>>,
-                    add_link_forces<Lanes, LinksNd<Lanes, false, kHalf>>,
-                    add_link_forces<Lanes, LinksNd<Lanes, true, kHalf>>,
-                    add_link_forces<Lanes, Links1d<Lanes, true, kFull>>,
-                    add_link_forces<Lanes, LinksNd<Lanes, false, kFull>>,
-                    add_link_forces<Lanes, LinksNd<Lanes, true, kFull>>,
-                    advance_masses<Lanes, false>,
-                    advance_masses<Lanes, true>,
-                    extrapolate_masses<Lanes, false>,
-                    extrapolate_masses<Lanes, true>,
-                    kick_masses<Lanes, false>,
-                    kick_masses<Lanes, true>,
-                    delay_masses<Lanes>};
+  return StepKernel{
+      add_link_forces<Lanes, Links1d<Lanes, false, kHalf>>,
+      add_link_forces<Lanes, Links1d<Lanes, true, kHalf>>,
+      add_link_forces<Lanes, LinksNd<Lanes, false, kHalf>>,
+      add_link_forces<Lanes, LinksNd<Lanes, true, kHalf>>,
+      add_link_forces<Lanes, Links1d<Lanes, true, kFull>>,
+      add_link_forces<Lanes, LinksNd<Lanes, false, kFull>>,
+      add_link_forces<Lanes, LinksNd<Lanes, true, kFull>>,
+      add_link_forces<Lanes, LinksNd<Lanes, false, kHalf, EndsByAxis<Lanes>>>,
+      add_link_forces<Lanes, LinksNd<Lanes, true, kHalf, EndsByAxis<Lanes>>>,
+      {make_run_loops<Lanes, 1>(), make_run_loops<Lanes, 2>(), make_run_loops<Lanes, 3>()},
+      advance_masses<Lanes, false>,
+      advance_masses<Lanes, true>,
+      advance_masses_by_axis<Lanes, false>,
+      advance_masses_by_axis<Lanes, true>,
+      extrapolate_masses<Lanes, false>,
+      extrapolate_masses<Lanes, true>,
+      kick_masses<Lanes, false>,
+      kick_masses<Lanes, true>,
+      delay_masses<Lanes>};
 }
 
 }  // namespace cordis::engine

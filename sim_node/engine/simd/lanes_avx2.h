@@ -28,6 +28,11 @@ struct Avx2Lanes {
   static Row zero() noexcept { return _mm256_setzero_pd(); }
   static Row load(const double* values) noexcept { return _mm256_load_pd(values); }
   static void store(double* values, Row v) noexcept { _mm256_store_pd(values, v); }
+  static Row load_any(const double* values) noexcept { return _mm256_loadu_pd(values); }
+  static void store_any(double* values, Row v) noexcept { _mm256_storeu_pd(values, v); }
+  static Row shifted(Row before, Row v) noexcept {
+    return _mm256_shuffle_pd(_mm256_permute2f128_pd(before, v, 0x21), v, 0x5);
+  }
   static Row sqrt(Row v) noexcept { return _mm256_sqrt_pd(v); }
   static Row every(double value) noexcept { return _mm256_set1_pd(value); }
   static Row minimum(Row u, Row v) noexcept { return _mm256_min_pd(u, v); }

@@ -28,6 +28,12 @@ struct Avx512Lanes {
   static Row zero() noexcept { return _mm512_setzero_pd(); }
   static Row load(const double* values) noexcept { return _mm512_load_pd(values); }
   static void store(double* values, Row v) noexcept { _mm512_store_pd(values, v); }
+  static Row load_any(const double* values) noexcept { return _mm512_loadu_pd(values); }
+  static void store_any(double* values, Row v) noexcept { _mm512_storeu_pd(values, v); }
+  static Row shifted(Row before, Row v) noexcept {
+    return _mm512_castsi512_pd(
+        _mm512_alignr_epi64(_mm512_castpd_si512(v), _mm512_castpd_si512(before), 7));
+  }
   static Row sqrt(Row v) noexcept { return _mm512_sqrt_pd(v); }
   static Row every(double value) noexcept { return _mm512_set1_pd(value); }
   static Row minimum(Row u, Row v) noexcept { return _mm512_min_pd(u, v); }

@@ -42,6 +42,9 @@ struct Sse2Lanes {
   static Row zero() noexcept { return _mm_setzero_pd(); }
   static Row load(const double* values) noexcept { return _mm_load_pd(values); }
   static void store(double* values, Row v) noexcept { _mm_store_pd(values, v); }
+  static Row load_any(const double* values) noexcept { return _mm_loadu_pd(values); }
+  static void store_any(double* values, Row v) noexcept { _mm_storeu_pd(values, v); }
+  static Row shifted(Row before, Row v) noexcept { return _mm_shuffle_pd(before, v, 0x1); }
   static Row sqrt(Row v) noexcept { return _mm_sqrt_pd(v); }
   static Row every(double value) noexcept { return _mm_set1_pd(value); }
   static Row minimum(Row u, Row v) noexcept { return _mm_min_pd(u, v); }

@@ -17,7 +17,6 @@ alignas(32) constexpr std::int32_t kPackHalves[16][8] = {
     {0, 1, 2, 3, 4, 5, 6, 7}};
 
 struct Avx2PairLanes : Avx2Lanes {
-  static Row load_any(const double* values) noexcept { return _mm256_loadu_pd(values); }
   static Row3 vectors(const double* columns, const std::uint32_t* offset) noexcept {
     return transposed(load(columns + offset[0]), load(columns + offset[1]),
                       load(columns + offset[2]), load(columns + offset[3]));

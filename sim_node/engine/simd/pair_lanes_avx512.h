@@ -7,7 +7,6 @@ namespace cordis::engine {
 namespace {
 
 struct Avx512PairLanes : Avx512Lanes {
-  static Row load_any(const double* values) noexcept { return _mm512_loadu_pd(values); }
   static Row3 vectors(const double* columns, const std::uint32_t* offset) noexcept {
     return transposed(two_columns(columns + offset[0], columns + offset[4]),
                       two_columns(columns + offset[1], columns + offset[5]),

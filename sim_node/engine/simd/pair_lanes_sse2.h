@@ -7,7 +7,6 @@ namespace cordis::engine {
 namespace {
 
 struct Sse2PairLanes : Sse2Lanes {
-  static Row load_any(const double* values) noexcept { return _mm_loadu_pd(values); }
   static Row3 vectors(const double* columns, const std::uint32_t* offset) noexcept {
     const Column u = load_column(columns + offset[0]);
     const Column v = load_column(columns + offset[1]);

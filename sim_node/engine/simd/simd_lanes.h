@@ -31,6 +31,11 @@ concept SimdLanes = requires(double value, double* out, const double* in,
   { Lanes::maximum(row, row) } -> std::same_as<typename Lanes::Row>;
   { Lanes::magnitude(row) } -> std::same_as<typename Lanes::Row>;
   Lanes::store(out, row);
+  // values that need not be aligned
+  { Lanes::load_any(in) } -> std::same_as<typename Lanes::Row>;
+  Lanes::store_any(out, row);
+  // all lanes moved up by one, the last lane of the row before as the first
+  { Lanes::shifted(row, row) } -> std::same_as<typename Lanes::Row>;
   // comparisons as IEEE 754 asks, and what is made of them
   { Lanes::less(row, row) } -> std::same_as<typename Lanes::Mask>;
   { Lanes::less_or_equal(row, row) } -> std::same_as<typename Lanes::Mask>;
@@ -65,8 +70,6 @@ template <class Lanes>
 concept SimdPairLanes = SimdLanes<Lanes> &&
     requires(double* out, std::uint32_t* places, const double* in, const std::uint32_t* offset,
              unsigned chosen, typename Lanes::Row row, typename Lanes::Row3 vectors) {
-  // loads values that need not be aligned
-  { Lanes::load_any(in) } -> std::same_as<typename Lanes::Row>;
   // columns that begin at `at`, or follow one another, as x, y, z
   { Lanes::vectors(in, offset) } -> std::same_as<typename Lanes::Row3>;
   { Lanes::neighbours(in) } -> std::same_as<typename Lanes::Row3>;

@@ -1,0 +1,48 @@
+// sim_node/engine/links/link_runs.h -- links whose ends ascend together.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim_node/engine/description/network.h"
+#include "sim_node/engine/matter/mat_layout.h"
+
+namespace cordis::engine {
+
+/// Rows of links, whole batches. In a run, row i joins MAT first_a + i to MAT first_b + i, so that
+/// neither indices nor gathers are needed.
+struct LinkRun {
+  std::size_t first_row = 0;
+  std::size_t row_count = 0;
+  std::uint32_t first_a = 0;
+  std::uint32_t first_b = 0;
+  bool is_gathered = false;  ///< no run: any links, in their order
+};
+
+/// Links in rows for the step, in link order. Each MAT sums its forces in the order of the links,
+/// in runs or not.
+///
+/// A chain, the rows of a grid and what joins them come as runs of consecutive index pairs. A run
+/// goes on over up to kLargestGap pairs that no link joins: their rows stay empty, as do those that
+/// complete the last batch. Less than kShortestRun links make no run.
+struct LinkArrangement {
+  static constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
+  static constexpr std::uint32_t kLargestGap = 3;
+  static constexpr std::size_t kShortestRun = 8;
+
+  std::vector<std::uint32_t> link_of_row;  ///< index of the link, or kEmpty
+  std::vector<std::uint8_t> used_rows;     ///< of each batch: bit i for its row i
+  std::vector<LinkRun> runs;
+};
+
+/// @param links  in link order  @param with_runs  else all are gathered
+LinkArrangement arrange_links(std::span<const Link> links, bool with_runs);
+
+/// By axis where nothing but linear links reads the arrays of the MATs, and most links are in runs: a
+/// world of `cordis` without states, sets, Maxwell elements and freezing. By MAT else. It depends on
+/// the structure of the network, on no parameter.
+MatLayout layout_of(const NetworkDescription& description);
+
+}  // namespace cordis::engine

@@ -1,0 +1,363 @@
+// tests/engine/link_runs_test.cpp -- links in runs, beside a scalar loop over the links and beside
+// the same network whose links are gathered.
+#include "sim_node/engine/links/link_runs.h"
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+using engine::arrange_links;
+using engine::layout_of;
+using engine::LinkArrangement;
+using engine::LinkRun;
+
+constexpr std::uint32_t kEmpty = LinkArrangement::kEmpty;
+
+std::vector<Link> chain(std::uint32_t first, std::uint32_t link_count, std::uint32_t offset = 1) {
+  std::vector<Link> links;
+  for (std::uint32_t i = 0; i < link_count; ++i) {
+    links.push_back({first + i, first + i + offset, 100.0, 0.1, 0.5});
+  }
+  return links;
+}
+
+/// Random networks of runs, broken runs and single links.
+class RandomRuns {
+ public:
+  explicit RandomRuns(std::uint32_t seed) : random_(seed) {}
+
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0);
+  }
+  std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); }
+  bool once_in(std::uint32_t count) { return below(count) == 0; }
+
+  std::vector<Link> links(std::uint32_t mat_count) {
+    std::vector<Link> links;
+    const std::uint32_t run_count = 2 + below(6);
+    for (std::uint32_t run = 0; run < run_count; ++run) {
+      if (once_in(3)) {
+        add_single(links, mat_count);
+      } else {
+        add_run(links, mat_count);
+      }
+    }
+    return links;
+  }
+
+  NetworkDescription network(int dimension) {
+    constexpr std::uint32_t kMats = 97;
+    NetworkDescription scene;
+    scene.dimension = dimension;
+    scene.step = 1e-3;
+    if (once_in(2)) scene.medium_viscosity = 0.01;
+    if (once_in(2)) scene.gravity.x() = 2.0;
+    for (std::uint32_t i = 0; i < kMats; ++i) {
+      const Vec3 place = within(dimension, 0.0, 1.0);
+      scene.mats.push_back(once_in(9) ? fixed(place)
+                           : once_in(15)
+                               ? port(place)
+                               : mass(uniform(0.05, 0.2), place, within(dimension, -1.0, 1.0)));
+    }
+    scene.mats[4] = scene.mats[3];  // a link between them has no direction
+    scene.links = links(kMats);
+    is_viscous_ = !once_in(4);
+    same_ = once_in(2);
+    for (Link& link : scene.links) choose_parameters(link);
+    keep_off(scene);
+    return scene;
+  }
+
+ private:
+  Vec3 within(int dimension, double low, double high) {
+    Vec3 vector = Vec3::Zero();
+    for (int axis = 0; axis < dimension; ++axis) vector[axis] = uniform(low, high);
+    return vector;
+  }
+  void add_single(std::vector<Link>& links, std::uint32_t mat_count) {
+    const std::uint32_t a = below(mat_count);
+    const std::uint32_t b = below(mat_count);
+    if (a != b) links.push_back({a, b});
+  }
+  /// Adds 1 to 70 pairs (a + i, b + i), b above or below a; a fifth of them may be absent.
+  void add_run(std::vector<Link>& links, std::uint32_t mat_count) {
+    const std::uint32_t length = 1 + below(70);
+    const std::uint32_t room = mat_count - length;
+    std::uint32_t a = below(room);
+    std::uint32_t b = once_in(2) ? a + 1 : below(room);
+    if (a == b) ++b;
+    if (once_in(6)) std::swap(a, b);
+    const bool is_broken = once_in(3);
+    const bool descends = once_in(8);
+    for (std::uint32_t i = 0; i < length; ++i) {
+      const std::uint32_t step = descends ? length - 1 - i : i;
+      if (!is_broken || !once_in(5)) links.push_back({a + step, b + step});
+    }
+  }
+  void choose_parameters(Link& link) {
+    link.stiffness = same_ ? 40.0 : uniform(10.0, 100.0);
+    link.viscosity = !is_viscous_ ? 0.0 : same_ ? 0.1 : uniform(0.0, 0.2);
+    link.rest_length = same_ ? 0.3 : uniform(0.1, 0.5);
+  }
+  /// MATs that no link joins are where the square of a distance overflows.
+  static void keep_off(NetworkDescription& scene) {
+    std::vector<bool> is_joined(scene.mats.size(), false);
+    for (const Link& link : scene.links) is_joined[link.mat_a] = is_joined[link.mat_b] = true;
+    for (std::size_t i = 0; i < scene.mats.size(); ++i) {
+      if (!is_joined[i]) scene.mats[i] = fixed(Vec3(i % 2 == 0 ? 1e200 : -1e300, 0, 0));
+    }
+  }
+
+  std::mt19937 random_;
+  bool is_viscous_ = true;
+  bool same_ = true;
+};
+
+/// The forces of linear links, one link after the other.
+std::vector<Vec3> scalar_forces(const NetworkDescription& scene, const std::vector<Vec3>& position,
+                                const std::vector<Vec3>& delayed) {
+  std::vector<Vec3> forces(scene.mats.size(), Vec3::Zero());
+  for (const Link& link : scene.links) {
+    const Vec3 along = position[link.mat_b] - position[link.mat_a];
+    const Vec3 moved = along - (delayed[link.mat_b] - delayed[link.mat_a]);
+    const double viscosity_over_dt = link.viscosity / scene.step;
+    Vec3 force = Vec3::Zero();
+    if (scene.dimension == 1) {
+      force.x() = link.stiffness * (along.x() - link.rest_length) + viscosity_over_dt * moved.x();
+    } else {
+      const double square = along.x() * along.x() + along.y() * along.y() + along.z() * along.z();
+      const double length = std::sqrt(square);
+      const double inverse = square == 0.0 ? 0.0 : 1.0 / length;
+      const double along_moved =
+          along.x() * moved.x() + along.y() * moved.y() + along.z() * moved.z();
+      const double elastic = link.stiffness * (length - link.rest_length) * inverse;
+      const double viscous = viscosity_over_dt * (along_moved * inverse) * inverse;
+      const double factor = elastic + viscous;
+      force = Vec3(along.x() * factor, along.y() * factor, along.z() * factor);
+    }
+    forces[link.mat_a] += force;
+    forces[link.mat_b] -= force;
+  }
+  return forces;
+}
+
+/// Adds a link with states between two more fixed points. The MATs are then stored by MAT, and all
+/// links are gathered.
+NetworkDescription gathered(NetworkDescription scene) {
+  const auto first = static_cast<std::uint32_t>(scene.mats.size());
+  scene.mats.push_back(fixed(Vec3::Zero()));
+  scene.mats.push_back(fixed(Vec3(1, 0, 0)));
+  scene.state_machines.emplace_back();
+  scene.state_machines[0].states.emplace_back();
+  scene.state_links.push_back({first, first + 1, 0, 0.0});
+  return scene;
+}
+
+void move_ports(const NetworkDescription& scene, World& world, int step) {
+  for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+    if (scene.mats[i].kind != MatKind::kPort) continue;
+    Vec3 moved = scene.mats[i].position;
+    moved.x() += 1e-3 * (step % 40);
+    world.impose_position(i, moved);
+  }
+}
+
+std::vector<Vec3> positions_of(const World& world) {
+  std::vector<Vec3> positions;
+  for (std::uint32_t i = 0; i < world.network().mat_count(); ++i) {
+    positions.push_back(world.position(i));
+  }
+  return positions;
+}
+
+class LinkRuns : public testing::TestWithParam<VectorWidth> {};
+
+INSTANTIATE_TEST_SUITE_P(Widths, LinkRuns, testing::ValuesIn(engine::supported_vector_widths()),
+                         [](const auto& width) { return engine::to_string(width.param); });
+
+TEST(LinkArrangement, HasEachLinkInOneRowAndInItsOrder) {
+  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+    RandomRuns random(seed);
+    const std::vector<Link> links = random.links(97);
+    const LinkArrangement rows = arrange_links(links, true);
+
+    std::uint32_t next = 0;
+    std::size_t row = 0;
+    for (const LinkRun& run : rows.runs) {
+      ASSERT_EQ(run.first_row, row) << "seed " << seed;
+      ASSERT_EQ(run.row_count % 8, 0U) << "seed " << seed;
+      for (; row < run.first_row + run.row_count; ++row) {
+        const bool is_used = (rows.used_rows[row / 8] >> row % 8 & 1) != 0;
+        ASSERT_EQ(is_used, rows.link_of_row[row] != kEmpty) << "seed " << seed << ", row " << row;
+        if (!is_used) continue;
+        ASSERT_EQ(rows.link_of_row[row], next) << "seed " << seed;
+        if (!run.is_gathered) {
+          ASSERT_EQ(links[next].mat_a, run.first_a + row - run.first_row) << "seed " << seed;
+          ASSERT_EQ(links[next].mat_b, run.first_b + row - run.first_row) << "seed " << seed;
+        }
+        ++next;
+      }
+    }
+    ASSERT_EQ(next, links.size()) << "seed " << seed;
+    ASSERT_EQ(row, rows.link_of_row.size()) << "seed " << seed;
+  }
+}
+
+TEST(LinkArrangement, MakesOneRunOfAChainAndOneOfAllRowsOfAGrid) {
+  EXPECT_EQ(arrange_links(chain(0, 70), true).runs.size(), 1U);
+  EXPECT_EQ(arrange_links(chain(3, 70, 30), true).runs.size(), 1U);
+
+  std::vector<Link> rows_of_grid = chain(0, 19);
+  for (const Link& link : chain(20, 19)) rows_of_grid.push_back(link);
+  const LinkArrangement rows = arrange_links(rows_of_grid, true);
+
+  ASSERT_EQ(rows.runs.size(), 1U);
+  EXPECT_EQ(rows.link_of_row[19], kEmpty);
+  EXPECT_EQ(rows.link_of_row[20], 19U);
+}
+
+TEST(LinkArrangement, GathersWhatIsTooShortOrDescends) {
+  EXPECT_TRUE(arrange_links(chain(0, 7), true).runs[0].is_gathered);
+  EXPECT_FALSE(arrange_links(chain(0, 8), true).runs[0].is_gathered);
+  std::vector<Link> descending = chain(0, 30);
+  std::reverse(descending.begin(), descending.end());
+  const LinkArrangement rows = arrange_links(descending, true);
+  ASSERT_EQ(rows.runs.size(), 1U);
+  EXPECT_TRUE(rows.runs[0].is_gathered);
+}
+
+TEST_P(LinkRuns, AddUpLikeAScalarLoopOverTheLinks) {
+  int in_runs = 0;
+  for (std::uint32_t seed = 0; seed < 240; ++seed) {
+    RandomRuns random(seed);
+    const NetworkDescription scene = random.network(1 + static_cast<int>(seed % 3));
+    if (layout_of(scene).is_by_axis()) ++in_runs;
+    World world = make_world(scene, GetParam());
+    world.step();
+
+    std::vector<Vec3> delayed = positions_of(make_world(scene));
+    std::vector<Vec3> position = positions_of(world);
+    for (int n = 1; n < 12; ++n) {
+      move_ports(scene, world, n);
+      for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+        if (scene.mats[i].kind != MatKind::kPort) continue;
+        position[i] = scene.mats[i].position + Vec3(1e-3 * (n % 40), 0, 0);
+      }
+      world.step();
+      const std::vector<Vec3> expected = scalar_forces(scene, position, delayed);
+
+      for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+        ASSERT_EQ(world.link_force(i), expected[i]) << "seed " << seed << ", step " << n << ", MAT "
+                                                    << i << ", " << scene.links.size() << " links";
+      }
+      delayed = position;
+      position = positions_of(world);
+    }
+  }
+  EXPECT_GT(in_runs, 100);  // the others test that gathered links do the same
+}
+
+TEST_P(LinkRuns, MoveTheMatsAsGatheredLinksDo) {
+  for (std::uint32_t seed = 0; seed < 240; ++seed) {
+    RandomRuns random(seed);
+    const NetworkDescription scene = random.network(1 + static_cast<int>(seed % 3));
+    World in_runs = make_world(scene, GetParam());
+    World one_by_one = make_world(gathered(scene), VectorWidth::kSse2);
+    ASSERT_FALSE(layout_of(one_by_one.network().description()).is_by_axis());
+
+    for (int n = 0; n < 60; ++n) {
+      move_ports(scene, in_runs, n);
+      move_ports(scene, one_by_one, n);
+      in_runs.step();
+      one_by_one.step();
+    }
+
+    for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+      ASSERT_EQ(in_runs.position(i), one_by_one.position(i)) << "seed " << seed << ", MAT " << i;
+      ASSERT_EQ(in_runs.velocity(i), one_by_one.velocity(i)) << "seed " << seed << ", MAT " << i;
+      ASSERT_EQ(in_runs.link_force(i), one_by_one.link_force(i)) << "seed " << seed;
+      ASSERT_EQ(Vec3(in_runs.positions().col(i).head<3>()), in_runs.position(i));
+    }
+    // the works are summed in another order
+    const engine::Energy energy = in_runs.energy();
+    const engine::Energy expected = one_by_one.energy();
+    const double rounding = 1e-12 * (1.0 + expected.largest);
+    EXPECT_NEAR(energy.dissipated, expected.dissipated, rounding) << "seed " << seed;
+    EXPECT_NEAR(energy.elastic, expected.elastic, rounding) << "seed " << seed;
+    EXPECT_NEAR(energy.port_work, expected.port_work, rounding) << "seed " << seed;
+    EXPECT_NEAR(energy.residual(), 0.0, rounding) << "seed " << seed;
+  }
+}
+
+TEST_P(LinkRuns, HaveTheSameAccountOnEveryWidthAndGoOnFromASnapshot) {
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    RandomRuns random(seed);
+    const NetworkDescription scene = random.network(1 + static_cast<int>(seed % 3));
+    World narrow = make_world(scene, VectorWidth::kSse2);
+    World world = make_world(scene, GetParam());
+    run(narrow, 40);
+    run(world, 40);
+    EXPECT_EQ(world.energy().dissipated, narrow.energy().dissipated) << "seed " << seed;
+    EXPECT_EQ(world.energy().total(), narrow.energy().total()) << "seed " << seed;
+
+    World restored = make_world(scene, GetParam());
+    restored.restore(narrow.snapshot());
+    run(restored, 40);
+    run(world, 40);
+    EXPECT_EQ(restored.state_hash(), world.state_hash()) << "seed " << seed;
+    EXPECT_EQ(restored.energy().total(), world.energy().total()) << "seed " << seed;
+  }
+}
+
+TEST_P(LinkRuns, OfEveryLengthAddUpAsGatheredLinksDo) {
+  for (const int dimension : {1, 2, 3}) {
+    for (std::uint32_t length = 1; length <= 70; ++length) {
+      NetworkDescription scene = free_cluster(length + 40, 0, 0.0, dimension);
+      scene.links = chain(1, length);
+      for (const Link& link : chain(0, length, 37)) scene.links.push_back(link);
+      EXPECT_EQ(layout_of(scene).is_by_axis(), length >= 8);
+      World in_runs = make_world(scene, GetParam());
+      World one_by_one = make_world(gathered(scene), GetParam());
+      run(in_runs, 20);
+      run(one_by_one, 20);
+      for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+        ASSERT_EQ(in_runs.position(i), one_by_one.position(i))
+            << length << " links, dimension " << dimension << ", MAT " << i;
+      }
+    }
+  }
+}
+
+TEST_P(LinkRuns, StandBesideHeldForcesAndVectorSprings) {
+  NetworkDescription scene = string_in_space(50, 0.05, 1e-3);
+  scene.mats.push_back(port(Vec3(0.2, 0.1, 0.0)));
+  scene.links.push_back({51 + 1, 20, 30.0, 0.1, 0.0, true});
+  ASSERT_TRUE(layout_of(scene).is_by_axis());
+  World in_runs = make_world(scene, GetParam());
+  World one_by_one = make_world(gathered(scene), GetParam());
+
+  for (World* world : {&in_runs, &one_by_one}) {
+    world->set_external_force(7, Vec3(0.01, -0.02, 0.03));
+    for (int n = 0; n < 100; ++n) {
+      world->impose_position(52, Vec3(0.2, 0.1 + 1e-4 * n, 0.0));
+      world->step();
+    }
+  }
+
+  for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+    ASSERT_EQ(in_runs.position(i), one_by_one.position(i)) << i;
+  }
+  EXPECT_NEAR(in_runs.energy().residual(), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace cordis::test
