@@ -94,14 +94,13 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.choice = std::move(planned.rate);
   std::vector<sim::DeviceAtPort> devices;
   if (launch) devices = sim::check_devices(*launch, check.scene, check.problems);
-  sim::check_stability(check.scene, force, check.problems);
-
   constexpr double kBand = 100.0;
   if (check.options.band_hz == 0.0) {
     check.options.band_hz = check.scene.accuracy ? check.scene.accuracy->band_hz : kBand;
   }
   const engine::NetworkDescription& network = check.scene.network;
   check.plan = plan::plan_of(network, check.options.band_hz);
+  sim::check_stability(check.scene, check.plan.stability, force, check.problems);
   if (!check.scene.ports.empty()) {
     const plan::LiaisonGraph graph = plan::liaison_graph(network);
     for (const scene::Port& port : check.scene.ports)

@@ -15,8 +15,12 @@
 namespace cordis::sim {
 
 void check_stability(const scene::Scene& scene, bool force, config::Problems& problems) {
-  const plan::Stability stability =
-      plan::stability_of(scene.network, plan::liaison_graph(scene.network));
+  check_stability(scene, plan::stability_of(scene.network, plan::liaison_graph(scene.network)),
+                  force, problems);
+}
+
+void check_stability(const scene::Scene& scene, const plan::Stability& stability, bool force,
+                     config::Problems& problems) {
   if (stability.holds()) return;
 
   const plan::StepBound& bound = stability.certified;

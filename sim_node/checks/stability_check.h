@@ -5,6 +5,7 @@
 #include <string>
 
 #include "node/config/problem.h"
+#include "sim_node/plan/plan.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
@@ -13,6 +14,9 @@ namespace cordis::sim {
 /// (then a warning); a warning where it is not certified in every pose and state. The place is that
 /// of the liaison that sets the limit. `cordis check` says more.
 void check_stability(const scene::Scene& scene, bool force, config::Problems& problems);
+/// @param stability  of its network: of a large one it takes seconds to find
+void check_stability(const scene::Scene& scene, const plan::Stability& stability, bool force,
+                     config::Problems& problems);
 
 /// Why a scene has diverged that did so at this MAT first: the strongest liaison at it, with its
 /// place, and how the sum of all there stands to the limit. Not in real time.

@@ -18,6 +18,7 @@ constexpr double kFinest = 1.01;     // of a factor
 constexpr double kLargest = 1024.0;  // of a factor
 constexpr int kRounds = 3;           // of giving the sets what is left
 constexpr double kSmallest = 1.0 / kLargest;
+constexpr double kWork = 1e6;  // sets times what a row bound goes through: some seconds
 
 /// The numbers of partners of a graph, raised set by set.
 class Partners {
@@ -44,6 +45,15 @@ class Partners {
       }
     }
     return row_weights(graph_, step_).number < kLimit;
+  }
+
+  /// What a row bound goes through.
+  double size_of_rows() const {
+    double size = static_cast<double>(graph_.edges.size() + graph_.inverse_mass.size());
+    for (const ContactBound& crowd : graph_.crowds) {
+      size += static_cast<double>(crowd.members.size());
+    }
+    return size;
   }
 
   /// Raises, or lowers, the factors of these sets together as far as the step stays stable.
@@ -77,7 +87,8 @@ class Partners {
   }
 
   /// Half of what all sets can grow by together; of the rest one set after the other takes half of
-  /// what it can, in some rounds, first the one that can grow the most by itself; then all of it.
+  /// what it can, in some rounds, first the one that can grow the most by itself; then all of it. Of
+  /// too many sets what all can grow by together.
   const std::vector<double>& find_factors() {
     std::vector<std::size_t> sets;
     for (std::size_t set = 0; set < grows_.size(); ++set) {
@@ -86,6 +97,7 @@ class Partners {
     if (sets.empty()) return factor_;
     find_factor(sets);
     if (sets.size() == 1 || factor_[sets.front()] <= 1.0) return factor_;
+    if (static_cast<double>(sets.size()) * size_of_rows() > kWork) return factor_;
     for (const std::size_t set : sets) factor_[set] = std::sqrt(factor_[set]);
     const std::vector<double> base = factor_;
     std::vector<double> alone = base;
