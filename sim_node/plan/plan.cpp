@@ -19,7 +19,8 @@
 namespace cordis::plan {
 namespace {
 
-constexpr double kCertainContact = 1.0;  // K'
+constexpr double kCertainContact = 1.0;    // K'
+constexpr double kCertainVariation = 1.0;  // likewise
 
 double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mats) {
   double most = 0.0;  // of 1 / m
@@ -178,8 +179,14 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
         "its friction is solved beside implicit dampers, for which no limit is known"};
   }
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
-  if (!contact || contact->stiffness <= kCertainContact) return {};
-  return Uncertainty{contact->liaison, "each touch of it may gain energy, for its K' is above 1"};
+  if (contact && contact->stiffness > kCertainContact) {
+    return Uncertainty{contact->liaison, "each touch of it may gain energy, for its K' is above 1"};
+  }
+  const std::optional<VaryingSlope> varying = varying_slope_of(network, graph);
+  if (!varying || varying->stiffness <= kCertainVariation) return {};
+  return Uncertainty{
+      varying->liaison,
+      "each passage over its bend may gain energy, for its K' varies by more than 1"};
 }
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
@@ -233,6 +240,25 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
 std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& network,
                                             const LiaisonGraph& graph) {
   return worst_contact_among(network, graph, /*clamped=*/false);
+}
+
+std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& network,
+                                             const LiaisonGraph& graph) {
+  const double weight = limit_weights(network, Limit::kStable).stiffness;
+  std::optional<VaryingSlope> most;
+  const auto consider = [&](LiaisonId liaison, double variation, double inverse_mass) {
+    const double stiffness = weight * variation * inverse_mass * network.step * network.step;
+    if (stiffness > (most ? most->stiffness : 0.0)) most = {liaison, stiffness};
+  };
+  for (const Edge& edge : graph.edges) {
+    consider(edge.liaison, edge.variation,
+             graph.inverse_mass[edge.mat_a] + graph.inverse_mass[edge.mat_b]);
+  }
+  for (const ContactBound& crowd : graph.crowds) {
+    consider({LiaisonKind::kSet, crowd.set}, crowd.variation,
+             lightest(graph, crowd.members) + lightest(graph, crowd.others));
+  }
+  return most;
 }
 
 Plan plan_of(const engine::NetworkDescription& network, double band_hz) {

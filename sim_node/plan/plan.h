@@ -65,6 +65,19 @@ struct ContactGain {
 std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& network,
                                             const LiaisonGraph& graph);
 
+/// The liaison whose slope varies the most for its masses: between two samples on either side of a bend
+/// the scheme changes the energy of a passage, as that of a contact.
+struct VaryingSlope {
+  LiaisonId liaison;
+  /// K' of what it varies by: dt^2 Slope::variation / reduced mass, times 4 over the K' at which the
+  /// integrator becomes unstable.
+  double stiffness = 0.0;
+};
+
+/// None when all slopes are constant.
+std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& network,
+                                             const LiaisonGraph& graph);
+
 /// The promises for one network at its step.
 struct Plan {
   Stability stability;

@@ -161,6 +161,28 @@ TEST(Partners, UpToTheCertifiedNumberAreStable) {
   EXPECT_GE(certified, 395u);
 }
 
+TEST(Partners, OfManyLargeSetsAreRaisedTogetherAlone) {
+  // Sets of 27 masses. The first is stable with 19 partners a mass, all others with 39.
+  const auto soft_partners = [](int count) {
+    NetworkDescription all = lattice(3, 0.02, contact(100.0), 0.01, 0.01);
+    const NetworkDescription soft = lattice(3, 0.02, contact(50.0), 0.01, 0.01);
+    all.state_machines.push_back(soft.state_machines[0]);
+    while (all.sets.size() < static_cast<std::size_t>(count)) {
+      engine::SetLiaison set = soft.sets[0];
+      set.state_machine = 1;
+      for (std::uint32_t& mat : set.set_p) mat += static_cast<std::uint32_t>(all.mats.size());
+      all.mats.insert(all.mats.end(), soft.mats.begin(), soft.mats.end());
+      all.sets.push_back(set);
+    }
+    const plan::Stability stability = plan_of(all, 10.0).stability;
+    EXPECT_TRUE(stability.holds());
+    EXPECT_NEAR(stability.sets.front().least, 19.0, 1.0);
+    return stability.sets.back().certified.front();
+  };
+  EXPECT_EQ(soft_partners(10), 26u) << "all there are";
+  EXPECT_NEAR(soft_partners(200), 19.0, 1.0);
+}
+
 TEST(Partners, MakeTheRateOfACrowdHighEnough) {
   const NetworkDescription scene = [] {
     NetworkDescription crowd = lattice(5, 0.012, state_machine(300.0), 0.01, 0.5);

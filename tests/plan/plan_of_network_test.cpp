@@ -1,10 +1,13 @@
 // tests/plan/plan_of_network_test.cpp
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/world.h"
 #include "sim_node/plan/plan.h"
 #include "tests/engine/programs.h"
 #include "tests/plan/networks.h"
@@ -91,6 +94,39 @@ TEST(Plan, IsNotCertainOfAContactThatGainsEnergyAtEachTouch) {
   ASSERT_TRUE(stiff.uncertainty.has_value());
   EXPECT_EQ(stiff.uncertainty->liaison.index, 0u);
   EXPECT_TRUE(stability_at(500.0).holds());
+}
+
+TEST(Plan, IsNotCertainOfALawThatBendsTooSharplyForItsStep) {
+  // A mass on a spring that is flat from 10 mm on, let go of at 0.3 m and more: no tangent is above K.
+  const auto scene_at = [](double stiffness, double start) {
+    const engine::Table law{{-0.01, 0.0, 0.01}, {-0.01 * stiffness, 0.0, 0.01 * stiffness}};
+    NetworkDescription scene =
+        mass_on_law(1, 0.001, Vec3(start, 0, 0), Vec3::Zero(), state_machine(0.0, law), 0.0);
+    scene.step = 1e-3;
+    return scene;
+  };
+  const auto growth = [&](double stiffness) {
+    double most = 0.0;
+    for (int place = 0; place < 8; ++place) {
+      const NetworkDescription scene = scene_at(stiffness, 0.3 + 0.0137 * place);
+      engine::World world(std::make_shared<const engine::Network>(scene));
+      const double start = world.energy().elastic;
+      for (int n = 0; n < 20000; ++n) {
+        world.step();
+        if (n % 10 == 0) most = std::max(most, world.energy().integration_error() / start);
+      }
+    }
+    return most;
+  };
+  const plan::Stability sharp = plan_of(scene_at(2000.0, 0.3), 10.0).stability;  // K' = 2
+  EXPECT_FALSE(sharp.holds());
+  EXPECT_FALSE(sharp.diverges());
+  ASSERT_TRUE(sharp.uncertainty.has_value());
+  EXPECT_EQ(sharp.uncertainty->liaison.index, 0u);
+  EXPECT_GT(growth(2000.0), 3.0);
+  EXPECT_TRUE(plan_of(scene_at(900.0, 0.3), 10.0).stability.holds());
+  EXPECT_TRUE(plan_of(scene_at(20.0, 0.3), 10.0).stability.holds());
+  EXPECT_LT(growth(20.0), 0.2);
 }
 
 TEST(Plan, IsNotCertainOfAMaxwellElementThatStartsTooStrong) {

@@ -112,6 +112,33 @@ TEST(Slope, OfAnExpressionThatJumpsOrGrowsBeyondAllEnergyIsInUncertainty) {
             nullptr);
 }
 
+TEST(Slope, VariesByWhatIsBetweenTheSteepestAndTheFlattestPiece) {
+  const Term e = q(Quantity::kElongation);
+  const Term d = q(Quantity::kDistance);
+  Reach reach{0.1};
+  reach.brought = 0.4;
+  const auto variation = [&](const engine::StateMachine& all) {
+    return largest_slope(all, 0.1, 1, reach).variation;
+  };
+  EXPECT_EQ(variation(state_machine(70.0)), 0.0);
+  EXPECT_NEAR(variation(state_machine(0.0, expression_law(80.0 * e + 3.0 * q(Quantity::kSpeed)))),
+              0.0, 1e-9);
+  EXPECT_EQ(variation(state_machine(7.0, engine::Power{50.0, 1.0})), 0.0);
+  // Constant beyond its ends; from 800 down to -20 N/m.
+  EXPECT_NEAR(variation(state_machine(5.0, engine::Table{{-0.01, 0.0, 0.01}, {-8.0, 0.0, 1.0}})),
+              800.0, 1e-9);
+  EXPECT_NEAR(variation(state_machine(5.0, engine::Table{{-0.01, 0.0, 0.01}, {-8.0, 0.0, -0.2}})),
+              820.0, 1e-9);
+  EXPECT_NEAR(
+      variation(state_machine(0.0, expression_law(60.0 * e + one(Operation::kTanh, 90.0 * e)))),
+      90.0, 2.0);
+  EXPECT_NEAR(variation(state_machine(0.0, expression_law(40.0 * one(Operation::kSin, 3.0 * d)))),
+              240.0, 10.0);
+  engine::StateMachine limited = state_machine(30.0);
+  limited.states[0].force_limit = 1.0;
+  EXPECT_EQ(variation(limited), 30.0);
+}
+
 TEST(Enclosure, IsNeverBelowTheSlopeAtAnyPlace) {
   const Term d = q(Quantity::kDistance);
   const Term v = q(Quantity::kSpeed);
@@ -123,7 +150,9 @@ TEST(Enclosure, IsNeverBelowTheSlopeAtAnyPlace) {
     const auto& program = std::get<engine::Expression>(law).program;
     plan::LinkBox box{{0.1, 1.1}, {-2.0, 1.5}, 0.0, {}, {}};
     const plan::SteepestSlopes most = plan::steepest_slopes(program, box);
+    const double least = plan::flattest_slope(program, box, most.over_distance);
     double steepest = 0.0;
+    double flattest = most.over_distance;
     double viscous = 0.0;
     constexpr double kNear = 1e-6;
     for (int i = 0; i < 60; ++i) {
@@ -131,14 +160,18 @@ TEST(Enclosure, IsNeverBelowTheSlopeAtAnyPlace) {
         const double elongation = 0.1 + i / 60.0;
         const double speed = -2.0 + 3.5 * j / 60.0;
         const auto tension = [&](double x, double y) { return elastic_tension(law, {x, x, y}); };
-        steepest = std::max(
-            steepest, (tension(elongation + kNear, speed) - tension(elongation, speed)) / kNear);
+        const double slope =
+            (tension(elongation + kNear, speed) - tension(elongation, speed)) / kNear;
+        steepest = std::max(steepest, slope);
+        flattest = std::min(flattest, slope);
         viscous = std::max(
             viscous, (tension(elongation, speed + kNear) - tension(elongation, speed)) / kNear);
       }
     }
     EXPECT_GE(most.over_distance, steepest - 1e-4) << l;
     EXPECT_LE(most.over_distance, 1.2 * steepest + 1e-4) << l;
+    EXPECT_LE(least, flattest + 1e-4) << l;
+    EXPECT_GE(least, flattest - 0.2 * steepest - 1e-4) << l;
     EXPECT_GE(most.over_speed, viscous - 1e-4) << l;
     EXPECT_LE(most.over_speed, 1.2 * viscous + 1e-4) << l;
   }

@@ -120,6 +120,8 @@ std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double
     if (contact && contact->stiffness > 0.0) {
       step = std::min(step, part * network.step / std::sqrt(contact->stiffness));
     }
+    const auto varying = plan::varying_slope_of(network, graph);
+    if (varying) step = std::min(step, part * network.step / std::sqrt(varying->stiffness));
     if (std::abs(step - network.step) < 1e-9 * step) {
       return stability.holds() ? std::optional(network) : std::nullopt;
     }

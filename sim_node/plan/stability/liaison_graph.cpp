@@ -69,6 +69,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   side.viscosity = slope.viscosity;
   side.set = index;
   side.bounded = slope.bounded;
+  side.variation = slope.variation;
   side.at_start = bounds.at_start;
   graph.crowds.push_back(side);
 
@@ -174,7 +175,8 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
                            slope.stiffness,
                            slope.viscosity,
                            {LiaisonKind::kStateLink, index++},
-                           slope.bounded});
+                           slope.bounded,
+                           slope.variation});
   }
   index = 0;
   for (const engine::MaxwellLink& link : network.maxwell_links) {

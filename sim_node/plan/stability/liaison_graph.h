@@ -29,7 +29,8 @@ struct Edge {
   double stiffness = 0.0;  ///< [N/m]
   double viscosity = 0.0;  ///< [N s/m]
   LiaisonId liaison;
-  bool bounded = true;  ///< false: its law has no largest slope of its own; see Reach
+  bool bounded = true;     ///< false: its law has no largest slope of its own; see Reach
+  double variation = 0.0;  ///< Slope::variation [N/m]
 };
 
 /// One side of a set liaison: each member touches at most so many of the others at once. The
@@ -44,6 +45,7 @@ struct ContactBound {
   double viscosity = 0.0;          ///< of one pair [N s/m]
   std::uint32_t set = 0;           ///< index in NetworkDescription::sets
   bool bounded = true;             ///< as Edge::bounded
+  double variation = 0.0;          ///< of one pair, as Edge::variation [N/m]
   std::uint32_t at_start = 0;      ///< the most partners of any mass of the set at the start
   bool counted = true;  ///< false: beyond touch_distance(), where nothing is counted in a run
 };

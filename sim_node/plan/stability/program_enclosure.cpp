@@ -320,29 +320,32 @@ class Evaluation {
   const LinkBox& box_;
 };
 
-/// The largest of one slope over the box.
-double steepest(const engine::Program& program, const LinkBox& whole, std::size_t variable) {
+/// The largest of one slope over the box, or of what is read off it.
+/// @param read    a number of the interval of a slope, and no less for a wider one
+/// @param enough  of a bound, and of what is reached at places: near enough to end the search
+template <class Read, class Enough>
+double steepest(const engine::Program& program, const LinkBox& whole, std::size_t variable,
+                const Read& read, const Enough& enough, int bisections) {
   struct SubBox {
     LinkBox box;
     double most;
     bool operator<(const SubBox& other) const { return most < other.most; }
   };
-  constexpr int kBisections = 2000;
-  constexpr double kNearEnough = 1.02;
-  const auto sub_box = [&](const LinkBox& box) {
-    return SubBox{box, std::max(0.0, Evaluation(box).enclose(program).slope[variable].high)};
+  const auto largest_in = [&](const LinkBox& box) {
+    return read(Evaluation(box).enclose(program).slope[variable]);
   };
+  const auto sub_box = [&](const LinkBox& box) { return SubBox{box, largest_in(box)}; };
   std::priority_queue<SubBox> boxes;
   boxes.push(sub_box(whole));
-  double reached = 0.0;  // at places: no bound is below it
+  double reached = -std::numeric_limits<double>::infinity();  // at places: no bound is below it
   const double distance = whole.distance.high - whole.distance.low;
   const double speed = whole.speed.high - whole.speed.low;
-  for (int n = 0; n < kBisections && boxes.top().most > kNearEnough * reached; ++n) {
+  for (int n = 0; n < bisections && !enough(boxes.top().most, reached); ++n) {
     SubBox top = boxes.top();
     LinkBox place = top.box;
     place.distance.low = place.distance.high = 0.5 * (top.box.distance.low + top.box.distance.high);
     place.speed.low = place.speed.high = 0.5 * (top.box.speed.low + top.box.speed.high);
-    const double here = Evaluation(place).enclose(program).slope[variable].high;
+    const double here = largest_in(place);
     if (std::isfinite(here)) reached = std::max(reached, here);
     const bool over_distance = (top.box.distance.high - top.box.distance.low) * speed >=
                                (top.box.speed.high - top.box.speed.low) * distance;
@@ -360,10 +363,27 @@ double steepest(const engine::Program& program, const LinkBox& whole, std::size_
   return boxes.top().most;
 }
 
+constexpr double kNearEnough = 0.02;
+constexpr int kBisections = 2000;  // for the largest slope, which decides the step
+constexpr int kFewBisections = 200;
+
 }  // namespace
 
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box) {
-  return {steepest(program, box, 0), steepest(program, box, 1)};
+  const auto rise = [](const Interval& slope) { return std::max(0.0, slope.high); };
+  const auto enough = [](double most, double reached) {
+    return most <= (1.0 + kNearEnough) * std::max(0.0, reached);
+  };
+  return {steepest(program, box, 0, rise, enough, kBisections),
+          steepest(program, box, 1, rise, enough, kBisections)};
+}
+
+double flattest_slope(const engine::Program& program, const LinkBox& box, double largest) {
+  const auto fall = [](const Interval& slope) { return -slope.low; };
+  const auto enough = [largest](double most, double reached) {
+    return most <= reached + kNearEnough * largest;
+  };
+  return -steepest(program, box, 0, fall, enough, kFewBisections);
 }
 
 Interval values_of(const engine::Program& program, const LinkBox& box) {

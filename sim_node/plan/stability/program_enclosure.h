@@ -31,6 +31,10 @@ struct SteepestSlopes {
 /// where so many bisections are enough. Precondition: well-formed, of quantities known to laws.
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box);
 
+/// No tangent of the program over the distance in a box is below this, found likewise with fewer
+/// bisections, to 2 % of this largest slope; -infinity where SteepestSlopes has infinity.
+double flattest_slope(const engine::Program& program, const LinkBox& box, double largest);
+
 /// What the value lies within over the box.
 Interval values_of(const engine::Program& program, const LinkBox& box);
 

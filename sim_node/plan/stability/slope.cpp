@@ -103,6 +103,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
               reach.mass_a,
               reach.mass_b};
   if (turns) box.distance.low = std::max(box.distance.low, 0.0);
+  const Interval within = box.distance;
   const SteepestSlopes near = steepest_slopes(program, box);
   box.distance = {turns ? 0.0 : -kFar, kFar};
   box.speed = {-kFar, kFar};
@@ -115,7 +116,11 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   }
   slope.stiffness += near.over_distance;
   slope.viscosity += near.over_speed;
-  if (same(far.over_distance, near.over_distance) && same(far.over_speed, near.over_speed)) return;
+  const bool has_largest =
+      same(far.over_distance, near.over_distance) && same(far.over_speed, near.over_speed);
+  if (!has_largest) box.distance = within;
+  slope.variation += near.over_distance - flattest_slope(program, box, near.over_distance);
+  if (has_largest) return;
   slope.bounded = false;
   if (!stretch.confined) slope.uncertainty = kConfinesNothing;
 }
@@ -123,6 +128,24 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
 /// What an expression without a largest slope has where it is looked at.
 double sampled(const engine::Law& law, const engine::LawRange& range) {
   return engine::largest_slope(law, range).value;
+}
+
+/// By how much the slope of a law along the link varies where its largest one is this; of an expression
+/// nothing, add_expression() has it.
+double variation_of(const engine::Law& law, double largest) {
+  if (const auto* power = std::get_if<engine::Power>(&law)) {
+    return power->exponent == 1.0 ? 0.0 : largest;
+  }
+  const auto* table = std::get_if<engine::Table>(&law);
+  if (table == nullptr) {
+    return largest;  // Lennard-Jones falls by less than a hundredth of how it rises
+  }
+  double least = 0.0;  // beyond its ends
+  for (std::size_t i = 1; i < table->argument().size(); ++i) {
+    least = std::min(least, (table->value()[i] - table->value()[i - 1]) /
+                                (table->argument()[i] - table->argument()[i - 1]));
+  }
+  return largest - least;
 }
 
 Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, const Reach& reach) {
@@ -145,6 +168,7 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   } else {
     const engine::LawSlope law = engine::largest_slope(state.elasticity, spring);
     slope.stiffness += law.value;
+    slope.variation += variation_of(state.elasticity, law.value);
     slope.bounded = slope.bounded && law.bounded;
     if (is_jump(state.elasticity)) slope.uncertainty = kJumps;
     const auto* power = std::get_if<engine::Power>(&state.elasticity);
@@ -161,6 +185,9 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     const engine::LawSlope law = engine::largest_slope(state.dissipation, damper);
     slope.viscosity += law.value;
     slope.bounded = slope.bounded && law.bounded;
+  }
+  if (std::isfinite(state.force_limit)) {
+    slope.variation = std::max(slope.variation, slope.stiffness);  // it is flat beyond
   }
   const bool follows = elastic != nullptr || is_power;
   if (turns && follows && state.pushes && !slope.bounded && slope.uncertainty == nullptr &&
@@ -255,6 +282,7 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
       slope.uncertainty = kBeginsAnywhere;
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
+    largest.variation = std::max(largest.variation, slope.variation);
     largest.bounded = largest.bounded && slope.bounded;
     // Each of several states holds only where its exits let it: its slope beyond is no uncertainty.
     const bool may_end = !state_machine.is_stateless() && slope.uncertainty == kPullsWhereEndsMeet;

@@ -26,6 +26,8 @@ struct Slope {
   double stiffness = 0.0;  ///< [N/m]
   double viscosity = 0.0;  ///< [N s/m]
   bool bounded = true;     ///< false: they hold within the Reach alone
+  /// By how much the slope along the liaison varies in one of its states [N/m]: 0 for a spring.
+  double variation = 0.0;
   /// Why nothing bounds them, not even the Reach; null: something does.
   const char* uncertainty = nullptr;
 };
