@@ -24,11 +24,12 @@ const char* name_of(Role role) noexcept;  ///< "mass" or "liaison", as a scene s
 
 /// What is common to all axes of a device, whoever drives it. SI units.
 struct AxisLayout {
-  int count = 1;              ///< 1..16
-  double lowest_m = -0.04;    ///< lower end of travel; rest is 0, up is positive
-  double highest_m = 0.0;     ///< upper end of travel
-  double rate_hz = 1000.0;    ///< samples per second
-  double force_limit_n = 20;  ///< largest force the device gives or measures, either direction
+  int count = 1;                  ///< 1..16
+  double lowest_m = -0.04;        ///< lower end of travel; rest is 0, up is positive
+  double highest_m = 0.0;         ///< upper end of travel
+  double rate_hz = 1000.0;        ///< samples per second
+  bool has_other_player = false;  ///< another node plays the same device (`standby_for`)
+  double force_limit_n = 20;      ///< largest force the device gives or measures, either direction
   // What else bounds the forces of a motor that a driver commands by itself, role liaison.
   double slew_n_per_s = 5000.0;
   double power_w = 40.0;

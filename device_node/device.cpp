@@ -65,7 +65,10 @@ Device::Device(LoadedDevice device, dds::Participant& participant, dds::Particip
         if (status.text().empty()) status.text(what_it_is(config_));
         // in lockstep the scene's answers set the pace
         status.target_rate_hz(clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz);
-      }) {}
+      }) {
+  if (PointerPort* const port = driver_->pointer_port())
+    pointer_.emplace(participant, config_, *port, epoch);
+}
 
 void Device::run() {
   spdlog::info("{}, waiting for a scene that plays '{}'", what_it_is(config_), config_.name);

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "device_node/device_config.h"
 #include "device_node/exchange.h"
 #include "device_node/loop_meter.h"
 #include "device_node/phase_log.h"
+#include "device_node/pointer_link.h"
 #include "device_node/scene_watch.h"
 #include "idl/gesture.h"
 #include "node/config/launch.h"
@@ -57,8 +59,9 @@ class Device {
   PhaseLog phases_;
   bool realtime_asked_ = false;
   bool silence_reported_ = false;
-  SceneWatch scenes_;             // its thread reads what stands above
-  node::StatusPublisher status_;  // likewise
+  SceneWatch scenes_;                   // its thread reads what stands above
+  node::StatusPublisher status_;        // likewise
+  std::optional<PointerLink> pointer_;  // likewise; where the driver follows the hand on a page
 };
 
 }  // namespace cordis::device

@@ -192,6 +192,8 @@ std::unique_ptr<Driver> read_drivers(config::MappingReader& reader, DeviceConfig
     config::Value section = reader.optional_mapping(entry.name);
     if (!in_use && !present) continue;
     if (!present) section = config::Value::mapping({}, reader.place_of("driver"));
+    if (entry.beneath != nullptr && reader.has(entry.beneath))
+      section = config::overlay(reader.optional_mapping(entry.beneath), section);
     auto driver = entry.make(section, config.layout, problems);
     if (in_use) chosen = std::move(driver);
   }
@@ -247,6 +249,7 @@ LoadedDevice read_device(const config::Value& mapping, const std::string& node,
   reader.optional_integer("cordis", 1, 1, 1);
   device.config.limits = config::read_device_limits(reader);
   device.config.layout = layout_of(device.config.limits);
+  device.config.layout.has_other_player = played.name != node;
   device.config.end_effector_map =
       read_end_effector_map(reader, device.config.layout.count, problems);
   read_guards(reader, device.config, problems);

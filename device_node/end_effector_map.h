@@ -36,6 +36,9 @@ class EndEffectorMap {
   AxisValues axes_of(const AxisValues& coordinate_m) const noexcept;         ///< x = A+ q
   AxisValues coordinate_forces_of(const AxisValues& axis_n) const noexcept;  ///< F = (A+)^T f
 
+  /// True if the coordinates are the axes.
+  bool is_identity() const noexcept { return identity_; }
+
   double entry(int coordinate, int axis) const noexcept {
     return map_[static_cast<std::size_t>(coordinate)][static_cast<std::size_t>(axis)];
   }

@@ -250,7 +250,7 @@ void Exchange::record_phase(bool in_time) noexcept {
       present_ && answers_.has_any() && !other && unanswered_s > config_.force_guard.watchdog_s;
   if (present_ && in_time) {
     meter_.set_phase(Phase::kRunning);
-  } else if (present_ && other) {
+  } else if (driver_.is_yielding() || (present_ && other)) {
     meter_.set_phase(Phase::kStandby);
   } else if (!present_ || answers_.has_any()) {
     meter_.set_phase(driver_.is_let_go() ? Phase::kDisconnected : Phase::kLost);

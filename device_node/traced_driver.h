@@ -35,6 +35,8 @@ class TracedDriver final : public Driver {
   bool has_motors() const noexcept override { return driver_->has_motors(); }
   BoardWatchdog board_watchdog() const noexcept override { return driver_->board_watchdog(); }
   bool is_let_go() const noexcept override { return driver_->is_let_go(); }
+  bool is_yielding() const noexcept override { return driver_->is_yielding(); }
+  PointerPort* pointer_port() noexcept override { return driver_->pointer_port(); }
   void let_go() noexcept override { driver_->let_go(); }
   void stop() noexcept override;
 

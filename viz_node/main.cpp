@@ -5,12 +5,14 @@
 #include <spdlog/spdlog.h>
 
 #include "node/command_listener.h"
+#include "node/dds/writer.h"
 #include "node/instance_lock.h"
 #include "node/node_main.h"
 #include "node/status.h"
 #include "node/stop.h"
 #include "node/time.h"
 #include "viz_node/command_relay.h"
+#include "viz_node/pointer_desk.h"
 #include "viz_node/scene_listener.h"
 #include "viz_node/scene_mirror.h"
 #include "viz_node/viz_config.h"
@@ -61,13 +63,18 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   dds::Participant participant(joined);
   viz::SceneMirror mirror(config.rate_hz);
   viz::CommandRelay relay(participant, start.epoch);
+  dds::Writer<msg::PointerTarget> targets(participant, dds::Topic::kPointerTarget);
+  viz::PointerDesk pointers(start.epoch, [&targets](msg::PointerTarget& target) {
+    static_cast<void>(targets.write(target));  // the next one replaces it
+  });
   viz::WebServer server({.node = joined.node,
                          .session = joined.session,
                          .address = config.address,
                          .port = config.port,
                          .folder = viz::page_folder()},
-                        mirror, [&relay](const viz::PageCommand& command) { relay.send(command); });
-  const viz::SceneListener listener(participant, mirror, relay);
+                        mirror, pointers,
+                        [&relay](const viz::PageCommand& command) { relay.send(command); });
+  const viz::SceneListener listener(participant, mirror, relay, pointers);
   const node::StatusPublisher publisher(
       participant, msg::KIND_VIZ_NODE, start.epoch,
       [&](msg::NodeStatus& status) { fill(status, mirror, server, config.rate_hz); });

@@ -8,6 +8,7 @@
 #include <thread>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <spdlog/spdlog.h>
 
@@ -92,7 +93,8 @@ struct SceneListener::Impl {
         sound(participant, dds::Topic::kSound),
         events(participant, dds::Topic::kEvents),
         status(participant, dds::Topic::kStatus),
-        reply(participant, dds::Topic::kReply) {}
+        reply(participant, dds::Topic::kReply),
+        pointer(participant, dds::Topic::kPointerState) {}
 
   Follower<msg::SceneDescription> description;
   Follower<msg::SceneFrame> frame;
@@ -101,13 +103,19 @@ struct SceneListener::Impl {
   Follower<msg::SceneEvents> events;
   Follower<msg::NodeStatus> status;
   Follower<msg::ControlReply> reply;
+  Follower<msg::PointerState> pointer;
 };
 
 SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
-                             const CommandRelay& relay)
+                             const CommandRelay& relay, PointerDesk& pointers)
     : impl_(std::make_unique<Impl>(participant)) {
-  impl_->description.follow(
-      [&mirror](msg::SceneDescription&& message) { return mirror.take(std::move(message)); });
+  impl_->description.follow([&mirror, &pointers](msg::SceneDescription&& message) {
+    const std::vector<msg::PortDescription> ports = message.ports();
+    const std::vector<msg::PortFrame> frames = message.port_frames();
+    std::string fault = mirror.take(std::move(message));
+    if (fault.empty()) pointers.describe(ports, frames, node::monotonic_nsec());
+    return fault;
+  });
   impl_->frame.follow([&mirror](msg::SceneFrame&& message) {
     return mirror.take(std::move(message), node::monotonic_nsec());
   });
@@ -123,6 +131,10 @@ SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
   });
   impl_->reply.follow([&mirror, &relay](msg::ControlReply&& message) {
     if (relay.is_mine(message)) mirror.take(std::move(message));
+    return std::string();
+  });
+  impl_->pointer.follow([&pointers](msg::PointerState&& message) {
+    pointers.take(message, node::monotonic_nsec());
     return std::string();
   });
 }

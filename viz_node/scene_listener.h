@@ -5,18 +5,20 @@
 
 #include "node/dds/participant.h"
 #include "viz_node/command_relay.h"
+#include "viz_node/pointer_desk.h"
 #include "viz_node/scene_mirror.h"
 
 namespace cordis::viz {
 
-/// Reads scene/description, scene/frame, scene/signals, scene/sound, scene/events, node/status and the replies
-/// to the pages, one thread per topic, so that a large frame does not hold up a status. Says in the
-/// log what it refuses, once per reason.
+/// Reads scene/description, scene/frame, scene/signals, scene/sound, scene/events, node/status,
+/// pointer/state and the replies to the pages, one thread per topic, so that a large frame does not
+/// hold up a status. Says in the log what it refuses, once per reason.
 class SceneListener {
  public:
-  /// @param mirror, relay  outlive the listener
+  /// @param mirror, relay, pointers  outlive the listener
   /// @throws std::runtime_error when DDS refuses
-  SceneListener(dds::Participant& participant, SceneMirror& mirror, const CommandRelay& relay);
+  SceneListener(dds::Participant& participant, SceneMirror& mirror, const CommandRelay& relay,
+                PointerDesk& pointers);
   ~SceneListener();
   SceneListener(const SceneListener&) = delete;
   SceneListener& operator=(const SceneListener&) = delete;

@@ -176,11 +176,13 @@ void OfflineSession::load_launch(const std::string& file,
     if (node.program != "device_node") continue;
     device::LoadedDevice loaded = device::load_device(launch, node, problems);
     sim::DeviceExchange* simulated = simulation().find(loaded.config.device_id);
-    if (simulated == nullptr) continue;
+    if (simulated == nullptr || loaded.config.name != node.name) continue;  // a standby plays live
     if (loaded.config.driver != "mock" && loaded.config.driver != "script" &&
         loaded.config.driver != "replay") {
+      const std::string why =
+          loaded.config.driver == "pointer" ? "' follows the hand on a page" : "' is hardware";
       warnings_.push_back("the ports of '" + loaded.config.name + "' rest: its driver '" +
-                          loaded.config.driver + "' is hardware");
+                          loaded.config.driver + why);
       continue;
     }
     devices_.push_back(std::make_unique<SimulatedDevice>(std::move(loaded), *simulated));

@@ -14,6 +14,8 @@ enum class BoardWatchdog : std::uint8_t {
   kUnknown  ///< not known: expect that the board keeps its last force
 };
 
+struct PointerPort;  // device_node/drivers/pointer_port.h
+
 /// One device as its loop sees it: sensors to read, motors to write.
 ///
 /// What the two carry depends on the role:
@@ -71,6 +73,12 @@ class Driver {
   /// True if write() returns false because the motors have been let go of outside this loop: by the
   /// board, in an emergency stop for instance, or by the guardian.
   virtual bool is_let_go() const noexcept { return false; }
+
+  /// True if read() returns false because the driver leaves the device to the next strongest node.
+  virtual bool is_yielding() const noexcept { return false; }
+
+  /// Where the hand on a page is handed in; null: the driver follows none.
+  virtual PointerPort* pointer_port() noexcept { return nullptr; }
 
   /// A scene in lockstep is silent: motors off until the next write(), for then forces grow again.
   virtual void let_go() noexcept {}

@@ -17,6 +17,10 @@ struct DriverEntry {
   /// returns nothing, when the mapping has errors or there have been errors before.
   std::unique_ptr<Driver> (*make)(const config::Value& section, const AxisLayout& layout,
                                   config::Problems& problems);
+
+  /// The mapping of another driver that lies beneath the own one: its keys count where the own mapping
+  /// does not say otherwise. Null: none does.
+  const char* beneath = nullptr;
 };
 
 /// All drivers. The first is the default.

@@ -17,23 +17,34 @@ Hand::Hand(const HandSettings& settings, Trajectory target)
 }
 
 void Hand::start() noexcept {
-  position_ = target_.value_at(0.0);
+  place(target_.value_at(0.0));
+}
+
+void Hand::place(double position_m) noexcept {
+  position_ = position_m;
   speed_ = 0.0;
+}
+
+void Hand::follow(double target_m, double target_m_per_s, double grip) noexcept {
+  followed_ = {target_m, target_m_per_s};
+  grip_ = grip;
 }
 
 double Hand::force_on_key_n(double key_m, double key_m_per_s) const noexcept {
   const double overlap = key_m - position_;  // of the finger pressed from above [m]
   if (!settings_.holds && overlap <= 0.0) return 0.0;
-  const double press = settings_.finger_n_per_m * overlap +
-                       settings_.finger_viscosity_n_s_per_m * (key_m_per_s - speed_);
+  const double press = grip_ * (settings_.finger_n_per_m * overlap +
+                                settings_.finger_viscosity_n_s_per_m * (key_m_per_s - speed_));
   return settings_.holds ? -press : -std::max(0.0, press);
 }
 
 void Hand::advance(double time_s, double h_s, double force_n) noexcept {
-  const double drive = settings_.stiffness_n_per_m * (target_.value_at(time_s) - position_) +
-                       settings_.viscosity_n_s_per_m * target_.rate_at(time_s) + force_n;
-  speed_ = (settings_.mass_kg * speed_ + h_s * drive) /
-           (settings_.mass_kg + h_s * settings_.viscosity_n_s_per_m);
+  const double target = followed_ ? followed_->target_m : target_.value_at(time_s);
+  const double rate = followed_ ? followed_->target_m_per_s : target_.rate_at(time_s);
+  const double viscosity = grip_ * settings_.viscosity_n_s_per_m;
+  const double drive =
+      grip_ * settings_.stiffness_n_per_m * (target - position_) + viscosity * rate + force_n;
+  speed_ = (settings_.mass_kg * speed_ + h_s * drive) / (settings_.mass_kg + h_s * viscosity);
   position_ += h_s * speed_;
 }
 

@@ -1,6 +1,8 @@
 // device_node/drivers/hand.h -- a simulated hand: what plays a simulated key.
 #pragma once
 
+#include <optional>
+
 #include "device_node/drivers/trajectory.h"
 
 namespace cordis::device {
@@ -28,7 +30,12 @@ class Hand {
   /// @throws std::invalid_argument when a value is out of its range.
   Hand(const HandSettings& settings, Trajectory target);
 
-  void start() noexcept;  ///< at rest at the beginning of its target
+  void start() noexcept;                   ///< at rest at the beginning of its target
+  void place(double position_m) noexcept;  ///< at rest there
+
+  /// From now on the hand follows this in place of its trajectory, and grips the key with a share of
+  /// its springs and dampers, those of the finger included. @param grip  0..1; 0: nothing holds it
+  void follow(double target_m, double target_m_per_s, double grip) noexcept;
 
   /// Force of the finger on a key there [N]: a spring-damper between them that never pulls, unless
   /// the hand holds the key.
@@ -44,6 +51,12 @@ class Hand {
  private:
   HandSettings settings_;
   Trajectory target_;
+  struct Followed {
+    double target_m = 0.0;
+    double target_m_per_s = 0.0;
+  };
+  std::optional<Followed> followed_;
+  double grip_ = 1.0;
   double position_ = 0.0;  // [m]
   double speed_ = 0.0;     // [m/s]
 };

@@ -85,6 +85,14 @@ void Mock::start(Role role) noexcept {
   for (std::size_t a = 0; a < axes_.size(); ++a) command_[a] = axes_[a].key.position_m();
 }
 
+void Mock::place(int axis, double position_m) noexcept {
+  Axis& placed = axes_[static_cast<std::size_t>(axis)];
+  placed.key.place(position_m);
+  placed.hand->place(placed.key.position_m());
+  placed.from_m = placed.key.position_m();
+  if (role_ == Role::kLiaison) command_[static_cast<std::size_t>(axis)] = placed.from_m;
+}
+
 double Mock::force_of_hand(const Axis& axis) const noexcept {
   return axis.hand ? axis.hand->force_on_key_n(axis.key.position_m(), axis.key.speed_m_per_s())
                    : 0.0;

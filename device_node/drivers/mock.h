@@ -35,6 +35,18 @@ class Mock final : public Driver {
   bool change_command(const AxisValues& commanded, double share) noexcept override;
   void stop() noexcept override {}  // its motors hold for one period at most
 
+  /// The hand on an axis that has one.
+  Hand& hand(int axis) noexcept { return *axes_[static_cast<std::size_t>(axis)].hand; }
+  /// Key and hand at rest there.
+  void place(int axis, double position_m) noexcept;
+  double position_m(int axis) const noexcept {
+    return axes_[static_cast<std::size_t>(axis)].key.position_m();
+  }
+  /// On the key.
+  double force_of_hand_n(int axis) const noexcept {
+    return force_of_hand(axes_[static_cast<std::size_t>(axis)]);
+  }
+
   int sub_steps() const noexcept { return sub_steps_; }  ///< per period
 
  private:

@@ -22,7 +22,11 @@ MockKey::MockKey(const KeySettings& settings) : settings_(settings) {
 }
 
 void MockKey::start() noexcept {
-  position_ = std::clamp(0.0, settings_.lowest_m, settings_.highest_m);
+  place(0.0);
+}
+
+void MockKey::place(double position_m) noexcept {
+  position_ = std::clamp(position_m, settings_.lowest_m, settings_.highest_m);
   speed_ = 0.0;
 }
 

@@ -38,6 +38,9 @@ class MockKey {
   /// Back to rest: position 0, or the end of travel nearest to it, without speed.
   void start() noexcept;
 
+  /// At rest at a place within the travel.
+  void place(double position_m) noexcept;
+
   /// Moves by one sub-step. O(1), no allocation.
   /// @param h_s        length [s]; K h^2/m of a stop should stay below 0.01
   /// @param motor_n    force asked of the motor; saturates

@@ -96,14 +96,20 @@ void read_sensor(const config::Value& mapping, MockSettings& settings, Problems&
 
 }  // namespace
 
-MockSettings read_mock_settings(const config::Value& section, const AxisLayout& layout,
-                                Problems& problems) {
-  config::MappingReader reader(section, "mock", problems);
+MockSettings read_mechanics(config::MappingReader& reader, const AxisLayout& layout,
+                            Problems& problems) {
   MockSettings settings;
   settings.key = read_key(reader.optional_mapping("key"), problems);
   read_sensor(reader.optional_mapping("sensor"), settings, problems);
   const config::Value hand = reader.optional_mapping("hand");
   if (hand.exists()) read_hand(hand, layout, settings, problems);
+  return settings;
+}
+
+MockSettings read_mock_settings(const config::Value& section, const AxisLayout& layout,
+                                Problems& problems) {
+  config::MappingReader reader(section, "mock", problems);
+  MockSettings settings = read_mechanics(reader, layout, problems);
   reader.finish();
   return settings;
 }

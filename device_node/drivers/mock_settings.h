@@ -8,6 +8,7 @@
 #include "device_node/drivers/hand.h"
 #include "device_node/drivers/mock_key.h"
 #include "device_node/drivers/sensor.h"
+#include "node/config/mapping_reader.h"
 #include "node/config/value.h"
 
 namespace cordis::device {
@@ -23,6 +24,10 @@ struct MockSettings {
   SensorSettings force_sensor;     ///< [N]
   std::uint64_t seed = 1;          ///< of their noise
 };
+
+/// Reads the keys `key`, `sensor` and `hand` of a mapping whose owner reads the others.
+MockSettings read_mechanics(config::MappingReader& reader, const AxisLayout& layout,
+                            config::Problems& problems);
 
 /// Reads the mapping. Every key has a default; without `hand:` no hand touches the keys. Whatever
 /// is wrong becomes a problem.

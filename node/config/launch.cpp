@@ -130,6 +130,7 @@ LaunchNode read_node(const Value::Entry& entry, Clock clock, Problems& problems)
   const bool only_shows = node.program == "viz_node" || node.program == "record_node";
   node.required = reader.optional_truth("required", !only_shows);
   node.respawn = reader.optional_truth("respawn", only_shows || clock == Clock::kRealtime);
+  node.belongs = !reader.has("clock") || read_clock(reader) == clock;
 
   std::vector<Value::Entry> rest;
   for (const Value::Entry& key : entry.value.entries()) {
@@ -189,8 +190,10 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
   }
   launch.clock = read_clock(reader);
   const Value nodes = reader.required_mapping("nodes");
-  for (const Value::Entry& entry : nodes.entries())
-    launch.nodes.push_back(read_node(entry, launch.clock, problems));
+  for (const Value::Entry& entry : nodes.entries()) {
+    LaunchNode node = read_node(entry, launch.clock, problems);
+    if (node.belongs) launch.nodes.push_back(std::move(node));
+  }
   if (nodes.exists() && nodes.entries().empty())
     reader.error_at("nodes", "a launch file needs at least one node");
   if (reader.has(kRecordKey)) {
@@ -225,7 +228,7 @@ const char* clock_word(Clock clock) noexcept {
 }
 
 const std::vector<std::string>& launcher_keys() {
-  static const std::vector<std::string> kKeys{"node", "required", "respawn"};
+  static const std::vector<std::string> kKeys{"node", "required", "respawn", "clock"};
   return kKeys;
 }
 

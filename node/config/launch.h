@@ -30,11 +30,12 @@ struct LaunchNode {
   std::string program;   ///< sim_node, device_node, viz_node or record_node
   bool required = true;  ///< whether the session ends when this node ends for good
   bool respawn = true;   ///< whether the launcher starts it again when it dies
+  bool belongs = true;   ///< false: it is for sessions with another clock (`clock`)
   Value section;         ///< its mapping without launcher_keys(); the node reads it itself
   Place place;           ///< of the name
 };
 
-/// The keys of a node that the launcher reads: `node`, `required`, `respawn`. All others belong to
+/// The keys of a node that the launcher reads: `node`, `required`, `respawn`, `clock`. All others belong to
 /// the node itself.
 const std::vector<std::string>& launcher_keys();
 
@@ -63,6 +64,7 @@ struct Launch {
 /// file. The sections of the nodes are not looked into. Without `required:` every node but a
 /// viz_node and a record_node is required. Without `respawn:` every node starts again when it dies;
 /// in a lockstep or asap session, whose result must not depend on a restart, those two alone.
+/// A node with a `clock` other than that of the session is left out.
 /// `record:` stands for a record_node named `record`.
 /// @param overrides  words `name.key=value` (key of a node, may be nested: hand.mass_kg) and
 ///                   `clock=`, `domain=`, `session=`, `record=`, `network.key=` for the session

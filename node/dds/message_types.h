@@ -24,6 +24,14 @@ struct TypeOf<msg::DeviceDescription> {
   using Type = msg::DeviceDescriptionPubSubType;
 };
 template <>
+struct TypeOf<msg::PointerTarget> {
+  using Type = msg::PointerTargetPubSubType;
+};
+template <>
+struct TypeOf<msg::PointerState> {
+  using Type = msg::PointerStatePubSubType;
+};
+template <>
 struct TypeOf<msg::SceneDescription> {
   using Type = msg::SceneDescriptionPubSubType;
 };

@@ -28,23 +28,42 @@ std::size_t missing_bytes(typename TypeOf<Message>::Type& type, Message& message
   return is_older ? sizeof(double) : 0;
 }
 
+/// The last wire version whose SceneDescription ends without `port_frames`.
+constexpr std::uint32_t kLastWithoutPortFrames = 3;
+
+/// Bytes of an empty sequence behind a payload of `size` bytes, alignment included.
+constexpr std::size_t empty_sequence_bytes(std::size_t size) noexcept {
+  constexpr std::size_t kCount = 4;
+  return kCount + (kCount - size % kCount) % kCount;
+}
+
+template <class Type, class Message>
+bool decode_padded(Type& type, std::span<const std::byte> payload, std::size_t missing,
+                   Message& message) {
+  const auto length = static_cast<std::uint32_t>(payload.size() + missing);
+  eprosima::fastrtps::rtps::SerializedPayload_t bytes(length);
+  std::memcpy(bytes.data, payload.data(), payload.size());
+  std::memset(bytes.data + payload.size(), 0, missing);
+  bytes.length = length;
+  return type.deserialize(&bytes, &message);
+}
+
 }  // namespace
 
 template <class Message>
 bool decode(std::span<const std::byte> payload, Message& message) noexcept {
-  using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
   constexpr std::size_t kEncapsulation = 4;
   if (payload.size() < kEncapsulation) return false;
   if (std::is_same_v<Message, msg::SceneInputs> && payload.size() > kMaxInputs) return false;
   try {
     typename TypeOf<Message>::Type type;
     const std::size_t missing = missing_bytes(type, message, payload.size());
-    const auto length = static_cast<std::uint32_t>(payload.size() + missing);
-    Payload bytes(length);
-    std::memcpy(bytes.data, payload.data(), payload.size());
-    std::memset(bytes.data + payload.size(), 0, missing);
-    bytes.length = length;
-    return type.deserialize(&bytes, &message);
+    if (decode_padded(type, payload, missing, message)) return true;
+    if constexpr (std::is_same_v<Message, msg::SceneDescription>) {
+      return decode_padded(type, payload, empty_sequence_bytes(payload.size()), message) &&
+             message.wire_version() <= kLastWithoutPortFrames;
+    }
+    return false;
   } catch (...) {  // lengths of sequences are as hostile as any other number
     return false;
   }

@@ -238,6 +238,8 @@ int Reader<Message>::matched_count() const noexcept {
 template class Reader<msg::GesturePositions>;
 template class Reader<msg::GestureForces>;
 template class Reader<msg::DeviceDescription>;
+template class Reader<msg::PointerTarget>;
+template class Reader<msg::PointerState>;
 template class Reader<msg::SceneDescription>;
 template class Reader<msg::SceneFrame>;
 template class Reader<msg::SceneSignals>;

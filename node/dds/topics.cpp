@@ -17,6 +17,16 @@ TopicQos gesture_qos(const std::string& name, bool lockstep, bool standbys) noex
           .exclusive_for_msec = !lockstep && standbys ? 20 : 0};
 }
 
+/// The newest of each key, and what is lost is lost.
+TopicQos newest_qos(const std::string& name) noexcept {
+  return {.name = name.c_str(),
+          .reliable = false,
+          .transient_local = false,
+          .history_depth = 1,
+          .asynchronous = false,
+          .heartbeat_msec = 20};
+}
+
 /// The newest of each key, also for who joins late. @param history_depth  so many
 TopicQos kept_qos(const std::string& name, int history_depth = 1) noexcept {
   return {.name = name.c_str(),
@@ -48,6 +58,10 @@ TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept {
     case Topic::kDevice:
       // Each of several nodes that play one device describes it, once.
       return kept_qos(msg::TOPIC_DEVICE, 8);
+    case Topic::kPointerTarget:
+      return newest_qos(msg::TOPIC_POINTER_TARGET);
+    case Topic::kPointerState:
+      return newest_qos(msg::TOPIC_POINTER_STATE);
     case Topic::kDescription:
       return kept_qos(msg::TOPIC_DESCRIPTION);
     case Topic::kFrame:

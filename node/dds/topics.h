@@ -8,18 +8,20 @@ namespace cordis::dds {
 
 /// The topics of the contract (idl/README.md).
 enum class Topic : std::uint8_t {
-  kPositions,    ///< gesture/positions   msg::GesturePositions
-  kForces,       ///< gesture/forces      msg::GestureForces
-  kDevice,       ///< device/description  msg::DeviceDescription
-  kDescription,  ///< scene/description   msg::SceneDescription
-  kFrame,        ///< scene/frame         msg::SceneFrame
-  kSignals,      ///< scene/signals       msg::SceneSignals
-  kSound,        ///< scene/sound         msg::SceneSound
-  kEvents,       ///< scene/events        msg::SceneEvents
-  kInputs,       ///< scene/inputs        msg::SceneInputs
-  kCommand,      ///< control/command     msg::ControlCommand
-  kReply,        ///< control/reply       msg::ControlReply
-  kStatus        ///< node/status         msg::NodeStatus
+  kPositions,      ///< gesture/positions   msg::GesturePositions
+  kForces,         ///< gesture/forces      msg::GestureForces
+  kDevice,         ///< device/description  msg::DeviceDescription
+  kPointerTarget,  ///< pointer/target   msg::PointerTarget
+  kPointerState,   ///< pointer/state    msg::PointerState
+  kDescription,    ///< scene/description   msg::SceneDescription
+  kFrame,          ///< scene/frame         msg::SceneFrame
+  kSignals,        ///< scene/signals       msg::SceneSignals
+  kSound,          ///< scene/sound         msg::SceneSound
+  kEvents,         ///< scene/events        msg::SceneEvents
+  kInputs,         ///< scene/inputs        msg::SceneInputs
+  kCommand,        ///< control/command     msg::ControlCommand
+  kReply,          ///< control/reply       msg::ControlReply
+  kStatus          ///< node/status         msg::NodeStatus
 };
 
 /// Quality of service of a topic, in the words of DDS.

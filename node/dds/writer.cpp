@@ -158,6 +158,8 @@ void Writer<Message>::finish() noexcept {
 template class Writer<msg::GesturePositions>;
 template class Writer<msg::GestureForces>;
 template class Writer<msg::DeviceDescription>;
+template class Writer<msg::PointerTarget>;
+template class Writer<msg::PointerState>;
 template class Writer<msg::SceneDescription>;
 template class Writer<msg::SceneFrame>;
 template class Writer<msg::SceneSignals>;

@@ -1,6 +1,7 @@
 // sim_node/run/describe.cpp
 #include "sim_node/run/describe.h"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -40,6 +41,24 @@ msg::PortDescription port_of(const scene::Port& port) {
   message.mat(port.mat);
   message.axes(port.axes);
   return message;
+}
+
+/// Where the port is, and along what its axes move it, in the coordinates of a frame.
+msg::PortFrame frame_of(const scene::Port& port, const FrameLayout& layout) {
+  const auto shown = [&](const engine::Vec3& position) {
+    std::array<float, 3> place{};
+    layout.show(port.mat, position.data(), place.data());
+    return place;
+  };
+  msg::PortFrame frame;
+  const std::array<float, 3> rest = shown(port.rest);
+  frame.rest_m().assign(rest.begin(), rest.end());
+  const std::array<float, 3> origin = shown(engine::Vec3::Zero());
+  for (const engine::Vec3& direction : port.directions) {
+    const std::array<float, 3> end = shown(direction);
+    for (std::size_t k = 0; k < 3; ++k) frame.direction().push_back(end[k] - origin[k]);
+  }
+  return frame;
 }
 
 void report_network(const scene::Scene& scene, msg::SceneDescription& description) {
@@ -95,7 +114,11 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
   description.links(ranges_of(scene.links));
   report_network(scene, description);
   report_states(scene.network, description);
-  for (const scene::Port& port : scene.ports) description.ports().push_back(port_of(port));
+  const FrameLayout layout = layout_of(scene);
+  for (const scene::Port& port : scene.ports) {
+    description.ports().push_back(port_of(port));
+    description.port_frames().push_back(frame_of(port, layout));
+  }
   for (const scene::Signal& signal : scene.signals.signals()) {
     msg::SignalDescription message;
     message.name(signal.name);

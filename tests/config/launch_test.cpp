@@ -97,6 +97,19 @@ TEST(Launch, RequiresAllButTheViewAndStartsAgainWhatDoesNotChangeTheResult) {
   EXPECT_EQ(keys_of_launcher("realtime", ", required: false, respawn: false"), "sim, key, view, ");
 }
 
+TEST(Launch, LeavesOutTheNodesOfAnotherClock) {
+  for (const std::string clock : {"realtime", "lockstep", "asap"}) {
+    Problems problems;
+    const Launch launch = load_launch_text("cordis: 1\nclock: " + clock +
+                                               "\nnodes: {sim: {node: sim_node}, hand: {node: "
+                                               "device_node, clock: realtime, driver: pointer}}\n",
+                                           "l.yaml", {"hand.driver=mock"}, problems);
+    EXPECT_EQ(problems.text(), "");
+    ASSERT_EQ(launch.nodes.size(), clock == "realtime" ? 2u : 1u) << clock;
+    EXPECT_FALSE(launch.nodes.back().section.find("clock").exists()) << "the node does not know it";
+  }
+}
+
 TEST(Launch, TakesOverridesOfTheCommandLine) {
   Problems problems;
 
@@ -296,6 +309,10 @@ INSTANTIATE_TEST_SUITE_P(
                   ""},
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, required: no}\n",
                   "l.yaml:3:33: error: 'required' in node 'a' must be true or false, got 'no'", ""},
+        BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, clock: fast}\n",
+                  "l.yaml:3:30: error: 'clock' in node 'a' must be one of realtime, lockstep, "
+                  "asap, got 'fast'",
+                  ""},
         BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, respawn: 3}\n",
                   "l.yaml:3:32: error: 'respawn' in node 'a' must be true or false, got '3'", ""}));
 

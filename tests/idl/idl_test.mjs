@@ -45,10 +45,10 @@ function generatedClasses(unit) {
 test('the messages are those of the contract', () => {
   const contract = {
     'control.idl': ['ControlCommand', 'ControlReply', 'LiaisonChanges', 'NodeStatus'],
-    'gesture.idl': ['GesturePositions', 'GestureForces', 'DeviceDescription'],
+    'gesture.idl': ['GesturePositions', 'GestureForces', 'DeviceDescription', 'PointerTarget', 'PointerState'],
     'inputs.idl': ['SourceFile', 'InputScene', 'InputSample', 'InputReach', 'InputEvent', 'SceneInputs'],
     'scene.idl': [
-      'NamedRange', 'PortDescription', 'SignalDescription', 'StateMachineDescription', 'SceneDescription', 'SceneFrame',
+      'NamedRange', 'PortDescription', 'PortFrame', 'SignalDescription', 'StateMachineDescription', 'SceneDescription', 'SceneFrame',
       'SceneSignals', 'SceneSound', 'LinkEvent', 'SceneEvents',
     ],
     'topics.idl': [],

@@ -70,6 +70,24 @@ TEST(Payload, OfAGestureOfWireVersion2IsReadWithoutTheDelayOfItsAnswer) {
   EXPECT_FALSE(decode(payload, read)) << "cut short";
 }
 
+TEST(Payload, OfADescriptionOfWireVersion3IsReadWithoutFramesOfPorts) {
+  for (const char* file : {"s", "sc", "sce", "scen"}) {  // each alignment of what follows
+    msg::SceneDescription description;
+    description.scene_file(file);
+    for (const std::uint32_t version : {3u, 4u}) {
+      description.wire_version(version);
+      std::vector<std::byte> payload = encode(description);
+      msg::SceneDescription read;
+      ASSERT_TRUE(decode(payload, read));
+      payload.resize(payload.size() - 4);  // the count of `port_frames`
+      EXPECT_EQ(decode(payload, read), version == 3u) << file;
+      if (version != 3u) continue;
+      EXPECT_EQ(read.scene_file(), file);
+      EXPECT_TRUE(read.port_frames().empty());
+    }
+  }
+}
+
 /// A reader with an Arrival takes samples out of DDS in the thread that receives them.
 TEST(Arrival, CountsTheMessagesOfItsReadersAndWakesWhoWaits) {
   Participant device(member("arrival", "keyboard"));

@@ -25,7 +25,8 @@ class SendQueue {
     std::array<asio::const_buffer, 3> parts;  ///< stay until next() is called again
   };
 
-  explicit SendQueue(ServerState& state) : state_(state) {}
+  /// @param page  number of the page
+  SendQueue(ServerState& state, std::uint32_t page) : state_(state), page_(page) {}
   ~SendQueue() { listen(false); }
   SendQueue(const SendQueue&) = delete;
   SendQueue& operator=(const SendQueue&) = delete;
@@ -74,6 +75,7 @@ class SendQueue {
 
   std::optional<Message> next_other() {
     if (auto status = next_status()) return status;
+    if (auto pointers = next_pointers()) return pointers;
     frame_first_ = !frame_first_;  // in turn: on a slow line neither starves the other
     if (auto first = frame_first_ ? next_frame() : next_signals()) return first;
     return frame_first_ ? next_signals() : next_frame();
@@ -84,6 +86,13 @@ class SendQueue {
     status_number_ = state_.status_number;
     kept_status_ = state_.status;
     return text(*kept_status_);
+  }
+
+  std::optional<Message> next_pointers() {
+    const std::uint64_t version = state_.pointers.version();
+    if (version == std::exchange(pointers_version_, version)) return {};
+    kept_pointers_ = state_.pointers.text(page_, node::monotonic_nsec());
+    return text(kept_pointers_);
   }
 
   std::optional<Message> next_signals() {
@@ -128,6 +137,8 @@ class SendQueue {
   }
 
   ServerState& state_;
+  std::uint32_t page_;
+  std::uint64_t pointers_version_ = 0;
   FlowCredit credit_;
   bool hello_sent_ = false;
   bool frame_first_ = false;
@@ -141,6 +152,7 @@ class SendQueue {
   // What the message on its way is made of.
   std::shared_ptr<const ShownScene> kept_scene_;
   std::shared_ptr<const std::string> kept_status_;
+  std::string kept_pointers_;
   std::shared_ptr<const ShownSignals> kept_signals_;
   std::shared_ptr<const ShownSound> kept_sound_;
   std::shared_ptr<const ShownFrame> kept_frame_;

@@ -83,9 +83,9 @@ std::string url_of(const tcp::endpoint& endpoint) {
 }  // namespace
 
 struct WebServer::Impl {
-  Impl(const ServerConfig& config, SceneMirror& mirror,
+  Impl(const ServerConfig& config, SceneMirror& mirror, PointerDesk& pointers,
        std::function<void(const PageCommand&)> execute)
-      : pages(config.folder), state(mirror, std::move(execute)) {
+      : pages(config.folder), state(mirror, pointers, std::move(execute)) {
     listen(acceptor, config);
     const tcp::endpoint endpoint = acceptor.local_endpoint();
     url = url_of(endpoint);
@@ -157,10 +157,11 @@ struct WebServer::Impl {
   std::thread thread;
 };
 
-WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror,
+WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror, PointerDesk& pointers,
                      std::function<void(const PageCommand&)> execute)
-    : impl_(std::make_unique<Impl>(config, mirror, std::move(execute))) {
+    : impl_(std::make_unique<Impl>(config, mirror, pointers, std::move(execute))) {
   mirror.on_change([impl = impl_.get()] { impl->wake(); });
+  pointers.on_change([impl = impl_.get()] { impl->wake(); });
   impl_->accept();
   impl_->report_status();
   impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
@@ -168,6 +169,7 @@ WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror,
 
 WebServer::~WebServer() {
   impl_->state.mirror.on_change({});
+  impl_->state.pointers.on_change({});
   impl_->context.stop();
   impl_->thread.join();
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "viz_node/pointer_desk.h"
 #include "viz_node/scene_mirror.h"
 
 namespace cordis::viz {
@@ -36,11 +37,11 @@ class WebServer {
  public:
   /// Begins to listen. An occupied port is no error: the server takes the next free one, and logs
   /// a warning.
-  /// @param mirror  outlives the server; its on_change() is taken over
+  /// @param mirror, pointers  outlive the server; their on_change() is taken over
   /// @param execute    called from the server's thread with what a page wants of the simulation;
   ///                must not wait
   /// @throws std::runtime_error when the address is not one of this machine
-  WebServer(const ServerConfig& config, SceneMirror& mirror,
+  WebServer(const ServerConfig& config, SceneMirror& mirror, PointerDesk& pointers,
             std::function<void(const PageCommand&)> execute);
 
   /// Closes all connections and joins the thread.

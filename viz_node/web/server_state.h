@@ -20,6 +20,7 @@
 
 #include "node/latency.h"
 #include "node/repeated_event.h"
+#include "viz_node/pointer_desk.h"
 #include "viz_node/scene_mirror.h"
 
 namespace cordis::viz {
@@ -37,16 +38,19 @@ class WebSocketSession;
 
 /// What all connections share. Lives in the server's thread, but for the latency.
 struct ServerState {
-  ServerState(SceneMirror& mirrored, std::function<void(const PageCommand&)> call)
-      : mirror(mirrored), execute(std::move(call)) {}
+  ServerState(SceneMirror& mirrored, PointerDesk& desk,
+              std::function<void(const PageCommand&)> call)
+      : mirror(mirrored), pointers(desk), execute(std::move(call)) {}
 
   SceneMirror& mirror;
+  PointerDesk& pointers;
   std::function<void(const PageCommand&)> execute;
   std::string hello;
   std::shared_ptr<const std::string> status;  // newest text
   std::uint64_t status_number = 0;
   bool loopback_only = true;
   std::size_t connections = 0;
+  std::uint32_t page_count = 0;  ///< pages that ever came: their numbers
   std::unordered_set<WebSocketSession*> clients;
   node::RepeatedEvent closures{"closed connections to pages"};
   mutable std::mutex latency_mutex;

@@ -24,9 +24,13 @@ inline constexpr std::size_t kLongestFromClient = 1024;  // [bytes]
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
   WebSocketSession(beast::tcp_stream&& stream, ConnectionSlot&& slot, ServerState& state)
-      : stream_(std::move(stream)), slot_(std::move(slot)), state_(state) {}
+      : stream_(std::move(stream)),
+        slot_(std::move(slot)),
+        state_(state),
+        page_(++state.page_count) {}
   ~WebSocketSession() {
     state_.clients.erase(this);
+    if (drags_) state_.pointers.leave(page_, node::monotonic_nsec());
     if (joined_) spdlog::debug("a page left, {} frames passed it by", queue_.credit().dropped());
   }
   WebSocketSession(const WebSocketSession&) = delete;
@@ -85,6 +89,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     const auto word = read_acknowledgement(text);
     if (!word) {
       if (const auto command = read_page_command(text)) state_.execute(*command);
+      if (const auto dragged = read_drag_request(text)) drag(*dragged);
       if (const auto listens = read_sound_request(text)) queue_.listen(*listens);
       return;
     }
@@ -96,7 +101,16 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     pump();
   }
 
+  void drag(const DragRequest& request) {
+    drags_ = true;
+    const auto frame = state_.mirror.frame();
+    static const std::vector<float> kNone;
+    state_.pointers.drag(page_, request, frame ? frame->frame.position_m() : kNone,
+                         node::monotonic_nsec());
+  }
+
   void leave() {
+    if (std::exchange(drags_, false)) state_.pointers.leave(page_, node::monotonic_nsec());
     state_.clients.erase(this);
     beast::get_lowest_layer(stream_).close();
   }
@@ -104,7 +118,9 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   websocket::stream<beast::tcp_stream> stream_;
   ConnectionSlot slot_;
   ServerState& state_;
-  SendQueue queue_{state_};
+  std::uint32_t page_;  // its number
+  bool drags_ = false;  // it has
+  SendQueue queue_{state_, page_};
   beast::flat_buffer incoming_;
   bool joined_ = false;
   bool writing_ = false;

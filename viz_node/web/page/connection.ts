@@ -48,6 +48,11 @@ export class Connection {
     if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'command', verb, ...more }));
   }
 
+  /** Where the hand wants a port [m]; null: it lets go of it. */
+  drag(port: number, at_m: number[] | null, event: number): void {
+    if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'pointer', port, at_m, event }));
+  }
+
   /** Asks for the sound of the scene, or for no more of it. A new connection is silent. */
   listen(on: boolean): void {
     if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'sound', on }));

@@ -6,9 +6,12 @@ import { Controls } from './controls.ts';
 import { roundLength } from './ground.ts';
 import { joined, withUnit } from './format.ts';
 import { Hud } from './hud.ts';
+import { Marks } from './marks.ts';
 import { Plots } from './plots.ts';
+import { PointerHand } from './pointer.ts';
 import { toolsOf, type Description, type Frame, type Message, type Topology } from './protocol.ts';
 import { chooseQuality, findRenderer } from './quality.ts';
+import { setText } from './rows.ts';
 import { SceneView } from './scene_view.ts';
 import type { SignalStore } from './signal_store.ts';
 import { SoundPanel } from './sound/sound_panel.ts';
@@ -39,6 +42,7 @@ export class Page {
   frozen = false;
 
   private readonly stage = find('#stage');
+  private readonly marks = new Marks(this.stage);
   private readonly plots = new Plots(find('#plots'));
   private readonly clock = new ClockOffset();
   private readonly factor = new RealTimeFactor();
@@ -47,6 +51,7 @@ export class Page {
   private readonly controls: Controls;
   readonly sound: SoundPanel;
   readonly takeBar: TakeBar;
+  readonly pointer: PointerHand;
   private pending: Frame | null = null;
   private pendingIsLate = false; // it came, or waited, while the page was hidden
   private frameMs = Number.NaN; // when the newest frame came
@@ -75,6 +80,7 @@ export class Page {
     this.controls = new Controls(this.connection);
     this.sound = new SoundPanel(this.connection, (error) => this.note(error));
     this.takeBar = new TakeBar(this.connection);
+    this.pointer = new PointerHand(this.stage, this.connection, () => this.view, () => this.askToDraw());
     window.setInterval(() => this.refresh(), FIGURES_PERIOD_MS);
   }
 
@@ -108,6 +114,8 @@ export class Page {
         return this.askToDraw();
       case 'sound':
         return message.scene === this.description?.scene ? this.sound.take(message) : undefined;
+      case 'pointer':
+        return this.pointer.take(message);
       case 'frame':
         return this.takeFrame(message);
     }
@@ -131,7 +139,9 @@ export class Page {
     const last = this.description;
     const isSame = last !== null && last.epoch === description.epoch && last.version === description.version;
     const looksAlike = last !== null && last.name === description.name && last.space === description.space;
+    description.tools = toolsOf(description);
     this.description = description;
+    this.pointer.describe(description);
     this.pending = null;
     this.connection.acknowledge(); // frames of the last scene are not drawn any more
     this.factor.clear();
@@ -150,7 +160,7 @@ export class Page {
     const quality = chooseQuality(this.renderer.software, size, window.devicePixelRatio);
     this.say(quality.note);
     const { space } = this.description;
-    const tools = toolsOf(this.description);
+    const tools = this.description.tools.filter((tool) => tool !== null);
     const changed = () => this.askToDraw();
     const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : quality.note);
     try {
@@ -164,6 +174,7 @@ export class Page {
 
   private forgetConnection(): void {
     this.pending = null;
+    this.pointer.forget();
     this.clock.clear();
     this.factor.clear();
     this.refresh();
@@ -190,6 +201,8 @@ export class Page {
     try {
       if (frame !== null && this.view !== null && !this.frozen) this.view.show(frame);
       this.view?.draw();
+      this.marks.begin();
+      this.pointer.draw(this.marks);
     } catch (error) {
       this.note(error);
     }
@@ -233,6 +246,9 @@ export class Page {
   }
 
   private refresh(): void {
+    const line = this.pointer.line;
+    find('#hand').hidden = line === '';
+    setText(find('#hand'), line);
     this.hud.refresh({
       connected: this.connection.isOpen,
       frozen: this.frozen,

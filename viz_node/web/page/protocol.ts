@@ -96,14 +96,15 @@ export interface Description {
   links: NamedRange[];
   state_machines: { name: string; states: string[] }[];
   ports: Port[];
+  tools: (number | null)[]; // of each port: the MAT that its coupling moves. Filled in by the page
   signals: { name: string; unit: string; sound: boolean; full_scale: Figure }[];
 }
 
 /** The MATs that hands move by a coupling: they have the name of a port whose own MAT is the handle. */
-export function toolsOf({ ports, matter }: Description): number[] {
+export function toolsOf({ ports, matter }: Description): (number | null)[] {
   const isTool = (range: NamedRange, port: Port) =>
     range.name === port.name && range.count === 1 && range.first !== port.mat;
-  return ports.flatMap((port) => matter.filter((range) => isTool(range, port)).map((range) => range.first));
+  return ports.map((port) => matter.find((range) => isTool(range, port))?.first ?? null);
 }
 
 /** A number that was not finite in the node comes as null. */
@@ -185,7 +186,24 @@ export interface Status {
   viz: { frames: number; refused: number; lost: number };
 }
 
-export type Message = Frame | Signals | Topology | Sound | Hello | Description | Status;
+/** A port that can be dragged. */
+export interface PointerPort {
+  port: number;
+  holder: number; // number of the page that holds its device; 0: none
+  held: boolean; // this very port is
+  plays: boolean; // the device says so
+  event: number; // newest of this page whose force is at the handle
+  target_m: number[]; // that the hand follows
+  force_n: number[]; // on the handle
+}
+
+export interface PointerState {
+  type: 'pointer';
+  page: number; // number of this page
+  ports: PointerPort[];
+}
+
+export type Message = Frame | Signals | Topology | Sound | Hello | Description | Status | PointerState;
 
 /** Reads a binary message. Throws an Error when it is none of this protocol, or shorter than it says. */
 export function decodeBinary(buffer: ArrayBuffer): Frame | Signals | Topology | Sound {

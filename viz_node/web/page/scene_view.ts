@@ -175,11 +175,34 @@ export class SceneView {
     return this.fastest;
   }
 
+  /** Where MAT `index` is in the scene [m]. */
+  place(index: number): number[] {
+    return [...this.newest.array.slice(3 * index, 3 * index + 3)];
+  }
+
   /** Where MAT `index` is on the page [CSS pixels]. */
   project(index: number): { x: number; y: number } {
-    const point = new THREE.Vector3().fromArray(this.newest.array, 3 * index).project(this.rig.camera);
+    return this.screenOf(this.place(index));
+  }
+
+  /** Where a place of the scene is on the page [CSS pixels]. */
+  screenOf(place: number[]): { x: number; y: number } {
+    const point = new THREE.Vector3().fromArray(place).project(this.rig.camera);
     const box = this.renderer.domElement.getBoundingClientRect();
     return { x: box.left + (0.5 + 0.5 * point.x) * box.width, y: box.top + (0.5 - 0.5 * point.y) * box.height };
+  }
+
+  /** The place [m] behind a point of the page that is as far from the camera as `through`. */
+  unproject(x: number, y: number, through: number[]): number[] {
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const depth = new THREE.Vector3().fromArray(through).project(this.rig.camera).z;
+    const point = new THREE.Vector3((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height, depth);
+    return point.unproject(this.rig.camera).toArray();
+  }
+
+  /** Radius of MAT `index` as it is drawn, at the middle of the scene [CSS pixels]. */
+  radiusOnScreen(index: number): number {
+    return this.geometry.getAttribute('radius').array[index]! / this.rig.metresPerPixel;
   }
 
   /** Colour of one pixel of the view as it is drawn now, 0..255; a place on the page [CSS pixels]. */

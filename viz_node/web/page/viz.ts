@@ -1,5 +1,6 @@
 // viz_node/web/page/viz.ts -- window.viz: what the page knows, for tests and for the curious.
 import type { Page } from './page.ts';
+import type { PointerFigures } from './pointer.ts';
 import type { NodeState, Reply } from './protocol.ts';
 import type { SoundFigures } from './sound/sound_stream.ts';
 import type { Take } from './take.ts';
@@ -19,6 +20,7 @@ export interface Viz {
   readonly camera: { preset: string; orthographic: boolean; target: number[]; metresPerPixel: number } | null;
   readonly signals: { count: number; rows: number; gaps: number; newestS: number } | null;
   readonly sound: { on: boolean; figures: SoundFigures | null };
+  readonly pointer: PointerFigures;
   readonly take: Take | null; // null in a live session
   readonly quality: { software: boolean; spheres: boolean; links: boolean } | null;
   /** Coordinates of MAT `index` in the frame drawn last [m]. */
@@ -93,6 +95,9 @@ export function exposeViz(page: Page): void {
     },
     get sound() {
       return { on: page.sound.isOn, figures: page.sound.figures };
+    },
+    get pointer() {
+      return page.pointer.figures;
     },
     get take() {
       return page.takeBar.take;
