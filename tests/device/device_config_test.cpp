@@ -172,6 +172,30 @@ TEST(DeviceConfig, ShippedDevicesAreRightWithEveryDriverTheyKnow) {
   EXPECT_GE(devices, 9);
 }
 
+TEST(DeviceConfig, PointersOfTheGalleryHaveTheAxesThatTheyTakeOver) {
+  int pointers = 0;
+  const std::filesystem::path folder = CORDIS_SOURCE_DIR "/launch_configs";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    config::Problems problems;
+    const config::Launch launch = config::load_launch(entry.path().string(), {}, problems);
+    problems.throw_if_any();
+    if (launch.find("pointer") == nullptr) continue;
+    const LoadedDevice pointer = load_device(launch, *launch.find("pointer"), problems);
+    const LoadedDevice hand = load_device(launch, *launch.find(pointer.config.name), problems);
+    problems.throw_if_any();
+    EXPECT_EQ(pointer.config.device_id, hand.config.device_id) << entry.path();
+    EXPECT_EQ(pointer.config.layout.count, hand.config.layout.count) << entry.path();
+    EXPECT_EQ(pointer.config.layout.lowest_m, hand.config.layout.lowest_m) << entry.path();
+    EXPECT_EQ(pointer.config.layout.highest_m, hand.config.layout.highest_m) << entry.path();
+    EXPECT_EQ(pointer.config.layout.rate_hz, hand.config.layout.rate_hz) << entry.path();
+    EXPECT_GT(pointer.config.strength, hand.config.strength) << entry.path();
+    EXPECT_FALSE(launch.find("pointer")->required) << entry.path();
+    ++pointers;
+  }
+  EXPECT_GE(pointers, 20);
+}
+
 TEST(DeviceConfig, LaysTheLaunchFileAndTheCommandLineOnTheDeviceFile) {
   // A hand ten times stiffer presses the key deeper against the same force.
   const auto depth_with = [](const std::vector<std::string>& words) {

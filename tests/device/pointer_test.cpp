@@ -15,9 +15,9 @@
 namespace cordis::device {
 namespace {
 
-constexpr double kFingerStiffness = 2000.0;
-constexpr double kHandStiffness = 500.0;
-constexpr double kPeriod = 0.001;
+constexpr double kRingFinger = 2000.0;
+constexpr double kRingHand = 500.0;
+constexpr double kLedPeriod = 0.001;
 constexpr std::uint64_t kViz = 7;  // epoch of a viz_node
 
 AxisLayout ring_layout() {
@@ -28,11 +28,11 @@ AxisLayout ring_layout() {
   return layout;
 }
 
-MockSettings mechanics(bool is_ring) {
+MockSettings ring_mechanics(bool is_ring) {
   MockSettings settings;
   settings.key.friction_n = 0.0;
-  settings.hand.stiffness_n_per_m = kHandStiffness;
-  settings.hand.finger_n_per_m = kFingerStiffness;
+  settings.hand.stiffness_n_per_m = kRingHand;
+  settings.hand.finger_n_per_m = kRingFinger;
   settings.hand.holds = is_ring;
   return settings;
 }
@@ -40,7 +40,7 @@ MockSettings mechanics(bool is_ring) {
 /// A pointer and the page that leads it.
 struct Led {
   explicit Led(const PointerSettings& settings = {}, bool is_ring = true)
-      : pointer(mechanics(is_ring), settings, ring_layout()) {
+      : pointer(ring_mechanics(is_ring), settings, ring_layout()) {
     pointer.start(Role::kMass);
   }
 
@@ -94,7 +94,7 @@ TEST(Pointer, IsHeldBackByAForceAsItsSpringsAre) {
   Led led;
   const double target = 0.03;
   led.live_held(5000, target, 0.0, -2.0);
-  EXPECT_NEAR(led.sensed[0], target - 2.0 / kHandStiffness - 2.0 / kFingerStiffness, 1e-9);
+  EXPECT_NEAR(led.sensed[0], target - 2.0 / kRingHand - 2.0 / kRingFinger, 1e-9);
   const PointerFeel feel = led.feel();
   EXPECT_TRUE(feel.holds);
   EXPECT_EQ(feel.force_n[0], -2.0);
@@ -140,7 +140,7 @@ TEST(Pointer, ARingThatIsNotHeldStaysAndAKeyIsFree) {
     }
     EXPECT_NEAR(led.sensed[1], 0.02, 1e-4);
     if (is_ring) {
-      EXPECT_NEAR(led.sensed[0], 1.0 / kHandStiffness + 1.0 / kFingerStiffness, 1e-4);
+      EXPECT_NEAR(led.sensed[0], 1.0 / kRingHand + 1.0 / kRingFinger, 1e-4);
     } else {
       EXPECT_GT(led.sensed[0], 0.07) << "1 N carries a free key of 50 g to its stop";
     }
@@ -200,18 +200,18 @@ TEST(Pointer, NoTargetMakesItsHandJumpWhateverThePageSays) {
     for (int n = 0; n < 400; ++n) {
       if (n > 200 || lot() % 16 == 0) {  // from there on a flood
         const double wild = wild_number(lot);
-        led.say(lot() % 5 != 0, lot() % 4, wild, -wild);
+        led.say(lot() % 5 != 0, static_cast<std::uint32_t>(lot() % 4), wild, -wild);
       }
       led.live(1);
       const PointerFeel feel = led.feel();
       if (held_before && feel.holds && !std::isnan(last)) {
-        ASSERT_LE(std::abs(feel.target_m[0] - last), 0.5 * kPeriod + 1e-12)
+        ASSERT_LE(std::abs(feel.target_m[0] - last), 0.5 * kLedPeriod + 1e-12)
             << "seed " << seed << ", round " << round << ", period " << n;
       }
       ASSERT_LE(std::abs(led.sensed[0]), 0.09) << "seed " << seed;
       ASSERT_LE(std::abs(feel.target_m[0]), 0.08) << "seed " << seed;
       // Key and hand hang on the target by springs: they overshoot its speed, but not fourfold.
-      ASSERT_LE(std::abs(led.sensed[0] - sensed), 4.0 * 0.5 * kPeriod) << "seed " << seed;
+      ASSERT_LE(std::abs(led.sensed[0] - sensed), 4.0 * 0.5 * kLedPeriod) << "seed " << seed;
       sensed = led.sensed[0];
       last = feel.target_m[0];
       held_before = feel.holds;

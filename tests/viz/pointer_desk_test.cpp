@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uint32_t kThimbles = 11;
-constexpr std::int64_t kMsec = 1'000'000;
+constexpr std::int64_t kDeskMsec = 1'000'000;
 
 /// Two rings of one device: the second is turned by a right angle.
 struct Desk {
@@ -42,10 +42,10 @@ struct Desk {
   void drag(std::uint32_t page, std::uint32_t port, double x, double y, std::int64_t msec,
             std::uint64_t event = 1) {
     desk.drag(page, {port, event, std::array{x, y, 0.0}}, {-0.09F, 0.01F, 0, 0.1F, 0.02F, 0},
-              msec * kMsec);
+              msec * kDeskMsec);
   }
   Json text(std::uint32_t page, std::int64_t msec) const {
-    return Json::parse(desk.text(page, msec * kMsec));
+    return Json::parse(desk.text(page, msec * kDeskMsec));
   }
 
   std::vector<msg::PointerTarget> sent;
@@ -91,7 +91,7 @@ TEST(PointerDesk, GivesADeviceToOnePageAtATime) {
   EXPECT_EQ(desk.sent.size(), 2u) << "the first was silent for 0.5 s";
   desk.drag(1, 0, 0, 0, 510);
   EXPECT_EQ(desk.sent.size(), 2u);
-  desk.desk.drag(2, {1, 9, std::nullopt}, {}, 520 * kMsec);
+  desk.desk.drag(2, {1, 9, std::nullopt}, {}, 520 * kDeskMsec);
   ASSERT_EQ(desk.sent.size(), 3u);
   EXPECT_FALSE(desk.sent[2].holds());
   desk.drag(1, 0, 0, 0, 530);
@@ -101,15 +101,15 @@ TEST(PointerDesk, GivesADeviceToOnePageAtATime) {
 TEST(PointerDesk, LetsGoWhenThePageLeavesOrTheSceneChanges) {
   Desk desk;
   desk.drag(1, 0, 0, 0, 0);
-  desk.desk.leave(2, kMsec);
+  desk.desk.leave(2, kDeskMsec);
   EXPECT_EQ(desk.sent.size(), 1u) << "another page left";
-  desk.desk.leave(1, kMsec);
+  desk.desk.leave(1, kDeskMsec);
   ASSERT_EQ(desk.sent.size(), 2u);
   EXPECT_FALSE(desk.sent[1].holds());
   EXPECT_EQ(desk.sent[1].sequence_number(), 2u);
 
   desk.drag(1, 0, 0, 0, 10);
-  desk.desk.describe({}, {}, 20 * kMsec);
+  desk.desk.describe({}, {}, 20 * kDeskMsec);
   EXPECT_FALSE(desk.sent.back().holds());
   EXPECT_TRUE(desk.text(1, 20)["ports"].empty());
 }
@@ -126,7 +126,7 @@ TEST(PointerDesk, SaysWhatIsFeltAndTheEventThatMadeIt) {
   state.felt_number(1);
   state.force_n()[2] = 3.0;
   state.target_m()[3] = 0.04;
-  desk.desk.take(state, 20 * kMsec);
+  desk.desk.take(state, 20 * kDeskMsec);
   const Json port = desk.text(1, 30)["ports"][1];
   EXPECT_EQ(port["event"], 70);
   EXPECT_EQ(port["force_n"], Json({0.0, 3.0, 0.0}));
@@ -179,7 +179,7 @@ TEST(PointerDesk, MovesNoTargetFasterThanItsLimitWhateverPagesSend) {
     state.device_id(kThimbles);
     state.coordinate_count(4);
     desk.desk.take(state, now);
-    const std::uint32_t page = 1 + lot() % 3;
+    const auto page = static_cast<std::uint32_t>(1 + lot() % 3);
     DragRequest request{static_cast<std::uint32_t>(lot() % 3), lot(), std::nullopt};
     if (lot() % 8 != 0) request.at_m = {wild_number(lot), wild_number(lot), wild_number(lot)};
     std::vector<float> places(6);
@@ -202,8 +202,7 @@ TEST(PointerDesk, MovesNoTargetFasterThanItsLimitWhateverPagesSend) {
     const double longest_m = 2.0 * 1e-9 * static_cast<double>(now - last_nsec) + 1e-9;
     for (std::size_t axis = 0; axis < 16; ++axis) {
       ASSERT_TRUE(std::isfinite(target.target_m()[axis])) << "seed " << seed;
-      ASSERT_LE(std::abs(target.target_m()[axis]), PointerDesk::kMaxCoordinate)
-          << "seed " << seed;
+      ASSERT_LE(std::abs(target.target_m()[axis]), PointerDesk::kMaxCoordinate) << "seed " << seed;
       const bool was_held =
           sent_count > 0 && (desk.sent[sent_count - 1].held_coordinates() >> axis & 1U) != 0;
       const bool is_held = (target.held_coordinates() >> axis & 1U) != 0;
@@ -226,8 +225,8 @@ TEST(PointerDesk, SendsAFloodOfOnePageAsAFewTargetsAndTheLastPlaceCounts) {
   desk.drag(1, 0, -0.09, 0.0, 300);
   EXPECT_NEAR(desk.sent.back().target_m()[0], 0.01, 1e-9);
   for (int n = 0; n < 10'000; ++n) {  // takes hold and lets go, in 10 ms
-    desk.desk.drag(1, {0, 1, std::array{0.0, 0.0, 0.0}}, {}, 310 * kMsec + 1000 * n);
-    desk.desk.drag(1, {0, 1, std::nullopt}, {}, 310 * kMsec + 1000 * n);
+    desk.desk.drag(1, {0, 1, std::array{0.0, 0.0, 0.0}}, {}, 310 * kDeskMsec + 1000 * n);
+    desk.desk.drag(1, {0, 1, std::nullopt}, {}, 310 * kDeskMsec + 1000 * n);
   }
   EXPECT_LE(desk.sent.size(), 51u + 1u + 2u * 6u);
 }
