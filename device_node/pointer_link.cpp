@@ -13,7 +13,7 @@ namespace {
 constexpr auto kHeldPeriod = std::chrono::milliseconds(20);
 constexpr auto kFreePeriod = std::chrono::milliseconds(500);
 constexpr auto kStale = std::chrono::milliseconds(250);
-constexpr double kSilence = 0.25;  // [s]
+constexpr double kSilence = 0.5;  // [s]
 
 }  // namespace
 

@@ -134,6 +134,7 @@ void PointerDesk::drag(std::uint32_t page, const DragRequest& request,
     if (is_held(device, now_nsec) && device.page != page) return;  // one hand at a time
     if (!request.at_m) {
       if (device.page != page || (device.held & mask) == 0) return;
+      lead(device, now_nsec);
       let_go(device, port);
       if (device.held == 0) {
         release(port.device_id, device, now_nsec);

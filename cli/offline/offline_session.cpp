@@ -103,6 +103,7 @@ class OfflineSession::SimulatedDevice {
 
   const device::DeviceConfig& config() const noexcept { return device_.config; }
   const device::AxisValues& device_values() const noexcept { return channel_.device_values(); }
+  device::PointerPort* pointer_port() noexcept { return device_.driver->pointer_port(); }
   void send_sample() noexcept { exchange_.send_sample(); }
   void read_forces(const engine::World& world) {
     channel_.take_answer(world);
@@ -178,11 +179,9 @@ void OfflineSession::load_launch(const std::string& file,
     sim::DeviceExchange* simulated = simulation().find(loaded.config.device_id);
     if (simulated == nullptr || loaded.config.name != node.name) continue;  // a standby plays live
     if (loaded.config.driver != "mock" && loaded.config.driver != "script" &&
-        loaded.config.driver != "replay") {
-      const std::string why =
-          loaded.config.driver == "pointer" ? "' follows the hand on a page" : "' is hardware";
+        loaded.config.driver != "replay" && loaded.config.driver != "pointer") {
       warnings_.push_back("the ports of '" + loaded.config.name + "' rest: its driver '" +
-                          loaded.config.driver + why);
+                          loaded.config.driver + "' is hardware");
       continue;
     }
     devices_.push_back(std::make_unique<SimulatedDevice>(std::move(loaded), *simulated));
@@ -215,6 +214,13 @@ engine::Vec3 OfflineSession::device_value(const scene::Port& port) const {
     force += device_of(port)->device_values()[port.axes[i]] * port.directions[i];
   }
   return force;
+}
+
+device::PointerPort* OfflineSession::pointer_port(const std::string& name) noexcept {
+  for (const auto& device : devices_) {
+    if (device->config().name == name) return device->pointer_port();
+  }
+  return nullptr;
 }
 
 double OfflineSession::device_value_on_axis(const scene::Port& port,

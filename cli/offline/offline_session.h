@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "device_node/drivers/pointer_port.h"
 #include "device_node/exchange.h"
 #include "idl/scene.h"
 #include "sim_node/run/event_room.h"
@@ -57,6 +58,10 @@ class OfflineSession {
   engine::Vec3 device_value(const scene::Port& port) const;
   /// The number that its device gave for one of the axes of the port, 0 when none plays it.
   double device_value_on_axis(const scene::Port& port, std::size_t axis) const noexcept;
+
+  /// What leads the hand of a device with the driver `pointer`; null for all others. Nobody leads it
+  /// unless the caller does: its keys are free.
+  device::PointerPort* pointer_port(const std::string& name) noexcept;
 
   /// The changes of state of the last tick; how many there was no room for.
   std::span<const engine::LinkEvent> events() const noexcept { return events_.events(); }

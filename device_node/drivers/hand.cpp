@@ -2,6 +2,7 @@
 #include "device_node/drivers/hand.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -11,7 +12,7 @@ Hand::Hand(const HandSettings& settings, Trajectory target)
     : settings_(settings), target_(std::move(target)) {
   const bool valid = settings.mass_kg > 0.0 && settings.stiffness_n_per_m > 0.0 &&
                      settings.viscosity_n_s_per_m >= 0.0 && settings.finger_n_per_m > 0.0 &&
-                     settings.finger_viscosity_n_s_per_m >= 0.0;
+                     settings.finger_viscosity_n_s_per_m >= 0.0 && settings.force_limit_n > 0.0;
   if (!valid) throw std::invalid_argument("a setting of the hand is out of range");
   start();
 }
@@ -42,9 +43,15 @@ void Hand::advance(double time_s, double h_s, double force_n) noexcept {
   const double target = followed_ ? followed_->target_m : target_.value_at(time_s);
   const double rate = followed_ ? followed_->target_m_per_s : target_.rate_at(time_s);
   const double viscosity = grip_ * settings_.viscosity_n_s_per_m;
-  const double drive =
-      grip_ * settings_.stiffness_n_per_m * (target - position_) + viscosity * rate + force_n;
+  const double spring = grip_ * settings_.stiffness_n_per_m * (target - position_);
+  const double drive = spring + viscosity * rate + force_n;
+  const double before = speed_;
   speed_ = (settings_.mass_kg * speed_ + h_s * drive) / (settings_.mass_kg + h_s * viscosity);
+  const double pull_n = spring + viscosity * (rate - speed_);
+  if (std::abs(pull_n) > settings_.force_limit_n) {
+    const double limited = std::copysign(settings_.force_limit_n, pull_n) + force_n;
+    speed_ = before + h_s * limited / settings_.mass_kg;
+  }
   position_ += h_s * speed_;
 }
 

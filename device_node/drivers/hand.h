@@ -1,6 +1,7 @@
 // device_node/drivers/hand.h -- a simulated hand: what plays a simulated key.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "device_node/drivers/trajectory.h"
@@ -15,13 +16,16 @@ struct HandSettings {
   double finger_n_per_m = 2000.0;           ///< stiffness of the finger tip, > 0
   double finger_viscosity_n_s_per_m = 2.0;  ///< of the finger tip, >= 0
   bool holds = false;                       ///< finger in a ring; else it only pushes down
+  /// Most force with which spring and damper draw the hand to its target, > 0.
+  double force_limit_n = std::numeric_limits<double>::infinity();
 };
 
 /// A finger on a key. It wants to follow a target, and is a mass on a spring and a damper that pull
 /// it there; so a force on it really moves it (F/K when at rest), as it does a person's.
 ///
 ///   m dv/dt = K (target - x) + Z (d target/dt - v) + F
-/// Scheme: Z implicit, then x+ = x + h v+.
+/// Scheme: Z implicit, then x+ = x + h v+. K (target - x) + Z (d target/dt - v+) is at most the force
+/// limit; v+ follows from the limit where it is more.
 class Hand {
  public:
   Hand() = default;

@@ -75,6 +75,8 @@ void read_hand(const config::Value& mapping, const AxisLayout& layout, MockSetti
       reader.optional_number("stiffness_n_per_m", hand.stiffness_n_per_m, Range::positive());
   hand.viscosity_n_s_per_m = reader.optional_number("viscosity_n_s_per_m", hand.viscosity_n_s_per_m,
                                                     Range::not_negative());
+  hand.force_limit_n =
+      reader.optional_number("force_limit_n", hand.force_limit_n, Range::positive());
   read_finger(reader.optional_mapping("finger"), hand, problems);
   settings.played = read_played(reader, layout);
   settings.gesture = read_gesture(reader, settings.played.size(), problems);

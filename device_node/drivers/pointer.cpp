@@ -136,6 +136,10 @@ void Pointer::move_hands() noexcept {
       axis.target_m = mock_.position_m(a);
     }
     axis.grip = approach(axis.grip, wanted_grip, period_s_ / settings_.fade_s);
+    if (axis.grip == 0.0) {  // nothing holds the key: there is no target but where it is
+      axis.target_m = mock_.position_m(a);
+      axis.wanted_m = axis.target_m;
+    }
     const double limit = settings_.speed_limit_m_per_s;
     const double rate = std::clamp((axis.wanted_m - axis.target_m) / kLag, -limit, limit);
     axis.target_m += rate * period_s_;

@@ -69,6 +69,34 @@ TEST(Hand, YieldsToAForceByForceOverStiffness) {
   EXPECT_NEAR(hand.position_m(), -0.01 + 1.2 / 400.0, 1e-12);
 }
 
+TEST(Hand, PullsNoHarderThanItsLimit) {
+  // Its spring alone would pull with 20 N and more all the way: it moves as a mass under a constant force,
+  // and a force above the limit carries it off. With h the step, x(n) = a h^2 n (n + 1) / 2.
+  HandSettings weak = hand_settings();
+  weak.force_limit_n = 3.0;
+  for (const double force_n : {0.0, -5.0}) {
+    Hand hand(weak, resting_at(0.0));
+    hand.follow(0.1, 0.0, 1.0);
+    const double acceleration = (3.0 + force_n) / 0.15;
+    const int count = 5000;
+
+    for (int n = 0; n < count; ++n) hand.advance(n * kH, kH, force_n);
+
+    EXPECT_NEAR(hand.position_m(), acceleration * kH * kH * count * (count + 1) / 2.0, 1e-9);
+  }
+}
+
+TEST(Hand, ComesToRestAtItsTargetUnderALimit) {
+  HandSettings weak = hand_settings();
+  weak.force_limit_n = 3.0;
+  Hand hand(weak, resting_at(0.0));
+  hand.follow(0.1, 0.0, 1.0);
+
+  for (int n = 0; n < 200000; ++n) hand.advance(n * kH, kH, 1.2);
+
+  EXPECT_NEAR(hand.position_m(), 0.1 + 1.2 / 400.0, 1e-9);
+}
+
 TEST(Hand, PushesButDoesNotPull) {
   const Hand hand(hand_settings(), resting_at(-0.01));
 
@@ -105,6 +133,9 @@ TEST(Hand, RefusesSettingsOutOfRange) {
   EXPECT_THROW(Hand(bad, resting_at(0.0)), std::invalid_argument);
   bad = hand_settings();
   bad.finger_n_per_m = 0.0;
+  EXPECT_THROW(Hand(bad, resting_at(0.0)), std::invalid_argument);
+  bad = hand_settings();
+  bad.force_limit_n = 0.0;
   EXPECT_THROW(Hand(bad, resting_at(0.0)), std::invalid_argument);
 }
 

@@ -75,6 +75,7 @@ mock: {q: 1, key: {q: 1}, sensor: {q: 1}, hand: {q: 1, axes: [0, 1, 2, 3], finge
       R"(}}
 script: {q: 1, positions: [{at_s: 0, m: 0, q: 1}]}
 replay: {take: none.mcap, q: 1}
+pointer: {q: 1}
 kfb1: {)" +
       wire + "}\nfirefader: {" + wire + "}\nhaply: {" + wire + "}\n";
   text = std::regex_replace(text, std::regex("\\bq: 1"), kUnknown + std::string(": 1"));
@@ -154,6 +155,7 @@ const std::map<std::string, std::string>& headings() {
       {"firefader", "firefader"},
       {"haply", "haply"},
       {"coupling", "coupling"},
+      {"pointer", "pointer"},
   };
   return kHeadings;
 }

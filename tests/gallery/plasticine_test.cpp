@@ -1,10 +1,15 @@
 // tests/gallery/plasticine_test.cpp
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "device_node/drivers/pointer_port.h"
 #include "sim_node/engine/connected_components.h"
 #include "tests/gallery/gallery_session.h"
 
@@ -55,6 +60,58 @@ TEST(Plasticine, IsMouldedTornAndStuckTogetherAgain) {
 
   session.play_until(2.9, note);  // and together
   EXPECT_EQ(history, (std::vector<double>{1, 2, 1}));
+}
+
+/// Targets as a page sends them: both thimbles wander over the whole travel, in strokes between two
+/// places, as fast as viz_node leads a target.
+class WildHand {
+ public:
+  explicit WildHand(unsigned seed) : lot_(seed) {}
+
+  /// The target of the next millisecond.
+  device::PointerTarget next() {
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (left_[a]-- <= 0) {
+        wanted_[a] = std::uniform_real_distribution(-0.08, 0.08)(lot_);
+        left_[a] = std::uniform_int_distribution(20, 600)(lot_);
+      }
+      constexpr double kLed = 0.002;  // 2 m/s
+      target_.target_m[a] += std::clamp(wanted_[a] - target_.target_m[a], -kLed, kLed);
+    }
+    target_.epoch = 1;
+    ++target_.number;
+    target_.holds = true;
+    target_.held = 0b1111;
+    return target_;
+  }
+
+ private:
+  std::mt19937 lot_;
+  std::array<double, 4> wanted_{};
+  std::array<int, 4> left_{};
+  device::PointerTarget target_;
+};
+
+TEST(Plasticine, StaysCertifiedWhateverAHandOnThePageDoes) {
+  const unsigned seed = std::random_device()();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  GallerySession session("plasticine.yaml",
+                         {"thimbles.driver=pointer", "thimbles.pointer.only_while_held=false"});
+  device::PointerPort* const port = session.pointer_port("thimbles");
+  ASSERT_NE(port, nullptr);
+  WildHand hand(seed);
+  double most_pieces = 0.0;
+  double most_force_n = 0.0;
+
+  while (!session.has_reached(20.0)) {
+    port->target.put(hand.next());
+    ASSERT_TRUE(session.play_tick());
+    ASSERT_EQ(session.bound_text(), "") << session.time_s() << " s";
+    most_pieces = std::max(most_pieces, session.signal("pieces"));
+    most_force_n = std::max(most_force_n, std::abs(session.signal("left_force")));
+  }
+  EXPECT_GE(most_pieces, 2.0) << "it is torn";
+  EXPECT_GT(most_force_n, 2.0) << "and pressed";
 }
 
 }  // namespace

@@ -367,10 +367,17 @@ TEST(Resim, AHandThatIsReplayedGivesTheStateOfTheTake) {
   const mcap::TakeFolder folder;
   const std::string take = kGolden + "lockstep_thimbles.mcap";
   const std::string configs = CORDIS_SOURCE_DIR "/launch_configs/";
+  std::ifstream file(configs + "scenes/plasticine.yaml");
+  std::string scene{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t rate = scene.find("rate_hz: 5000");
+  ASSERT_NE(rate, std::string::npos);
+  scene.replace(rate, 13, "rate_hz: 4000");  // as the take was recorded
+  std::ofstream(folder / "scene.yaml") << scene;
   std::ofstream(folder / "launch.yaml")
-      << "cordis: 1\nclock: lockstep\nnodes:\n  sim: {node: sim_node, scene: '" << configs
-      << "scenes/plasticine.yaml'}\n  thimbles: {node: device_node, device: '" << configs
-      << "devices/two_thimbles.yaml', driver: replay, replay: {take: '" << take << "'}}\n";
+      << "cordis: 1\nclock: lockstep\nnodes:\n  sim: {node: sim_node, scene: scene.yaml}\n  "
+         "thimbles: {node: device_node, device: '"
+      << configs << "devices/two_thimbles.yaml', driver: replay, replay: {take: '" << take
+      << "'}}\n";
   OfflineSession session((folder / "launch.yaml").string());
   session.play_until(1.0);
   EXPECT_EQ(session.world().step_count(), 4000u);

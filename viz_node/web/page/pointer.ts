@@ -5,7 +5,7 @@ import type { Marks, Point } from './marks.ts';
 import type { Description, PointerPort, PointerState } from './protocol.ts';
 import type { SceneView } from './scene_view.ts';
 
-const REPEAT_MS = 80; // a page that says nothing for longer than 250 ms has let go
+const REPEAT_MS = 80; // a page that says nothing for longer than 500 ms has let go
 const NEAR_MOUSE_PX = 18; // beyond the mark of a port
 const NEAR_FINGER_PX = 34;
 const FULL_ARROW_N = 5;
