@@ -59,8 +59,8 @@ class OfflineSession {
   /// The number that its device gave for one of the axes of the port, 0 when none plays it.
   double device_value_on_axis(const scene::Port& port, std::size_t axis) const noexcept;
 
-  /// What leads the hand of a device with the driver `pointer`; null for all others. Nobody leads it
-  /// unless the caller does: its keys are free.
+  /// What leads the hand of a device with the driver `pointer`; null for all others. Its keys are
+  /// free unless the caller leads it.
   device::PointerPort* pointer_port(const std::string& name) noexcept;
 
   /// The changes of state of the last tick; how many there was no room for.

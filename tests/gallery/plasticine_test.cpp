@@ -100,18 +100,18 @@ TEST(Plasticine, StaysCertifiedWhateverAHandOnThePageDoes) {
   device::PointerPort* const port = session.pointer_port("thimbles");
   ASSERT_NE(port, nullptr);
   WildHand hand(seed);
-  double most_pieces = 0.0;
-  double most_force_n = 0.0;
+  double max_pieces = 0.0;
+  double max_force_n = 0.0;
 
   while (!session.has_reached(20.0)) {
     port->target.put(hand.next());
     ASSERT_TRUE(session.play_tick());
     ASSERT_EQ(session.bound_text(), "") << session.time_s() << " s";
-    most_pieces = std::max(most_pieces, session.signal("pieces"));
-    most_force_n = std::max(most_force_n, std::abs(session.signal("left_force")));
+    max_pieces = std::max(max_pieces, session.signal("pieces"));
+    max_force_n = std::max(max_force_n, std::abs(session.signal("left_force")));
   }
-  EXPECT_GE(most_pieces, 2.0) << "it is torn";
-  EXPECT_GT(most_force_n, 2.0) << "and pressed";
+  EXPECT_GE(max_pieces, 2.0) << "it is torn";
+  EXPECT_GT(max_force_n, 2.0) << "and pressed";
 }
 
 }  // namespace

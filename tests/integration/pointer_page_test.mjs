@@ -1,5 +1,5 @@
-// tests/integration/pointer_page_test.mjs -- a key that is dragged on the page is pressed, is felt, and is
-// handed back. With real sim_node, device_node, viz_node and Chromium. The other hand is a script that rests.
+// tests/integration/pointer_page_test.mjs -- a key is dragged on the page, felt, and handed back.
+// With real sim_node, device_node, viz_node and Chromium. The other hand is a script that rests.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { drawn, openPage, textOf, viz } from '../viz/browser.mjs';
@@ -81,7 +81,7 @@ const cases = {
     await page.mouse.up();
     await until('the script plays', async () => (await stateOf(page, 'keyboard')) === 'running');
     await until('the pointer stands by', async () => (await stateOf(page, 'pointer')) === 'standby');
-    await until('nobody holds it', async () => (await pointer(page)).held.length === 0);
+    await until('no page holds it', async () => (await pointer(page)).held.length === 0);
   },
 
   'a page that closes lets go': async ({ browser, page, url, ports }) => {
