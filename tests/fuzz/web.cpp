@@ -72,7 +72,8 @@ class Server {
 
   asio::io_context context_{1};
   SceneMirror mirror_{25.0};
-  ServerState state_{mirror_, [](const PageCommand&) {}};
+  PointerDesk pointers_{1, [](msg::PointerTarget&) {}};
+  ServerState state_{mirror_, pointers_, [](const PageCommand&) {}};
   StaticPages pages_ = no_pages();
 };
 
