@@ -173,6 +173,7 @@ Sample any_description() {
     message.signals().push_back(signal);
   }
   json ports = json::array();
+  json port_frames = json::array();
   for (std::size_t i = any_u32() % 3; i > 0; --i) {
     msg::PortDescription port;
     port.name(any_text());
@@ -185,30 +186,23 @@ Sample any_description() {
                      {"mat", 0},
                      {"axes", port.axes()}});
     message.ports().push_back(port);
+    msg::PortFrame frame;
+    frame.rest_m({0.25 * static_cast<double>(any_u32() % 100), 0.5, -1.5});
+    frame.direction({0.0, 1.0, 0.0, 1.0, 0.0, 0.0});
+    port_frames.push_back({{"rest_m", frame.rest_m()}, {"direction", frame.direction()}});
+    message.port_frames().push_back(frame);
   }
   const json none = json::array();
   return {"scene/description",
           "cordis::msg::SceneDescription",
           payload_of(message),
-          {{"wire_version", 0},
-           {"epoch", "0"},
-           {"version", "0"},
-           {"name", message.name()},
-           {"space", 0},
-           {"step_rate_hz", 0},
-           {"gesture_rate_hz", 0},
-           {"frame_rate_hz", 0},
-           {"mat_kind", none},
-           {"mat_mass_kg", none},
-           {"mat_radius_m", none},
-           {"matter", none},
-           {"link_ends", none},
-           {"links", none},
-           {"state_machines", none},
-           {"link_state_machine", none},
-           {"ports", ports},
-           {"signals", signals},
-           {"scene_file", ""}}};
+          {{"wire_version", 0},          {"epoch", "0"},         {"version", "0"},
+           {"name", message.name()},     {"space", 0},           {"step_rate_hz", 0},
+           {"gesture_rate_hz", 0},       {"frame_rate_hz", 0},   {"mat_kind", none},
+           {"mat_mass_kg", none},        {"mat_radius_m", none}, {"matter", none},
+           {"link_ends", none},          {"links", none},        {"state_machines", none},
+           {"link_state_machine", none}, {"ports", ports},       {"port_frames", port_frames},
+           {"signals", signals},         {"scene_file", ""}}};
 }
 
 bool write_take(const std::filesystem::path& folder, mcap::Compression compression) {

@@ -101,7 +101,7 @@ test('programs, benchmarks and suites that documents name exist', () => {
       assert.ok(new RegExp(`\\b${program}\\b`).test(lists), `${name}: no program ${program}`);
     }
     for (const [, bench] of text.matchAll(/--benchmark_filter=(\w+)/g)) {
-      assert.ok(new RegExp(`BENCHMARK\\(\\w*${bench}`).test(sources), `${name}: no benchmark ${bench}`);
+      assert.ok(new RegExp(`(BENCHMARK\\(|RegisterBenchmark\\(")\\w*${bench}`).test(sources), `${name}: no benchmark ${bench}`);
     }
     for (const [, suite] of text.matchAll(/--gtest_filter=(\w+)\./g)) {
       assert.ok(sources.includes(`TEST(${suite},`), `${name}: no tests ${suite}`);
