@@ -48,7 +48,7 @@ std::string get(const std::string& url) {
 class Respawn : public testing::Test {
  protected:
   Respawn()
-      : participant_({own_domain(), "plucked_string", "observer", false}),
+      : participant_({own_domain(), "plucked_string", "observer", false, true}),
         status_(participant_),
         forces_(participant_, dds::Topic::kForces),
         launcher_({program_path("cordis"), "run",
