@@ -75,8 +75,9 @@ const cases = {
     for (const [id, pattern] of Object.entries(figures)) {
       await until(`#${id} reads ${pattern}`, async () => pattern.test(await textOf(page, `#${id}`)));
     }
-    const running = 'keyboard device_node running, sim sim_node running, view viz_node running';
-    await until('all three nodes run', async () => {
+    const running =
+      'keyboard device_node running, pointer device_node standby, sim sim_node running, view viz_node running';
+    await until('all four nodes run, the pointer as a standby', async () => {
       const nodes = (await viz(page, 'nodes')).map(({ name, kind, state }) => `${name} ${kind} ${state}`);
       return nodes.sort().join(', ') === running;
     });
