@@ -13,7 +13,6 @@ namespace {
 constexpr auto kHeldPeriod = std::chrono::milliseconds(20);
 constexpr auto kFreePeriod = std::chrono::milliseconds(500);
 constexpr auto kStale = std::chrono::milliseconds(250);
-constexpr double kSilence = 0.5;  // [s]
 
 }  // namespace
 
@@ -40,7 +39,7 @@ PointerLink::PointerLink(dds::Participant& participant, const DeviceConfig& devi
                          PointerPort& port, std::uint64_t epoch)
     : device_(device),
       port_(port),
-      choice_(kSilence),
+      choice_(kPageSilence),
       reader_(participant, dds::Topic::kPointerTarget),
       writer_(participant, dds::Topic::kPointerState) {
   state_.device_id(device.device_id);
@@ -83,7 +82,7 @@ void PointerLink::take(const msg::PointerTarget& target) {
   wanted.held = target.held_coordinates();
   if (!map.is_identity() && wanted.held != 0) wanted.held = (1U << map.axis_count()) - 1;
   wanted.target_m = map.axes_of(target.target_m());
-  if (!all_finite(wanted)) return;  // large coordinates overflow in the map
+  if (!all_finite(wanted.target_m, kMaxAxes)) return;  // large coordinates overflow in the map
   port_.target.put(wanted);
 }
 

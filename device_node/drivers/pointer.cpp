@@ -85,7 +85,7 @@ bool Pointer::write(const AxisValues& commanded) noexcept {
 void Pointer::take_target() noexcept {
   ++period_;
   PointerTarget target;
-  if (port_.target.take(target) && all_finite(target)) {
+  if (port_.target.take(target) && all_finite(target.target_m, kMaxAxes)) {
     newest_ = target;
     silent_s_ = 0.0;
     if (pending_number_ == 0) {

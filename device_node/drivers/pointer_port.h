@@ -1,14 +1,15 @@
 // device_node/drivers/pointer_port.h -- between the loop of a device and the hand on a page.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "device_node/axis.h"
 #include "node/latest.h"
 
 namespace cordis::device {
+
+/// Time without a message after which a page counts as gone [s].
+inline constexpr double kPageSilence = 0.5;
 
 /// Where the hand on a page wants the axes.
 struct PointerTarget {
@@ -18,11 +19,6 @@ struct PointerTarget {
   std::uint32_t held = 0;    ///< bit n: axis n is held
   AxisValues target_m{};     ///< of the first target of a hold: where the device is now
 };
-
-/// True if the targets of all axes are finite.
-inline bool all_finite(const PointerTarget& target) noexcept {
-  return std::ranges::all_of(target.target_m, [](double value) { return std::isfinite(value); });
-}
 
 /// What that hand feels.
 struct PointerFeel {

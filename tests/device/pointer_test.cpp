@@ -54,7 +54,7 @@ struct Led {
     pointer.pointer_port()->target.put(target);
   }
 
-  /// Lives so many periods under a force; true while the device is there.
+  /// Runs this many periods under a constant force. @return true if the device is present at the end
   bool live(int periods, double force_n = 0.0) {
     AxisValues command{};
     command[0] = force_n;

@@ -67,7 +67,7 @@ inline device::HardwareSettings impatient() {
 /// Lives through an input with a driver: its first byte chooses the role. Each of its parts is a
 /// byte of kind and length, and what the board says in one period. The driver may sense nothing that
 /// is not finite.
-/// @param make   a driver at a wire
+/// @param make   a driver at a wire, with a layout of so many axes
 /// @param frame  wraps a part of the second kind as the protocol of the board does, and sends it
 template <class Make, class Frame>
 void live_with_board(Bytes input, int axis_count, Make make, Frame frame) {
@@ -75,7 +75,9 @@ void live_with_board(Bytes input, int axis_count, Make make, Frame frame) {
   if (input.empty()) return;
   auto owned = std::make_unique<PairedWire>();
   PairedWire& wire = *owned;
-  const std::unique_ptr<device::Driver> driver = make(std::move(owned));
+  device::AxisLayout layout;
+  layout.count = axis_count;
+  const std::unique_ptr<device::Driver> driver = make(std::move(owned), layout);
   driver->start(input[0] % 2 == 0 ? device::Role::kMass : device::Role::kLiaison);
   input = input.subspan(1);
   device::AxisValues commanded{};

@@ -23,11 +23,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace cordis;
   constexpr int kFaders = 2;
   static constexpr double kFullScaleN = 2.0;
-  device::AxisLayout layout;
-  layout.count = kFaders;
   fuzz::live_with_board(
       {data, size}, kFaders,
-      [&layout](std::unique_ptr<device::Wire> wire) {
+      [](std::unique_ptr<device::Wire> wire, const device::AxisLayout& layout) {
         return std::make_unique<device::FireFader>(std::move(wire), fuzz::impatient(), layout,
                                                    kFullScaleN);
       },

@@ -21,11 +21,9 @@ void say_angles(PairedWire& wire, Bytes part) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cordis;
   constexpr int kAxes = 2;
-  device::AxisLayout layout;
-  layout.count = kAxes;
   fuzz::live_with_board(
       {data, size}, kAxes,
-      [&layout](std::unique_ptr<device::Wire> wire) {
+      [](std::unique_ptr<device::Wire> wire, const device::AxisLayout& layout) {
         return std::make_unique<device::Haply>(std::move(wire), fuzz::impatient(), layout,
                                                device::HaplySettings{});
       },

@@ -48,11 +48,9 @@ void say_frame(PairedWire& wire, Bytes payload) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cordis;
   constexpr int kKeys = 2;
-  device::AxisLayout layout;
-  layout.count = kKeys;
   fuzz::live_with_board(
       {data, size}, kKeys,
-      [&layout](std::unique_ptr<device::Wire> wire) {
+      [](std::unique_ptr<device::Wire> wire, const device::AxisLayout& layout) {
         return std::make_unique<device::Kfb1>(std::move(wire), fuzz::impatient(), layout);
       },
       fuzz::say_frame);

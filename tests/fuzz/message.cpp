@@ -1,4 +1,5 @@
 // tests/fuzz/message.cpp -- messages of DDS as they come over the wire, of every type.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -24,42 +25,21 @@ void read_and_write(std::span<const std::byte> payload) {
   if (!dds::decode(written, again) || dds::encode(again) != written) std::abort();
 }
 
+constexpr std::array kReadAndWrite{
+    read_and_write<msg::GesturePositions>,  read_and_write<msg::GestureForces>,
+    read_and_write<msg::DeviceDescription>, read_and_write<msg::SceneDescription>,
+    read_and_write<msg::SceneFrame>,        read_and_write<msg::SceneSignals>,
+    read_and_write<msg::SceneSound>,        read_and_write<msg::SceneEvents>,
+    read_and_write<msg::SceneInputs>,
+};
+
 }  // namespace
 }  // namespace cordis::fuzz
 
 /// The first byte chooses the type.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace cordis;
+  using cordis::fuzz::kReadAndWrite;
   if (size == 0) return 0;
-  const auto payload = std::as_bytes(std::span(data, size)).subspan(1);
-  switch (data[0] % 9) {
-    case 0:
-      fuzz::read_and_write<msg::GesturePositions>(payload);
-      break;
-    case 1:
-      fuzz::read_and_write<msg::GestureForces>(payload);
-      break;
-    case 2:
-      fuzz::read_and_write<msg::DeviceDescription>(payload);
-      break;
-    case 3:
-      fuzz::read_and_write<msg::SceneDescription>(payload);
-      break;
-    case 4:
-      fuzz::read_and_write<msg::SceneFrame>(payload);
-      break;
-    case 5:
-      fuzz::read_and_write<msg::SceneSignals>(payload);
-      break;
-    case 6:
-      fuzz::read_and_write<msg::SceneSound>(payload);
-      break;
-    case 7:
-      fuzz::read_and_write<msg::SceneEvents>(payload);
-      break;
-    default:
-      fuzz::read_and_write<msg::SceneInputs>(payload);
-      break;
-  }
+  kReadAndWrite[data[0] % kReadAndWrite.size()](std::as_bytes(std::span(data, size)).subspan(1));
   return 0;
 }
