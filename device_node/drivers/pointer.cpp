@@ -111,7 +111,7 @@ void Pointer::appear() noexcept {
   if (!is_away_) {
     for (int a = 0; a < layout_.count; ++a) {
       const auto i = static_cast<std::size_t>(a);
-      axes_[i].wanted_m = axes_[i].grip > 0.0 ? axes_[i].target_m : mock_.position_m(a);
+      axes_[i].wanted_m = axes_[i].grip > 0.0 ? axes_[i].target_m : place_within_travel(a);
     }
     return;
   }
@@ -125,21 +125,20 @@ void Pointer::appear() noexcept {
   }
 }
 
+/// The place of a key; at its stop, which gives way a little, the end of its travel.
+double Pointer::place_within_travel(int axis) const noexcept {
+  return std::clamp(mock_.position_m(axis), layout_.lowest_m, layout_.highest_m);
+}
+
 void Pointer::move_hands() noexcept {
   bool any_grip = false;
   for (int a = 0; a < layout_.count; ++a) {
     Axis& axis = axes_[static_cast<std::size_t>(a)];
     const bool is_held = (newest_.held >> a & 1U) != 0;
     const double wanted_grip = holds_ && (is_held || is_ring_) ? 1.0 : 0.0;
-    if (axis.grip == 0.0 && wanted_grip > 0.0) {  // takes hold of the key where it is
-      mock_.hand(a).place(mock_.position_m(a));
-      axis.target_m = mock_.position_m(a);
-    }
+    if (axis.grip == 0.0 && wanted_grip > 0.0) mock_.hand(a).place(mock_.position_m(a));
     axis.grip = approach(axis.grip, wanted_grip, period_s_ / settings_.fade_s);
-    if (axis.grip == 0.0) {  // nothing holds the key: there is no target but where it is
-      axis.target_m = mock_.position_m(a);
-      axis.wanted_m = axis.target_m;
-    }
+    if (axis.grip == 0.0) axis.wanted_m = place_within_travel(a);  // the target follows a free key
     const double limit = settings_.speed_limit_m_per_s;
     const double rate = std::clamp((axis.wanted_m - axis.target_m) / kLag, -limit, limit);
     axis.target_m += rate * period_s_;

@@ -55,6 +55,7 @@ class Pointer final : public Driver {
   void take_target() noexcept;
   void appear() noexcept;
   void move_hands() noexcept;
+  double place_within_travel(int axis) const noexcept;
   void record_command(const AxisValues& commanded) noexcept;
   void report() noexcept;
 

@@ -189,7 +189,7 @@ TEST(Pointer, ATargetThatIsNoNumberCountsAsSilence) {
 TEST(Pointer, NoTargetMakesItsHandJumpWhateverThePageSays) {
   // Whatever a page says, the target keeps its speed limit, and so the springs of the hand their share
   // of it: the key gets no more speed than the limit and what its force gives it. While nothing holds a
-  // key its target is the key itself.
+  // key its target follows the key.
   const unsigned seed = std::random_device()();
   std::mt19937 lot(seed);
   PointerSettings settings;
