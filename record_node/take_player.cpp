@@ -113,10 +113,19 @@ std::uint32_t wire_version_of(const mcap::Reader& take) {
   return msg::WIRE_VERSION;
 }
 
+/// True if the take was recorded in a session with hot standbys: its gesture topics have owners.
+bool has_standbys(const mcap::Reader& take) {
+  return std::ranges::any_of(take.channels(), [](const auto& numbered) {
+    const mcap::Channel& channel = numbered.second;
+    return topic_of(channel.topic, "", channel.metadata).exclusive;
+  });
+}
+
 dds::ParticipantConfig member_of(const TakePlayerConfig& config, const mcap::Reader& take,
                                  const std::string& name) {
   dds::ParticipantConfig member{config.domain, config.session, name};
   member.wire_version = wire_version_of(take);
+  member.standbys = has_standbys(take);
   return member;
 }
 

@@ -8,6 +8,7 @@ import { banner, drawn, openPage, textOf, viz } from '../viz/browser.mjs';
 import { out, pause, program, runCases, Session, source, until } from '../viz/session.mjs';
 
 const LENGTH_S = 6; // of what is recorded, at least
+const launch = join(source, 'launch_configs/sounding_string.yaml');
 const SLOW_RATE = 0.985; // the page is silent below 0.98
 
 /** The take that the page shows; without a state while the player is silent, as on a busy machine. */
@@ -53,7 +54,7 @@ const cases = {
     const words = ['play', session.file, '--loop', '--session', 'sounding_string', '--domain', session.domain];
     session.player = session.start('play', program('cordis'), words);
     await session.player.says(/session '(\w+)' in DDS domain/); // a view that begins before it has the name
-    session.view = session.vizOf(session.launchFile('port: 0', 'sounding_string'));
+    session.view = session.vizOf(launch, 'view.port=0', `domain=${session.domain}`);
     await session.page.goto(await session.view.says(/(http:\/\/127\.0\.0\.1:\d+)/));
     const { page } = session;
     await page.waitForSelector('#take:not([hidden])');
@@ -67,6 +68,7 @@ const cases = {
     assert.match(await textOf(page, '#take-time'), /^\d:\d\d\.\d \/ \d:\d\d\.\d$/);
     assert.equal((await viz(page, 'scene')).name, 'sounding_string');
     await banner(page, '');
+    assert.doesNotMatch(session.player.log + session.view.log, /warning/);
     await page.screenshot({ path: join(out, 'take.png') });
   },
 
@@ -158,7 +160,6 @@ const cases = {
 
 async function open() {
   const session = await Session.open();
-  const launch = join(source, 'launch_configs/sounding_string.yaml');
   session.launcher = session.start('cordis', program('cordis'), ['run', launch, '--no-color', `domain=${session.domain}`, 'view.port=0']);
   await openPage(session, await session.launcher.says(/(http:\/\/127\.0\.0\.1:\d+)/));
   session.file = join(session.folder, 'take.mcap');

@@ -17,10 +17,10 @@ export interface Take {
   state: 'playing' | 'paused' | 'over';
 }
 
-/** The take that is played now, read from the status of its player; null in a live session. */
+/** The take that is played now, read from the status of its player, whose warnings follow after "; "; null in a live session. */
 export function takeIn(nodes: NodeState[]): Take | null {
   const player = nodes.find(({ kind, received_s }) => kind === 'player' && received_s < SILENT_AFTER_S);
-  const words = player && /^([\d.]+) of ([\d.]+) s, rate ([\d.e+-]+), (.*)$/s.exec(player.text);
+  const words = player && /^([\d.]+) of ([\d.]+) s, rate ([\d.e+-]+), (.*?)(?:; .*)?$/s.exec(player.text);
   if (!words) return null;
   const state = player.state === 'paused' ? 'paused' : player.state === 'stopped' ? 'over' : 'playing';
   return { positionS: Number(words[1]), lengthS: Number(words[2]), rate: Number(words[3]), file: words[4]!, state };
