@@ -52,7 +52,7 @@ function actionsOf(session, draw) {
     step: verb('step'),
     reset: verb('reset'),
     load: scene,
-    ...Object.fromEntries(['f', '1', '2', '3', '4', 'o', 'c', 'g', ' ', 's'].map((key) => [`tool '${key}'`, tool(key)])),
+    ...Object.fromEntries(['f', '1', '2', '3', '4', 'o', 'c', 'g', 'n', 'h', 'l', 's', '?'].map((key) => [`tool '${key}'`, tool(key)])),
     ...Object.fromEntries([1, 5, 20].map((seconds) => [`window ${seconds} s`, window(seconds)])),
   };
 }
@@ -64,7 +64,21 @@ async function goesOn(page) {
   await until(`${name} grows by 3`, async () => (await viz(page, name)) >= begin + 3);
 }
 
+const phaseOf = async (page) => (await viz(page, 'nodes')).find(({ kind }) => kind === 'sim_node')?.state;
+
 const cases = {
+  'space pauses the simulation and lets it go on, the right arrow does one step': async ({ page }) => {
+    await page.keyboard.press(' ');
+    await until('it is paused', async () => (await phaseOf(page)) === 'paused');
+    const stepOf = async () => (await viz(page, 'nodes')).find(({ kind }) => kind === 'sim_node').step;
+    const before = await stepOf();
+    await page.keyboard.press('ArrowRight');
+    await until('it has done one step', async () => (await stepOf()) === before + 1);
+    await page.keyboard.press(' ');
+    await until('it goes on', async () => (await phaseOf(page)) === 'running');
+    await drawn(page, 3);
+  },
+
   'the view goes on after every button and every scene': async (session) => {
     const { page } = session;
     const seed = Number(process.env.CORDIS_SEED ?? Date.now() % 100_000);

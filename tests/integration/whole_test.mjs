@@ -110,7 +110,7 @@ const cases = {
     for (const [node, row] of Object.entries({ sim: /^sim +[\d.]+ +1000 /m, keyboard: /^keyboard +[\d.]+ +1000 /m })) {
       assert.match(launcher.log, row, `${node} has a row in the table`);
     }
-    await banner(page, 'viz_node does not answer');
+    await banner(page, 'viz_node is gone');
   },
 };
 

@@ -121,7 +121,7 @@ const cases = {
     await session.source.end();
     await banner(page, 'waiting for sim_node');
     assert.equal(await session.view.end(), 0);
-    await banner(page, 'viz_node does not answer');
+    await banner(page, 'viz_node is gone');
     session.view = session.vizOf(session.launchFile(`port: ${port}`, 'another'));
     await banner(page, 'waiting for sim_node');
     session.source = session.scene('--session', 'another', '--scene', 'grid', '--mats', '400');

@@ -172,13 +172,13 @@ const cases = {
     await until('the fastest speed is reported', async () => /m\/s$/.test(await textOf(page, '#speed-most')));
     await page.keyboard.press('c');
 
-    await page.keyboard.press(' ');
+    await page.keyboard.press('h');
     await banner(page, 'view frozen');
     const frozen = await viz(page, 'framesDrawn');
     const came = await viz(page, 'framesReceived');
     await until('frames still come', async () => (await viz(page, 'framesReceived')) > came + 5);
     assert.equal(await viz(page, 'framesDrawn'), frozen);
-    await page.keyboard.press(' ');
+    await page.keyboard.press('h');
     await drawn(page, 3);
   },
 
@@ -207,8 +207,11 @@ const cases = {
     const { page } = session;
     const { port } = new URL(session.url);
     await session.view.end('SIGKILL');
-    await banner(page, 'viz_node does not answer');
+    await banner(page, 'viz_node is gone');
     assert.equal(await viz(page, 'connected'), false);
+    const dots = await page.locator('#nodes td.state').evaluateAll((cells) => cells.map((cell) => getComputedStyle(cell, '::before').backgroundColor));
+    const quiet = await page.locator('#brand span').evaluate((text) => getComputedStyle(text).color);
+    assert.ok(dots.length > 0 && dots.every((dot) => dot === quiet), `no node is shown as running: ${dots}`);
     session.view = session.viz(`view.port=${port}`);
     await session.view.says(/page at (\S+)/);
     await drawn(page, 10);

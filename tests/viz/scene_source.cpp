@@ -2,7 +2,7 @@
 // moves by formula.
 //
 // usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
-//                     [--amplitude METRES] [--bad-frames]
+//                     [--amplitude METRES] [--bodies N] [--space 1|2|3] [--bad-frames]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
 #include <atomic>
 #include <chrono>
@@ -41,6 +41,8 @@ struct Options {
   std::string scene = "string";
   std::size_t mats = 60;
   double amplitude_m = 0.0;  // of the string; 0: its own
+  std::size_t bodies = 1;    // that the MATs belong to
+  std::uint8_t space = 0;    // 0: that of the scene
   bool states = false;
   bool bad_frames = false;
   bool hold_domain = false;
@@ -64,6 +66,10 @@ Options read_options(int argc, char** argv) {
       options.mats = std::stoul(value());
     } else if (word == "--amplitude") {
       options.amplitude_m = std::stod(value());
+    } else if (word == "--bodies") {
+      options.bodies = std::stoul(value());
+    } else if (word == "--space") {
+      options.space = static_cast<std::uint8_t>(std::stoul(value()));
     } else if (word == "--states") {
       options.states = true;
     } else if (word == "--bad-frames") {
@@ -145,16 +151,42 @@ MovingScene grid_scene(std::size_t count) {
   return scene;
 }
 
-void name_parts(MovingScene& scene, const std::string& name, std::uint64_t epoch) {
+/// The MATs as bodies of equal size: `string`, `string2`, `string3` ...
+std::vector<msg::NamedRange> bodies_of(const msg::SceneDescription& description,
+                                       const std::string& name, std::size_t count) {
+  std::vector<msg::NamedRange> bodies(count);
+  const std::size_t mats = description.mat_kind().size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t first = i * mats / count;
+    bodies[i].name(i == 0 ? name : name + std::to_string(i + 1));
+    bodies[i].first(static_cast<std::uint32_t>(first));
+    bodies[i].count(static_cast<std::uint32_t>((i + 1) * mats / count - first));
+  }
+  return bodies;
+}
+
+/// Every link may be hooked or free.
+void describe_states(msg::SceneDescription& description) {
+  msg::StateMachineDescription hook;
+  hook.name("hook");
+  hook.states({"hooked", "free"});
+  description.state_machines({hook});
+  description.link_state_machine().assign(description.link_ends().size() / 2, 0);
+}
+
+void name_parts(MovingScene& scene, const std::string& name, std::size_t bodies,
+                std::uint64_t epoch) {
   msg::SceneDescription& description = scene.description;
-  msg::NamedRange matter;
-  matter.name(name);
-  matter.count(static_cast<std::uint32_t>(description.mat_kind().size()));
   msg::NamedRange tool;  // has the name of the port, but is another MAT
   tool.name("finger");
   tool.first(scene.port_mat + 3);
   tool.count(1);
-  description.matter({matter, tool});
+  description.matter() = bodies_of(description, name, bodies);
+  description.matter().push_back(tool);
+  msg::NamedRange links;
+  links.name("joints");
+  links.count(static_cast<std::uint32_t>(description.link_ends().size() / 2));
+  description.links({links});
   msg::PortDescription port;
   port.name("finger");
   port.device("keyboard");
@@ -247,7 +279,9 @@ int publish(const Options& options) {
   MovingScene scene =
       options.scene == "grid" ? grid_scene(options.mats) : string_scene(options.mats);
   if (options.amplitude_m > 0.0) scene.amplitude_m = options.amplitude_m;
-  name_parts(scene, options.scene, epoch);
+  if (options.space != 0) scene.description.space(options.space);
+  if (options.states) describe_states(scene.description);
+  name_parts(scene, options.scene, options.bodies, epoch);
   dds::Writer<msg::SceneDescription> description_writer(sim, dds::Topic::kDescription);
   static_cast<void>(description_writer.write(scene.description));
 

@@ -78,9 +78,23 @@ export class CameraRig {
     return (2 * distance * Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2))) / this.height;
   }
 
-  start(box: THREE.Box3): void {
+  /** @param preset  where it looks from at first; null: from where scenes of this space are seen best */
+  start(box: THREE.Box3, preset: Preset | null = null): void {
     this.firstSize = box.getSize(new THREE.Vector3()).length();
-    this.look(this.first, box);
+    this.look(preset ?? this.first, box);
+  }
+
+  /** The left button turns the view, the right one moves it. */
+  turnByLeftButton(): void {
+    this.controls.mouseButtons = { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
+  }
+
+  /** Looks at a place from the same side and distance. */
+  moveTo(place: number[]): void {
+    const offset = this.camera.position.clone().sub(this.target);
+    this.target.fromArray(place);
+    this.camera.position.copy(this.target).add(offset);
+    this.moved = true;
   }
 
   /** Steps back when the scene has outgrown the view. */

@@ -48,6 +48,11 @@ export class Controls {
     }
   }
 
+  /** A key does what a button does. */
+  press(button: 'pause' | 'step'): void {
+    if (!this.buttons[0]!.disabled) this.send(button);
+  }
+
   private send(button: string): void {
     const verb = button === 'pause' && this.paused ? 'resume' : button;
     this.asked = true;

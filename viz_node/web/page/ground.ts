@@ -1,10 +1,11 @@
 // viz_node/web/page/ground.ts -- a grid of round lengths under or behind the scene: a viewer
 // has something to hold on to.
 import * as THREE from 'three';
+import { bytesOf, type Palette } from './colours.ts';
 
-const FINE = [0.078, 0.1, 0.133];
-const COARSE = [0.115, 0.145, 0.188];
-const AXIS = [0.19, 0.235, 0.29];
+/** Red, green and blue of "#rrggbb", 0..1. */
+const sharesOf = (hex: string): number[] => bytesOf(hex).map((byte) => byte / 255);
+
 const CELLS = 24; // across the larger side of the scene, about
 
 /** The largest of 1, 2, 5, 10, 20 ... that is not above `length`. */
@@ -18,7 +19,7 @@ export class Ground {
   readonly group = new THREE.Group();
 
   /** Lays the grid again: upright through the scene when it is flat, on the floor when it is not. */
-  lay(box: THREE.Box3, space: number): void {
+  lay(box: THREE.Box3, space: number, palette: Palette): void {
     this.dispose();
     const size = box.getSize(new THREE.Vector3());
     const centre = box.getCenter(new THREE.Vector3());
@@ -36,12 +37,13 @@ export class Ground {
       points.push(...from, ...to);
       colours.push(...colour, ...colour);
     };
+    const [fine, coarse, axis] = [sharesOf(palette.grid_fine), sharesOf(palette.grid_coarse), sharesOf(palette.grid_axis)];
     const colourOf = (coordinate: number) => {
       const index = Math.round(coordinate / cell);
-      return index === 0 ? AXIS : index % 5 === 0 ? COARSE : FINE;
+      return index === 0 ? axis : index % 5 === 0 ? coarse : fine;
     };
     // Fine lines first: coarse ones are drawn over them.
-    for (const wanted of [FINE, COARSE, AXIS]) {
+    for (const wanted of [fine, coarse, axis]) {
       for (let offset = -half; offset <= half + 0.5 * cell; offset += cell) {
         const u = middle[0] + offset;
         const v = middle[1] + offset;

@@ -8,7 +8,7 @@ import { takeIn, type Take } from './take.ts';
 
 // After this time without a frame the view is called old, whatever the nodes say.
 const OLD_AFTER_S = 1.5;
-const FROZEN: [string, string, 'warn'] = ['view frozen', 'The simulation goes on. Space lets the view go on too.', 'warn'];
+const FROZEN: [string, string, 'warn'] = ['view frozen', 'The simulation goes on. h lets the view go on too.', 'warn'];
 const GONE = ['lost', 'stopped', 'failed'];
 
 /** What the page itself measures. */
@@ -155,6 +155,7 @@ export class Hud {
     const order = ['sim_node', 'device_node', 'viz_node'];
     const sorted = [...nodes].sort((a, b) => order.indexOf(a.kind) - order.indexOf(b.kind) || a.name.localeCompare(b.name));
     fillRows(element('nodes'), sorted, makeRow, writeRow);
+    element('nodes').dataset.old = '';
   }
 
   private writeEvents(status: Status): void {
@@ -174,6 +175,8 @@ export class Hud {
 
   private writeBanner(measured: Measured): void {
     const [title, text, level] = this.alarm(measured);
+    // Without viz_node the rows are old.
+    if (!measured.connected) element('nodes').dataset.old = 'yes';
     element('banner').hidden = title === '';
     element('stage').classList.toggle('stale', level === 'bad');
     set('banner-title', title);
@@ -183,7 +186,7 @@ export class Hud {
 
   /** The one thing that a person should know first: [title, what it means, level]. */
   private alarm(measured: Measured): [string, string, 'bad' | 'warn' | ''] {
-    if (!measured.connected) return ['viz_node does not answer', 'The session may be running all the same. Trying again …', 'bad'];
+    if (!measured.connected) return ['viz_node is gone', 'The session may be running all the same; what stands here is old. Trying again …', 'bad'];
     if (this.otherVersion) return ['reload this page', 'It is older or newer than the viz_node that it shows.', 'bad'];
     if (this.take?.state === 'paused') return ['take paused', 'Space lets it go on; the bar moves it.', 'warn'];
     if (this.take?.state === 'over') return ['end of the take', 'The bar moves it.', 'warn'];
@@ -203,7 +206,7 @@ export class Hud {
       const device = amiss.some((node) => node.kind === 'device_node');
       return [amiss.map((n) => `${n.name} is ${n.state}`).join(', '), amiss.map(fate).join(' ') + (device ? ' Its forces are zero meanwhile.' : ''), 'warn'];
     }
-    if (this.alive('sim_node')?.state === 'paused') return ['paused', 'The scene is paused, and the devices are let go of.', 'warn'];
+    if (this.alive('sim_node')?.state === 'paused') return ['paused', 'The scene is paused, and the devices are let go of. Space lets it go on.', 'warn'];
     if (measured.frozen) return FROZEN;
     return ['', '', ''];
   }

@@ -13,6 +13,8 @@ export class Marks {
   private readonly sheet = document.createElement('canvas');
   private readonly pen: CanvasRenderingContext2D | null;
 
+  halo = '#000000'; // around letters: the colour of the background
+
   constructor(private readonly container: HTMLElement) {
     this.sheet.id = 'marks';
     container.append(this.sheet);
@@ -69,7 +71,7 @@ export class Marks {
     pen.font = `${size}px system-ui, "DejaVu Sans", sans-serif`;
     pen.lineWidth = 3;
     pen.setLineDash([]);
-    pen.strokeStyle = getComputedStyle(document.body).backgroundColor;
+    pen.strokeStyle = this.halo;
     pen.strokeText(text, place.x, place.y);
     pen.fillStyle = colour;
     pen.fillText(text, place.x, place.y);

@@ -1,6 +1,7 @@
 // viz_node/web/page/mat_material.ts -- the matter: one vertex per MAT, drawn as a sphere by
 // intersecting it with the ray of each pixel.
 import * as THREE from 'three';
+import { paletteOf, type Palette } from './colours.ts';
 import { MAT_FIXED } from './wire.ts';
 
 const SHOWN_FIXED_POINT = 3;
@@ -22,12 +23,13 @@ const MAT_VERTEX = /* glsl */ `
   in vec3 position;   // [m]
   in vec3 previous;   // one frame before [m]
   in float radius;    // [m]
+  in vec3 tint;       // colour of its body
   in float kind;      // 0 mass, 1 fixed ball, 2 port, 3 fixed point, 4 tool
   uniform mat4 modelViewMatrix;
   uniform mat4 projectionMatrix;
   uniform float pixels_per_unit;   // of the plane at clip w = 1
   uniform vec4 min_pixels;       // smallest radius on the screen, by kind
-  uniform float speed_scale;       // 1 / full scale, per metre moved; 0: colour by kind
+  uniform float speed_scale;       // 1 / full scale, per metre moved; 0: colour by body
   out vec3 centre;
   out float size;
   out vec3 colour;
@@ -44,7 +46,7 @@ const MAT_VERTEX = /* glsl */ `
     shape = k == 3 ? 1 : (k == 2 ? 2 : 0);
     centre = view_position.xyz;
     gl_PointSize = 2.0 * size * pixels * (shape == 2 ? 1.9 : 1.0) * MARGIN;
-    colour = k == 0 ? vec3(0.42, 0.72, 0.98) : (k == 2 || k == 4 ? vec3(1.0, 0.68, 0.26) : vec3(0.60, 0.65, 0.72));
+    colour = tint;
   #ifndef SPHERES
     // Each gets a brightness of its own: neighbours would run together without shading.
     colour *= 0.7 + 0.3 * float((gl_VertexID * 40503) & 255) / 255.0;
@@ -141,18 +143,11 @@ const LINK_FRAGMENT = /* glsl */ `
   void main() { pixel = vec4(colour, 1.0); }
 `;
 
-/** Colours of links by the number of their state, for colour-blind eyes too; the first is that of a link without states. */
-const LINK_COLOURS = [
-  new THREE.Color(0.4, 0.53, 0.67),
-  new THREE.Color(1.0, 0.68, 0.26),
-  new THREE.Color(0.36, 0.84, 0.64),
-  new THREE.Color(0.9, 0.45, 0.75),
-  new THREE.Color(0.95, 0.9, 0.35),
-  new THREE.Color(1.0, 0.42, 0.42),
-];
+/** How many colours of links there are, in either theme. */
+const LINK_COLOURS = paletteOf('dark').link_states.length;
 
 /** Which of the materials of linkMaterials() a link in this state is drawn with. */
-export const materialOfState = (state: number): number => state % LINK_COLOURS.length;
+export const materialOfState = (state: number): number => state % LINK_COLOURS;
 
 /** Uniforms that both materials share. */
 export interface SceneUniforms {
@@ -193,12 +188,12 @@ export function matMaterial(uniforms: SceneUniforms, spheres: boolean): THREE.Ra
 }
 
 /** One material per colour; they share every uniform but the colour. */
-export function linkMaterials(uniforms: SceneUniforms): THREE.RawShaderMaterial[] {
-  return LINK_COLOURS.map(
+export function linkMaterials(uniforms: SceneUniforms, palette: Palette): THREE.RawShaderMaterial[] {
+  return palette.link_states.map(
     (colour) =>
       new THREE.RawShaderMaterial({
         glslVersion: THREE.GLSL3,
-        uniforms: { ...uniforms, link_colour: { value: colour } },
+        uniforms: { ...uniforms, link_colour: { value: new THREE.Color(colour) } },
         vertexShader: LINK_VERTEX,
         fragmentShader: LINK_FRAGMENT,
       }),

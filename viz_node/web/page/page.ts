@@ -1,12 +1,18 @@
 // viz_node/web/page/page.ts -- the page: takes messages, draws the newest frame, and says so.
+import { Bodies } from './bodies.ts';
 import { ClockOffset, RealTimeFactor } from './clock.ts';
 import type { Pose } from './camera_rig.ts';
+import { firstTheme, keepTheme, paletteOf, type Palette, type ThemeName } from './colours.ts';
 import { Connection } from './connection.ts';
 import { Controls } from './controls.ts';
 import { roundLength } from './ground.ts';
 import { joined, withUnit } from './format.ts';
 import { Hud } from './hud.ts';
+import { keysAreListed, toggleKeys } from './keys_dialog.ts';
+import { legendOf, showLegend } from './legend.ts';
 import { Marks } from './marks.ts';
+import { drawNames } from './names.ts';
+import { Picked } from './picked.ts';
 import { Plots } from './plots.ts';
 import { PointerHand } from './pointer.ts';
 import { toolsOf, type Description, type Frame, type Message, type Topology } from './protocol.ts';
@@ -52,12 +58,15 @@ export class Page {
   readonly sound: SoundPanel;
   readonly takeBar: TakeBar;
   readonly pointer: PointerHand;
+  readonly picked: Picked;
+  theme = firstTheme();
   private pending: Frame | null = null;
   private pendingIsLate = false; // it came, or waited, while the page was hidden
   private frameMs = Number.NaN; // when the newest frame came
   private pose: Pose | null = null; // of the camera, for the next view
   private drawAsked = false;
   private speeds = false;
+  private names = false;
   private plotsMs = 0;
   private plotsDirty = false;
 
@@ -81,6 +90,8 @@ export class Page {
     this.sound = new SoundPanel(this.connection, (error) => this.note(error));
     this.takeBar = new TakeBar(this.connection);
     this.pointer = new PointerHand(this.stage, this.connection, () => this.view, () => this.askToDraw());
+    this.picked = new Picked(this.stage, () => this.view, () => this.askToDraw());
+    this.applyTheme();
     window.setInterval(() => this.refresh(), FIGURES_PERIOD_MS);
   }
 
@@ -148,6 +159,7 @@ export class Page {
     this.hud.setDescription(description);
     this.sound.describe(description);
     if (isSame) return;
+    this.picked.pick(null);
     this.pose = looksAlike && this.view !== null ? this.view.rig.pose : null;
     this.view?.dispose();
     this.view = null;
@@ -164,8 +176,10 @@ export class Page {
     const changed = () => this.askToDraw();
     const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : quality.note);
     try {
-      this.view = new SceneView(this.stage, topology, tools, space, quality, this.pose, changed, lost);
+      const bodies = new Bodies(this.description, topology);
+      this.view = new SceneView(this.stage, topology, bodies, tools, space, this.palette, quality, this.pose, changed, lost);
       this.view.colourBySpeed(this.speeds);
+      this.showLegend();
     } catch (error) {
       this.note(error);
       this.say('The browser gives this page no WebGL: figures and signals only. Close other tabs and reload the page');
@@ -181,7 +195,7 @@ export class Page {
   }
 
   private say(text: string): void {
-    const notice = document.getElementById('notice') ?? this.stage.appendChild(document.createElement('p'));
+    const notice = document.getElementById('notice') ?? find('#foot').insertAdjacentElement('afterbegin', document.createElement('p'))!;
     notice.id = 'notice';
     notice.textContent = text;
   }
@@ -201,8 +215,7 @@ export class Page {
     try {
       if (frame !== null && this.view !== null && !this.frozen) this.view.show(frame);
       this.view?.draw();
-      this.marks.begin();
-      this.pointer.draw(this.marks);
+      this.drawMarks();
     } catch (error) {
       this.note(error);
     }
@@ -270,12 +283,20 @@ export class Page {
       o: () => this.view?.rig.toggleProjection(),
       g: () => this.view?.toggleGround(),
       c: () => this.colourBySpeed(!this.speeds),
-      ' ': () => (this.frozen = !this.frozen),
+      n: () => this.toggle('n', (this.names = !this.names)),
+      h: () => this.toggle('h', (this.frozen = !this.frozen)),
+      l: () => this.setTheme(this.theme === 'dark' ? 'light' : 'dark'),
+      u: () => this.toggleFullScreen(),
+      '?': () => toggleKeys(),
+      ' ': () => this.controls.press('pause'),
+      ArrowRight: () => this.controls.press('step'),
       s: () => void this.savePicture(),
     };
     window.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.altKey || event.metaKey) return;
       if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement) return;
+      if (event.target instanceof HTMLButtonElement && event.key === ' ') return; // it presses the button
+      if (keysAreListed() && event.key !== '?') return;
       if (this.takeBar.key(event.key)) return event.preventDefault();
       const action = keys[event.key];
       if (action === undefined) return;
@@ -301,6 +322,53 @@ export class Page {
     this.speeds = wanted;
     this.view?.colourBySpeed(wanted);
     find('#speed-scale').hidden = !wanted;
+  }
+
+  /** Shows whether a button of the view is on. */
+  private toggle(key: string, on: boolean): void {
+    const button = find(`#tools button[data-key="${key}"]`);
+    button.classList.toggle('on', on);
+    button.setAttribute('aria-pressed', String(on));
+    this.askToDraw();
+  }
+
+  private toggleFullScreen(): void {
+    const asked = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
+    asked.catch(() => this.say('This browser gives the page no full screen'));
+  }
+
+  private get palette(): Palette {
+    return paletteOf(this.theme);
+  }
+
+  private setTheme(theme: ThemeName): void {
+    this.theme = theme;
+    keepTheme(theme);
+    this.applyTheme();
+  }
+
+  private applyTheme(): void {
+    document.documentElement.dataset.theme = this.theme;
+    find('#tools button[data-key="l"]').textContent = this.theme === 'dark' ? 'Light' : 'Dark';
+    this.marks.halo = this.palette.background;
+    this.view?.paint(this.palette);
+    this.plots.paint(this.palette);
+    this.showLegend();
+    this.plotsDirty = true;
+    this.askToDraw();
+  }
+
+  private showLegend(): void {
+    if (this.description !== null && this.view !== null) showLegend(legendOf(this.description, this.view.bodies, this.palette));
+  }
+
+  private drawMarks(): void {
+    this.marks.begin();
+    if (this.view === null || this.description === null) return;
+    const stage = this.stage.getBoundingClientRect();
+    if (this.names) drawNames(this.marks, this.view, stage, this.palette.text);
+    this.picked.draw(this.marks, stage, this.palette, this.description);
+    this.pointer.draw(this.marks, { mine: this.palette.text, others: this.palette.quiet });
   }
 
   private async savePicture(): Promise<void> {

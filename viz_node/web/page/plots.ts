@@ -1,13 +1,13 @@
 // viz_node/web/page/plots.ts -- live plots of the signals: one per unit, the newest at the right
 // edge.
 import uPlot from 'uplot';
+import { ofList, paletteOf, type Palette } from './colours.ts';
 import { joined, prefixOf, threeDigits, withUnit } from './format.ts';
 import type { Description } from './protocol.ts';
 import { SignalStore } from './signal_store.ts';
 
-const COLOURS = ['#5cc8ff', '#ffb454', '#5bd6a2', '#f07aa8', '#b79cff', '#e6e06a'];
 const MOST_PLOTS = 4;
-const MOST_PER_PLOT = COLOURS.length;
+const MOST_PER_PLOT = paletteOf('dark').signals.length;
 const AXIS_FONT = '11px system-ui, "DejaVu Sans", sans-serif';
 
 interface Plot {
@@ -22,6 +22,8 @@ export class Plots {
   private plots: Plot[] = [];
   private store: SignalStore | null = null;
   private windowS = 5;
+  private description: Description | null = null;
+  private palette: Palette = paletteOf('dark');
 
   constructor(private readonly container: HTMLElement) {
     new ResizeObserver(() => this.resize()).observe(container);
@@ -29,9 +31,21 @@ export class Plots {
 
   /** Sets up for the signals of a scene; gives back the store to fill. */
   describe(description: Description): SignalStore {
+    this.description = description;
+    this.store = new SignalStore(description.signals.length, description.gesture_rate_hz);
+    this.buildAll(description);
+    return this.store;
+  }
+
+  /** Draws all of them in the colours of a palette. */
+  paint(palette: Palette): void {
+    this.palette = palette;
+    if (this.description !== null) this.buildAll(this.description);
+  }
+
+  private buildAll(description: Description): void {
     for (const plot of this.plots) plot.chart.destroy();
     this.container.replaceChildren();
-    this.store = new SignalStore(description.signals.length, description.gesture_rate_hz);
     const groups = new Map<string, number[]>();
     description.signals.forEach(({ unit }, index) => groups.set(unit, [...(groups.get(unit) ?? []), index]));
     const shown = [...groups].slice(0, MOST_PLOTS);
@@ -40,7 +54,6 @@ export class Plots {
     if (description.signals.length === 0) this.say('This scene names no signals. List them under `signals:` in its file.');
     if (hidden > 0) this.say(`${hidden} more signals are not drawn`);
     this.resize();
-    return this.store;
   }
 
   setWindow(seconds: number): void {
@@ -77,7 +90,7 @@ export class Plots {
     const values = signals.map((signal, i) => {
       const label = document.createElement('span');
       label.className = 'series';
-      label.style.setProperty('--colour', COLOURS[i]!);
+      label.style.setProperty('--colour', ofList(this.palette.signals, i));
       const value = document.createElement('b');
       label.append(description.signals[signal]!.name, value);
       head.append(label);
@@ -87,7 +100,7 @@ export class Plots {
     canvas.className = 'chart';
     box.append(head, canvas);
     this.container.append(box);
-    return { chart: new uPlot(optionsOf(unit, signals.length), [[]], canvas), box: canvas, signals, values, unit };
+    return { chart: new uPlot(optionsOf(unit, signals.length, this.palette), [[]], canvas), box: canvas, signals, values, unit };
   }
 
   private resize(): void {
@@ -99,13 +112,9 @@ export class Plots {
   }
 }
 
-function optionsOf(unit: string, seriesCount: number): uPlot.Options {
-  const axis = {
-    stroke: '#8b97a8',
-    font: AXIS_FONT,
-    grid: { stroke: '#1c2430', width: 1 },
-    ticks: { stroke: '#1c2430', width: 1, size: 4 },
-  };
+function optionsOf(unit: string, seriesCount: number, palette: Palette): uPlot.Options {
+  const lines = { stroke: palette.grid_coarse, width: 1 };
+  const axis = { stroke: palette.quiet, font: AXIS_FONT, grid: lines, ticks: { ...lines, size: 4 } };
   return {
     width: 320,
     height: 120,
@@ -120,7 +129,7 @@ function optionsOf(unit: string, seriesCount: number): uPlot.Options {
     series: [
       {},
       ...Array.from({ length: seriesCount }, (_, i) => ({
-        stroke: COLOURS[i]!,
+        stroke: ofList(palette.signals, i),
         width: 1.4,
         points: { show: false },
         spanGaps: false,

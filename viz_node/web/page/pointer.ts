@@ -10,8 +10,12 @@ const NEAR_MOUSE_PX = 18; // beyond the mark of a port
 const NEAR_FINGER_PX = 34;
 const FULL_ARROW_N = 5;
 const KEPT_DELAYS = 60;
-const MINE = '#ffffff';
-const OTHERS = '#9aa7b8';
+
+/** Colours of what this page holds, and of what others hold. */
+export interface HandColours {
+  mine: string;
+  others: string;
+}
 
 interface Drag {
   port: number;
@@ -184,7 +188,7 @@ export class PointerHand {
   }
 
   /** Marks of what is held, in the frame that is drawn now. */
-  draw(marks: Marks): void {
+  draw(marks: Marks, colours: HandColours): void {
     const view = this.view();
     if (view === null || this.state === null) return;
     const box = this.stage.getBoundingClientRect();
@@ -193,7 +197,7 @@ export class PointerHand {
       const mat = this.handleOf(port.port);
       if (mat === null || !port.held || !port.plays) continue;
       const mine = this.isMine(port);
-      const colour = mine ? MINE : OTHERS;
+      const colour = mine ? colours.mine : colours.others;
       const handle = local(view.project(mat));
       const drag = [...this.drags.values()].find((one) => one.port === port.port);
       const place = view.place(mat);

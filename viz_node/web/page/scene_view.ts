@@ -1,6 +1,8 @@
 // viz_node/web/page/scene_view.ts -- the scene, drawn. Positions go from the message
 // straight into a GPU buffer that matter and links share.
 import * as THREE from 'three';
+import type { Bodies } from './bodies.ts';
+import type { Palette } from './colours.ts';
 import { Ground } from './ground.ts';
 import { linkMaterials, matMaterial, materialOfState, sceneUniforms, shownKinds } from './mat_material.ts';
 import type { Frame, Topology } from './protocol.ts';
@@ -10,11 +12,16 @@ import { CameraRig, type Pose } from './camera_rig.ts';
 
 THREE.ColorManagement.enabled = false; // colours are chosen as they are shown
 const CONTEXT_EVENTS = ['webglcontextlost', 'webglcontextrestored'];
-const BACKGROUND = 0x0d1117;
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
 const SAMPLE = 4000;
 const MATS_A_FRAME = 1000; // of larger scenes not every frame is looked at, whether all of it is seen
 const ASTRAY = 0.01; // share of the MATs that may fly off unfollowed, at either end of each axis
+
+/** A MAT or a link near a point of the page. */
+export interface Near {
+  index: number;
+  away: number; // [CSS pixels]
+}
 
 export class SceneView {
   readonly rig: CameraRig;
@@ -24,6 +31,7 @@ export class SceneView {
   private readonly uniforms = sceneUniforms();
   private readonly geometry = new THREE.BufferGeometry();
   private readonly linkGeometry = new THREE.BufferGeometry();
+  private links: THREE.LineSegments<THREE.BufferGeometry, THREE.RawShaderMaterial[]> | null = null;
   private newest: THREE.BufferAttribute;
   private before: THREE.BufferAttribute;
   private newestS = Number.NaN;
@@ -31,14 +39,17 @@ export class SceneView {
   private fastest = 0; // [m/s], falls slowly
   private framesSinceLook = 0;
   private framed = false;
+  private isDrum = false;
   private speeds = false;
   private states = new Uint8Array(0); // per link, as they are drawn
 
   constructor(
     private readonly container: HTMLElement,
     private readonly topology: Topology,
+    readonly bodies: Bodies,
     private readonly tools: number[],
     private readonly space: number,
+    private palette: Palette,
     readonly quality: Quality,
     private readonly pose: Pose | null, // where the camera stood before, if it shall stay
     private readonly changed: () => void,
@@ -46,7 +57,7 @@ export class SceneView {
   ) {
     this.renderer = new THREE.WebGLRenderer({ antialias: quality.antialias, powerPreference: 'high-performance' });
     this.renderer.setPixelRatio(quality.pixelRatio);
-    this.renderer.setClearColor(BACKGROUND);
+    this.renderer.setClearColor(palette.background);
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     container.prepend(this.renderer.domElement);
     for (const event of CONTEXT_EVENTS) this.renderer.domElement.addEventListener(event, this.noteContext);
@@ -70,6 +81,7 @@ export class SceneView {
     this.geometry.setAttribute('radius', new THREE.BufferAttribute(this.topology.radii.slice(), 1));
     const kinds = shownKinds(this.topology.kinds, this.topology.radii, this.tools);
     this.geometry.setAttribute('kind', new THREE.BufferAttribute(kinds, 1));
+    this.geometry.setAttribute('tint', new THREE.BufferAttribute(this.bodies.tints(this.palette), 3, true));
     const few = this.topology.matCount <= 3000;
     const least = this.uniforms.min_pixels.value.set(few ? 3.2 : 1.2, few ? 3.2 : 1.2, few ? 6 : 5, few ? 5 : 2);
     least.multiplyScalar(this.quality.pixelRatio);
@@ -81,9 +93,9 @@ export class SceneView {
   private buildLinks(): void {
     this.linkGeometry.setIndex(new THREE.BufferAttribute(this.topology.linkEnds.slice(), 1));
     this.linkGeometry.addGroup(0, 2 * this.topology.linkCount, materialOfState(0));
-    const links = new THREE.LineSegments(this.linkGeometry, linkMaterials(this.uniforms));
-    links.frustumCulled = false;
-    this.scene.add(links);
+    this.links = new THREE.LineSegments(this.linkGeometry, linkMaterials(this.uniforms, this.palette));
+    this.links.frustumCulled = false;
+    this.scene.add(this.links);
   }
 
   /** Lays the links of one colour side by side in the index: one call draws each colour. Those that do nothing are not drawn. */
@@ -131,9 +143,11 @@ export class SceneView {
     this.newestS = frame.simulatedS;
     if (!this.framed) {
       this.framed = true;
-      if (this.pose === null) this.rig.start(this.bounds());
+      this.isDrum = this.liesFlat();
+      if (this.isDrum) this.rig.turnByLeftButton();
+      if (this.pose === null) this.rig.start(this.bounds(), this.isDrum ? 'free' : null);
       else this.rig.resume(this.pose, this.bounds());
-      this.ground.lay(this.bounds(), this.space);
+      this.layGround();
     } else if (++this.framesSinceLook >= this.topology.matCount / MATS_A_FRAME) {
       this.framesSinceLook = 0;
       this.rig.follow(this.bounds(ASTRAY));
@@ -158,6 +172,72 @@ export class SceneView {
 
   fit(): void {
     this.rig.fit(this.bounds());
+  }
+
+  /** Draws all of it in the colours of a palette. */
+  paint(palette: Palette): void {
+    this.palette = palette;
+    this.renderer.setClearColor(palette.background);
+    const tint = this.geometry.getAttribute('tint') as THREE.BufferAttribute;
+    tint.array.set(this.bodies.tints(palette));
+    tint.needsUpdate = true;
+    this.links?.material.forEach((material, state) => (material.uniforms.link_colour!.value as THREE.Color).set(palette.link_states[state]!));
+    if (this.framed) this.layGround();
+    this.changed();
+  }
+
+  private layGround(): void {
+    this.ground.lay(this.bounds(), this.isDrum ? 3 : this.space, this.palette);
+  }
+
+  /** A 1-D scene that is laid out on a floor: from the front it is a line. */
+  private liesFlat(): boolean {
+    if (this.space !== 1) return false;
+    const size = this.bounds().getSize(new THREE.Vector3());
+    return size.z > 0.2 * size.x && size.x > 0.2 * size.z;
+  }
+
+  /** Nearest MAT to a point of the page, and how far its edge is [CSS pixels]; null when none is within so many. */
+  matAt(x: number, y: number, within: number): Near | null {
+    let best: Near | null = null;
+    for (let mat = 0; mat < this.topology.matCount; ++mat) {
+      const middle = this.project(mat);
+      const away = Math.max(0, Math.hypot(middle.x - x, middle.y - y) - this.radiusOnScreen(mat));
+      if (away < (best?.away ?? within)) best = { index: mat, away };
+    }
+    return best;
+  }
+
+  /** Likewise the nearest link that is drawn. */
+  linkAt(x: number, y: number, within: number): Near | null {
+    let best: Near | null = null;
+    for (let link = 0; this.links !== null && link < this.topology.linkCount; ++link) {
+      if (this.stateOf(link) >= LINK_IS_IDLE) continue;
+      const [a, b] = this.endsOf(link).map((mat) => this.project(mat)) as [{ x: number; y: number }, { x: number; y: number }];
+      const [dx, dy] = [b.x - a.x, b.y - a.y];
+      const share = Math.min(1, Math.max(0, ((x - a.x) * dx + (y - a.y) * dy) / (dx * dx + dy * dy || 1)));
+      const away = Math.hypot(a.x + share * dx - x, a.y + share * dy - y);
+      if (away < (best?.away ?? within)) best = { index: link, away };
+    }
+    return best;
+  }
+
+  /** The two MATs of a link. */
+  endsOf(link: number): [number, number] {
+    const { linkEnds } = this.topology;
+    return [linkEnds[2 * link]!, linkEnds[2 * link + 1]!];
+  }
+
+  /** State of a link in the newest frame, + LINK_IS_IDLE where it does nothing; 0 in scenes without states. */
+  stateOf(link: number): number {
+    return this.states[link] ?? 0;
+  }
+
+  /** Speed of a MAT, the mean over the last frame [m/s]. */
+  speedOf(mat: number): number {
+    const [now, then] = [this.newest.array, this.before.array];
+    const moved = [0, 1, 2].map((k) => now[3 * mat + k]! - then[3 * mat + k]!);
+    return this.shownForS > 0 ? Math.hypot(...moved) / this.shownForS : Number.NaN;
   }
 
   toggleGround(): void {

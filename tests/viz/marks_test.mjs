@@ -1,0 +1,229 @@
+// tests/viz/marks_test.mjs -- what is what on the page: colours and their legend, what a person
+// picks, names, themes, the list of keys. Real viz_node and headless Chromium.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { banner, drawn, look, openPage, textOf, viz } from './browser.mjs';
+import { out, runCases, Session, source, until } from './session.mjs';
+
+const [FIRST_BODY, SECOND_BODY, HOOKED] = [20, 45, 23]; // two MATs, and a link that changes its state
+const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
+const LEAST_CONTRAST = 4.5; // WCAG 2.1, 1.4.3: text of usual size
+
+const bytesOf = (hex) => [1, 3, 5].map((begin) => Number.parseInt(hex.slice(begin, begin + 2), 16));
+const isPressed = (page, key) => page.locator(`#tools button[data-key="${key}"]`).getAttribute('aria-pressed');
+
+/** Shading makes a colour darker and leaves its hue. */
+function assertHue(colour, hex, what) {
+  const wanted = bytesOf(hex);
+  const share = Math.max(...colour) / Math.max(...wanted);
+  const away = Math.max(...wanted.map((byte, k) => Math.abs(byte * share - colour[k])));
+  assert.ok(share > 0.4 && away < 45, `${what} is ${colour}, a shade of ${wanted}`);
+}
+
+/** Marks of the legend: [class, text, colour]. */
+const legendOf = (page) =>
+  page.locator('#legend li').evaluateAll((items) => items.map((item) => [item.className, item.textContent, item.style.getPropertyValue('--colour')]));
+
+/** How many pixels of the sheet of marks are inked within `reach` CSS pixels of a place of the page. Runs in the page. */
+function inkAround({ x, y, reach }) {
+  const sheet = document.querySelector('#marks');
+  const box = sheet.getBoundingClientRect();
+  const ratio = sheet.width / box.width;
+  const [left, top, size] = [x - box.left - reach, y - box.top - reach, 2 * reach].map((value) => Math.round(value * ratio));
+  const { data } = sheet.getContext('2d').getImageData(left, top, size, size);
+  return data.filter((_, i) => i % 4 === 3).filter((alpha) => alpha > 0).length;
+}
+
+/** Clicks a place that moves, until the name of what is picked reads so. */
+async function pick(page, placeOf, name) {
+  await until(`${name} is picked`, async () => {
+    const { x, y } = await placeOf();
+    await page.mouse.click(x, y);
+    return (await page.locator('#picked').isVisible()) && name.test(await textOf(page, '#picked-name'));
+  });
+}
+
+const placeOf = (page, mat) => () => page.evaluate((index) => window.viz.project(index), mat);
+const middleOfLink = (page, link) => () =>
+  page.evaluate((mat) => {
+    const [a, b] = [window.viz.project(mat), window.viz.project(mat + 1)];
+    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
+  }, link);
+
+/** Texts with too little contrast to what lies behind them. Runs in the page. */
+function faintTexts(least) {
+  const bytes = (colour) => colour.match(/[\d.]+/g).map(Number);
+  const light = (colour) => {
+    const [r, g, b] = bytes(colour).map((byte) => (byte / 255 <= 0.03928 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const groundOf = (element) => {
+    for (let one = element; one !== null; one = one.parentElement) {
+      const { backgroundColor } = getComputedStyle(one);
+      if ((bytes(backgroundColor)[3] ?? 1) > 0.8) return backgroundColor;
+    }
+    return getComputedStyle(document.body).backgroundColor;
+  };
+  const texts = [...document.querySelectorAll('body *')].filter((one) => [...one.childNodes].some((node) => node.nodeType === 3 && node.data.trim()));
+  const shown = texts.filter((one) => one.checkVisibility() && !one.disabled);
+  return shown.flatMap((one) => {
+    const [a, b] = [light(getComputedStyle(one).color), light(groundOf(one))].sort((p, q) => q - p);
+    const contrast = (a + 0.05) / (b + 0.05);
+    return contrast < least ? [`${one.tagName} "${one.textContent.trim().slice(0, 30)}": ${contrast.toFixed(2)}`] : [];
+  });
+}
+
+const cases = {
+  'the legend explains every colour and mark': async ({ page }) => {
+    await drawn(page, 3);
+    const { bodies, fixed, port, link_states: states } = palettes.dark;
+    assert.deepEqual(await legendOf(page), [
+      ['mass', 'string', bodies[0]],
+      ['mass', 'string2', bodies[1]],
+      ['fixed-point', 'fixed point', fixed],
+      ['handle', 'handle of a device', port],
+      ['tool', 'tool that it holds', port],
+      ['link', 'link, hooked', states[0]],
+      ['link', 'free', states[1]],
+    ]);
+  },
+
+  'each body has a colour of its own': async ({ page }) => {
+    assertHue((await look(page, FIRST_BODY)).colour, palettes.dark.bodies[0], 'the first body');
+    assertHue((await look(page, SECOND_BODY)).colour, palettes.dark.bodies[1], 'the second body');
+  },
+
+  'a MAT that is clicked says its name, where it is and how fast, and is followed': async ({ page }) => {
+    assert.equal(await page.locator('#picked').isVisible(), false);
+    await pick(page, placeOf(page, FIRST_BODY), /^string\[20\]$/);
+    await page.screenshot({ path: join(out, 'marks_picked.png') });
+    const pattern = /^x (-?[\d.]+)\s?(m|mm|µm) · y -?[\d.]+\s?\S*m · z \S+\s?m · speed [\d.]+\s?\S*m\/s$/;
+    const [, x, unit] = await until('its values are shown', async () => pattern.exec(await textOf(page, '#picked-values')));
+    assert.equal(unit, 'mm');
+    assert.ok(Math.abs(Number(x) - 1000 * (0.65 * (20 / 59) - 0.325)) < 0.6, `x is ${x} mm`);
+    const first = await textOf(page, '#picked-values');
+    await until('its values change', async () => (await textOf(page, '#picked-values')) !== first);
+
+    const { target } = await viz(page, 'camera');
+    await page.click('#picked-follow');
+    const follows = () => page.evaluate((mat) => Math.hypot(...window.viz.camera.target.map((value, k) => value - window.viz.position(mat)[k])), FIRST_BODY);
+    await until('the camera looks at it', async () => (await follows()) < 0.02);
+    assert.notDeepEqual((await viz(page, 'camera')).target, target);
+    await page.click('#picked-close');
+    assert.equal(await page.locator('#picked').isVisible(), false);
+    await page.keyboard.press('1');
+  },
+
+  'a link that is clicked says its ends, its length and its state': async ({ page }) => {
+    await pick(page, middleOfLink(page, HOOKED), /^joints\[23\]$/);
+    assert.equal(await page.locator('#picked-follow').isVisible(), false);
+    for (const state of ['free', 'hooked or no states', 'free']) {
+      const pattern = new RegExp(`^string\\[23\\] to string\\[24\\] · length [\\d.]+\\s?mm · ${state}$`);
+      await until(`it is ${state}`, async () => pattern.test(await textOf(page, '#picked-values')));
+    }
+    const stage = await page.locator('#stage').boundingBox();
+    await page.mouse.click(stage.x + 100, stage.y + 120);
+    await until('a click on nothing lets go of it', async () => !(await page.locator('#picked').isVisible()));
+  },
+
+  'names are written into the view, and are no more': async ({ page }) => {
+    const ink = async () => {
+      const { x, y } = await page.evaluate((mat) => window.viz.project(mat), 14); // the middle of the first body
+      return page.evaluate(inkAround, { x: x + 25, y: y - 8, reach: 16 });
+    };
+    await drawn(page, 2);
+    assert.equal(await ink(), 0);
+    await page.keyboard.press('n');
+    assert.equal(await isPressed(page, 'n'), 'true');
+    await until('the name is there', async () => (await ink()) > 50);
+    await page.screenshot({ path: join(out, 'marks_names.png') });
+    await page.keyboard.press('n');
+    await until('the name is gone', async () => (await ink()) === 0);
+    assert.equal(await isPressed(page, 'n'), 'false');
+  },
+
+  'the list of keys names every button, and takes the keys meanwhile': async ({ page }) => {
+    await page.keyboard.press('?');
+    await until('the list is open', () => page.locator('#keys').isVisible());
+    const listed = (await page.locator('#keys dt').allTextContents()).join(' ').split(' ');
+    const keys = await page.locator('#tools button').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.key));
+    assert.deepEqual(keys.filter((key) => !listed.includes(key)), []);
+    await page.keyboard.press('h');
+    await page.keyboard.press('?');
+    await until('the list is closed', async () => !(await page.locator('#keys').isVisible()));
+    assert.equal(await viz(page, 'frozen'), false);
+    await page.keyboard.press('?');
+    await page.keyboard.press('Escape');
+    await until('Escape closes it too', async () => !(await page.locator('#keys').isVisible()));
+  },
+
+  'space presses the button that has the focus, and commands nothing': async ({ page }) => {
+    await page.focus('#tools button[data-key="h"]');
+    await page.keyboard.press(' ');
+    await banner(page, 'view frozen');
+    assert.equal(await isPressed(page, 'h'), 'true');
+    await page.focus('#tools button[data-key="h"]');
+    await page.keyboard.press('Enter');
+    await banner(page, '');
+  },
+
+  'the light theme is light, readable like the dark one, and kept': async ({ page }) => {
+    const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
+    await pick(page, placeOf(page, FIRST_BODY), /^string\[20\]$/);
+    assert.equal(await theme(), 'dark');
+    assert.deepEqual(await page.evaluate(faintTexts, LEAST_CONTRAST), []);
+    await page.keyboard.press('l');
+    assert.equal(await theme(), 'light');
+    assert.deepEqual(await page.evaluate(faintTexts, LEAST_CONTRAST), []);
+    const { left, top } = await page.evaluate(() => document.querySelector('#stage').getBoundingClientRect());
+    const colour = await page.evaluate(([x, y]) => window.viz.pixelAt(x, y), [left + 33, top + 207]);
+    assert.ok(Math.min(...colour) > 200, `the ground is light: ${colour}`);
+    await until('the second body has its light colour', async () => {
+      const shade = (await look(page, SECOND_BODY)).colour;
+      return shade[1] > shade[0] + 40 && shade[1] > shade[2] + 20;
+    });
+    assert.equal((await legendOf(page))[0][2], palettes.light.bodies[0]);
+    await page.screenshot({ path: join(out, 'marks_light.png') });
+    await page.reload();
+    await until('it draws again', async () => (await page.evaluate(() => window.viz?.framesDrawn ?? 0)) > 3);
+    assert.equal(await theme(), 'light');
+    await page.click('#tools button[data-key="l"]');
+    assert.equal(await theme(), 'dark');
+  },
+
+  'the page fills the screen, and leaves it': async ({ page }) => {
+    const fills = () => page.evaluate(() => document.fullscreenElement !== null);
+    await page.keyboard.press('u');
+    await until('it fills the screen', fills);
+    await page.keyboard.press('u');
+    await until('it has left the screen', async () => !(await fills()));
+  },
+
+  'a flat grid in one dimension is seen from above its edge': async (session) => {
+    const { page } = session;
+    await session.source.end();
+    session.source = session.scene('--scene', 'grid', '--mats', '400', '--space', '1');
+    await until('the grid is drawn', async () => (await viz(page, 'lastFrame')).matCount === 400);
+    const { preset } = await viz(page, 'camera');
+    assert.equal(preset, 'free');
+    const [near, far] = await page.evaluate(() => [window.viz.project(0), window.viz.project(380)]);
+    assert.ok(Math.abs(near.y - far.y) > 60, `its rows are apart: ${near.y} and ${far.y}`);
+    await page.screenshot({ path: join(out, 'marks_drum.png') });
+  },
+
+  'nothing went wrong in the page': async ({ page, pageErrors }) => {
+    assert.deepEqual([await viz(page, 'errors'), pageErrors], [[], []]);
+  },
+};
+
+async function open() {
+  const session = await Session.open();
+  session.source = session.scene('--states', '--bodies', '2');
+  session.view = session.viz();
+  session.url = await session.view.says(/page at (\S+)/);
+  await openPage(session, session.url);
+  return session;
+}
+
+await runCases(cases, open);

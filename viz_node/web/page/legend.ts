@@ -1,0 +1,41 @@
+// viz_node/web/page/legend.ts -- what each colour and mark of the view means.
+import { stateNames, type Bodies } from './bodies.ts';
+import { ofList, type Palette } from './colours.ts';
+import type { Description } from './protocol.ts';
+import { fillRows, setText } from './rows.ts';
+
+const MOST_BODIES = 8;
+
+export interface LegendEntry {
+  mark: 'mass' | 'fixed-point' | 'handle' | 'tool' | 'link';
+  text: string;
+  colour: string;
+}
+
+export function legendOf(description: Description, bodies: Bodies, palette: Palette): LegendEntry[] {
+  const { list } = bodies;
+  const entries: LegendEntry[] = list.slice(0, MOST_BODIES).map(({ name }, number) => ({ mark: 'mass', text: name, colour: ofList(palette.bodies, number) }));
+  if (list.length > MOST_BODIES) entries.at(-1)!.text += ` and ${list.length - MOST_BODIES} more`;
+  if (bodies.hasFixedPoints) entries.push({ mark: 'fixed-point', text: 'fixed point', colour: palette.fixed });
+  if (bodies.hasFixedBalls) entries.push({ mark: 'mass', text: 'fixed ball', colour: palette.fixed });
+  if (bodies.hasPorts) entries.push({ mark: 'handle', text: 'handle of a device', colour: palette.port });
+  if (description.tools.some((tool) => tool !== null)) entries.push({ mark: 'tool', text: 'tool that it holds', colour: palette.port });
+  if (description.link_count > 0) entries.push(...linkEntries(description, palette.link_states));
+  return entries;
+}
+
+/** Links without states have the colour of the first state. */
+function linkEntries(description: Description, colours: string[]): LegendEntry[] {
+  const texts = colours.map((_, number) => stateNames(description, number, colours.length));
+  texts[0] = texts[0] === '' ? 'link' : `link, ${texts[0]}`;
+  return texts.map((text, number): LegendEntry => ({ mark: 'link', text, colour: colours[number]! })).filter(({ text }) => text !== '');
+}
+
+export function showLegend(entries: LegendEntry[]): void {
+  const make = () => document.createElement('li');
+  fillRows(document.querySelector<HTMLElement>('#legend')!, entries, make, (item, { mark, text, colour }) => {
+    item.className = mark;
+    setText(item, text);
+    item.style.setProperty('--colour', colour);
+  });
+}

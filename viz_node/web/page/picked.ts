@@ -1,0 +1,111 @@
+// viz_node/web/page/picked.ts -- the MAT or the link that a person has picked: its name and values.
+import type { Palette } from './colours.ts';
+import { joined, withUnit } from './format.ts';
+import type { Marks, Point } from './marks.ts';
+import type { Description } from './protocol.ts';
+import { setText } from './rows.ts';
+import type { SceneView } from './scene_view.ts';
+import { LINK_IS_IDLE } from './wire.ts';
+
+const NEAR_MAT_PX = 8; // beyond its edge
+const NEAR_LINK_PX = 6;
+const ON_MAT_PX = 2; // so near its edge a MAT is meant, and no link
+const MOVED_PX = 4; // a click that moves farther turns the view
+const REFRESH_MS = 150;
+
+/** One MAT, or one link. */
+export type PickedThing = { mat: number } | { link: number };
+
+export class Picked {
+  thing: PickedThing | null = null;
+  private follows = false;
+  private down: Point | null = null;
+  private shownMs = 0;
+  private readonly panel = document.querySelector<HTMLElement>('#picked')!;
+  private readonly name = document.querySelector('#picked-name')!;
+  private readonly values = document.querySelector('#picked-values')!;
+  private readonly followButton = document.querySelector<HTMLButtonElement>('#picked-follow')!;
+
+  constructor(
+    stage: HTMLElement,
+    private readonly view: () => SceneView | null,
+    private readonly changed: () => void,
+  ) {
+    stage.addEventListener('pointerdown', ({ clientX: x, clientY: y, target }) => {
+      this.down = target instanceof HTMLCanvasElement ? { x, y } : null;
+    });
+    stage.addEventListener('pointerup', ({ clientX: x, clientY: y }) => {
+      if (this.down === null || Math.hypot(x - this.down.x, y - this.down.y) > MOVED_PX) return;
+      this.pick(this.thingAt(x, y));
+    });
+    document.querySelector('#picked-close')!.addEventListener('click', () => this.pick(null));
+    this.followButton.addEventListener('click', () => this.follow(!this.follows));
+  }
+
+  pick(thing: PickedThing | null): void {
+    this.thing = thing;
+    this.panel.hidden = thing === null;
+    this.followButton.hidden = thing === null || !('mat' in thing);
+    this.shownMs = 0;
+    this.follow(false);
+  }
+
+  /** Marks it in the frame that is drawn now, and writes its values. */
+  draw(marks: Marks, stage: DOMRect, palette: Palette, description: Description): void {
+    const view = this.view();
+    if (view === null || this.thing === null) return;
+    const ring = (mat: number, room: number) => {
+      const middle = view.project(mat);
+      marks.ring({ x: middle.x - stage.left, y: middle.y - stage.top }, view.radiusOnScreen(mat) + room, palette.text);
+    };
+    if ('mat' in this.thing) {
+      if (this.follows) view.rig.moveTo(view.place(this.thing.mat));
+      ring(this.thing.mat, 6);
+    } else {
+      view.endsOf(this.thing.link).forEach((mat) => ring(mat, 3));
+    }
+    const now = performance.now();
+    if (now - this.shownMs < REFRESH_MS) return;
+    this.shownMs = now;
+    const [name, values] = 'mat' in this.thing ? matText(view, this.thing.mat) : linkText(view, this.thing.link, description);
+    setText(this.name, name);
+    setText(this.values, values);
+  }
+
+  private thingAt(x: number, y: number): PickedThing | null {
+    const view = this.view();
+    const mat = view?.matAt(x, y, NEAR_MAT_PX) ?? null;
+    const link = view?.linkAt(x, y, NEAR_LINK_PX) ?? null;
+    if (mat !== null && (link === null || mat.away <= Math.max(link.away, ON_MAT_PX))) return { mat: mat.index };
+    return link === null ? null : { link: link.index };
+  }
+
+  private follow(wanted: boolean): void {
+    this.follows = wanted;
+    this.followButton.classList.toggle('on', wanted);
+    this.followButton.setAttribute('aria-pressed', String(wanted));
+    this.changed();
+  }
+}
+
+function matText(view: SceneView, mat: number): [string, string] {
+  const [x, y, z] = view.place(mat).map((value) => joined(withUnit(value, 'm')));
+  return [view.bodies.nameOf(mat), `x ${x} · y ${y} · z ${z} · speed ${joined(withUnit(view.speedOf(mat), 'm/s'))}`];
+}
+
+function linkText(view: SceneView, link: number, description: Description): [string, string] {
+  const [a, b] = view.endsOf(link);
+  const from = view.place(b);
+  const length = Math.hypot(...view.place(a).map((value, k) => value - from[k]!));
+  const state = stateText(view.stateOf(link), description);
+  const ends = `${view.bodies.nameOf(a)} to ${view.bodies.nameOf(b)}`;
+  return [view.bodies.linkNameOf(link), `${ends} · length ${joined(withUnit(length, 'm'))}${state === '' ? '' : ` · ${state}`}`];
+}
+
+/** Links without states have the number of the first state. */
+function stateText(state: number, { state_machines }: Description): string {
+  if (state >= LINK_IS_IDLE) return 'does nothing';
+  const names = [...new Set(state_machines.flatMap(({ states }) => states[state] ?? []))];
+  if (names.length > 0 && state === 0) names.push('no states');
+  return names.join(' or ');
+}
