@@ -1,6 +1,7 @@
 // viz_node/main.cpp -- shows a session: reads DDS, serves the page. Never in the loop: kill it and
 // start it again at will.
 #include <chrono>
+#include <cstdlib>
 
 #include <spdlog/spdlog.h>
 
@@ -8,6 +9,7 @@
 #include "node/dds/writer.h"
 #include "node/instance_lock.h"
 #include "node/node_main.h"
+#include "node/random_token.h"
 #include "node/status.h"
 #include "node/stop.h"
 #include "node/time.h"
@@ -46,8 +48,17 @@ void fill(msg::NodeStatus& status, const viz::SceneMirror& mirror, const viz::We
 void warn_about(const viz::VizConfig& config, const viz::WebServer& server) {
   if (!server.page_built())
     spdlog::warn("page not built: run `npm ci` in viz_node/web and build again");
-  if (!config.address.starts_with("127.") && config.address != "::1")
-    spdlog::warn("{} is open to other machines, without a password", config.address);
+  if (server.command_url() != server.url())
+    spdlog::warn(
+        "{} is open to other machines: all may see; the token in the page's address lets command",
+        config.address);
+}
+
+/// What lets a page command: $CORDIS_PAGE_TOKEN, which stays the same when `cordis run` starts
+/// viz_node again, else a new one.
+std::string page_token() {
+  const char* chosen = std::getenv("CORDIS_PAGE_TOKEN");
+  return chosen != nullptr && *chosen != '\0' ? chosen : node::random_token();
 }
 
 int run(const node::NodeStart& start, config::Problems& problems) {
@@ -71,7 +82,8 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                          .session = joined.session,
                          .address = config.address,
                          .port = config.port,
-                         .folder = viz::page_folder()},
+                         .folder = viz::page_folder(),
+                         .token = page_token()},
                         mirror, pointers,
                         [&relay](const viz::PageCommand& command) { relay.send(command); });
   const viz::SceneListener listener(participant, mirror, relay, pointers);
@@ -84,7 +96,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                                  });
   commands.start();
   warn_about(config, server);
-  spdlog::info("page at {}", server.url());
+  spdlog::info("page at {}", server.command_url());
   while (!node::wait_for_stop(std::chrono::hours(1))) {
   }
   return 0;

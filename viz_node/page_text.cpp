@@ -213,11 +213,12 @@ bool is_for_pages(msg::ControlVerb verb) noexcept {
 
 }  // namespace
 
-std::string hello_text(const std::string& session, const std::string& node) {
+std::string hello_text(const std::string& session, const std::string& node, bool may_command) {
   return written({{"type", "hello"},
                   {"protocol", kProtocolVersion},
                   {"session", clipped(session)},
-                  {"node", clipped(node)}});
+                  {"node", clipped(node)},
+                  {"may_command", may_command}});
 }
 
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene) {

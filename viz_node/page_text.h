@@ -43,7 +43,8 @@ struct MirrorFigures {
 /// A node that was silent for so long is lost, unless it said that it stops.
 inline constexpr std::int64_t kLostAfterNsec = 1'600'000'000;
 
-std::string hello_text(const std::string& session, const std::string& node);
+/// @param may_command  whether viz_node takes commands and a hand of the page
+std::string hello_text(const std::string& session, const std::string& node, bool may_command);
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene);
 std::string status_text(const std::vector<ReportedNode>& nodes, const ReceivedEvents& events,
                         const ReceivedReplies& replies, const MirrorFigures& figures,

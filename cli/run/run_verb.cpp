@@ -12,6 +12,7 @@
 #include "cli/programs.h"
 #include "cli/run/node_check.h"
 #include "cli/run/session.h"
+#include "node/random_token.h"
 #include "node/runtime_folder.h"
 #include "node/session_network.h"
 #include "node/session_registry.h"
@@ -40,6 +41,8 @@ dds::Network network_on_this_host(const config::Launch& launch) {
 int run(const RunOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   setenv("CORDIS_LAUNCHED", "1", /*replace=*/1);
+  // A viz_node that is started again keeps its pages: viz_node/main.cpp.
+  setenv("CORDIS_PAGE_TOKEN", node::random_token().c_str(), /*replace=*/0);
   StopSignals signals;
   const config::Launch launch = read_launch(options);
   RunPlan plan = plan_run(launch, options, program_directory());

@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { request } from 'node:http';
 import { connect } from 'node:net';
+import { hostname } from 'node:os';
 import { need, pause, runCases, Session, until } from './session.mjs';
 
 const WebSocket = need('ws');
@@ -51,8 +52,8 @@ class Client {
   acknowledging = true;
   closeCode = null;
 
-  constructor(url) {
-    this.socket = new WebSocket(url.replace('http', 'ws') + '/live');
+  constructor(url, query = '') {
+    this.socket = new WebSocket(url.replace('http', 'ws') + `/live${query}`);
     this.socket.on('message', (data, isBinary) => this.take(data, isBinary));
     this.socket.on('close', (code) => (this.closeCode = code));
     this.socket.on('error', () => {});
@@ -195,6 +196,27 @@ const cases = {
     assert.equal((await ask(url, '/', { headers: { Host: 'elsewhere.example' } })).status, 403);
     assert.equal(await upgrade(url, '/other', {}), 404);
     assert.equal((await ask(url, '/live')).status, 426);
+  },
+
+  'open to other machines: names of others get nothing, and only the token lets a page command': async (session) => {
+    const open = session.vizOf(session.launchFile('port: 0, address: 0.0.0.0', 'open'));
+    const { port, search } = new URL(await open.says(/page at (\S+)/));
+    assert.match(search, /^\?token=[0-9a-f]{32}$/);
+    assert.match(open.log, /0\.0\.0\.0 is open to other machines/);
+    const url = `http://127.0.0.1:${port}`;
+    for (const host of ['elsewhere.example', `elsewhere.example:${port}`, `127.0.0.1.elsewhere.example:${port}`])
+      assert.equal((await ask(url, '/', { headers: { Host: host } })).status, 403, host);
+    for (const host of [`${hostname()}:${port}`, '192.0.2.7', '[2001:db8::7]:80', 'localhost'])
+      assert.equal((await ask(url, '/', { headers: { Host: host } })).status, 200, host);
+    for (const [query, mayCommand] of [['', false], ['?token=wrong', false], [search, true]]) {
+      const client = new Client(url, query);
+      await until('it is greeted', () => client.newest('hello'));
+      assert.equal(client.newest('hello').may_command, mayCommand, query);
+      await until('the status comes', () => client.newest('status')?.nodes.some(({ text }) => text.endsWith(`:${port}`)));
+      for (const text of client.texts) assert.doesNotMatch(JSON.stringify(text), /[0-9a-f]{32}/, 'no page receives the token');
+      client.close();
+    }
+    assert.equal(await open.end(), 0);
   },
 
   'a client receives the scene, then every frame and every row of the signals': async ({ url }) => {

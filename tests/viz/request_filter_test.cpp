@@ -6,8 +6,8 @@
 namespace cordis::viz {
 namespace {
 
-constexpr bool kLoopbackOnly = true;
-constexpr bool kOpenToAll = false;
+const AcceptedHosts kLoopbackOnly{};
+const AcceptedHosts kOpenToAll{.loopback_only = false, .names = {"lab.example.org", "lab"}};
 
 Request page_load() {
   return {.method = "GET", .target = "/", .host = "127.0.0.1:8080", .origin = "", .upgrade = false};
@@ -21,8 +21,8 @@ Request live() {
           .upgrade = true};
 }
 
-unsigned status_of(const Request& request, bool loopback_only = kLoopbackOnly) {
-  const auto refusal = refusal_of(request, loopback_only);
+unsigned status_of(const Request& request, const AcceptedHosts& hosts = kLoopbackOnly) {
+  const auto refusal = refusal_of(request, hosts);
   return refusal ? refusal->status : 0;
 }
 
@@ -82,17 +82,38 @@ TEST(RequestFilter, TakesTheOriginOfAProxyWithTlsAndProgramsWithoutOne) {
 TEST(RequestFilter, RefusesNamesThatWereMadeToPointHere) {
   for (const std::string_view host :
        {"elsewhere.example", "elsewhere.example:8080", "", "127.0.0.1.elsewhere.example",
-        "localhost.elsewhere.example:8080", "[::2]:8080"}) {
+        "localhost.elsewhere.example:8080", "[::1]elsewhere.example", "127.0.0.1:80.example",
+        "[::1", "127.0.0.1@elsewhere.example", "lab.elsewhere.example", "300.0.0.1"}) {
     Request request = page_load();
     request.host = host;
     EXPECT_EQ(status_of(request), 403u) << host;
-    EXPECT_EQ(status_of(request, kOpenToAll), 0u) << host;
+    EXPECT_EQ(status_of(request, kOpenToAll), 403u) << host;
   }
   for (const std::string_view host : {"LocalHost:9", "127.0.0.1", "[::1]:8080", "[::1]"}) {
     Request request = page_load();
     request.host = host;
     EXPECT_EQ(status_of(request), 0u) << host;
+    EXPECT_EQ(status_of(request, kOpenToAll), 0u) << host;
   }
+}
+
+TEST(RequestFilter, TakesAddressesAndOwnNamesWhenItIsOpenToOtherMachines) {
+  for (const std::string_view host :
+       {"192.0.2.7:8080", "[2001:db8::7]:8080", "lab:8080", "LAB", "lab.example.org", "10.0.0.1"}) {
+    Request request = page_load();
+    request.host = host;
+    EXPECT_EQ(status_of(request, kOpenToAll), 0u) << host;
+    EXPECT_EQ(status_of(request), 403u) << host;
+  }
+}
+
+TEST(RequestFilter, RefusesForeignOriginsAlsoWhenItIsOpenToOtherMachines) {
+  Request request = live();
+  request.host = "192.0.2.7:8080";
+  request.origin = "http://192.0.2.7:8080";
+  EXPECT_EQ(status_of(request, kOpenToAll), 0u);
+  request.origin = "http://elsewhere.example";
+  EXPECT_EQ(status_of(request, kOpenToAll), 403u);
 }
 
 TEST(RequestFilter, KeepsTheWebSocketAtItsPath) {

@@ -56,10 +56,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                                      .host = field(http::field::host),
                                      .origin = field(http::field::origin),
                                      .upgrade = upgrade},
-                                    state_.loopback_only);
+                                    state_.hosts);
     if (refusal) return reply(refusal->status, "text/plain; charset=utf-8", refusal->text);
     if (upgrade) {
-      std::make_shared<WebSocketSession>(std::move(stream_), std::move(slot_), state_)
+      std::make_shared<WebSocketSession>(std::move(stream_), std::move(slot_), state_,
+                                         state_.may_command(target))
           ->start(http::request<http::empty_body>(request));
       return;
     }
@@ -77,6 +78,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response_.set(http::field::content_type, type);
     response_.set(http::field::cache_control, "no-cache");
     response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Referrer-Policy", "no-referrer");  // the address may hold the token
     response_.set("Content-Security-Policy", kContentPolicy);
     if (status == 405) response_.set(http::field::allow, "GET, HEAD");
     response_.body() = content;

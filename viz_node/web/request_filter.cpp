@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <arpa/inet.h>
+
 namespace cordis::viz {
 namespace {
 
@@ -13,15 +15,32 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
   });
 }
 
-/// Host without its port: "127.0.0.1:8080", "[::1]:8080", "localhost".
+/// Host without its port: "127.0.0.1:8080", "[::1]:8080", "localhost". Empty when it is none of
+/// these.
 std::string_view name_of(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
-  return host.substr(0, host.find(':'));
+  const std::size_t end = host.starts_with('[') ? host.find(']') + 1 : host.find(':');
+  const std::string_view name = host.substr(0, end);
+  const std::string_view port = host.substr(name.size());
+  const bool is_port = port.starts_with(':') && std::ranges::all_of(port.substr(1), [](char c) {
+                         return c >= '0' && c <= '9';
+                       });
+  return port.empty() || is_port ? name : std::string_view{};
 }
 
-bool is_this_machine(std::string_view host) {
+bool is_ip_address(std::string_view name) {
+  const bool bracketed = name.starts_with('[') && name.ends_with(']');
+  const std::string address(bracketed ? name.substr(1, name.size() - 2) : name);
+  in6_addr room{};
+  return inet_pton(bracketed ? AF_INET6 : AF_INET, address.c_str(), &room) == 1;
+}
+
+bool is_accepted(std::string_view host, const AcceptedHosts& hosts) {
   const std::string_view name = name_of(host);
-  return equal_ignoring_case(name, "localhost") || name == "127.0.0.1" || name == "[::1]";
+  if (equal_ignoring_case(name, "localhost")) return true;
+  if (hosts.loopback_only) return name == "127.0.0.1" || name == "[::1]";
+  return is_ip_address(name) || std::ranges::any_of(hosts.names, [name](const std::string& own) {
+           return equal_ignoring_case(name, own);
+         });
 }
 
 bool is_same_site(std::string_view origin, std::string_view host) {
@@ -43,14 +62,17 @@ std::string_view path_of(std::string_view target) noexcept {
   return target.substr(0, target.find_first_of("?#"));
 }
 
-std::optional<Refusal> refusal_of(const Request& request, bool loopback_only) {
+std::optional<Refusal> refusal_of(const Request& request, const AcceptedHosts& hosts) {
   const std::string_view path = path_of(request.target);
   if (request.method != "GET" && request.method != "HEAD")
     return Refusal{405, "only GET and HEAD are answered here\n"};
   if (!path.starts_with('/')) return Refusal{400, "the target of a request is a path\n"};
   if (!is_plain(path)) return Refusal{403, "no page has such a name\n"};
-  if (loopback_only && !is_this_machine(request.host))
-    return Refusal{403, "this server is asked for as localhost or 127.0.0.1\n"};
+  if (!is_accepted(request.host, hosts)) {
+    return Refusal{403, hosts.loopback_only
+                            ? "this server is asked for as localhost or 127.0.0.1\n"
+                            : "this server is asked for by its IP address or host name\n"};
+  }
   if (!request.origin.empty() && !is_same_site(request.origin, request.host))
     return Refusal{403, "pages of other sites may not read this session\n"};
   if (request.upgrade && path != kLivePath) return Refusal{404, "no WebSocket is here\n"};

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cordis::viz {
 
@@ -14,6 +15,12 @@ struct Request {
   std::string_view host;    ///< empty when absent
   std::string_view origin;  ///< empty when absent: not a browser, or a plain page load
   bool upgrade = false;     ///< asks for a WebSocket
+};
+
+/// The values of Host that the server answers to, each with any port or none.
+struct AcceptedHosts {
+  bool loopback_only = true;       ///< localhost, 127.0.0.1 and [::1] alone
+  std::vector<std::string> names;  ///< else these, localhost and every IP address
 };
 
 /// An answer instead of what was asked for.
@@ -32,12 +39,11 @@ std::string_view path_of(std::string_view target) noexcept;
 ///   405  anything but GET and HEAD
 ///   400  a target that is no path
 ///   403  a path with "..", "%", "\" or a control character: no file of the page has such a name
-///   403  a Host that is not this machine while the server listens on loopback only, so that a
-///        foreign name that resolves to this machine (DNS rebinding) gets nothing
+///   403  a Host that is not accepted, so that a foreign name that resolves to this machine (DNS
+///        rebinding) gets nothing
 ///   403  an Origin that is not Host: another site's page in the same browser
 ///   404  a WebSocket anywhere but at kLivePath
 ///   426  kLivePath without a WebSocket
-/// @param loopback_only  whether the server listens on a loopback address
-std::optional<Refusal> refusal_of(const Request& request, bool loopback_only);
+std::optional<Refusal> refusal_of(const Request& request, const AcceptedHosts& hosts);
 
 }  // namespace cordis::viz

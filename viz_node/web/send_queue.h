@@ -25,15 +25,17 @@ class SendQueue {
     std::array<asio::const_buffer, 3> parts;  ///< stay until next() is called again
   };
 
-  /// @param page  number of the page
-  SendQueue(ServerState& state, std::uint32_t page) : state_(state), page_(page) {}
+  /// @param page         number of the page
+  /// @param may_command  what its hello says
+  SendQueue(ServerState& state, std::uint32_t page, bool may_command)
+      : state_(state), page_(page), hello_(may_command ? state.hello : state.hello_view_only) {}
   ~SendQueue() { listen(false); }
   SendQueue(const SendQueue&) = delete;
   SendQueue& operator=(const SendQueue&) = delete;
 
   /// The next thing that is due, which counts as sent; nothing when the page has it all.
   std::optional<Message> next() {
-    if (!std::exchange(hello_sent_, true)) return text(state_.hello);
+    if (!std::exchange(hello_sent_, true)) return text(hello_);
     if (auto scene = next_of_scene()) return scene;
     sound_first_ =
         !sound_first_;  // waits for one other message at most, and holds up none for long
@@ -138,6 +140,7 @@ class SendQueue {
 
   ServerState& state_;
   std::uint32_t page_;
+  const std::string& hello_;
   std::uint64_t pointers_version_ = 0;
   FlowCredit credit_;
   bool hello_sent_ = false;

@@ -20,6 +20,7 @@
 #include "node/time.h"
 #include "viz_node/page_text.h"
 #include "viz_node/web/http_session.h"
+#include "viz_node/web/own_names.h"
 
 namespace cordis::viz {
 namespace {
@@ -74,10 +75,13 @@ void listen(tcp::acceptor& acceptor, const ServerConfig& config) {
       wanted, config.address, taken, config.node);
 }
 
+/// The address of the page: the host name stands for "all addresses of this machine".
 std::string url_of(const tcp::endpoint& endpoint) {
-  const std::string address = endpoint.address().to_string();
-  return "http://" + (endpoint.address().is_v6() ? "[" + address + "]" : address) + ":" +
-         std::to_string(endpoint.port());
+  const asio::ip::address address = endpoint.address();
+  std::string host = address.to_string();
+  if (address.is_v6()) host = "[" + host + "]";
+  if (address.is_unspecified()) host = own_host_name();
+  return "http://" + host + ":" + std::to_string(endpoint.port());
 }
 
 }  // namespace
@@ -89,8 +93,17 @@ struct WebServer::Impl {
     listen(acceptor, config);
     const tcp::endpoint endpoint = acceptor.local_endpoint();
     url = url_of(endpoint);
-    state.loopback_only = endpoint.address().is_loopback();
-    state.hello = hello_text(config.session, config.node);
+    state.hello = hello_text(config.session, config.node, true);
+    state.hello_view_only = hello_text(config.session, config.node, false);
+    if (!endpoint.address().is_loopback()) open_to_others(config.token);
+  }
+
+  void open_to_others(const std::string& token) {
+    if (!is_usable_token(token))
+      throw std::runtime_error("the token of the page needs " + std::to_string(kShortestToken) +
+                               " letters, digits, '-' or '_'");
+    state.hosts = {.loopback_only = false, .names = own_names()};
+    state.token = token;
   }
 
   void accept() {
@@ -176,6 +189,11 @@ WebServer::~WebServer() {
 
 const std::string& WebServer::url() const noexcept {
   return impl_->url;
+}
+
+std::string WebServer::command_url() const {
+  if (impl_->state.token.empty()) return impl_->url;
+  return impl_->url + "/?token=" + impl_->state.token;
 }
 
 bool WebServer::page_built() const noexcept {

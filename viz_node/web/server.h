@@ -18,6 +18,7 @@ struct ServerConfig {
   std::string address = "127.0.0.1";
   int port = 0;                  ///< the first that is tried; 0 takes any free port
   std::filesystem::path folder;  ///< the built page
+  std::string token;             ///< what a page must know to command, beyond loopback
 };
 
 /// What the server has done. Delays run from the hand to the view: from the newest device sample
@@ -40,7 +41,9 @@ class WebServer {
   /// @param mirror, pointers  outlive the server; their on_change() is taken over
   /// @param execute    called from the server's thread with what a page wants of the simulation;
   ///                must not wait
-  /// @throws std::runtime_error when the address is not one of this machine
+  /// On an address beyond loopback a page may command only with the token in its address.
+  /// @throws std::runtime_error when the address is not one of this machine, or is beyond loopback
+  /// and the token is not usable
   WebServer(const ServerConfig& config, SceneMirror& mirror, PointerDesk& pointers,
             std::function<void(const PageCommand&)> execute);
 
@@ -50,6 +53,7 @@ class WebServer {
   WebServer& operator=(const WebServer&) = delete;
 
   const std::string& url() const noexcept;  ///< "http://127.0.0.1:8080"
+  std::string command_url() const;          ///< url() with the token, if one is needed to command
   bool page_built() const noexcept;
   ServerFigures figures() const;  ///< any thread
 

@@ -22,6 +22,8 @@
 #include "node/repeated_event.h"
 #include "viz_node/pointer_desk.h"
 #include "viz_node/scene_mirror.h"
+#include "viz_node/web/access_token.h"
+#include "viz_node/web/request_filter.h"
 
 namespace cordis::viz {
 
@@ -45,14 +47,21 @@ struct ServerState {
   SceneMirror& mirror;
   PointerDesk& pointers;
   std::function<void(const PageCommand&)> execute;
-  std::string hello;
+  std::string hello;                          // to a page that may command
+  std::string hello_view_only;                // to one that may not
   std::shared_ptr<const std::string> status;  // newest text
   std::uint64_t status_number = 0;
-  bool loopback_only = true;
+  AcceptedHosts hosts;
+  std::string token;  ///< in the address of a page that may command; empty: every page may
   std::size_t connections = 0;
   std::uint32_t page_count = 0;  ///< pages that ever came: their numbers
   std::unordered_set<WebSocketSession*> clients;
   node::RepeatedEvent closures{"closed connections to pages"};
+
+  bool may_command(std::string_view target) const noexcept {
+    return token.empty() || is_same_secret(token_of(target), token);
+  }
+
   mutable std::mutex latency_mutex;
   node::LatencyHistogram latency;
 };

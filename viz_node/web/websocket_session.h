@@ -23,11 +23,14 @@ inline constexpr std::size_t kLongestFromClient = 1024;  // [bytes]
 /// commands.
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
-  WebSocketSession(beast::tcp_stream&& stream, ConnectionSlot&& slot, ServerState& state)
+  /// @param may_command  whether its commands and its hand count
+  WebSocketSession(beast::tcp_stream&& stream, ConnectionSlot&& slot, ServerState& state,
+                   bool may_command)
       : stream_(std::move(stream)),
         slot_(std::move(slot)),
         state_(state),
-        page_(++state.page_count) {}
+        page_(++state.page_count),
+        may_command_(may_command) {}
   ~WebSocketSession() {
     state_.clients.erase(this);
     if (drags_) state_.pointers.leave(page_, node::monotonic_nsec());
@@ -88,8 +91,10 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     incoming_.consume(incoming_.size());
     const auto word = read_acknowledgement(text);
     if (!word) {
-      if (const auto command = read_page_command(text)) state_.execute(*command);
-      if (const auto dragged = read_drag_request(text)) drag(*dragged);
+      if (may_command_) {
+        if (const auto command = read_page_command(text)) state_.execute(*command);
+        if (const auto dragged = read_drag_request(text)) drag(*dragged);
+      }
       if (const auto listens = read_sound_request(text)) queue_.listen(*listens);
       return;
     }
@@ -119,8 +124,9 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   ConnectionSlot slot_;
   ServerState& state_;
   std::uint32_t page_;  // its number
+  bool may_command_;
   bool drags_ = false;  // it has
-  SendQueue queue_{state_, page_};
+  SendQueue queue_{state_, page_, may_command_};
   beast::flat_buffer incoming_;
   bool joined_ = false;
   bool writing_ = false;

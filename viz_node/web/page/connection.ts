@@ -15,6 +15,9 @@ export interface Listener {
 }
 
 export class Connection {
+  /** False: viz_node ignores commands and the hand of this page. */
+  mayCommand = true;
+
   private socket: WebSocket | null = null;
   private pauseMs = FIRST_PAUSE_MS;
   private watchdog = 0;
@@ -45,7 +48,7 @@ export class Connection {
 
   /** Asks for something of the simulation. */
   command(verb: string, more: { steps?: number; value?: number } = {}): void {
-    if (this.isOpen) this.socket!.send(JSON.stringify({ type: 'command', verb, ...more }));
+    if (this.isOpen && this.mayCommand) this.socket!.send(JSON.stringify({ type: 'command', verb, ...more }));
   }
 
   /** Where the hand wants a port [m]; null: it lets go of it. */

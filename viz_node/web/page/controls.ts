@@ -7,6 +7,7 @@ const PATIENCE_MS = 4000;
 
 export class Controls {
   private readonly buttons = [...document.querySelectorAll<HTMLButtonElement>('#control button')];
+  private readonly viewOnly = document.querySelector<HTMLElement>('#view-only')!;
   private readonly reply = document.querySelector<HTMLElement>('#reply')!;
   private paused = false;
   private shownNumber = 0; // of the reply shown last
@@ -26,8 +27,9 @@ export class Controls {
   /** Takes what is newest about the simulation; undefined when there is none. */
   update(sim: NodeState | undefined, replies: Reply[]): void {
     this.paused = sim?.state === 'paused';
+    this.viewOnly.hidden = this.connection.mayCommand;
     for (const button of this.buttons) {
-      button.disabled = sim === undefined;
+      button.disabled = sim === undefined || !this.connection.mayCommand;
       if (button.dataset.verb === 'pause') {
         button.textContent = this.paused ? 'Resume' : 'Pause';
         button.classList.toggle('on', this.paused);

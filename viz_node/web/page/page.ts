@@ -80,7 +80,7 @@ export class Page {
       else this.askToDraw();
     });
     this.listenToKeys();
-    this.connection = new Connection(`ws${location.protocol.slice(4)}//${location.host}/live`, {
+    this.connection = new Connection(`ws${location.protocol.slice(4)}//${location.host}/live${location.search}`, {
       message: (message) => this.take(message),
       opened: () => this.sound.reopen(),
       closed: () => this.forgetConnection(),
@@ -108,6 +108,7 @@ export class Page {
   private take(message: Message): void {
     switch (message.type) {
       case 'hello':
+        this.connection.mayCommand = message.may_command;
         return this.hud.setHello(message);
       case 'description':
         return this.describe(message);

@@ -108,7 +108,7 @@ export class PointerHand {
   /** The port that a pointer there would take hold of. */
   private portAt(event: PointerEvent): number | null {
     const view = this.view();
-    if (view === null) return null;
+    if (view === null || !this.connection.mayCommand) return null;
     const near = event.pointerType === 'mouse' ? NEAR_MOUSE_PX : NEAR_FINGER_PX;
     let best: number | null = null;
     let least = Number.POSITIVE_INFINITY;

@@ -77,6 +77,7 @@ export interface Hello {
   protocol: number;
   session: string;
   node: string;
+  may_command: boolean; // false: the address of the page lacks the token
 }
 
 export interface Description {

@@ -69,6 +69,7 @@ export class TakeBar {
     if (take?.positionS !== this.take?.positionS || take?.state !== this.take?.state) this.heardMs = performance.now();
     this.take = take;
     this.panel.hidden = take === null;
+    this.bar.disabled = this.rate.disabled = !this.connection.mayCommand;
     if (take === null) return;
     this.bar.max = String(take.lengthS);
     setText(this.file, take.file);
