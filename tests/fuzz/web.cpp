@@ -40,7 +40,7 @@ class Server {
     {
       tcp::socket socket(context_);
       socket.assign(tcp::v4(), ends[0]);
-      std::make_shared<HttpSession>(std::move(socket), state_, pages_)->read();
+      serve(std::move(socket), state_, pages_);
     }
     for (const std::string& part : parts) {
       run();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <memory>
+#include <random>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -74,7 +75,7 @@ class Server {
     EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
     tcp::socket socket(context_);
     socket.assign(tcp::v4(), ends[0]);
-    std::make_shared<HttpSession>(std::move(socket), state_, pages_)->read();
+    serve(std::move(socket), state_, pages_);
     run();
     return Browser(ends[1]);
   }
@@ -165,6 +166,142 @@ TEST(HttpSession, TellsNoOtherSiteTheAddressOfThePage) {
   EXPECT_NE(reply_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
                 .find("Referrer-Policy: no-referrer"),
             std::string::npos);
+}
+
+constexpr std::string_view kGet = "GET / HTTP/1.1\r\nHost: localhost\r\n";
+
+std::size_t count_of(std::string_view text, std::string_view word) {
+  std::size_t count = 0;
+  for (std::size_t i = text.find(word); i != std::string_view::npos; i = text.find(word, i + 1))
+    ++count;
+  return count;
+}
+
+TEST(HttpSession, AnswersTheRequestBehindABody) {
+  Server server;
+  const std::string get(kGet);
+  for (const std::string& first :
+       {get + "Content-Length: 5\r\n\r\nhello", get + "Content-Length: 0\r\n\r\n",
+        get + "Content-Length: 19\r\n\r\nGET /x HTTP/1.1\r\n\r\n",
+        get + "Content-Length: 8192\r\n\r\n" + std::string(8192, 'x'),
+        get + "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n3\r\nyou\r\n0\r\n\r\n"}) {
+    Browser browser = server.connect();
+    browser.say(first);
+    server.run();
+    EXPECT_TRUE(browser.take().starts_with("HTTP/1.1 200")) << first.substr(0, 100);
+    browser.say(get + "\r\n");
+    server.run();
+    EXPECT_TRUE(browser.take().starts_with("HTTP/1.1 200")) << "after " << first.substr(0, 100);
+    EXPECT_FALSE(browser.closed());
+
+    EXPECT_EQ(count_of(reply_to(server, first + get + "\r\n"), "HTTP/1.1 200"), 2u)
+        << "at once: " << first.substr(0, 100);
+  }
+}
+
+TEST(HttpSession, TakesABodyThatComesInPieces) {
+  Server server;
+  Browser browser = server.connect();
+  browser.say(std::string(kGet) + "Content-Length: 5\r\n\r\nhe");
+  server.run();
+  EXPECT_EQ(browser.take(), "");
+
+  browser.say("llo");
+  server.run();
+
+  EXPECT_TRUE(browser.take().starts_with("HTTP/1.1 200"));
+}
+
+TEST(HttpSession, RefusesABodyThatIsTooLong) {
+  Server server;
+  const std::string get(kGet);
+
+  EXPECT_TRUE(reply_to(server, get + "Content-Length: 8193\r\n\r\n").starts_with("HTTP/1.1 413"));
+  EXPECT_TRUE(reply_to(server, get + "Content-Length: 9223372036854775807\r\n\r\n")
+                  .starts_with("HTTP/1.1 413"));
+  EXPECT_TRUE(
+      reply_to(server, get + "Transfer-Encoding: chunked\r\n\r\n4e20\r\n" + std::string(20000, 'x'))
+          .starts_with("HTTP/1.1 413"));
+}
+
+TEST(HttpSession, ServesANewcomerBesideAnyNumberOfHalfOpenRequests) {
+  Server server;
+  std::vector<Browser> slow;
+  for (int i = 0; i < 200; ++i) {
+    slow.push_back(server.connect());
+    slow.back().say(i % 2 == 0 ? "" : "GET / HTTP/1.1\r\nHo");
+    server.run();
+    ASSERT_LE(server.state().connections, kMaxRequests);
+    ASSERT_TRUE(reply_to(server, std::string(kGet) + "\r\n").starts_with("HTTP/1.1 200")) << i;
+    server.run();
+  }
+  EXPECT_TRUE(slow.front().closed());
+  EXPECT_FALSE(slow.back().closed());
+}
+
+TEST(HttpSession, ServesANewcomerBesideAsManyPagesAsMayBe) {
+  Server server;
+  std::vector<Browser> pages;
+  for (std::size_t i = 0; i < kMaxPages; ++i) {
+    pages.push_back(server.connect());
+    pages.back().say(upgrade_of("/live"));
+    server.run();
+    ASSERT_TRUE(pages.back().take().starts_with("HTTP/1.1 101")) << i;
+  }
+
+  EXPECT_TRUE(reply_to(server, upgrade_of("/live")).starts_with("HTTP/1.1 503"));
+  EXPECT_TRUE(reply_to(server, std::string(kGet) + "\r\n").starts_with("HTTP/1.1 200"));
+  for (Browser& page : pages) EXPECT_FALSE(page.closed());
+
+  pages.pop_back();
+  server.run();
+  EXPECT_TRUE(reply_to(server, upgrade_of("/live")).starts_with("HTTP/1.1 101"));
+}
+
+/// A request, or the beginning of a page, with some bytes changed, doubled or left out.
+std::string malformed_request(std::mt19937& random) {
+  const auto below = [&random](std::size_t limit) { return random() % limit; };
+  const std::array<std::string, 5> sound{
+      std::string(kGet) + "\r\n", upgrade_of("/live") + frame_of(R"({"type": "ack"})"),
+      std::string(kGet) + "Content-Length: 5\r\n\r\nhello",
+      std::string(kGet) + "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n",
+      std::string(kGet) + "X: " + std::string(9000, 'x') + "\r\n\r\n"};
+  std::string request = sound[below(sound.size())];
+  for (std::size_t changes = 1 + below(8); changes > 0; --changes) {
+    const std::size_t first = below(request.size());
+    const std::size_t length = 1 + below(std::min<std::size_t>(16, request.size() - first));
+    switch (below(4)) {
+      case 0:
+        request[first] = static_cast<char>(below(256));
+        break;
+      case 1:
+        request.insert(first, request.substr(first, length));
+        break;
+      case 2:
+        if (length < request.size()) request.erase(first, length);
+        break;
+      default:
+        request.insert(first, below(2) == 0 ? "\r\n" : std::string(1, '\0'));
+    }
+  }
+  return request;
+}
+
+TEST(HttpSession, AnswersAfterTenThousandMalformedRequests) {
+  Server server;
+  std::mt19937 random(20);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same each time
+  std::vector<Browser> open;
+  for (int i = 0; i < 10'000; ++i) {
+    open.push_back(server.connect());
+    open.back().say(malformed_request(random));
+    server.run();
+    if (open.size() < 100) continue;
+    ASSERT_LE(server.state().requests.size(), kMaxRequests);
+    ASSERT_TRUE(reply_to(server, std::string(kGet) + "\r\n").starts_with("HTTP/1.1 200")) << i;
+    open.clear();
+    server.run();
+    ASSERT_EQ(server.state().connections, 0u) << i;
+  }
 }
 
 }  // namespace

@@ -178,6 +178,17 @@ const cases = {
     assert.match(plain.text, /#stage/);
   },
 
+  'a body of a GET is passed over, and the connection goes on': async ({ url }) => {
+    const { hostname, port, host } = new URL(url);
+    const socket = connect(Number(port), hostname);
+    let text = '';
+    socket.on('data', (part) => (text += part));
+    const get = `HEAD / HTTP/1.1\r\nHost: ${host}\r\n`;
+    socket.write(`${get}Content-Length: 5\r\n\r\nhello${get}\r\n`);
+    await until('both are answered', () => text.match(/HTTP\/1.1 200/g)?.length === 2);
+    socket.destroy();
+  },
+
   'nothing but GET and HEAD is answered': async ({ url }) => {
     for (const method of ['POST', 'PUT', 'DELETE', 'OPTIONS']) {
       const { status, headers } = await ask(url, '/', { method, body: 'x'.repeat(3000) });
@@ -303,11 +314,14 @@ const cases = {
     });
   },
 
-  'connections above the limit are turned away, and make room again': async ({ url }) => {
+  'half-open requests shut out no newcomer': async ({ url }) => {
     const { hostname, port } = new URL(url);
-    const idle = Array.from({ length: 80 }, () => connect(Number(port), hostname).on('error', () => {}));
+    const idle = Array.from({ length: 200 }, () => connect(Number(port), hostname).on('error', () => {}));
     try {
-      await until('some are closed', () => idle.filter((socket) => socket.readableEnded || socket.destroyed).length >= 16);
+      for (const socket of idle) socket.write('GET / HTTP/1.1\r\nHo');
+      assert.equal((await ask(url, '/')).status, 200);
+      await until('the oldest are closed', () => idle.filter((socket) => socket.readableEnded || socket.destroyed).length >= 136);
+      assert.equal((await ask(url, '/')).status, 200);
     } finally {
       for (const socket of idle) socket.destroy();
     }

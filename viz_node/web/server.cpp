@@ -27,7 +27,6 @@ namespace {
 
 constexpr auto kStatusPeriod = std::chrono::milliseconds(250);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
-constexpr std::size_t kMaxConnections = 64;
 constexpr int kNextPorts = 20;  // tried after an occupied one
 
 /// True if another port of the same address may do.
@@ -116,8 +115,7 @@ struct WebServer::Impl {
       accept();        // first: whatever becomes of this one, others may come
       ErrorCode none;  // a socket that takes no option still works
       socket.set_option(tcp::no_delay(true), none);
-      if (state.connections < kMaxConnections)
-        std::make_shared<HttpSession>(std::move(socket), state, pages)->read();
+      serve(std::move(socket), state, pages);
     });
   }
 

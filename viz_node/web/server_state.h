@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -34,8 +35,12 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using ErrorCode = boost::system::error_code;
 
-inline constexpr auto kRequestTimeout = std::chrono::seconds(10);
+inline constexpr auto kRequestTimeout = std::chrono::seconds(10);  // until all of it has come
+inline constexpr auto kReplyTimeout = std::chrono::seconds(60);    // until all of it has gone
+inline constexpr std::size_t kMaxRequests = 64;                    // connections that are no page
+inline constexpr std::size_t kMaxPages = 64;
 
+class HttpSession;
 class WebSocketSession;
 
 /// What all connections share. Lives in the server's thread, but for the latency.
@@ -54,9 +59,14 @@ struct ServerState {
   AcceptedHosts hosts;
   std::string token;  ///< in the address of a page that may command; empty: every page may
   std::size_t connections = 0;
+  /// Connections that are no page: those that wait for a request first, the oldest of them first.
+  std::map<std::pair<bool, std::uint64_t>, HttpSession*> requests;
+  std::uint64_t request_count = 0;
   std::uint32_t page_count = 0;  ///< pages that ever came: their numbers
   std::unordered_set<WebSocketSession*> clients;
   node::RepeatedEvent closures{"closed connections to pages"};
+
+  std::size_t pages() const noexcept { return connections - requests.size(); }
 
   bool may_command(std::string_view target) const noexcept {
     return token.empty() || is_same_secret(token_of(target), token);
