@@ -117,6 +117,29 @@ TEST(StartTangent, IsNotSureOfWhatImplicitSpringsHold) {
   EXPECT_GT(largest_excursion(scene, 4000), 1e6);
 }
 
+TEST(StartTangent, IsNotSureOfAPairWhoseViscosityActsAlone) {
+  // Within range and touched by no force: a set that only pushes lets go in every other step.
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3::Zero()), mass(0.1, Vec3::UnitX())};
+  scene.radius = {0.0, 0.0};
+  engine::LinkState state;
+  state.viscosity = 1.0;
+  state.pulls = false;
+  scene.state_machines.emplace_back();
+  scene.state_machines[0].states = {state};
+  engine::SetLiaison set;
+  set.set_p = {0};
+  set.set_q = {1};
+  set.range = 2.0;
+  scene.sets = {set};
+
+  EXPECT_TRUE(std::isinf(StartTangent(scene).diverging_step()));
+  scene.state_machines[0].states[0].pulls = true;
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), 0.2, 1e-9);  // 2 Z dt / m = 4
+}
+
 TEST(StartTangent, NeverEndsWhereNothingPulls) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
 

@@ -102,12 +102,12 @@ Columns random_direction(const Eigen::RowVectorXd& root_of_inverse_mass, int dim
 }
 
 /// True if a pair surely has its tangent: it neither is let go of nor at its limit. One that only
-/// pushes and just touches has none on one side.
+/// pushes and just touches has none on one side, nor has one whose viscosity acts alone.
 bool acts(const engine::LinkState& state, const Tangent& tangent, double distance) {
   constexpr double kTouching = 1e-9;
   const double rounding = kTouching * std::abs(tangent.stiffness) * distance;
-  if (!state.pulls && tangent.tension > -rounding) return false;
-  if (!state.pushes && tangent.tension < rounding) return false;
+  if (!state.pulls && tangent.tension >= -rounding) return false;
+  if (!state.pushes && tangent.tension <= rounding) return false;
   return std::abs(tangent.tension) < state.force_limit;
 }
 
