@@ -185,7 +185,7 @@ TEST(Partners, OfManyLargeSetsAreRaisedTogetherAlone) {
 
 TEST(Partners, MakeTheRateOfACrowdHighEnough) {
   const NetworkDescription scene = [] {
-    NetworkDescription crowd = lattice(5, 0.012, state_machine(300.0), 0.01, 0.5);
+    NetworkDescription crowd = lattice(5, 0.012, state_machine(300.0), 0.01, 10.0);
     crowd.state_machines[0].states[0].viscosity = 0.002;
     return crowd;
   }();

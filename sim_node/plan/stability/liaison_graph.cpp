@@ -86,7 +86,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   graph.crowds.push_back(std::move(side));
 }
 
-/// True if a pair in the state of its start still pulls or pushes where it comes into range, with
+/// True if a pair in the state of its start still pulls or pushes where it crosses its range, with
 /// more than a tenth of what the largest slope would over the whole range.
 bool jumps_at_range(const engine::StateMachine& state_machine, double rest_length, double range,
                     double largest_slope) {
@@ -124,8 +124,10 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const std::size_t count_p = set.set_p.size();
   const std::size_t all =
       set.set_q.empty() ? count_p * (count_p - 1) / 2 : count_p * set.set_q.size();
-  const bool comes_into_range = !near.are_kept() || near.pairs().size() < all;
-  if (!graph.uncertainty && comes_into_range &&
+  const bool all_begin_within = near.are_kept() && near.pairs().size() == all;
+  const bool is_confined =
+      all_begin_within && !here.held && stored_in(state_machine, rest, set.range) > energy_at(here);
+  if (!graph.uncertainty && !is_confined &&
       jumps_at_range(state_machine, rest, set.range, slope.stiffness))
     graph.uncertainty = {{LiaisonKind::kSet, index}, "its force jumps at its range"};
   const PartnerBounds bounds = partner_bounds(network, set);
