@@ -197,6 +197,12 @@ TEST(Tangent, IsThatOfTheStiffestStateAtTheDistance) {
   EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09, 1.0).stiffness, 100.0);
   EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09, 1.0).viscosity, 0.0);
   EXPECT_NEAR(plan::stiffest_tangent(state_machine(100.0), 0.1, 0.09, 1e-3).tension, -1.0, 1e-12);
+  // Of a state that is not that of the start, the spring alone counts, and where it is pressed.
+  EXPECT_NEAR(plan::stiffest_tangent(touch, 0.1, 0.09, 1e-3).tension, -0.2, 1e-12);
+  EXPECT_FALSE(plan::stiffest_tangent(touch, 0.1, 0.09, 1e-3).acts);
+  EXPECT_EQ(plan::stiffest_tangent(touch, 0.1, 0.11, 1e-3).tension, 0.0);
+  EXPECT_TRUE(plan::stiffest_tangent(touch, 0.1, 0.09, 1.0).acts);
+  EXPECT_FALSE(plan::stiffest_tangent(touch, 0.1, 0.11, 1.0).acts);
   // 57.1 in units of depth / diameter^2 at the distance of rest, 2^(1/6) diameters.
   const engine::StateMachine ball = state_machine(0.0, lennard_jones(1.0, 1.0));
   const double rest = std::pow(2.0, 1.0 / 6.0);

@@ -294,11 +294,14 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_length,
                          double distance, double step) {
   const double elongation = distance - rest_length;
-  const double nearby = 1e-6 * std::max(std::abs(distance), 1e-6);
-  const auto rise = [nearby](const auto& tension, double argument) {  // of a kink, the flatter side
-    return std::min(tension(argument + nearby) - tension(argument),
-                    tension(argument) - tension(argument - nearby)) /
-           nearby;
+  const double scale = std::max(std::abs(distance), 1e-6);
+  const auto rise = [scale](const auto& tension, double argument) {  // of a kink, the flatter side
+    double flattest = kNoLimit;
+    for (const double nearby : {1e-6 * scale, 1e-9 * scale}) {
+      flattest = std::min({flattest, (tension(argument + nearby) - tension(argument)) / nearby,
+                           (tension(argument) - tension(argument - nearby)) / nearby});
+    }
+    return flattest;
   };
   Tangent stiffest;
   double largest = -kNoLimit;
@@ -311,9 +314,9 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_
       return viscous_tension(state.dissipation, {distance, elongation, speed}) +
              elastic_tension(state.elasticity, {distance, elongation, speed});
     };
-    // Nothing is known of the pose in which another state is entered.
-    const bool acts = s == state_machine.start &&
-                      acts_at(state, state.stiffness * elongation + elastic(elongation));
+    // Nothing is known of the pose in which another state is entered, nor where a link acts again.
+    const double tension = state.stiffness * elongation + elastic(elongation);
+    const bool acts = s == state_machine.start && acts_at(state, tension);
     const bool bends = acts && !is_root(state.elasticity);
     const double stiffness = state.stiffness + (bends ? rise(elastic, elongation) : 0.0);
     const double viscosity =
@@ -323,14 +326,8 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_
     largest = number;
     stiffest.stiffness = stiffness;
     stiffest.viscosity = viscosity;
-  }
-  const engine::LinkState& first = state_machine.states.front();
-  if (state_machine.is_stateless()) {
-    const double tension =
-        first.stiffness * elongation +
-        elastic_tension(first.elasticity, {elongation + rest_length, elongation});
-    stiffest.tension = std::clamp(tension, first.pushes ? -first.force_limit : 0.0,
-                                  first.pulls ? first.force_limit : 0.0);
+    stiffest.tension = acts ? tension : std::min(state.stiffness * elongation, 0.0);
+    stiffest.acts = acts;
   }
   return stiffest;
 }

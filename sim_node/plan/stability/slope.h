@@ -47,7 +47,8 @@ double stored_in(const engine::StateMachine& state_machine, double rest_length, 
 struct Tangent {
   double stiffness = 0.0;  ///< along the link, below 0 where a law falls [N/m]
   double viscosity = 0.0;  ///< likewise [N s/m]
-  double tension = 0.0;    ///< of a state machine of one state, else 0 [N]
+  double tension = 0.0;    ///< where it acts; else that of its spring if that is pressed, or 0 [N]
+  bool acts = false;       ///< the state is that of the start, neither let go of nor at its limit
 };
 
 Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_length,

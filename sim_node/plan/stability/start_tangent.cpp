@@ -101,14 +101,14 @@ Columns random_direction(const Eigen::RowVectorXd& root_of_inverse_mass, int dim
   return x;
 }
 
-/// True if a pair surely has its tangent: it neither is let go of nor at its limit. One that only
-/// pushes and just touches has none on one side, nor has one whose viscosity acts alone.
-bool acts(const engine::LinkState& state, const Tangent& tangent, double distance) {
+/// True if a pair surely has its tangent. One that only pushes and just touches has none on one side,
+/// nor has one whose viscosity acts alone.
+bool surely_acts(const engine::LinkState& state, const Tangent& tangent, double distance) {
   constexpr double kTouching = 1e-9;
   const double rounding = kTouching * std::abs(tangent.stiffness) * distance;
   if (!state.pulls && tangent.tension >= -rounding) return false;
   if (!state.pushes && tangent.tension <= rounding) return false;
-  return std::abs(tangent.tension) < state.force_limit;
+  return tangent.acts;
 }
 
 }  // namespace
@@ -172,7 +172,7 @@ void StartTangent::add_set(const engine::NetworkDescription& network, const engi
     const std::uint32_t b = mat_of(set, pair.member_b);
     const Tangent tangent =
         stiffest_tangent(start, rest_length_of(network, set, a, b), pair.distance, network.step);
-    if (!acts(start.states[0], tangent, pair.distance)) continue;
+    if (!surely_acts(start.states[0], tangent, pair.distance)) continue;
     add(a, b, network, stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
         viscosity_weight * tangent.viscosity, 0.0);
   }
