@@ -307,9 +307,9 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
     }
     constexpr double kPumped = 1e30;  // [J]: changes of state bring in ever more
     if (!(brought.energy() < kPumped)) return run;
-    const double made =
+    const double gain =
         energy.integration_error() - std::max(1.0, share) * jumps.energy() - kinetic_offset;
-    const double error = made / brought.energy();
+    const double error = gain / brought.energy();
     run.worst = std::max(run.worst, error);
     if (!(error < share)) {
       run.growth = "made " + std::to_string(error) + " of the energy at step " + std::to_string(n);
