@@ -15,6 +15,8 @@ const KEYS: [string, string][] = [
   ['c', 'colour by speed'],
   ['n', 'names of matter and ports'],
   ['g', 'grid'],
+  ['+ -', 'plots over a shorter or a longer time, as does the wheel over them'],
+  ['p', 'two signals against each other'],
   ['l', 'light or dark'],
   ['u', 'full screen'],
   ['s', 'save the image'],

@@ -13,15 +13,17 @@ import { legendOf, showLegend } from './legend.ts';
 import { Marks } from './marks.ts';
 import { drawNames } from './names.ts';
 import { Picked } from './picked.ts';
-import { Plots } from './plots.ts';
+import { download } from './plot_export.ts';
 import { PointerHand } from './pointer.ts';
 import { toolsOf, type Description, type Frame, type Message, type Topology } from './protocol.ts';
 import { chooseQuality, findRenderer } from './quality.ts';
 import { setText } from './rows.ts';
 import { SceneView } from './scene_view.ts';
+import { SignalPanel } from './signal_panel.ts';
 import type { SignalStore } from './signal_store.ts';
 import { SoundPanel } from './sound/sound_panel.ts';
 import { TakeBar } from './take.ts';
+import { imageOfView } from './view_image.ts';
 
 const FIGURES_PERIOD_MS = 200;
 const PLOTS_PERIOD_MS = 60;
@@ -32,6 +34,13 @@ function find<T extends HTMLElement>(selector: string): T {
   const found = document.querySelector<T>(selector);
   if (found === null) throw new Error(`the page has no ${selector}`);
   return found;
+}
+
+/** What has the focus needs the key itself. */
+function takesKey(target: EventTarget | null, key: string): boolean {
+  const isBox = target instanceof HTMLInputElement && target.type === 'checkbox';
+  if (isBox || target instanceof HTMLButtonElement) return key === ' ';
+  return target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
 }
 
 export class Page {
@@ -49,7 +58,7 @@ export class Page {
 
   private readonly stage = find('#stage');
   private readonly marks = new Marks(this.stage);
-  private readonly plots = new Plots(find('#plots'));
+  private readonly plots = new SignalPanel((ending) => this.fileName(ending));
   private readonly clock = new ClockOffset();
   private readonly factor = new RealTimeFactor();
   private readonly renderer = findRenderer();
@@ -285,18 +294,20 @@ export class Page {
       g: () => this.view?.toggleGround(),
       c: () => this.colourBySpeed(!this.speeds),
       n: () => this.toggle('n', (this.names = !this.names)),
-      h: () => this.toggle('h', (this.frozen = !this.frozen)),
+      h: () => this.freeze(!this.frozen),
+      p: () => this.plots.togglePhase(),
+      '+': () => this.plots.stretch(0.5),
+      '-': () => this.plots.stretch(2),
       l: () => this.setTheme(this.theme === 'dark' ? 'light' : 'dark'),
       u: () => this.toggleFullScreen(),
       '?': () => toggleKeys(),
       ' ': () => this.controls.press('pause'),
       ArrowRight: () => this.controls.press('step'),
-      s: () => void this.savePicture(),
+      s: () => void this.saveImage(),
     };
     window.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.altKey || event.metaKey) return;
-      if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement) return;
-      if (event.target instanceof HTMLButtonElement && event.key === ' ') return; // it presses the button
+      if (takesKey(event.target, event.key)) return;
       if (keysAreListed() && event.key !== '?') return;
       if (this.takeBar.key(event.key)) return event.preventDefault();
       const action = keys[event.key];
@@ -308,13 +319,6 @@ export class Page {
       button.addEventListener('click', () => {
         keys[button.dataset.key!]!();
         button.blur();
-      });
-    }
-    for (const button of document.querySelectorAll<HTMLButtonElement>('#windows button')) {
-      button.addEventListener('click', () => {
-        document.querySelector('#windows .on')?.classList.remove('on');
-        button.classList.add('on');
-        this.plots.setWindow(Number(button.dataset.window));
       });
     }
   }
@@ -372,13 +376,25 @@ export class Page {
     this.pointer.draw(this.marks, { mine: this.palette.text, others: this.palette.quiet });
   }
 
-  private async savePicture(): Promise<void> {
-    const image = await this.view?.image();
-    if (!image) return;
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(image);
-    link.download = `${this.description?.name ?? 'cordis'}_${(this.lastFrame?.simulatedS ?? 0).toFixed(2)}s.png`;
-    link.click();
-    URL.revokeObjectURL(link.href);
+  private freeze(wanted: boolean): void {
+    this.frozen = wanted;
+    this.plots.hold(wanted);
+    this.toggle('h', wanted);
+  }
+
+  private fileName(ending: string): string {
+    return `${this.description?.name ?? 'cordis'}_${(this.lastFrame?.simulatedS ?? 0).toFixed(2)}s.${ending}`;
+  }
+
+  private async saveImage(): Promise<void> {
+    if (this.view === null || this.description === null || this.lastFrame === null) return;
+    const image = await imageOfView(this.view, this.marks.canvas, {
+      scene: this.description.name,
+      simulatedS: this.lastFrame.simulatedS,
+      legend: legendOf(this.description, this.view.bodies, this.palette),
+      fastest: this.speeds ? joined(withUnit(this.view.fastestSpeed, 'm/s')) : '',
+      palette: this.palette,
+    });
+    if (image !== null) download(image, this.fileName('png'));
   }
 }

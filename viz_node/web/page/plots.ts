@@ -2,28 +2,34 @@
 // edge.
 import uPlot from 'uplot';
 import { ofList, paletteOf, type Palette } from './colours.ts';
-import { joined, prefixOf, threeDigits, withUnit } from './format.ts';
+import { joined, withUnit } from './format.ts';
+import { optionsOf } from './plot_options.ts';
 import type { Description } from './protocol.ts';
-import { SignalStore } from './signal_store.ts';
+import { LONGEST_WINDOW_S, SignalStore } from './signal_store.ts';
 
-const MOST_PLOTS = 4;
+const MOST_PLOTS = 4; // at first; more when a person chooses more
 const MOST_PER_PLOT = paletteOf('dark').signals.length;
-const AXIS_FONT = '11px system-ui, "DejaVu Sans", sans-serif';
+const SHORTEST_WINDOW_ROWS = 20;
 
 interface Plot {
   chart: uPlot;
   box: HTMLElement;
-  signals: number[]; // columns of the store
-  values: HTMLElement[]; // newest value of each
+  pointedTime: HTMLElement; // that the pointer is at
+  signals: number[];
+  values: HTMLElement[];
+  shown: (number | null)[][]; // time, then a row per signal
   unit: string;
 }
 
 export class Plots {
+  store: SignalStore | null = null;
+  description: Description | null = null;
+  palette: Palette = paletteOf('dark');
+  windowS = 5;
+  chosen = new Set<number>(); // signals
   private plots: Plot[] = [];
-  private store: SignalStore | null = null;
-  private windowS = 5;
-  private description: Description | null = null;
-  private palette: Palette = paletteOf('dark');
+  private isLogarithmic = false;
+  private heldS: number | null = null; // the time at the right edge while the view is frozen
 
   constructor(private readonly container: HTMLElement) {
     new ResizeObserver(() => this.resize()).observe(container);
@@ -33,47 +39,92 @@ export class Plots {
   describe(description: Description): SignalStore {
     this.description = description;
     this.store = new SignalStore(description.signals.length, description.gesture_rate_hz);
-    this.buildAll(description);
+    this.heldS = null;
+    const groups = [...this.byUnit(description.signals.map((_, signal) => signal))].slice(0, MOST_PLOTS);
+    this.chosen = new Set(groups.flatMap(([, signals]) => signals.slice(0, MOST_PER_PLOT)));
+    this.buildAll();
     return this.store;
   }
 
   /** Draws all of them in the colours of a palette. */
   paint(palette: Palette): void {
     this.palette = palette;
-    if (this.description !== null) this.buildAll(this.description);
+    this.buildAll();
   }
 
-  private buildAll(description: Description): void {
-    for (const plot of this.plots) plot.chart.destroy();
-    this.container.replaceChildren();
-    const groups = new Map<string, number[]>();
-    description.signals.forEach(({ unit }, index) => groups.set(unit, [...(groups.get(unit) ?? []), index]));
-    const shown = [...groups].slice(0, MOST_PLOTS);
-    this.plots = shown.map(([unit, signals]) => this.build(unit, signals.slice(0, MOST_PER_PLOT), description));
-    const hidden = description.signals.length - this.plots.reduce((sum, plot) => sum + plot.signals.length, 0);
-    if (description.signals.length === 0) this.say('This scene names no signals. List them under `signals:` in its file.');
-    if (hidden > 0) this.say(`${hidden} more signals are not drawn`);
-    this.resize();
+  /** Draws a signal, or leaves it out. */
+  choose(signal: number, wanted: boolean): void {
+    if (wanted) this.chosen.add(signal);
+    else this.chosen.delete(signal);
+    this.buildAll();
+  }
+
+  /** The sizes of the values on a logarithmic scale, or the values on a linear one. */
+  setLogarithmic(wanted: boolean): void {
+    this.isLogarithmic = wanted;
+    this.buildAll();
   }
 
   setWindow(seconds: number): void {
-    this.windowS = seconds;
+    const shortest = SHORTEST_WINDOW_ROWS * (this.store?.periodS ?? 1e-3);
+    this.windowS = Math.min(LONGEST_WINDOW_S, Math.max(shortest, seconds));
     this.draw();
+  }
+
+  /** What is shown stays, whatever comes; it can be looked at closer. */
+  hold(wanted: boolean): void {
+    this.heldS = wanted ? this.endS : null;
+    this.draw();
+  }
+
+  /** Time at the right edge [s]. */
+  get endS(): number {
+    return this.heldS ?? this.store?.newestS ?? 0;
   }
 
   draw(): void {
     if (this.store === null || this.store.rowCount === 0) return;
-    const newest = this.store.newestS;
     for (const plot of this.plots) {
-      const data = this.store.window(plot.signals, this.windowS, Math.max(50, Math.floor(plot.chart.width)));
+      plot.shown = this.store.window(plot.signals, this.windowS, Math.max(50, Math.floor(plot.chart.width)), this.endS);
+      const [times, ...rows] = plot.shown;
+      const drawn = this.isLogarithmic ? rows.map((row) => row.map((value) => (value ? Math.abs(value) : null))) : rows;
       plot.chart.batch(() => {
-        plot.chart.setData(data as uPlot.AlignedData, false);
-        plot.chart.setScale('x', { min: newest - this.windowS, max: newest });
+        plot.chart.setData([times, ...drawn] as uPlot.AlignedData, false);
+        plot.chart.setScale('x', { min: this.endS - this.windowS, max: this.endS });
       });
-      plot.signals.forEach((signal, i) => {
-        plot.values[i]!.textContent = joined(withUnit(this.store!.newestOf(signal), plot.unit));
-      });
+      this.writeValues(plot);
     }
+  }
+
+  /** The values under the pointer, or else the newest. */
+  private writeValues(plot: Plot): void {
+    const column = plot.chart.cursor.idx ?? plot.shown[0]!.length - 1;
+    plot.signals.forEach((_, i) => {
+      plot.values[i]!.textContent = joined(withUnit(plot.shown[i + 1]?.[column], plot.unit));
+    });
+    const pointedS = plot.chart.cursor.idx == null ? undefined : plot.shown[0]?.[column];
+    plot.pointedTime.textContent = typeof pointedS === 'number' ? `at ${pointedS.toFixed(3)} s` : '';
+  }
+
+  private byUnit(signals: number[]): Map<string, number[]> {
+    const groups = new Map<string, number[]>();
+    for (const signal of signals) {
+      const { unit } = this.description!.signals[signal]!;
+      groups.set(unit, [...(groups.get(unit) ?? []), signal]);
+    }
+    return groups;
+  }
+
+  private buildAll(): void {
+    if (this.description === null) return;
+    const { signals } = this.description;
+    for (const plot of this.plots) plot.chart.destroy();
+    this.container.replaceChildren();
+    this.plots = [...this.byUnit([...this.chosen].sort((a, b) => a - b))].map(([unit, group]) => this.build(unit, group, signals));
+    const hidden = signals.length - this.chosen.size;
+    if (signals.length === 0) this.say('This scene names no signals. List them under `signals:` in its file.');
+    if (hidden > 0) this.say(`${hidden} more ${hidden === 1 ? 'signal is' : 'signals are'} not drawn: Choose`);
+    this.resize();
   }
 
   private say(text: string): void {
@@ -83,24 +134,29 @@ export class Plots {
     this.container.append(note);
   }
 
-  private build(unit: string, signals: number[], description: Description): Plot {
+  private build(unit: string, group: number[], signals: Description['signals']): Plot {
     const box = document.createElement('section');
     box.className = 'plot';
     const head = document.createElement('header');
-    const values = signals.map((signal, i) => {
+    const values = group.map((signal, i) => {
       const label = document.createElement('span');
       label.className = 'series';
       label.style.setProperty('--colour', ofList(this.palette.signals, i));
       const value = document.createElement('b');
-      label.append(description.signals[signal]!.name, value);
+      label.append(signals[signal]!.name, value);
       head.append(label);
       return value;
     });
+    const pointedTime = Object.assign(document.createElement('span'), { className: 'at' });
+    head.append(pointedTime);
     const canvas = document.createElement('div');
     canvas.className = 'chart';
     box.append(head, canvas);
     this.container.append(box);
-    return { chart: new uPlot(optionsOf(unit, signals.length, this.palette), [[]], canvas), box: canvas, signals, values, unit };
+    const pointed = () => this.writeValues(plot);
+    const look = { unit, seriesCount: group.length, palette: this.palette, logarithmic: this.isLogarithmic, pointed };
+    const plot: Plot = { chart: new uPlot(optionsOf(look), [[]], canvas), box: canvas, pointedTime, signals: group, values, shown: [[]], unit };
+    return plot;
   }
 
   private resize(): void {
@@ -110,52 +166,4 @@ export class Plots {
     }
     this.draw();
   }
-}
-
-function optionsOf(unit: string, seriesCount: number, palette: Palette): uPlot.Options {
-  const lines = { stroke: palette.grid_coarse, width: 1 };
-  const axis = { stroke: palette.quiet, font: AXIS_FONT, grid: lines, ticks: { ...lines, size: 4 } };
-  return {
-    width: 320,
-    height: 120,
-    legend: { show: false },
-    cursor: { show: false },
-    padding: [6, 10, 0, 0],
-    scales: { x: { time: false, auto: false }, y: { range: (_chart, low, high) => rangeOf(low, high) } },
-    axes: [
-      { ...axis, size: 22, space: 50, values: (_chart, ticks) => ticks.map((t) => (t < 0 ? '' : `${+t.toFixed(3)} s`)) },
-      { ...axis, size: 58, space: 26, values: (_chart, ticks) => labelsOf(ticks, unit) },
-    ],
-    series: [
-      {},
-      ...Array.from({ length: seriesCount }, (_, i) => ({
-        stroke: ofList(palette.signals, i),
-        width: 1.4,
-        points: { show: false },
-        spanGaps: false,
-      })),
-    ],
-  };
-}
-
-/** Some room around the values; a constant value lies in the middle, 0 between 1 and -1. */
-function rangeOf(low: number | null, high: number | null): [number, number] {
-  if (low === null || high === null || (low === 0 && high === 0)) return [-1, 1];
-  const size = Math.max(Math.abs(low), Math.abs(high));
-  const room = Math.max(0.08 * (high - low), 1e-3 * size, 1e-12);
-  return [low - room, high + room];
-}
-
-/** One prefix for all ticks of an axis, with as many decimals as their distance asks for. */
-function labelsOf(ticks: number[], unit: string): string[] {
-  if (ticks.length === 0) return [];
-  const largest = Math.max(...ticks.map(Math.abs));
-  const [factor, letter] = unit === '' ? [1, ''] : prefixOf(largest);
-  const step = ticks.length > 1 ? Math.abs(ticks[1]! - ticks[0]!) / factor : 1;
-  let decimals = Math.min(6, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-  if (decimals < 6 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 0.01) ++decimals; // 0.25
-  return ticks.map((tick) => {
-    const number = ticks.length > 1 ? (tick / factor).toFixed(decimals) : threeDigits(tick / factor);
-    return unit === '' ? number : `${number} ${letter}${unit}`;
-  });
 }

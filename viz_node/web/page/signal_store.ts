@@ -76,28 +76,49 @@ export class SignalStore {
     return this.values[(row % this.capacity) * this.signalCount + signal]!;
   }
 
+  /** Number of the row after the last one that is not later than `endS`. */
+  private endRowAt(endS: number): number {
+    return Math.max(this.firstRow, Math.min(this.nextRow, Math.floor((endS - this.originS) / this.period + 1e-6) + 1));
+  }
+
+  /** First row of `windowS` seconds up to a row. */
+  private beginRow(endRow: number, windowS: number): number {
+    return Math.max(this.firstRow, endRow - Math.ceil(windowS / this.period));
+  }
+
   /**
-   * The last `windowS` seconds of some signals as at most 2 x `columns` points: of each column the smallest and the largest value, so
+   * `windowS` seconds of some signals up to `endS` as at most 2 x `columns` points: of each column the smallest and the largest value, so
    * that no peak is lost. Columns begin at multiples of their width, so that the curve does not shimmer while it moves.
    * Gives [times, values of signals[0], ...]; a gap is null.
    */
-  window(signals: number[], windowS: number, columns: number): (number | null)[][] {
-    const wanted = Math.min(this.rowCount, Math.ceil(windowS / this.period));
+  window(signals: number[], windowS: number, columns: number, endS: number): (number | null)[][] {
+    const endRow = this.endRowAt(endS);
+    const wanted = endRow - this.beginRow(endRow, windowS);
     const rowsPerColumn = Math.max(1, Math.ceil(wanted / columns));
     const result: (number | null)[][] = Array.from({ length: signals.length + 1 }, () => []);
     if (wanted === 0) return result;
-    if (rowsPerColumn <= 2) return this.everyRow(signals, this.nextRow - wanted, result);
-    const begin = Math.ceil((this.nextRow - wanted) / rowsPerColumn) * rowsPerColumn;
-    for (let row = begin; row < this.nextRow; row += rowsPerColumn) {
-      const end = Math.min(row + rowsPerColumn, this.nextRow);
+    if (rowsPerColumn <= 2) return this.everyRow(signals, endRow - wanted, endRow, result);
+    const begin = Math.ceil((endRow - wanted) / rowsPerColumn) * rowsPerColumn;
+    for (let row = begin; row < endRow; row += rowsPerColumn) {
+      const end = Math.min(row + rowsPerColumn, endRow);
       result[0]!.push(this.timeOf(row), this.timeOf(row + 0.5 * (end - row)));
       signals.forEach((signal, i) => result[i + 1]!.push(...this.extremes(signal, row, end)));
     }
     return result;
   }
 
-  private everyRow(signals: number[], begin: number, result: (number | null)[][]): (number | null)[][] {
-    for (let row = begin; row < this.nextRow; ++row) {
+  /** `windowS` seconds up to `endS`, row after row: [time, values of the signals]; every nth where there are more than `most`. */
+  rows(signals: number[], windowS: number, endS: number, most: number): number[][] {
+    const endRow = this.endRowAt(endS);
+    const begin = this.beginRow(endRow, windowS);
+    const stride = Math.max(1, Math.ceil((endRow - begin) / most));
+    const result: number[][] = [];
+    for (let row = begin; row < endRow; row += stride) result.push([this.timeOf(row), ...signals.map((signal) => this.valueAt(row, signal))]);
+    return result;
+  }
+
+  private everyRow(signals: number[], begin: number, end: number, result: (number | null)[][]): (number | null)[][] {
+    for (let row = begin; row < end; ++row) {
       result[0]!.push(this.timeOf(row));
       signals.forEach((signal, i) => {
         const value = this.valueAt(row, signal);

@@ -1,0 +1,80 @@
+// viz_node/web/page/view_image.ts -- an image of the view to keep, with its scene, time, legend and
+// a length to measure by.
+import type { Palette } from './colours.ts';
+import { joined, withUnit } from './format.ts';
+import { roundLength } from './ground.ts';
+import type { LegendEntry } from './legend.ts';
+import type { SceneView } from './scene_view.ts';
+
+const ROOM_PX = 16; // at the edges
+const ROW_PX = 20; // of the legend
+
+export interface Caption {
+  scene: string;
+  simulatedS: number;
+  legend: LegendEntry[];
+  fastest: string; // where the colours are speeds, else empty
+  palette: Palette;
+}
+
+/** The view, `marks` over it, and the caption. */
+export async function imageOfView(view: SceneView, marks: HTMLCanvasElement, caption: Caption): Promise<Blob | null> {
+  const image = await view.image();
+  if (image === null) return null;
+  const drawn = await createImageBitmap(image);
+  const sheet = Object.assign(document.createElement('canvas'), { width: drawn.width, height: drawn.height });
+  const pen = sheet.getContext('2d');
+  if (pen === null) return null;
+  pen.drawImage(drawn, 0, 0);
+  pen.drawImage(marks, 0, 0, drawn.width, drawn.height);
+  const ratio = drawn.width / marks.clientWidth;
+  pen.scale(ratio, ratio);
+  pen.font = '13px system-ui, "DejaVu Sans", sans-serif';
+  const { palette } = caption;
+  pen.fillStyle = palette.text;
+  pen.fillText(`${caption.scene} · ${caption.simulatedS.toFixed(3)} s`, ROOM_PX, 24);
+  const bottom = writeLegend(pen, caption.legend, palette, marks.clientWidth);
+  if (caption.fastest !== '') writeSpeeds(pen, bottom, caption.fastest, palette);
+  const scale = view.rig.metresPerPixel;
+  const length = roundLength(160 * scale);
+  pen.fillStyle = palette.quiet;
+  pen.fillRect(ROOM_PX, marks.clientHeight - 36, length / scale, 2);
+  pen.fillText(joined(withUnit(length, 'm')), ROOM_PX, marks.clientHeight - 16);
+  return new Promise((resolve) => sheet.toBlob(resolve));
+}
+
+/** Writes rows of marks and names; gives back where the next row would be. */
+function writeLegend(pen: CanvasRenderingContext2D, legend: LegendEntry[], palette: Palette, width: number): number {
+  let [x, y] = [ROOM_PX, 46];
+  for (const { mark, text, colour } of legend) {
+    const size = 22 + pen.measureText(text).width;
+    if (x > ROOM_PX && x + size > width - ROOM_PX) [x, y] = [ROOM_PX, y + ROW_PX];
+    drawMark(pen, mark, { x: x + 7, y: y - 4.5 }, colour);
+    pen.fillStyle = palette.quiet;
+    pen.fillText(text, x + 20, y);
+    x += size + 14;
+  }
+  return y + ROW_PX;
+}
+
+function drawMark(pen: CanvasRenderingContext2D, mark: LegendEntry['mark'], { x, y }: { x: number; y: number }, colour: string): void {
+  pen.fillStyle = colour;
+  pen.strokeStyle = colour;
+  pen.lineWidth = 2;
+  pen.beginPath();
+  if (mark === 'link') pen.rect(x - 7, y - 1.5, 14, 3);
+  else if (mark === 'fixed-point') pen.rect(x - 4, y - 4, 8, 8);
+  else pen.arc(x, y, mark === 'handle' ? 6 : 4.5, 0, 2 * Math.PI);
+  if (mark === 'handle' || mark === 'fixed-point') pen.stroke();
+  else pen.fill();
+}
+
+function writeSpeeds(pen: CanvasRenderingContext2D, y: number, fastest: string, palette: Palette): void {
+  const colours = pen.createLinearGradient(ROOM_PX + 14, 0, ROOM_PX + 134, 0);
+  palette.speeds.forEach((colour, i) => colours.addColorStop(i / (palette.speeds.length - 1), colour));
+  pen.fillStyle = colours;
+  pen.fillRect(ROOM_PX + 14, y - 8, 120, 8);
+  pen.fillStyle = palette.quiet;
+  pen.fillText('0', ROOM_PX, y);
+  pen.fillText(fastest, ROOM_PX + 142, y);
+}
