@@ -16,6 +16,7 @@
 #include "cli/run/run_plan.h"
 #include "cli/run/stop_signals.h"
 #include "cli/take_file.h"
+#include "cli/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -44,11 +45,11 @@ int check_other_nodes(const config::Launch& launch, const std::vector<std::strin
 
 int run(const CheckOptions& options) {
   const SceneCheck check = check_scene(options);
-  if (options.json_file != "-") std::fputs(text_of(check).c_str(), stdout);
+  if (options.json_file != "-") print_text(stdout, text_of(check));
   if (!options.json_file.empty()) write_json(check);
   const std::string problems = check.problems.text();
   std::fflush(stdout);
-  if (!problems.empty()) std::fprintf(stderr, "%s\n", problems.c_str());
+  if (!problems.empty()) print_text(stderr, problems + "\n");
   const bool asks_others = check.launch && !options.plan_alone;
   const int others = asks_others ? check_other_nodes(*check.launch, options.overrides) : kSuccess;
   return check.problems.has_errors() ? kBadInput : others;

@@ -10,6 +10,7 @@
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/session_address.h"
+#include "cli/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -61,8 +62,7 @@ int ctl(const CtlWords& words) {
 
   int result = kSuccess;
   for (const msg::ControlReply& reply : replies) {
-    std::fprintf(reply.accepted() ? stdout : stderr, "%s: %s\n", reply.node().c_str(),
-                 reply.text().c_str());
+    print_text(reply.accepted() ? stdout : stderr, reply.node() + ": " + reply.text() + "\n");
     if (!reply.accepted()) result = kBadInput;
   }
   if (replies.size() < line.addressed_count(words.node)) {

@@ -16,6 +16,7 @@
 #include "cli/live_output.h"
 #include "cli/message_types.h"
 #include "cli/session_words.h"
+#include "cli/terminal_text.h"
 #include "cli/topic_listener.h"
 #include "node/stop.h"
 #include "record_node/idl/message_decoder.h"
@@ -59,7 +60,7 @@ class Printer {
       return false;
     }
     try {
-      std::fputs(text_of(*type->second, message).c_str(), stdout);
+      print_text(stdout, text_of(*type->second, message));
       return true;
     } catch (const record::DecodeError& error) {
       say_once(message.topic, error.what());
@@ -89,7 +90,7 @@ class Printer {
 
   void say_once(const dds::RawTopic& topic, const std::string& what) {
     if (said_.insert(topic.name).second)
-      std::fprintf(stderr, "cordis echo: %s: %s\n", topic.name.c_str(), what.c_str());
+      print_text(stderr, "cordis echo: " + topic.name + ": " + what + "\n");
   }
 
   std::string format_;

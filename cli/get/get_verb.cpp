@@ -10,6 +10,7 @@
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/session_words.h"
+#include "cli/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -31,7 +32,7 @@ int get(const GetWords& words) {
                              words.timeout);
   int result = kSuccess;
   for (const msg::ControlReply& reply : replies) {
-    std::fprintf(reply.accepted() ? stdout : stderr, "%s\n", reply.text().c_str());
+    print_text(reply.accepted() ? stdout : stderr, reply.text() + "\n");
     if (!reply.accepted()) result = kBadInput;
   }
   return result;

@@ -15,6 +15,7 @@
 
 #include "cli/exit_code.h"
 #include "cli/session_launch.h"
+#include "cli/terminal_text.h"
 #include "node/config/launch.h"
 #include "node/runtime_folder.h"
 #include "node/session_registry.h"
@@ -95,10 +96,9 @@ int list(const ListWords& words) {
              stdout);
   for (const node::SessionRecord& session : sessions) {
     const Row row = row_of(session);
-    std::fputs(fmt::format("{:<{}}  {:>6}  {:<8}  {:<7}  {}\n", session.session, width,
-                           session.domain, clock_of(session), age_text(row.age), row.nodes)
-                   .c_str(),
-               stdout);
+    print_text(stdout,
+               fmt::format("{:<{}}  {:>6}  {:<8}  {:<7}  {}\n", session.session, width,
+                           session.domain, clock_of(session), age_text(row.age), row.nodes));
   }
   return kSuccess;
 }

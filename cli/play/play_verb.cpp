@@ -18,6 +18,7 @@
 #include "cli/exit_code.h"
 #include "cli/play/play_keys.h"
 #include "cli/progress_line.h"
+#include "cli/terminal_text.h"
 #include "node/config/launch.h"
 #include "node/log.h"
 #include "node/runtime_folder.h"
@@ -113,7 +114,7 @@ void execute(PlayKey key, record::TakePlayer& player) {
 int play_into(const node::SessionRegistration& registration, record::TakePlayerConfig config) {
   config.domain = registration.domain();
   record::TakePlayer player(config);
-  if (!player.damage().empty()) std::fprintf(stderr, "cordis play: %s\n", player.damage().c_str());
+  if (!player.damage().empty()) print_text(stderr, "cordis play: " + player.damage() + "\n");
   std::fprintf(stderr, "session '%s' in DDS domain %d; Ctrl-C ends it\n", config.session.c_str(),
                config.domain);
   PlayKeys keys;
@@ -150,7 +151,7 @@ int play(const PlayWords& words) {
   try {
     config.session = words.session.empty() ? session_of(config.take) : words.session;
   } catch (const mcap::FileError& error) {
-    std::fprintf(stderr, "cordis play: %s\n", error.what());
+    print_text(stderr, std::string("cordis play: ") + error.what() + "\n");
     return kBadInput;
   }
   node::install_log("play");

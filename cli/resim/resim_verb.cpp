@@ -9,6 +9,7 @@
 #include "cli/number.h"
 #include "cli/resim/rehash.h"
 #include "cli/resim/resim.h"
+#include "cli/terminal_text.h"
 #include "record_node/mcap/file_error.h"
 
 namespace cordis::cli {
@@ -66,7 +67,7 @@ int run(ResimWords& words) {
   words.options.keeps_computed = words.rehashes;
   try {
     const ResimResult result = resimulate(words.options);
-    std::fputs(text_of(result, words.options).c_str(), stdout);
+    print_text(stdout, text_of(result, words.options));
     if (words.rehashes) return renew(words, result);
     if (words.expects && result.by == FrameCheck::By::kPosition) {
       std::printf("where the change is wanted: cordis resim %s --rehash\n",
@@ -74,9 +75,9 @@ int run(ResimWords& words) {
     }
     return exit_code_of(result, words.expects);
   } catch (const mcap::FileError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
+    print_text(stderr, std::string(error.what()) + "\n");
   } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "%s\n", error.what());
+    print_text(stderr, std::string(error.what()) + "\n");
   }
   return kBadInput;
 }

@@ -12,6 +12,7 @@
 #include "cli/programs.h"
 #include "cli/run/node_check.h"
 #include "cli/run/session.h"
+#include "cli/terminal_text.h"
 #include "node/random_token.h"
 #include "node/runtime_folder.h"
 #include "node/session_network.h"
@@ -25,7 +26,7 @@ config::Launch read_launch(const RunOptions& options) {
   config::Launch launch = config::load_launch(options.launch_file, options.overrides, problems);
   problems.throw_if_any();
   for (const config::Problem& warning : problems.all()) {
-    std::fprintf(stderr, "%s\n", warning.text().c_str());
+    print_text(stderr, warning.text() + "\n");
   }
   return launch;
 }
