@@ -61,14 +61,14 @@ void ChunkBuilder::clear() noexcept {
 void append_message_indexes(Bytes& out, std::uint64_t position,
                             const std::map<std::uint16_t, MessageIndex>& entries,
                             ChunkIndex& index) {
-  const std::size_t begin = out.size();
-  index.message_index_offsets.clear();
   for (const auto& [channel, messages] : entries) {
     if (messages.entries.empty()) continue;
-    index.message_index_offsets[channel] = position + out.size();
+    const std::size_t begin = out.size();
+    const bool is_new =
+        index.message_index_offsets.insert_or_assign(channel, position + begin).second;
     append(out, messages);
+    if (is_new) index.message_index_length += out.size() - begin;
   }
-  index.message_index_length = out.size() - begin;
 }
 
 }  // namespace cordis::mcap

@@ -87,6 +87,7 @@ class Scanner {
   Next visit(const Record& record);
   Next visit_chunk(const Record& record);
   Next visit_message_index(const Record& record);
+  void add_message_index(ChunkIndex& chunk, std::uint16_t channel, std::uint64_t size) const;
   bool is_moved_index(const MessageIndex& index, std::uint64_t size);
   Next visit_attachment(const Record& record);
   Next visit_message(const Record& record);
@@ -239,13 +240,19 @@ Scanner::Next Scanner::visit_message_index(const Record& record) {
   if (index->entries.empty()) return Next::kGoOn;
   const auto own = entries_.find(index->channel_id);
   if (is_in_chunk_ && own != entries_.end() && is_same(own->second, *index)) {
-    ChunkIndex& chunk = scan_.summary.chunks.back();
-    chunk.message_index_offsets[index->channel_id] = position_;
-    chunk.message_index_length = position_ + record.size() - (chunk.offset + chunk.length);
+    add_message_index(scan_.summary.chunks.back(), index->channel_id, record.size());
   } else if (!is_moved_index(*index, record.size())) {
     damage(record.size(), "message index: it does not fit its chunk", /*is_loss=*/false);
   }
   return Next::kGoOn;
+}
+
+/// The newest index of a channel counts. One that is written twice counts once in the length: that
+/// says how many messages the chunk has.
+void Scanner::add_message_index(ChunkIndex& chunk, std::uint16_t channel,
+                                std::uint64_t size) const {
+  const bool is_new = chunk.message_index_offsets.insert_or_assign(channel, position_).second;
+  if (is_new) chunk.message_index_length += size;
 }
 
 /// True if the index is that of an earlier chunk: `recover` writes it after the last one.
@@ -253,9 +260,7 @@ bool Scanner::is_moved_index(const MessageIndex& index, std::uint64_t size) {
   for (MissingIndex& missing : scan_.missing) {
     const auto entry = missing.entries.find(index.channel_id);
     if (entry == missing.entries.end() || !is_same(entry->second, index)) continue;
-    ChunkIndex& chunk = scan_.summary.chunks[missing.chunk];
-    chunk.message_index_offsets[index.channel_id] = position_;
-    chunk.message_index_length += size;
+    add_message_index(scan_.summary.chunks[missing.chunk], index.channel_id, size);
     missing.entries.erase(entry);
     return true;
   }
@@ -266,14 +271,10 @@ bool Scanner::is_moved_index(const MessageIndex& index, std::uint64_t size) {
 void Scanner::end_chunk() {
   if (!std::exchange(is_in_chunk_, false)) return;
   ChunkIndex& chunk = scan_.summary.chunks.back();
-  std::size_t indexed = 0;
-  std::size_t wanted = 0;
-  for (const auto& [channel, index] : entries_) {
-    wanted += index.entries.empty() ? 0 : 1;
-    indexed += !index.entries.empty() && chunk.message_index_offsets.contains(channel) ? 1 : 0;
-  }
-  if (indexed == wanted) return;
-  std::erase_if(entries_, [](const auto& entry) { return entry.second.entries.empty(); });
+  std::erase_if(entries_, [&chunk](const auto& entry) {
+    return entry.second.entries.empty() || chunk.message_index_offsets.contains(entry.first);
+  });
+  if (entries_.empty()) return;
   scan_.missing.push_back({scan_.summary.chunks.size() - 1, std::exchange(entries_, {})});
 }
 

@@ -1,6 +1,7 @@
 // tests/mcap/recover_test.cpp -- files that were cut, or of which a bit has flipped.
 #include "record_node/mcap/recover.h"
 
+#include <algorithm>
 #include <random>
 #include <set>
 
@@ -135,6 +136,62 @@ TEST(Recover, KeepsEveryChunkThatAFlippedBitLeavesWhole) {
     }
   }
   EXPECT_GT(losses, 50u);  // most bits lie in chunks
+}
+
+/// A take without a summary, whose first chunk has the index of one of its channels alone, `times`
+/// times behind the last chunk.
+std::vector<char> with_one_moved_index(const Original& original, int times) {
+  const ChunkIndex& first = original.chunks.front();
+  const ChunkIndex& last = original.chunks.back();
+  const auto part = [&original](std::uint64_t begin, std::uint64_t end) {
+    return std::vector<char>(original.bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+                             original.bytes.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  const std::uint64_t first_end = first.offset + first.length;
+  const std::uint64_t last_end = last.offset + last.length + last.message_index_length;
+  std::vector<char> bytes = part(0, first_end);
+  const std::vector<char> others = part(first_end + first.message_index_length, last_end);
+  bytes.insert(bytes.end(), others.begin(), others.end());
+  std::vector<std::uint64_t> places;
+  for (const auto& [channel, place] : first.message_index_offsets) places.push_back(place);
+  std::sort(places.begin(), places.end());
+  const std::vector<char> moved = part(places.at(0), places.at(1));
+  for (int i = 0; i < times; ++i) bytes.insert(bytes.end(), moved.begin(), moved.end());
+  return bytes;
+}
+
+TEST(Recover, MakesATakeWholeOfWhichOneIndexWasMovedBefore) {
+  const TakeFolder folder;
+  const auto path = folder / "moved.mcap";
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    for (const int times : {1, 2, 3}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(times) + " times");
+      const Original original(folder, seed);
+      ASSERT_GT(original.chunks.front().message_index_offsets.size(), 1u);
+      write_file(path, with_one_moved_index(original, times));
+
+      recover(path);
+
+      const Reader after(path);
+      EXPECT_TRUE(after.is_whole()) << after.damage();
+      EXPECT_EQ(messages_of(after), original.take.messages);
+      EXPECT_TRUE(check_take(path).faults.empty());
+      EXPECT_TRUE(recover(path).was_whole);
+    }
+  }
+}
+
+TEST(Recover, MakesATakeWholeWhoseIndexIsWrittenTwice) {
+  const TakeFolder folder;
+  const auto path = folder / "twice.mcap";
+  std::filesystem::copy_file(CORDIS_MCAP_CORPUS "/index_written_twice", path);
+
+  recover(path);
+
+  EXPECT_EQ(Reader(path).damage(), "");
+  const TakeCheck check = check_take(path);
+  EXPECT_TRUE(check.faults.empty()) << check.faults.front().text;
+  EXPECT_TRUE(recover(path).was_whole);
 }
 
 TEST(Recover, GivesATakeItsNameAndLeavesAWholeOneAlone) {
