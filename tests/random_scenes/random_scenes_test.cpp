@@ -398,12 +398,7 @@ engine::StateMachine stiffest_alone(const engine::StateMachine& all, double rest
     const double touching = 1e-6 * std::abs(own.stiffness) * std::abs(distance);
     const bool acts = own.acts && (state.pulls || own.tension < -touching) &&
                       (state.pushes || own.tension > touching);
-    const double elongation = distance - rest_length;
-    const double force = state.stiffness * elongation +
-                         engine::elastic_tension(state.elasticity, {distance, elongation});
-    const bool is_at_limit = std::abs(force) >= state.force_limit && (state.pulls || force < 0.0) &&
-                             (state.pushes || force > 0.0);
-    if (s != all.start || (!acts && !is_at_limit)) {
+    if (s != all.start || !acts) {
       state.elasticity = state.dissipation = {};
       state.pulls = state.pushes = true;
       state.force_limit = std::numeric_limits<double>::infinity();
