@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
@@ -195,12 +196,21 @@ class Session : public Watcher {
                        [&](const PlannedNode& planned) { return planned.name == node; });
   }
 
+  /// What lets a page beyond loopback command, for a viz_node that this launcher has started; it is no
+  /// part of the status, which others read.
+  std::string token_for(const std::string& node, const std::string& page) const {
+    const bool is_loopback = page.starts_with("http://127.") || page.starts_with("http://[::1]");
+    const char* token = std::getenv("CORDIS_PAGE_TOKEN");
+    if (is_loopback || token == nullptr || !is_planned(node)) return {};
+    return std::string("/?token=") + token;
+  }
+
   void show_page(const msg::NodeStatus& status) {
     std::string& shown = pages_[status.node()];
     const std::string page = status.text().substr(0, status.text().find(';'));
     if (!page.starts_with("http://") || page == shown) return;
     shown = page;
-    output_.say("page of " + status.node() + ": " + shown);
+    output_.say("page of " + status.node() + ": " + shown + token_for(status.node(), page));
   }
 
   /// True if nothing more is to be waited for: a device that the scene does not play stays unused,

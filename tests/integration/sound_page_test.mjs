@@ -2,7 +2,7 @@
 // launch_configs/sounding_string.yaml in real Chromium, with real sim_node, device_node and viz_node.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
-import { drawn, openPage, replied, textOf, viz } from '../viz/browser.mjs';
+import { drawn, openPage, ownName, replied, textOf, viz } from '../viz/browser.mjs';
 import { need, out, pause, program, runCases, Session, source, until } from '../viz/session.mjs';
 
 const WebSocket = need('ws');
@@ -23,7 +23,7 @@ class Listener {
   #leastS = Number.POSITIVE_INFINITY;
 
   constructor(url) {
-    this.socket = new WebSocket(`${url.replace('http', 'ws')}/live`);
+    this.socket = new WebSocket(url.replace('http', 'ws').replace('/?', '/live?'));
     this.opened = new Promise((resolve) => this.socket.on('open', resolve));
     this.socket.on('message', (data, isBinary) => {
       if (isBinary && data[5] === 4) this.#take(data);
@@ -154,7 +154,7 @@ const cases = {
 
   'a page from elsewhere without https says why it is silent': async ({ browser, url }) => {
     const other = await browser.newPage();
-    await other.goto(url.replace('127.0.0.1', 'lab.test'));
+    await other.goto(url.replace('127.0.0.1', ownName));
     await other.waitForSelector('#sound:not([hidden])');
     assert.equal(await other.evaluate(() => window.isSecureContext), false);
     await other.click('#sound-on');
@@ -172,7 +172,7 @@ async function open() {
   const session = await Session.open();
   const words = ['run', join(source, 'launch_configs/sounding_string.yaml'), '--no-color', `domain=${session.domain}`];
   session.launcher = session.start('cordis', program('cordis'), [...words, 'view.port=0', 'view.address=0.0.0.0']);
-  session.url = `http://127.0.0.1:${await session.launcher.says(/http:\/\/[^:\s]+:(\d+)/)}`;
+  session.url = `http://127.0.0.1:${await session.launcher.says(/page of view: http:\/\/[^:\s]+:(\d+\/\?token=\S+)/)}`;
   await openPage(session, session.url);
   return session;
 }

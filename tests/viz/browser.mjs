@@ -1,11 +1,13 @@
 // tests/viz/browser.mjs -- the real page in headless Chromium, and what it shows. Skipped with a
 // reason where the browser or its driver is absent.
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { hostname, tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { LONGEST_MS, need, pageIsBuilt, skip, until } from './session.mjs';
 
 const CHROMIUM = '/usr/bin/chromium';
+/** A name of this machine that is not loopback to a browser. */
+export const ownName = `${hostname().split('.')[0]}.local`;
 const FLAGS = [
   '--headless',
   '--no-sandbox',
@@ -15,7 +17,7 @@ const FLAGS = [
   '--disable-background-networking',
   '--disable-component-update',
   '--disable-sync',
-  '--host-resolver-rules=MAP lab.test 127.0.0.1', // a name that is not this machine's
+  `--host-resolver-rules=MAP ${ownName} 127.0.0.1`,
 ];
 
 const { chromium } = need('playwright-core');
