@@ -3,7 +3,7 @@
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { hostname, tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { LONGEST_MS, need, pageIsBuilt, skip, until } from './session.mjs';
+import { LONGEST_MS, need, pageIsBuilt, Session, skip, until } from './session.mjs';
 
 const CHROMIUM = '/usr/bin/chromium';
 /** A name of this machine that is not loopback to a browser. */
@@ -75,4 +75,14 @@ export async function openPage(session, url) {
   session.page.on('pageerror', (error) => session.pageErrors.push(String(error)));
   await session.page.goto(url);
   await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0));
+}
+
+/** A session of `scene_source` with these words, its viz_node and the page. */
+export async function openScenePage(...words) {
+  const session = await Session.open();
+  session.source = session.scene(...words);
+  session.view = session.viz();
+  session.url = await session.view.says(/page at (\S+)/);
+  await openPage(session, session.url);
+  return session;
 }

@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { banner, drawn, look, openPage, textOf, viz } from './browser.mjs';
-import { out, runCases, Session, source, until } from './session.mjs';
+import { banner, drawn, look, openScenePage, textOf, viz } from './browser.mjs';
+import { out, runCases, source, until } from './session.mjs';
 
 const [FIRST_BODY, SECOND_BODY, HOOKED] = [20, 45, 23]; // two MATs, and a link that changes its state
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
@@ -217,13 +217,4 @@ const cases = {
   },
 };
 
-async function open() {
-  const session = await Session.open();
-  session.source = session.scene('--states', '--bodies', '2');
-  session.view = session.viz();
-  session.url = await session.view.says(/page at (\S+)/);
-  await openPage(session, session.url);
-  return session;
-}
-
-await runCases(cases, open);
+await runCases(cases, () => openScenePage('--states', '--bodies', '2'));

@@ -3,8 +3,8 @@
 // Each ends in a live view, or in a clear sentence on the page.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
-import { banner, drawn, isDark, look, openPage, textOf, viz } from './browser.mjs';
-import { pause, runCases, Session, until } from './session.mjs';
+import { banner, drawn, isDark, look, openScenePage, textOf, viz } from './browser.mjs';
+import { pause, runCases, until } from './session.mjs';
 
 const MIDDLE = 29; // MAT of the string of scene_source.cpp
 
@@ -149,13 +149,4 @@ const cases = {
   },
 };
 
-async function open() {
-  const session = await Session.open();
-  session.source = session.scene();
-  session.view = session.viz();
-  session.url = await session.view.says(/page at (\S+)/);
-  await openPage(session, session.url);
-  return session;
-}
-
-await runCases(cases, open);
+await runCases(cases, () => openScenePage());

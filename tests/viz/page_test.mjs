@@ -3,8 +3,8 @@
 // machine.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
-import { banner, drawn, isDark, look, openPage, textOf, viz } from './browser.mjs';
-import { out, runCases, Session, until } from './session.mjs';
+import { banner, drawn, isDark, look, openScenePage, textOf, viz } from './browser.mjs';
+import { out, runCases, until } from './session.mjs';
 
 const [MIDDLE, PORT, TOOL, IDLE] = [29, 12, 15, 32]; // MATs of the string of scene_source.cpp
 
@@ -271,14 +271,4 @@ const cases = {
   },
 };
 
-async function open() {
-  const session = await Session.open();
-  session.source = session.scene('--states');
-  session.view = session.viz();
-  session.url = await session.view.says(/page at (\S+)/);
-
-  await openPage(session, session.url);
-  return session;
-}
-
-await runCases(cases, open);
+await runCases(cases, () => openScenePage('--states'));

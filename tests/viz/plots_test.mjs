@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { drawn, openPage, textOf, viz } from './browser.mjs';
-import { out, runCases, Session, source, until } from './session.mjs';
+import { drawn, openScenePage, textOf, viz } from './browser.mjs';
+import { out, runCases, source, until } from './session.mjs';
 
 const palette = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8')).dark;
 const [POSITION, FORCE, ENERGY] = [1, 2, 3]; // the plots, from above
@@ -271,11 +271,7 @@ const cases = {
 };
 
 async function open() {
-  const session = await Session.open();
-  session.source = session.scene();
-  session.view = session.viz();
-  session.url = await session.view.says(/page at (\S+)/);
-  await openPage(session, session.url);
+  const session = await openScenePage();
   await session.page.addInitScript(recordTexts);
   await session.page.reload();
   await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0));
