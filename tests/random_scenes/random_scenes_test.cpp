@@ -275,7 +275,8 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
                   stored_at_start(network));
   // All but `cordis` take the kinetic energy as the mean of both half steps. A fall adds a quarter of
   // that of one step to it.
-  const double kinetic_offset = 0.25 * fall_of_one_step(network);
+  const bool is_cordis = network.integrator == engine::IntegratorKind::kCordis;
+  const double kinetic_offset = is_cordis ? 0.0 : 0.25 * fall_of_one_step(network);
   JumpWatch jumps(network);
   double rounding = 0.0;
   Outcome run;
@@ -291,16 +292,15 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
       return run;
     }
     run.steps = n;
-    if (network.integrator == engine::IntegratorKind::kCordis) rounding += rounding_of(world);
+    if (is_cordis) rounding += rounding_of(world);
     jumps.look(world);
     if (is_within && n % 100 > 0 && n > 100) continue;
     const Energy energy = world.energy();
     if (plan::is_beyond(reach, world, energy)) return run;
     brought.look(energy);
     constexpr double kOpen = 1e-9;
-    if (network.integrator == engine::IntegratorKind::kCordis &&
-        std::abs(energy.residual()) >
-            kOpen * std::max(energy.largest, brought.energy()) + rounding) {
+    if (is_cordis && std::abs(energy.residual()) >
+                         kOpen * std::max(energy.largest, brought.energy()) + rounding) {
       run.growth = "the account is open by " + std::to_string(energy.residual() / energy.largest) +
                    " at step " + std::to_string(n);
       return run;
