@@ -13,6 +13,15 @@ if (!out) {
   process.exit(2);
 }
 
+/** three.js in single modules: only what the page imports is bundled. It draws by gl_canvas.ts, so no renderer of three.js is. */
+const threeInModules = {
+  name: 'three-in-modules',
+  setup({ onResolve }) {
+    const core = join(sources, '../node_modules/three/src/Three.Core.js');
+    onResolve({ filter: /^three$/ }, () => ({ path: core, sideEffects: false }));
+  },
+};
+
 await mkdir(out, { recursive: true });
 await build({
   entryPoints: [
@@ -25,6 +34,7 @@ await build({
   minify: true,
   format: 'esm',
   target: 'es2022',
+  plugins: [threeInModules],
   legalComments: 'inline',
   logLevel: 'warning',
 });

@@ -1,6 +1,6 @@
 // viz_node/web/page/camera_rig.ts -- the camera: orbit, pan and zoom by mouse, presets and fit by
 // key; orthographic for flat scenes.
-import * as THREE from 'three';
+import { Box3, MathUtils, MOUSE, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 export type Preset = 'front' | 'side' | 'top' | 'free';
@@ -8,17 +8,17 @@ export type Preset = 'front' | 'side' | 'top' | 'free';
 /** Where the camera stands and how: enough to stand there again. */
 export interface Pose {
   orthographic: boolean;
-  target: THREE.Vector3;
-  offset: THREE.Vector3; // of the camera from the target
+  target: Vector3;
+  offset: Vector3; // of the camera from the target
   metresPerPixel: number;
   moved: boolean; // by a person
 }
 
-const DIRECTIONS: Record<Preset, THREE.Vector3> = {
-  front: new THREE.Vector3(0, 0, 1),
-  side: new THREE.Vector3(1, 0, 0),
-  top: new THREE.Vector3(0, 1, 1e-4), // not quite along the up axis, which would leave the view undetermined
-  free: new THREE.Vector3(0.75, 0.6, 1).normalize(),
+const DIRECTIONS: Record<Preset, Vector3> = {
+  front: new Vector3(0, 0, 1),
+  side: new Vector3(1, 0, 0),
+  top: new Vector3(0, 1, 1e-4), // not quite along the up axis, which would leave the view undetermined
+  free: new Vector3(0.75, 0.6, 1).normalize(),
 };
 
 const FIELD_OF_VIEW = 40; // [degrees], vertical
@@ -28,12 +28,12 @@ const FARTHEST = 4; // times the size of a scene at first, up to which it is fol
 export class CameraRig {
   orthographic: boolean;
   private readonly first: Preset;
-  private readonly perspectiveCamera = new THREE.PerspectiveCamera(FIELD_OF_VIEW);
-  private readonly flatCamera = new THREE.OrthographicCamera();
+  private readonly perspectiveCamera = new PerspectiveCamera(FIELD_OF_VIEW);
+  private readonly flatCamera = new OrthographicCamera();
   private readonly controls: OrbitControls;
   private width = 1;
   private height = 1;
-  private home = new THREE.Box3();
+  private home = new Box3();
   private firstSize = 0; // of the scene [m]
   private moved = false; // by a person: then it stays where it is
 
@@ -50,17 +50,17 @@ export class CameraRig {
     this.controls.zoomToCursor = true;
     if (space < 3) {
       // A flat scene is moved rather than turned.
-      this.controls.mouseButtons = { LEFT: THREE.MOUSE.PAN, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.ROTATE };
+      this.controls.mouseButtons = { LEFT: MOUSE.PAN, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.ROTATE };
     }
     this.controls.addEventListener('change', changed);
     this.controls.addEventListener('start', () => (this.moved = true));
   }
 
-  get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
+  get camera(): PerspectiveCamera | OrthographicCamera {
     return this.orthographic ? this.flatCamera : this.perspectiveCamera;
   }
 
-  get target(): THREE.Vector3 {
+  get target(): Vector3 {
     return this.controls.target;
   }
 
@@ -75,18 +75,18 @@ export class CameraRig {
   get metresPerPixel(): number {
     if (this.orthographic) return (this.flatCamera.top - this.flatCamera.bottom) / this.flatCamera.zoom / this.height;
     const distance = this.camera.position.distanceTo(this.target);
-    return (2 * distance * Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2))) / this.height;
+    return (2 * distance * Math.tan(MathUtils.degToRad(FIELD_OF_VIEW / 2))) / this.height;
   }
 
   /** @param preset  where it looks from at first; null: from where scenes of this space are seen best */
-  start(box: THREE.Box3, preset: Preset | null = null): void {
-    this.firstSize = box.getSize(new THREE.Vector3()).length();
+  start(box: Box3, preset: Preset | null = null): void {
+    this.firstSize = box.getSize(new Vector3()).length();
     this.look(preset ?? this.first, box);
   }
 
   /** The left button turns the view, the right one moves it. */
   turnByLeftButton(): void {
-    this.controls.mouseButtons = { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
+    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
   }
 
   /** Looks at a place from the same side and distance. */
@@ -98,10 +98,10 @@ export class CameraRig {
   }
 
   /** Steps back when the scene has outgrown the view. */
-  follow(box: THREE.Box3): void {
+  follow(box: Box3): void {
     if (this.moved || this.sees(box)) return;
     const grown = box.clone().union(this.home);
-    if (grown.getSize(new THREE.Vector3()).length() <= FARTHEST * this.firstSize) this.fit(grown);
+    if (grown.getSize(new Vector3()).length() <= FARTHEST * this.firstSize) this.fit(grown);
   }
 
   get pose(): Pose {
@@ -110,7 +110,7 @@ export class CameraRig {
   }
 
   /** Stands where `pose` says, before a scene of this size. */
-  resume(pose: Pose, box: THREE.Box3): void {
+  resume(pose: Pose, box: Box3): void {
     this.start(box);
     this.orthographic = pose.orthographic;
     this.moved = pose.moved;
@@ -121,12 +121,12 @@ export class CameraRig {
     this.changed();
   }
 
-  fit(box: THREE.Box3): void {
+  fit(box: Box3): void {
     const direction = this.camera.position.clone().sub(this.target).normalize();
     this.place(direction, box);
   }
 
-  look(preset: Preset, box: THREE.Box3 = this.home): void {
+  look(preset: Preset, box: Box3 = this.home): void {
     this.place(DIRECTIONS[preset], box);
   }
 
@@ -139,7 +139,7 @@ export class CameraRig {
       this.camera.position.copy(this.target).add(direction);
       this.setFlatScale(scale);
     } else {
-      const distance = (scale * this.height) / (2 * Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2)));
+      const distance = (scale * this.height) / (2 * Math.tan(MathUtils.degToRad(FIELD_OF_VIEW / 2)));
       this.camera.position.copy(this.target).addScaledVector(direction.normalize(), distance);
     }
     this.setDepth();
@@ -164,20 +164,20 @@ export class CameraRig {
   }
 
   /** Looks at the middle of `box` from `direction`, from so far that all of it is seen. */
-  private place(direction: THREE.Vector3, box: THREE.Box3): void {
-    const centre = box.getCenter(new THREE.Vector3());
-    const corners = box.getSize(new THREE.Vector3()).multiplyScalar(0.5);
+  private place(direction: Vector3, box: Box3): void {
+    const centre = box.getCenter(new Vector3());
+    const corners = box.getSize(new Vector3()).multiplyScalar(0.5);
     const extent = Math.max(corners.length(), 1e-9);
-    const right = new THREE.Vector3().crossVectors(new THREE.Vector3(0, 1, 0), direction).normalize();
-    const up = new THREE.Vector3().crossVectors(direction, right).normalize();
-    const reach = (axis: THREE.Vector3) =>
+    const right = new Vector3().crossVectors(new Vector3(0, 1, 0), direction).normalize();
+    const up = new Vector3().crossVectors(direction, right).normalize();
+    const reach = (axis: Vector3) =>
       Math.abs(axis.x) * corners.x + Math.abs(axis.y) * corners.y + Math.abs(axis.z) * corners.z;
     const scale = Math.max(
       (2 * ROOM * reach(right)) / this.width,
       (2 * ROOM * reach(up)) / this.height,
       (0.02 * extent) / this.width,
     );
-    const half = Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2));
+    const half = Math.tan(MathUtils.degToRad(FIELD_OF_VIEW / 2));
     const distance = (scale * this.height) / (2 * half) + reach(direction);
     this.target.copy(centre);
     for (const camera of [this.flatCamera, this.perspectiveCamera]) {
@@ -191,11 +191,11 @@ export class CameraRig {
     this.changed();
   }
 
-  private sees(box: THREE.Box3): boolean {
+  private sees(box: Box3): boolean {
     this.camera.updateMatrixWorld();
     const ends = [box.min, box.max];
     for (let corner = 0; corner < 8; ++corner) {
-      const point = new THREE.Vector3(ends[corner & 1]!.x, ends[(corner >> 1) & 1]!.y, ends[corner >> 2]!.z).project(this.camera);
+      const point = new Vector3(ends[corner & 1]!.x, ends[(corner >> 1) & 1]!.y, ends[corner >> 2]!.z).project(this.camera);
       if (Math.abs(point.x) > 1 || Math.abs(point.y) > 1) return false;
     }
     return true;
@@ -213,7 +213,7 @@ export class CameraRig {
 
   /** Near and far planes for a scene of this size, wherever the camera goes. */
   private setDepth(): void {
-    const extent = Math.max(this.home.getSize(new THREE.Vector3()).length(), 1e-6);
+    const extent = Math.max(this.home.getSize(new Vector3()).length(), 1e-6);
     this.perspectiveCamera.near = extent / 200;
     this.perspectiveCamera.far = extent * 50;
     this.flatCamera.near = -50 * extent;

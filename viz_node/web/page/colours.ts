@@ -34,5 +34,8 @@ export function bytesOf(hex: string): [number, number, number] {
   return [value >> 16, (value >> 8) & 255, value & 255];
 }
 
+/** Red, green and blue of "#rrggbb", 0..1. */
+export const sharesOf = (hex: string): number[] => bytesOf(hex).map((byte) => byte / 255);
+
 /** The colour of something that has this number in a list, round and round. */
 export const ofList = (list: string[], index: number): string => list[index % list.length]!;

@@ -1,10 +1,8 @@
 // viz_node/web/page/ground.ts -- a grid of round lengths under or behind the scene: a viewer
 // has something to hold on to.
-import * as THREE from 'three';
-import { bytesOf, type Palette } from './colours.ts';
-
-/** Red, green and blue of "#rrggbb", 0..1. */
-const sharesOf = (hex: string): number[] => bytesOf(hex).map((byte) => byte / 255);
+import { type Box3, Vector3 } from 'three';
+import { sharesOf, type Palette } from './colours.ts';
+import { shapeOf, VertexArray, type Program } from './gl_canvas.ts';
 
 const CELLS = 24; // across the larger side of the scene, about
 
@@ -15,14 +13,37 @@ export function roundLength(length: number): number {
   return decade * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
 }
 
+/** Lines that have their colours with their ends. */
+export const COLOURED_LINES: Program = {
+  vertex: /* glsl */ `
+    precision highp float;
+    in vec3 position;
+    in vec3 tint;
+    uniform mat4 modelViewMatrix;
+    uniform mat4 projectionMatrix;
+    out vec3 colour;
+    void main() {
+      gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      colour = tint;
+    }
+  `,
+  fragment: /* glsl */ `
+    precision mediump float;
+    in vec3 colour;
+    out vec4 pixel;
+    void main() { pixel = vec4(colour, 1.0); }
+  `,
+};
+
 export class Ground {
-  readonly group = new THREE.Group();
+  private readonly points = new VertexArray(new Float32Array(0), 3);
+  private readonly colours = new VertexArray(new Float32Array(0), 3);
+  readonly shape = shapeOf('lines', COLOURED_LINES, { position: this.points, tint: this.colours }, { writesDepth: false });
 
   /** Lays the grid again: upright through the scene when it is flat, on the floor when it is not. */
-  lay(box: THREE.Box3, space: number, palette: Palette): void {
-    this.dispose();
-    const size = box.getSize(new THREE.Vector3());
-    const centre = box.getCenter(new THREE.Vector3());
+  lay(box: Box3, space: number, palette: Palette): void {
+    const size = box.getSize(new Vector3());
+    const centre = box.getCenter(new Vector3());
     const flat = space < 3;
     const across = Math.max(size.x, flat ? size.y : size.z, 1e-6);
     const cell = roundLength((2 * across) / CELLS);
@@ -51,18 +72,8 @@ export class Ground {
         if (colourOf(v) === wanted) line(point(middle[0] - half, v), point(middle[0] + half, v), wanted);
       }
     }
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
-    geometry.setAttribute('color', new THREE.Float32BufferAttribute(colours, 3));
-    this.group.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true, depthWrite: false })));
-  }
-
-  dispose(): void {
-    for (const child of [...this.group.children]) {
-      const lines = child as THREE.LineSegments;
-      lines.geometry.dispose();
-      (lines.material as THREE.Material).dispose();
-      this.group.remove(lines);
-    }
+    this.points.set(new Float32Array(points));
+    this.colours.set(new Float32Array(colours));
+    this.shape.parts = [{ first: 0, count: points.length / 3, uniforms: {} }];
   }
 }

@@ -1,7 +1,7 @@
 // viz_node/web/page/mat_material.ts -- the matter: one vertex per MAT, drawn as a sphere by
 // intersecting it with the ray of each pixel.
-import * as THREE from 'three';
-import { paletteOf, type Palette } from './colours.ts';
+import { paletteOf, sharesOf, type Palette } from './colours.ts';
+import type { Program, Uniforms } from './gl_canvas.ts';
 import { MAT_FIXED } from './wire.ts';
 
 const SHOWN_FIXED_POINT = 3;
@@ -146,25 +146,19 @@ const LINK_FRAGMENT = /* glsl */ `
 /** How many colours of links there are, in either theme. */
 const LINK_COLOURS = paletteOf('dark').link_states.length;
 
-/** Which of the materials of linkMaterials() a link in this state is drawn with. */
-export const materialOfState = (state: number): number => state % LINK_COLOURS;
+/** Which of linkUniforms() a link in this state is drawn with. */
+export const colourOfState = (state: number): number => state % LINK_COLOURS;
 
-/** Uniforms that both materials share. */
-export interface SceneUniforms {
-  [name: string]: THREE.IUniform;
-  pixels_per_unit: { value: number };
-  min_pixels: { value: THREE.Vector4 };
-  speed_scale: { value: number };
-  orthographic: { value: boolean };
+/** Uniforms that matter and links share. */
+export interface SceneUniforms extends Uniforms {
+  pixels_per_unit: number;
+  min_pixels: number[];
+  speed_scale: number;
+  orthographic: boolean;
 }
 
 export function sceneUniforms(): SceneUniforms {
-  return {
-    pixels_per_unit: { value: 1 },
-    min_pixels: { value: new THREE.Vector4(3, 3, 6, 5) },
-    speed_scale: { value: 0 },
-    orthographic: { value: false },
-  };
+  return { pixels_per_unit: 1, min_pixels: [3, 3, 6, 5], speed_scale: 0, orthographic: false };
 }
 
 /** Kinds as the shader distinguishes them: a fixed point without a radius is no ball. */
@@ -174,28 +168,13 @@ export function shownKinds(kinds: Uint8Array, radii: Float32Array, tools: number
   return shown;
 }
 
-export function matMaterial(uniforms: SceneUniforms, spheres: boolean): THREE.RawShaderMaterial {
+export function matProgram(spheres: boolean): Program {
   // In perspective the outline of a sphere is a little larger than its radius.
-  const defines: Record<string, string> = { MARGIN: spheres ? '1.08' : '1.0' };
-  if (spheres) defines.SPHERES = '1';
-  return new THREE.RawShaderMaterial({
-    glslVersion: THREE.GLSL3,
-    uniforms,
-    defines,
-    vertexShader: MAT_VERTEX,
-    fragmentShader: MAT_FRAGMENT,
-  });
+  const defines = `#define MARGIN ${spheres ? '1.08' : '1.0'}\n${spheres ? '#define SPHERES\n' : ''}`;
+  return { vertex: defines + MAT_VERTEX, fragment: defines + MAT_FRAGMENT };
 }
 
-/** One material per colour; they share every uniform but the colour. */
-export function linkMaterials(uniforms: SceneUniforms, palette: Palette): THREE.RawShaderMaterial[] {
-  return palette.link_states.map(
-    (colour) =>
-      new THREE.RawShaderMaterial({
-        glslVersion: THREE.GLSL3,
-        uniforms: { ...uniforms, link_colour: { value: new THREE.Color(colour) } },
-        vertexShader: LINK_VERTEX,
-        fragmentShader: LINK_FRAGMENT,
-      }),
-  );
-}
+export const LINK_PROGRAM: Program = { vertex: LINK_VERTEX, fragment: LINK_FRAGMENT };
+
+/** What the links of each state are drawn with. */
+export const linkUniforms = (palette: Palette): Uniforms[] => palette.link_states.map((colour) => ({ link_colour: sharesOf(colour) }));

@@ -1,17 +1,16 @@
 // viz_node/web/page/scene_view.ts -- the scene, drawn. Positions go from the message
 // straight into a GPU buffer that matter and links share.
-import * as THREE from 'three';
+import { Box3, Vector3 } from 'three';
 import type { Bodies } from './bodies.ts';
-import type { Palette } from './colours.ts';
+import { sharesOf, type Palette } from './colours.ts';
+import { GlCanvas, shapeOf, VertexArray, type Shape, type Uniforms } from './gl_canvas.ts';
 import { Ground } from './ground.ts';
-import { linkMaterials, matMaterial, materialOfState, sceneUniforms, shownKinds } from './mat_material.ts';
+import { colourOfState, LINK_PROGRAM, linkUniforms, matProgram, sceneUniforms, shownKinds } from './mat_material.ts';
 import type { Frame, Topology } from './protocol.ts';
 import { LINK_IS_IDLE } from './wire.ts';
 import type { Quality } from './quality.ts';
 import { CameraRig, type Pose } from './camera_rig.ts';
 
-THREE.ColorManagement.enabled = false; // colours are chosen as they are shown
-const CONTEXT_EVENTS = ['webglcontextlost', 'webglcontextrestored'];
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
 const SAMPLE = 4000;
 const MATS_A_FRAME = 1000; // of larger scenes not every frame is looked at, whether all of it is seen
@@ -25,15 +24,16 @@ export interface Near {
 
 export class SceneView {
   readonly rig: CameraRig;
-  private readonly renderer: THREE.WebGLRenderer;
-  private readonly scene = new THREE.Scene();
+  private readonly canvas: GlCanvas;
   private readonly ground = new Ground();
   private readonly uniforms = sceneUniforms();
-  private readonly geometry = new THREE.BufferGeometry();
-  private readonly linkGeometry = new THREE.BufferGeometry();
-  private links: THREE.LineSegments<THREE.BufferGeometry, THREE.RawShaderMaterial[]> | null = null;
-  private newest: THREE.BufferAttribute;
-  private before: THREE.BufferAttribute;
+  private readonly radii: VertexArray; // as they are drawn
+  private readonly tints: VertexArray<Uint8Array>;
+  private readonly matter: Shape;
+  private readonly links: Shape | null;
+  private readonly linkColours: Uniforms[];
+  private newest: VertexArray;
+  private before: VertexArray;
   private newestS = Number.NaN;
   private shownForS = Number.NaN; // simulated time between the last two frames
   private fastest = 0; // [m/s], falls slowly
@@ -53,91 +53,80 @@ export class SceneView {
     readonly quality: Quality,
     private readonly pose: Pose | null, // where the camera stood before, if it shall stay
     private readonly changed: () => void,
-    private readonly contextLost: (lost: boolean) => void, // the browser took the graphics away, or gave them back
+    contextLost: (lost: boolean) => void, // the browser took the graphics away, or gave them back
   ) {
-    this.renderer = new THREE.WebGLRenderer({ antialias: quality.antialias, powerPreference: 'high-performance' });
-    this.renderer.setPixelRatio(quality.pixelRatio);
-    this.renderer.setClearColor(palette.background);
-    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
-    container.prepend(this.renderer.domElement);
-    for (const event of CONTEXT_EVENTS) this.renderer.domElement.addEventListener(event, this.noteContext);
-    this.rig = new CameraRig(this.renderer.domElement, space, changed);
+    this.canvas = new GlCanvas(quality.antialias, quality.pixelRatio, (lost) => {
+      contextLost(lost);
+      changed();
+    });
+    this.canvas.clearTo(sharesOf(palette.background));
+    container.prepend(this.canvas.element);
+    this.rig = new CameraRig(this.canvas.element, space, changed);
 
     const coordinates = 3 * topology.matCount;
-    this.newest = new THREE.BufferAttribute(new Float32Array(coordinates), 3).setUsage(THREE.DynamicDrawUsage);
-    this.before = new THREE.BufferAttribute(new Float32Array(coordinates), 3).setUsage(THREE.DynamicDrawUsage);
-    this.buildMatter();
-    if (quality.links && topology.linkCount > 0) this.buildLinks();
-    this.scene.add(this.ground.group);
+    this.newest = new VertexArray(new Float32Array(coordinates), 3);
+    this.before = new VertexArray(new Float32Array(coordinates), 3);
+    this.radii = new VertexArray<Float32Array>(topology.radii.slice(), 1);
+    this.tints = new VertexArray(bodies.tints(palette), 3);
+    this.linkColours = linkUniforms(palette);
+    this.matter = this.matterShape();
+    this.links = quality.links && topology.linkCount > 0 ? this.linkShape() : null;
+    this.canvas.shapes.push(this.matter, ...(this.links === null ? [] : [this.links]), this.ground.shape);
     this.resize();
   }
 
-  private readonly noteContext = (event: Event): void => {
-    this.contextLost(event.type === 'webglcontextlost');
-    this.changed();
-  };
-
-  private buildMatter(): void {
-    this.geometry.setAttribute('radius', new THREE.BufferAttribute(this.topology.radii.slice(), 1));
-    const kinds = shownKinds(this.topology.kinds, this.topology.radii, this.tools);
-    this.geometry.setAttribute('kind', new THREE.BufferAttribute(kinds, 1));
-    this.geometry.setAttribute('tint', new THREE.BufferAttribute(this.bodies.tints(this.palette), 3, true));
+  private matterShape(): Shape {
     const few = this.topology.matCount <= 3000;
-    const least = this.uniforms.min_pixels.value.set(few ? 3.2 : 1.2, few ? 3.2 : 1.2, few ? 6 : 5, few ? 5 : 2);
-    least.multiplyScalar(this.quality.pixelRatio);
-    const points = new THREE.Points(this.geometry, matMaterial(this.uniforms, this.quality.spheres));
-    points.frustumCulled = false;
-    this.scene.add(points);
+    const least = few ? [3.2, 3.2, 6, 5] : [1.2, 1.2, 5, 2];
+    this.uniforms.min_pixels = least.map((pixels) => pixels * this.quality.pixelRatio);
+    const kind = new VertexArray(Float32Array.from(shownKinds(this.topology.kinds, this.topology.radii, this.tools)), 1);
+    const vertices = { position: this.newest, previous: this.before, radius: this.radii, tint: this.tints, kind };
+    const all = { first: 0, count: this.topology.matCount, uniforms: {} };
+    return shapeOf('points', matProgram(this.quality.spheres), vertices, { uniforms: this.uniforms, parts: [all] });
   }
 
-  private buildLinks(): void {
-    this.linkGeometry.setIndex(new THREE.BufferAttribute(this.topology.linkEnds.slice(), 1));
-    this.linkGeometry.addGroup(0, 2 * this.topology.linkCount, materialOfState(0));
-    this.links = new THREE.LineSegments(this.linkGeometry, linkMaterials(this.uniforms, this.palette));
-    this.links.frustumCulled = false;
-    this.scene.add(this.links);
+  private linkShape(): Shape {
+    const all = { first: 0, count: 2 * this.topology.linkCount, uniforms: this.linkColours[0]! };
+    return shapeOf('lines', LINK_PROGRAM, { position: this.newest, previous: this.before }, {
+      index: new VertexArray<Uint32Array>(this.topology.linkEnds.slice(), 1),
+      uniforms: this.uniforms,
+      parts: [all],
+    });
   }
 
   /** Lays the links of one colour side by side in the index: one call draws each colour. Those that do nothing are not drawn. */
   private sortLinks(states: Uint8Array): void {
-    const index = this.linkGeometry.index;
-    if (index === null || states.length !== this.topology.linkCount) return;
+    if (this.links === null || states.length !== this.topology.linkCount) return;
     if (states.length === this.states.length && states.every((state, l) => state === this.states[l])) return;
     this.states = states.slice();
     const ends = this.topology.linkEnds;
-    const sorted = index.array;
-    this.linkGeometry.clearGroups();
+    const index = this.links.index!;
     let filled = 0;
     const shown = [...new Set(states)].filter((state) => state < LINK_IS_IDLE);
-    for (const material of new Set(shown.map(materialOfState))) {
-      const begin = filled;
+    this.links.parts = [...new Set(shown.map(colourOfState))].map((colour) => {
+      const first = filled;
       for (let l = 0; l < states.length; ++l) {
         const state = states[l]!;
-        if (state >= LINK_IS_IDLE || materialOfState(state) !== material) continue;
-        sorted[filled++] = ends[2 * l]!;
-        sorted[filled++] = ends[2 * l + 1]!;
+        if (state >= LINK_IS_IDLE || colourOfState(state) !== colour) continue;
+        index.array[filled++] = ends[2 * l]!;
+        index.array[filled++] = ends[2 * l + 1]!;
       }
-      this.linkGeometry.addGroup(begin, filled - begin, material);
-    }
-    index.needsUpdate = true;
+      return { first, count: filled - first, uniforms: this.linkColours[colour]! };
+    });
+    index.set();
   }
 
   /** Takes a frame; draw() shows it. */
   show(frame: Frame): void {
     const first = Number.isNaN(this.newestS);
     [this.newest, this.before] = [this.before, this.newest];
-    this.newest.array = frame.positions;
-    this.newest.needsUpdate = true;
+    this.newest.set(frame.positions);
     this.sortLinks(frame.linkStates);
     if (first) {
-      this.before.array = frame.positions.slice();
-      this.before.needsUpdate = true;
+      this.before.set(frame.positions.slice());
       this.sizePoints();
     }
-    for (const geometry of [this.geometry, this.linkGeometry]) {
-      geometry.setAttribute('position', this.newest);
-      geometry.setAttribute('previous', this.before);
-    }
+    for (const shape of [this.matter, this.links]) if (shape !== null) Object.assign(shape.vertices, { position: this.newest, previous: this.before });
     this.shownForS = frame.simulatedS - this.newestS;
     this.measureSpeed(this.shownForS);
     this.newestS = frame.simulatedS;
@@ -157,15 +146,15 @@ export class SceneView {
   draw(): void {
     this.rig.update();
     const camera = this.rig.camera;
-    const height = this.renderer.domElement.height;
-    this.uniforms.pixels_per_unit.value = 0.5 * height * camera.projectionMatrix.elements[5]!;
-    this.uniforms.orthographic.value = this.rig.orthographic;
-    this.renderer.render(this.scene, camera);
+    this.uniforms.pixels_per_unit = 0.5 * this.canvas.element.height * camera.projectionMatrix.elements[5]!;
+    this.uniforms.orthographic = this.rig.orthographic;
+    camera.updateMatrixWorld();
+    this.canvas.draw(camera.matrixWorldInverse.elements, camera.projectionMatrix.elements);
   }
 
   resize(): void {
     const { clientWidth, clientHeight } = this.container;
-    this.renderer.setSize(clientWidth, clientHeight);
+    this.canvas.resize(clientWidth, clientHeight);
     this.rig.resize(clientWidth, clientHeight);
     this.changed();
   }
@@ -177,11 +166,9 @@ export class SceneView {
   /** Draws all of it in the colours of a palette. */
   paint(palette: Palette): void {
     this.palette = palette;
-    this.renderer.setClearColor(palette.background);
-    const tint = this.geometry.getAttribute('tint') as THREE.BufferAttribute;
-    tint.array.set(this.bodies.tints(palette));
-    tint.needsUpdate = true;
-    this.links?.material.forEach((material, state) => (material.uniforms.link_colour!.value as THREE.Color).set(palette.link_states[state]!));
+    this.canvas.clearTo(sharesOf(palette.background));
+    this.tints.set(this.bodies.tints(palette));
+    linkUniforms(palette).forEach((uniforms, state) => Object.assign(this.linkColours[state]!, uniforms));
     if (this.framed) this.layGround();
     this.changed();
   }
@@ -193,7 +180,7 @@ export class SceneView {
   /** A 1-D scene that is laid out on a floor: from the front it is a line. */
   private liesFlat(): boolean {
     if (this.space !== 1) return false;
-    const size = this.bounds().getSize(new THREE.Vector3());
+    const size = this.bounds().getSize(new Vector3());
     return size.z > 0.2 * size.x && size.x > 0.2 * size.z;
   }
 
@@ -241,7 +228,7 @@ export class SceneView {
   }
 
   toggleGround(): void {
-    this.ground.group.visible = !this.ground.group.visible;
+    this.ground.shape.isVisible = !this.ground.shape.isVisible;
     this.changed();
   }
 
@@ -267,61 +254,50 @@ export class SceneView {
 
   /** Where a place of the scene is on the page [CSS pixels]. */
   screenOf(place: number[]): { x: number; y: number } {
-    const point = new THREE.Vector3().fromArray(place).project(this.rig.camera);
-    const box = this.renderer.domElement.getBoundingClientRect();
+    const point = new Vector3().fromArray(place).project(this.rig.camera);
+    const box = this.canvas.element.getBoundingClientRect();
     return { x: box.left + (0.5 + 0.5 * point.x) * box.width, y: box.top + (0.5 - 0.5 * point.y) * box.height };
   }
 
   /** The place [m] behind a point of the page that is as far from the camera as `through`. */
   unproject(x: number, y: number, through: number[]): number[] {
-    const box = this.renderer.domElement.getBoundingClientRect();
-    const depth = new THREE.Vector3().fromArray(through).project(this.rig.camera).z;
-    const point = new THREE.Vector3((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height, depth);
+    const box = this.canvas.element.getBoundingClientRect();
+    const depth = new Vector3().fromArray(through).project(this.rig.camera).z;
+    const point = new Vector3((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height, depth);
     return point.unproject(this.rig.camera).toArray();
   }
 
   /** Radius of MAT `index` as it is drawn, at the middle of the scene [CSS pixels]. */
   radiusOnScreen(index: number): number {
-    return this.geometry.getAttribute('radius').array[index]! / this.rig.metresPerPixel;
+    return this.radii.array[index]! / this.rig.metresPerPixel;
   }
 
   /** Colour of one pixel of the view as it is drawn now, 0..255; a place on the page [CSS pixels]. */
   pixelAt(x: number, y: number): number[] {
     this.draw();
-    const gl = this.renderer.getContext();
-    const box = this.renderer.domElement.getBoundingClientRect();
-    const ratio = this.quality.pixelRatio;
-    const colour = new Uint8Array(4);
-    const row = Math.floor((box.bottom - y) * ratio);
-    gl.readPixels(Math.floor((x - box.left) * ratio), row, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, colour);
-    return [...colour.slice(0, 3)];
+    const box = this.canvas.element.getBoundingClientRect();
+    return this.canvas.pixelAt(x - box.left, box.bottom - y);
   }
 
   image(): Promise<Blob | null> {
     this.draw();
-    return new Promise((resolve) => this.renderer.domElement.toBlob(resolve));
+    return new Promise((resolve) => this.canvas.element.toBlob(resolve));
   }
 
   dispose(): void {
     this.rig.dispose();
-    this.geometry.dispose();
-    this.linkGeometry.dispose();
-    this.ground.dispose();
-    for (const event of CONTEXT_EVENTS) this.renderer.domElement.removeEventListener(event, this.noteContext);
-    this.renderer.dispose();
-    this.renderer.forceContextLoss();
-    this.renderer.domElement.remove();
+    this.canvas.dispose();
   }
 
   /** What holds the MATs with their radii, but for this share of them at either end of each axis. */
-  private bounds(outliers = 0): THREE.Box3 {
+  private bounds(outliers = 0): Box3 {
     const stride = Math.max(1, Math.floor(this.topology.matCount / SAMPLE));
     const count = Math.ceil(this.topology.matCount / stride);
     const left = Math.floor(outliers * count);
-    const radii = this.geometry.getAttribute('radius').array;
+    const radii = this.radii.array;
     const low = new Float32Array(count);
     const high = new Float32Array(count);
-    const box = new THREE.Box3();
+    const box = new Box3();
     for (let axis = 0; axis < 3; ++axis) {
       for (let k = 0; k < count; ++k) {
         const coordinate = this.newest.array[3 * k * stride + axis]!;
@@ -338,7 +314,7 @@ export class SceneView {
   private sizePoints(): void {
     const { linkEnds, linkCount, radii } = this.topology;
     const positions = this.newest.array;
-    const extent = this.bounds().getSize(new THREE.Vector3()).length() || 1;
+    const extent = this.bounds().getSize(new Vector3()).length() || 1;
     const lengths: number[] = [];
     const stride = Math.max(1, Math.floor(linkCount / SAMPLE));
     for (let l = 0; l < linkCount; l += stride) {
@@ -355,15 +331,14 @@ export class SceneView {
     lengths.sort((a, b) => a - b);
     const usual = lengths[Math.floor(lengths.length / 2)] ?? extent / 100;
     const shown = Math.min(Math.max(0.3 * usual, extent / 2000), extent / 80);
-    const sizes = this.geometry.getAttribute('radius') as THREE.BufferAttribute;
-    for (let i = 0; i < radii.length; ++i) sizes.array[i] = radii[i] || shown;
-    sizes.needsUpdate = true;
+    for (let i = 0; i < radii.length; ++i) this.radii.array[i] = radii[i] || shown;
+    this.radii.set();
   }
 
   /** The full scale of the colours follows the fastest MAT, at once upwards and slowly down. */
   private measureSpeed(elapsedS: number): void {
     if (!this.speeds) {
-      this.uniforms.speed_scale.value = 0;
+      this.uniforms.speed_scale = 0;
       return;
     }
     if (!(elapsedS > 0)) return;
@@ -378,6 +353,6 @@ export class SceneView {
       longest = Math.max(longest, dx * dx + dy * dy + dz * dz);
     }
     this.fastest = Math.max(Math.sqrt(longest) / elapsedS, 0.985 * this.fastest);
-    this.uniforms.speed_scale.value = this.fastest > 0 ? 1 / (this.fastest * elapsedS) : 1;
+    this.uniforms.speed_scale = this.fastest > 0 ? 1 / (this.fastest * elapsedS) : 1;
   }
 }
