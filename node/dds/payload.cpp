@@ -28,12 +28,14 @@ std::size_t missing_bytes(typename TypeOf<Message>::Type& type, Message& message
   return is_older ? sizeof(double) : 0;
 }
 
-/// The last wire version whose SceneDescription ends without `port_frames`.
+/// The last wire versions whose SceneDescription ends without `port_frames`, without `surfaces`.
 constexpr std::uint32_t kLastWithoutPortFrames = 3;
+constexpr std::uint32_t kLastWithoutSurfaces = 4;
+
+constexpr std::size_t kCount = 4;  // bytes of the count of a sequence
 
 /// Bytes of an empty sequence behind a payload of `size` bytes, alignment included.
 constexpr std::size_t empty_sequence_bytes(std::size_t size) noexcept {
-  constexpr std::size_t kCount = 4;
   return kCount + (kCount - size % kCount) % kCount;
 }
 
@@ -60,7 +62,10 @@ bool decode(std::span<const std::byte> payload, Message& message) noexcept {
     const std::size_t missing = missing_bytes(type, message, payload.size());
     if (decode_padded(type, payload, missing, message)) return true;
     if constexpr (std::is_same_v<Message, msg::SceneDescription>) {
-      return decode_padded(type, payload, empty_sequence_bytes(payload.size()), message) &&
+      const std::size_t missing_surfaces = empty_sequence_bytes(payload.size());
+      if (decode_padded(type, payload, missing_surfaces, message))
+        return message.wire_version() <= kLastWithoutSurfaces;
+      return decode_padded(type, payload, missing_surfaces + kCount, message) &&
              message.wire_version() <= kLastWithoutPortFrames;
     }
     return false;

@@ -48,8 +48,8 @@ test('the messages are those of the contract', () => {
     'gesture.idl': ['GesturePositions', 'GestureForces', 'DeviceDescription', 'PointerTarget', 'PointerState'],
     'inputs.idl': ['SourceFile', 'InputScene', 'InputSample', 'InputReach', 'InputEvent', 'SceneInputs'],
     'scene.idl': [
-      'NamedRange', 'PortDescription', 'PortFrame', 'SignalDescription', 'StateMachineDescription', 'SceneDescription', 'SceneFrame',
-      'SceneSignals', 'SceneSound', 'LinkEvent', 'SceneEvents',
+      'NamedRange', 'PortDescription', 'PortFrame', 'SignalDescription', 'StateMachineDescription', 'SurfaceDescription',
+      'SceneDescription', 'SceneFrame', 'SceneSignals', 'SceneSound', 'LinkEvent', 'SceneEvents',
     ],
     'topics.idl': [],
   };
@@ -68,7 +68,7 @@ for (const unit of units) {
 test('both parsers find the same values of enums', () => {
   assert.deepEqual(enums.map(own).sort(), [
     'ControlVerb', 'EventQuantity', 'InputClock', 'InputKind', 'MatKind', 'NodeKind', 'NodePhase', 'PortRole', 'ReachBound',
-    'SignalRate',
+    'SignalRate', 'SurfaceKind',
   ]);
   const generated = units.map((unit) => readFileSync(join(generatedFolder, `${basename(unit, '.idl')}.h`), 'utf8')).join('\n');
   for (const definition of enums) {

@@ -192,6 +192,21 @@ Sample any_description() {
     port_frames.push_back({{"rest_m", frame.rest_m()}, {"direction", frame.direction()}});
     message.port_frames().push_back(frame);
   }
+  json surfaces = json::array();
+  for (std::size_t i = any_u32() % 3; i > 0; --i) {
+    msg::SurfaceDescription surface;
+    surface.name(any_text());
+    surface.kind(any_u32() % 2 == 0 ? msg::SURFACE_PLANE : msg::SURFACE_CYLINDER);
+    surface.centre_m({0.25 * static_cast<double>(any_u32() % 100), 0.5, -1.5});
+    surface.axis({0.0, 1.0, 0.0});
+    if (surface.kind() == msg::SURFACE_CYLINDER) surface.size_m({0.25, 2.0});
+    surfaces.push_back({{"name", surface.name()},
+                        {"kind", static_cast<int>(surface.kind())},
+                        {"centre_m", surface.centre_m()},
+                        {"axis", surface.axis()},
+                        {"size_m", surface.size_m()}});
+    message.surfaces().push_back(surface);
+  }
   const json none = json::array();
   return {"scene/description",
           "cordis::msg::SceneDescription",
@@ -202,7 +217,7 @@ Sample any_description() {
            {"mat_mass_kg", none},        {"mat_radius_m", none}, {"matter", none},
            {"link_ends", none},          {"links", none},        {"state_machines", none},
            {"link_state_machine", none}, {"ports", ports},       {"port_frames", port_frames},
-           {"signals", signals},         {"scene_file", ""}}};
+           {"signals", signals},         {"scene_file", ""},     {"surfaces", surfaces}}};
 }
 
 bool write_take(const std::filesystem::path& folder, mcap::Compression compression) {

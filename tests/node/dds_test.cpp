@@ -70,15 +70,21 @@ TEST(Payload, OfAGestureOfWireVersion2IsReadWithoutTheDelayOfItsAnswer) {
   EXPECT_FALSE(decode(payload, read)) << "cut short";
 }
 
-TEST(Payload, OfADescriptionOfWireVersion3IsReadWithoutFramesOfPorts) {
+TEST(Payload, OfADescriptionOfAnOlderWireVersionIsReadWithoutWhatItLacks) {
   for (const char* file : {"s", "sc", "sce", "scen"}) {  // each alignment of what follows
     msg::SceneDescription description;
     description.scene_file(file);
-    for (const std::uint32_t version : {3u, 4u}) {
+    for (const std::uint32_t version : {3u, 4u, 5u}) {
       description.wire_version(version);
       std::vector<std::byte> payload = encode(description);
       msg::SceneDescription read;
       ASSERT_TRUE(decode(payload, read));
+      payload.resize(payload.size() - 4);  // the count of `surfaces`
+      EXPECT_EQ(decode(payload, read), version <= 4u) << file;
+      if (version <= 4u) {
+        EXPECT_EQ(read.scene_file(), file);
+        EXPECT_TRUE(read.surfaces().empty());
+      }
       payload.resize(payload.size() - 4);  // the count of `port_frames`
       EXPECT_EQ(decode(payload, read), version == 3u) << file;
       if (version != 3u) continue;
@@ -86,6 +92,19 @@ TEST(Payload, OfADescriptionOfWireVersion3IsReadWithoutFramesOfPorts) {
       EXPECT_TRUE(read.port_frames().empty());
     }
   }
+}
+
+TEST(Payload, OfADescriptionOfWireVersion4KeepsFramesOfPorts) {
+  msg::SceneDescription description;
+  description.wire_version(4);
+  description.scene_file("s");
+  description.port_frames().resize(2);
+  description.port_frames()[1].direction({0.0, 1.0, 0.5});
+  std::vector<std::byte> payload = encode(description);
+  payload.resize(payload.size() - 4);  // the count of `surfaces`
+  msg::SceneDescription read;
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read.port_frames(), description.port_frames());
 }
 
 /// A reader with an Arrival takes samples out of DDS in the thread that receives them.
