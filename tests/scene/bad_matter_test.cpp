@@ -320,7 +320,7 @@ INSTANTIATE_TEST_SUITE_P(
                  R"(matter:
   a: {kind: pack, count: 28, region: ^{from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}
 )",
-                 "28 balls of matter 'a' do not fit into the region",
+                 "28 balls of matter 'a' still overlap after 3000 rounds of pushing them apart",
                  "they are 88 % of it; without order, at most about 84 % of an area can be filled, "
                  "less at its border"},
         BadScene{kHead2,

@@ -104,6 +104,34 @@ TEST(Pack, ThatJamsIsGivenUpEarly) {
   EXPECT_LE(jammed.rounds, 500);
 }
 
+TEST(Pack, OfAlmostRandomCloseDensitySettles) {
+  for (const std::string seed : {"1", "2", "3"}) {
+    const Scene solid = pack(3,
+                             "fill: 0.58, ball: {mass_kg: 1, radius_m: 0.01}, region: {from_m: "
+                             "[0, 0, 0], to_m: [0.3, 0.3, 0.3]}, seed: " +
+                                 seed);
+    ASSERT_EQ(solid.network.mats.size(), 3739u) << "seed " << seed;
+    EXPECT_GE(smallest_distance(solid), 0.02 * (1.0 - 1e-15)) << "seed " << seed;
+  }
+  const Scene flat = pack(2,
+                          "fill: 0.82, ball: {mass_kg: 1, radius_m: 0.01}, region: {from_m: "
+                          "[0, 0], to_m: [0.5, 0.5]}");
+  ASSERT_EQ(flat.network.mats.size(), 653u);
+  EXPECT_GE(smallest_distance(flat), 0.02 * (1.0 - 1e-15));
+}
+
+TEST(Pack, ThatStillOverlapsSaysAfterHowManyRounds) {
+  config::Problems problems;
+  load_scene_text(scene_head(3) + R"(matter:
+  a: {kind: pack, ball: {mass_kg: 1, radius_m: 0.01}, fill: 0.63, region: {from_m: [0, 0, 0], to_m: [0.3, 0.3, 0.3]}}
+)",
+                  "t", problems);
+  ASSERT_EQ(problems.in_order().size(), 1u) << problems.text();
+  EXPECT_EQ(problems.in_order()[0].message.find("4061 balls of matter 'a' still overlap after "),
+            0u)
+      << problems.text();
+}
+
 TEST(Pack, OfManyBallsThatAreSurelyTooManyIsRefusedUnseen) {
   config::Problems problems;
   load_scene_text(scene_head(3) + R"(matter:

@@ -45,14 +45,18 @@ double densest(int space, std::size_t count) {
   return space == 2 ? 0.86 : 0.65;
 }
 
-void report_no_room(Source& source, const Region& region, double ball, std::size_t count) {
+/// @param rounds of pushing apart that did not help; 0 where it is known without
+void report_no_room(Source& source, const Region& region, double ball, std::size_t count,
+                    int rounds) {
   const bool flat = source.space == 2;
   const double share = static_cast<double>(count) * ball / region.measure();
   const double percent = std::round(100.0 * share);
   source.reader.error_at(
       "region",
       std::to_string(count) + (count == 1 ? " ball of " : " balls of ") + source.reader.what() +
-          (count == 1 ? " does" : " do") + " not fit into the region",
+          (rounds > 0
+               ? " still overlap after " + std::to_string(rounds) + " rounds of pushing them apart"
+               : std::string(count == 1 ? " does" : " do") + " not fit into the region"),
       "they are " + config::number_text(percent) + " % of it; without order, at most about " +
           (flat ? "84 % of an area" : "64 % of a volume") + " can be filled, less at its border");
 }
@@ -72,15 +76,15 @@ GeneratedMatter read_pack(Source& source) {
   const std::size_t count = read_count(source, region, measure);
   if (!sound || !reader.ok()) return matter;
 
-  std::optional<std::vector<engine::Vec3>> centers;
+  PackedBalls packed;
   if (static_cast<double>(count) * measure <= densest(source.space, count) * region.measure()) {
-    centers = pack_balls(region, ball->radius, count, static_cast<std::uint64_t>(seed)).centers;
+    packed = pack_balls(region, ball->radius, count, static_cast<std::uint64_t>(seed));
   }
-  if (!centers) {
-    report_no_room(source, region, measure, count);
+  if (!packed.centers) {
+    report_no_room(source, region, measure, count, packed.rounds);
     return matter;
   }
-  for (const engine::Vec3& center : *centers) add_mass(matter, *ball, center);
+  for (const engine::Vec3& center : *packed.centers) add_mass(matter, *ball, center);
   return matter;
 }
 

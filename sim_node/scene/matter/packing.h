@@ -10,8 +10,8 @@
 namespace cordis::scene {
 
 struct PackedBalls {
-  /// Nothing when there is no end to it: the balls do not fit, or only in order. Of more than 1000
-  /// balls that is seen as soon as what they overlap by hardly shrinks any more.
+  /// Nothing when they still overlap at the end: the balls do not fit, or only in order. Of more than
+  /// 1000 balls that is seen as soon as what they overlap by hardly shrinks any more.
   std::optional<std::vector<engine::Vec3>> centers;
   int rounds = 0;  ///< of pushing apart
 };
@@ -20,9 +20,11 @@ struct PackedBalls {
 ///
 /// The centres are thrown at random, then every two that overlap are pushed apart along their line
 /// of centres, again and again, until none do: the packing that random close packing is defined by,
-/// which ends near 0.84 of an area and 0.64 of a volume. It computes with + - * / and std::sqrt
+/// which ends near 0.84 of an area and 0.64 of a volume. After 300 rounds they are pushed 1.8 times as
+/// far (successive over-relaxation). It computes with + - * / and std::sqrt
 /// alone and in one order, so that a seed means the same balls on every machine.
-/// Cost: O(count) per round; 10,000 balls take a fraction of a second.
+/// Cost: O(count) per round, of 3000 rounds at most and fewer from 200,000 balls on; 10,000 balls
+/// take a fraction of a second, 143,000 balls in 60 % of a volume 700 rounds.
 PackedBalls pack_balls(const Region& region, double radius, std::size_t count, std::uint64_t seed);
 
 }  // namespace cordis::scene
