@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -538,6 +539,53 @@ TEST_F(ControlOfFiles, ThatNobodyWritesToDoNotHoldUpTheNode) {
   expect_done({"pause"}, "paused");
   session_.node("sim").signal(SIGTERM);
   EXPECT_EQ(session_.node("sim").wait(kPatience), 0);
+}
+
+/// A scene whose reading takes seconds: dense balls without order.
+constexpr const char* kSlowToRead = R"(cordis: 1
+name: slow_to_read
+space: 3
+step: {rate_hz: 1000}
+matter:
+  a: {kind: pack, ball: {mass_kg: 0.001, radius_m: 0.001}, region: {from_m: [0, 0, 0], to_m: [0.05, 0.05, 0.05]}, fill: 0.58}
+)";
+
+TEST_F(ControlInRealtime, APauseOvertakesALoadThatIsBeingRead) {
+  session_.add_file("slow.yaml", kSlowToRead);
+  start();
+  dds::Writer<msg::ControlCommand> commands(session_.participant(), dds::Topic::kCommand);
+  dds::Reader<msg::ControlReply> replies(session_.participant(), dds::Topic::kReply);
+  ASSERT_TRUE(
+      eventually([&] { return commands.matched_count() > 0 && replies.matched_count() > 0; }));
+  const auto send = [&](std::uint64_t id, msg::ControlVerb verb, const std::string& argument) {
+    msg::ControlCommand command;
+    command.sender("test");
+    command.target("sim_node");
+    command.command_id(id);
+    command.verb(verb);
+    command.argument(argument);
+    EXPECT_TRUE(commands.write(command));
+  };
+  constexpr std::uint64_t kLoad = 1;
+  constexpr std::uint64_t kSecondLoad = 2;
+  constexpr std::uint64_t kPause = 3;
+  send(kLoad, msg::VERB_LOAD, "'slow.yaml'");
+  send(kSecondLoad, msg::VERB_LOAD, "'stiff.yaml'");
+  send(kPause, msg::VERB_PAUSE, "");
+  std::vector<msg::ControlReply> answers;
+  ASSERT_TRUE(eventually([&] {
+    msg::ControlReply reply;
+    if (replies.take(reply)) answers.push_back(reply);
+    return answers.size() == 3;
+  }));
+  EXPECT_EQ(answers[0].command_id(), kSecondLoad) << answers[0].text();
+  EXPECT_FALSE(answers[0].accepted()) << answers[0].text();
+  EXPECT_NE(answers[0].text().find("is still under way"), std::string::npos) << answers[0].text();
+  EXPECT_EQ(answers[1].command_id(), kPause) << answers[1].text();
+  EXPECT_EQ(answers[1].text().find("paused at step "), 0u) << answers[1].text();
+  EXPECT_EQ(answers[2].command_id(), kLoad) << answers[2].text();
+  EXPECT_NE(answers[2].text().find("'slow_to_read' begins, paused"), std::string::npos)
+      << answers[2].text();
 }
 
 TEST_F(ControlInRealtime, AStopEndsAPausedScene) {
