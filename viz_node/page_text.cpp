@@ -61,6 +61,30 @@ Json ports(const std::vector<msg::PortDescription>& described) {
   return list;
 }
 
+const char* word_of(msg::SurfaceKind kind) {
+  switch (kind) {
+    case msg::SURFACE_BOX:
+      return "box";
+    case msg::SURFACE_CYLINDER:
+      return "cylinder";
+    case msg::SURFACE_PLANE:
+      break;
+  }
+  return "plane";
+}
+
+Json surfaces(const std::vector<msg::SurfaceDescription>& described) {
+  Json list = Json::array();
+  for (const msg::SurfaceDescription& surface : described) {
+    list.push_back({{"name", clipped(surface.name())},
+                    {"kind", word_of(surface.kind())},
+                    {"centre", surface.centre_m()},
+                    {"axis", surface.axis()},
+                    {"size", surface.size_m()}});
+  }
+  return list;
+}
+
 Json state_machines(const std::vector<msg::StateMachineDescription>& described) {
   Json list = Json::array();
   for (std::size_t i = 0; i < std::min(described.size(), kMaxNames); ++i) {
@@ -245,7 +269,8 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"links", ranges(description.links())},
                   {"state_machines", state_machines(description.state_machines())},
                   {"ports", ports(description.ports())},
-                  {"signals", std::move(signals)}});
+                  {"signals", std::move(signals)},
+                  {"surfaces", surfaces(description.surfaces())}});
 }
 
 std::string status_text(const std::vector<ReportedNode>& nodes, const ReceivedEvents& events,

@@ -19,6 +19,36 @@ bool ranges_fit(const std::vector<msg::NamedRange>& ranges, std::size_t count) {
   });
 }
 
+bool are_finite(const std::vector<double>& numbers, std::size_t count) {
+  return numbers.size() == count &&
+         std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+}
+
+bool are_sizes(const std::vector<double>& numbers, std::size_t count) {
+  return are_finite(numbers, count) &&
+         std::ranges::all_of(numbers, [](double number) { return number >= 0.0; });
+}
+
+bool is_unit_vector(const std::vector<double>& axis) {
+  if (!are_finite(axis, 3)) return false;
+  const double square = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
+  return std::abs(square - 1.0) < 1e-3;
+}
+
+bool has_shape(const msg::SurfaceDescription& surface) {
+  if (!are_finite(surface.centre_m(), 3)) return false;
+  switch (surface.kind()) {
+    case msg::SURFACE_PLANE:
+      return is_unit_vector(surface.axis());
+    case msg::SURFACE_BOX:
+      return are_sizes(surface.size_m(), 3);
+    case msg::SURFACE_CYLINDER:
+      return is_unit_vector(surface.axis()) && are_sizes(surface.size_m(), 2) &&
+             surface.size_m()[0] > 0.0;
+  }
+  return false;
+}
+
 bool is_rate(double rate_hz) {
   return std::isfinite(rate_hz) && rate_hz > 0.0;
 }
@@ -51,6 +81,10 @@ std::string fault_of(const msg::SceneDescription& description) {
     return "a rate of the description is not a positive number";
   if (!std::ranges::all_of(description.mat_radius_m(), [](float r) { return r >= 0.0F; }))
     return "a radius of the description is not a number of 0 or more";
+  if (description.surfaces().size() > kMaxSurfaces)
+    return count_fault("too many surfaces", description.surfaces().size(), kMaxSurfaces);
+  if (!std::ranges::all_of(description.surfaces(), has_shape))
+    return "a surface of the description has no place, no axis or no size";
   return {};
 }
 

@@ -12,12 +12,13 @@ namespace cordis::viz {
 inline constexpr std::size_t kMaxMats = 2'000'000;
 inline constexpr std::size_t kMaxLinks = 8'000'000;
 inline constexpr std::size_t kMaxSignals = 256;
+inline constexpr std::size_t kMaxSurfaces = 2'000;
 inline constexpr std::size_t kMaxBatchValues = 1'000'000;
 
 /// Each returns what is wrong, one sentence for a person, or an empty string when nothing is. What
 /// is held against a description has its epoch and version.
-/// A description is sound when its lengths agree, its indices exist and its rates are positive and
-/// finite.
+/// A description is sound when its lengths agree, its indices exist, its rates are positive and
+/// finite, and its surfaces have a shape.
 std::string fault_of(const msg::SceneDescription& description);
 
 /// A frame is sound when it has the counts of `description` and only finite positions.

@@ -193,6 +193,35 @@ std::vector<std::uint8_t> decode(const std::string& file, std::size_t width, std
   return pixels;
 }
 
+/// A strip whose left end is at depth 0 and three times as far as its right end, at depth 100.
+std::vector<Corner> slanted_strip() {
+  return {{{20.0, 20.0, 0.0}, 1.0},
+          {{80.0, 20.0, 100.0}, 3.0},
+          {{80.0, 80.0, 100.0}, 3.0},
+          {{20.0, 80.0, 0.0}, 1.0}};
+}
+
+TEST(PixelCanvas, FillsThePixelsWhoseMiddlesAreInAPolygon) {
+  PixelCanvas canvas(100, 100, kWhite);
+  canvas.polygon(slanted_strip(), kRed);
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      const bool is_inside = x >= 20 && x < 80 && y >= 20 && y < 80;
+      EXPECT_EQ(canvas.image().at(x, y), is_inside ? kRed : kWhite) << x << ", " << y;
+    }
+  }
+}
+
+TEST(PixelCanvas, KnowsTheDepthOfAPolygonInPerspective) {
+  // In the middle of the view the depth is that of the nearer end more: (1 * 0 + 3 * 100) / (1 + 3).
+  for (const double z : {60.0, 90.0}) {
+    PixelCanvas canvas(100, 100, kWhite);
+    canvas.polygon(slanted_strip(), kRed);
+    canvas.ball({50.0, 50.0, z}, 4.0, kBlue);
+    EXPECT_EQ(canvas.image().at(50, 50) == kRed, z < 75.0) << z;
+  }
+}
+
 TEST(Image, IsAPngFileWithTheSamePixels) {
   PixelCanvas canvas(97, 61, kBlue);
   canvas.ball({40.0, 30.0, 0.0}, 22.0, kRed);
@@ -204,6 +233,22 @@ TEST(Image, IsAPngFileWithTheSamePixels) {
   EXPECT_EQ(number_at(file, 16), 97u);
   EXPECT_EQ(number_at(file, 20), 61u);
   EXPECT_EQ(decode(file, 97, 61), canvas.image().bytes());
+}
+
+TEST(PdfCanvas, FillsPolygons) {
+  PdfCanvas canvas(200.0, 100.0, kWhite);
+  canvas.polygon({{{10.0, 20.0, 0.0}, 1.0}, {{60.0, 20.0, 0.0}, 1.0}, {{35.0, 70.0, 0.0}, 1.0}},
+                 kRed);
+
+  const std::string file = canvas.bytes();
+  const std::size_t begin = file.find("stream\n") + 7;
+  std::string content(10'000, '\0');
+  uLongf size = content.size();
+  ASSERT_EQ(uncompress(reinterpret_cast<Bytef*>(content.data()), &size,
+                       reinterpret_cast<const Bytef*>(file.data() + begin),
+                       file.find("\nendstream") - begin),
+            Z_OK);
+  EXPECT_NE(content.find("10 20 m 60 20 l 35 70 l b"), std::string::npos) << content;
 }
 
 TEST(PdfCanvas, PointsToItsObjects) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/surfaces.h"
 #include "tests/viz/scenes_for_tests.h"
 
 namespace cordis::viz {
@@ -57,6 +58,21 @@ TEST(PageText, KeepsARunOf64BitsWhole) {
   EXPECT_EQ(json["signals"][0]["sound"], false);
   EXPECT_EQ(json["signals"][1]["sound"], true);
   EXPECT_EQ(json["signals"][1]["full_scale"], 4.0);
+}
+
+TEST(PageText, DescribesSurfacesByTheirKinds) {
+  msg::SceneDescription description = row_of_three();
+  EXPECT_EQ(Json::parse(description_text(description, 1))["surfaces"], Json::array());
+
+  description.surfaces(
+      {test::surface("floor", msg::SURFACE_PLANE, {0.0, -1.0, 0.0}, {0.0, 1.0, 0.0}, {}),
+       test::surface("step", msg::SURFACE_BOX, {1.0, 2.0, 3.0}, {}, {0.5, 0.25, 0.0}),
+       test::surface("post", msg::SURFACE_CYLINDER, {4.0, 5.0, 6.0}, {1.0, 0.0, 0.0},
+                     {0.125, 2.0})});
+  EXPECT_EQ(Json::parse(description_text(description, 1))["surfaces"], Json::parse(R"([
+    {"name": "floor", "kind": "plane", "centre": [0, -1, 0], "axis": [0, 1, 0], "size": []},
+    {"name": "step", "kind": "box", "centre": [1, 2, 3], "axis": [], "size": [0.5, 0.25, 0]},
+    {"name": "post", "kind": "cylinder", "centre": [4, 5, 6], "axis": [1, 0, 0], "size": [0.125, 2]}])"));
 }
 
 TEST(PageText, ReadsAnAcknowledgement) {

@@ -243,6 +243,7 @@ const cases = {
       const description = client.newest('description');
       assert.equal(description.name, 'string');
       assert.equal(description.mat_count, MATS);
+      assert.deepEqual(description.surfaces, []);
       assert.deepEqual(description.signals[0], { name: 'finger position', unit: 'm', sound: false, full_scale: 0 });
       const topology = client.topologies[0];
       assert.equal(topology.links, MATS - 1);
@@ -341,6 +342,18 @@ const cases = {
       for (const frame of client.frames) assert.equal(frame.mats, MATS);
     });
     assert.match(session.view.log, /refused coordinates in a frame: 179, expected 180/);
+  },
+
+  'surfaces come as the scene has them': async (session) => {
+    await session.source.end();
+    session.source = session.scene('--surfaces'); // those of tests/support/surfaces.h
+    await withClients(session.url, 1, async (client) => {
+      const { surfaces } = await until('they came', () => client.newest('description')?.surfaces.length > 0 && client.newest('description'));
+      assert.deepEqual(surfaces.map(({ name }) => name), ['floor', 'wall', 'step[0]', 'step[1]', 'step[2]', 'post']);
+      assert.deepEqual(surfaces[1], { name: 'wall', kind: 'plane', centre: [-0.4, 0, 0], axis: [1, 0, 0], size: [] });
+      assert.deepEqual(surfaces[2], { name: 'step[0]', kind: 'box', centre: [0.27, -0.125, 0], axis: [], size: [0.06, 0.05, 0.2] });
+      assert.deepEqual(surfaces[5], { name: 'post', kind: 'cylinder', centre: [0, -0.05, 0.27], axis: [0, 1, 0], size: [0.03, 0.2] });
+    });
   },
 
   'another scene comes with all the credit': async (session) => {

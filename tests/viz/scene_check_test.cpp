@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/surfaces.h"
 #include "tests/viz/scenes_for_tests.h"
 
 namespace cordis::viz {
@@ -49,9 +50,23 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
       {"rate", [](auto& d) { d.step_rate_hz(0.0); }},
       {"rate", [](auto& d) { d.frame_rate_hz(std::numeric_limits<double>::infinity()); }},
       {"too many signals", [](auto& d) { d.signals().resize(kMaxSignals + 1); }},
+      {"too many surfaces",
+       [](auto& d) { d.surfaces().assign(kMaxSurfaces + 1, test::steps_and_post()[0]); }},
+      {"surface", [](auto& d) { d.surfaces()[0].centre_m().pop_back(); }},
+      {"surface",
+       [](auto& d) {
+         d.surfaces()[0].axis({0.0, 2.0, 0.0});
+       }},
+      {"surface", [](auto& d) { d.surfaces()[2].size_m()[1] = -1.0; }},
+      {"surface", [](auto& d) { d.surfaces()[2].centre_m()[0] = std::nan(""); }},
+      {"surface", [](auto& d) { d.surfaces()[5].axis().clear(); }},
+      {"surface", [](auto& d) { d.surfaces()[5].size_m()[0] = 0.0; }},
+      {"surface", [](auto& d) { d.surfaces()[5].kind(static_cast<msg::SurfaceKind>(9)); }},
   };
   for (const auto& [word, spoil] : faults) {
     msg::SceneDescription description = row_of_three();
+    description.surfaces(test::steps_and_post());
+    ASSERT_EQ(fault_of(description), "");
     spoil(description);
     EXPECT_NE(fault_of(description).find(word), std::string::npos)
         << word << ": '" << fault_of(description) << "'";

@@ -2,7 +2,7 @@
 // moves by formula.
 //
 // usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
-//                     [--amplitude METRES] [--bodies N] [--space 1|2|3] [--bad-frames]
+//                     [--amplitude METRES] [--bodies N] [--space 1|2|3] [--surfaces] [--bad-frames]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
 #include <atomic>
 #include <chrono>
@@ -22,6 +22,7 @@
 #include "node/status.h"
 #include "node/stop.h"
 #include "node/time.h"
+#include "tests/support/surfaces.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis {
@@ -44,6 +45,7 @@ struct Options {
   std::size_t bodies = 1;    // that the MATs belong to
   std::uint8_t space = 0;    // 0: that of the scene
   bool states = false;
+  bool surfaces = false;
   bool bad_frames = false;
   bool hold_domain = false;
 };
@@ -72,6 +74,8 @@ Options read_options(int argc, char** argv) {
       options.space = static_cast<std::uint8_t>(std::stoul(value()));
     } else if (word == "--states") {
       options.states = true;
+    } else if (word == "--surfaces") {
+      options.surfaces = true;
     } else if (word == "--bad-frames") {
       options.bad_frames = true;
     } else if (word == "--hold-domain") {
@@ -281,6 +285,7 @@ int publish(const Options& options) {
   if (options.amplitude_m > 0.0) scene.amplitude_m = options.amplitude_m;
   if (options.space != 0) scene.description.space(options.space);
   if (options.states) describe_states(scene.description);
+  if (options.surfaces) scene.description.surfaces(test::steps_and_post());
   name_parts(scene, options.scene, options.bodies, epoch);
   dds::Writer<msg::SceneDescription> description_writer(sim, dds::Topic::kDescription);
   static_cast<void>(description_writer.write(scene.description));

@@ -17,6 +17,12 @@ struct Place {
   double z = 0.0;
 };
 
+/// A corner of a polygon: its place, and how many pixels a metre has there.
+struct Corner {
+  Place place;
+  double scale = 1.0;
+};
+
 /// An upright rectangle [pixels].
 struct Rectangle {
   double x = 0.0;
@@ -45,6 +51,8 @@ class Canvas {
   virtual void ring(const Place& centre, double radius, double width, const Colour& colour) = 0;
   /// A straight line in depth.
   virtual void link(const Place& from, const Place& to, double width, const Colour& colour) = 0;
+  /// A flat convex face in depth, without an outline.
+  virtual void polygon(const std::vector<Corner>& corners, const Colour& colour) = 0;
   /// A line through all these places, in front of everything.
   virtual void line(const std::vector<Place>& places, double width, const Colour& colour) = 0;
   /// A line of text. @param at  its base line; @param size  of the font

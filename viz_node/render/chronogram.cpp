@@ -86,7 +86,7 @@ std::string Chronogram::interval_text() const {
 }
 
 void Chronogram::draw_view(Canvas& canvas, std::size_t frame, const Rectangle& area,
-                           double strength, bool shows_grid) {
+                           double strength, bool shows_surroundings) {
   const ViewCamera camera(preset_, painter_.is_flat(), box_, area.width, area.height);
   const double mark = std::clamp(std::min(area.width, area.height) / (600.0 * unit_), 0.3, 1.0);
   painter_.draw(canvas,
@@ -94,7 +94,7 @@ void Chronogram::draw_view(Canvas& canvas, std::size_t frame, const Rectangle& a
                  .inner = area,
                  .mark_scale = mark * unit_,
                  .strength = strength,
-                 .shows_grid = shows_grid,
+                 .shows_surroundings = shows_surroundings,
                  .words = fmt::format("data-time-s=\"{:.9g}\" data-metres-per-pixel=\"{:.9g}\"",
                                       frames_[frame].simulated_s(), camera.metres_per_pixel())},
                 camera, box_, frames_[frame]);

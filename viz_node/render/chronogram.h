@@ -38,7 +38,7 @@ class Chronogram {
  private:
   void lay_out();
   void draw_view(Canvas& canvas, std::size_t frame, const Rectangle& area, double strength,
-                 bool shows_grid);
+                 bool shows_surroundings);
   std::string interval_text() const;
 
   std::string name_;

@@ -38,4 +38,12 @@ std::string short_text(double value, int decimals) {
   return text == "-0" ? "0" : text;
 }
 
+double round_length(double length) noexcept {
+  double decade = 1.0;
+  while (decade > length) decade /= 10.0;
+  while (10.0 * decade <= length) decade *= 10.0;
+  const double digit = length / decade;
+  return decade * (digit >= 5.0 ? 5.0 : digit >= 2.0 ? 2.0 : 1.0);
+}
+
 }  // namespace cordis::viz

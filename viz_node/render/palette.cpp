@@ -35,6 +35,8 @@ Palette read_palette(const char* name) {
           .grid_axis = one("grid_axis"),
           .fixed = one("fixed"),
           .port = one("port"),
+          .surface = one("surface"),
+          .surface_edge = one("surface_edge"),
           .outline = one("outline"),
           .bodies = list_of(theme, "bodies"),
           .link_states = list_of(theme, "link_states"),

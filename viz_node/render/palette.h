@@ -30,6 +30,8 @@ struct Palette {
   Colour grid_axis;
   Colour fixed;
   Colour port;
+  Colour surface;  ///< of what is fixed and touched
+  Colour surface_edge;
   Colour outline;  ///< around balls
   std::vector<Colour> bodies;
   std::vector<Colour> link_states;  ///< by the number of the state; the first without states

@@ -27,7 +27,7 @@ struct Normal {
   float x, y, z;
 };
 
-Normal normalized(float x, float y, float z) noexcept {
+Normal normal_along(float x, float y, float z) noexcept {
   const float length = std::sqrt(x * x + y * y + z * z);
   return {x / length, y / length, z / length};
 }
@@ -37,9 +37,9 @@ float facing(const Normal& a, const Normal& b) noexcept {
 }
 
 Light light_on(const Normal& normal) noexcept {
-  const float key = facing(normal, normalized(-0.45f, 0.75f, 0.6f));
+  const float key = facing(normal, normal_along(-0.45f, 0.75f, 0.6f));
   const float fill = 0.5f + 0.5f * normal.y;
-  float shine = facing(normal, normalized(-0.3f, 0.5f, 0.9f));
+  float shine = facing(normal, normal_along(-0.3f, 0.5f, 0.9f));
   for (int i = 0; i < 5; ++i) shine *= shine;  // its 32nd power
   return {static_cast<std::uint16_t>(std::lround(256.0f * (0.38f + 0.18f * fill + 0.52f * key))),
           static_cast<std::uint16_t>(std::lround(255.0f * 0.22f * shine))};
@@ -54,7 +54,7 @@ LightTable make_lights() noexcept {
       const float square = x * x + y * y;
       // Beyond the disc as on its edge.
       const Normal normal =
-          square < 1.0f ? Normal{x, y, std::sqrt(1.0f - square)} : normalized(x, y, 0.0f);
+          square < 1.0f ? Normal{x, y, std::sqrt(1.0f - square)} : normal_along(x, y, 0.0f);
       table[static_cast<std::size_t>(row) * kLightSize + column] = light_on(normal);
     }
   }
@@ -187,6 +187,54 @@ void visit_line(const Place& from, const Place& to, double width, const Window& 
   }
 }
 
+/// A quantity of the corners of a flat face that changes evenly across the canvas.
+class EvenChange {
+ public:
+  template <class Quantity>
+  EvenChange(const std::vector<Corner>& corners, const Quantity& quantity) {
+    // From the first corner and the two others that span the largest area with it.
+    const Place& first = corners.front().place;
+    std::size_t a = 0;
+    std::size_t b = 0;
+    for (std::size_t i = 1; i < corners.size(); ++i) {
+      for (std::size_t k = i + 1; k < corners.size(); ++k) {
+        const double area = (corners[i].place.x - first.x) * (corners[k].place.y - first.y) -
+                            (corners[k].place.x - first.x) * (corners[i].place.y - first.y);
+        if (std::abs(area) <= std::abs(area_)) continue;
+        area_ = area;
+        a = i;
+        b = k;
+      }
+    }
+    x_ = first.x;
+    y_ = first.y;
+    value_ = quantity(corners.front());
+    if (is_edge_on()) return;
+    const double to_a = quantity(corners[a]) - value_;
+    const double to_b = quantity(corners[b]) - value_;
+    const double ax = corners[a].place.x - x_;
+    const double ay = corners[a].place.y - y_;
+    const double bx = corners[b].place.x - x_;
+    const double by = corners[b].place.y - y_;
+    per_x_ = (to_a * by - to_b * ay) / area_;
+    per_y_ = (to_b * ax - to_a * bx) / area_;
+  }
+
+  /// True if the face is seen as a line.
+  bool is_edge_on() const noexcept { return std::abs(area_) < 1e-6; }
+  double at(double x, double y) const noexcept {
+    return value_ + per_x_ * (x - x_) + per_y_ * (y - y_);
+  }
+
+ private:
+  double area_ = 0.0;
+  double x_ = 0.0;
+  double y_ = 0.0;
+  double value_ = 0.0;
+  double per_x_ = 0.0;
+  double per_y_ = 0.0;
+};
+
 }  // namespace
 
 PixelCanvas::PixelCanvas(int width, int height, const Colour& background)
@@ -310,6 +358,43 @@ void PixelCanvas::link(const Place& from, const Place& to, double width, const C
     const double z = from.z + part * (to.z - from.z);
     blend_deep(x, y, colour, share * strength, static_cast<float>(z));
   });
+}
+
+void PixelCanvas::polygon(const std::vector<Corner>& corners, const Colour& colour) {
+  // Across a flat face the scale and the depth times the scale change evenly.
+  const EvenChange scale(corners, [](const Corner& corner) { return corner.scale; });
+  const EvenChange depth(corners,
+                         [](const Corner& corner) { return corner.scale * corner.place.z; });
+  if (scale.is_edge_on()) return;
+  double top = corners.front().place.y;
+  double bottom = top;
+  for (const Corner& corner : corners) {
+    top = std::min(top, corner.place.y);
+    bottom = std::max(bottom, corner.place.y);
+  }
+  const Window rows = window(0.0, top, 0.0, bottom);
+  for (int y = rows.top; y < rows.bottom; ++y) {
+    const double middle = y + 0.5;
+    double left = image_.width();
+    double right = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Place& from = corners[i].place;
+      const Place& to = corners[(i + 1) % corners.size()].place;
+      if ((from.y <= middle) == (to.y <= middle)) continue;
+      const double x = from.x + (middle - from.y) / (to.y - from.y) * (to.x - from.x);
+      left = std::min(left, x);
+      right = std::max(right, x);
+    }
+    // A pixel belongs to the face that its middle is in.
+    const int begin =
+        static_cast<int>(std::ceil(std::clamp<double>(left - 0.5, clip_.left, clip_.right)));
+    const int end =
+        static_cast<int>(std::ceil(std::clamp<double>(right - 0.5, clip_.left, clip_.right)));
+    for (int x = begin; x < end; ++x) {
+      const double z = depth.at(x + 0.5, middle) / scale.at(x + 0.5, middle);
+      blend_deep(x, y, colour, 1.0F, static_cast<float>(z));
+    }
+  }
 }
 
 void PixelCanvas::line(const std::vector<Place>& places, double width, const Colour& colour) {

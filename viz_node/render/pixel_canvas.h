@@ -27,6 +27,7 @@ class PixelCanvas final : public Canvas {
   void ball(const Place& centre, double radius, const Colour& colour) override;
   void ring(const Place& centre, double radius, double width, const Colour& colour) override;
   void link(const Place& from, const Place& to, double width, const Colour& colour) override;
+  void polygon(const std::vector<Corner>& corners, const Colour& colour) override;
   void line(const std::vector<Place>& places, double width, const Colour& colour) override;
   void text(const Place& at, double size, Anchor anchor, const Colour& colour,
             std::string_view words) override;

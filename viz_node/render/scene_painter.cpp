@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "viz_node/render/number_text.h"
+
 namespace cordis::viz {
 namespace {
 
@@ -46,19 +48,15 @@ bool is_tool(const msg::SceneDescription& description, const msg::NamedRange& ra
 
 }  // namespace
 
-double round_length(double length) noexcept {
-  double decade = 1.0;
-  while (decade > length) decade /= 10.0;
-  while (10.0 * decade <= length) decade *= 10.0;
-  const double digit = length / decade;
-  return decade * (digit >= 5.0 ? 5.0 : digit >= 2.0 ? 2.0 : 1.0);
-}
-
 ScenePainter::ScenePainter(const msg::SceneDescription& description, Theme theme)
     : palette_(palette_of(theme)),
       space_(description.space()),
       radius_(description.mat_radius_m()),
-      link_ends_(description.link_ends()) {
+      link_ends_(description.link_ends()),
+      surfaces_(description.surfaces()),
+      has_planes_(std::ranges::any_of(surfaces_, [](const msg::SurfaceDescription& surface) {
+        return surface.kind() == msg::SURFACE_PLANE;
+      })) {
   find_looks(description);
   find_bodies(description);
 }
@@ -107,7 +105,7 @@ void ScenePainter::start(const msg::SceneFrame& frame) {
         distance(point_of(frame, link_ends_[2 * link]), point_of(frame, link_ends_[2 * link + 1])));
   }
   std::ranges::sort(lengths);
-  const double extent = std::max(bounds(frame).diagonal(), 1e-9);
+  const double extent = std::max(matter_bounds(frame, 0.0).diagonal(), 1e-9);
   const double usual = lengths.empty() ? extent / 100.0 : lengths[lengths.size() / 2];
   const double shown = std::min(std::max(0.3 * usual, extent / 2000.0), extent / 80.0);
   for (float& radius : radius_) {
@@ -116,6 +114,10 @@ void ScenePainter::start(const msg::SceneFrame& frame) {
 }
 
 Box ScenePainter::bounds(const msg::SceneFrame& frame, double outliers) const {
+  return bounds_with(surfaces_, matter_bounds(frame, outliers), space_);
+}
+
+Box ScenePainter::matter_bounds(const msg::SceneFrame& frame, double outliers) const {
   const std::size_t count = radius_.size();
   Box box;
   if (count == 0) return box;
@@ -281,26 +283,50 @@ void ScenePainter::draw_grid(Canvas& canvas, const ViewOptions& options, const V
   }
 }
 
+void ScenePainter::sort_marks(const SurfacePainter& surfaces, const msg::SceneFrame& frame) {
+  marks_.clear();
+  for (std::size_t link = 0; 2 * link < link_ends_.size(); ++link) {
+    if (!is_shown(link, frame)) continue;
+    const std::size_t a = link_ends_[2 * link];
+    const std::size_t b = link_ends_[2 * link + 1];
+    const Point middle = 0.5 * (point_of(frame, a) + point_of(frame, b));
+    marks_.push_back({surfaces.layer_of(middle), 0.5 * (place_[a].z + place_[b].z),
+                      static_cast<std::uint32_t>(link), false});
+  }
+  for (std::size_t mat = 0; mat < radius_.size(); ++mat)
+    marks_.push_back({surfaces.layer_of(point_of(frame, mat)), place_[mat].z,
+                      static_cast<std::uint32_t>(mat), true});
+  std::ranges::stable_sort(marks_, {}, [](const Mark& mark) {
+    return std::pair{mark.layer, mark.z};
+  });
+}
+
+void ScenePainter::draw_mark(Canvas& canvas, const ViewOptions& options, const Mark& mark,
+                             const msg::SceneFrame& frame) const {
+  if (mark.is_ball)
+    draw_ball(canvas, options, mark.index);
+  else
+    draw_link(canvas, options, mark.index, frame);
+}
+
 void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
                         const Box& home, const msg::SceneFrame& frame) {
   if (colour_by_ == ColourBy::kSpeed) measure_speeds(frame);
   project_all(options, camera, frame);
+  const std::vector<msg::SurfaceDescription> none;
+  const SurfacePainter surfaces(options.shows_surroundings ? surfaces_ : none, home, space_, camera,
+                                options.inner, options.mark_scale, palette_);
   canvas.begin_view(options.area, options.words);
-  if (options.shows_grid) draw_grid(canvas, options, camera, home);
-  marks_.clear();
-  for (std::size_t link = 0; 2 * link < link_ends_.size(); ++link) {
-    if (!is_shown(link, frame)) continue;
-    const double z = 0.5 * (place_[link_ends_[2 * link]].z + place_[link_ends_[2 * link + 1]].z);
-    marks_.push_back({z, static_cast<std::uint32_t>(link), false});
-  }
-  for (std::size_t mat = 0; mat < radius_.size(); ++mat)
-    marks_.push_back({place_[mat].z, static_cast<std::uint32_t>(mat), true});
-  std::ranges::stable_sort(marks_, {}, &Mark::z);
-  for (const Mark& mark : marks_) {
-    if (mark.is_ball)
-      draw_ball(canvas, options, mark.index);
-    else
-      draw_link(canvas, options, mark.index, frame);
+  // A plane is a grid itself.
+  if (options.shows_surroundings && (is_flat() || !has_planes_))
+    draw_grid(canvas, options, camera, home);
+  surfaces.draw_backdrops(canvas);
+  sort_marks(surfaces, frame);
+  auto next = marks_.begin();
+  for (std::size_t layer = 0; layer <= surfaces.body_count(); ++layer) {
+    for (; next != marks_.end() && next->layer == layer; ++next)
+      draw_mark(canvas, options, *next, frame);
+    if (layer < surfaces.body_count()) surfaces.draw_body(canvas, layer);
   }
   // The ring of a port is seen through everything.
   for (std::size_t mat = 0; mat < radius_.size(); ++mat) {

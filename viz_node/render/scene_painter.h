@@ -9,6 +9,7 @@
 #include "idl/scene.h"
 #include "viz_node/render/canvas.h"
 #include "viz_node/render/palette.h"
+#include "viz_node/render/surface_painter.h"
 #include "viz_node/render/view_camera.h"
 
 namespace cordis::viz {
@@ -24,12 +25,12 @@ struct Body {
 
 /// Where a view is drawn, and how.
 struct ViewOptions {
-  Rectangle area;           ///< nothing is drawn outside
-  Rectangle inner;          ///< what the camera was made for
-  double mark_scale = 1.0;  ///< of the smallest marks and of lines
-  double strength = 1.0;    ///< of the colours against the background, 0..1
-  bool shows_grid = true;
-  std::string words{};  ///< attributes of the view, as for Canvas::begin_view()
+  Rectangle area;                  ///< nothing is drawn outside
+  Rectangle inner;                 ///< what the camera was made for
+  double mark_scale = 1.0;         ///< of the smallest marks and of lines
+  double strength = 1.0;           ///< of the colours against the background, 0..1
+  bool shows_surroundings = true;  ///< the grid and the surfaces
+  std::string words{};             ///< attributes of the view, as for Canvas::begin_view()
 };
 
 /// Draws frames of one scene. The description has been checked (scene_check.h).
@@ -41,7 +42,7 @@ class ScenePainter {
   void start(const msg::SceneFrame& frame);
   void colour_by(ColourBy what) noexcept { colour_by_ = what; }
 
-  /// The box around the MATs with their radii.
+  /// The box around the MATs with their radii, and the surfaces (bounds_with()).
   /// @param outliers  share of the MATs left out at either end of each axis, 0..0.5
   Box bounds(const msg::SceneFrame& frame, double outliers = 0.0) const;
   /// Share of outliers that a view does not follow.
@@ -61,6 +62,7 @@ class ScenePainter {
   const std::vector<Body>& bodies() const noexcept { return bodies_; }
   bool has_fixed() const noexcept { return has_fixed_; }
   bool has_ports() const noexcept { return has_ports_; }
+  bool has_surfaces() const noexcept { return !surfaces_.empty(); }
   const Palette& palette() const noexcept { return palette_; }
   /// The speed that has the last colour [m/s]; 0 before two frames were drawn.
   double fastest_speed() const noexcept { return fastest_; }
@@ -70,11 +72,13 @@ class ScenePainter {
   enum class Look : std::uint8_t { kMass, kFixedBall, kPort, kFixedPoint, kTool };
   /// A ball or a link on its way from back to front.
   struct Mark {
+    std::size_t layer;  // of surfaces that it is between
     double z;
     std::uint32_t index;
     bool is_ball;
   };
 
+  Box matter_bounds(const msg::SceneFrame& frame, double outliers) const;
   void find_bodies(const msg::SceneDescription& description);
   void find_looks(const msg::SceneDescription& description);
   void measure_speeds(const msg::SceneFrame& frame);
@@ -86,6 +90,9 @@ class ScenePainter {
   void draw_ball(Canvas& canvas, const ViewOptions& options, std::size_t mat) const;
   void draw_link(Canvas& canvas, const ViewOptions& options, std::size_t link,
                  const msg::SceneFrame& frame) const;
+  void draw_mark(Canvas& canvas, const ViewOptions& options, const Mark& mark,
+                 const msg::SceneFrame& frame) const;
+  void sort_marks(const SurfacePainter& surfaces, const msg::SceneFrame& frame);
   void draw_grid(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
                  const Box& home) const;
 
@@ -96,6 +103,8 @@ class ScenePainter {
   std::vector<std::uint32_t> body_;  // per MAT
   std::vector<Body> bodies_;
   std::vector<std::uint32_t> link_ends_;
+  std::vector<msg::SurfaceDescription> surfaces_;
+  bool has_planes_ = false;
   bool has_fixed_ = false;
   bool has_ports_ = false;
   ColourBy colour_by_ = ColourBy::kBody;
@@ -107,8 +116,5 @@ class ScenePainter {
   std::vector<double> size_;      // per MAT [pixels]
   std::vector<Mark> marks_;
 };
-
-/// The largest of 1, 2, 5, 10, 20 ... that is not above `length`. Precondition: length > 0.
-double round_length(double length) noexcept;
 
 }  // namespace cordis::viz

@@ -12,7 +12,7 @@
 namespace cordis::viz {
 namespace {
 
-enum class Sign { kBall, kFixed, kPort };
+enum class Sign { kBall, kFixed, kPort, kSurface };
 
 struct Entry {
   Sign sign;
@@ -28,7 +28,20 @@ std::vector<Entry> entries_of(const ScenePainter& painter) {
   }
   if (painter.has_fixed()) entries.push_back({Sign::kFixed, "fixed", painter.palette().fixed});
   if (painter.has_ports()) entries.push_back({Sign::kPort, "port", painter.palette().port});
+  if (painter.has_surfaces())
+    entries.push_back({Sign::kSurface, "surface", painter.palette().surface});
   return entries;
+}
+
+/// A piece of a surface, with its edge.
+void draw_slab(Canvas& canvas, const Palette& palette, const Place& centre, double half) {
+  canvas.fill({centre.x - half, centre.y - half, 2.0 * half, 2.0 * half}, palette.surface);
+  canvas.line({{centre.x - half, centre.y - half, 0.0},
+               {centre.x + half, centre.y - half, 0.0},
+               {centre.x + half, centre.y + half, 0.0},
+               {centre.x - half, centre.y + half, 0.0},
+               {centre.x - half, centre.y - half, 0.0}},
+              0.2 * half, palette.surface_edge);
 }
 
 }  // namespace
@@ -41,7 +54,10 @@ void draw_legend(Canvas& canvas, const ScenePainter& painter, const Place& at, d
     const double length = text_width(entry.name, size);
     if (x + 1.4 * size + length > at.x + width) return;
     const Place centre{x + 0.5 * size, at.y - 0.36 * size, 0.0};
-    canvas.ball(centre, entry.sign == Sign::kPort ? 0.75 * radius : radius, entry.colour);
+    if (entry.sign == Sign::kSurface)
+      draw_slab(canvas, painter.palette(), centre, radius);
+    else
+      canvas.ball(centre, entry.sign == Sign::kPort ? 0.75 * radius : radius, entry.colour);
     if (entry.sign == Sign::kPort) canvas.ring(centre, 1.3 * radius, 0.1 * size, entry.colour);
     canvas.text({x + 1.3 * size, at.y, 0.0}, size, Anchor::kStart, painter.palette().quiet,
                 entry.name);

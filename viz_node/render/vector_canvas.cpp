@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kPointsPerPixel = 0.75;  // as browsers print
 constexpr double kFlatRadius = 1.5;       // of a ball too small to be seen as lit [pixels]
+constexpr double kSeam = 0.5;             // of the stroke around a face [pixels]
 constexpr double kCircle = 0.5522847498;  // control points of a quarter of a circle by a cubic
 
 /// The light of a ball: a bright place towards the lamp, and a darker edge.
@@ -150,6 +151,20 @@ void SvgCanvas::link(const Place& from, const Place& to, double width, const Col
           "\"/>\n");
   body_ += fmt::format("M{} {}L{} {}", place_text(from.x), place_text(from.y), place_text(to.x),
                        place_text(to.y));
+}
+
+void SvgCanvas::polygon(const std::vector<Corner>& corners, const Colour& colour) {
+  close();
+  const std::string hex = hex_of(colour);
+  // The stroke closes the seam between two faces.
+  body_ += fmt::format(
+      "<polygon fill=\"{0}\" stroke=\"{0}\" stroke-width=\"{1}\" stroke-linejoin=\"round\" "
+      "points=\"",
+      hex, place_text(kSeam));
+  for (const Corner& corner : corners)
+    body_ += fmt::format("{},{}{}", place_text(corner.place.x), place_text(corner.place.y),
+                         &corner == &corners.back() ? "" : " ");
+  body_ += "\"/>\n";
 }
 
 void SvgCanvas::line(const std::vector<Place>& places, double width, const Colour& colour) {
@@ -297,6 +312,16 @@ void PdfCanvas::ring(const Place& centre, double radius, double width, const Col
 
 void PdfCanvas::link(const Place& from, const Place& to, double width, const Colour& colour) {
   line({from, to}, width, colour);
+}
+
+void PdfCanvas::polygon(const std::vector<Corner>& corners, const Colour& colour) {
+  const std::string parts = parts_of(colour);
+  body_ += fmt::format("{0} rg {0} RG {1} w ", parts, place_text(kSeam));
+  for (const Corner& corner : corners) {
+    body_ += fmt::format("{} {} {} ", place_text(corner.place.x), place_text(corner.place.y),
+                         &corner == corners.data() ? "m" : "l");
+  }
+  body_ += "b\n";
 }
 
 void PdfCanvas::line(const std::vector<Place>& places, double width, const Colour& colour) {

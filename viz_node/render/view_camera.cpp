@@ -11,19 +11,6 @@ namespace {
 constexpr double kHalfField = 0.36397023426620234;  // tan 20 degrees
 constexpr double kMargin = 1.12;                    // of a fitted scene, all around
 
-double dot(const Point& a, const Point& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Point cross(const Point& a, const Point& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Point normalized(const Point& a) noexcept {
-  const double length = std::sqrt(dot(a, a));
-  return {a[0] / length, a[1] / length, a[2] / length};
-}
-
 Point direction_of(ViewPreset preset) noexcept {
   switch (preset) {
     case ViewPreset::kFront:
@@ -104,6 +91,11 @@ Projected ViewCamera::project(const Point& point) const noexcept {
   }
   return {half_width_ + scale * dot(from, right_), half_height_ - scale * dot(from, up_),
           towards / metres_per_pixel_, scale};
+}
+
+bool ViewCamera::is_before(const Point& at, const Point& normal) const noexcept {
+  const Point to_viewer = is_parallel_ ? towards_ : centre_ + distance_ * towards_ - at;
+  return dot(to_viewer, normal) > 0.0;
 }
 
 double ViewCamera::radius_of(const Projected& centre, double radius) const noexcept {

@@ -1,12 +1,11 @@
 // viz_node/render/view_camera.h -- where the viewer stands, as in the page.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
-namespace cordis::viz {
+#include "viz_node/render/vectors.h"
 
-using Point = std::array<double, 3>;  ///< x, y, z [m]
+namespace cordis::viz {
 
 /// A box along the axes [m].
 struct Box {
@@ -45,6 +44,9 @@ class ViewCamera {
   Projected project(const Point& point) const noexcept;
   /// Radius of a sphere of `radius` [m] around a projected centre [pixels].
   double radius_of(const Projected& centre, double radius) const noexcept;
+  /// True if the viewer is on the side of a plane to which its normal points.
+  /// @param at  a point of the plane
+  bool is_before(const Point& at, const Point& normal) const noexcept;
   /// Length of a pixel at the middle of the box [m].
   double metres_per_pixel() const noexcept { return metres_per_pixel_; }
   bool is_parallel() const noexcept { return is_parallel_; }

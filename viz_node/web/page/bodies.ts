@@ -12,7 +12,7 @@ export interface Body {
 }
 
 /** The first part of a name: `stack` of `stack[2].balls`. */
-const bodyName = (name: string): string => name.split(/[.[]/, 1)[0]!;
+export const bodyName = (name: string): string => name.split(/[.[]/, 1)[0]!;
 
 /** `string[3]` for the fourth of the range `string`, by the narrowest range; empty where no range holds it. */
 function nameIn(ranges: NamedRange[], index: number): string {

@@ -64,3 +64,10 @@ export function duration(value: number): string {
   const seconds = Math.floor(value);
   return `${Math.floor(seconds / 60)} min ${String(seconds % 60).padStart(2, '0')} s`;
 }
+
+/** The largest of 1, 2, 5, 10, 20 ... that is not above `length`. */
+export function roundLength(length: number): number {
+  const decade = 10 ** Math.floor(Math.log10(length));
+  const digit = length / decade;
+  return decade * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
+}

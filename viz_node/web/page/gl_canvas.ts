@@ -42,12 +42,13 @@ export interface Shape {
   parts: Part[];
   isVisible: boolean;
   writesDepth: boolean; // hides what is drawn behind it later
+  isOneSided: boolean; // seen only where its vertices go counterclockwise
   isBehindLines: boolean; // a little farther than it is: its own edges are seen
 }
 
 /** The shape of these vertices, as most are drawn. */
 export function shapeOf(kind: Shape['kind'], program: Program, vertices: Shape['vertices'], more: Partial<Shape> = {}): Shape {
-  return { kind, program, vertices, index: null, uniforms: {}, parts: [], isVisible: true, writesDepth: true, isBehindLines: false, ...more };
+  return { kind, program, vertices, index: null, uniforms: {}, parts: [], isVisible: true, writesDepth: true, isOneSided: false, isBehindLines: false, ...more };
 }
 
 const CONTEXT_EVENTS = ['webglcontextlost', 'webglcontextrestored'];
@@ -134,8 +135,8 @@ export class GlCanvas {
     this.setUniforms(program, matrices);
     this.setUniforms(program, shape.uniforms);
     gl.depthMask(shape.writesDepth);
-    if (shape.isBehindLines) gl.enable(gl.POLYGON_OFFSET_FILL);
-    else gl.disable(gl.POLYGON_OFFSET_FILL);
+    this.switch(gl.CULL_FACE, shape.isOneSided);
+    this.switch(gl.POLYGON_OFFSET_FILL, shape.isBehindLines);
     gl.polygonOffset(1, 1);
     for (const [name, place] of program.inputs) this.feed(place, shape.vertices[name]);
     if (shape.index !== null) this.send(gl.ELEMENT_ARRAY_BUFFER, shape.index);
@@ -146,6 +147,11 @@ export class GlCanvas {
       else gl.drawElements(mode, count, gl.UNSIGNED_INT, first * Uint32Array.BYTES_PER_ELEMENT);
     }
     for (const place of program.inputs.values()) gl.disableVertexAttribArray(place);
+  }
+
+  private switch(what: number, on: boolean): void {
+    if (on) this.gl.enable(what);
+    else this.gl.disable(what);
   }
 
   private feed(place: number, vertices: Shape['vertices'][string] | undefined): void {

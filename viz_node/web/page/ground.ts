@@ -2,19 +2,13 @@
 // has something to hold on to.
 import { type Box3, Vector3 } from 'three';
 import { sharesOf, type Palette } from './colours.ts';
+import { roundLength } from './format.ts';
 import { shapeOf, VertexArray, type Program } from './gl_canvas.ts';
 
 const CELLS = 24; // across the larger side of the scene, about
 
-/** The largest of 1, 2, 5, 10, 20 ... that is not above `length`. */
-export function roundLength(length: number): number {
-  const decade = 10 ** Math.floor(Math.log10(length));
-  const digit = length / decade;
-  return decade * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
-}
-
-/** Lines that have their colours with their ends. */
-export const COLOURED_LINES: Program = {
+/** Vertices that have their colours with them. */
+export const COLOURED: Program = {
   vertex: /* glsl */ `
     precision highp float;
     in vec3 position;
@@ -38,7 +32,7 @@ export const COLOURED_LINES: Program = {
 export class Ground {
   private readonly points = new VertexArray(new Float32Array(0), 3);
   private readonly colours = new VertexArray(new Float32Array(0), 3);
-  readonly shape = shapeOf('lines', COLOURED_LINES, { position: this.points, tint: this.colours }, { writesDepth: false });
+  readonly shape = shapeOf('lines', COLOURED, { position: this.points, tint: this.colours }, { writesDepth: false });
 
   /** Lays the grid again: upright through the scene when it is flat, on the floor when it is not. */
   lay(box: Box3, space: number, palette: Palette): void {

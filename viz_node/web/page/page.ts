@@ -5,8 +5,7 @@ import type { Pose } from './camera_rig.ts';
 import { firstTheme, keepTheme, paletteOf, type Palette, type ThemeName } from './colours.ts';
 import { Connection } from './connection.ts';
 import { Controls } from './controls.ts';
-import { roundLength } from './ground.ts';
-import { joined, withUnit } from './format.ts';
+import { joined, roundLength, withUnit } from './format.ts';
 import { Hud } from './hud.ts';
 import { keysAreListed, toggleKeys } from './keys_dialog.ts';
 import { legendOf, showLegend } from './legend.ts';
@@ -181,13 +180,13 @@ export class Page {
     const size = Math.max(topology.matCount, topology.linkCount / 2);
     const quality = chooseQuality(this.renderer.software, size, window.devicePixelRatio);
     this.say(quality.note);
-    const { space } = this.description;
+    const { space, surfaces } = this.description;
     const tools = this.description.tools.filter((tool) => tool !== null);
     const changed = () => this.askToDraw();
     const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : quality.note);
     try {
       const bodies = new Bodies(this.description, topology);
-      this.view = new SceneView(this.stage, topology, bodies, tools, space, this.palette, quality, this.pose, changed, lost);
+      this.view = new SceneView(this.stage, topology, bodies, tools, space, surfaces, this.palette, quality, this.pose, changed, lost);
       this.view.colourBySpeed(this.speeds);
       this.showLegend();
     } catch (error) {

@@ -72,6 +72,15 @@ export interface Port {
   axes: number[];
 }
 
+/** A fixed body of the scene that matter touches. */
+export interface Surface {
+  name: string;
+  kind: 'plane' | 'box' | 'cylinder';
+  centre: number[]; // x, y, z [m]; a point of a plane
+  axis: number[]; // unit vector: the normal of a plane on its outer side; empty for a box
+  size: number[]; // box: edges x, y, z [m], 0 where it has no end; cylinder: radius, length
+}
+
 export interface Hello {
   type: 'hello';
   protocol: number;
@@ -99,6 +108,7 @@ export interface Description {
   ports: Port[];
   tools: (number | null)[]; // of each port: the MAT that its coupling moves. Filled in by the page
   signals: { name: string; unit: string; sound: boolean; full_scale: Figure }[];
+  surfaces: Surface[];
 }
 
 /** The MATs that hands move by a coupling: they have the name of a port whose own MAT is the handle. */

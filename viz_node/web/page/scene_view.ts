@@ -6,9 +6,11 @@ import { sharesOf, type Palette } from './colours.ts';
 import { GlCanvas, shapeOf, VertexArray, type Shape, type Uniforms } from './gl_canvas.ts';
 import { Ground } from './ground.ts';
 import { colourOfState, LINK_PROGRAM, linkUniforms, matProgram, sceneUniforms, shownKinds } from './mat_material.ts';
-import type { Frame, Topology } from './protocol.ts';
+import type { Frame, Surface, Topology } from './protocol.ts';
 import { LINK_IS_IDLE } from './wire.ts';
 import type { Quality } from './quality.ts';
+import { boundsWith } from './surface_shape.ts';
+import { SurfaceView } from './surfaces.ts';
 import { CameraRig, type Pose } from './camera_rig.ts';
 
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
@@ -26,6 +28,7 @@ export class SceneView {
   readonly rig: CameraRig;
   private readonly canvas: GlCanvas;
   private readonly ground = new Ground();
+  private readonly surfaceView: SurfaceView;
   private readonly uniforms = sceneUniforms();
   private readonly radii: VertexArray; // as they are drawn
   private readonly tints: VertexArray<Uint8Array>;
@@ -49,6 +52,7 @@ export class SceneView {
     readonly bodies: Bodies,
     private readonly tools: number[],
     private readonly space: number,
+    private readonly surfaces: Surface[],
     private palette: Palette,
     readonly quality: Quality,
     private readonly pose: Pose | null, // where the camera stood before, if it shall stay
@@ -71,7 +75,9 @@ export class SceneView {
     this.linkColours = linkUniforms(palette);
     this.matter = this.matterShape();
     this.links = quality.links && topology.linkCount > 0 ? this.linkShape() : null;
-    this.canvas.shapes.push(this.matter, ...(this.links === null ? [] : [this.links]), this.ground.shape);
+    this.surfaceView = new SurfaceView(surfaces, space);
+    this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links]));
+    if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
     this.resize();
   }
 
@@ -174,13 +180,15 @@ export class SceneView {
   }
 
   private layGround(): void {
-    this.ground.lay(this.bounds(), this.isDrum ? 3 : this.space, this.palette);
+    const home = this.bounds();
+    this.ground.lay(home, this.isDrum ? 3 : this.space, this.palette);
+    this.surfaceView.lay(home, this.palette);
   }
 
   /** A 1-D scene that is laid out on a floor: from the front it is a line. */
   private liesFlat(): boolean {
     if (this.space !== 1) return false;
-    const size = this.bounds().getSize(new Vector3());
+    const size = this.matterBounds().getSize(new Vector3());
     return size.z > 0.2 * size.x && size.x > 0.2 * size.z;
   }
 
@@ -289,8 +297,12 @@ export class SceneView {
     this.canvas.dispose();
   }
 
-  /** What holds the MATs with their radii, but for this share of them at either end of each axis. */
+  /** What holds the surfaces and the MATs with their radii, but for this share of these at either end of each axis. */
   private bounds(outliers = 0): Box3 {
+    return boundsWith(this.surfaces, this.matterBounds(outliers), this.space);
+  }
+
+  private matterBounds(outliers = 0): Box3 {
     const stride = Math.max(1, Math.floor(this.topology.matCount / SAMPLE));
     const count = Math.ceil(this.topology.matCount / stride);
     const left = Math.floor(outliers * count);
@@ -314,7 +326,7 @@ export class SceneView {
   private sizePoints(): void {
     const { linkEnds, linkCount, radii } = this.topology;
     const positions = this.newest.array;
-    const extent = this.bounds().getSize(new Vector3()).length() || 1;
+    const extent = this.matterBounds().getSize(new Vector3()).length() || 1;
     const lengths: number[] = [];
     const stride = Math.max(1, Math.floor(linkCount / SAMPLE));
     for (let l = 0; l < linkCount; l += stride) {

@@ -1,8 +1,7 @@
 // viz_node/web/page/view_image.ts -- an image of the view to keep, with its scene, time, legend and
 // a length to measure by.
 import type { Palette } from './colours.ts';
-import { joined, withUnit } from './format.ts';
-import { roundLength } from './ground.ts';
+import { joined, roundLength, withUnit } from './format.ts';
 import type { LegendEntry } from './legend.ts';
 import type { SceneView } from './scene_view.ts';
 
@@ -63,7 +62,7 @@ function drawMark(pen: CanvasRenderingContext2D, mark: LegendEntry['mark'], { x,
   pen.lineWidth = 2;
   pen.beginPath();
   if (mark === 'link') pen.rect(x - 7, y - 1.5, 14, 3);
-  else if (mark === 'fixed-point') pen.rect(x - 4, y - 4, 8, 8);
+  else if (mark === 'fixed-point' || mark === 'surface') pen.rect(x - 4, y - 4, 8, 8);
   else pen.arc(x, y, mark === 'handle' ? 6 : 4.5, 0, 2 * Math.PI);
   if (mark === 'handle' || mark === 'fixed-point') pen.stroke();
   else pen.fill();

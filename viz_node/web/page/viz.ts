@@ -27,6 +27,8 @@ export interface Viz {
   position(index: number): number[] | null;
   /** Where MAT `index` is on the page [CSS pixels]. */
   project(index: number): { x: number; y: number } | null;
+  /** Where a place of the scene [m] is on the page [CSS pixels]. */
+  screenOf(place: number[]): { x: number; y: number } | null;
   /** Levels of the sound as it is played [dB], one each `binHz`; null while none is. */
   soundSpectrum(): { binHz: number; levels: number[] } | null;
   /** Red, green and blue of the view at a place on the page, 0..255. */
@@ -107,6 +109,7 @@ export function exposeViz(page: Page): void {
     },
     position: (index) => (page.lastFrame ? [...page.lastFrame.positions.slice(3 * index, 3 * index + 3)] : null),
     project: (index) => page.view?.project(index) ?? null,
+    screenOf: (place) => page.view?.screenOf(place) ?? null,
     soundSpectrum: () => page.sound.spectrum(),
     pixelAt: (x, y) => page.view?.pixelAt(x, y) ?? null,
   };

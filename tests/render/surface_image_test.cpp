@@ -1,0 +1,268 @@
+// tests/render/surface_image_test.cpp -- fixed surfaces in images: where their corners are, and
+// what they hide.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/golden_hashes.h"
+#include "tests/support/surfaces.h"
+#include "viz_node/render/chronogram.h"
+#include "viz_node/render/film_view.h"
+#include "viz_node/render/image.h"
+#include "viz_node/render/surface_shape.h"
+#include "viz_node/render/vector_canvas.h"
+
+namespace cordis::viz {
+namespace {
+
+using Surfaces = std::vector<msg::SurfaceDescription>;
+
+struct BallScene {
+  msg::SceneDescription description;
+  msg::SceneFrame frame;
+};
+
+BallScene ball_scene(const std::vector<Point>& places, float radius_m, std::uint8_t space,
+                     const Surfaces& surfaces) {
+  BallScene scene;
+  scene.description.name("surfaces");
+  scene.description.space(space);
+  scene.description.step_rate_hz(1000.0);
+  scene.description.frame_rate_hz(25.0);
+  scene.description.surfaces(surfaces);
+  msg::NamedRange balls;
+  balls.name("balls");
+  balls.count(static_cast<std::uint32_t>(places.size()));
+  scene.description.matter({balls});
+  for (const Point& place : places) {
+    scene.description.mat_kind().push_back(msg::MAT_MASS);
+    scene.description.mat_mass_kg().push_back(0.001F);
+    scene.description.mat_radius_m().push_back(radius_m);
+    for (const double coordinate : place)
+      scene.frame.position_m().push_back(static_cast<float>(coordinate));
+  }
+  return scene;
+}
+
+/// Balls on every step, on the floor, and before and behind the post.
+BallScene stairs(std::uint8_t space) {
+  std::vector<Point> places;
+  for (int step = 0; step < 3; ++step) {
+    for (int k = 0; k < 3; ++k)
+      places.push_back({0.27 + 0.06 * step, -0.088 + 0.05 * step, -0.06 + 0.06 * k});
+  }
+  for (int k = 0; k < 6; ++k) places.push_back({-0.3 + 0.08 * k, -0.138, -0.1});
+  places.push_back({0.0, -0.138, 0.22});
+  places.push_back({0.01, -0.138, 0.34});
+  return ball_scene(places, 0.012F, space, test::steps_and_post());
+}
+
+class SurfaceImage : public testing::TestWithParam<std::uint8_t> {};
+
+TEST_P(SurfaceImage, HasThePixelsItEverHad) {
+  const BallScene scene = stairs(GetParam());
+  const std::string name = "surfaces_" + std::to_string(GetParam());
+  const Theme theme = GetParam() == 2 ? Theme::kLight : Theme::kDark;
+  FilmView view(scene.description, {.width = 640, .height = 360, .theme = theme});
+
+  const Image& image = view.draw(scene.frame);
+
+  const std::string path = testing::TempDir() + name + ".png";
+  std::ofstream(path, std::ios::binary) << png_of(image);
+  EXPECT_EQ(test::hexadecimal(image.hash()), test::golden_hashes("images.yaml")[name])
+      << "look at " << path;
+}
+
+INSTANTIATE_TEST_SUITE_P(Spaces, SurfaceImage, testing::Values(2, 3));
+
+std::string svg_of(const BallScene& scene, ViewPreset view) {
+  Chronogram figure(scene.description, {scene.frame},
+                    {.layout = ChronogramLayout::kRow, .view = view});
+  SvgCanvas canvas(figure.width(), figure.height(), figure.palette().background);
+  figure.draw(canvas);
+  return canvas.text();
+}
+
+using Corners = std::vector<std::array<double, 2>>;
+
+/// The places of a list "x,y x,y" [pixels].
+Corners corners_in(const std::string& list) {
+  Corners corners;
+  const std::regex place(R"(([-\d.]+),([-\d.]+))");
+  for (auto match = std::sregex_iterator(list.begin(), list.end(), place);
+       match != std::sregex_iterator(); ++match)
+    corners.push_back({std::stod((*match)[1]), std::stod((*match)[2])});
+  return corners;
+}
+
+std::vector<Corners> polygons_of(const std::string& svg) {
+  std::vector<Corners> polygons;
+  const std::regex element(R"re(<polygon [^>]*points="([^"]*)"/>)re");
+  for (auto match = std::sregex_iterator(svg.begin(), svg.end(), element);
+       match != std::sregex_iterator(); ++match)
+    polygons.push_back(corners_in((*match)[1]));
+  return polygons;
+}
+
+double metres_per_pixel_of(const std::string& svg) {
+  std::smatch found;
+  EXPECT_TRUE(std::regex_search(svg, found, std::regex(R"re(data-metres-per-pixel="([^"]+)")re")));
+  return std::stod(found[1]);
+}
+
+/// Width and height of a polygon [pixels].
+std::array<double, 2> size_of(const Corners& corners) {
+  std::array<double, 2> low = corners.front();
+  std::array<double, 2> high = corners.front();
+  for (const auto& corner : corners) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], corner[k]);
+      high[k] = std::max(high[k], corner[k]);
+    }
+  }
+  return {high[0] - low[0], high[1] - low[1]};
+}
+
+constexpr double kTwoDecimals = 0.0101;  // two numbers of two decimals [pixels]
+
+TEST(SurfaceFigure, DrawsSectionsOfAFlatSceneToScale) {
+  const BallScene scene = stairs(2);
+  const std::string svg = svg_of(scene, ViewPreset::kFront);
+  const double pixel_m = metres_per_pixel_of(svg);
+  const auto polygons = polygons_of(svg);
+
+  ASSERT_EQ(polygons.size(), 4u);  // three steps and a post; floor and wall are lines
+  const std::vector<std::array<double, 2>> sizes_m = {
+      {0.06, 0.05}, {0.06, 0.1}, {0.06, 0.15}, {0.06, 0.2}};
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    EXPECT_NEAR(size_of(polygons[i])[0], sizes_m[i][0] / pixel_m, kTwoDecimals);
+    EXPECT_NEAR(size_of(polygons[i])[1], sizes_m[i][1] / pixel_m, kTwoDecimals);
+  }
+  EXPECT_NEAR(polygons[1][0][0] - polygons[0][0][0], 0.06 / pixel_m, kTwoDecimals);
+}
+
+TEST(SurfaceFigure, DrawsTheFacesOfBoxesThatTheViewerSees) {
+  const BallScene scene =
+      ball_scene({{0.0, 0.3, 0.0}}, 0.02F, 3,
+                 {test::surface("box", msg::SURFACE_BOX, {0.0, 0.0, 0.0}, {}, {0.2, 0.1, 0.3})});
+
+  // From the front, in perspective, the front face hides all others but the top: the middle of the view
+  // is the middle of the scene, which is above the box.
+  const auto polygons = polygons_of(svg_of(scene, ViewPreset::kFront));
+  ASSERT_EQ(polygons.size(), 2u);
+  const auto top = polygons[0];
+  const auto front = polygons[1];
+  EXPECT_NEAR(size_of(front)[0] / size_of(front)[1], 0.2 / 0.1, 1e-3);
+  EXPECT_LT(size_of(top)[1], size_of(front)[1]);
+}
+
+TEST(SurfaceFigure, HidesABallBehindABoxAndNoneBeforeIt) {
+  const msg::SurfaceDescription box =
+      test::surface("box", msg::SURFACE_BOX, {0.0, 0.0, 0.0}, {}, {0.2, 0.2, 0.2});
+  for (const double z : {-0.15, 0.15}) {
+    const BallScene scene = ball_scene({{0.0, 0.0, z}}, 0.02F, 3, {box});
+    const std::string svg = svg_of(scene, ViewPreset::kFront);
+    const std::string drawn = svg.substr(0, svg.find("<polyline"));  // the view, without its legend
+    EXPECT_EQ(drawn.find("<circle") > drawn.rfind("<polygon"), z > 0.0) << z;
+
+    FilmView view(scene.description, {.width = 320, .height = 180, .view = ViewPreset::kFront});
+    Image image = view.draw(scene.frame);
+    int ball_pixels = 0;
+    for (int y = 40; y < 140; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        const std::uint8_t* pixel = image.pixel(x, y);
+        ball_pixels += pixel[2] > pixel[0] + 40 ? 1 : 0;  // the first body is blue
+      }
+    }
+    EXPECT_EQ(ball_pixels > 20, z > 0.0) << ball_pixels << " pixels of the ball at z " << z;
+  }
+}
+
+TEST(SurfaceShape, HasCornersCounterclockwiseForAViewerOutside) {
+  const Box home{{-0.2, -0.1, -0.2}, {0.2, 0.1, 0.2}};
+  Surfaces surfaces = test::steps_and_post();
+  surfaces.push_back(
+      test::surface("slope", msg::SURFACE_PLANE, {0.0, -0.3, 0.0}, {0.6, 0.8, 0.0}, {}));
+  surfaces.push_back(test::surface("bar", msg::SURFACE_CYLINDER, {0.0, -0.3, 0.0},
+                                   {0.36, 0.48, 0.8}, {0.02, 0.0}));
+  for (const std::uint32_t space : {2u, 3u}) {
+    for (const SurfaceShape& shape : shapes_of(surfaces, home, space)) {
+      for (const SurfaceFace& face : shape.faces) {
+        const Point turn =
+            cross(face.corners[1] - face.corners[0], face.corners[2] - face.corners[1]);
+        EXPECT_NEAR(dot(normalized(turn), face.normal), 1.0, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(SurfaceShape, JoinsTheFacesOfABodyByItsEdges) {
+  const Box home{{-0.2, -0.1, -0.2}, {0.2, 0.1, 0.2}};
+  for (const SurfaceShape& shape : shapes_of(test::steps_and_post(), home, 3)) {
+    if (shape.is_backdrop) continue;
+    for (const SurfaceEdge& edge : shape.edges) {
+      for (const std::size_t number : {edge.face, edge.other_face}) {
+        const SurfaceFace& face = shape.faces.at(number);
+        for (const Point& end : {edge.from, edge.to})
+          EXPECT_NEAR(dot(end - face.corners.front(), face.normal), 0.0, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(SurfaceShape, EndsAPlaneWhereAnotherOneIs) {
+  const Box home{{-0.3, -0.1, -0.2}, {0.2, 0.1, 0.2}};
+  const auto shapes = shapes_of(test::steps_and_post(), home, 3);
+  for (const std::size_t plane : {0u, 1u}) {
+    ASSERT_EQ(shapes[plane].faces.size(), 1u);
+    EXPECT_GT(shapes[plane].edges.size(), 10u);
+    for (const Point& corner : shapes[plane].faces[0].corners) {
+      EXPECT_GE(corner[1], -0.15 - 1e-9);
+      EXPECT_GE(corner[0], -0.4 - 1e-9);
+    }
+    for (const SurfaceEdge& edge : shapes[plane].edges) {
+      EXPECT_GE(std::min(edge.from[1], edge.to[1]), -0.15 - 1e-9);
+      EXPECT_GE(std::min(edge.from[0], edge.to[0]), -0.4 - 1e-9);
+    }
+  }
+}
+
+TEST(SurfaceBounds, CountBodiesWholeAndPlanesByTheirNearestPlace) {
+  const Box matter{{-0.1, 0.0, -0.1}, {0.1, 0.2, 0.1}};
+  const auto with = [&](const msg::SurfaceDescription& surface) {
+    return bounds_with({surface}, matter, 3);
+  };
+  const Box box = with(test::surface("b", msg::SURFACE_BOX, {5.0, 0.1, 0.0}, {}, {2.0, 0.1, 0.0}));
+  EXPECT_EQ(box.high, (Point{6.0, 0.2, 0.1}));
+  EXPECT_EQ(box.low, matter.low);
+  const Box floor =
+      with(test::surface("f", msg::SURFACE_PLANE, {9.0, -1.0, 3.0}, {0.0, 1.0, 0.0}, {}));
+  EXPECT_EQ(floor.low, (Point{-0.1, -1.0, -0.1}));
+  EXPECT_EQ(floor.high, matter.high);
+  const Box far =
+      with(test::surface("f", msg::SURFACE_PLANE, {0.0, -1000.0, 0.0}, {0.0, 1.0, 0.0}, {}));
+  EXPECT_EQ(far.low, matter.low);
+  const Box post =
+      with(test::surface("p", msg::SURFACE_CYLINDER, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.5, 0.0}));
+  EXPECT_EQ(post.high[0], 1.5);
+  EXPECT_EQ(post.high[1], matter.high[1]);
+}
+
+TEST(SurfaceFigure, OfASceneWithoutSurfacesIsThatOfBefore) {
+  const BallScene with = stairs(3);
+  BallScene without = with;
+  without.description.surfaces().clear();
+  const std::string svg = svg_of(without, ViewPreset::kFree);
+  EXPECT_TRUE(polygons_of(svg).empty());
+  EXPECT_EQ(svg.find(">surface<"), std::string::npos);
+  EXPECT_NE(svg_of(with, ViewPreset::kFree).find(">surface<"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cordis::viz

@@ -1,0 +1,54 @@
+// viz_node/web/page/surfaces.ts -- the fixed surfaces of a scene in the view: matte faces that are
+// seen from outside, and their edges.
+import type { Box3, Vector3 } from 'three';
+import { sharesOf, type Palette } from './colours.ts';
+import { shapeOf, VertexArray } from './gl_canvas.ts';
+import { COLOURED } from './ground.ts';
+import type { Surface } from './protocol.ts';
+import { lightOnSurface, shapesOf } from './surface_shape.ts';
+
+/** Places and colours of vertices. */
+class ColouredVertices {
+  readonly position = new VertexArray(new Float32Array(0), 3);
+  readonly tint = new VertexArray(new Float32Array(0), 3);
+
+  set(places: Vector3[], colours: number[][]): void {
+    this.position.set(new Float32Array(places.flatMap((place) => place.toArray())));
+    this.tint.set(new Float32Array(colours.flat()));
+  }
+}
+
+export class SurfaceView {
+  private readonly corners = new ColouredVertices();
+  private readonly ends = new ColouredVertices();
+  private readonly faces = shapeOf('triangles', COLOURED, { ...this.corners }, { isBehindLines: true, isOneSided: true });
+  private readonly edges = shapeOf('lines', COLOURED, { ...this.ends });
+  readonly shapes = [this.faces, this.edges];
+
+  constructor(
+    private readonly surfaces: Surface[],
+    private readonly space: number,
+  ) {}
+
+  /** True if a plane is there, which is a grid itself. */
+  get hasPlanes(): boolean {
+    return this.surfaces.some(({ kind }) => kind === 'plane');
+  }
+
+  /** Lays all of them around a scene in `home`. */
+  lay(home: Box3, palette: Palette): void {
+    const shapes = shapesOf(this.surfaces, home, this.space);
+    const faces = shapes.flatMap((shape) => shape.faces);
+    const colour = sharesOf(palette.surface);
+    const triangles = faces.flatMap(({ corners, normal }) => {
+      const tint = colour.map((share) => share * lightOnSurface(normal));
+      return corners.slice(2).map((corner, i) => ({ places: [corners[0]!, corners[i + 1]!, corner], tint }));
+    });
+    this.corners.set(triangles.flatMap(({ places }) => places), triangles.flatMap(({ tint }) => [tint, tint, tint]));
+    const ends = shapes.flatMap(({ edges }) => edges.flat());
+    const edgeColour = sharesOf(palette.surface_edge);
+    this.ends.set(ends, ends.map(() => edgeColour));
+    this.faces.parts = [{ first: 0, count: 3 * triangles.length, uniforms: {} }];
+    this.edges.parts = [{ first: 0, count: ends.length, uniforms: {} }];
+  }
+}
