@@ -1,6 +1,5 @@
 // tests/gallery/plasticine_test.cpp
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -12,6 +11,7 @@
 #include "device_node/drivers/pointer_port.h"
 #include "sim_node/engine/connected_components.h"
 #include "tests/gallery/gallery_session.h"
+#include "tests/gallery/wild_hand.h"
 
 namespace cordis::test {
 namespace {
@@ -62,36 +62,6 @@ TEST(Plasticine, IsMouldedTornAndStuckTogetherAgain) {
   EXPECT_EQ(history, (std::vector<double>{1, 2, 1}));
 }
 
-/// Targets as a page sends them: both thimbles wander over the whole travel, in strokes between two
-/// places, as fast as viz_node leads a target.
-class WildHand {
- public:
-  explicit WildHand(unsigned seed) : lot_(seed) {}
-
-  /// The target of the next millisecond.
-  device::PointerTarget next() {
-    for (std::size_t a = 0; a < 4; ++a) {
-      if (left_[a]-- <= 0) {
-        wanted_[a] = std::uniform_real_distribution(-0.08, 0.08)(lot_);
-        left_[a] = std::uniform_int_distribution(20, 600)(lot_);
-      }
-      constexpr double kLed = 0.002;  // 2 m/s
-      target_.target_m[a] += std::clamp(wanted_[a] - target_.target_m[a], -kLed, kLed);
-    }
-    target_.epoch = 1;
-    ++target_.number;
-    target_.holds = true;
-    target_.held = 0b1111;
-    return target_;
-  }
-
- private:
-  std::mt19937 lot_;
-  std::array<double, 4> wanted_{};
-  std::array<int, 4> left_{};
-  device::PointerTarget target_;
-};
-
 TEST(Plasticine, StaysCertifiedWhateverAHandOnThePageDoes) {
   const unsigned seed = std::random_device()();
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -99,7 +69,7 @@ TEST(Plasticine, StaysCertifiedWhateverAHandOnThePageDoes) {
                          {"thimbles.driver=pointer", "thimbles.pointer.only_while_held=false"});
   device::PointerPort* const port = session.pointer_port("thimbles");
   ASSERT_NE(port, nullptr);
-  WildHand hand(seed);
+  WildHand hand(seed, 4, -0.08, 0.08);
   double max_pieces = 0.0;
   double max_force_n = 0.0;
 
