@@ -98,6 +98,23 @@ TEST(Slope, OfAnExpressionKnowsTheMassesOfItsEnds) {
                    200.0);
 }
 
+TEST(Slope, OfAnExpressionThatEnergyConfinesKnowsTheMassesOfItsEnds) {
+  const Term e = q(Quantity::kElongation);
+  const engine::StateMachine cubic =
+      state_machine(0.0, expression_law(1e4 * q(Quantity::kMassB) * e * e * e));
+  Reach reach{0.1};
+  reach.brought = 0.4;
+  reach.mass_b = {0.01, 0.02};
+
+  const Slope slope = largest_slope(cubic, 0.0, 1, reach);
+
+  EXPECT_EQ(slope.uncertainty, nullptr);
+  EXPECT_FALSE(slope.bounded);
+  // The lightest mass is stretched the most, m K e^4 / 4 being all energy; the heaviest is steepest.
+  const double stretched = std::pow(4.0 * 0.4 / (1e4 * 0.01), 0.25);
+  EXPECT_NEAR(slope.stiffness, 3.0 * 1e4 * 0.02 * stretched * stretched, 0.06 * slope.stiffness);
+}
+
 TEST(Slope, OfAnExpressionThatJumpsOrGrowsBeyondAllEnergyIsInUncertainty) {
   const Term d = q(Quantity::kDistance);
   const Term e = q(Quantity::kElongation);
@@ -191,23 +208,25 @@ TEST(Tangent, IsThatOfTheStiffestStateAtTheDistance) {
   touch.states.push_back(touch.states[0]);
   touch.states[1].stiffness = 20.0;
   touch.states[1].viscosity = 0.5;
+  const engine::LawPoint pressed{0.09, 0.09 - 0.1};
+  const engine::LawPoint stretched{0.11, 0.11 - 0.1};
   // dt^2 K + 2 dt Z decides: a short step is nearer to its limit by the viscosity.
-  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09, 1e-3).stiffness, 20.0);
-  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09, 1e-3).viscosity, 0.5);
-  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09, 1.0).stiffness, 100.0);
-  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, 0.1, 0.09, 1.0).viscosity, 0.0);
-  EXPECT_NEAR(plan::stiffest_tangent(state_machine(100.0), 0.1, 0.09, 1e-3).tension, -1.0, 1e-12);
+  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, pressed, 1e-3).stiffness, 20.0);
+  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, pressed, 1e-3).viscosity, 0.5);
+  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, pressed, 1.0).stiffness, 100.0);
+  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, pressed, 1.0).viscosity, 0.0);
+  EXPECT_NEAR(plan::stiffest_tangent(state_machine(100.0), pressed, 1e-3).tension, -1.0, 1e-12);
   // Of a state that is not that of the start, the spring alone counts, and where it is pressed.
-  EXPECT_NEAR(plan::stiffest_tangent(touch, 0.1, 0.09, 1e-3).tension, -0.2, 1e-12);
-  EXPECT_FALSE(plan::stiffest_tangent(touch, 0.1, 0.09, 1e-3).acts);
-  EXPECT_EQ(plan::stiffest_tangent(touch, 0.1, 0.11, 1e-3).tension, 0.0);
-  EXPECT_TRUE(plan::stiffest_tangent(touch, 0.1, 0.09, 1.0).acts);
-  EXPECT_FALSE(plan::stiffest_tangent(touch, 0.1, 0.11, 1.0).acts);
+  EXPECT_NEAR(plan::stiffest_tangent(touch, pressed, 1e-3).tension, -0.2, 1e-12);
+  EXPECT_FALSE(plan::stiffest_tangent(touch, pressed, 1e-3).acts);
+  EXPECT_EQ(plan::stiffest_tangent(touch, stretched, 1e-3).tension, 0.0);
+  EXPECT_TRUE(plan::stiffest_tangent(touch, pressed, 1.0).acts);
+  EXPECT_FALSE(plan::stiffest_tangent(touch, stretched, 1.0).acts);
   // 57.1 in units of depth / diameter^2 at the distance of rest, 2^(1/6) diameters.
   const engine::StateMachine ball = state_machine(0.0, lennard_jones(1.0, 1.0));
   const double rest = std::pow(2.0, 1.0 / 6.0);
-  EXPECT_NEAR(plan::stiffest_tangent(ball, 1.0, rest, 1e-3).stiffness, 57.146, 0.01);
-  EXPECT_NEAR(plan::stiffest_tangent(ball, 1.0, rest, 1e-3).tension, 0.0, 1e-9);
+  EXPECT_NEAR(plan::stiffest_tangent(ball, {rest, rest - 1.0}, 1e-3).stiffness, 57.146, 0.01);
+  EXPECT_NEAR(plan::stiffest_tangent(ball, {rest, rest - 1.0}, 1e-3).tension, 0.0, 1e-9);
 }
 
 }  // namespace

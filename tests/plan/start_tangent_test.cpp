@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/plan/stability/step_bound.h"
+#include "tests/engine/programs.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {
@@ -138,6 +139,27 @@ TEST(StartTangent, IsNotSureOfAPairWhoseViscosityActsAlone) {
   EXPECT_TRUE(std::isinf(StartTangent(scene).diverging_step()));
   scene.state_machines[0].states[0].pulls = true;
   EXPECT_NEAR(StartTangent(scene).diverging_step(), 0.2, 1e-9);  // 2 Z dt / m = 4
+}
+
+TEST(StartTangent, KnowsTheMassesOfExpressions) {
+  // 1000 (0.04 - m) e on a mass of 0.03 kg: 10 N/m, while no mass would have 40.
+  engine::LinkState state;
+  state.elasticity = expression_law(1000.0 * (0.04 - q(engine::Quantity::kMassB)) *
+                                    q(engine::Quantity::kElongation));
+  const NetworkDescription link = mass_on_two(0.0, 0.0, state);
+  const double limit = 2.0 * std::sqrt(0.03 / 10.0);
+  EXPECT_NEAR(StartTangent(link).diverging_step(), limit, 1e-4 * limit);
+
+  NetworkDescription pair = link;
+  pair.state_links.clear();
+  pair.radius = {0.0, 0.0};
+  engine::SetLiaison set;
+  set.set_p = {0};
+  set.set_q = {1};
+  set.range = 10.0;
+  set.rest_length = 0.0;
+  pair.sets = {set};
+  EXPECT_NEAR(StartTangent(pair).diverging_step(), limit, 1e-4 * limit);
 }
 
 TEST(StartTangent, TakesAPowerAtItsRestForFlat) {

@@ -19,6 +19,7 @@
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/reach_limit.h"
+#include "sim_node/plan/stability/start_point.h"
 #include "sim_node/plan/stability/start_tangent.h"
 #include "sim_node/scene/scene.h"
 #include "sim_node/scene/sections/scene_reader.h"
@@ -247,9 +248,8 @@ double fall_of_one_step(const NetworkDescription& network) {
 double stored_at_start(const NetworkDescription& network) {
   double sum = 0.0;
   for (const engine::StateLink& link : network.state_links) {
-    const Vec3 along = network.mats[link.mat_b].position - network.mats[link.mat_a].position;
-    sum += plan::stored_in(network.state_machines[link.state_machine], link.rest_length,
-                           network.dimension == 1 ? along.x() : along.norm());
+    sum += plan::stored_in(network.state_machines[link.state_machine],
+                           plan::start_point(network, link));
   }
   return sum;
 }
@@ -385,8 +385,8 @@ TEST(RandomScenes, CertifiedRunsStayBounded) {
 }
 
 /// A state machine of one state, the stiffest of a link where it starts, as StartTangent takes it.
-engine::StateMachine stiffest_alone(const engine::StateMachine& all, double rest_length,
-                                    double distance, double step) {
+engine::StateMachine stiffest_alone(const engine::StateMachine& all, const engine::LawPoint& point,
+                                    double step) {
   engine::StateMachine stiffest;
   double largest = -std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < all.states.size(); ++s) {
@@ -394,8 +394,8 @@ engine::StateMachine stiffest_alone(const engine::StateMachine& all, double rest
     one.states = {all.states[s]};
     engine::LinkState& state = one.states[0];
     state.first_exit = state.last_exit = 0;
-    const plan::Tangent own = plan::stiffest_tangent(one, rest_length, distance, step);
-    const double touching = 1e-6 * std::abs(own.stiffness) * std::abs(distance);
+    const plan::Tangent own = plan::stiffest_tangent(one, point, step);
+    const double touching = 1e-6 * std::abs(own.stiffness) * std::abs(point.distance);
     const bool acts = own.acts && (state.pulls || own.tension < -touching) &&
                       (state.pushes || own.tension > touching);
     if (s != all.start || !acts) {
@@ -403,7 +403,7 @@ engine::StateMachine stiffest_alone(const engine::StateMachine& all, double rest
       state.pulls = state.pushes = true;
       state.force_limit = std::numeric_limits<double>::infinity();
     }
-    const plan::Tangent tangent = plan::stiffest_tangent(one, rest_length, distance, step);
+    const plan::Tangent tangent = plan::stiffest_tangent(one, point, step);
     const double number = step * step * tangent.stiffness + 2.0 * step * tangent.viscosity;
     if (number <= largest) continue;
     largest = number;
@@ -430,10 +430,8 @@ std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double
   for (engine::Mat& mat : network.mats) mat.velocity.setZero();
   std::vector<engine::StateMachine> alone;
   for (engine::StateLink& link : network.state_links) {
-    const Vec3 along = network.mats[link.mat_b].position - network.mats[link.mat_a].position;
-    alone.push_back(stiffest_alone(network.state_machines[link.state_machine], link.rest_length,
-                                   network.dimension == 1 ? along.x() : along.norm(),
-                                   network.step));
+    alone.push_back(stiffest_alone(network.state_machines[link.state_machine],
+                                   plan::start_point(network, link), network.step));
     link.state_machine =
         static_cast<std::uint32_t>(network.state_machines.size() + alone.size() - 1);
   }

@@ -2,12 +2,14 @@
 #include "sim_node/plan/stability/liaison_graph.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "sim_node/plan/stability/partner_bound.h"
 #include "sim_node/plan/stability/start_pairs.h"
+#include "sim_node/plan/stability/start_point.h"
 
 namespace cordis::plan {
 namespace {
@@ -86,19 +88,39 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   graph.crowds.push_back(std::move(side));
 }
 
+/// A pair of a set at a distance, for each two of the lightest and heaviest masses it may have.
+std::array<engine::LawPoint, 4> points_at(double distance, double rest_length, const Reach& reach) {
+  const auto point = [&](double mass_a, double mass_b) {
+    return engine::LawPoint{distance, distance - rest_length, 0.0, mass_a, mass_b};
+  };
+  return {point(reach.mass_a.low, reach.mass_b.low), point(reach.mass_a.low, reach.mass_b.high),
+          point(reach.mass_a.high, reach.mass_b.low), point(reach.mass_a.high, reach.mass_b.high)};
+}
+
 /// True if a pair in the state of its start still pulls or pushes where it crosses its range, with
 /// more than a tenth of what the largest slope would over the whole range.
 bool jumps_at_range(const engine::StateMachine& state_machine, double rest_length, double range,
-                    double largest_slope) {
+                    const Reach& reach, double largest_slope) {
   constexpr double kShare = 0.1;
   constexpr double kJustWithin = 1.0 - 1e-9;
   const engine::LinkState& state = state_machine.states[state_machine.start];
-  const double distance = kJustWithin * range;
-  double tension = state.stiffness * (distance - rest_length) +
-                   elastic_tension(state.elasticity, {distance, distance - rest_length});
-  tension = std::clamp(tension, state.pushes ? -state.force_limit : 0.0,
-                       state.pulls ? state.force_limit : 0.0);
-  return std::abs(tension) > kShare * largest_slope * range;
+  const auto points = points_at(kJustWithin * range, rest_length, reach);
+  return std::any_of(points.begin(), points.end(), [&](const engine::LawPoint& point) {
+    const double tension =
+        std::clamp(state.stiffness * point.elongation + elastic_tension(state.elasticity, point),
+                   state.pushes ? -state.force_limit : 0.0, state.pulls ? state.force_limit : 0.0);
+    return std::abs(tension) > kShare * largest_slope * range;
+  });
+}
+
+/// True if the energy of the scene carries no pair of a set that begins within its range beyond it.
+bool is_confined(const engine::StateMachine& state_machine, double rest_length, double range,
+                 const Reach& reach) {
+  const auto points = points_at(range, rest_length, reach);
+  return !reach.held &&
+         std::all_of(points.begin(), points.end(), [&](const engine::LawPoint& point) {
+           return stored_in(state_machine, point) > energy_at(reach);
+         });
 }
 
 void add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
@@ -113,9 +135,7 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const StartPairs near(network, set);
   double stored = 0.0;  // in the pair that stores the most
   for (const StartPair& pair : near.pairs()) {
-    const double own =
-        rest_length_of(network, set, mat_of(set, pair.member_a), mat_of(set, pair.member_b));
-    stored = std::max(stored, stored_in(state_machine, own, pair.distance));
+    stored = std::max(stored, stored_in(state_machine, start_point(network, set, pair)));
   }
   here.energy += stored;
   here.brought += stored;
@@ -125,10 +145,9 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const std::size_t all =
       set.set_q.empty() ? count_p * (count_p - 1) / 2 : count_p * set.set_q.size();
   const bool all_begin_within = near.are_kept() && near.pairs().size() == all;
-  const bool is_confined =
-      all_begin_within && !here.held && stored_in(state_machine, rest, set.range) > energy_at(here);
-  if (!graph.uncertainty && !is_confined &&
-      jumps_at_range(state_machine, rest, set.range, slope.stiffness))
+  if (!graph.uncertainty &&
+      !(all_begin_within && is_confined(state_machine, rest, set.range, here)) &&
+      jumps_at_range(state_machine, rest, set.range, here, slope.stiffness))
     graph.uncertainty = {{LiaisonKind::kSet, index}, "its force jumps at its range"};
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim_node/plan/stability/start_point.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -43,16 +45,32 @@ double energy_at(const Reach& reach) {
 
 namespace {
 
+/// The least and the most that an elasticity pulls at a distance, between any two of the masses of the
+/// reach [N]: the masses stand at their ends.
+Interval tension_between(const engine::Law& law, double distance, double elongation,
+                         const Reach& reach) {
+  Interval all{kNoLimit, -kNoLimit};
+  for (const double mass_a : {reach.mass_a.low, reach.mass_a.high}) {
+    for (const double mass_b : {reach.mass_b.low, reach.mass_b.high}) {
+      const double tension = elastic_tension(law, {distance, elongation, 0.0, mass_a, mass_b});
+      all = {std::min(all.low, tension), std::max(all.high, tension)};
+    }
+  }
+  return all;
+}
+
 /// How far one way a state is stretched by the energy of the reach [m], its tension summed up; infinite
 /// when a thousand times the length of its start does not take it up.
-double stretch_of(const engine::LinkState& state, double rest_length, double energy, double sign,
-                  double scale, double last) {
+double stretch_of(const engine::LinkState& state, double rest_length, const Reach& reach,
+                  double sign, double scale, double last) {
   constexpr double kGrowth = 1.05;
   constexpr double kFarthest = 1e3;
   const auto tension = [&](double argument) {
     const double e = sign * argument;
-    return sign * (state.stiffness * e + elastic_tension(state.elasticity, {e + rest_length, e}));
+    const Interval law = tension_between(state.elasticity, e + rest_length, e, reach);
+    return sign * state.stiffness * e + (sign > 0.0 ? law.low : -law.high);
   };
+  const double energy = energy_at(reach);
   double stored = 0.0;
   double before = 0.0;
   for (double argument = 1e-9 * scale; argument < kFarthest * scale; argument *= kGrowth) {
@@ -74,11 +92,10 @@ Stretch stretch_within(const engine::LinkState& state, double rest_length, bool 
                        const Reach& reach) {
   constexpr double kSmallest = 1e-3;  // [m]
   const double scale = std::max({reach.elongation, std::abs(rest_length), kSmallest});
-  const double energy = energy_at(reach);
   Stretch stretch;
   const double nearest = turns ? std::max(rest_length, 0.0) : kNoLimit;
-  stretch.longer = stretch_of(state, rest_length, energy, 1.0, scale, kNoLimit);
-  stretch.shorter = stretch_of(state, rest_length, energy, -1.0, scale, nearest);
+  stretch.longer = stretch_of(state, rest_length, reach, 1.0, scale, kNoLimit);
+  stretch.shorter = stretch_of(state, rest_length, reach, -1.0, scale, nearest);
   for (double* way : {&stretch.longer, &stretch.shorter}) {
     stretch.confined = stretch.confined && std::isfinite(*way);
     if (!std::isfinite(*way) || reach.held)
@@ -196,8 +213,9 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   }
   if (turns && state.pulls) {
     const double nearest = 1e-9 * std::max({reach.elongation, std::abs(rest_length), 1e-6});
-    const double tension = state.stiffness * (nearest - rest_length) +
-                           elastic_tension(state.elasticity, {nearest, nearest - rest_length});
+    const double elongation = nearest - rest_length;
+    const double tension = state.stiffness * elongation +
+                           tension_between(state.elasticity, nearest, elongation, reach).high;
     constexpr double kRounding = 1.001;
     if (tension > kRounding * slope.stiffness * nearest) {
       slope.bounded = false;
@@ -232,18 +250,13 @@ double energy_brought(const engine::NetworkDescription& network) {
     energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
     weight += mat.mass * network.gravity_on(mat).norm();
   }
-  const auto length = [&](std::uint32_t a, std::uint32_t b) {
-    const engine::Vec3 along = network.mats[b].position - network.mats[a].position;
-    return network.dimension == 1 ? along.x() : along.norm();
-  };
   for (const engine::Link& link : network.links) {
-    const double e = length(link.mat_a, link.mat_b) - link.rest_length;
+    const double e = distance_at_start(network, link.mat_a, link.mat_b) - link.rest_length;
     energy += 0.5 * link.stiffness * e * e;
   }
   for (const engine::StateLink& link : network.state_links) {
     const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
-    const double distance = length(link.mat_a, link.mat_b);
-    energy += stored_in(state_machine, link.rest_length, distance);
+    energy += stored_in(state_machine, start_point(network, link));
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     energy += 0.5 * link.start_force * link.start_force / link.stiffness;
@@ -253,13 +266,13 @@ double energy_brought(const engine::NetworkDescription& network) {
 
 }  // namespace
 
-double stored_in(const engine::StateMachine& state_machine, double rest_length, double distance) {
+double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
   const engine::LinkState& state = state_machine.states[state_machine.start];
-  const double e = distance - rest_length;
-  const double tension = elastic_tension(state.elasticity, {distance, e});
+  const double e = point.elongation;
+  const double tension = elastic_tension(state.elasticity, point);
   if (!acts_at(state, state.stiffness * e + tension)) return 0.0;
-  const double in_law = stores_energy(state.elasticity) ? potential(state.elasticity, {distance, e})
-                                                        : std::abs(tension * e);
+  const double in_law =
+      stores_energy(state.elasticity) ? potential(state.elasticity, point) : std::abs(tension * e);
   return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
 }
 
@@ -291,10 +304,10 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
   return largest;
 }
 
-Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_length,
-                         double distance, double step) {
-  const double elongation = distance - rest_length;
-  const double scale = std::max(std::abs(distance), 1e-6);
+Tangent stiffest_tangent(const engine::StateMachine& state_machine, const engine::LawPoint& point,
+                         double step) {
+  const double elongation = point.elongation;
+  const double scale = std::max(std::abs(point.distance), 1e-6);
   const auto rise = [scale](const auto& tension, double argument) {  // of a kink, the flatter side
     double flattest = kNoLimit;
     for (const double nearby : {1e-6 * scale, 1e-9 * scale}) {
@@ -308,11 +321,15 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const engine::LinkState& state = state_machine.states[s];
     const auto elastic = [&](double e) {
-      return elastic_tension(state.elasticity, {e + rest_length, e});
+      engine::LawPoint stretched = point;
+      stretched.distance += e - elongation;
+      stretched.elongation = e;
+      return elastic_tension(state.elasticity, stretched);
     };
     const auto viscous = [&](double speed) {
-      return viscous_tension(state.dissipation, {distance, elongation, speed}) +
-             elastic_tension(state.elasticity, {distance, elongation, speed});
+      engine::LawPoint moving = point;
+      moving.speed = speed;
+      return viscous_tension(state.dissipation, moving) + elastic_tension(state.elasticity, moving);
     };
     // Nothing is known of the pose in which another state is entered, nor where a link acts again.
     const double tension = state.stiffness * elongation + elastic(elongation);

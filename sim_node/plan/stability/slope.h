@@ -38,12 +38,12 @@ struct Slope {
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach);
 
-/// What a liaison stores at a distance in the state of its start [J], 0 where it does not act; of an
+/// What a liaison stores at a point in the state of its start [J], 0 where it does not act; of an
 /// expression, which has no closed form, the product of its tension and elongation.
-double stored_in(const engine::StateMachine& state_machine, double rest_length, double distance);
+double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point);
 
-/// The tangent of a liaison at one distance of its ends and no speed, in the state that is the
-/// stiffest at a step. Laws count in the state of the start alone.
+/// The tangent of a liaison at one point without speed, in the state that is the stiffest at a step.
+/// Laws count in the state of the start alone.
 struct Tangent {
   double stiffness = 0.0;  ///< along the link, below 0 where a law falls [N/m]
   double viscosity = 0.0;  ///< likewise [N s/m]
@@ -51,8 +51,8 @@ struct Tangent {
   bool acts = false;       ///< the state is that of the start, neither let go of nor at its limit
 };
 
-Tangent stiffest_tangent(const engine::StateMachine& state_machine, double rest_length,
-                         double distance, double step);
+Tangent stiffest_tangent(const engine::StateMachine& state_machine, const engine::LawPoint& point,
+                         double step);
 
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the
 /// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.

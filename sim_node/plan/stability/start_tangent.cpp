@@ -13,6 +13,7 @@
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
+#include "sim_node/plan/stability/start_point.h"
 #include "sim_node/plan/stability/step_bound.h"
 
 namespace cordis::plan {
@@ -20,10 +21,10 @@ namespace {
 
 using Columns = Eigen::Matrix3Xd;
 
-constexpr int kRounds = 40;          // of the step, each from the direction found in the last one
+constexpr int kStepRounds = 40;      // of the step, each from the direction found in the last one
 constexpr int kMaxIterations = 400;  // in one round
 constexpr int kFewestIterations = 24;
-constexpr double kWork = 1e7;  // iterations times links
+constexpr double kClimbWork = 1e7;  // iterations times links
 constexpr double kTolerance = 1e-7;
 constexpr double kFlat = 1e-14;
 constexpr double kNoStep = 1e-300;  // [s]
@@ -125,12 +126,8 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   }
   const LimitWeights weights = limit_weights(network, Limit::kDiverging);
   medium_viscosity_ *= weights.link_viscosity;
-  const auto distance = [&](std::uint32_t a, std::uint32_t b) {
-    const Eigen::Vector3d along = network.mats[b].position - network.mats[a].position;
-    return network.dimension == 1 ? along.x() : along.norm();
-  };
   for (const engine::Link& link : network.links) {
-    const double elongation = distance(link.mat_a, link.mat_b) - link.rest_length;
+    const double elongation = distance_at_start(network, link.mat_a, link.mat_b) - link.rest_length;
     const double stiffness = weights.link_stiffness * link.stiffness;
     if (link.isotropic) {
       add_vector_spring(link, stiffness, weights.link_viscosity * link.viscosity);
@@ -143,9 +140,8 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   }
   std::uint32_t index = 0;
   for (const engine::StateLink& link : network.state_links) {
-    const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
-    const double length = distance(link.mat_a, link.mat_b);
-    const Tangent tangent = stiffest_tangent(state_machine, link.rest_length, length, network.step);
+    const Tangent tangent = stiffest_tangent(network.state_machines[link.state_machine],
+                                             start_point(network, link), network.step);
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
         weights.stiffness * tangent.tension,
         weights.viscosity_of_state_link(index++) * tangent.viscosity, 0.0);
@@ -168,12 +164,10 @@ void StartTangent::add_set(const engine::NetworkDescription& network, const engi
   start.states[0].first_exit = start.states[0].last_exit = 0;
   const StartPairs near(network, set);
   for (const StartPair& pair : near.pairs()) {
-    const std::uint32_t a = mat_of(set, pair.member_a);
-    const std::uint32_t b = mat_of(set, pair.member_b);
-    const Tangent tangent =
-        stiffest_tangent(start, rest_length_of(network, set, a, b), pair.distance, network.step);
+    const Tangent tangent = stiffest_tangent(start, start_point(network, set, pair), network.step);
     if (!surely_acts(start.states[0], tangent, pair.distance)) continue;
-    add(a, b, network, stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
+    add(mat_of(set, pair.member_a), mat_of(set, pair.member_b), network,
+        stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
         viscosity_weight * tangent.viscosity, 0.0);
   }
 }
@@ -252,10 +246,11 @@ double StartTangent::diverging_step() const {
   // direction, each time at that step, it comes down to it.
   double step = 0.0;
   bool is_sure = true;
-  int left = std::max(
-      kFewestIterations,
-      static_cast<int>(kWork / static_cast<double>(parts_.size() + root_of_inverse_mass_.size())));
-  for (int round = 0; round < kRounds; ++round) {
+  int left =
+      std::max(kFewestIterations,
+               static_cast<int>(kClimbWork /
+                                static_cast<double>(parts_.size() + root_of_inverse_mass_.size())));
+  for (int round = 0; round < kStepRounds; ++round) {
     const double period = std::max(step, kNoStep);  // a Maxwell element is softer at a larger step
     const double stiffness = dot(x, times(x, 1.0, 0.0, period));
     const double viscosity = dot(x, times(x, 0.0, 1.0, period));
