@@ -97,6 +97,11 @@ CORDIS_PAYLOAD(SceneSignals)
 CORDIS_PAYLOAD(SceneSound)
 CORDIS_PAYLOAD(SceneEvents)
 CORDIS_PAYLOAD(SceneInputs)
+CORDIS_PAYLOAD(ControlCommand)
+CORDIS_PAYLOAD(ControlReply)
+CORDIS_PAYLOAD(NodeStatus)
+CORDIS_PAYLOAD(PointerTarget)
+CORDIS_PAYLOAD(PointerState)
 #undef CORDIS_PAYLOAD
 
 }  // namespace cordis::dds

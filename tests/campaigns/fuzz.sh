@@ -49,10 +49,17 @@ for target in "${targets[@]}"; do
   mkdir -p "$folder/corpus/$target" "$folder/found/$target"
   log=$folder/$target.log
   result=nothing
+  more=() # files that Cordis has anyway, and the words of a language
+  case $target in
+    scene) more=("$root/launch_configs/scenes" "$root/launch_configs/liaisons") ;;
+    device) more=("$root/launch_configs/devices") ;;
+  esac
+  words=$root/tests/fuzz/words/$target
+  if [[ -e $words ]]; then more=("-dict=$words" "${more[@]}"); fi
   began=$SECONDS
   nice -n 10 "$root/build/fuzz/bin/fuzz_$target" -runs="$runs" -max_total_time="$longest" -seed="$seed" \
     -timeout=1 -rss_limit_mb=1024 -max_len=16384 -print_final_stats=1 -verbosity=0 \
-    -artifact_prefix="$folder/found/$target/" "$folder/corpus/$target" "$root/tests/fuzz/corpus/$target" \
+    -artifact_prefix="$folder/found/$target/" "$folder/corpus/$target" "$root/tests/fuzz/corpus/$target" "${more[@]}" \
     >"$log" 2>&1 </dev/null || { result="found: see $log"; found=1; }
   stat_of() { sed -n "s/^stat::$1: *//p" "$log" | tail -n 1; }
   printf '%-14s %12s %10s %8s  %s\n' "$target" "$(stat_of number_of_executed_units)" "$((SECONDS - began))" \

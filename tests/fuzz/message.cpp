@@ -30,7 +30,9 @@ constexpr std::array kReadAndWrite{
     read_and_write<msg::DeviceDescription>, read_and_write<msg::SceneDescription>,
     read_and_write<msg::SceneFrame>,        read_and_write<msg::SceneSignals>,
     read_and_write<msg::SceneSound>,        read_and_write<msg::SceneEvents>,
-    read_and_write<msg::SceneInputs>,
+    read_and_write<msg::SceneInputs>,       read_and_write<msg::ControlCommand>,
+    read_and_write<msg::ControlReply>,      read_and_write<msg::NodeStatus>,
+    read_and_write<msg::PointerTarget>,     read_and_write<msg::PointerState>,
 };
 
 }  // namespace

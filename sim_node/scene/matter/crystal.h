@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_node/scene/limit_divisor.h"
 #include "sim_node/scene/matter/region.h"
 
 namespace cordis::scene {
@@ -35,7 +36,7 @@ struct Crystal {
 };
 
 /// The most points between opposite corners of which a crystal may be cut.
-inline constexpr double kMaxSites = 8.0e6;
+inline constexpr double kMaxSites = 8.0e6 / kLimitDivisor;
 
 /// A block with `counts` points along each axis, the first of them at `corner`.
 Crystal crystal_block(const Structure& structure, double spacing, const engine::Vec3& corner,

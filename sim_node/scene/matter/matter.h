@@ -3,11 +3,12 @@
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/limit_divisor.h"
 #include "sim_node/scene/matter/generated_matter.h"
 
 namespace cordis::scene {
 
-inline constexpr long kMaxMats = 1'000'000;  ///< of a scene
+inline constexpr long kMaxMats = 1'000'000 / kLimitDivisor;  ///< of a scene
 
 /// Reads one entry of `matter:`, its kind and the keys of the kind. Whatever is wrong is a problem;
 /// then the result is not to be used.

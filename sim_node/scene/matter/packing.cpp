@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim_node/scene/limit_divisor.h"
+
 namespace cordis::scene {
 
 namespace {
@@ -13,7 +15,8 @@ namespace {
 using engine::Vec3;
 
 constexpr int kMaxRounds = 3000;
-constexpr double kMaxPushes = 4.0e9;      // looks at a pair, of all rounds together: some 40 s
+constexpr double kMaxPushes =
+    4.0e9 / kLimitDivisor;                // looks at a pair, of all rounds together: some 40 s
 constexpr std::size_t kManyBalls = 1000;  // the shape of the region counts little
 constexpr int kRoundsBetweenLooks = 100;
 constexpr double kJammed = 0.82;   // of the overlap is left between two looks; where balls settle,

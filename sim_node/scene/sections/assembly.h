@@ -11,6 +11,7 @@
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/scene/liaisons/liaison.h"
+#include "sim_node/scene/limit_divisor.h"
 #include "sim_node/scene/matter/generated_matter.h"
 #include "sim_node/scene/matter/placement.h"
 #include "sim_node/scene/scene.h"
@@ -19,15 +20,18 @@
 
 namespace cordis::scene {
 
-inline constexpr std::size_t kMaxLinks = 8'000'000;       ///< of a scene
-inline constexpr std::size_t kMaxDevices = 64;            ///< of a scene
-inline constexpr std::size_t kMaxSets = 1'000;            ///< liaisons of sets of a scene
-inline constexpr std::size_t kMaxSetMembers = 2'000'000;  ///< of all sets together
-inline constexpr std::size_t kMaxSetPairs = 8'000'000;    ///< in range at the start, of all sets
+inline constexpr std::size_t kMaxLinks = 8'000'000 / kLimitDivisor;  ///< of a scene
+inline constexpr std::size_t kMaxDevices = 64;                       ///< of a scene
+inline constexpr std::size_t kMaxSets = 1'000;  ///< liaisons of sets of a scene
+inline constexpr std::size_t kMaxSetMembers = 2'000'000 / kLimitDivisor;  ///< of all sets together
+inline constexpr std::size_t kMaxSetPairs =
+    8'000'000 / kLimitDivisor;  ///< in range at the start, of all sets
 inline constexpr std::size_t kMaxSetLooks = 64 * kMaxSetPairs;  ///< StartPairCount::looked_at
-inline constexpr std::size_t kMaxPartUses = 100'000;       ///< of a scene, each copy for itself
-inline constexpr std::size_t kMaxPartLevels = 64;          ///< of parts within each other
-inline constexpr std::size_t kMaxPartValues = 10'000'000;  ///< of the file, in all copies of parts
+inline constexpr std::size_t kMaxPartUses =
+    100'000 / kLimitDivisor;                       ///< of a scene, each copy for itself
+inline constexpr std::size_t kMaxPartLevels = 64;  ///< of parts within each other
+inline constexpr std::size_t kMaxPartValues =
+    10'000'000 / kLimitDivisor;  ///< of the file, in all copies of parts
 
 /// How many links of each kind there are, by LinkKind.
 using LinkCounts = std::array<std::uint32_t, kLinkKindCount>;
