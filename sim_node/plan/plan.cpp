@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -19,8 +20,7 @@
 namespace cordis::plan {
 namespace {
 
-constexpr double kCertainContact = 1.0;    // K'
-constexpr double kCertainVariation = 1.0;  // likewise
+constexpr double kCertainBend = 1.0;  // K'
 
 double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mats) {
   double most = 0.0;  // of 1 / m
@@ -179,14 +179,23 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
         "its friction is solved beside implicit dampers, for which no limit is known"};
   }
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
-  if (contact && contact->stiffness > kCertainContact) {
+  const double touch = contact ? contact->stiffness : 0.0;
+  if (touch > kCertainBend) {
     return Uncertainty{contact->liaison, "each touch of it may gain energy, for its K' is above 1"};
   }
   const std::optional<VaryingSlope> varying = varying_slope_of(network, graph);
-  if (!varying || varying->stiffness <= kCertainVariation) return {};
-  return Uncertainty{
-      varying->liaison,
-      "each passage over its bend may gain energy, for its K' varies by more than 1"};
+  const double variation = varying ? varying->stiffness : 0.0;
+  if (variation > kCertainBend) {
+    return Uncertainty{
+        varying->liaison,
+        "each passage over its bend may gain energy, for its K' varies by more than 1"};
+  }
+  constexpr double kCertainBesideAll = 0.25 * kCertainBend;  // no vibration has more than K' = 4
+  if (std::max(touch, variation) <= kCertainBesideAll) return {};
+  if (std::max(touch, variation) * stiffest_vibration(network, graph) <= kCertainBend) return {};
+  return Uncertainty{touch > variation ? contact->liaison : varying->liaison,
+                     "it may gain energy from a stiff vibration beside it, for the product of what "
+                     "its K' varies by and the K' of that is above 1"};
 }
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
@@ -259,6 +268,20 @@ std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& n
              lightest(graph, crowd.members) + lightest(graph, crowd.others));
   }
   return most;
+}
+
+double stiffest_vibration(const engine::NetworkDescription& network, LiaisonGraph graph) {
+  constexpr double kMaxNumber = 4.0;
+  LimitWeights weights = limit_weights(network, Limit::kStable);
+  if (network.integrator == engine::IntegratorKind::kImplicit) {
+    weights.link_stiffness = weights.stiffness;
+  }
+  graph.set_step(network, network.step);
+  graph = weighted(std::move(graph), weights);
+  graph.medium_viscosity = 0.0;
+  for (Edge& edge : graph.edges) edge.viscosity = 0.0;
+  for (ContactBound& crowd : graph.crowds) crowd.viscosity = 0.0;
+  return std::min(row_weights(graph, network.step).number, kMaxNumber);
 }
 
 Plan plan_of(const engine::NetworkDescription& network, double band_hz) {

@@ -78,6 +78,10 @@ struct VaryingSlope {
 std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& network,
                                              const LiaisonGraph& graph);
 
+/// An upper bound of K' = dt^2 K over all vibrations, dampers left out: 4 is the limit of the
+/// integrator, and what it solves implicitly counts as 4 at most. O(liaisons).
+double stiffest_vibration(const engine::NetworkDescription& network, LiaisonGraph graph);
+
 /// The promises for one network at its step.
 struct Plan {
   Stability stability;

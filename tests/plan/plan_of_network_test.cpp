@@ -129,6 +129,27 @@ TEST(Plan, IsNotCertainOfALawThatBendsTooSharplyForItsStep) {
   EXPECT_LT(growth(20.0), 0.2);
 }
 
+TEST(Plan, IsNotCertainOfABendBesideAStiffVibration) {
+  // A mass on a spring, with a stop that it just touches, K' of both: a third of a turn in a step
+  // passes the bend in step with itself.
+  const auto scene_at = [](double spring, double stop) {
+    NetworkDescription scene =
+        mass_on_law(1, 1.0, Vec3(0.11, 0, 0), Vec3::Zero(), contact(stop), 0.1);
+    scene.step = 1.0;
+    scene.links = {{0, 1, spring, 0.0, 0.1}};
+    return scene;
+  };
+  const auto holds = [&](double spring, double stop) {
+    return plan_of(scene_at(spring, stop), 1e-3).stability.holds();
+  };
+  EXPECT_FALSE(holds(2.6, 0.8));
+  EXPECT_GT(largest_excursion(scene_at(2.6, 0.8), 2000), 1e3);
+  EXPECT_TRUE(holds(0.3, 0.8));
+  EXPECT_LT(largest_excursion(scene_at(0.3, 0.8), 20000), 0.2);
+  EXPECT_TRUE(holds(2.6, 0.2));
+  EXPECT_LT(largest_excursion(scene_at(2.6, 0.2), 20000), 0.2);
+}
+
 TEST(Plan, IsNotCertainOfAMaxwellElementThatStartsTooStrong) {
   NetworkDescription scene;
   scene.dimension = 2;

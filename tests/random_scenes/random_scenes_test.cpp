@@ -65,14 +65,15 @@ World world_of(const NetworkDescription& network,
 }
 
 /// A hand that moves the port of a scene to and fro, slower than 0.5 m/s and within 20 mm, or pushes
-/// it with 0.1 N.
+/// it with 0.1 N. It begins at rest: short steps do not resolve a sudden speed.
 void play(const scene::Scene& scene, World& world, int n) {
   constexpr double kPeriod = 2000.0;  // [steps]
   const double turn = 2.0 * M_PI * n / kPeriod;
-  const double width = std::min(0.02, 0.5 * kPeriod * world.network().step() / (2.0 * M_PI));
+  const double width = std::min(0.01, 0.5 * kPeriod * world.network().step() / (2.0 * M_PI));
   for (const scene::Port& port : scene.ports) {
     if (port.role == scene::Role::kMass) {
-      world.impose_position(port.mat, port.rest + width * std::sin(turn) * port.directions[0]);
+      world.impose_position(port.mat,
+                            port.rest + width * (1.0 - std::cos(turn)) * port.directions[0]);
     } else {
       world.set_external_force(port.mat, 0.1 * std::sin(turn) * port.directions[0]);
     }
@@ -125,6 +126,10 @@ std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double
     }
     const auto varying = plan::varying_slope_of(network, graph);
     if (varying) step = std::min(step, part * network.step / std::sqrt(varying->stiffness));
+    const double bend =
+        std::max(contact ? contact->stiffness : 0.0, varying ? varying->stiffness : 0.0);
+    const double product = bend * plan::stiffest_vibration(network, graph);
+    if (product > 0.0) step = std::min(step, part * network.step / std::sqrt(std::sqrt(product)));
     if (std::abs(step - network.step) < 1e-9 * step) {
       return stability.holds() ? std::optional(network) : std::nullopt;
     }
