@@ -75,7 +75,8 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
   cordis::dds::Participant participant(start.config());
   cordis::dds::Participant for_loop = start.join_for_force_loop();
   cordis::node::CommandListener commands(
-      participant, cordis::msg::KIND_DEVICE_NODE, [](const cordis::msg::ControlCommand& command) {
+      participant, cordis::msg::KIND_DEVICE_NODE, start.command_guard(),
+      [](const cordis::msg::ControlCommand& command) {
         return cordis::node::nothing_to_do(command, cordis::msg::KIND_DEVICE_NODE);
       });
   commands.start();

@@ -16,11 +16,12 @@ constexpr std::chrono::milliseconds kLookAtWork{10};
 
 }  // namespace
 
-CommandListener::CommandListener(dds::Participant& participant, msg::NodeKind kind, Execute execute,
-                                 FindWork find_work)
+CommandListener::CommandListener(dds::Participant& participant, msg::NodeKind kind,
+                                 CommandGuard guard, Execute execute, FindWork find_work)
     : reader_(participant, dds::Topic::kCommand),
       writer_(participant, dds::Topic::kReply),
-      server_(participant.config().node, kind, std::move(execute), std::move(find_work)) {}
+      server_(participant.config().node, kind, std::move(execute), std::move(find_work),
+              std::move(guard)) {}
 
 CommandListener::~CommandListener() {
   ending_ = true;

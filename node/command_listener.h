@@ -16,8 +16,9 @@ namespace cordis::node {
 /// part of a command has another one. Create it before raising the priority of any thread.
 class CommandListener {
  public:
-  CommandListener(dds::Participant& participant, msg::NodeKind kind, Execute execute,
-                  FindWork find_work = {});
+  /// @param guard  which commands are executed
+  CommandListener(dds::Participant& participant, msg::NodeKind kind, CommandGuard guard,
+                  Execute execute, FindWork find_work = {});
   /// Waits until the command being executed, if any, is done.
   ~CommandListener();
   CommandListener(const CommandListener&) = delete;

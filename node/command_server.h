@@ -9,6 +9,7 @@
 #include <string>
 
 #include "idl/control.h"
+#include "node/command_guard.h"
 
 namespace cordis::node {
 
@@ -30,12 +31,14 @@ using FindWork = std::function<Work(const msg::ControlCommand&)>;
 
 /// Picks the commands for one node, and answers each. A sender that receives no reply sends the
 /// same command again: it is answered again, and not executed again. Other commands overtake one
-/// with a long part, but for a second long one, which is refused.
+/// with a long part, but for a second long one, which is refused. What the guard refuses is answered
+/// and forgotten, so that a stranger takes no number away from a sender with the key.
 class CommandServer {
  public:
   static constexpr std::size_t kRemembered = 64;
 
-  CommandServer(std::string node, msg::NodeKind kind, Execute execute, FindWork find_work = {});
+  CommandServer(std::string node, msg::NodeKind kind, Execute execute, FindWork find_work = {},
+                CommandGuard guard = {});
 
   /// The reply to a command; nothing when it is for others, or when its long part has begun.
   [[nodiscard]] std::optional<msg::ControlReply> take(const msg::ControlCommand& command);
@@ -46,13 +49,16 @@ class CommandServer {
   [[nodiscard]] std::optional<msg::ControlReply> take_finished();
 
  private:
-  msg::ControlReply reply_to(const msg::ControlCommand& command,
-                             const std::function<Answer()>& execute);
+  msg::ControlReply reply_to(const msg::ControlCommand& command, Answer answer) const;
+  /// Executes a command, and remembers the reply.
+  msg::ControlReply execute(const msg::ControlCommand& command,
+                            const std::function<Answer()>& execute);
 
   std::string node_;
   msg::NodeKind kind_;
   Execute execute_;
   FindWork find_work_;
+  CommandGuard guard_;
   std::deque<msg::ControlReply> replies_;  // the newest replies, oldest first
   msg::ControlCommand long_command_;
   std::future<Finish> work_;  // of long_command_; ends before the rest of this

@@ -111,6 +111,7 @@ void join_session(NodeStart& start, std::optional<SessionRegistration>& registra
     if (!warning.empty()) spdlog::warn("{}", warning);
   }
   start.domain = registration ? registration->domain() : *launch.domain;
+  start.key = key_of_session(launch.session, start.domain);
 }
 
 void print_problems(const std::vector<config::Problem>& problems) {
@@ -124,6 +125,10 @@ dds::ParticipantConfig NodeStart::config() const {
                                 launch.clock == config::Clock::kLockstep, launch.has_standbys()};
   config.network = network;
   return config;
+}
+
+CommandGuard NodeStart::command_guard() const {
+  return {key, launch.session, {node->name, epoch}};
 }
 
 dds::Participant NodeStart::join_for_force_loop() const {

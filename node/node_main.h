@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "node/command_guard.h"
 #include "node/config/launch.h"
 #include "node/dds/network.h"
 #include "node/dds/participant.h"
@@ -19,7 +21,11 @@ struct NodeStart {
   dds::Network network{};                    ///< what `network:` means on this host
   std::uint64_t epoch = 0;  ///< identifies this life of the process: its start time [ns]
 
+  std::optional<SessionKey> key{};  ///< of the session, when it has one
+
   dds::ParticipantConfig config() const;
+  /// Lets pass what may command this node.
+  CommandGuard command_guard() const;
 
   /// Joins the session once more, for the force loop alone. A participant has locks that all its
   /// writers and readers share: here only the loop and the threads of DDS take them, so that the

@@ -15,6 +15,7 @@
 #include "node/dds/process_identity.h"
 #include "node/domain_lock.h"
 #include "node/runtime_folder.h"
+#include "node/session_key.h"
 #include "node/session_network.h"
 
 namespace cordis::node {
@@ -66,6 +67,27 @@ SessionRecord read_record(const fs::path& path) {
   return record;
 }
 
+/// Removes the file of a session and that of its key.
+void remove_files(fs::path file) {
+  fs::remove(file);
+  fs::remove(file.replace_extension(".key"));
+}
+
+/// Gives a session its key. The lock of the folder must be held.
+/// @param is_new  no process of it lives
+void make_key(const fs::path& folder, const SessionRecord& record, bool is_new) {
+  const fs::path registered = registered_key_file(folder, record.session, record.domain);
+  const fs::path chosen = chosen_key_file();
+  const bool has_key = !is_new && fs::exists(registered);
+  if (has_key && chosen.empty()) return;
+  const SessionKey key = chosen.empty() ? SessionKey::random() : read_key_file(chosen);
+  if (!has_key) return write_key_file(registered, key);
+  if (read_key_file(registered) == key) return;
+  throw std::runtime_error("session '" + record.session + "' of domain " +
+                           std::to_string(record.domain) + " runs with another key than that of " +
+                           chosen.string());
+}
+
 /// Replaces the file at once: whoever reads it sees the old text or the new.
 void write_record(const fs::path& folder, const SessionRecord& record) {
   std::string launch_file = record.launch_file;
@@ -92,7 +114,7 @@ std::vector<SessionRecord> read_records(const fs::path& folder) {
     if (entry.path().extension() != kSuffix) continue;
     SessionRecord record = read_record(entry.path());
     if (record.members.empty()) {
-      fs::remove(entry.path());
+      remove_files(entry.path());
     } else {
       records.push_back(std::move(record));
     }
@@ -222,6 +244,7 @@ SessionRegistration::SessionRegistration(fs::path folder, const SessionRequest& 
     if (request.simulates) refuse_beside_a_player(record);
     refuse_same_nodes(record, request.nodes);
     refuse_other_network(record, request.network);
+    if (request.has_key) make_key(folder_, record, record.members.empty());
     record.members.push_back({getpid(), dds::process_identity(), request.nodes, request.is_player});
     write_record(folder_, record);
   } catch (...) {
@@ -253,7 +276,7 @@ void SessionRegistration::change_own_member(
       std::erase_if(record.members,
                     [](const SessionMember& member) { return member.process == 0; });
       if (record.members.empty()) {
-        fs::remove(file_of(folder_, session_, domain_));
+        remove_files(file_of(folder_, session_, domain_));
       } else {
         write_record(folder_, record);
       }

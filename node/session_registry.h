@@ -50,6 +50,8 @@ struct SessionRequest {
   bool is_player = false;  ///< plays a take: refused with SessionRuns where the session runs
   bool simulates = false;  ///< has a sim_node or a device_node: refused where a take is played
   dds::Network network{};
+  /// Commands of the session need a key: that of chosen_key_file() or a new one, unless it has one.
+  bool has_key = false;
 };
 
 /// True if a node of this program writes what a take has of a session: scene, hand or answers.

@@ -142,7 +142,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
     const node::StatusPublisher publisher(
         participant, msg::KIND_RECORD_NODE, start.epoch,
         [&](msg::NodeStatus& status) { fill(status, recorder, file); });
-    node::CommandListener commands(participant, msg::KIND_RECORD_NODE,
+    node::CommandListener commands(participant, msg::KIND_RECORD_NODE, start.command_guard(),
                                    [](const msg::ControlCommand& command) {
                                      return node::nothing_to_do(command, msg::KIND_RECORD_NODE);
                                    });

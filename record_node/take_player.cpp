@@ -154,10 +154,11 @@ struct TakePlayer::Impl {
       throw std::runtime_error(config.take.string() +
                                ": what is to be played again and again has no length");
     jump_to = begin_nsec;
-    status.emplace(participant, msg::KIND_PLAYER,
-                   static_cast<std::uint64_t>(node::monotonic_nsec()),
+    const auto epoch = static_cast<std::uint64_t>(node::monotonic_nsec());
+    status.emplace(participant, msg::KIND_PLAYER, epoch,
                    [this](msg::NodeStatus& said) { fill(said); });
     commands.emplace(participant, msg::KIND_SIM_NODE,
+                     node::CommandGuard(config.key, config.session, {kName, epoch}),
                      [this](const msg::ControlCommand& command) { return execute(command); });
     commands->start();
     thread = std::thread([this] { play(); });

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "node/session_key.h"
+
 namespace cordis::record {
 
 /// How many times as fast as it was recorded a take can be played.
@@ -20,7 +22,8 @@ struct TakePlayerConfig {
   std::filesystem::path take;
   int domain = 0;
   std::string session;
-  double rate = 1.0;  ///< kSlowestRate to kFastestRate
+  std::optional<node::SessionKey> key{};  ///< of the session
+  double rate = 1.0;                      ///< kSlowestRate to kFastestRate
   bool loop = false;
   bool paused = false;                          ///< at the start
   bool waits_for_readers = false;               ///< for one of each topic, before it begins

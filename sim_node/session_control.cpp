@@ -33,7 +33,7 @@ SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
             publish_scene(scene, version);
           }),
       commands_(
-          participant, msg::KIND_SIM_NODE,
+          participant, msg::KIND_SIM_NODE, start.command_guard(),
           [this](const msg::ControlCommand& command) {
             return execute([&] { return executor_.execute(command); });
           },

@@ -208,6 +208,7 @@ TEST(Layering, HeadersOfAForeignLibraryStandInOnePlace) {
         "viz_node/web/websocket_session."}},
       {"Eigen/", {"sim_node/engine/", "sim_node/plan/"}},
       {"CLI/", {"cli/"}},
+      {"openssl/", {"node/session_key.", "node/command_guard."}},
       {"sndfile.h", {"cli/table/"}},
       {"soxr.h", {"cli/table/"}},
       {"ft2build.h", {"viz_node/render/letter_table/"}},

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "idl/control.h"
 #include "node/dds/participant.h"
 #include "node/dds/writer.h"
+#include "node/session_key.h"
 #include "viz_node/page_text.h"
 
 namespace cordis::viz {
@@ -15,8 +18,13 @@ namespace cordis::viz {
 /// Writes control/command for the sim_node of the session. Any thread; does not wait.
 class CommandRelay {
  public:
+  /// @param key  of the session, when it has one
   /// @throws std::runtime_error when DDS refuses
-  CommandRelay(dds::Participant& participant, std::uint64_t epoch);
+  CommandRelay(dds::Participant& participant, std::uint64_t epoch,
+               std::optional<node::SessionKey> key);
+
+  /// A node says that it is there: commands go to the newest life of each sim_node and player.
+  void take(const msg::NodeStatus& status);
 
   void send(const PageCommand& command) noexcept;
 
@@ -24,8 +32,13 @@ class CommandRelay {
   bool is_mine(const msg::ControlReply& reply) const { return reply.sender() == sender_; }
 
  private:
+  static constexpr std::size_t kMaxTargets = 16;
+
+  std::string session_;
   std::string sender_;
+  std::optional<node::SessionKey> key_;
   std::mutex mutex_;
+  std::map<std::string, std::uint64_t> targets_;  // epochs of those that commands are for, by name
   dds::Writer<msg::ControlCommand> writer_;
   std::uint64_t count_ = 0;
 };

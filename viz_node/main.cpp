@@ -73,7 +73,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
           std::to_string(joined.domain));
   dds::Participant participant(joined);
   viz::SceneMirror mirror(config.rate_hz);
-  viz::CommandRelay relay(participant, start.epoch);
+  viz::CommandRelay relay(participant, start.epoch, start.key);
   dds::Writer<msg::PointerTarget> targets(participant, dds::Topic::kPointerTarget);
   viz::PointerDesk pointers(start.epoch, [&targets](msg::PointerTarget& target) {
     static_cast<void>(targets.write(target));  // the next one replaces it
@@ -90,7 +90,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   const node::StatusPublisher publisher(
       participant, msg::KIND_VIZ_NODE, start.epoch,
       [&](msg::NodeStatus& status) { fill(status, mirror, server, config.rate_hz); });
-  node::CommandListener commands(participant, msg::KIND_VIZ_NODE,
+  node::CommandListener commands(participant, msg::KIND_VIZ_NODE, start.command_guard(),
                                  [](const msg::ControlCommand& command) {
                                    return node::nothing_to_do(command, msg::KIND_VIZ_NODE);
                                  });

@@ -107,7 +107,7 @@ struct SceneListener::Impl {
 };
 
 SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
-                             const CommandRelay& relay, PointerDesk& pointers)
+                             CommandRelay& relay, PointerDesk& pointers)
     : impl_(std::make_unique<Impl>(participant)) {
   impl_->description.follow([&mirror, &pointers](msg::SceneDescription&& message) {
     const std::vector<msg::PortDescription> ports = message.ports();
@@ -125,7 +125,8 @@ SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
       [&mirror](msg::SceneSound&& message) { return mirror.take(std::move(message)); });
   impl_->events.follow(
       [&mirror](msg::SceneEvents&& message) { return mirror.take(std::move(message)); });
-  impl_->status.follow([&mirror](msg::NodeStatus&& message) {
+  impl_->status.follow([&mirror, &relay](msg::NodeStatus&& message) {
+    relay.take(message);
     mirror.take(std::move(message), node::monotonic_nsec());
     return std::string();
   });

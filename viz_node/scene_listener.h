@@ -17,7 +17,7 @@ class SceneListener {
  public:
   /// @param mirror, relay, pointers  outlive the listener
   /// @throws std::runtime_error when DDS refuses
-  SceneListener(dds::Participant& participant, SceneMirror& mirror, const CommandRelay& relay,
+  SceneListener(dds::Participant& participant, SceneMirror& mirror, CommandRelay& relay,
                 PointerDesk& pointers);
   ~SceneListener();
   SceneListener(const SceneListener&) = delete;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include <unistd.h>
 
+#include "node/random_token.h"
 #include "node/status_words.h"
 #include "node/time.h"
 
@@ -26,8 +28,9 @@ constexpr auto kUsualDiscovery = 600ms;  // after which no node is missed when a
 
 }  // namespace
 
-ControlLine::ControlLine(const SessionAddress& address)
-    : participant_({.domain = address.domain,
+ControlLine::ControlLine(const SessionAddress& address, std::optional<node::SessionKey> key)
+    : key_(std::move(key)),
+      participant_({.domain = address.domain,
                     .session = address.session,
                     .node = "cordis ctl",
                     .network = address.network}),
@@ -40,7 +43,8 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, msg::
                                                 std::chrono::nanoseconds at_most) {
   msg::ControlCommand command;
   command.command_id(static_cast<std::uint64_t>(node::monotonic_nsec()));
-  command.sender("cordis ctl " + std::to_string(getpid()));
+  // Processes of two hosts may have one number.
+  command.sender("cordis ctl " + std::to_string(getpid()) + " " + node::random_token());
   command.target(target);
   command.verb(verb);
   command.argument(argument);
@@ -52,11 +56,13 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, msg::
   auto send_at = began;
   for (auto now = began; now < began + at_most; now = Clock::now()) {
     roster_.update();
-    const std::size_t addressed = addressed_count(target);
-    if (addressed == 0 && now > began + longest_discovery) break;
+    const std::vector<node::CommandedNode> nodes = addressed(target);
+    const std::size_t count = nodes.size();
+    if (count == 0 && now > began + longest_discovery) break;
     // A command sent before DDS has found a reader is lost.
     const bool reaches = commands_.matched_count() > 0;
-    if (addressed > replies.size() && now >= send_at && reaches) {
+    if (count > replies.size() && now >= send_at && reaches) {
+      if (key_) node::authenticate(command, *key_, participant_.config().session, nodes);
       if (commands_.write(command)) sent_ = true;
       send_at = now + kRepeatAfter;
     }
@@ -67,7 +73,7 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, msg::
         replies[reply.node()] = reply;
     }
     const bool all_known = target != "*" || now > began + kUsualDiscovery;
-    if (addressed > 0 && replies.size() >= addressed && all_known) break;
+    if (count > 0 && replies.size() >= count && all_known) break;
   }
   std::vector<msg::ControlReply> replies_received;
   for (auto& [node, reply] : replies) replies_received.push_back(std::move(reply));
@@ -93,15 +99,21 @@ std::vector<msg::NodeStatus> ControlLine::listening() const {
   return alive;
 }
 
-std::size_t ControlLine::addressed_count(const std::string& target) const {
-  const std::vector<msg::NodeStatus> there = listening();
-  return static_cast<std::size_t>(std::ranges::count_if(there, [&](const msg::NodeStatus& status) {
+std::vector<node::CommandedNode> ControlLine::addressed(const std::string& target) const {
+  std::vector<node::CommandedNode> nodes;
+  for (const msg::NodeStatus& status : listening()) {
     // A player answers for the sim_node of its take.
     const bool stands_in =
         status.kind() == msg::KIND_PLAYER && target == node::word_of(msg::KIND_SIM_NODE);
-    return stands_in || target == "*" || target == status.node() ||
-           target == node::word_of(status.kind());
-  }));
+    if (stands_in || target == "*" || target == status.node() ||
+        target == node::word_of(status.kind()))
+      nodes.push_back({status.node(), status.epoch()});
+  }
+  return nodes;
+}
+
+std::size_t ControlLine::addressed_count(const std::string& target) const {
+  return addressed(target).size();
 }
 
 }  // namespace cordis::cli

@@ -3,11 +3,13 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/session_address.h"
 #include "idl/control.h"
+#include "node/command_guard.h"
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
@@ -17,8 +19,9 @@ namespace cordis::cli {
 
 class ControlLine {
  public:
+  /// @param key  of the session, when it has one that this process knows
   /// @throws std::runtime_error when DDS refuses.
-  explicit ControlLine(const SessionAddress& address);
+  explicit ControlLine(const SessionAddress& address, std::optional<node::SessionKey> key = {});
 
   /// Sends a command until every addressed node that is there has answered, at most so long.
   /// @param target  a node, a kind of node, or "*"
@@ -41,7 +44,10 @@ class ControlLine {
 
   /// The nodes that take commands.
   std::vector<msg::NodeStatus> listening() const;
+  /// The nodes that a target addresses.
+  std::vector<node::CommandedNode> addressed(const std::string& target) const;
 
+  std::optional<node::SessionKey> key_;
   dds::Participant participant_;
   dds::Writer<msg::ControlCommand> commands_;
   dds::Reader<msg::ControlReply> replies_;

@@ -11,6 +11,7 @@
 #include "cli/exit_code.h"
 #include "cli/session_address.h"
 #include "cli/terminal_text.h"
+#include "node/session_key.h"
 
 namespace cordis::cli {
 namespace {
@@ -55,7 +56,7 @@ int ctl(const CtlWords& words) {
   const ControlWords command = read_control_words(words.verb, words.words);
   const auto timeout = parse_duration(words.timeout);
   const SessionAddress address = address_of(words.session, words.domain, words.session_name);
-  ControlLine line(address);
+  ControlLine line(address, node::key_of_session(address.session, address.domain));
   const std::vector<msg::ControlReply> replies =
       line.ask(words.node, command.verb, command.argument, timeout);
   if (replies.empty()) throw silence(words, address, line);

@@ -22,6 +22,7 @@
 #include "node/config/launch.h"
 #include "node/log.h"
 #include "node/runtime_folder.h"
+#include "node/session_key.h"
 #include "node/session_registry.h"
 #include "node/stop.h"
 #include "record_node/mcap/file_error.h"
@@ -92,7 +93,12 @@ node::SessionRequest request_of(const PlayWords& words, const std::string& sessi
       throw UsageError("--domain must be 0 to 101, got '" + words.domain + "'");
     domain = number;
   }
-  return {session, domain, std::filesystem::absolute(words.take).string(), {"play"}, true};
+  return {.session = session,
+          .domain = domain,
+          .launch_file = std::filesystem::absolute(words.take).string(),
+          .nodes = {"play"},
+          .is_player = true,
+          .has_key = true};
 }
 
 void execute(PlayKey key, record::TakePlayer& player) {
@@ -113,6 +119,7 @@ void execute(PlayKey key, record::TakePlayer& player) {
 
 int play_into(const node::SessionRegistration& registration, record::TakePlayerConfig config) {
   config.domain = registration.domain();
+  config.key = node::key_of_session(config.session, config.domain);
   record::TakePlayer player(config);
   if (!player.damage().empty()) print_text(stderr, "cordis play: " + player.damage() + "\n");
   std::fprintf(stderr, "session '%s' in DDS domain %d; Ctrl-C ends it\n", config.session.c_str(),

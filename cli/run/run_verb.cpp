@@ -15,6 +15,7 @@
 #include "cli/terminal_text.h"
 #include "node/random_token.h"
 #include "node/runtime_folder.h"
+#include "node/session_key.h"
 #include "node/session_network.h"
 #include "node/session_registry.h"
 
@@ -60,7 +61,13 @@ int run(const RunOptions& options) {
                                .launch_file = std::filesystem::absolute(launch.file).string(),
                                .nodes = names_of(plan),
                                .simulates = simulates,
-                               .network = network});
+                               .network = network,
+                               .has_key = true});
+  // The nodes find it there; the key itself stands in no environment.
+  setenv("CORDIS_SESSION_KEY_FILE",
+         node::registered_key_file(node::runtime_folder(), launch.session, registration.domain())
+             .c_str(),
+         /*replace=*/1);
   if (!launch.domain) name_domain(plan, registration.domain());
   if (const std::optional<int> refused = check_nodes(plan, signals)) return *refused;
   return run_session(launch, plan, options, registration, network, signals);

@@ -44,7 +44,7 @@ function generatedClasses(unit) {
 
 test('the messages are those of the contract', () => {
   const contract = {
-    'control.idl': ['ControlCommand', 'ControlReply', 'LiaisonChanges', 'NodeStatus'],
+    'control.idl': ['CommandAuthenticator', 'ControlCommand', 'ControlReply', 'LiaisonChanges', 'NodeStatus'],
     'gesture.idl': ['GesturePositions', 'GestureForces', 'DeviceDescription', 'PointerTarget', 'PointerState'],
     'inputs.idl': ['SourceFile', 'InputScene', 'InputSample', 'InputReach', 'InputEvent', 'SceneInputs'],
     'scene.idl': [

@@ -76,13 +76,15 @@ nodes:
   std::string launch_file() const { return (folder / "launch.yaml").string(); }
 
   /// Starts `cordis words...` on a host, whose user has a runtime folder of its own there.
-  ChildProcess& start(TwoHosts::Host host, std::vector<std::string> words) {
+  ChildProcess& start(TwoHosts::Host host, std::vector<std::string> words,
+                      std::map<std::string, std::string> environment = {}) {
     words.insert(words.begin(), program_path("cordis"));
-    const std::string runtime = (folder / ("host" + std::to_string(host))).string();
-    processes.push_back(std::make_unique<ChildProcess>(
-        hosts.on(host, words),
-        std::map<std::string, std::string>{{"CORDIS_RUNTIME_DIR", runtime}}));
+    environment["CORDIS_RUNTIME_DIR"] = runtime_folder(host);
+    processes.push_back(std::make_unique<ChildProcess>(hosts.on(host, words), environment));
     return *processes.back();
+  }
+  std::string runtime_folder(TwoHosts::Host host) const {
+    return (folder / ("host" + std::to_string(host))).string();
   }
   /// Starts a line of a document on a host, in the folder of the sources.
   ChildProcess& start_line(TwoHosts::Host host, const std::string& line) {
@@ -206,8 +208,13 @@ TEST_F(Network, TwoHostsPlayOneSessionWithEachOthersNodesAndTools) {
     return view.phase() == msg::PHASE_RUNNING && view.ticks() > 10;
   })) << "frames come";
 
-  ChildProcess& pause = apart.start(TwoHosts::kSecond, {"ctl", apart.launch_file(), "pause"});
-  EXPECT_EQ(pause.wait(kPatience), 0);
+  const std::vector<std::string> words{"ctl", apart.launch_file(), "pause"};
+  ChildProcess& refused = apart.start(TwoHosts::kSecond, words);
+  EXPECT_EQ(refused.wait(kPatience), 2);
+  EXPECT_NE(refused.output().find("another key"), std::string::npos) << refused.output();
+  const std::string key = apart.runtime_folder(TwoHosts::kFirst) + "/apart.7.key";
+  ChildProcess& pause = apart.start(TwoHosts::kSecond, words, {{"CORDIS_SESSION_KEY_FILE", key}});
+  EXPECT_EQ(pause.wait(kPatience), 0) << pause.output();
   EXPECT_TRUE(status.wait_for_phase("sim", msg::PHASE_PAUSED));
   ChildProcess& list = apart.start(TwoHosts::kSecond, {"list"});
   EXPECT_EQ(list.wait(kPatience), 0);

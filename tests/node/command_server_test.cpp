@@ -78,6 +78,39 @@ TEST(CommandServer, RemembersABoundedNumberOfCommands) {
   EXPECT_EQ(server.executed.size(), before + 1) << "forgotten, and executed as a new one";
 }
 
+TEST(CommandServer, OfASessionWithAKeyTakesNoNumberFromASenderWithIt) {
+  const SessionKey key = SessionKey::random();
+  const CommandedNode sim{"sim", 5};
+  int executed = 0;
+  CommandServer server(
+      "sim", msg::KIND_SIM_NODE,
+      [&executed](const msg::ControlCommand&) {
+        ++executed;
+        return Answer{true, "done"};
+      },
+      {}, CommandGuard(key, "s", sim));
+  msg::ControlCommand command = command_for("sim", 1);
+
+  const auto refused = server.take(command);  // of a stranger who has guessed number and sender
+  ASSERT_TRUE(refused.has_value());
+  EXPECT_FALSE(refused->accepted());
+  EXPECT_EQ(executed, 0);
+
+  authenticate(command, key, "s", {sim});
+  EXPECT_TRUE(server.take(command)->accepted());
+  EXPECT_TRUE(server.take(command)->accepted()) << "it is answered again";
+  EXPECT_EQ(executed, 1) << "and not executed again";
+
+  for (std::uint64_t id = 2; id <= 2 + CommandServer::kRemembered; ++id) {
+    msg::ControlCommand later = command_for("sim", id);
+    authenticate(later, key, "s", {sim});
+    EXPECT_TRUE(server.take(later)->accepted());
+  }
+  const int before = executed;
+  EXPECT_FALSE(server.take(command)->accepted()) << "its reply is forgotten, the command is not";
+  EXPECT_EQ(executed, before);
+}
+
 TEST(CommandServer, ExecutesOthersWhileTheLongPartOfACommandIsUnderWay) {
   std::promise<void> end_of_work;
   int works = 0;

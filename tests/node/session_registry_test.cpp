@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -21,6 +22,7 @@
 
 #include "node/dds/process_identity.h"
 #include "node/runtime_folder.h"
+#include "node/session_key.h"
 
 namespace cordis::node {
 namespace {
@@ -154,6 +156,63 @@ TEST(SessionRegistry, LetsNodesOfOneSessionMeetInItsDomain) {
   EXPECT_NE(other.domain(), view.domain()) << "the view is still there";
   RegisteredSession again(folder, request_of("string", "sim"));
   EXPECT_EQ(again.domain(), view.domain());
+}
+
+TEST(SessionRegistry, KeepsOneKeyPerSessionAsLongAsItRuns) {
+  const Folder folder;
+  const auto keyed = [](const std::string& node) {
+    SessionRequest request = request_of("string", node);
+    request.has_key = true;
+    return request;
+  };
+  std::optional<SessionKey> first;
+  int domain = -1;
+  {
+    RegisteredSession by_hand(folder, request_of("string", "hand"));
+    domain = by_hand.domain();
+    ASSERT_GE(domain, 0);
+    const fs::path file = registered_key_file(folder, "string", domain);
+    EXPECT_FALSE(fs::exists(file)) << "a node alone makes no key";
+    RegisteredSession launcher(folder, keyed("sim"));
+    ASSERT_EQ(launcher.domain(), domain);
+    first = read_key_file(file);
+    RegisteredSession second(folder, keyed("view"));
+    ASSERT_EQ(second.domain(), domain);
+    EXPECT_EQ(read_key_file(file), *first);
+    second.end(SIGTERM);
+    launcher.end(SIGTERM);
+    EXPECT_EQ(read_key_file(file), *first) << "the session goes on";
+    by_hand.end(SIGTERM);
+    EXPECT_FALSE(fs::exists(file));
+  }
+  SessionRequest again = keyed("sim");
+  again.domain = domain;
+  RegisteredSession killed(folder, again);
+  ASSERT_EQ(killed.domain(), domain);
+  const SessionKey other = read_key_file(registered_key_file(folder, "string", domain));
+  EXPECT_NE(other, *first);
+  killed.end(SIGKILL);
+  EXPECT_TRUE(running_sessions(folder).empty());
+  EXPECT_FALSE(fs::exists(registered_key_file(folder, "string", domain)));
+}
+
+TEST(SessionRegistry, TakesTheKeyOfAChosenFileAndRefusesASecondOne) {
+  const Folder folder;
+  const fs::path chosen = folder / "chosen";
+  const SessionKey key = SessionKey::random();
+  write_key_file(chosen, key);
+  setenv("CORDIS_SESSION_KEY_FILE", chosen.c_str(), /*overwrite=*/1);
+  SessionRequest request = request_of("string", "sim");
+  request.has_key = true;
+  {
+    const SessionRegistration registration(folder, request);
+    EXPECT_EQ(read_key_file(registered_key_file(folder, "string", registration.domain())), key);
+    write_key_file(chosen, SessionKey::random());
+    request.nodes = {"view"};
+    EXPECT_NE(refusal_of(folder, request).find("runs with another key than that of"),
+              std::string::npos);
+  }
+  unsetenv("CORDIS_SESSION_KEY_FILE");
 }
 
 TEST(SessionRegistry, RefusesASecondNodeOfOneNameAndSaysWhatToDo) {
