@@ -4,9 +4,9 @@
 namespace cordis::scene {
 
 /// The limits of size are divided by this. In the build for fuzzing a scene has a second, so that
-/// the largest one there has 1000 MATs.
+/// the largest one there has 250 MATs.
 #ifdef CORDIS_FUZZ
-inline constexpr long kLimitDivisor = 1000;
+inline constexpr long kLimitDivisor = 4000;
 #else
 inline constexpr long kLimitDivisor = 1;
 #endif
