@@ -11,9 +11,9 @@
 #include <CLI/Formatter.hpp>
 
 #include "cli/exit_code.h"
-#include "cli/terminal_text.h"
 #include "node/config/nearest_word.h"
 #include "node/config/problem.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -61,7 +61,7 @@ std::string did_you_mean_option(const std::string& name, const std::vector<std::
 }
 
 void put(std::FILE* stream, const std::string& text) {
-  print_text(stream, text);
+  node::print_text(stream, text);
 }
 
 bool asks_for_help(const std::string& word) {

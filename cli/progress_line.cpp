@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-#include "cli/terminal_text.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -19,14 +19,14 @@ ProgressLine::ProgressLine() : is_terminal_(isatty(STDERR_FILENO) == 1), last_(C
 
 void ProgressLine::show(const std::string& text) {
   if (is_terminal_) {
-    std::fprintf(stderr, "%s%s", kBegin, terminal_text(text).c_str());
+    std::fprintf(stderr, "%s%s", kBegin, node::terminal_text(text).c_str());
     std::fflush(stderr);
     is_open_ = true;
     return;
   }
   if (Clock::now() < last_ + kWithoutTerminal) return;
   last_ = Clock::now();
-  std::fprintf(stderr, "%s\n", terminal_text(text).c_str());
+  std::fprintf(stderr, "%s\n", node::terminal_text(text).c_str());
 }
 
 void ProgressLine::end() {

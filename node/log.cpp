@@ -20,6 +20,7 @@
 #include "node/config/problem.h"
 #include "node/line_output.h"
 #include "node/log_queue.h"
+#include "node/terminal_text.h"
 
 namespace cordis::node {
 namespace {
@@ -87,19 +88,20 @@ class ErrorSink : public spdlog::sinks::sink {
     const spdlog::details::log_msg message(line.time, {}, name_, line.level, line.text());
     spdlog::memory_buf_t formatted;
     formatter_->format(message, formatted);
-    std::string text(formatted.data(), std::min(formatted.size(), kLongestLine));
-    if (text.ends_with('\n')) text.pop_back();
+    std::string_view text(formatted.data(), std::min(formatted.size(), kLongestLine));
+    if (text.ends_with('\n')) text.remove_suffix(1);
     // Names of other processes may hold anything, and a line is a line.
-    const auto is_control = [](char c) {
-      return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    };
-    std::replace_if(text.begin(), text.end(), is_control, '?');
-    if (formatted.size() > kLongestLine) text += "...";
+    std::string shown;
     if (coloured_ && message.color_range_end > message.color_range_start) {
-      text.insert(message.color_range_end, "\033[m");
-      text.insert(message.color_range_start, colour_of(message.level));
+      const std::size_t start = message.color_range_start;
+      const std::size_t end = message.color_range_end;
+      shown = terminal_line(text.substr(0, start)) + colour_of(message.level) +
+              terminal_line(text.substr(start, end - start)) + "\033[m";
+      text.remove_prefix(end);
     }
-    output_.line(text);
+    shown += terminal_line(text);
+    if (formatted.size() > kLongestLine) shown += "...";
+    output_.line(shown);
   }
 
   static const char* colour_of(spdlog::level::level_enum level) {

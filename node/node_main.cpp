@@ -14,6 +14,7 @@
 #include "node/session_network.h"
 #include "node/session_registry.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 #include "node/time.h"
 
 namespace cordis::node {
@@ -115,7 +116,7 @@ void join_session(NodeStart& start, std::optional<SessionRegistration>& registra
 }
 
 void print_problems(const std::vector<config::Problem>& problems) {
-  for (const auto& problem : problems) std::fprintf(stderr, "%s\n", problem.text().c_str());
+  for (const auto& problem : problems) print_text(stderr, problem.text() + "\n");
 }
 
 }  // namespace
@@ -165,10 +166,10 @@ int node_main(int argc, char** argv, const std::string& kind,
     print_problems(error.problems());
     return kBadInput;
   } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "%s: %s (see %s --help)\n", kind.c_str(), error.what(), kind.c_str());
+    print_text(stderr, kind + ": " + error.what() + " (see " + kind + " --help)\n");
     return kBadInput;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", kind.c_str(), error.what());
+    print_text(stderr, kind + ": " + error.what() + "\n");
     return kRuntimeFailure;
   }
 }

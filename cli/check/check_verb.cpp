@@ -16,7 +16,7 @@
 #include "cli/run/run_plan.h"
 #include "cli/run/stop_signals.h"
 #include "cli/take_file.h"
-#include "cli/terminal_text.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -45,11 +45,11 @@ int check_other_nodes(const config::Launch& launch, const std::vector<std::strin
 
 int run(const CheckOptions& options) {
   const SceneCheck check = check_scene(options);
-  if (options.json_file != "-") print_text(stdout, text_of(check));
+  if (options.json_file != "-") node::print_text(stdout, text_of(check));
   if (!options.json_file.empty()) write_json(check);
   const std::string problems = check.problems.text();
   std::fflush(stdout);
-  if (!problems.empty()) print_text(stderr, problems + "\n");
+  if (!problems.empty()) node::print_text(stderr, problems + "\n");
   const bool asks_others = check.launch && !options.plan_alone;
   const int others = asks_others ? check_other_nodes(*check.launch, options.overrides) : kSuccess;
   return check.problems.has_errors() ? kBadInput : others;

@@ -11,8 +11,8 @@
 #include "cli/command_line.h"
 #include "cli/exit_code.h"
 #include "cli/take_file.h"
-#include "cli/terminal_text.h"
 #include "node/config/count_text.h"
+#include "node/terminal_text.h"
 #include "record_node/mcap/file_error.h"
 #include "record_node/mcap/take_check.h"
 
@@ -53,7 +53,7 @@ int check_take_file(const std::string& file, const std::string& json_file) {
   } catch (const mcap::FileError& error) {
     throw UsageError(error.what());
   }
-  if (json_file != "-") print_text(stdout, fault_text(file, check));
+  if (json_file != "-") node::print_text(stdout, fault_text(file, check));
   if (json_file == "-") std::fputs(fault_json(file, check).c_str(), stdout);
   if (!json_file.empty() && json_file != "-") {
     std::ofstream out(json_file);

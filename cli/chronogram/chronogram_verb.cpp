@@ -17,9 +17,9 @@
 #include "cli/scene_source/figure_file.h"
 #include "cli/scene_source/scene_source.h"
 #include "cli/scene_source/view_words.h"
-#include "cli/terminal_text.h"
 #include "node/config/count_text.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 #include "viz_node/render/chronogram.h"
 
 namespace cordis::cli {
@@ -74,8 +74,8 @@ int chronogram(const ChronogramWords& words) {
   const double start_s = start_of(words.source, *source);
   std::vector<msg::SceneFrame> frames = take_frames(*source, start_s, every_s, count);
   const std::size_t found = frames.size();
-  for (const std::string& note : source->notes()) print_text(stderr, note + "\n");
-  if (!source->failure().empty()) print_text(stderr, source->failure() + "\n");
+  for (const std::string& note : source->notes()) node::print_text(stderr, note + "\n");
+  if (!source->failure().empty()) node::print_text(stderr, source->failure() + "\n");
   if (frames.empty()) {
     if (!source->failure().empty() || node::stop_requested()) return kFailure;
     throw UsageError(fmt::format("the scene ends before {:.6g} s", start_s));

@@ -10,8 +10,8 @@
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/session_address.h"
-#include "cli/terminal_text.h"
 #include "node/session_key.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -63,7 +63,7 @@ int ctl(const CtlWords& words) {
 
   int result = kSuccess;
   for (const msg::ControlReply& reply : replies) {
-    print_text(reply.accepted() ? stdout : stderr, reply.node() + ": " + reply.text() + "\n");
+    node::print_text(reply.accepted() ? stdout : stderr, reply.node() + ": " + reply.text() + "\n");
     if (!reply.accepted()) result = kBadInput;
   }
   if (replies.size() < line.addressed_count(words.node)) {

@@ -16,9 +16,9 @@
 #include "cli/live_output.h"
 #include "cli/message_types.h"
 #include "cli/session_words.h"
-#include "cli/terminal_text.h"
 #include "cli/topic_listener.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 #include "record_node/idl/message_decoder.h"
 
 namespace cordis::cli {
@@ -60,7 +60,7 @@ class Printer {
       return false;
     }
     try {
-      print_text(stdout, text_of(*type->second, message));
+      node::print_text(stdout, text_of(*type->second, message));
       return true;
     } catch (const record::DecodeError& error) {
       say_once(message.topic, error.what());
@@ -90,7 +90,7 @@ class Printer {
 
   void say_once(const dds::RawTopic& topic, const std::string& what) {
     if (said_.insert(topic.name).second)
-      print_text(stderr, "cordis echo: " + topic.name + ": " + what + "\n");
+      node::print_text(stderr, "cordis echo: " + topic.name + ": " + what + "\n");
   }
 
   std::string format_;

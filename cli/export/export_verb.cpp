@@ -12,8 +12,8 @@
 #include "cli/export/export.h"
 #include "cli/number.h"
 #include "cli/take_file.h"
-#include "cli/terminal_text.h"
 #include "node/config/count_text.h"
+#include "node/terminal_text.h"
 #include "record_node/mcap/file_error.h"
 
 namespace cordis::cli {
@@ -54,8 +54,8 @@ int run(const ExportWords& words) {
   const std::unique_ptr<mcap::Reader> take = open_take("export", words.take);
   const ExportResult result = export_take(*take, options);
   const bool is_piped = options.csv_file == "-" || options.events_file == "-";
-  print_text(is_piped ? stderr : stdout, report_of(result, options));
-  for (const std::string& loss : result.losses) print_text(stderr, "lost: " + loss + "\n");
+  node::print_text(is_piped ? stderr : stdout, report_of(result, options));
+  for (const std::string& loss : result.losses) node::print_text(stderr, "lost: " + loss + "\n");
   return result.losses.empty() ? kSuccess : kLoss;
 }
 

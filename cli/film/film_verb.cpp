@@ -16,9 +16,9 @@
 #include "cli/progress_line.h"
 #include "cli/scene_source/scene_source.h"
 #include "cli/scene_source/view_words.h"
-#include "cli/terminal_text.h"
 #include "node/config/count_text.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 #include "viz_node/render/film_view.h"
 
 namespace cordis::cli {
@@ -73,12 +73,12 @@ int film(const FilmWords& words) {
   if (writer.count() == 0 && source->failure().empty() && !node::stop_requested())
     throw UsageError(fmt::format("the scene ends before {:.6g} s", start_s));
   writer.finish();
-  for (const std::string& note : source->notes()) print_text(stderr, note + "\n");
+  for (const std::string& note : source->notes()) node::print_text(stderr, note + "\n");
   std::printf("%s: %s, %.6g s\n", words.out.c_str(),
               config::count_text(writer.count(), "image").c_str(),
               static_cast<double>(writer.count()) / fps);
   if (!source->failure().empty()) {
-    print_text(stderr, source->failure() + "; what came before is kept\n");
+    node::print_text(stderr, source->failure() + "; what came before is kept\n");
     return kFailure;
   }
   if (!node::stop_requested()) return kSuccess;

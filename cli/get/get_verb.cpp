@@ -10,7 +10,7 @@
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/session_words.h"
-#include "cli/terminal_text.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -32,7 +32,7 @@ int get(const GetWords& words) {
                              words.timeout);
   int result = kSuccess;
   for (const msg::ControlReply& reply : replies) {
-    print_text(reply.accepted() ? stdout : stderr, reply.text() + "\n");
+    node::print_text(reply.accepted() ? stdout : stderr, reply.text() + "\n");
     if (!reply.accepted()) result = kBadInput;
   }
   return result;

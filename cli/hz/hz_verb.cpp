@@ -16,9 +16,9 @@
 #include "cli/exit_code.h"
 #include "cli/live_output.h"
 #include "cli/session_words.h"
-#include "cli/terminal_text.h"
 #include "cli/topic_listener.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -73,7 +73,7 @@ void print(std::map<std::string, Traffic>& topics, double seconds) {
               "min [ms]", "max [ms]", "kB/s", "missing");
   for (auto& [name, traffic] : topics) {
     std::printf("%-*s %10.1f %12.3f %12.3f %9.1f %8llu\n", static_cast<int>(width),
-                terminal_text(name).c_str(), static_cast<double>(traffic.messages) / seconds,
+                node::terminal_text(name).c_str(), static_cast<double>(traffic.messages) / seconds,
                 traffic.shortest_s * 1e3, traffic.longest_s * 1e3,
                 static_cast<double>(traffic.bytes) / seconds / 1e3,
                 static_cast<unsigned long long>(traffic.missing));

@@ -10,7 +10,7 @@
 #include "cli/info/session_info.h"
 #include "cli/info/take_info.h"
 #include "cli/take_file.h"
-#include "cli/terminal_text.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -32,13 +32,13 @@ bool is_session(const std::string& subject) {
 int info(const InfoWords& words) {
   if (is_session(words.subject)) {
     if (words.json) throw UsageError("--json is for takes; `cordis list --json` lists sessions");
-    print_text(stdout, session_text(words.subject, words.topics, words.domain));
+    node::print_text(stdout, session_text(words.subject, words.topics, words.domain));
     return kSuccess;
   }
   if (!words.topics.empty() || !words.domain.empty())
     throw UsageError("TOPIC and --domain are for running sessions");
   const auto take = open_take("info", words.subject);
-  print_text(stdout, words.json ? take_json(*take) : take_text(*take));
+  node::print_text(stdout, words.json ? take_json(*take) : take_text(*take));
   return missed_in(*take).is_loss() ? kLoss : kSuccess;
 }
 

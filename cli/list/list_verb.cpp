@@ -15,10 +15,10 @@
 
 #include "cli/exit_code.h"
 #include "cli/session_launch.h"
-#include "cli/terminal_text.h"
 #include "node/config/launch.h"
 #include "node/runtime_folder.h"
 #include "node/session_registry.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -96,9 +96,9 @@ int list(const ListWords& words) {
              stdout);
   for (const node::SessionRecord& session : sessions) {
     const Row row = row_of(session);
-    print_text(stdout,
-               fmt::format("{:<{}}  {:>6}  {:<8}  {:<7}  {}\n", session.session, width,
-                           session.domain, clock_of(session), age_text(row.age), row.nodes));
+    node::print_text(stdout,
+                     fmt::format("{:<{}}  {:>6}  {:<8}  {:<7}  {}\n", session.session, width,
+                                 session.domain, clock_of(session), age_text(row.age), row.nodes));
   }
   return kSuccess;
 }

@@ -18,13 +18,13 @@
 #include "cli/exit_code.h"
 #include "cli/play/play_keys.h"
 #include "cli/progress_line.h"
-#include "cli/terminal_text.h"
 #include "node/config/launch.h"
 #include "node/log.h"
 #include "node/runtime_folder.h"
 #include "node/session_key.h"
 #include "node/session_registry.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 #include "record_node/mcap/file_error.h"
 #include "record_node/mcap/reader.h"
 #include "record_node/take_player.h"
@@ -121,7 +121,7 @@ int play_into(const node::SessionRegistration& registration, record::TakePlayerC
   config.domain = registration.domain();
   config.key = node::key_of_session(config.session, config.domain);
   record::TakePlayer player(config);
-  if (!player.damage().empty()) print_text(stderr, "cordis play: " + player.damage() + "\n");
+  if (!player.damage().empty()) node::print_text(stderr, "cordis play: " + player.damage() + "\n");
   std::fprintf(stderr, "session '%s' in DDS domain %d; Ctrl-C ends it\n", config.session.c_str(),
                config.domain);
   PlayKeys keys;
@@ -158,7 +158,7 @@ int play(const PlayWords& words) {
   try {
     config.session = words.session.empty() ? session_of(config.take) : words.session;
   } catch (const mcap::FileError& error) {
-    print_text(stderr, std::string("cordis play: ") + error.what() + "\n");
+    node::print_text(stderr, std::string("cordis play: ") + error.what() + "\n");
     return kBadInput;
   }
   node::install_log("play");

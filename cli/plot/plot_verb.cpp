@@ -16,10 +16,10 @@
 #include "cli/scene_source/figure_file.h"
 #include "cli/scene_source/scene_source.h"
 #include "cli/scene_source/view_words.h"
-#include "cli/terminal_text.h"
 #include "node/config/count_text.h"
 #include "node/config/nearest_word.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 #include "viz_node/render/signal_plot.h"
 
 namespace cordis::cli {
@@ -74,8 +74,8 @@ int plot(const PlotWords& words) {
     return node::stop_requested();
   });
   progress.clear();
-  for (const std::string& note : source->notes()) print_text(stderr, note + "\n");
-  if (!source->failure().empty()) print_text(stderr, source->failure() + "\n");
+  for (const std::string& note : source->notes()) node::print_text(stderr, note + "\n");
+  if (!source->failure().empty()) node::print_text(stderr, source->failure() + "\n");
   if (rows.time_s.size() < 2) {
     if (!source->failure().empty() || node::stop_requested()) return kFailure;
     throw UsageError(fmt::format("there are no signals from {:.6g} s to {:.6g} s", start_s, end_s));

@@ -10,8 +10,8 @@
 
 #include "cli/exit_code.h"
 #include "cli/take_file.h"
-#include "cli/terminal_text.h"
 #include "node/config/count_text.h"
+#include "node/terminal_text.h"
 #include "record_node/mcap/file_error.h"
 #include "record_node/mcap/recover.h"
 
@@ -63,7 +63,7 @@ int run(const RecoverWords& words) {
     take = words.output;
   }
   const mcap::Recovery recovery = recover_or_leave_nothing(take, /*is_copy=*/!words.output.empty());
-  print_text(stdout, recovery_text(recovery));
+  node::print_text(stdout, recovery_text(recovery));
   return recovery.has_loss() ? kLoss : kSuccess;
 }
 

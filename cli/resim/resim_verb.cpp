@@ -9,7 +9,7 @@
 #include "cli/number.h"
 #include "cli/resim/rehash.h"
 #include "cli/resim/resim.h"
-#include "cli/terminal_text.h"
+#include "node/terminal_text.h"
 #include "record_node/mcap/file_error.h"
 
 namespace cordis::cli {
@@ -67,7 +67,7 @@ int run(ResimWords& words) {
   words.options.keeps_computed = words.rehashes;
   try {
     const ResimResult result = resimulate(words.options);
-    print_text(stdout, text_of(result, words.options));
+    node::print_text(stdout, text_of(result, words.options));
     if (words.rehashes) return renew(words, result);
     if (words.expects && result.by == FrameCheck::By::kPosition) {
       std::printf("where the change is wanted: cordis resim %s --rehash\n",
@@ -75,9 +75,9 @@ int run(ResimWords& words) {
     }
     return exit_code_of(result, words.expects);
   } catch (const mcap::FileError& error) {
-    print_text(stderr, std::string(error.what()) + "\n");
+    node::print_text(stderr, std::string(error.what()) + "\n");
   } catch (const std::invalid_argument& error) {
-    print_text(stderr, std::string(error.what()) + "\n");
+    node::print_text(stderr, std::string(error.what()) + "\n");
   }
   return kBadInput;
 }

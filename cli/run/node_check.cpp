@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "cli/exit_code.h"
-#include "cli/terminal_text.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -60,7 +60,7 @@ std::optional<int> check_nodes(const RunPlan& plan, StopSignals& signals) {
   }
   for (std::size_t i = 0; i < endings.size(); ++i) {
     if (endings[i].exit_code() == kSuccess) continue;
-    print_text(stderr, watcher.output(i));
+    node::print_text(stderr, watcher.output(i));
     if (endings[i].exit_code() == kBadInput) {
       result = result.value_or(kBadInput);
     } else {

@@ -9,8 +9,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "cli/terminal_text.h"
 #include "node/config/regular_file.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -56,18 +56,19 @@ std::string NodeOutput::prefix(std::size_t index, Stream stream) const {
 }
 
 void NodeOutput::line(std::size_t node, Stream stream, std::string_view text) {
-  const std::string shown = terminal_text(text);
+  const std::string shown = node::terminal_text(text);
   console_.line(stream, prefix(node, stream) + shown);
   if (!logs_.empty()) logs_[node] << time_of_day() << ' ' << shown << std::endl;
 }
 
 void NodeOutput::say(std::string_view text) {
-  console_.line(Stream::kError, prefix(names_.size() - 1, Stream::kError) + terminal_text(text));
+  console_.line(Stream::kError,
+                prefix(names_.size() - 1, Stream::kError) + node::terminal_text(text));
 }
 
 void NodeOutput::print(std::string_view text) {
   if (text.ends_with('\n')) text.remove_suffix(1);
-  console_.line(Stream::kOut, terminal_text(text));
+  console_.line(Stream::kOut, node::terminal_text(text));
 }
 
 }  // namespace cordis::cli

@@ -12,12 +12,12 @@
 #include "cli/programs.h"
 #include "cli/run/node_check.h"
 #include "cli/run/session.h"
-#include "cli/terminal_text.h"
 #include "node/random_token.h"
 #include "node/runtime_folder.h"
 #include "node/session_key.h"
 #include "node/session_network.h"
 #include "node/session_registry.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -27,7 +27,7 @@ config::Launch read_launch(const RunOptions& options) {
   config::Launch launch = config::load_launch(options.launch_file, options.overrides, problems);
   problems.throw_if_any();
   for (const config::Problem& warning : problems.all()) {
-    print_text(stderr, warning.text() + "\n");
+    node::print_text(stderr, warning.text() + "\n");
   }
   return launch;
 }

@@ -10,8 +10,8 @@
 #include "cli/exit_code.h"
 #include "cli/run/stop_signals.h"
 #include "cli/simulate/simulate.h"
-#include "cli/terminal_text.h"
 #include "node/config/count_text.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -35,11 +35,11 @@ std::string report_of(const SimulateResult& result) {
 int run(const SimulateOptions& options) {
   StopSignals signals;
   const SimulateResult result = simulate(options, [&signals] { return signals.take(); });
-  for (const std::string& warning : result.warnings) print_text(stderr, warning + "\n");
+  for (const std::string& warning : result.warnings) node::print_text(stderr, warning + "\n");
   if (!result.bound.empty()) std::fprintf(stderr, "warning: %s\n", result.bound.c_str());
   const bool is_piped =
       options.csv_file == "-" || options.events_file == "-" || options.summary_file == "-";
-  print_text(is_piped ? stderr : stdout, report_of(result));
+  node::print_text(is_piped ? stderr : stdout, report_of(result));
   if (result.is_stopped) {
     std::fputs("stopped before its time; what was simulated is kept\n", stderr);
     return kFailure;

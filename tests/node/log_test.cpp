@@ -112,11 +112,16 @@ TEST(Log, TakesEveryLevelThatHelpNames) {
 TEST(Log, KeepsALineALineWhateverNamesItHolds) {
   const PipeAsError error;
   spdlog::info("scene '{}'", "a\n12:00:00 sim error \033[2J");
+  spdlog::info("device '{}'",
+               "a\xc2\x9b"
+               "2J\xe2\x80\xae"
+               "b\xff\t");  // C1, direction, no UTF-8
   spdlog::info("{}", std::string(5000, 'x'));
   spdlog::default_logger()->flush();
 
   const std::string seen = error.look();
   EXPECT_NE(seen.find("scene 'a?12:00:00 sim error ?[2J'\n"), std::string::npos) << seen;
+  EXPECT_NE(seen.find("device 'a?2J?b?\?'\n"), std::string::npos) << seen;
   EXPECT_NE(seen.find("xxx...\n"), std::string::npos);
 }
 

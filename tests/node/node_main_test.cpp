@@ -64,6 +64,30 @@ int run_main(std::vector<std::string> words, const std::string& kind,
   return node_main(static_cast<int>(arguments.size()), arguments.data(), kind, run);
 }
 
+int warn_and_fail(const NodeStart&, config::Problems& problems) {
+  problems.warning({"scene\x1b[2J.yaml", 1, 1},
+                   "'\xc2\x9b"
+                   "31m' and '\x1b]0;title\a' are odd");
+  report(problems);
+  throw std::runtime_error("a device named '\x1b[8m\xe2\x80\xae'");
+}
+
+TEST(NodeMain, PrintsTextsOfFilesWithoutEscapeCodes) {
+  const LaunchFile file(kTwoDevices);
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(run_main({file.path(), "--name", "left"}, "device_node", warn_and_fail), 1);
+  EXPECT_EQ(run_main({file.path(), "--name", "l\x1b[2Jeft"}, "device_node"), 2);
+  const LaunchFile broken("cordis: 1\nsession: t\nnodes: {sim: {node: \"\\e[2J\"}}\n");
+  EXPECT_EQ(run_main({broken.path()}, "sim_node"), 2);
+
+  const std::string seen = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(seen.find("'?31m' and '?]0;title?' are odd"), std::string::npos) << seen;
+  EXPECT_NE(seen.find("a device named '?[8m?'"), std::string::npos) << seen;
+  EXPECT_NE(seen.find("l?[2Jeft"), std::string::npos) << seen;
+  EXPECT_EQ(seen.find('\x1b'), std::string::npos);
+  EXPECT_EQ(seen.find("\xc2\x9b"), std::string::npos);
+}
+
 TEST(NodeMain, FindsItsNodeOfTheLaunchFile) {
   const LaunchFile file(kTwoDevices);
 

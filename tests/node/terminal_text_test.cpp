@@ -1,5 +1,5 @@
-// tests/cli/terminal_text_test.cpp
-#include "cli/terminal_text.h"
+// tests/node/terminal_text_test.cpp
+#include "node/terminal_text.h"
 
 #include <cstddef>
 #include <random>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace cordis::cli {
+namespace cordis::node {
 namespace {
 
 using namespace std::string_literals;
@@ -47,6 +47,10 @@ TEST(TerminalText, ShowsBytesThatAreNoUtf8AsQuestionMarks) {
   EXPECT_EQ(terminal_text("cut \xe2\x82"), "cut ??");
 }
 
+TEST(TerminalText, OfALineHasNoOtherLines) {
+  EXPECT_EQ(terminal_line("a\nb\tc\033"), "a?b?c?");
+}
+
 TEST(TerminalText, HoldsNoControlCharacterWhateverComes) {
   std::mt19937 random(1);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same each time
   for (int i = 0; i < 20'000; ++i) {
@@ -66,4 +70,4 @@ TEST(TerminalText, HoldsNoControlCharacterWhateverComes) {
 }
 
 }  // namespace
-}  // namespace cordis::cli
+}  // namespace cordis::node

@@ -1,10 +1,11 @@
-// cli/terminal_text.cpp
-#include "cli/terminal_text.h"
+// node/terminal_text.cpp
+#include "node/terminal_text.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
-namespace cordis::cli {
+namespace cordis::node {
 namespace {
 
 struct Character {
@@ -58,9 +59,16 @@ std::string terminal_text(std::string_view text) {
   return shown;
 }
 
+std::string terminal_line(std::string_view text) {
+  std::string line = terminal_text(text);
+  std::ranges::replace_if(
+      line, [](char c) { return c == '\n' || c == '\t'; }, '?');
+  return line;
+}
+
 void print_text(std::FILE* stream, std::string_view text) {
   const std::string shown = terminal_text(text);
   std::fwrite(shown.data(), 1, shown.size(), stream);
 }
 
-}  // namespace cordis::cli
+}  // namespace cordis::node
