@@ -441,11 +441,7 @@ std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double
         static_cast<std::uint32_t>(network.state_machines.size() + alone.size() - 1);
   }
   for (engine::SetLiaison& set : network.sets) {
-    engine::StateMachine one;
-    const engine::StateMachine& all = network.state_machines[set.state_machine];
-    one.states = {all.states[all.start]};
-    one.states[0].first_exit = one.states[0].last_exit = 0;
-    alone.push_back(one);
+    alone.push_back(plan::start_state_alone(network.state_machines[set.state_machine]));
     set.state_machine =
         static_cast<std::uint32_t>(network.state_machines.size() + alone.size() - 1);
   }

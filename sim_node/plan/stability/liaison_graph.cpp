@@ -98,18 +98,20 @@ std::array<engine::LawPoint, 4> points_at(double distance, double rest_length, c
 }
 
 /// True if a pair in the state of its start still pulls or pushes where it crosses its range, with
-/// more than a tenth of what the largest slope would over the whole range.
+/// more than a tenth of what the largest slope of that state would over the whole range.
 bool jumps_at_range(const engine::StateMachine& state_machine, double rest_length, double range,
-                    const Reach& reach, double largest_slope) {
+                    int dimension, const Reach& reach) {
   constexpr double kShare = 0.1;
   constexpr double kJustWithin = 1.0 - 1e-9;
-  const engine::LinkState& state = state_machine.states[state_machine.start];
+  const engine::StateMachine start = start_state_alone(state_machine);
+  const engine::LinkState& state = start.states[0];
+  const double slope = largest_slope(start, rest_length, dimension, reach).stiffness;
   const auto points = points_at(kJustWithin * range, rest_length, reach);
   return std::any_of(points.begin(), points.end(), [&](const engine::LawPoint& point) {
     const double tension =
         std::clamp(state.stiffness * point.elongation + elastic_tension(state.elasticity, point),
                    state.pushes ? -state.force_limit : 0.0, state.pulls ? state.force_limit : 0.0);
-    return std::abs(tension) > kShare * largest_slope * range;
+    return std::abs(tension) > kShare * slope * range;
   });
 }
 
@@ -147,7 +149,7 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const bool all_begin_within = near.are_kept() && near.pairs().size() == all;
   if (!graph.uncertainty &&
       !(all_begin_within && is_confined(state_machine, rest, set.range, here)) &&
-      jumps_at_range(state_machine, rest, set.range, here, slope.stiffness))
+      jumps_at_range(state_machine, rest, set.range, network.dimension, here))
     graph.uncertainty = {{LiaisonKind::kSet, index}, "its force jumps at its range"};
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);

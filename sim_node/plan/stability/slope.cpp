@@ -266,6 +266,13 @@ double energy_brought(const engine::NetworkDescription& network) {
 
 }  // namespace
 
+engine::StateMachine start_state_alone(const engine::StateMachine& state_machine) {
+  engine::StateMachine alone;
+  alone.states = {state_machine.states[state_machine.start]};
+  alone.states[0].first_exit = alone.states[0].last_exit = 0;
+  return alone;
+}
+
 double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
   const engine::LinkState& state = state_machine.states[state_machine.start];
   const double e = point.elongation;

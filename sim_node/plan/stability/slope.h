@@ -38,6 +38,9 @@ struct Slope {
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach);
 
+/// A state machine of the state of the start alone.
+engine::StateMachine start_state_alone(const engine::StateMachine& state_machine);
+
 /// What a liaison stores at a point in the state of its start [J], 0 where it does not act; of an
 /// expression, which has no closed form, the product of its tension and elongation.
 double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point);

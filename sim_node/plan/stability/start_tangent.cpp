@@ -158,10 +158,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
 
 void StartTangent::add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
                            double stiffness_weight, double viscosity_weight) {
-  const engine::StateMachine& all = network.state_machines[set.state_machine];
-  engine::StateMachine start;
-  start.states = {all.states[all.start]};
-  start.states[0].first_exit = start.states[0].last_exit = 0;
+  const engine::StateMachine start = start_state_alone(network.state_machines[set.state_machine]);
   const StartPairs near(network, set);
   for (const StartPair& pair : near.pairs()) {
     const Tangent tangent = stiffest_tangent(start, start_point(network, set, pair), network.step);
