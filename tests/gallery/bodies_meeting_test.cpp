@@ -64,6 +64,9 @@ TEST(BodiesMeeting, EachDeformsAsItsMatterDoes) {
   const double dent = plastic.deformation();
   session.play_until(1.52, watch);  // before the next of them meets the edge
 
+  RecordProperty("rigid, at most", std::to_string(rigid_most));
+  RecordProperty("deformable, at most", std::to_string(deformable_most));
+  RecordProperty("deformable, afterwards", std::to_string(deformable.deformation()));
   EXPECT_LT(rigid_most, 0.02);
   EXPECT_LT(rigid.deformation(), 1.0e-5);
   EXPECT_GT(deformable_most, 0.3);

@@ -77,6 +77,12 @@ TEST(StirredBox, TurnsWithTheSpoonAndOrdersItselfInClusters) {
     outer += circulation(session, 0.07) / 1000.0;
   });
   const std::vector<std::size_t> sizes = cluster_sizes(session);
+  RecordProperty("circulation, inner", std::to_string(inner));
+  RecordProperty("circulation, outer", std::to_string(outer));
+  RecordProperty("ordered", std::to_string(static_cast<double>(ordered(session).size()) / count));
+  for (const std::size_t i : {0, 1, 2}) {
+    RecordProperty("crystal " + std::to_string(i), std::to_string(sizes.at(i)));
+  }
   EXPECT_GT(inner, 0.01);   // the spoon goes at 0.28 m/s: 0.08 m^2/s if all balls went with it
   EXPECT_GT(outer, 0.003);  // at the walls it is less
   EXPECT_LT(outer, inner);
