@@ -2,6 +2,7 @@
 #include "sim_node/run/describe.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -19,6 +20,9 @@ static_assert(static_cast<int>(engine::MatKind::kFixed) == msg::MAT_FIXED);
 static_assert(static_cast<int>(engine::MatKind::kPort) == msg::MAT_PORT);
 static_assert(static_cast<int>(scene::SignalRate::kGesture) == msg::RATE_GESTURE);
 static_assert(static_cast<int>(scene::SignalRate::kStep) == msg::RATE_STEP);
+static_assert(static_cast<int>(engine::SurfaceKind::kPlane) == msg::SURFACE_PLANE);
+static_assert(static_cast<int>(engine::SurfaceKind::kBox) == msg::SURFACE_BOX);
+static_assert(static_cast<int>(engine::SurfaceKind::kCylinder) == msg::SURFACE_CYLINDER);
 static_assert(config::kMaxAxes == msg::MAX_AXES);
 static_assert(msg::MAT_PORT <= std::numeric_limits<std::uint8_t>::max());
 
@@ -59,6 +63,48 @@ msg::PortFrame frame_of(const scene::Port& port, const FrameLayout& layout) {
     for (std::size_t k = 0; k < 3; ++k) frame.direction().push_back(end[k] - origin[k]);
   }
   return frame;
+}
+
+/// The size of a whole; 0 where it has no end.
+double whole_of(double half) {
+  return std::isfinite(half) ? 2.0 * half : 0.0;
+}
+
+/// The innermost name of a MAT.
+std::string name_of(const scene::Scene& scene, std::uint32_t mat) {
+  const scene::NamedRange* nearest = nullptr;
+  for (const scene::NamedRange& range : scene.matter) {
+    if (mat < range.first || mat - range.first >= range.count) continue;
+    if (nearest == nullptr || range.count <= nearest->count) nearest = &range;
+  }
+  return nearest == nullptr ? "" : nearest->name;
+}
+
+/// In the coordinates of a frame.
+msg::SurfaceDescription surface_of(const scene::Scene& scene, const engine::Surface& surface,
+                                   const FrameLayout& layout) {
+  const auto shown = [&](const engine::Vec3& position) {
+    std::array<float, 3> place{};
+    layout.show(surface.mat, position.data(), place.data());
+    return std::vector<double>(place.begin(), place.end());
+  };
+  msg::SurfaceDescription message;
+  message.name(name_of(scene, surface.mat));
+  message.kind(static_cast<msg::SurfaceKind>(surface.kind));
+  message.centre_m(shown(scene.network.mats[surface.mat].position));
+  if (surface.kind == engine::SurfaceKind::kBox) {
+    std::vector<double> size;
+    for (const double half : surface.half_size) size.push_back(whole_of(half));
+    if (scene.space() == 1) size = {0.0, size[0], 0.0};
+    message.size_m(size);
+    return message;
+  }
+  std::vector<double> axis(surface.axis.begin(), surface.axis.end());
+  if (scene.space() == 1) axis = {0.0, axis[0], 0.0};
+  message.axis(axis);
+  if (surface.kind == engine::SurfaceKind::kCylinder)
+    message.size_m({surface.half_size[0], whole_of(surface.half_size[1])});
+  return message;
 }
 
 void report_network(const scene::Scene& scene, msg::SceneDescription& description) {
@@ -118,6 +164,9 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
   for (const scene::Port& port : scene.ports) {
     description.ports().push_back(port_of(port));
     description.port_frames().push_back(frame_of(port, layout));
+  }
+  for (const engine::Surface& surface : scene.network.surfaces) {
+    description.surfaces().push_back(surface_of(scene, surface, layout));
   }
   for (const scene::Signal& signal : scene.signals.signals()) {
     msg::SignalDescription message;

@@ -1,6 +1,7 @@
 // tests/random_scenes/random_scene.cpp
 #include "tests/random_scenes/random_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <random>
@@ -33,6 +34,7 @@ class SceneWriter {
     const std::uint32_t links = 1 + below(count_ + 2);
     for (std::uint32_t l = 0; l < links; ++l) add_link(l);
     if (matter_ != Matter::kModes && chance(0.35)) add_set();
+    if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
            (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_;
   }
@@ -391,6 +393,76 @@ class SceneWriter {
         chance(0.5) ? "rest: radii" : fmt::format("rest_m: {:.4g}", range * between(0.2, 1.0));
     const std::string which = count_ == 1 || chance(0.4) ? "between_sets: [wall, p]" : "within: p";
     links_ += fmt::format("  - {{liaison: of_set, {}, {}, range_m: {:.4g}}}\n", which, rest, range);
+  }
+
+  /// A direction as the numbers of a vector, of some length.
+  std::string direction(const std::vector<double>& towards) {
+    if (space_ == 1) return towards[0] > 0.0 ? "x" : "-x";
+    std::string text = "[";
+    for (int axis = 0; axis < space_; ++axis) {
+      text +=
+          fmt::format("{}{:.5g}", axis > 0 ? ", " : "", towards[static_cast<std::size_t>(axis)]);
+    }
+    return text + "]";
+  }
+
+  /// A plane, a box or a cylinder beside the masses, of which some reach into it.
+  std::string surface() {
+    std::vector<double> outwards;
+    for (int axis = 0; axis < space_; ++axis) outwards.push_back(between(-1.0, 1.0));
+    const std::uint32_t kind = below(space_ == 1 ? 2 : 3);
+    const double away = between(0.1, 0.25);
+    double length = 0.0;
+    for (const double share : outwards) length += share * share;
+    length = std::max(std::sqrt(length), 1e-3);
+    std::vector<double> centre;
+    std::vector<double> towards;
+    for (const double share : outwards) {
+      centre.push_back((kind == 0 ? away : away + 0.15) * share / length);
+      towards.push_back(-share / length);
+    }
+    const std::string place = space_ == 1 ? fmt::format("{:.5g}", centre[0]) : direction(centre);
+    if (kind == 0) {
+      return fmt::format("{{kind: plane, at_m: {}, normal: {}{}}}", place, direction(towards),
+                         chance(0.2) ? ", sides: both" : "");
+    }
+    if (kind == 1) {
+      std::vector<double> size;
+      for (int axis = 0; axis < space_; ++axis) size.push_back(between(0.05, 0.3));
+      const std::string text = space_ == 1 ? fmt::format("{:.5g}", size[0]) : direction(size);
+      return fmt::format("{{kind: box, center_m: {}, size_m: {}}}", place, text);
+    }
+    const double radius = between(0.03, 0.15);
+    std::string more;
+    if (space_ == 3) {
+      more = ", axis: " + std::string(one_of<const char*>({"x", "y", "z", "[1, 1, 0]"}));
+      if (chance(0.5)) more += fmt::format(", length_m: {:.5g}", between(0.05, 0.4));
+    }
+    return fmt::format("{{kind: cylinder, center_m: {}, radius_m: {:.5g}{}}}", place, radius, more);
+  }
+
+  void add_surfaces() {
+    const std::uint32_t surfaces = 1 + below(3);
+    std::string names;
+    for (std::uint32_t s = 0; s < surfaces; ++s) {
+      masses_ += fmt::format("  f{}: {}\n", s, surface());
+      names += fmt::format("{}f{}", s > 0 ? ", " : "", s);
+    }
+    std::string law;
+    do {
+      law = matter_ != Matter::kPotentials && chance(0.3) ? state_machine() : one_state();
+    } while (law.find("lennard_jones") != std::string::npos);
+    if (chance(0.5)) {
+      law = fmt::format("{{kind: state_machine, stiffness_n_per_m: {:.4g}, pulls: false}}",
+                        stiffness());
+    }
+    liaisons_ += "  of_surface: " + law + "\n";
+    const double range = decades(0.03, 0.5);
+    const std::string rest =
+        chance(0.5) ? "rest: radii" : fmt::format("rest_m: {:.4g}", range * between(0.2, 1.0));
+    links_ +=
+        fmt::format("  - {{liaison: of_surface, between_sets: [p, [{}]], {}, range_m: {:.4g}}}\n",
+                    names, rest, range);
   }
 
   std::mt19937 random_;

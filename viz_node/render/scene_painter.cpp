@@ -18,8 +18,8 @@ constexpr double kGridCells = 24.0;     // across the larger side of the scene, 
 constexpr double kRingGap = 1.7;        // radius of the ring of a port, in radii of its ball
 
 /// Smallest radii by look [pixels].
-constexpr std::array<double, 5> kFewSizes = {3.2, 3.2, 6.0, 5.0, 3.2};
-constexpr std::array<double, 5> kManySizes = {1.2, 1.2, 5.0, 2.0, 1.2};
+constexpr std::array<double, 6> kFewSizes = {3.2, 3.2, 6.0, 5.0, 3.2, 0.0};
+constexpr std::array<double, 6> kManySizes = {1.2, 1.2, 5.0, 2.0, 1.2, 0.0};
 
 Point point_of(const msg::SceneFrame& frame, std::size_t mat) noexcept {
   const float* position = frame.position_m().data() + 3 * mat;
@@ -44,6 +44,15 @@ bool is_tool(const msg::SceneDescription& description, const msg::NamedRange& ra
          std::ranges::any_of(description.ports(), [&range](const msg::PortDescription& port) {
            return range.name() == port.name() && range.first() != port.mat();
          });
+}
+
+/// True if a range is the MAT of a surface: it is drawn as that.
+bool is_surface(const msg::SceneDescription& description, const msg::NamedRange& range) {
+  return range.count() == 1 &&
+         std::ranges::any_of(description.surfaces(),
+                             [&range](const msg::SurfaceDescription& surface) {
+                               return range.name() == surface.name();
+                             });
 }
 
 }  // namespace
@@ -72,6 +81,7 @@ void ScenePainter::find_looks(const msg::SceneDescription& description) {
   }
   for (const msg::NamedRange& range : description.matter()) {
     if (is_tool(description, range)) look_[range.first()] = Look::kTool;
+    if (is_surface(description, range)) look_[range.first()] = Look::kSurface;
   }
   // A port of role liaison plays a mass.
   for (const msg::PortDescription& port : description.ports()) {
@@ -293,9 +303,11 @@ void ScenePainter::sort_marks(const SurfacePainter& surfaces, const msg::SceneFr
     marks_.push_back({surfaces.layer_of(middle), 0.5 * (place_[a].z + place_[b].z),
                       static_cast<std::uint32_t>(link), false});
   }
-  for (std::size_t mat = 0; mat < radius_.size(); ++mat)
+  for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
+    if (look_[mat] == Look::kSurface) continue;
     marks_.push_back({surfaces.layer_of(point_of(frame, mat)), place_[mat].z,
                       static_cast<std::uint32_t>(mat), true});
+  }
   std::ranges::stable_sort(marks_, {}, [](const Mark& mark) {
     return std::pair{mark.layer, mark.z};
   });

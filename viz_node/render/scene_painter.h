@@ -69,7 +69,7 @@ class ScenePainter {
 
  private:
   /// How a MAT is drawn.
-  enum class Look : std::uint8_t { kMass, kFixedBall, kPort, kFixedPoint, kTool };
+  enum class Look : std::uint8_t { kMass, kFixedBall, kPort, kFixedPoint, kTool, kSurface };
   /// A ball or a link on its way from back to front.
   struct Mark {
     std::size_t layer;  // of surfaces that it is between

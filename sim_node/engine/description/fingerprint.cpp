@@ -94,6 +94,13 @@ class Fingerprint {
     add(set.range);
     add(set.rest_length);
   }
+  void add(const Surface& surface) {
+    add(static_cast<std::uint64_t>(surface.kind));
+    add(surface.mat);
+    add(surface.axis);
+    add(surface.half_size);
+    add(static_cast<std::uint64_t>(surface.both_sides));
+  }
   template <class Items>
   void add_all(const Items& items) {
     add(static_cast<std::uint64_t>(items.size()));
@@ -152,6 +159,7 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   fingerprint.add_if_any(3, description.state_links);
   fingerprint.add_if_any(4, description.maxwell_links);
   fingerprint.add_if_any(5, description.sets);
+  fingerprint.add_if_any(8, description.surfaces);
   if (description.freeze_tolerance > 0.0) {
     fingerprint.add(std::uint64_t{7});
     fingerprint.add(description.freeze_tolerance);

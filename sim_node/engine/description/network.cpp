@@ -15,6 +15,7 @@ namespace {
 
 // The step addresses the columns of 4 values with 32-bit offsets.
 constexpr std::size_t kMaxMatCount = std::numeric_limits<std::uint32_t>::max() / 4;
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
 bool stays_within(const Vec3& value, int dimension) {
   for (int axis = dimension; axis < 3; ++axis) {
@@ -92,6 +93,49 @@ void check_maxwell_link(const NetworkDescription& description, const MaxwellLink
   require(std::isfinite(link.start_force), name + ": start force", "finite");
 }
 
+void check_surface(const NetworkDescription& description, const Surface& surface,
+                   const std::string& name) {
+  constexpr double kRounding = 1e-9;
+  require(surface.mat < description.mats.size(), name + ": its MAT", "one of the network");
+  require(description.mats[surface.mat].kind == MatKind::kFixed, name + ": its MAT", "fixed");
+  require(surface_of(description, surface.mat) == &surface, name + ": its MAT",
+          "that of one surface alone");
+  const Vec3& size = surface.half_size;
+  if (surface.kind == SurfaceKind::kBox) {
+    require(size.minCoeff() > 0.0 && size.head(description.dimension).minCoeff() < kNoEnd,
+            name + ": half edges", "> 0, and one of them finite");
+    for (int axis = description.dimension; axis < 3; ++axis) {
+      require(size[axis] == kNoEnd, name + ": half edges",
+              "infinite beyond the dimension of the network");
+    }
+    return;
+  }
+  require(std::abs(surface.axis.squaredNorm() - 1.0) < kRounding, name + ": axis", "a unit vector");
+  if (surface.kind == SurfaceKind::kPlane) {
+    require_vector(surface.axis, description.dimension, name + ": normal");
+    return;
+  }
+  require(size[0] > 0.0 && size[0] < kNoEnd, name + ": radius", "finite and > 0");
+  require(size[1] > 0.0, name + ": half length", "> 0");
+  const bool is_across = surface.axis == Vec3::UnitZ() && size[1] == kNoEnd;
+  require(description.dimension == 3 || (description.dimension == 2 && is_across), name,
+          "a cylinder along z without an end in 2 dimensions, and none in 1");
+}
+
+void check_surfaces_of(const NetworkDescription& description, const SetLiaison& set,
+                       const std::string& name) {
+  if (description.surfaces.empty()) return;
+  std::vector<bool> has_shape(description.mats.size(), false);
+  for (const Surface& surface : description.surfaces) has_shape[surface.mat] = true;
+  const auto is_surface = [&](std::uint32_t mat) { return has_shape[mat]; };
+  require(std::ranges::none_of(set.set_q, is_surface), name + ": set Q", "without surfaces");
+  if (std::ranges::none_of(set.set_p, is_surface)) return;
+  require(std::ranges::all_of(set.set_p, is_surface), name + ": set P", "surfaces alone, or none");
+  require(!set.set_q.empty(), name + ": set Q", "one of at least 1 MAT beside surfaces");
+  require(set.set_p.size() * set.set_q.size() <= kMaxSurfacePairs, name + ": MATs times surfaces",
+          "at most 2^24");
+}
+
 void check_set(const NetworkDescription& description, const SetLiaison& set,
                const std::string& name) {
   check_states(description, set.state_machine, name);
@@ -108,6 +152,7 @@ void check_set(const NetworkDescription& description, const SetLiaison& set,
       taken[mat] = true;
     }
   }
+  check_surfaces_of(description, set, name);
 }
 
 template <class Item, class Check>
@@ -146,6 +191,7 @@ void check(const NetworkDescription& description) {
   }
   check_each(description, description.state_links, "state link", check_state_link);
   check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
+  check_each(description, description.surfaces, "surface", check_surface);
   check_each(description, description.sets, "set", check_set);
   require(is_finite_and_at_least_zero(description.freeze_tolerance), "tolerance of freezing",
           "finite and >= 0");

@@ -7,6 +7,7 @@
 #include "sim_node/engine/core/vec.h"
 #include "sim_node/engine/description/integrator_kind.h"
 #include "sim_node/engine/description/state_machine.h"
+#include "sim_node/engine/description/surface.h"
 
 namespace cordis::engine {
 
@@ -76,11 +77,12 @@ struct MaxwellLink {
 /// than `range`, as its state machine says. Members of a set are alike: the distance of a pair has
 /// no sign in 1 dimension either, and there is no force while it is 0. With states, each pair has
 /// one of its own: it begins in that of the start, keeps its state while it is in range, and beyond
-/// it as long as it is bound, that is in another state than that of the start. [Luc90 III.2.3 a
-/// formalism for inter-connection]
+/// it as long as it is bound, that is in another state than that of the start. The set P may be
+/// surfaces, all of it, beside a set Q: then the distance of a pair is that of SurfaceDistance, and
+/// there is a force at 0 too. [Luc90 III.2.3 a formalism for inter-connection]
 struct SetLiaison {
   std::uint32_t state_machine = 0;   ///< index in NetworkDescription::state_machines
-  std::vector<std::uint32_t> set_p;  ///< MATs, each once
+  std::vector<std::uint32_t> set_p;  ///< MATs, each once; or surfaces
   std::vector<std::uint32_t> set_q;  ///< MATs, none of them in P; empty: within P
   double range = 0.0;                ///< distance from which on there is no force [m], > 0
   double rest_length = 0.0;          ///< of a pair [m]; < 0: the sum of the radii of its two MATs
@@ -104,6 +106,7 @@ struct NetworkDescription {
   std::vector<StateLink> state_links;
   std::vector<MaxwellLink> maxwell_links;
   std::vector<SetLiaison> sets;
+  std::vector<Surface> surfaces;  ///< of fixed MATs, at most one each
 
   Vec3 gravity_on(const Mat& mat) const noexcept {
     return mat.weightless ? Vec3(Vec3::Zero()) : gravity;

@@ -94,6 +94,23 @@ using GatherPairs = std::size_t (*)(const MemberColumns& members, std::size_t a,
                                     const std::uint32_t* neighbour, std::size_t count,
                                     double range_square, const PairRow& row) noexcept;
 
+/// A plane whose pairs are looked for.
+struct PlaneQuery {
+  double normal[3] = {};
+  double centre[3] = {};  // [m]
+  double range = 0.0;     // [m]
+};
+
+/// Gathers and measures the pairs of a plane and its neighbours, given as columns, that are nearer than
+/// the range, in their order: their vectors are the normal, and their distance has a sign. @return how
+/// many; they are not padded.
+using GatherPlane = std::size_t (*)(const MemberColumns& members, const PlaneQuery& plane,
+                                    const std::uint32_t* neighbour, std::size_t count,
+                                    const PairRow& row) noexcept;
+/// The square of a distance of a surface where it is smaller, or below 0 [m^2]: 0 is for pairs
+/// without a direction.
+inline constexpr double kMinSquare = 0x1p-1022;
+
 /// Finds length, inverse and elongation increment of all pairs.
 using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows) noexcept;
 
@@ -134,6 +151,7 @@ struct PairKernel {
   FindNear find_near = nullptr;
   LargestMove largest_move = nullptr;
   GatherPairs gather_pairs = nullptr;
+  GatherPlane gather_plane = nullptr;
   MeasurePairs measure_pairs = nullptr;
   SpreadRows spread_rows = nullptr;
   LinearPairs linear_pairs = nullptr;

@@ -107,6 +107,47 @@ std::size_t gather_pairs(const MemberColumns& members, std::size_t a,
 }
 
 template <class Lanes>
+std::size_t gather_plane(const MemberColumns& members, const PlaneQuery& plane,
+                         const std::uint32_t* neighbour, std::size_t candidates,
+                         const PairRow& row) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  const PairRow out = row;
+  const double* const position = members.position;
+  const double* const moved = members.moved;
+  const Row3 normal{Lanes::every(plane.normal[0]), Lanes::every(plane.normal[1]),
+                    Lanes::every(plane.normal[2])};
+  const Row3 centre{Lanes::every(plane.centre[0]), Lanes::every(plane.centre[1]),
+                    Lanes::every(plane.centre[2])};
+  const Row range = Lanes::every(plane.range);
+  const Row smallest = Lanes::every(kMinSquare);
+  const Row one = Lanes::every(1.0);
+  std::size_t count = 0;
+
+  for (std::size_t i = 0; i < candidates; i += Lanes::kWidth) {
+    const Row3 there = Lanes::vectors(position, neighbour + i);
+    const Row height = normal.x * (there.x - centre.x) + normal.y * (there.y - centre.y) +
+                       normal.z * (there.z - centre.z);
+    const unsigned chosen =
+        Lanes::bits(Lanes::less(height, range)) & first_lanes<Lanes>(candidates - i);
+    if (chosen == 0U) continue;
+    const Row3 way = Lanes::vectors(moved, neighbour + i);
+    const Row apart = Lanes::maximum(height, Lanes::zero());
+    Lanes::pack(out.column + count, neighbour + i, chosen);
+    Lanes::pack(out.x + count, normal.x, chosen);
+    Lanes::pack(out.y + count, normal.y, chosen);
+    Lanes::pack(out.z + count, normal.z, chosen);
+    Lanes::pack(out.square + count, Lanes::maximum(apart * apart, smallest), chosen);
+    Lanes::pack(out.length + count, height, chosen);
+    Lanes::pack(out.inverse + count, one, chosen);
+    Lanes::pack(out.elongation_increment + count,
+                normal.x * way.x + normal.y * way.y + normal.z * way.z, chosen);
+    count += static_cast<std::size_t>(__builtin_popcount(chosen));
+  }
+  return count;
+}
+
+template <class Lanes>
 std::size_t gather_row(const MemberColumns& members, std::size_t a, const std::uint32_t* neighbour,
                        std::size_t candidates, double range_square, const PairRow& row) noexcept {
   const std::size_t count =
@@ -301,9 +342,9 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
 
 template <class Lanes>
 constexpr PairKernel make_pair_kernel() noexcept {
-  return PairKernel{find_near<Lanes>,         largest_move<Lanes>, gather_pairs<Lanes>,
-                    measure_pairs<Lanes>,     spread_rows<Lanes>,  linear_pairs<Lanes>,
-                    lennard_jones_rows<Lanes>};
+  return PairKernel{find_near<Lanes>,    largest_move<Lanes>,      gather_pairs<Lanes>,
+                    gather_plane<Lanes>, measure_pairs<Lanes>,     spread_rows<Lanes>,
+                    linear_pairs<Lanes>, lennard_jones_rows<Lanes>};
 }
 
 }  // namespace cordis::engine

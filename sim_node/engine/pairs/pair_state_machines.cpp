@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cordis::engine {
 
@@ -56,11 +55,10 @@ void PairStateMachines::begin_step(const PairStep& step) noexcept {
   if (!stateless_ && !step.frozen) states_.begin_step();
 }
 
-/// Puts the bound pairs of the last step that are out of range among those in range.
-std::size_t PairStateMachines::add_bound(const PairKernel& kernel, const PairStep& step,
-                                         const MemberColumns& members, std::size_t a,
-                                         std::size_t count, const PairRow& row) noexcept {
-  if (!remembers(step)) return count;
+std::span<const std::uint32_t> PairStateMachines::with_bound(const PairStep& step, std::size_t a,
+                                                             std::size_t count,
+                                                             const PairRow& row) noexcept {
+  if (!remembers(step)) return {};
   std::size_t merged = 0;
   std::size_t next = 0;
   for (std::size_t old = states_.old_begin(a); old < states_.old_end(a); ++old) {
@@ -70,10 +68,22 @@ std::size_t PairStateMachines::add_bound(const PairKernel& kernel, const PairSte
     if (next < count && row.column[next] == pair.column) continue;
     merged_[merged++] = pair.column;
   }
-  if (merged + count - next == count) return count;
+  if (merged + count - next == count) return {};
   while (next < count) merged_[merged++] = row.column[next++];
-  return kernel.gather_pairs(members, a, merged_.data(), merged,
-                             std::numeric_limits<double>::infinity(), row);
+  return {merged_.data(), merged};
+}
+
+bool PairStateMachines::is_bound(std::size_t a, std::uint32_t column) const noexcept {
+  if (stateless_) return false;
+  std::size_t first = states_.begin(a);
+  std::size_t last = states_.end(a);
+  while (first < last) {
+    const std::size_t middle = first + (last - first) / 2;
+    (states_.state(middle).column < column ? first : last) =
+        states_.state(middle).column < column ? middle + 1 : middle;
+  }
+  return first < states_.end(a) && states_.state(first).column == column &&
+         states_.state(first).state != start_;
 }
 
 void PairStateMachines::step(const PairStep& step, const MemberColumns& members,

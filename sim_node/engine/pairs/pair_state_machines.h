@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
@@ -48,10 +49,10 @@ class PairStateMachines {
   void adopt(const StateTable& table);
 
   void begin_step(const PairStep& step) noexcept;
-  /// Adds the pairs of row a that are bound to those in range. @return how many there are then
-  std::size_t add_bound(const PairKernel& kernel, const PairStep& step,
-                        const MemberColumns& members, std::size_t a, std::size_t count,
-                        const PairRow& row) noexcept;
+  /// The columns of row a in range, with those that are bound beyond it, in their order; none when
+  /// nothing is bound beyond it. They may be read with a batch more.
+  std::span<const std::uint32_t> with_bound(const PairStep& step, std::size_t a, std::size_t count,
+                                            const PairRow& row) noexcept;
   /// Finds the tensions of a padded block whose pairs have been measured. It holds the rest lengths
   /// that new pairs have.
   void step(const PairStep& step, const MemberColumns& members, double range_square,
@@ -61,6 +62,9 @@ class PairStateMachines {
   void keep_rows(const PairStep& step, std::size_t first, std::size_t last) noexcept {
     if (remembers(step)) forgotten_ += static_cast<std::uint32_t>(states_.keep_rows(first, last));
   }
+
+  /// True if a pair was in another state than that of the start as the last step ended.
+  bool is_bound(std::size_t a, std::uint32_t column) const noexcept;
 
   /// Makes room for so many pairs. Allocates; without memory the room stays as it is.
   void make_room(std::size_t capacity) noexcept {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "sim_node/engine/core/assert.h"
@@ -59,6 +60,8 @@ double dot(const double* u, const double* v) noexcept {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
+constexpr double kNoRange = std::numeric_limits<double>::infinity();
+
 }  // namespace
 
 SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
@@ -71,9 +74,13 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       rest_length_(description.sets[index].rest_length),
       range_(description.sets[index].range),
       share_(partner_share(description, description.sets[index])),
-      neighbours_(description.sets[index].set_p.size(), description.sets[index].set_q.size(),
-                  description.dimension, range_,
-                  list_capacity(description, description.sets[index], kernel), kernel),
+      surfaces_(description, description.sets[index], kernel),
+      neighbours_(
+          surfaces_.empty() ? count_p_ : 1,
+          surfaces_.empty() ? description.sets[index].set_q.size() : 1, description.dimension,
+          range_,
+          surfaces_.empty() ? list_capacity(description, description.sets[index], kernel) : 1,
+          kernel),
       block_(description.sets[index].set_p.size() + description.sets[index].set_q.size()),
       state_machines_(description, description.sets[index], table,
                       state_capacity(description.sets[index]), block_.capacity()) {
@@ -83,18 +90,26 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       column_.push_back(4 * mat);
       is_mass_.push_back(description.mats[mat].kind == MatKind::kMass ? 1.0 : 0.0);
       if (rest_length_ < 0.0) radius_.push_back(description.radius[mat]);
+      if (!surfaces_.empty())
+        own_column_.push_back(static_cast<std::uint32_t>(4 * own_column_.size()));
     }
   }
   const std::size_t padded_count = padded(column_.size(), kPairBatch) + kPairBatch;
   if (!radius_.empty()) radius_.resize(padded_count, 0.0);
   position_.resize(4 * padded_count, 0.0);
+  for (std::size_t m = 0; m < column_.size(); ++m) {
+    const Vec3& place = description.mats[column_[m] / 4].position;
+    std::copy_n(place.data(), 3, position_.begin() + static_cast<std::ptrdiff_t>(4 * m));
+  }
   moved_.resize(position_.size(), 0.0);
   ahead_.resize(position_.size(), 0.0);
   force_.resize(position_.size(), 0.0);
   viscous_.resize(position_.size(), 0.0);
   if (description.freeze_tolerance > 0.0) {
-    active_ = ActivePairs(column_.size(), set.set_p.size(), neighbours_.capacity());
+    active_ = ActivePairs(column_.size(), set.set_p.size(),
+                          surfaces_.empty() ? neighbours_.capacity() : surfaces_.capacity());
   }
+  if (!surfaces_.empty()) share_ = {};
   adopt(table);
 }
 
@@ -111,7 +126,7 @@ void SetPairs::adopt(const StateTable& table) {
     path_ = Path::kLinear;
     linear_ = {term.stiffness,   term.viscosity_over_dt, term.min_tension,
                term.max_tension, term.min_elongation,    term.max_elongation};
-  } else if (plain && bare && lennard_jones != nullptr) {
+  } else if (plain && bare && lennard_jones != nullptr && surfaces_.empty()) {
     path_ = Path::kLennardJones;
     const LennardJones::Term law = lennard_jones->term();
     const double range = std::min(range_, law.cutoff);
@@ -142,6 +157,7 @@ StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& column
 }
 
 bool SetPairs::refresh() noexcept {
+  if (!surfaces_.empty()) return std::exchange(surfaces_changed_, false);
   neighbours_.refresh(position_.data());
   const std::size_t builds_before = std::exchange(known_builds_, neighbours_.build_count());
   return known_builds_ != builds_before;
@@ -150,13 +166,15 @@ bool SetPairs::refresh() noexcept {
 StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept {
   clear_forces();
   state_machines_.begin_step(step);
-  if (active_.are_all()) {
+  if (!active_.are_all()) {
+    step_active_rows(step);
+  } else if (!surfaces_.empty()) {
+    step_rows(step, surfaces_.rows());
+  } else {
     for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
          rows = neighbours_.rows_after(rows, position_.data())) {
       step_rows(step, rows);
     }
-  } else {
-    step_active_rows(step);
   }
   count_partners();
   StepEnergy energy = give_forces(columns);
@@ -184,6 +202,17 @@ void SetPairs::visit_active(Visit visit) const noexcept {
   }
 }
 
+/// Visits the members that have forces, of those that are computed.
+template <class Visit>
+void SetPairs::visit_with_forces(Visit visit) const noexcept {
+  if (surfaces_.empty() || !active_.are_all()) {
+    visit_active(visit);
+    return;
+  }
+  for (std::size_t m = 0; m < count_p_; ++m) visit(m);
+  for (const std::uint32_t m : surfaces_.members()) visit(std::size_t{m});
+}
+
 void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexcept {
   if (path_ == Path::kLennardJones) {
     block_.begin(rows.first);
@@ -193,19 +222,74 @@ void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexce
   for (std::size_t a = rows.first; a < rows.last;) {
     block_.begin(a);
     for (; a < rows.last && !block_.is_full(); ++a) {
-      const std::size_t near = gather(rows, a);
-      const PairRow row = block_.next_row();
-      block_.end_row(state_machines_.add_bound(kernel_, step, members(), a, near, row));
+      block_.end_row(gather(step, rows, a));
     }
     step_block(step);
   }
 }
 
-/// Gathers the pairs in range of a member into the next row of the block.
-std::size_t SetPairs::gather(const NeighbourRows& rows, std::size_t a) noexcept {
-  return kernel_.gather_pairs(members(), a, rows.neighbour + (rows.start[a] - rows.origin),
-                              rows.start[a + 1] - rows.start[a], range_ * range_,
-                              block_.next_row());
+/// Gathers the pairs of a member that are in range, and those bound beyond it, into the next row of
+/// the block.
+std::size_t SetPairs::gather(const PairStep& step, const NeighbourRows& rows,
+                             std::size_t a) noexcept {
+  const std::size_t near = gather_near(rows, a);
+  const std::span<const std::uint32_t> all =
+      state_machines_.with_bound(step, a, near, block_.next_row());
+  if (all.empty()) return near;
+  return gather_within(kNoRange, a, all.data(), all.size());
+}
+
+std::size_t SetPairs::gather_near(const NeighbourRows& rows, std::size_t a) noexcept {
+  return gather_within(range_, a, rows.neighbour + (rows.start[a] - rows.origin),
+                       rows.start[a + 1] - rows.start[a]);
+}
+
+/// The pairs of a surface are measured too.
+std::size_t SetPairs::gather_within(double range, std::size_t a, const std::uint32_t* neighbour,
+                                    std::size_t count) noexcept {
+  const PairRow row = block_.next_row();
+  if (surfaces_.empty())
+    return kernel_.gather_pairs(members(), a, neighbour, count, range * range, row);
+  const Surface& shape = surfaces_.shape(a);
+  if (shape.kind != SurfaceKind::kPlane || shape.both_sides)
+    return gather_at_surface(range, a, neighbour, count);
+  PlaneQuery plane;
+  plane.range = range;
+  std::copy_n(shape.axis.data(), 3, plane.normal);
+  std::copy_n(surfaces_.centre(a).data(), 3, plane.centre);
+  return kernel_.gather_plane(members(), plane, neighbour, count, row);
+}
+
+/// The vectors are unit vectors along the normal, for there is a direction at distance 0 too.
+std::size_t SetPairs::gather_at_surface(double range, std::size_t a, const std::uint32_t* neighbour,
+                                        std::size_t candidates) noexcept {
+  const PairRow row = block_.next_row();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < candidates; ++i) {
+    const std::uint32_t column = neighbour[i];
+    const SurfaceDistance from = surfaces_.distance(a, position_.data() + column);
+    if (!(from.distance < range)) continue;
+    const bool still = from.normal.isZero(0.0);
+    const double apart = std::max(from.distance, 0.0);
+    row.column[count] = column;
+    row.x[count] = from.normal.x();
+    row.y[count] = from.normal.y();
+    row.z[count] = from.normal.z();
+    row.square[count] = still ? 0.0 : std::max(apart * apart, kMinSquare);
+    row.length[count] = from.distance;
+    row.inverse[count] = still ? 0.0 : 1.0;
+    row.elongation_increment[count] = dot(from.normal, Vec3::Map(moved_.data() + column));
+    ++count;
+  }
+  return count;
+}
+
+/// Fills the last batch up, as measured pairs at distance 0.
+void SetPairs::pad_at_surfaces() noexcept {
+  const PairRow row = block_.rows().pairs;
+  for (std::size_t i = block_.count(); i < block_.padded_count(); ++i) {
+    for (double* values : {row.length, row.inverse, row.elongation_increment}) values[i] = 0.0;
+  }
 }
 
 /// Finds the rest lengths that new pairs have.
@@ -222,7 +306,11 @@ void SetPairs::step_block(const PairStep& step) noexcept {
   find_rest_lengths();
   PairRows rows = block_.rows();
   rows.share = share_;
-  kernel_.measure_pairs(members(), rows);
+  if (surfaces_.empty()) {
+    kernel_.measure_pairs(members(), rows);
+  } else {
+    pad_at_surfaces();
+  }
   if (path_ == Path::kLinear) {
     kernel_.linear_pairs(linear_, rows.pairs, rows.count, block_.rest_length(), block_.factor(),
                          block_.viscous_factor());
@@ -236,31 +324,65 @@ void SetPairs::step_block(const PairStep& step) noexcept {
 /// Gathers the members, and ends the account of the last forces.
 StepEnergy SetPairs::take_positions(const ForceColumns& columns) noexcept {
   StepEnergy work;
-  visit_active([&](std::size_t m) {
-    const double* position = columns.position + column_[m];
-    const double* delayed = columns.delayed + column_[m];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      position_[4 * m + axis] = position[axis];
-      moved_[4 * m + axis] = position[axis] - delayed[axis];
-    }
-    work += work_of(m, moved_.data() + 4 * m);
-  });
+  visit_with_forces([&](std::size_t m) { work += take_position(m, columns); });
+  if (surfaces_.empty()) return work;
+  measure_surfaces(columns.position, column_, /*may_leave=*/true);
+  // Those that are new here have had no force.
+  if (surfaces_changed_) visit_with_forces([&](std::size_t m) { take_position(m, columns); });
   return work;
 }
 
+StepEnergy SetPairs::take_position(std::size_t m, const ForceColumns& columns) noexcept {
+  const double* position = columns.position + column_[m];
+  const double* delayed = columns.delayed + column_[m];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    position_[4 * m + axis] = position[axis];
+    moved_[4 * m + axis] = position[axis] - delayed[axis];
+  }
+  return work_of(m, moved_.data() + 4 * m);
+}
+
+/// Measures the balls that have come too far since they were measured.
+/// @param position   columns of 4 values; member m is at position[column[m]]
+/// @param may_leave  what is too far away is listed no longer, and its forces are forgotten
+void SetPairs::measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
+                                bool may_leave) noexcept {
+  surfaces_.visit_due(position, column, [&](std::size_t ball) {
+    const std::size_t m = count_p_ + ball;
+    const auto own = static_cast<std::uint32_t>(4 * m);
+    surfaces_.measure(ball, position + column[m], [&](std::size_t surface) {
+      return state_machines_.is_bound(surface, own) ||
+             (!may_leave && surfaces_.is_listed(ball, surface));
+    });
+    if (!surfaces_.is_far(ball)) return;
+    std::fill_n(force_.begin() + std::ptrdiff_t{own}, 4, 0.0);
+    std::fill_n(viscous_.begin() + std::ptrdiff_t{own}, 4, 0.0);
+  });
+  surfaces_changed_ = surfaces_.list() || surfaces_changed_;
+}
+
 void SetPairs::clear_forces() noexcept {
-  if (active_.are_all()) {
+  if (active_.are_all() && surfaces_.empty()) {
     std::fill(force_.begin(), force_.end(), 0.0);
     if (has_viscous_) std::fill(viscous_.begin(), viscous_.end(), 0.0);
     return;
   }
-  for (const std::uint32_t m : active_.members()) {
-    std::fill_n(force_.begin() + 4 * std::ptrdiff_t{m}, 4, 0.0);
-    if (has_viscous_) std::fill_n(viscous_.begin() + 4 * std::ptrdiff_t{m}, 4, 0.0);
-  }
+  visit_with_forces([&](std::size_t m) {
+    std::fill_n(force_.begin() + static_cast<std::ptrdiff_t>(4 * m), 4, 0.0);
+    if (has_viscous_) std::fill_n(viscous_.begin() + static_cast<std::ptrdiff_t>(4 * m), 4, 0.0);
+  });
 }
 
 void SetPairs::count_partners() noexcept {
+  if (!surfaces_.empty()) {
+    double largest = 0.0;
+    for (const std::uint32_t m : surfaces_.members()) {
+      largest = std::max(largest, is_mass_[m] * force_[4 * std::size_t{m} + 3]);
+    }
+    const auto of_q = static_cast<std::uint32_t>(std::ceil(largest));
+    largest_partners_.of_q = std::max(largest_partners_.of_q, of_q);
+    return;
+  }
   largest_partners_.of_p = std::max(largest_partners_.of_p, largest_among(0, count_p_));
   largest_partners_.of_q =
       std::max(largest_partners_.of_q, largest_among(count_p_, column_.size()));
@@ -276,7 +398,7 @@ std::uint32_t SetPairs::largest_among(std::size_t first, std::size_t last) const
 
 StepEnergy SetPairs::give_forces(const ForceColumns& columns) const noexcept {
   StepEnergy work;
-  visit_active([&](std::size_t m) {
+  visit_with_forces([&](std::size_t m) {
     double* force = columns.force + column_[m];
     for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += force_[4 * m + axis];
     work += work_of(m, moved_.data() + 4 * m);
@@ -294,7 +416,8 @@ StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noex
 
 PairsOfSet SetPairs::pairs() noexcept {
   CORDIS_ASSERT(neighbours_.is_whole());
-  return {column_, state_machines_, neighbours_.first_rows(position_.data())};
+  return {column_, state_machines_,
+          surfaces_.empty() ? neighbours_.first_rows(position_.data()) : surfaces_.rows()};
 }
 
 void SetPairs::mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
@@ -323,12 +446,25 @@ StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
   return work;
 }
 
+/// Adds the energy of a pair, less what it has where it comes into range, in all states.
+void SetPairs::add_potential(const StateTable& table, StateIndex state, std::size_t a,
+                             std::size_t b, double distance, double rest_length,
+                             double& sum) const noexcept {
+  const EndMasses mass = state_machines_.masses_of(a, b);
+  sum += table.stored_energy(state, distance, rest_length, mass);
+  // Beyond the range there is no force, and the potential is 0; that of Lennard-Jones is 0 far away.
+  if (path_ == Path::kLennardJones) return;
+  sum -= table.stored_energy(state_machines_.start_state(), range_, rest().length(a, b), mass);
+}
+
 double SetPairs::stored_energy(const StateTable& table) noexcept {
   double sum = 0.0;
-  const PairRest rest_of = rest();
   const PairStates& states = state_machines_.states();
   const StateIndex start = state_machines_.start_state();
   const auto distance = [this](std::size_t a, std::size_t b) {
+    if (!surfaces_.empty()) {
+      return surfaces_.distance(a, position_.data() + 4 * b).distance;
+    }
     double square = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double along = position_[4 * b + axis] - position_[4 * a + axis];
@@ -341,34 +477,30 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
       for (std::size_t i = states.begin(a); i < states.end(a); ++i) {
         const PairState& pair = states.state(i);
         const std::size_t b = pair.column / 4;
-        const EndMasses mass = state_machines_.masses_of(a, b);
-        sum += table.stored_energy(pair.state, distance(a, b), pair.rest_length, mass);
-        // Less what it has where it comes into range, of the start and of all other states.
-        if (path_ != Path::kLennardJones)
-          sum -= table.stored_energy(start, range_, rest_of.length(a, b), mass);
+        add_potential(table, pair.state, a, b, distance(a, b), pair.rest_length, sum);
       }
     }
+    return sum;
+  }
+  const auto add_row = [&](const NeighbourRows& rows, std::size_t a) {
+    block_.begin(a);
+    const std::size_t count = gather_near(rows, a);
+    const PairRow row = block_.next_row();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t b = row.column[i] / 4;
+      const double apart = surfaces_.empty() ? std::sqrt(row.square[i]) : row.length[i];
+      add_potential(table, start, a, b, apart, rest().length(a, b), sum);
+    }
+  };
+  if (!surfaces_.empty()) {
+    for (std::size_t a = 0; a < count_p_; ++a) add_row(surfaces_.rows(), a);
     return sum;
   }
   // Before the first step the list may have been made for the positions of the next one.
   if (state_machines_.has_states()) neighbours_.refresh(position_.data());
   for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
        rows = neighbours_.rows_after(rows, position_.data())) {
-    for (std::size_t a = rows.first; a < rows.last; ++a) {
-      block_.begin(a);
-      const std::size_t count = gather(rows, a);
-      const PairRow row = block_.next_row();
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t b = row.column[i] / 4;
-        const EndMasses mass = state_machines_.masses_of(a, b);
-        const double rest_length = rest_of.length(a, b);
-        sum += table.stored_energy(start, std::sqrt(row.square[i]), rest_length, mass);
-        // Beyond the range there is no force, and the potential is 0; that of Lennard-Jones is 0
-        // far away.
-        if (path_ != Path::kLennardJones)
-          sum -= table.stored_energy(start, range_, rest_length, mass);
-      }
-    }
+    for (std::size_t a = rows.first; a < rows.last; ++a) add_row(rows, a);
   }
   return sum;
 }
@@ -392,20 +524,30 @@ void SetPairs::start() noexcept {
 /// Room for the pairs remembered and for all that are listed, which may bind in the next step.
 std::size_t SetPairs::wanted_room() const noexcept {
   const std::size_t remembered = state_machines_.states().count();
-  const std::size_t listed = std::min(neighbours_.entry_count(), NeighbourList::kMaxEntries);
+  const std::size_t listed = surfaces_.empty()
+                                 ? std::min(neighbours_.entry_count(), NeighbourList::kMaxEntries)
+                                 : surfaces_.entry_count();
   return std::min(all_pairs_, remembered + listed + listed / 4 + pairs_of_ports_);
 }
 
 bool SetPairs::wants_room(const double* position) const noexcept {
   if (neighbours_.wants_room()) return true;
-  return may_lack_room() && (wanted_room() > state_machines_.states().capacity() ||
-                             !neighbours_.covers(position, column_));
+  return may_lack_room() &&
+         (wanted_room() > state_machines_.states().capacity() || !covers(position));
+}
+
+bool SetPairs::covers(const double* position) const noexcept {
+  if (surfaces_.empty()) return neighbours_.covers(position, column_);
+  for (std::size_t m = count_p_; m < column_.size(); ++m) {
+    if (surfaces_.is_due(m - count_p_, position + column_[m])) return false;
+  }
+  return true;
 }
 
 void SetPairs::make_room(const double* position) noexcept {
   make_list_room();
   if (!may_lack_room()) return;
-  if (!neighbours_.covers(position, column_)) {
+  if (!covers(position)) {
     refresh_at(position);
     make_list_room();
   }
@@ -422,6 +564,10 @@ void SetPairs::make_list_room() noexcept {
 
 /// The neighbour list counts all pairs that are in range there, though it may lack room for them.
 void SetPairs::refresh_at(const double* position) noexcept {
+  if (!surfaces_.empty()) {
+    measure_surfaces(position, column_, /*may_leave=*/false);
+    return;
+  }
   for (std::size_t m = 0; m < column_.size(); ++m) {
     std::copy_n(position + column_[m], 3, ahead_.begin() + static_cast<std::ptrdiff_t>(4 * m));
   }
@@ -440,15 +586,22 @@ bool SetPairs::is_overflowed() const noexcept {
 void SetPairs::serialize(Archive& archive, const StateTable& table) {
   for (AlignedVector<double>* values : {&force_, &viscous_, &position_}) archive.reals(*values);
   if (archive.restores()) {
-    neighbours_.forget();
-    neighbours_.refresh(position_.data());
     active_.choose_all();
     has_viscous_ = has_viscous_ || std::any_of(viscous_.begin(), viscous_.end(),
                                                [](double force) { return force != 0.0; });
   }
-  if (!state_machines_.has_states()) return;
-  const std::size_t first_later = count_p_ < column_.size() ? count_p_ : 1;
-  state_machines_.states().serialize(archive, first_later, column_.size(), table, state_machine_);
+  if (state_machines_.has_states()) {
+    const std::size_t first_later = count_p_ < column_.size() ? count_p_ : 1;
+    state_machines_.states().serialize(archive, first_later, column_.size(), table, state_machine_);
+  }
+  if (!archive.restores()) return;
+  neighbours_.forget();
+  surfaces_.forget();
+  if (surfaces_.empty()) {
+    neighbours_.refresh(position_.data());
+  } else {
+    measure_surfaces(position_.data(), own_column_, /*may_leave=*/true);
+  }
 }
 
 }  // namespace cordis::engine

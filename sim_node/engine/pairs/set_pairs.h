@@ -20,11 +20,16 @@
 #include "sim_node/engine/pairs/pair_block.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/pairs/pair_state_machines.h"
+#include "sim_node/engine/pairs/surface_neighbours.h"
 
 namespace cordis::engine {
 
 /// One set liaison. Pairs have a distance without sign in 1 dimension too: members of a set are
 /// alike, so a pair is the same whichever comes first. No force while the distance is 0.
+///
+/// Where the first set is surfaces, a pair is a ball and its nearest point of the surface: the distance
+/// has the sign of SurfaceDistance, and the line of centres is the normal. What is far from all
+/// surfaces is compared with its free way once a step, and costs nothing else.
 ///
 /// The forces are summed in a fixed order: rows of P in the order given, and in each its partners
 /// in range in the order given, by their place in batches of 8. So the sum is the same bits for
@@ -108,12 +113,15 @@ class SetPairs {
 
   template <class Visit>
   void visit_active(Visit visit) const noexcept;
+  template <class Visit>
+  void visit_with_forces(Visit visit) const noexcept;
   bool computes_all(const std::vector<bool>& never_rests) const noexcept {
     return never_rests[state_machine_] || !neighbours_.is_whole();
   }
   /// Precondition: the neighbour list is whole.
   PairsOfSet pairs() noexcept;
   void make_list_room() noexcept;
+  bool covers(const double* position) const noexcept;
   void refresh_at(const double* position) noexcept;
   std::size_t wanted_room() const noexcept;
   bool may_lack_room() const noexcept {
@@ -125,7 +133,18 @@ class SetPairs {
   void count_partners() noexcept;
   std::uint32_t largest_among(std::size_t first, std::size_t last) const noexcept;
   void step_rows(const PairStep& step, const NeighbourRows& rows) noexcept;
-  std::size_t gather(const NeighbourRows& rows, std::size_t a) noexcept;
+  std::size_t gather(const PairStep& step, const NeighbourRows& rows, std::size_t a) noexcept;
+  std::size_t gather_near(const NeighbourRows& rows, std::size_t a) noexcept;
+  std::size_t gather_within(double range, std::size_t a, const std::uint32_t* neighbour,
+                            std::size_t count) noexcept;
+  std::size_t gather_at_surface(double range, std::size_t a, const std::uint32_t* neighbour,
+                                std::size_t candidates) noexcept;
+  StepEnergy take_position(std::size_t member, const ForceColumns& columns) noexcept;
+  void measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
+                        bool may_leave) noexcept;
+  void pad_at_surfaces() noexcept;
+  void add_potential(const StateTable& table, StateIndex state, std::size_t a, std::size_t b,
+                     double distance, double rest_length, double& sum) const noexcept;
   void find_rest_lengths() noexcept;
   void step_block(const PairStep& step) noexcept;
   MemberColumns members() const noexcept;
@@ -136,18 +155,21 @@ class SetPairs {
   std::uint32_t state_machine_;
   std::size_t count_p_;
   std::size_t all_pairs_;
-  std::size_t pairs_of_ports_;         // at most
-  std::vector<std::uint32_t> column_;  // of the MAT of each member
-  std::vector<double> is_mass_;        // of each member: 1 or 0
-  std::vector<double> radius_;         // of each member [m]; empty when the rest length is given
-  double rest_length_;                 // [m]
-  double range_;                       // [m]
+  std::size_t pairs_of_ports_;             // at most
+  std::vector<std::uint32_t> column_;      // of the MAT of each member
+  std::vector<std::uint32_t> own_column_;  // of each member here; empty without surfaces
+  std::vector<double> is_mass_;            // of each member: 1 or 0
+  std::vector<double> radius_;  // of each member [m]; empty when the rest length is given
+  double rest_length_;          // [m]
+  double range_;                // [m]
   PartnerShare share_;
   Path path_ = Path::kAnyStateMachine;
   LinearPair linear_;
   LennardJonesPair lennard_jones_;
-  NeighbourList neighbours_;
-  std::size_t known_builds_ = 0;  // of the neighbour list, at the last refresh()
+  SurfaceNeighbours surfaces_;
+  bool surfaces_changed_ = false;  // since the last refresh()
+  NeighbourList neighbours_;       // empty where there are surfaces
+  std::size_t known_builds_ = 0;   // of the neighbour list, at the last refresh()
   PairBlock block_;
   PairStateMachines state_machines_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches and one batch more

@@ -11,8 +11,29 @@
 
 namespace cordis::engine {
 
+namespace {
+
+StartPairCount count_at_surfaces(const NetworkDescription& network, const SetLiaison& set,
+                                 const StartPairCount& limits) {
+  StartPairCount count;
+  for (const std::uint32_t of_surface : set.set_p) {
+    const Surface& surface = *surface_of(network, of_surface);
+    for (const std::uint32_t mat : set.set_q) {
+      const Vec3& place = network.mats[mat].position;
+      if (distance_from(surface, network.mats[of_surface].position, place).distance < set.range)
+        ++count.in_range;
+    }
+    count.looked_at += set.set_q.size();
+    if (count.in_range > limits.in_range || count.looked_at > limits.looked_at) break;
+  }
+  return count;
+}
+
+}  // namespace
+
 StartPairCount count_start_pairs(const NetworkDescription& network, const SetLiaison& set,
                                  const StartPairCount& limits) {
+  if (acts_on_surfaces(network, set)) return count_at_surfaces(network, set, limits);
   constexpr double kReach = 1.5;  // in ranges: with the largest skin of a neighbour list
   const std::size_t count_p = set.set_p.size();
   AlignedVector<double> position;

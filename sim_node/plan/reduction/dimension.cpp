@@ -112,6 +112,7 @@ void project(const scene::Subspace& subspace, int dimension, scene::Scene& scene
 }  // namespace
 
 std::string confine(scene::Scene& scene) {
+  if (!scene.network.surfaces.empty()) return {};  // what touches them may leave the plane
   scene::Subspace subspace;
   subspace.space = scene.space();
   std::vector<int> left;

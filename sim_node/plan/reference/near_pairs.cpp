@@ -18,7 +18,16 @@ NearPairs::NearPairs(const engine::NetworkDescription& network, std::uint32_t se
     : set_p_(network.sets[set].set_p),
       set_q_(network.sets[set].set_q),
       reach_((1.0 + kSkin) * network.sets[set].range),
-      skin_(kSkin * network.sets[set].range) {}
+      skin_(kSkin * network.sets[set].range) {
+  if (!engine::acts_on_surfaces(network, network.sets[set])) return;
+  for (const std::uint32_t mat : set_p_) surfaces_.push_back(*engine::surface_of(network, mat));
+}
+
+engine::SurfaceDistance from_surface(const engine::Surface& surface, const double* positions,
+                                     std::uint32_t mat) {
+  return engine::distance_from(surface, position_of(positions, surface.mat),
+                               position_of(positions, mat));
+}
 
 bool NearPairs::has_strayed(const double* positions) const {
   if (seen_.empty()) return true;
@@ -42,6 +51,11 @@ void NearPairs::update(const double* positions) {
   const std::vector<std::uint32_t>& others = within ? set_p_ : set_q_;
   for (std::size_t a = 0; a < set_p_.size(); ++a) {
     for (std::size_t b = within ? a + 1 : 0; b < others.size(); ++b) {
+      if (!surfaces_.empty()) {
+        const double distance = from_surface(surfaces_[a], positions, others[b]).distance;
+        if (distance < reach_) pairs_.emplace_back(set_p_[a], others[b]);
+        continue;
+      }
       const Vec3 along = position_of(positions, others[b]) - position_of(positions, set_p_[a]);
       if (along.squaredNorm() < reach_ * reach_) pairs_.emplace_back(set_p_[a], others[b]);
     }

@@ -9,6 +9,10 @@
 
 namespace cordis::plan {
 
+/// Where a MAT is beside a surface. @param positions  3 per MAT [m]
+engine::SurfaceDistance from_surface(const engine::Surface& surface, const double* positions,
+                                     std::uint32_t mat);
+
 /// Pairs of MATs of a set liaison, kept until a member has moved so far that another pair may have
 /// come into range. Measures all pairs at an update: for sets of up to some thousand.
 class NearPairs {
@@ -27,8 +31,9 @@ class NearPairs {
 
   std::vector<std::uint32_t> set_p_;
   std::vector<std::uint32_t> set_q_;
-  double reach_;  // range and skin [m]
-  double skin_;   // [m]
+  std::vector<engine::Surface> surfaces_;  // of P
+  double reach_;                           // range and skin [m]
+  double skin_;                            // [m]
   std::vector<engine::Vec3> seen_;
   std::vector<Pair> pairs_;
 };

@@ -107,8 +107,11 @@ void OdeSystem::each_pair(std::uint32_t set, const Values& values, Visit visit) 
   const double range = network_.sets[set].range;
   for (const NearPairs::Pair& pair : known.near.near(values.data())) {
     if (!known.bound.empty() && known.bound.contains(pair)) continue;
-    const Vec3 along = position(values, pair.second) - position(values, pair.first);
-    if (along.squaredNorm() < range * range && !visit(pair, fresh(set, pair))) return;
+    const engine::Surface* surface = engine::surface_of(network_, pair.first);
+    const double distance =
+        surface != nullptr ? from_surface(*surface, values.data(), pair.second).distance
+                           : (position(values, pair.second) - position(values, pair.first)).norm();
+    if (distance < range && !visit(pair, fresh(set, pair))) return;
   }
   for (const auto& [pair, present] : known.bound) {
     if (!visit(pair, present)) return;
@@ -119,7 +122,13 @@ OdeSystem::Geometry OdeSystem::geometry(const Values& values, const Joined& join
   Geometry link;
   const Vec3 along = position(values, joined.mat_b) - position(values, joined.mat_a);
   link.velocity = velocity(values, joined.mat_b) - velocity(values, joined.mat_a);
-  if (network_.dimension == 1 && !joined.of_set) {
+  const engine::Surface* surface =
+      joined.of_set ? engine::surface_of(network_, joined.mat_a) : nullptr;
+  if (surface != nullptr) {
+    const engine::SurfaceDistance from = from_surface(*surface, values.data(), joined.mat_b);
+    link.distance = from.distance;
+    link.direction = from.normal;
+  } else if (network_.dimension == 1 && !joined.of_set) {
     link.distance = along.x();
     link.direction = Vec3::UnitX();
   } else {

@@ -77,7 +77,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
 
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
   const double touch = engine::touch_distance(state_machine);
-  if (touch >= set.range) return;
+  if (touch >= set.range || engine::acts_on_surfaces(network, set)) return;
   const auto& law = std::get<engine::LennardJones>(state_machine.states.front().elasticity);
   side.stiffness = slope_beyond(law, touch, set.range);
   side.counted = false;
@@ -125,6 +125,13 @@ bool is_confined(const engine::StateMachine& state_machine, double rest_length, 
          });
 }
 
+bool has_edges(const NetworkDescription& network, const engine::SetLiaison& set) {
+  return std::ranges::any_of(set.set_p, [&](std::uint32_t mat) {
+    const engine::Surface& surface = *engine::surface_of(network, mat);
+    return surface.kind != engine::SurfaceKind::kPlane || surface.both_sides;
+  });
+}
+
 void add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
              LiaisonGraph& graph) {
   const engine::SetLiaison& set = network.sets[index];
@@ -141,7 +148,10 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   }
   here.energy += stored;
   here.brought += stored;
-  const Slope slope = largest_slope(state_machine, rest, network.dimension, here);
+  const bool on_surfaces = engine::acts_on_surfaces(network, set);
+  const Slope slope =
+      on_surfaces ? largest_slope_at_surfaces(state_machine, rest, has_edges(network, set), here)
+                  : largest_slope(state_machine, rest, network.dimension, here);
   note(slope, {LiaisonKind::kSet, index}, graph);
   const std::size_t count_p = set.set_p.size();
   const std::size_t all =

@@ -9,6 +9,7 @@
 
 #include "sim_node/engine/description/partner_share.h"
 #include "sim_node/plan/stability/start_pairs.h"
+#include "sim_node/plan/stability/surface_bound.h"
 
 namespace cordis::plan {
 namespace {
@@ -129,6 +130,38 @@ Cells cells_over(const std::vector<Vec3>& points, double reach, int dimension) {
   return {};
 }
 
+/// From a surface at most this far there is a force [m].
+double reach_of_force(const NetworkDescription& network, const SetLiaison& set) {
+  if (!only_pushes(network.state_machines[set.state_machine])) return set.range;
+  double rest = set.rest_length;
+  if (rest < 0.0) {
+    for (const std::uint32_t mat : set.set_q) rest = std::max(rest, radius_of(network, mat));
+  }
+  return std::min(rest, set.range);
+}
+
+/// Every mass may come to where most surfaces are: no pose has more.
+PartnerBounds bounds_on_surfaces(const NetworkDescription& network, const SetLiaison& set,
+                                 const std::vector<std::uint32_t>& at_start) {
+  std::vector<engine::Surface> surfaces;
+  std::vector<Vec3> centres;
+  for (const std::uint32_t mat : set.set_p) {
+    surfaces.push_back(*engine::surface_of(network, mat));
+    centres.push_back(network.mats[mat].position);
+  }
+  const double most =
+      max_surfaces_in_reach(surfaces, centres, reach_of_force(network, set), network.dimension);
+  PartnerBounds bounds;
+  bounds.needed.assign(set.set_p.size(), static_cast<double>(set.set_q.size()));
+  bounds.needed.resize(set.set_p.size() + set.set_q.size(), most);
+  bounds.possible = bounds.needed;
+  for (std::size_t m = 0; m < set.set_q.size(); ++m) {
+    if (network.mats[set.set_q[m]].kind != MatKind::kMass) continue;
+    bounds.at_start = std::max(bounds.at_start, at_start[set.set_p.size() + m]);
+  }
+  return bounds;
+}
+
 }  // namespace
 
 double max_neighbours(int dimension, double own, double other) {
@@ -205,6 +238,7 @@ double max_in_reach(const std::vector<Vec3>& points, double reach, int dimension
 
 PartnerBounds partner_bounds(const NetworkDescription& network, const SetLiaison& set) {
   const std::vector<std::uint32_t> at_start = counts_at_start(network, set);
+  if (engine::acts_on_surfaces(network, set)) return bounds_on_surfaces(network, set, at_start);
   const bool within = set.set_q.empty();
   PartnerBounds bounds;
   std::uint32_t member = 0;

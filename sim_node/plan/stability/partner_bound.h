@@ -17,7 +17,7 @@ struct PartnerBounds {
   /// points as it can reach.
   std::vector<double> needed;
   /// By member: no pose whatever has more. All others there are, or as many of them as are in
-  /// reach of one place where all are fixed points.
+  /// reach of one place where all are fixed points or surfaces. Of surfaces that many are needed too.
   std::vector<double> possible;
 };
 

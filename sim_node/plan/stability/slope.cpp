@@ -311,6 +311,19 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
   return largest;
 }
 
+/// Along the normal it is as a liaison in 1 dimension. Across, a tension T at the distance d from an
+/// edge has the stiffness T / d, as a link has.
+Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
+                                bool has_edges, const Reach& reach) {
+  Slope slope = largest_slope(state_machine, rest_length, 1, reach);
+  if (!has_edges || slope.uncertainty != nullptr) return slope;
+  const Slope turning = largest_slope(state_machine, rest_length, 3, reach);
+  if (turning.uncertainty != kPullsWhereEndsMeet) return slope;
+  slope.bounded = false;
+  slope.uncertainty = turning.uncertainty;
+  return slope;
+}
+
 Tangent stiffest_tangent(const engine::StateMachine& state_machine, const engine::LawPoint& point,
                          double step) {
   const double elongation = point.elongation;

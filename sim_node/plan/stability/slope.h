@@ -38,6 +38,12 @@ struct Slope {
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach);
 
+/// Likewise of a liaison of a set with surfaces, whose distance has a sign. It turns beside an edge and
+/// around a cylinder, and where a plane with both sides is drawn through.
+/// @param has_edges  not planes of one side alone
+Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
+                                bool has_edges, const Reach& reach);
+
 /// A state machine of the state of the start alone.
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine);
 

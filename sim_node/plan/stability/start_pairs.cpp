@@ -31,7 +31,31 @@ bool reaches_all(const engine::NetworkDescription& network, const engine::SetLia
 
 }  // namespace
 
+void StartPairs::measure_surfaces(const engine::NetworkDescription& network,
+                                  const engine::SetLiaison& set) {
+  const std::size_t count_p = set.set_p.size();
+  counts_.assign(count_p + set.set_q.size(), 0U);
+  for (std::size_t s = 0; s < count_p; ++s) {
+    const engine::Surface& surface = *engine::surface_of(network, set.set_p[s]);
+    const engine::Vec3& centre = network.mats[surface.mat].position;
+    for (std::size_t m = 0; m < set.set_q.size(); ++m) {
+      const double distance =
+          engine::distance_from(surface, centre, network.mats[set.set_q[m]].position).distance;
+      if (!(distance < set.range)) continue;
+      const auto first = static_cast<std::uint32_t>(s);
+      const auto second = static_cast<std::uint32_t>(count_p + m);
+      pairs_.push_back({first, second, distance});
+      ++counts_[first];
+      ++counts_[second];
+    }
+  }
+}
+
 StartPairs::StartPairs(const engine::NetworkDescription& network, const engine::SetLiaison& set) {
+  if (engine::acts_on_surfaces(network, set)) {
+    measure_surfaces(network, set);
+    return;
+  }
   const std::size_t count_p = set.set_p.size();
   const std::size_t count_q = set.set_q.size();
   const std::size_t all = pairs_of_all(set);

@@ -13,11 +13,11 @@ namespace cordis::plan {
 struct StartPair {
   std::uint32_t member_a;
   std::uint32_t member_b;
-  double distance;  ///< [m], > 0
+  double distance;  ///< [m], > 0 but of a surface, where it may be below
 };
 
 /// The pairs of a set nearer than its range at the start, by the engine's neighbour search: O(members
-/// + pairs).
+/// + pairs); with surfaces O(members x surfaces).
 class StartPairs {
  public:
   /// So many pairs are kept; where there are more they are counted alone.
@@ -31,6 +31,8 @@ class StartPairs {
   const std::vector<std::uint32_t>& counts() const noexcept { return counts_; }
 
  private:
+  void measure_surfaces(const engine::NetworkDescription& network, const engine::SetLiaison& set);
+
   std::vector<StartPair> pairs_;
   std::vector<std::uint32_t> counts_;
   bool kept_ = true;

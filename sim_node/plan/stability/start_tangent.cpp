@@ -161,10 +161,16 @@ void StartTangent::add_set(const engine::NetworkDescription& network, const engi
   const engine::StateMachine start = start_state_alone(network.state_machines[set.state_machine]);
   const StartPairs near(network, set);
   for (const StartPair& pair : near.pairs()) {
+    const std::uint32_t a = mat_of(set, pair.member_a);
+    const std::uint32_t b = mat_of(set, pair.member_b);
     const Tangent tangent = stiffest_tangent(start, start_point(network, set, pair), network.step);
-    if (!surely_acts(start.states[0], tangent, pair.distance)) continue;
-    add(mat_of(set, pair.member_a), mat_of(set, pair.member_b), network,
-        stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
+    if (!surely_acts(start.states[0], tangent, std::abs(pair.distance))) continue;
+    if (const engine::Surface* surface = engine::surface_of(network, a)) {
+      add_at_surface(*surface, b, network, stiffness_weight * tangent.stiffness,
+                     stiffness_weight * tangent.tension, viscosity_weight * tangent.viscosity);
+      continue;
+    }
+    add(a, b, network, stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
         viscosity_weight * tangent.viscosity, 0.0);
   }
 }
@@ -179,6 +185,18 @@ void StartTangent::add(std::uint32_t a, std::uint32_t b, const engine::NetworkDe
     parts_.push_back(
         {a, b, from_a_to_b / length, along, tension / length, viscosity, maxwell_viscosity});
   }
+}
+
+/// A push beside an edge lets the ball slip off it, at most as one from a point there would.
+void StartTangent::add_at_surface(const engine::Surface& surface, std::uint32_t ball,
+                                  const engine::NetworkDescription& network, double along,
+                                  double tension, double viscosity) {
+  const engine::SurfaceDistance from = engine::distance_from(
+      surface, network.mats[surface.mat].position, network.mats[ball].position);
+  const bool turns = dimension_ > 1 && surface.kind != engine::SurfaceKind::kPlane;
+  const double radius = std::abs(from.distance);
+  const double across = turns && tension < 0.0 && radius > 0.0 ? tension / radius : 0.0;
+  parts_.push_back({surface.mat, ball, from.normal, along, across, viscosity, 0.0});
 }
 
 void StartTangent::add_vector_spring(const engine::Link& link, double stiffness, double viscosity) {

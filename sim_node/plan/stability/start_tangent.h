@@ -44,6 +44,9 @@ class StartTangent {
            double along, double tension, double viscosity, double maxwell_viscosity);
   void add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
                double stiffness_weight, double viscosity_weight);
+  void add_at_surface(const engine::Surface& surface, std::uint32_t ball,
+                      const engine::NetworkDescription& network, double along, double tension,
+                      double viscosity);
   void add_vector_spring(const engine::Link& link, double stiffness, double viscosity);
   /// M^-1/2 (stiffness_factor K + viscosity_factor Z) M^-1/2 x; Maxwell elements as at a step.
   Columns times(const Columns& x, double stiffness_factor, double viscosity_factor,

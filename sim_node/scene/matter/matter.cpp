@@ -15,6 +15,7 @@
 #include "sim_node/scene/matter/ring.h"
 #include "sim_node/scene/matter/skin.h"
 #include "sim_node/scene/matter/string.h"
+#include "sim_node/scene/matter/surfaces.h"
 
 namespace cordis::scene {
 
@@ -28,7 +29,7 @@ struct MatterKind {
   int lowest_space;
   int highest_space;
 };
-constexpr std::array<MatterKind, 12> kMatterKinds{{
+constexpr std::array<MatterKind, 15> kMatterKinds{{
     {"mass", read_mass, 1, 3},
     {"fixed", read_fixed, 1, 3},
     {"points", read_points, 1, 3},
@@ -41,6 +42,9 @@ constexpr std::array<MatterKind, 12> kMatterKinds{{
     {"pack", read_pack, 2, 3},
     {"skin", read_skin, 2, 3},
     {"beam", read_beam, 2, 3},
+    {"plane", read_plane_surface, 1, 3},
+    {"box", read_box, 1, 3},
+    {"cylinder", read_cylinder, 2, 3},
 }};
 
 const MatterKind* kind_named(const std::string& word) {
@@ -93,7 +97,11 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
 
   Source source{reader, liaisons, space, may_be_massless, problems};
   GeneratedMatter matter = kind.read(source);
-  read_drawing(reader, matter);
+  if (matter.surfaces.empty()) {
+    read_drawing(reader, matter);
+  } else {
+    matter.drawn_radius_m = matter.radius_m;  // it is drawn as it is
+  }
   reader.finish();
   return matter;
 }

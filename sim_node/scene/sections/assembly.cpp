@@ -1,9 +1,11 @@
 // sim_node/scene/sections/assembly.cpp
 #include "sim_node/scene/sections/assembly.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "sim_node/scene/matter/matter.h"
+#include "sim_node/scene/matter/surfaces.h"
 
 namespace cordis::scene {
 
@@ -15,7 +17,7 @@ void Assembly::read_liaisons(const Value& section) {
   liaisons->read(sections, scene.space(), problems);
 }
 
-void Assembly::put(GeneratedMatter& matter) const {
+bool Assembly::put(GeneratedMatter& matter) const {
   for (engine::Mat& mat : matter.mats) {
     mat.position = placement(mat.position);
     mat.velocity = placement.turn * mat.velocity;
@@ -24,6 +26,9 @@ void Assembly::put(GeneratedMatter& matter) const {
     point.x += placement.layout_shift.x;
     point.z += placement.layout_shift.z;
   }
+  return std::ranges::all_of(matter.surfaces, [this](engine::Surface& surface) {
+    return turn_surface(placement, scene.space(), surface);
+  });
 }
 
 bool Assembly::add(GeneratedMatter matter, const config::Place& place) {
@@ -34,7 +39,15 @@ bool Assembly::add(GeneratedMatter matter, const config::Place& place) {
                            std::to_string(kMaxLinks) + " links");
     return false;
   }
-  if (!open_parts.empty()) put(matter);
+  if (!open_parts.empty() && !put(matter)) {
+    problems.error(place,
+                   "a box lies along the axes of the scene: a part that has one is turned by "
+                   "quarters of a circle about them");
+    return false;
+  }
+  for (engine::Surface& surface : matter.surfaces) surface.mat += mat_count();
+  scene.network.surfaces.insert(scene.network.surfaces.end(), matter.surfaces.begin(),
+                                matter.surfaces.end());
   append(matter.links, mat_count());
   scene.radius_m.insert(scene.radius_m.end(), matter.drawn_radius_m.begin(),
                         matter.drawn_radius_m.end());
@@ -97,6 +110,14 @@ LinkCounts Assembly::link_counts() const noexcept {
 
 double Assembly::radius_of(std::uint32_t mat) const noexcept {
   return mat < scene.network.radius.size() ? scene.network.radius[mat] : 0.0;
+}
+
+std::size_t Assembly::count_surfaces(const std::vector<std::uint32_t>& mats) const {
+  // They are in the order of their MATs.
+  const auto& surfaces = scene.network.surfaces;
+  return static_cast<std::size_t>(std::ranges::count_if(mats, [&](std::uint32_t mat) {
+    return std::ranges::binary_search(surfaces, mat, {}, &engine::Surface::mat);
+  }));
 }
 
 void Assembly::finish() {

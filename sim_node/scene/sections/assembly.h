@@ -76,6 +76,8 @@ struct Assembly {
   }
   LinkCounts link_counts() const noexcept;
   double radius_of(std::uint32_t mat) const noexcept;  ///< of a ball [m], else 0
+  /// How many of some MATs are surfaces.
+  std::size_t count_surfaces(const std::vector<std::uint32_t>& mats) const;
 
   Scene& scene;
   config::Problems& problems;
@@ -94,7 +96,8 @@ struct Assembly {
   std::vector<std::uint32_t> ports_without_layout;  ///< MATs of a 1-D scene
 
  private:
-  void put(GeneratedMatter& matter) const;
+  /// @return false where a box would not lie along the axes
+  [[nodiscard]] bool put(GeneratedMatter& matter) const;
 };
 
 }  // namespace cordis::scene

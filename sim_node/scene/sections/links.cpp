@@ -87,6 +87,12 @@ void read_ends(Assembly& assembly, LinkEntry& entry) {
     entry.reader.error_at(
         "between", "a link is between 2 ends, got " + std::to_string(between.items().size()));
   }
+  for (const Selection& end : ends) {
+    if (assembly.count_surfaces(end.indices) == 0) continue;
+    entry.reader.error_at("between", "a link joins MATs, and a surface has no place of its own",
+                          "write between_sets: [matter, surface], also for one MAT");
+    break;
+  }
   const bool sound =
       entry.law && ends.size() == 2 && assembly.problems.error_count() == entry.errors_before;
   std::vector<LinkLaw> parts;

@@ -46,10 +46,37 @@ double reach_of_all(const engine::StateMachine& state_machine) {
   return reach;
 }
 
+bool has_lennard_jones(const engine::StateMachine& state_machine) {
+  return std::any_of(state_machine.states.begin(), state_machine.states.end(),
+                     [](const engine::LinkState& state) {
+                       return std::holds_alternative<engine::LennardJones>(state.elasticity);
+                     });
+}
+
 /// How far apart two MATs may be to be joined [m]; 0 when nothing limits it.
 double range_of(const LinkLaw& law, const engine::StateMachine& state_machine, double rest) {
   if (law.reach.rule == Reach::Rule::kLength) return law.reach.length;
   return law.reach.rule == Reach::Rule::kRest ? rest : reach_of_all(state_machine);
+}
+
+constexpr const char* kSurfaceInSet = "surfaces are a set of their own";
+constexpr const char* kWriteTwoSets = "write between_sets: [matter, surfaces]";
+
+/// Puts the set of surfaces first. @return false when there are other MATs in it, which is a problem
+bool take_surfaces(Assembly& assembly, config::MappingReader& reader,
+                   std::vector<std::vector<std::uint32_t>>& sets) {
+  const auto is_whole = [&](const std::vector<std::uint32_t>& set) {
+    return assembly.count_surfaces(set) == set.size();
+  };
+  if (assembly.count_surfaces(sets[0]) + assembly.count_surfaces(sets[1]) == 0) return true;
+  if (is_whole(sets[0]) && is_whole(sets[1])) {
+    reader.error_at("between_sets", "both sets are surfaces, which never move");
+    return false;
+  }
+  if (!is_whole(sets[0])) std::swap(sets[0], sets[1]);
+  if (is_whole(sets[0]) && assembly.count_surfaces(sets[1]) == 0) return true;
+  reader.error_at("between_sets", kSurfaceInSet, kWriteTwoSets);
+  return false;
 }
 
 constexpr const char* kOneOfThem =
@@ -78,6 +105,13 @@ bool count_set(Assembly& assembly, const LinkEntry& entry, const engine::SetLiai
   if (assembly.set_members > kMaxSetMembers) {
     assembly.refuse_more(place, "the sets of the scene have more than " +
                                     std::to_string(kMaxSetMembers) + " MATs together");
+    return false;
+  }
+  if (assembly.count_surfaces(set.set_p) > 0 &&
+      set.set_p.size() * set.set_q.size() > engine::kMaxSurfacePairs) {
+    assembly.refuse_more(place, "the set has more than " +
+                                    std::to_string(engine::kMaxSurfacePairs) +
+                                    " pairs of a MAT and a surface, near or far");
     return false;
   }
   const engine::StartPairCount pairs = engine::count_start_pairs(
@@ -124,6 +158,12 @@ void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32
       return;
     }
     const std::shared_ptr<const engine::StateMachine> state_machine = state_machine_of(part);
+    if (assembly.count_surfaces(p) > 0 && has_lennard_jones(*state_machine)) {
+      reader.error_at("liaison",
+                      "a surface takes no Lennard-Jones law, which has no value inside it",
+                      "take rings, a table or an expression");
+      return;
+    }
     const bool by_radii = !part.rest_length && radii > 0.0;
     if (!part.rest_length && !by_radii && depends_on_rest(*state_machine)) {
       reader.error_at("liaison", "a liaison of sets whose MATs have no radius needs a 'rest_m'");
@@ -171,6 +211,8 @@ void read_set(Assembly& assembly, LinkEntry& entry) {
   }
   if (set && set->count() == 1)
     reader.error_at("within", "a set of one MAT has no two that could be joined");
+  if (set && assembly.count_surfaces(set->indices) > 0)
+    reader.error_at("within", kSurfaceInSet, kWriteTwoSets);
   add_set(assembly, entry, set ? set->indices : std::vector<std::uint32_t>{}, {});
 }
 
@@ -197,7 +239,7 @@ void read_two_sets(Assembly& assembly, LinkEntry& entry) {
   if (shared != sets[1].end())
     reader.error_at("between_sets", "the two sets have a MAT in common",
                     "write within: for one set");
-  if (sets[0].empty() || sets[1].empty())
+  if (sets[0].empty() || sets[1].empty() || !take_surfaces(assembly, reader, sets))
     sets = {{}, {}};  // what is wrong with one has been reported
   add_set(assembly, entry, sets[0], sets[1]);
 }

@@ -160,7 +160,10 @@ void read_signal_of_set(Assembly& assembly, config::MappingReader& reader, const
   if (is_pieces && reader.has("near_m")) {
     signal.near = reader.required_number("near_m", config::Range::positive());
   }
-  const std::uint32_t state_machine = assembly.scene.network.sets[set].state_machine;
+  const engine::SetLiaison& liaison = assembly.scene.network.sets[set];
+  if (is_pieces && reader.has("near_m") && assembly.count_surfaces(liaison.set_p) > 0)
+    reader.error_at("near_m", "surfaces are no pieces", "count bound pairs, without near_m");
+  const std::uint32_t state_machine = liaison.state_machine;
   const bool binds = assembly.liaisons->pool().state_machines()[state_machine].states.size() > 1;
   if (quantity != nullptr && !binds && !reader.has("near_m")) {
     reader.error_at("quantity", "pairs of a liaison of one state are never bound",

@@ -25,6 +25,7 @@ function nameIn(ranges: NamedRange[], index: number): string {
 /** Bodies in the order of the scene: ranges of matter with masses, by the first part of their names. */
 export class Bodies {
   readonly list: Body[] = [];
+  readonly shapes: number[]; // fixed MATs that are surfaces: they are drawn as these
   readonly hasFixedPoints: boolean;
   readonly hasFixedBalls: boolean;
   readonly hasPorts: boolean;
@@ -52,7 +53,9 @@ export class Bodies {
       this.bodyOf.fill(numbers.get(body)!, first, first + count);
     }
     if (this.list.length === 0 && this.hasMass(0, matCount)) this.list.push({ name: 'mass', first: 0 });
-    this.hasFixedPoints = kinds.some((kind, mat) => kind === MAT_FIXED && radii[mat] === 0);
+    const names = new Set(description.surfaces.map(({ name }) => name));
+    this.shapes = description.matter.filter(({ name, count }) => count === 1 && names.has(name)).map(({ first }) => first);
+    this.hasFixedPoints = kinds.some((kind, mat) => kind === MAT_FIXED && radii[mat] === 0 && !this.shapes.includes(mat));
     this.hasFixedBalls = kinds.some((kind, mat) => kind === MAT_FIXED && radii[mat] !== 0);
     this.hasPorts = description.ports.length > 0;
   }

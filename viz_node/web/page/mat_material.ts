@@ -6,6 +6,7 @@ import { MAT_FIXED } from './wire.ts';
 
 const SHOWN_FIXED_POINT = 3;
 const SHOWN_TOOL = 4;
+const SHOWN_NOTHING = 5;
 
 const SPEED_COLOUR = /* glsl */ `
   // Dark blue, teal, yellow: readable for colour-blind eyes, and on a projector.
@@ -24,7 +25,7 @@ const MAT_VERTEX = /* glsl */ `
   in vec3 previous;   // one frame before [m]
   in float radius;    // [m]
   in vec3 tint;       // colour of its body
-  in float kind;      // 0 mass, 1 fixed ball, 2 port, 3 fixed point, 4 tool
+  in float kind;      // 0 mass, 1 fixed ball, 2 port, 3 fixed point, 4 tool, 5 not shown
   uniform mat4 modelViewMatrix;
   uniform mat4 projectionMatrix;
   uniform float pixels_per_unit;   // of the plane at clip w = 1
@@ -41,7 +42,7 @@ const MAT_VERTEX = /* glsl */ `
     vec4 view_position = modelViewMatrix * vec4(position, 1.0);
     gl_Position = projectionMatrix * view_position;
     float pixels = pixels_per_unit / gl_Position.w;
-    size = max(radius, min_pixels[k == 4 ? 0 : k] / pixels);
+    size = max(radius, min_pixels[k >= 4 ? 0 : k] / pixels);
     // A square where a punctual MAT is fixed; a sphere with a halo where a hand is.
     shape = k == 3 ? 1 : (k == 2 ? 2 : 0);
     centre = view_position.xyz;
@@ -54,6 +55,7 @@ const MAT_VERTEX = /* glsl */ `
     // The halo of a port is seen through everything.
     if (shape == 2) gl_Position.z = -0.999 * gl_Position.w;
     if (speed_scale > 0.0 && k == 0) colour = speed_colour(length(position - previous) * speed_scale);
+    if (k == 5) gl_Position = vec4(0.0, 0.0, 2.0, 1.0); // beyond the far plane
   }
 `;
 
@@ -161,10 +163,11 @@ export function sceneUniforms(): SceneUniforms {
   return { pixels_per_unit: 1, min_pixels: [3, 3, 6, 5], speed_scale: 0, orthographic: false };
 }
 
-/** Kinds as the shader distinguishes them: a fixed point without a radius is no ball. */
-export function shownKinds(kinds: Uint8Array, radii: Float32Array, tools: number[]): Uint8Array {
+/** Kinds as the shader distinguishes them: a fixed point without a radius is no ball, and what has a shape of its own is not shown. */
+export function shownKinds(kinds: Uint8Array, radii: Float32Array, tools: number[], shapes: number[]): Uint8Array {
   const shown = kinds.map((kind, i) => (kind === MAT_FIXED && radii[i] === 0 ? SHOWN_FIXED_POINT : kind));
   for (const tool of tools) shown[tool] = SHOWN_TOOL;
+  for (const mat of shapes) shown[mat] = SHOWN_NOTHING;
   return shown;
 }
 

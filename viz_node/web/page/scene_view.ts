@@ -85,7 +85,7 @@ export class SceneView {
     const few = this.topology.matCount <= 3000;
     const least = few ? [3.2, 3.2, 6, 5] : [1.2, 1.2, 5, 2];
     this.uniforms.min_pixels = least.map((pixels) => pixels * this.quality.pixelRatio);
-    const kind = new VertexArray(Float32Array.from(shownKinds(this.topology.kinds, this.topology.radii, this.tools)), 1);
+    const kind = new VertexArray(Float32Array.from(shownKinds(this.topology.kinds, this.topology.radii, this.tools, this.bodies.shapes)), 1);
     const vertices = { position: this.newest, previous: this.before, radius: this.radii, tint: this.tints, kind };
     const all = { first: 0, count: this.topology.matCount, uniforms: {} };
     return shapeOf('points', matProgram(this.quality.spheres), vertices, { uniforms: this.uniforms, parts: [all] });

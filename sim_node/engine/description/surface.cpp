@@ -1,0 +1,93 @@
+// sim_node/engine/description/surface.cpp
+#include "sim_node/engine/description/surface.h"
+
+#include <cmath>
+#include <limits>
+
+#include "sim_node/engine/description/network.h"
+
+namespace cordis::engine {
+namespace {
+
+SurfaceDistance from_plane(const Surface& plane, const Vec3& from_centre) noexcept {
+  const double height = dot(plane.axis, from_centre);
+  if (!plane.both_sides || height > 0.0) return {height, plane.axis};
+  return {-height, height < 0.0 ? Vec3(-plane.axis) : Vec3(Vec3::Zero())};
+}
+
+SurfaceDistance from_box(const Surface& box, const Vec3& from_centre) noexcept {
+  double square = 0.0;
+  double nearest = -std::numeric_limits<double>::infinity();
+  int face = 0;
+  Vec3 beyond = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const double height = std::abs(from_centre[k]) - box.half_size[k];
+    if (height > nearest) {
+      nearest = height;
+      face = k;
+    }
+    if (!(height > 0.0)) continue;
+    beyond[k] = std::copysign(height, from_centre[k]);
+    square += height * height;
+  }
+  if (nearest > 0.0) {
+    const double distance = std::sqrt(square);
+    return {distance, beyond / distance};
+  }
+  Vec3 normal = Vec3::Zero();
+  normal[face] = from_centre[face] < 0.0 ? -1.0 : 1.0;
+  return {nearest, normal};
+}
+
+/// A unit vector across another.
+Vec3 across(const Vec3& axis) noexcept {
+  int least = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(axis[k]) < std::abs(axis[least])) least = k;
+  }
+  Vec3 along = Vec3::Zero();
+  along[least] = 1.0;
+  along -= axis[least] * axis;
+  return along / std::sqrt(dot(along, along));
+}
+
+SurfaceDistance from_cylinder(const Surface& cylinder, const Vec3& from_centre) noexcept {
+  const double along = dot(cylinder.axis, from_centre);
+  const Vec3 radial = from_centre - along * cylinder.axis;
+  const double radius = std::sqrt(dot(radial, radial));
+  const Vec3 outwards = radius > 0.0 ? Vec3(radial / radius) : across(cylinder.axis);
+  const Vec3 to_end = along < 0.0 ? Vec3(-cylinder.axis) : cylinder.axis;
+  const double from_side = radius - cylinder.half_size[0];
+  const double from_end = std::abs(along) - cylinder.half_size[1];
+  if (!(from_end > 0.0)) {
+    return from_end > from_side ? SurfaceDistance{from_end, to_end}
+                                : SurfaceDistance{from_side, outwards};
+  }
+  if (!(from_side > 0.0)) return {from_end, to_end};
+  const double distance = std::sqrt(from_side * from_side + from_end * from_end);
+  return {distance, (from_side / distance) * outwards + (from_end / distance) * to_end};
+}
+
+}  // namespace
+
+SurfaceDistance distance_from(const Surface& surface, const Vec3& centre,
+                              const Vec3& place) noexcept {
+  const Vec3 from_centre = place - centre;
+  if (surface.kind == SurfaceKind::kPlane) return from_plane(surface, from_centre);
+  return surface.kind == SurfaceKind::kBox ? from_box(surface, from_centre)
+                                           : from_cylinder(surface, from_centre);
+}
+
+const Surface* surface_of(const NetworkDescription& network, std::uint32_t mat) noexcept {
+  for (const Surface& surface : network.surfaces) {
+    if (surface.mat == mat) return &surface;
+  }
+  return nullptr;
+}
+
+bool acts_on_surfaces(const NetworkDescription& network, const SetLiaison& set) noexcept {
+  return !network.surfaces.empty() && !set.set_p.empty() &&
+         surface_of(network, set.set_p.front()) != nullptr;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,53 @@
+// sim_node/engine/description/surface.h -- fixed bodies that matter touches from outside.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "sim_node/engine/core/vec.h"
+
+namespace cordis::engine {
+
+struct NetworkDescription;
+struct SetLiaison;
+
+/// MATs times surfaces of a set liaison, at most.
+inline constexpr std::size_t kMaxSurfacePairs = std::size_t{1} << 24;
+
+/// The shape of a surface. In 2 dimensions a box is a rectangle, a cylinder the circle across its axis; in
+/// 1 dimension a plane is a point, a box an interval.
+enum class SurfaceKind : std::uint8_t { kPlane = 0, kBox = 1, kCylinder = 2 };
+
+/// The shape of a fixed MAT. A set liaison acts between a first set of surfaces and a second one of balls,
+/// along the normal: the distance of a pair is that of the ball's centre from the nearest point of the
+/// surface, below 0 inside.
+struct Surface {
+  SurfaceKind kind = SurfaceKind::kPlane;
+  std::uint32_t mat = 0;      ///< whose position is a point of the plane, or the centre
+  Vec3 axis = Vec3::UnitY();  ///< unit vector: outer normal of a plane, axis of a cylinder
+  Vec3 half_size =
+      Vec3::Zero();  ///< [m], > 0, infinite without an end: half edges of a box along x, y, z;
+                     ///< radius, half length of a cylinder
+  bool both_sides =
+      false;  ///< of a plane: its distance has no sign, and its normal points to the MAT
+};
+
+/// Where a place is beside a surface.
+struct SurfaceDistance {
+  double distance = 0.0;       ///< [m], below 0 inside
+  Vec3 normal = Vec3::Zero();  ///< unit vector away from the surface; 0 on a plane with both sides
+};
+
+/// The distance of a place from the surface whose point or centre is at `centre`. Beside an edge or a corner the normal points
+/// away from the nearest point of it; inside, to the nearest face, the first one where several are.
+/// The distance changes by no more than a place moves. Real time: O(1).
+SurfaceDistance distance_from(const Surface& surface, const Vec3& centre,
+                              const Vec3& place) noexcept;
+
+/// The surface that a MAT has; null when it has none. O(surfaces).
+const Surface* surface_of(const NetworkDescription& network, std::uint32_t mat) noexcept;
+
+/// True if the first set of a liaison is surfaces.
+bool acts_on_surfaces(const NetworkDescription& network, const SetLiaison& set) noexcept;
+
+}  // namespace cordis::engine

@@ -1,0 +1,113 @@
+// sim_node/engine/pairs/surface_neighbours.cpp
+#include "sim_node/engine/pairs/surface_neighbours.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace cordis::engine {
+namespace {
+
+constexpr double kSkin = 0.5;     // of the range
+constexpr double kMargin = 1e-9;  // of coordinates, and of squares
+
+bool do_follow_each_other(const std::vector<std::uint32_t>& mats) {
+  for (std::size_t i = 1; i < mats.size(); ++i) {
+    if (mats[i] != mats[i - 1] + 1) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+SurfaceNeighbours::SurfaceNeighbours(const NetworkDescription& network, const SetLiaison& set,
+                                     const PairKernel& kernel)
+    : kernel_(&kernel) {
+  if (!acts_on_surfaces(network, set)) return;
+  range_ = set.range;
+  skin_ = kSkin * set.range;
+  for (const std::uint32_t mat : set.set_p) {
+    shapes_.push_back(*surface_of(network, mat));
+    centres_.push_back(network.mats[mat].position);
+    farthest_ = std::max({farthest_, range_, centres_.back().cwiseAbs().maxCoeff()});
+  }
+  const std::size_t balls = set.set_q.size();
+  words_ = (shapes_.size() + kBits - 1) / kBits;
+  listed_.resize(balls * words_, 0);
+  follow_each_other_ = do_follow_each_other(set.set_q);
+  from_.resize(4 * balls, 0.0);
+  free_way_.resize(balls, -1.0);
+  min_free_way_.resize(balls / kChunk + 1, -1.0);
+  start_.resize(shapes_.size() + 1, 0);
+  fill_.resize(shapes_.size() + 1, 0);
+  neighbour_.resize(balls * shapes_.size() + kPairBatch, 0U);
+  members_.reserve(balls);
+}
+
+void SurfaceNeighbours::forget() noexcept {
+  std::fill(free_way_.begin(), free_way_.end(), -1.0);
+  std::fill(min_free_way_.begin(), min_free_way_.end(), -1.0);
+}
+
+double SurfaceNeighbours::begin_measure(std::size_t ball, const double* place) noexcept {
+  std::copy_n(place, 3, from_.begin() + static_cast<std::ptrdiff_t>(4 * ball));
+  return std::numeric_limits<double>::infinity();
+}
+
+void SurfaceNeighbours::end_measure(std::size_t ball, const double* place,
+                                    double free_way) noexcept {
+  double farthest = farthest_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    farthest = std::max(farthest, std::abs(place[axis]));
+  }
+  const double sure = free_way - kMargin * (std::isinf(free_way) ? 0.0 : farthest + free_way);
+  free_way_[ball] = sure > 0.0 ? sure * sure : -1.0;
+  min_free_way_[ball / kChunk] = -1.0;
+}
+
+bool SurfaceNeighbours::stays(std::size_t ball, std::size_t count, const double* places) noexcept {
+  double& minimum = min_free_way_[ball / kChunk];
+  const auto first = free_way_.begin() + static_cast<std::ptrdiff_t>(ball);
+  if (minimum < 0.0) minimum = *std::min_element(first, first + static_cast<std::ptrdiff_t>(count));
+  return kernel_->largest_move(places, from_.data() + 4 * ball, count) < minimum * (1.0 - kMargin);
+}
+
+bool SurfaceNeighbours::is_far(std::size_t ball) const noexcept {
+  const auto first = listed_.begin() + static_cast<std::ptrdiff_t>(ball * words_);
+  return std::all_of(first, first + static_cast<std::ptrdiff_t>(words_),
+                     [](std::uint64_t word) { return word == 0; });
+}
+
+bool SurfaceNeighbours::list() noexcept {
+  if (!std::exchange(changed_, false)) return false;
+  const std::size_t surfaces = shapes_.size();
+  const auto visit = [&](auto take) {
+    for (std::size_t b = 0; b < free_way_.size(); ++b) {
+      for (std::size_t w = 0; w < words_; ++w) {
+        for (std::uint64_t left = listed_[b * words_ + w]; left != 0; left &= left - 1) {
+          take(b, w * kBits + static_cast<std::size_t>(std::countr_zero(left)));
+        }
+      }
+    }
+  };
+  members_.clear();
+  std::fill(fill_.begin(), fill_.end(), 0);
+  visit([&](std::size_t b, std::size_t surface) {
+    const auto member = static_cast<std::uint32_t>(surfaces + b);
+    if (members_.empty() || members_.back() != member) members_.push_back(member);
+    ++fill_[surface];
+  });
+  start_[0] = 0;
+  for (std::size_t s = 0; s < surfaces; ++s) {
+    start_[s + 1] = start_[s] + fill_[s];
+    fill_[s] = start_[s];
+  }
+  visit([&](std::size_t b, std::size_t surface) {
+    neighbour_[fill_[surface]++] = static_cast<std::uint32_t>(4 * (surfaces + b));
+  });
+  return true;
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,58 @@
+// tests/engine/surfaces.h -- surfaces of a network, and matter that they stop.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "tests/engine/balls.h"
+
+namespace cordis::test {
+
+using engine::Surface;
+using engine::SurfaceKind;
+
+inline constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+
+/// Adds a fixed MAT with this shape. @return its number
+inline std::uint32_t add_surface(NetworkDescription& scene, Surface surface, const Vec3& centre) {
+  surface.mat = static_cast<std::uint32_t>(scene.mats.size());
+  scene.mats.push_back(fixed(centre));
+  if (!scene.radius.empty()) scene.radius.push_back(0.0);
+  scene.surfaces.push_back(surface);
+  return surface.mat;
+}
+
+inline Surface plane(const Vec3& normal, bool both_sides = false) {
+  return {SurfaceKind::kPlane, 0, normal, Vec3::Zero(), both_sides};
+}
+
+inline Surface box(const Vec3& half_size) {
+  return {SurfaceKind::kBox, 0, Vec3::UnitY(), half_size};
+}
+
+inline Surface cylinder(const Vec3& axis, double radius, double half_length = kNoEnd) {
+  return {SurfaceKind::kCylinder, 0, axis, Vec3(radius, half_length, 0.0)};
+}
+
+/// Adds a set liaison of these surfaces with the MATs [0, balls).
+inline void touch(NetworkDescription& scene, std::uint32_t balls, StateMachine state_machine,
+                  double range, double rest_length, const std::vector<std::uint32_t>& surfaces) {
+  SetLiaison set;
+  set.state_machine = static_cast<std::uint32_t>(scene.state_machines.size());
+  set.range = range;
+  set.rest_length = rest_length;
+  set.set_p = surfaces;
+  for (std::uint32_t i = 0; i < balls; ++i) set.set_q.push_back(i);
+  scene.state_machines.push_back(std::move(state_machine));
+  scene.sets.push_back(set);
+}
+
+inline StateMachine of_one_state(const LinkState& state) {
+  StateMachine state_machine;
+  state_machine.name = "touching";
+  state_machine.states = {state};
+  return state_machine;
+}
+
+}  // namespace cordis::test

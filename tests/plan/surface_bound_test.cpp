@@ -1,0 +1,203 @@
+// tests/plan/surface_bound_test.cpp
+#include "sim_node/plan/stability/surface_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/rate.h"
+#include "sim_node/plan/reference/reference_integrator.h"
+#include "sim_node/plan/stability/liaison_graph.h"
+#include "sim_node/plan/stability/start_tangent.h"
+#include "sim_node/plan/stability/step_bound.h"
+#include "tests/engine/surfaces.h"
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+using plan::max_surfaces_in_reach;
+
+constexpr double kReach = 0.05;
+
+/// Some surfaces and their centres.
+struct Shapes {
+  std::vector<Surface> surfaces;
+  std::vector<Vec3> centres;
+
+  Shapes& add(const Surface& surface, const Vec3& centre = Vec3::Zero()) {
+    surfaces.push_back(surface);
+    centres.push_back(centre);
+    return *this;
+  }
+  double most(double reach = kReach, int dimension = 3) const {
+    return max_surfaces_in_reach(surfaces, centres, reach, dimension);
+  }
+};
+
+TEST(SurfaceBound, CountsAFloorAndAWallTogetherAndTwoWallsFarApartOnce) {
+  Shapes floor;
+  floor.add(plane(Vec3::UnitY()));
+  EXPECT_EQ(floor.most(), 1.0);
+  EXPECT_EQ(Shapes(floor).add(plane(Vec3::UnitX())).most(), 2.0);
+  const auto ceiling = [&](double height) {
+    return Shapes(floor).add(plane(-Vec3::UnitY()), Vec3(0.0, height, 0.0)).most();
+  };
+  EXPECT_EQ(ceiling(1.999 * kReach), 2.0);
+  EXPECT_EQ(ceiling(2.001 * kReach), 1.0);
+  // matter is pushed out of one side however deep it is
+  EXPECT_EQ(Shapes(floor).add(plane(Vec3::UnitY()), Vec3(0.0, 9.0, 0.0)).most(), 2.0);
+  Shapes shelves;
+  for (const double height : {0.0, 1.0}) {
+    shelves.add(plane(Vec3::UnitY(), true), Vec3(0.0, height, 0.0));
+  }
+  EXPECT_EQ(shelves.most(), 1.0);
+  Shapes room = floor;
+  for (const double side : {1.0, -1.0}) {
+    room.add(plane(side * Vec3::UnitX()), Vec3(-side, 0.0, 0.0));
+    room.add(plane(side * Vec3::UnitZ()), Vec3(0.0, 0.0, -side));
+  }
+  EXPECT_EQ(room.most(), 3.0);
+}
+
+TEST(SurfaceBound, CountsTheStepsThatABallMayTouchAtOnce) {
+  Shapes stairs;
+  for (int step = 0; step < 6; ++step) {
+    stairs.add(box(Vec3(0.1, 0.1 * (step + 1), 0.5)), Vec3(0.2 * step, 0.1 * (step + 1), 0.0));
+  }
+  EXPECT_EQ(stairs.most(0.05), 2.0);
+  EXPECT_EQ(stairs.most(0.11), 3.0);
+  const auto corner_to_corner = [](double apart) {
+    Shapes boxes;
+    boxes.add(box(Vec3::Constant(1.0)));
+    boxes.add(box(Vec3::Constant(1.0)), Vec3::Constant(2.0 + apart / std::sqrt(3.0)));
+    return boxes.most();
+  };
+  EXPECT_EQ(corner_to_corner(1.999 * kReach), 2.0);
+  EXPECT_EQ(corner_to_corner(2.001 * kReach), 1.0);
+}
+
+TEST(SurfaceBound, CountsPostsByTheGapBetweenThem) {
+  for (const int dimension : {2, 3}) {
+    const auto posts = [&](double gap) {
+      Shapes shapes;
+      shapes.add(cylinder(Vec3::UnitZ(), 0.3));
+      shapes.add(cylinder(Vec3::UnitZ(), 0.2), Vec3(0.3, 0.4, 0.0) * (0.5 + gap) / 0.5);
+      return shapes.most(kReach, dimension);
+    };
+    EXPECT_EQ(posts(1.99 * kReach), 2.0);
+    EXPECT_EQ(posts(2.01 * kReach), 1.0);
+  }
+  Shapes crossing;
+  crossing.add(cylinder(Vec3::UnitX(), 0.1, 2.0));
+  crossing.add(cylinder(Vec3::UnitY(), 0.1, 2.0), Vec3(0.0, 0.0, 0.2 + 2.05 * kReach));
+  EXPECT_EQ(crossing.most(), 1.0);
+  crossing.centres[1].z() = 0.2 + 1.95 * kReach;
+  EXPECT_EQ(crossing.most(), 2.0);
+}
+
+TEST(SurfaceBound, IsNeverBelowTheTrueNumberAtAnyPlace) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    std::mt19937 random(seed);
+    const auto uniform = [&](double low, double high) {
+      return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+    };
+    const auto place = [&](double reach) {
+      return Vec3(uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach));
+    };
+    Shapes shapes;
+    for (int s = 0; s < 8; ++s) {
+      const auto kind = random() % 3;
+      const Vec3 direction = place(1.0).normalized();
+      if (kind == 0) shapes.add(plane(direction, true), place(1.0));
+      if (kind == 1) shapes.add(box(place(0.3).cwiseAbs() + Vec3::Constant(0.01)), place(1.0));
+      if (kind == 2) {
+        const double half = random() % 3 == 0 ? kNoEnd : uniform(0.05, 0.5);
+        shapes.add(cylinder(direction, uniform(0.05, 0.3), half), place(1.0));
+      }
+    }
+    const double reach = uniform(0.05, 0.3);
+    const double bound = shapes.most(reach);
+    double most = 0.0;
+    for (int n = 0; n < 3000; ++n) {
+      const Vec3 here = place(1.2);
+      double count = 0.0;
+      for (std::size_t s = 0; s < shapes.surfaces.size(); ++s) {
+        const double distance =
+            engine::distance_from(shapes.surfaces[s], shapes.centres[s], here).distance;
+        if (distance < reach) count += 1.0;
+      }
+      most = std::max(most, count);
+    }
+    EXPECT_LE(most, bound) << seed;
+  }
+}
+
+constexpr double kStiffness = 2000.0;
+constexpr double kMass = 0.2;
+
+/// A ball pressed into the corner of a floor and a wall that lean towards each other by this angle
+/// [rad]: at 0 both push along the same line.
+NetworkDescription ball_in_corner(double angle, double step) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = step;
+  scene.mats = {mass(kMass, Vec3(1e-3, 0.04, 0.0))};
+  scene.radius = {0.05};
+  scene.gravity = Vec3(0.0, -9.81, 0.0);
+  const std::uint32_t floor = add_surface(scene, plane(Vec3::UnitY()), Vec3::Zero());
+  const std::uint32_t wall =
+      add_surface(scene, plane(Vec3(std::sin(angle), std::cos(angle), 0.0)), Vec3::Zero());
+  touch(scene, 1, contact(kStiffness), 0.05, -1.0, {floor, wall});
+  return scene;
+}
+
+TEST(SurfaceBound, OfOneFloorIsThatOfALinkWithAFixedPoint) {
+  NetworkDescription scene = ball_in_corner(0.0, 1e-4);
+  scene.sets[0].set_p.pop_back();
+  const plan::StepBound bound = plan::certified_bound(scene, plan::liaison_graph(scene));
+  EXPECT_NEAR(bound.step, 2.0 * std::sqrt(kMass / kStiffness), 1e-12);
+}
+
+TEST(SurfaceBound, CountsTwoThatPushAtOnceTwice) {
+  const double limit = 2.0 * std::sqrt(kMass / (2.0 * kStiffness));
+  const NetworkDescription scene = ball_in_corner(1e-6, 1e-4);
+  const plan::StepBound bound = plan::certified_bound(scene, plan::liaison_graph(scene));
+  EXPECT_NEAR(bound.step, limit, 1e-9 * limit);
+  // and beyond it the start surely diverges
+  EXPECT_NEAR(plan::StartTangent(scene).diverging_step(), limit, 1e-5 * limit);
+  EXPECT_LT(largest_excursion(ball_in_corner(1e-6, 0.999 * limit)), 1.0);
+  NetworkDescription stuck = ball_in_corner(1e-6, 1.01 * limit);
+  stuck.state_machines[0].states[0].pulls = true;
+  stuck.sets[0].range = 1e30;
+  EXPECT_GT(largest_excursion(stuck), 1e6);
+}
+
+/// A ball that falls on stairs, followed by the reference integrator.
+TEST(SurfaceBound, LetsTheReferenceIntegratorFollowTheSameBall) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-5;
+  scene.gravity = Vec3(0.0, -9.81, 0.0);
+  scene.mats = {mass(kMass, Vec3(0.03, 0.3, 0.0), Vec3(0.4, 0.0, 0.0))};
+  scene.radius = {0.05};
+  std::vector<std::uint32_t> surfaces;
+  surfaces.push_back(add_surface(scene, box(Vec3(0.1, 0.1, kNoEnd)), Vec3(0.0, 0.0, 0.0)));
+  surfaces.push_back(add_surface(scene, cylinder(Vec3::UnitZ(), 0.08), Vec3(0.25, 0.0, 0.0)));
+  surfaces.push_back(add_surface(scene, plane(Vec3::UnitY()), Vec3(0.0, -0.1, 0.0)));
+  touch(scene, 1, contact(kStiffness), 0.05, -1.0, surfaces);
+  World world = make_world(scene);
+  const int steps = 40000;
+  run(world, steps);
+
+  plan::ReferenceIntegrator reference(scene, 1e-9);
+  reference.advance_to(steps * scene.step);
+
+  EXPECT_LT((reference.position(0) - world.position(0)).norm(), 1e-3);
+}
+
+}  // namespace
+}  // namespace cordis::test
