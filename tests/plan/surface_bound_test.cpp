@@ -169,11 +169,15 @@ TEST(SurfaceBound, CountsTwoThatPushAtOnceTwice) {
   EXPECT_NEAR(bound.step, limit, 1e-9 * limit);
   // and beyond it the start surely diverges
   EXPECT_NEAR(plan::StartTangent(scene).diverging_step(), limit, 1e-5 * limit);
-  EXPECT_LT(largest_excursion(ball_in_corner(1e-6, 0.999 * limit)), 1.0);
-  NetworkDescription stuck = ball_in_corner(1e-6, 1.01 * limit);
-  stuck.state_machines[0].states[0].pulls = true;
-  stuck.sets[0].range = 1e30;
-  EXPECT_GT(largest_excursion(stuck), 1e6);
+  // a contact that comes and goes gains energy near its limit: what holds is bounded up to it
+  const auto held = [](double step) {
+    NetworkDescription scene = ball_in_corner(1e-6, step);
+    scene.state_machines[0].states[0].pulls = true;
+    scene.sets[0].range = 1e30;
+    return largest_excursion(scene);
+  };
+  EXPECT_LT(held(0.999 * limit), 1.0);
+  EXPECT_GT(held(1.01 * limit), 1e6);
 }
 
 /// A ball that falls on stairs, followed by the reference integrator.

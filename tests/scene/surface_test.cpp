@@ -136,15 +136,15 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter:\n  a: {kind: box, from_m: [0, 0], to_m: [1, 1], size_m: ^[1, 1]}\n",
                  kOneOfTwo, ""},
         BadScene{kHead2, "matter:\n  a: {kind: cylinder, center_m: [0, 0], radius_m: ^0}\n",
-                 "'radius_m' in matter 'a' must be > 0, got 0", ""},
+                 "'radius_m' in matter 'a' must be > 0 and <= 1000000, got 0", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: cylinder, center_m: [0, 0], radius_m: 1, ^axis: x}\n",
-                 "unknown key 'axis' in matter 'a'", ""},
+                 "unknown key 'axis' in matter 'a'", "known keys: kind, center_m, radius_m"},
         BadScene{kHead1, "matter:\n  a: {kind: ^cylinder, center_m: 0, radius_m: 1}\n",
                  "a cylinder needs a scene of space 2 or 3, this one has 1", ""},
         BadScene{
             kHead2,
-            "parts: {p: {matter: {b: {kind: box, center_m: [0, 0], size_m: [1, 1]}}}}\n"
+            "parts: {p: {matter: {^b: {kind: box, center_m: [0, 0], size_m: [1, 1]}}}}\n"
             "matter:\n  a: {part: p, rotate_deg: 30}\n",
             "a box lies along the axes of the scene: a part that has one is turned by quarters "
             "of a circle about them",

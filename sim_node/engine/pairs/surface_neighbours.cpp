@@ -10,8 +10,8 @@
 namespace cordis::engine {
 namespace {
 
-constexpr double kSkin = 0.5;     // of the range
-constexpr double kMargin = 1e-9;  // of coordinates, and of squares
+constexpr double kSkin = 0.5;            // of the range
+constexpr double kFreeWayMargin = 1e-9;  // of coordinates, and of squares
 
 bool do_follow_each_other(const std::vector<std::uint32_t>& mats) {
   for (std::size_t i = 1; i < mats.size(); ++i) {
@@ -62,7 +62,8 @@ void SurfaceNeighbours::end_measure(std::size_t ball, const double* place,
   for (std::size_t axis = 0; axis < 3; ++axis) {
     farthest = std::max(farthest, std::abs(place[axis]));
   }
-  const double sure = free_way - kMargin * (std::isinf(free_way) ? 0.0 : farthest + free_way);
+  const double sure =
+      free_way - kFreeWayMargin * (std::isinf(free_way) ? 0.0 : farthest + free_way);
   free_way_[ball] = sure > 0.0 ? sure * sure : -1.0;
   min_free_way_[ball / kChunk] = -1.0;
 }
@@ -71,7 +72,8 @@ bool SurfaceNeighbours::stays(std::size_t ball, std::size_t count, const double*
   double& minimum = min_free_way_[ball / kChunk];
   const auto first = free_way_.begin() + static_cast<std::ptrdiff_t>(ball);
   if (minimum < 0.0) minimum = *std::min_element(first, first + static_cast<std::ptrdiff_t>(count));
-  return kernel_->largest_move(places, from_.data() + 4 * ball, count) < minimum * (1.0 - kMargin);
+  return kernel_->largest_move(places, from_.data() + 4 * ball, count) <
+         minimum * (1.0 - kFreeWayMargin);
 }
 
 bool SurfaceNeighbours::is_far(std::size_t ball) const noexcept {
