@@ -56,12 +56,12 @@ TEST(JellyOnStairs, DropsFromStepToStepAndRestsOnTheLast) {
   EXPECT_LT(session.signal("middle_x"), 0.33);
   // the last step carries its whole weight
   const double weight = 125.0 * 0.001 * 9.81;
-  EXPECT_NEAR(session.signal("last_step_force"), -weight, 0.02 * weight);
+  EXPECT_NEAR(session.signal("last_step_force"), -weight, 0.001 * weight);
   // and it is a cube again
   const std::uint32_t first = first_ball(network);
   const double diagonal =
       (world.position(first + kEdge * kEdge * kEdge - 1) - world.position(first)).norm();
-  EXPECT_NEAR(diagonal, std::sqrt(3.0) * kWidth, 0.05 * diagonal);
+  EXPECT_NEAR(diagonal, std::sqrt(3.0) * kWidth, 0.02 * diagonal);
   EXPECT_LT(std::abs(session.energy_residual()), 1.0e-9);
 }
 

@@ -171,10 +171,10 @@ TEST(SurfaceBound, CountsTwoThatPushAtOnceTwice) {
   EXPECT_NEAR(plan::StartTangent(scene).diverging_step(), limit, 1e-5 * limit);
   // a contact that comes and goes gains energy near its limit: what holds is bounded up to it
   const auto held = [](double step) {
-    NetworkDescription scene = ball_in_corner(1e-6, step);
-    scene.state_machines[0].states[0].pulls = true;
-    scene.sets[0].range = 1e30;
-    return largest_excursion(scene);
+    NetworkDescription stuck = ball_in_corner(1e-6, step);
+    stuck.state_machines[0].states[0].pulls = true;
+    stuck.sets[0].range = 1e30;
+    return largest_excursion(stuck);
   };
   EXPECT_LT(held(0.999 * limit), 1.0);
   EXPECT_GT(held(1.01 * limit), 1e6);
