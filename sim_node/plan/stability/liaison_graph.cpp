@@ -159,7 +159,7 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const bool all_begin_within = near.are_kept() && near.pairs().size() == all;
   if (!graph.uncertainty &&
       !(all_begin_within && is_confined(state_machine, rest, set.range, here)) &&
-      jumps_at_range(state_machine, rest, set.range, network.dimension, here))
+      jumps_at_range(state_machine, rest, set.range, on_surfaces ? 1 : network.dimension, here))
     graph.uncertainty = {{LiaisonKind::kSet, index}, "its force jumps at its range"};
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);
