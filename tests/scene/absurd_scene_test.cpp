@@ -186,6 +186,19 @@ TEST(AbsurdScene, OfTooManySetsIsRefused) {
             "the sets of the scene have more than 2000000 MATs together");
 }
 
+TEST(AbsurdScene, OfTooManySurfacesIsRefused) {
+  EXPECT_EQ(problems_in(kContact + R"(
+parts:
+  step: {matter: {stone: {kind: box, center_m: [0, 0], size_m: [0.1, 0.1]}}}
+matter:
+  ball: {kind: mass, mass_kg: 0.01, at_m: [0, 0.5]}
+  stairs: {part: step, repeat: {count: 10001, translate_m: [0.2, -0.1]}}
+links:
+  - {liaison: t, between_sets: [ball, "stairs.*"], rest_m: 0.02, range_m: 0.02}
+)"),
+            "the sets of the scene have more than 10000 surfaces together");
+}
+
 TEST(AbsurdScene, OfTooManyDevicesIsRefused) {
   const auto scene = [](int count) {
     return kBob + "ports:\n" + repeated(count, [](auto i, auto) {

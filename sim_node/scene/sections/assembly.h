@@ -24,6 +24,7 @@ inline constexpr std::size_t kMaxLinks = 8'000'000 / kLimitDivisor;  ///< of a s
 inline constexpr std::size_t kMaxDevices = 64;                       ///< of a scene
 inline constexpr std::size_t kMaxSets = 1'000;  ///< liaisons of sets of a scene
 inline constexpr std::size_t kMaxSetMembers = 2'000'000 / kLimitDivisor;  ///< of all sets together
+inline constexpr std::size_t kMaxSetSurfaces = 10'000 / kLimitDivisor;    ///< likewise
 inline constexpr std::size_t kMaxSetPairs =
     8'000'000 / kLimitDivisor;  ///< in range at the start, of all sets
 inline constexpr std::size_t kMaxSetLooks = 64 * kMaxSetPairs;  ///< StartPairCount::looked_at
@@ -90,6 +91,7 @@ struct Assembly {
   std::set<const Part*> faulty_parts;   ///< whose faults have been reported
   std::size_t part_uses = 0;
   std::size_t set_members = 0;
+  std::size_t set_surfaces = 0;
   std::size_t set_pairs = 0;
   std::size_t set_looks = 0;
   bool is_full = false;                             ///< no more matter and links are read

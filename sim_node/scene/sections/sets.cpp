@@ -107,8 +107,14 @@ bool count_set(Assembly& assembly, const LinkEntry& entry, const engine::SetLiai
                                     std::to_string(kMaxSetMembers) + " MATs together");
     return false;
   }
-  if (assembly.count_surfaces(set.set_p) > 0 &&
-      set.set_p.size() * set.set_q.size() > engine::kMaxSurfacePairs) {
+  const std::size_t surfaces = assembly.count_surfaces(set.set_p);
+  assembly.set_surfaces += surfaces;
+  if (assembly.set_surfaces > kMaxSetSurfaces) {
+    assembly.refuse_more(place, "the sets of the scene have more than " +
+                                    std::to_string(kMaxSetSurfaces) + " surfaces together");
+    return false;
+  }
+  if (surfaces > 0 && set.set_p.size() * set.set_q.size() > engine::kMaxSurfacePairs) {
     assembly.refuse_more(place, "the set has more than " +
                                     std::to_string(engine::kMaxSurfacePairs) +
                                     " pairs of a MAT and a surface, near or far");
