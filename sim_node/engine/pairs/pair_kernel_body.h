@@ -134,12 +134,12 @@ std::size_t gather_plane(const MemberColumns& members, const PlaneQuery& plane,
     const Row3 way = Lanes::vectors(moved, neighbour + i);
     const Row apart = Lanes::maximum(height, Lanes::zero());
     Lanes::pack(out.column + count, neighbour + i, chosen);
-    Lanes::pack(out.x + count, normal.x, chosen);
-    Lanes::pack(out.y + count, normal.y, chosen);
-    Lanes::pack(out.z + count, normal.z, chosen);
+    Lanes::store_any(out.x + count, normal.x);  // the same in all lanes
+    Lanes::store_any(out.y + count, normal.y);
+    Lanes::store_any(out.z + count, normal.z);
+    Lanes::store_any(out.inverse + count, one);
     Lanes::pack(out.square + count, Lanes::maximum(apart * apart, smallest), chosen);
     Lanes::pack(out.length + count, height, chosen);
-    Lanes::pack(out.inverse + count, one, chosen);
     Lanes::pack(out.elongation_increment + count,
                 normal.x * way.x + normal.y * way.y + normal.z * way.z, chosen);
     count += static_cast<std::size_t>(__builtin_popcount(chosen));

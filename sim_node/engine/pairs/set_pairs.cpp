@@ -295,9 +295,14 @@ void SetPairs::pad_at_surfaces() noexcept {
 /// Finds the rest lengths that new pairs have.
 void SetPairs::find_rest_lengths() noexcept {
   const PairRows rows = block_.rows();
+  const PairRest rest_of = rest();
   double* rest_length = block_.rest_length();
+  if (rest_of.radius == nullptr) {
+    std::fill_n(rest_length, rows.count, rest_of.fixed);
+    return;
+  }
   for (std::size_t i = 0; i < rows.count; ++i) {
-    rest_length[i] = rest().length(rows.column_a[i] / 4, rows.pairs.column[i] / 4);
+    rest_length[i] = rest_of.length(rows.column_a[i] / 4, rows.pairs.column[i] / 4);
   }
 }
 
@@ -321,25 +326,50 @@ void SetPairs::step_block(const PairStep& step) noexcept {
   if (has_viscous_) kernel_.spread_rows(rows, block_.viscous_factor(), viscous_.data());
 }
 
+/// Adds the work of the force on a member to one of several sums: so none waits for the one before.
+inline void SetPairs::add_work(std::size_t member, WorkSum& sum) const noexcept {
+  const std::size_t place = member % 4;
+  const double* moved = moved_.data() + 4 * member;
+  sum.all[place] += dot(force_.data() + 4 * member, moved);
+  if (has_viscous_) sum.viscous[place] += dot(viscous_.data() + 4 * member, moved);
+}
+
 /// Gathers the members, and ends the account of the last forces.
 StepEnergy SetPairs::take_positions(const ForceColumns& columns) noexcept {
-  StepEnergy work;
-  visit_with_forces([&](std::size_t m) { work += take_position(m, columns); });
-  if (surfaces_.empty()) return work;
+  if (surfaces_.empty()) {
+    StepEnergy work;
+    visit_active([&](std::size_t m) {
+      take_position(m, columns);
+      work += work_of(m, moved_.data() + 4 * m);
+    });
+    return work;
+  }
+  WorkSum sum;
+  visit_with_forces([&](std::size_t m) {
+    take_position(m, columns);
+    add_work(m, sum);
+  });
   measure_surfaces(columns.position, column_, /*may_leave=*/true);
   // Those that are new here have had no force.
   if (surfaces_changed_) visit_with_forces([&](std::size_t m) { take_position(m, columns); });
-  return work;
+  return sum.energy();
 }
 
-StepEnergy SetPairs::take_position(std::size_t m, const ForceColumns& columns) noexcept {
+void SetPairs::take_position(std::size_t m, const ForceColumns& columns) noexcept {
   const double* position = columns.position + column_[m];
   const double* delayed = columns.delayed + column_[m];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     position_[4 * m + axis] = position[axis];
     moved_[4 * m + axis] = position[axis] - delayed[axis];
   }
-  return work_of(m, moved_.data() + 4 * m);
+}
+
+StepEnergy SetPairs::WorkSum::energy() const noexcept {
+  const auto total = [](const std::array<double, 4>& sums) {
+    return (sums[0] + sums[2]) + (sums[1] + sums[3]);
+  };
+  const double dissipated = -0.5 * total(viscous);
+  return {-0.5 * total(all) - dissipated, dissipated, 0.0, 0.0};
 }
 
 /// Measures the balls that have come too far since they were measured.
@@ -397,10 +427,21 @@ std::uint32_t SetPairs::largest_among(std::size_t first, std::size_t last) const
 }
 
 StepEnergy SetPairs::give_forces(const ForceColumns& columns) const noexcept {
-  StepEnergy work;
-  visit_with_forces([&](std::size_t m) {
+  const auto give_force = [&](std::size_t m) {
     double* force = columns.force + column_[m];
     for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += force_[4 * m + axis];
+  };
+  if (!surfaces_.empty()) {
+    WorkSum sum;
+    visit_with_forces([&](std::size_t m) {
+      give_force(m);
+      add_work(m, sum);
+    });
+    return sum.energy();
+  }
+  StepEnergy work;
+  visit_active([&](std::size_t m) {
+    give_force(m);
     work += work_of(m, moved_.data() + 4 * m);
   });
   return work;

@@ -1,6 +1,7 @@
 // sim_node/engine/pairs/set_pairs.h -- the pairs of one set liaison, in motion.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -139,7 +140,15 @@ class SetPairs {
                             std::size_t count) noexcept;
   std::size_t gather_at_surface(double range, std::size_t a, const std::uint32_t* neighbour,
                                 std::size_t candidates) noexcept;
-  StepEnergy take_position(std::size_t member, const ForceColumns& columns) noexcept;
+  /// Sums of forces times displacements [J].
+  struct WorkSum {
+    std::array<double, 4> all{};
+    std::array<double, 4> viscous{};
+
+    StepEnergy energy() const noexcept;
+  };
+  void take_position(std::size_t member, const ForceColumns& columns) noexcept;
+  void add_work(std::size_t member, WorkSum& sum) const noexcept;
   void measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                         bool may_leave) noexcept;
   void pad_at_surfaces() noexcept;
