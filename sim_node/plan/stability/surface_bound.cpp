@@ -14,8 +14,8 @@ using engine::SurfaceKind;
 using engine::Vec3;
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
-constexpr double kSame = 1e-9;  // of directions
-constexpr int kRounds = 400;
+constexpr double kSameDirection = 1e-9;  // of directions
+constexpr int kMaxFrankWolfe = 400;
 
 struct Body {
   const Surface& surface;
@@ -23,14 +23,14 @@ struct Body {
 };
 
 /// Directions along which a distance does not count: beyond the dimension, and without an end.
-class Projection {
+class CountedDirections {
  public:
-  explicit Projection(int dimension) {
+  explicit CountedDirections(int dimension) {
     for (int axis = dimension; axis < 3; ++axis) take_out(Vec3::Unit(axis));
   }
   void take_out(const Vec3& direction) {
     const Vec3 left = *this * direction;
-    if (left.norm() < kSame) return;
+    if (left.norm() < kSameDirection) return;
     const Vec3 unit = left.normalized();
     keeps_ -= unit * unit.transpose();
   }
@@ -64,18 +64,18 @@ Vec3 farthest(const Body& body, const Vec3& direction) {
   if (size[1] < kNoEnd) point += (along < 0.0 ? -size[1] : size[1]) * axis;
   const Vec3 radial = direction - along * axis;
   const double length = radial.norm();
-  if (length > kSame * direction.norm()) point += size[0] / length * radial;
+  if (length > kSameDirection * direction.norm()) point += size[0] / length * radial;
   return point;
 }
 
 /// True if two convex bodies may be nearer than this. Frank and Wolfe's iteration brings the nearest
 /// points together; the plane across their line bounds the distance from below.
 bool may_be_nearer(const Body& a, const Body& b, double distance, int dimension) {
-  Projection project(dimension);
+  CountedDirections project(dimension);
   project.take_out_endless(a.surface);
   project.take_out_endless(b.surface);
   Vec3 apart = project * (b.centre - a.centre);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMaxFrankWolfe; ++round) {
     const double length = apart.norm();
     if (length < distance) return true;
     const Vec3 nearer = project * (farthest(b, -apart) - farthest(a, apart));
@@ -99,7 +99,7 @@ Heights heights_over(const Body& plane, const Body& body) {
   const Vec3& size = body.surface.half_size;
   double half = 0.0;
   const auto add = [&half](double extent, double share) {
-    if (share > kSame) half += extent * share;
+    if (share > kSameDirection) half += extent * share;
   };
   if (body.surface.kind == SurfaceKind::kBox) {
     for (int axis = 0; axis < 3; ++axis) add(size[axis], std::abs(normal[axis]));
@@ -114,7 +114,7 @@ Heights heights_over(const Body& plane, const Body& body) {
 
 bool planes_meet(const Body& a, const Body& b, double reach) {
   const double cosine = a.surface.axis.dot(b.surface.axis);
-  if (std::abs(cosine) < 1.0 - kSame) return true;
+  if (std::abs(cosine) < 1.0 - kSameDirection) return true;
   const double height = a.surface.axis.dot(b.centre - a.centre);  // of b
   const auto slab = [reach](bool both_sides, bool upwards, double middle) {
     return Heights{both_sides || !upwards ? middle - reach : -kNoEnd,
