@@ -162,6 +162,29 @@ TEST(StartTangent, KnowsTheMassesOfExpressions) {
   EXPECT_NEAR(StartTangent(pair).diverging_step(), limit, 1e-4 * limit);
 }
 
+TEST(StartTangent, KnowsThatAPairPressedToItsLimitGivesWayAcross) {
+  // A spring of 100 N/m along x, and along y a pair that pushes with 4 N over 0.1 m: 60 N/m along x.
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3(-1, 0, 0)), fixed(Vec3(0, -0.1, 0)), mass(0.03, Vec3::Zero())};
+  scene.links = {{0, 2, 100.0, 0.0, 1.0}};
+  engine::LinkState state;
+  state.stiffness = 1000.0;
+  state.force_limit = 4.0;
+  scene.state_machines.emplace_back();
+  scene.state_machines[0].states = {state};
+  engine::SetLiaison set;
+  set.set_p = {1};
+  set.set_q = {2};
+  set.range = 0.3;
+  set.rest_length = 0.2;
+  scene.sets = {set};
+
+  const double limit = 2.0 * std::sqrt(0.03 / 60.0);
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), limit, 1e-6 * limit);
+}
+
 TEST(StartTangent, TakesAPowerAtItsRestForFlat) {
   engine::LinkState power;
   power.elasticity = engine::Power{.coefficient = 5800.0, .exponent = 1.5};

@@ -112,6 +112,15 @@ bool surely_acts(const engine::LinkState& state, const Tangent& tangent, double 
   return tangent.acts;
 }
 
+/// The tangent of a pair that is let go of or at its limit: it only gives way across, where it is pressed.
+Tangent pressed_alone(const engine::LinkState& state, const engine::LawPoint& point) {
+  const double tension =
+      state.stiffness * point.elongation + elastic_tension(state.elasticity, point);
+  Tangent tangent;
+  if (state.pushes) tangent.tension = std::clamp(tension, -state.force_limit, 0.0);
+  return tangent;
+}
+
 }  // namespace
 
 StartTangent::StartTangent(const engine::NetworkDescription& network)
@@ -163,8 +172,10 @@ void StartTangent::add_set(const engine::NetworkDescription& network, const engi
   for (const StartPair& pair : near.pairs()) {
     const std::uint32_t a = mat_of(set, pair.member_a);
     const std::uint32_t b = mat_of(set, pair.member_b);
-    const Tangent tangent = stiffest_tangent(start, start_point(network, set, pair), network.step);
-    if (!surely_acts(start.states[0], tangent, std::abs(pair.distance))) continue;
+    const engine::LawPoint point = start_point(network, set, pair);
+    Tangent tangent = stiffest_tangent(start, point, network.step);
+    if (!surely_acts(start.states[0], tangent, std::abs(pair.distance)))
+      tangent = pressed_alone(start.states[0], point);
     if (const engine::Surface* surface = engine::surface_of(network, a)) {
       add_at_surface(*surface, b, network, stiffness_weight * tangent.stiffness,
                      stiffness_weight * tangent.tension, viscosity_weight * tangent.viscosity);
