@@ -9,14 +9,14 @@
 namespace cordis::test {
 namespace {
 
-constexpr std::uint32_t kEdge = 5;  // balls along an edge of the jelly
-constexpr double kWidth = 0.04;     // between the middles of its outer balls [m]
-constexpr double kRadius = 0.005;   // [m]
+constexpr std::uint32_t kEdge = 5;     // balls along an edge of the jelly
+constexpr double kWidth = 0.04;        // between the middles of its outer balls [m]
+constexpr double kBallRadius = 0.005;  // [m]
 
 /// The number of the first ball of the jelly.
 std::uint32_t first_ball(const engine::NetworkDescription& network) {
   std::uint32_t first = 0;
-  while (network.radius[first] != kRadius) ++first;
+  while (network.radius[first] != kBallRadius) ++first;
   return first;
 }
 
@@ -26,10 +26,10 @@ double deepest(const engine::World& world) {
   double deepest = 0.0;
   for (const engine::Surface& surface : network.surfaces) {
     for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
-      if (network.radius[i] != kRadius) continue;
+      if (network.radius[i] != kBallRadius) continue;
       const double distance =
           distance_from(surface, network.mats[surface.mat].position, world.position(i)).distance;
-      deepest = std::max(deepest, kRadius - distance);
+      deepest = std::max(deepest, kBallRadius - distance);
     }
   }
   return deepest;
@@ -51,7 +51,7 @@ TEST(JellyOnStairs, DropsFromStepToStepAndRestsOnTheLast) {
     highest = std::min(highest, session.signal("middle_y"));
   });
 
-  EXPECT_LT(deep, 0.8 * kRadius);
+  EXPECT_LT(deep, 0.8 * kBallRadius);
   EXPECT_GT(session.signal("middle_x"), 0.27);
   EXPECT_LT(session.signal("middle_x"), 0.33);
   // the last step carries its whole weight
