@@ -13,6 +13,7 @@
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/start_tangent.h"
 #include "sim_node/plan/stability/step_bound.h"
+#include "tests/engine/programs.h"
 #include "tests/engine/surfaces.h"
 #include "tests/plan/networks.h"
 
@@ -61,6 +62,9 @@ TEST(SurfaceBound, CountsAFloorAndAWallTogetherAndTwoWallsFarApartOnce) {
     room.add(plane(side * Vec3::UnitZ()), Vec3(0.0, 0.0, -side));
   }
   EXPECT_EQ(room.most(), 3.0);
+  // they meet 1.5 km away
+  const Vec3 tilted = Vec3(-4e-5, -1.0, 0.0).normalized();
+  EXPECT_EQ(Shapes(floor).add(plane(tilted), Vec3(0.0, 0.16, 0.0)).most(), 2.0);
 }
 
 TEST(SurfaceBound, CountsTheStepsThatABallMayTouchAtOnce) {
@@ -178,6 +182,78 @@ TEST(SurfaceBound, CountsTwoThatPushAtOnceTwice) {
   };
   EXPECT_LT(held(0.999 * limit), 1.0);
   EXPECT_GT(held(1.01 * limit), 1e6);
+}
+
+/// A ball of 10 g and a radius of 10 mm between a floor and a ceiling 60 mm above it.
+NetworkDescription ball_in_gap(StateMachine state_machine, double range) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.mats = {mass(0.01, Vec3(0.0, 0.005, 0.0))};
+  scene.radius = {0.01};
+  const std::uint32_t floor = add_surface(scene, plane(Vec3::UnitY()), Vec3::Zero());
+  const std::uint32_t ceiling = add_surface(scene, plane(-Vec3::UnitY()), Vec3(0.0, 0.06, 0.0));
+  touch(scene, 1, std::move(state_machine), range, -1.0, {floor, ceiling});
+  return scene;
+}
+
+/// Touched for the first time, a ball is bound for good.
+StateMachine glue(engine::RestRule rest = engine::RestRule::kKeep) {
+  engine::LinkState idle;
+  idle.pulls = false;
+  return Behaving()
+      .state(idle)
+      .exit(q(Quantity::kDistance) < Term(0.012), 1, rest)
+      .state(500.0)
+      .state_machine;
+}
+
+TEST(SurfaceBound, IsWatchedWhereBondsOutlastTheirRange) {
+  const auto limit_of = [](const StateMachine& state_machine) {
+    NetworkDescription scene = ball_in_gap(state_machine, 0.02);
+    scene.step = 0.0075;  // K' is 2.8 for one
+    return plan::plan_of(scene, 10.0).stability.sets[0];
+  };
+  EXPECT_TRUE(limit_of(contact(500.0)).is_guaranteed());
+  EXPECT_FALSE(limit_of(glue()).is_guaranteed());
+  EXPECT_EQ(limit_of(glue()).most, 1u);
+}
+
+TEST(SurfaceBound, CountsWhatPushesBeyondTheRestLengthOfItsSet) {
+  const auto step_of = [](const StateMachine& state_machine, double range) {
+    const NetworkDescription scene = ball_in_gap(state_machine, range);
+    return plan::certified_bound(scene, plan::liaison_graph(scene)).step;
+  };
+  const double one = 2.0 * std::sqrt(0.01 / 3e4);
+  EXPECT_NEAR(step_of(contact(3e4), 0.04), one, 1e-9);
+  const Term early = two(Operation::kMin, Term(0.0 * q(Quantity::kDistance)),
+                         3e4 * (q(Quantity::kDistance) - 0.031));
+  StateMachine law = state_machine(0.0, expression_law(early));
+  law.states[0].pulls = false;
+  EXPECT_NEAR(step_of(law, 0.04), one / std::sqrt(2.0), 1e-3 * one);
+}
+
+TEST(SurfaceBound, IsNotCertainWhereANormalFlips) {
+  const auto uncertain = [](const Surface& surface, const StateMachine& state_machine,
+                            double speed) {
+    NetworkDescription scene;
+    scene.dimension = 2;
+    scene.step = 1e-4;
+    scene.mats = {mass(0.01, Vec3(0.0, 0.2, 0.0), Vec3(0.0, -speed, 0.0))};
+    scene.radius = {0.01};
+    touch(scene, 1, state_machine, 0.02, -1.0, {add_surface(scene, surface, Vec3::Zero())});
+    return plan::plan_of(scene, 10.0).stability.uncertainty.has_value();
+  };
+  const Surface wall = plane(Vec3::UnitY(), true);
+  const Surface stone = box(Vec3(0.03, 0.025, kNoEnd));
+  // K r^2 / 2 is 20 mJ, and the ball has 5 at 1 m/s.
+  EXPECT_FALSE(uncertain(wall, contact(400.0), 1.0));
+  EXPECT_TRUE(uncertain(wall, contact(400.0), 2.1));
+  EXPECT_TRUE(uncertain(stone, contact(400.0), 2.1));
+  EXPECT_FALSE(uncertain(plane(Vec3::UnitY()), contact(400.0), 20.0));
+  EXPECT_FALSE(uncertain(cylinder(Vec3::UnitZ(), 0.03), contact(400.0), 2.1));
+  EXPECT_FALSE(uncertain(stone, glue(), 0.1));
+  EXPECT_TRUE(uncertain(stone, glue(engine::RestRule::kHere), 0.1));
 }
 
 /// A ball that falls on stairs, followed by the reference integrator.

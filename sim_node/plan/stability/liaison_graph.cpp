@@ -127,11 +127,29 @@ bool is_confined(const engine::StateMachine& state_machine, double rest_length, 
          });
 }
 
-bool has_edges(const NetworkDescription& network, const engine::SetLiaison& set) {
-  return std::ranges::any_of(set.set_p, [&](std::uint32_t mat) {
-    const engine::Surface& surface = *engine::surface_of(network, mat);
-    return surface.kind != engine::SurfaceKind::kPlane || surface.both_sides;
-  });
+/// The largest distance from a surface at which its normal flips [m]: 0 where edges meet, the middle of
+/// what has none, -infinity for a plane with one side.
+double flips_at(const engine::Surface& surface, int dimension) {
+  const engine::Vec3& half = surface.half_size;
+  switch (surface.kind) {
+    case engine::SurfaceKind::kPlane:
+      return surface.both_sides ? 0.0 : -std::numeric_limits<double>::infinity();
+    case engine::SurfaceKind::kBox: {
+      const auto ends = half.head(dimension).array().isFinite();
+      return ends.count() == 1 ? -half.head(dimension).minCoeff() : 0.0;
+    }
+    case engine::SurfaceKind::kCylinder:
+      return std::isinf(half[1]) ? -half[0] : 0.0;
+  }
+  return 0.0;
+}
+
+double flips_at(const NetworkDescription& network, const engine::SetLiaison& set) {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t mat : set.set_p) {
+    largest = std::max(largest, flips_at(*engine::surface_of(network, mat), network.dimension));
+  }
+  return largest;
 }
 
 void add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
@@ -152,7 +170,7 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   here.brought += stored;
   const bool on_surfaces = engine::acts_on_surfaces(network, set);
   const Slope slope =
-      on_surfaces ? largest_slope_at_surfaces(state_machine, rest, has_edges(network, set), here)
+      on_surfaces ? largest_slope_at_surfaces(state_machine, rest, flips_at(network, set), here)
                   : largest_slope(state_machine, rest, network.dimension, here);
   note(slope, {LiaisonKind::kSet, index}, graph);
   const std::size_t count_p = set.set_p.size();

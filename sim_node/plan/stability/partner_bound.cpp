@@ -23,12 +23,28 @@ constexpr double kRounding = 1e-9;
 constexpr double kMaxCells = 4e6;
 constexpr double kMaxVisits = 3e7;  // of cells by points
 
-/// True if a pair exerts a force below its rest length alone.
+/// True if a law pushes below the elongation 0 alone.
+bool is_push(const engine::Law& law) {
+  const auto* power = std::get_if<engine::Power>(&law);
+  return is_none(law) || (power != nullptr && power->coefficient >= 0.0);
+}
+
+/// True if a pair exerts a force below the rest length of its set alone.
 bool only_pushes(const engine::StateMachine& state_machine) {
-  return std::none_of(state_machine.states.begin(), state_machine.states.end(),
-                      [](const engine::LinkState& state) {
-                        return state.pulls || state.viscosity > 0.0 || !is_none(state.dissipation);
-                      });
+  return std::ranges::all_of(state_machine.states,
+                             [](const engine::LinkState& state) {
+                               return !state.pulls && state.viscosity == 0.0 &&
+                                      is_none(state.dissipation) && is_push(state.elasticity);
+                             }) &&
+         std::ranges::all_of(state_machine.exits, [](const engine::Transition& exit) {
+           return exit.rest == engine::RestRule::kKeep;
+         });
+}
+
+/// True if pairs may be farther apart than their range, for they stay while they are not in the state of
+/// the start.
+bool outlasts_range(const engine::StateMachine& state_machine) {
+  return !state_machine.is_stateless();
 }
 
 /// Touching others at the start, by member; all in range where the pairs are too many to look at.
@@ -63,6 +79,7 @@ struct Others {
   double smallest_radius = std::numeric_limits<double>::infinity();
   double in_reach = 0.0;  // of fixed points, at one place
   bool all_fixed = true;
+  bool may_be_bound = false;  // to any number of them, wherever they are
 };
 
 Others others_of(const NetworkDescription& network, const SetLiaison& set,
@@ -75,8 +92,10 @@ Others others_of(const NetworkDescription& network, const SetLiaison& set,
     others.all_fixed = others.all_fixed && is_fixed;
     if (is_fixed) fixed.push_back(network.mats[mat].position);
   }
-  const double touch = engine::touch_distance(network.state_machines[set.state_machine]);
-  others.in_reach = max_in_reach(fixed, std::min(touch, set.range), network.dimension);
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  const double reach = std::min(engine::touch_distance(state_machine), set.range);
+  others.in_reach = max_in_reach(fixed, reach, network.dimension);
+  others.may_be_bound = outlasts_range(state_machine);
   return others;
 }
 
@@ -140,7 +159,7 @@ double reach_of_force(const NetworkDescription& network, const SetLiaison& set) 
   return std::min(rest, set.range);
 }
 
-/// Every mass may come to where most surfaces are: no pose has more.
+/// Every mass may come to where most surfaces are: no pose has more, unless pairs outlast their range.
 PartnerBounds bounds_on_surfaces(const NetworkDescription& network, const SetLiaison& set,
                                  const std::vector<std::uint32_t>& at_start) {
   std::vector<engine::Surface> surfaces;
@@ -155,6 +174,10 @@ PartnerBounds bounds_on_surfaces(const NetworkDescription& network, const SetLia
   bounds.needed.assign(set.set_p.size(), static_cast<double>(set.set_q.size()));
   bounds.needed.resize(set.set_p.size() + set.set_q.size(), most);
   bounds.possible = bounds.needed;
+  if (outlasts_range(network.state_machines[set.state_machine])) {
+    std::fill(bounds.possible.begin() + static_cast<std::ptrdiff_t>(set.set_p.size()),
+              bounds.possible.end(), static_cast<double>(set.set_p.size()));
+  }
   for (std::size_t m = 0; m < set.set_q.size(); ++m) {
     if (network.mats[set.set_q[m]].kind != MatKind::kMass) continue;
     bounds.at_start = std::max(bounds.at_start, at_start[set.set_p.size() + m]);
@@ -265,10 +288,10 @@ PartnerBounds partner_bounds(const NetworkDescription& network, const SetLiaison
       // Balls stand on fixed points and on each other.
       const bool dense = others.in_reach > kissing;
       const double fixed = dense ? others.in_reach + (others.all_fixed ? 0.0 : kissing) : 0.0;
-      const double possible = others.all_fixed ? std::min(others.in_reach, available) : available;
+      const double in_range = others.all_fixed ? std::min(others.in_reach, available) : available;
       const double grown = std::ceil(kPartnerMargin * share * kissing - kRounding);
-      bounds.possible.push_back(possible);
-      bounds.needed[m] = std::min(possible, std::max({kissing, grown, fixed}));
+      bounds.possible.push_back(others.may_be_bound ? available : in_range);
+      bounds.needed[m] = std::min(in_range, std::max({kissing, grown, fixed}));
     }
   }
   return bounds;

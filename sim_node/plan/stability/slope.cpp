@@ -22,6 +22,11 @@ constexpr const char* kBeginsAnywhere =
 constexpr const char* kDrivesApart = "it drives its ends apart ever harder";
 constexpr const char* kCrushed =
     "the energy of the scene may crush it to length 0, where it turns about between two steps";
+constexpr const char* kPullsWhereNormalFlips =
+    "it may pull within the surface, where the normal flips";
+constexpr const char* kJumpsWhereNormalFlips =
+    "a ball may be driven so deep into the surface that the normal flips, and its force jumps";
+constexpr double kNeverPassed = 1e4;  // energies of the fastest ball
 constexpr const char* kConfinesNothing = "its expression grows steeper, and no energy confines it";
 
 bool is_jump(const engine::Law& law) {
@@ -313,14 +318,66 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 
 /// Along the normal it is as a liaison in 1 dimension. Across, a tension T at the distance d from an
 /// edge has the stiffness T / d, as a link has.
+namespace {
+
+/// What a state does where the normal of a surface flips.
+struct Flip {
+  bool pulls = false;  // a valley, which is steep without an end
+  double barrier =
+      kNoLimit;  // what a ball has to bring there against its push [J]; infinite: no push
+};
+
+Flip flip_of(const engine::LinkState& state, double rest_length, double flips_at, bool moves_rest,
+             const Reach& reach) {
+  const auto tension = [&](double distance) {
+    const double elongation = distance - rest_length;
+    const Interval law = tension_between(state.elasticity, distance, elongation, reach);
+    return Interval{state.stiffness * elongation + law.low,
+                    state.stiffness * elongation + law.high};
+  };
+  const bool has_force = state.stiffness > 0.0 || !is_none(state.elasticity);
+  Flip flip;
+  if (moves_rest) {  // to wherever
+    flip.pulls = state.pulls && has_force;
+    if (state.pushes && has_force) flip.barrier = 0.0;
+    return flip;
+  }
+  constexpr int kSamples = 64;
+  const double deepest = std::min(flips_at - std::abs(rest_length), 2.0 * flips_at);
+  for (int i = 0; state.pulls && i <= kSamples; ++i) {
+    const double distance = flips_at + (deepest - flips_at) * i / kSamples;
+    flip.pulls = flip.pulls || tension(distance).high > 0.0;
+  }
+  if (!state.pushes || !(tension(flips_at).low < 0.0)) return flip;
+  const double from = std::max(rest_length, flips_at);
+  flip.barrier = 0.0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double distance = flips_at + (from - flips_at) * (i + 0.5) / kSamples;
+    const double push = std::clamp(-tension(distance).high, 0.0, state.force_limit);
+    flip.barrier += push * (from - flips_at) / kSamples;
+  }
+  return flip;
+}
+
+}  // namespace
+
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
-                                bool has_edges, const Reach& reach) {
+                                double flips_at, const Reach& reach) {
   Slope slope = largest_slope(state_machine, rest_length, 1, reach);
-  if (!has_edges || slope.uncertainty != nullptr) return slope;
-  const Slope turning = largest_slope(state_machine, rest_length, 3, reach);
-  if (turning.uncertainty != kPullsWhereEndsMeet) return slope;
-  slope.bounded = false;
-  slope.uncertainty = turning.uncertainty;
+  if (std::isinf(flips_at) || slope.uncertainty != nullptr) return slope;
+  const bool moves_rest = std::ranges::any_of(
+      state_machine.exits,
+      [](const engine::Transition& exit) { return exit.rest != engine::RestRule::kKeep; });
+  const double heaviest = std::max(reach.mass_a.high, reach.mass_b.high);
+  const double energy = 0.5 * heaviest * reach.speed * reach.speed;
+  for (const engine::LinkState& state : state_machine.states) {
+    const Flip flip = flip_of(state, rest_length, flips_at, moves_rest, reach);
+    if (flip.pulls) slope.uncertainty = kPullsWhereNormalFlips;
+    if (flip.barrier >= kNeverPassed * energy) continue;
+    slope.bounded = false;
+    if (flip.barrier <= energy && slope.uncertainty == nullptr)
+      slope.uncertainty = kJumpsWhereNormalFlips;
+  }
   return slope;
 }
 

@@ -39,10 +39,12 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
                     const Reach& reach);
 
 /// Likewise of a liaison of a set with surfaces, whose distance has a sign. It turns beside an edge and
-/// around a cylinder, and where a plane with both sides is drawn through.
-/// @param has_edges  not planes of one side alone
+/// around a cylinder, and its normal flips where two nearest points are equally far.
+/// @param flips_at  the largest distance at which it flips [m], at most 0: 0 at the corner of a box;
+/// -infinity where it never does
+/// Certain where nothing pulls there, and a ball at the speed of the reach does not come there.
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
-                                bool has_edges, const Reach& reach);
+                                double flips_at, const Reach& reach);
 
 /// A state machine of the state of the start alone.
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine);

@@ -14,7 +14,7 @@ using engine::SurfaceKind;
 using engine::Vec3;
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
-constexpr double kSameDirection = 1e-9;  // of directions
+constexpr double kSameDirection = 1e-14;  // nothing is so far away that this shows
 constexpr int kMaxFrankWolfe = 400;
 
 struct Body {
@@ -114,7 +114,7 @@ Heights heights_over(const Body& plane, const Body& body) {
 
 bool planes_meet(const Body& a, const Body& b, double reach) {
   const double cosine = a.surface.axis.dot(b.surface.axis);
-  if (std::abs(cosine) < 1.0 - kSameDirection) return true;
+  if ((b.surface.axis - cosine * a.surface.axis).norm() > kSameDirection) return true;
   const double height = a.surface.axis.dot(b.centre - a.centre);  // of b
   const auto slab = [reach](bool both_sides, bool upwards, double middle) {
     return Heights{both_sides || !upwards ? middle - reach : -kNoEnd,

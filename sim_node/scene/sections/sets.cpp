@@ -170,6 +170,13 @@ void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32
                       "take rings, a table or an expression");
       return;
     }
+    if (part.rest_length && *part.rest_length < 0.0) {
+      reader.error_at(reader.has("rest_m") ? "rest_m" : "liaison",
+                      "the rest length of a liaison of sets must be >= 0, got " +
+                          config::number_text(*part.rest_length),
+                      "a state may have one below 0: 'rest' of an exit");
+      return;
+    }
     const bool by_radii = !part.rest_length && radii > 0.0;
     if (!part.rest_length && !by_radii && depends_on_rest(*state_machine)) {
       reader.error_at("liaison", "a liaison of sets whose MATs have no radius needs a 'rest_m'");
