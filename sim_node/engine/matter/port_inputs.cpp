@@ -52,7 +52,9 @@ void PortInputs::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
 }
 
 Vec3 PortInputs::external_force(std::uint32_t mat) const noexcept {
-  return slot_[mat] == kNoSlot ? Vec3(Vec3::Zero()) : forces_[slot_[mat]].force;
+  CORDIS_ASSERT(mat < slot_.size());
+  const bool is_held = slot_[mat] != kNoSlot && !is_port(mat);
+  return is_held ? forces_[slot_[mat]].force : Vec3(Vec3::Zero());
 }
 
 std::uint32_t PortInputs::take_refused() noexcept {

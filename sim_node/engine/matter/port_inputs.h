@@ -23,7 +23,7 @@ class PortInputs {
   void impose_position(std::uint32_t mat, const Vec3& position) noexcept;
   /// The force [N] held on a mass from the next step on. Real time: O(1), no allocation.
   void hold_force(std::uint32_t mat, const Vec3& force) noexcept;
-  /// The force held on a mass [N].
+  /// The force held on a mass [N]; 0 for a port.
   Vec3 external_force(std::uint32_t mat) const noexcept;
   /// How many positions and forces were not finite since this was last asked.
   [[nodiscard]] std::uint32_t take_refused() noexcept;
