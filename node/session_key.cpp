@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "node/config/open_file.h"
 #include "node/random_token.h"
 #include "node/runtime_folder.h"
 
@@ -40,21 +41,6 @@ void append(std::string& bytes, std::string_view field) {
 [[noreturn]] void refuse_key_file(const fs::path& file, const std::string& why) {
   throw std::runtime_error("the key file " + file.string() + " " + why);
 }
-
-/// A file that is closed when this ends.
-class File {
- public:
-  File(const fs::path& path, int flags) : number_(open(path.c_str(), flags, S_IRUSR | S_IWUSR)) {}
-  ~File() {
-    if (number_ >= 0) close(number_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  int number() const noexcept { return number_; }
-
- private:
-  int number_;
-};
 
 }  // namespace
 
@@ -92,7 +78,7 @@ msg::AuthenticationCode SessionKey::code_of(const msg::ControlCommand& command,
 
 SessionKey read_key_file(const fs::path& path) {
   // Not blocking: a FIFO without a writer is no reason to wait.
-  const File file(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  const config::OpenFile file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.number() < 0)
     refuse_key_file(path, std::string("cannot be read: ") + std::strerror(errno));
   struct stat found {};
@@ -117,7 +103,8 @@ void write_key_file(const fs::path& path, const SessionKey& key) {
   fs::remove(draft);
   const std::string line = key.digits() + "\n";
   {
-    const File file(draft, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW);
+    const config::OpenFile file(open(
+        draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR));
     if (file.number() < 0 || fchmod(file.number(), S_IRUSR | S_IWUSR) != 0 ||
         write(file.number(), line.data(), line.size()) != static_cast<ssize_t>(line.size()))
       refuse_key_file(path, std::string("cannot be written: ") + std::strerror(errno));

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "node/config/open_file.h"
+
 namespace cordis::config {
 namespace {
 
@@ -18,21 +20,6 @@ std::string kind_of(mode_t mode) {
   if (S_ISSOCK(mode)) return "it is a socket, and a regular file is wanted";
   return "it is a device, and a regular file is wanted";
 }
-
-/// Closes a file at the end of a function.
-class OpenFile {
- public:
-  explicit OpenFile(int file) noexcept : file_(file) {}
-  ~OpenFile() {
-    if (file_ >= 0) close(file_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int number() const noexcept { return file_; }
-
- private:
-  int file_;
-};
 
 /// Appends what is left in a file; false when reading fails or more comes than is allowed.
 bool append_rest(int file, std::size_t max_bytes, std::string& bytes) {
