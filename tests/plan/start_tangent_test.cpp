@@ -118,6 +118,17 @@ TEST(StartTangent, IsNotSureOfWhatImplicitSpringsHold) {
   EXPECT_GT(largest_excursion(scene, 4000), 1e6);
 }
 
+/// Adds the pair of two MATs as a set, with the first state machine.
+void add_pair(NetworkDescription& scene, std::uint32_t p, std::uint32_t q, double range,
+              double rest_length) {
+  engine::SetLiaison set;
+  set.set_p = {p};
+  set.set_q = {q};
+  set.range = range;
+  set.rest_length = rest_length;
+  scene.sets.push_back(set);
+}
+
 TEST(StartTangent, IsNotSureOfAPairWhoseViscosityActsAlone) {
   // Within range and touched by no force: a set that only pushes lets go in every other step.
   NetworkDescription scene;
@@ -130,11 +141,7 @@ TEST(StartTangent, IsNotSureOfAPairWhoseViscosityActsAlone) {
   state.pulls = false;
   scene.state_machines.emplace_back();
   scene.state_machines[0].states = {state};
-  engine::SetLiaison set;
-  set.set_p = {0};
-  set.set_q = {1};
-  set.range = 2.0;
-  scene.sets = {set};
+  add_pair(scene, 0, 1, 2.0, 0.0);
 
   EXPECT_TRUE(std::isinf(StartTangent(scene).diverging_step()));
   scene.state_machines[0].states[0].pulls = true;
@@ -153,12 +160,7 @@ TEST(StartTangent, KnowsTheMassesOfExpressions) {
   NetworkDescription pair = link;
   pair.state_links.clear();
   pair.radius = {0.0, 0.0};
-  engine::SetLiaison set;
-  set.set_p = {0};
-  set.set_q = {1};
-  set.range = 10.0;
-  set.rest_length = 0.0;
-  pair.sets = {set};
+  add_pair(pair, 0, 1, 10.0, 0.0);
   EXPECT_NEAR(StartTangent(pair).diverging_step(), limit, 1e-4 * limit);
 }
 
@@ -174,12 +176,7 @@ TEST(StartTangent, KnowsThatAPairPressedToItsLimitGivesWayAcross) {
   state.force_limit = 4.0;
   scene.state_machines.emplace_back();
   scene.state_machines[0].states = {state};
-  engine::SetLiaison set;
-  set.set_p = {1};
-  set.set_q = {2};
-  set.range = 0.3;
-  set.rest_length = 0.2;
-  scene.sets = {set};
+  add_pair(scene, 1, 2, 0.3, 0.2);
 
   const double limit = 2.0 * std::sqrt(0.03 / 60.0);
   EXPECT_NEAR(StartTangent(scene).diverging_step(), limit, 1e-6 * limit);

@@ -316,15 +316,12 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
   return largest;
 }
 
-/// Along the normal it is as a liaison in 1 dimension. Across, a tension T at the distance d from an
-/// edge has the stiffness T / d, as a link has.
 namespace {
 
 /// What a state does where the normal of a surface flips.
 struct Flip {
-  bool pulls = false;  // a valley, which is steep without an end
-  double barrier =
-      kNoLimit;  // what a ball has to bring there against its push [J]; infinite: no push
+  bool pulls = false;         // a valley, which is steep without an end
+  double barrier = kNoLimit;  // energy that takes a ball there against the push [J]; infinite: none
 };
 
 Flip flip_of(const engine::LinkState& state, double rest_length, double flips_at, bool moves_rest,
@@ -361,6 +358,8 @@ Flip flip_of(const engine::LinkState& state, double rest_length, double flips_at
 
 }  // namespace
 
+/// Along the normal it is a liaison in 1 dimension. Across, a tension T at the distance d from an edge
+/// has the stiffness T / d, as a link has.
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
                                 double flips_at, const Reach& reach) {
   Slope slope = largest_slope(state_machine, rest_length, 1, reach);

@@ -168,17 +168,21 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
 void StartTangent::add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
                            double stiffness_weight, double viscosity_weight) {
   const engine::StateMachine start = start_state_alone(network.state_machines[set.state_machine]);
+  const bool on_surfaces = engine::acts_on_surfaces(network, set);
   const StartPairs near(network, set);
   for (const StartPair& pair : near.pairs()) {
     const std::uint32_t a = mat_of(set, pair.member_a);
     const std::uint32_t b = mat_of(set, pair.member_b);
     const engine::LawPoint point = start_point(network, set, pair);
     Tangent tangent = stiffest_tangent(start, point, network.step);
-    if (!surely_acts(start.states[0], tangent, std::abs(pair.distance)))
+    if (!surely_acts(start.states[0], tangent, std::abs(pair.distance))) {
       tangent = pressed_alone(start.states[0], point);
-    if (const engine::Surface* surface = engine::surface_of(network, a)) {
-      add_at_surface(*surface, b, network, stiffness_weight * tangent.stiffness,
-                     stiffness_weight * tangent.tension, viscosity_weight * tangent.viscosity);
+      if (tangent.tension == 0.0) continue;
+    }
+    if (on_surfaces) {
+      add_at_surface(*engine::surface_of(network, a), b, network,
+                     stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
+                     viscosity_weight * tangent.viscosity);
       continue;
     }
     add(a, b, network, stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
