@@ -23,7 +23,7 @@ class CommandRelay {
   CommandRelay(dds::Participant& participant, std::uint64_t epoch,
                std::optional<node::SessionKey> key);
 
-  /// A node says that it is there: commands go to the newest life of each sim_node and player.
+  /// Takes the status of a node: commands go to the newest life of each sim_node and player.
   void take(const msg::NodeStatus& status);
 
   void send(const PageCommand& command) noexcept;

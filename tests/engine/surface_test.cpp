@@ -164,7 +164,7 @@ TEST(SurfaceContact, OfBothSidesKeepsABallWhereItIs) {
   }
 }
 
-/// Without velocity and with, a line that ends at a plane.
+/// A line that ends at a plane, with viscosity and without.
 TEST(SurfaceContact, IsThatOfALinkWithAFixedPointInOneDimension) {
   LinkState state = contact(900.0, 3.0);
   NetworkDescription with_link;

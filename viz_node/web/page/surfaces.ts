@@ -30,7 +30,7 @@ export class SurfaceView {
     private readonly space: number,
   ) {}
 
-  /** True if a plane is there, which is a grid itself. */
+  /** True if one of them is a plane, which is drawn as a grid. */
   get hasPlanes(): boolean {
     return this.surfaces.some(({ kind }) => kind === 'plane');
   }
