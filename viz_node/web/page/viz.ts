@@ -23,6 +23,8 @@ export interface Viz {
   readonly pointer: PointerFigures;
   readonly take: Take | null; // null in a live session
   readonly quality: { software: boolean; spheres: boolean; links: boolean } | null;
+  /** Newest value of the signal with this name, in its own unit; null while there is none. */
+  signal(name: string): number | null;
   /** Coordinates of MAT `index` in the frame drawn last [m]. */
   position(index: number): number[] | null;
   /** Where MAT `index` is on the page [CSS pixels]. */
@@ -106,6 +108,11 @@ export function exposeViz(page: Page): void {
     },
     get quality() {
       return page.view?.quality ?? null;
+    },
+    signal: (name) => {
+      const index = page.description?.signals.findIndex((signal) => signal.name === name) ?? -1;
+      const value = index < 0 ? undefined : page.store?.newestOf(index);
+      return value === undefined || Number.isNaN(value) ? null : value;
     },
     position: (index) => (page.lastFrame ? [...page.lastFrame.positions.slice(3 * index, 3 * index + 3)] : null),
     project: (index) => page.view?.project(index) ?? null,
