@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "node/background_work.h"
 #include "node/control_verbs.h"
 #include "node/status_words.h"
 
@@ -46,7 +47,7 @@ std::optional<msg::ControlReply> CommandServer::take(const msg::ControlCommand& 
     });
   }
   long_command_ = command;
-  work_ = std::async(std::launch::async, std::move(work));
+  work_ = start_background_work(std::move(work));
   return std::nullopt;
 }
 

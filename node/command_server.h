@@ -24,7 +24,8 @@ using Execute = std::function<Answer(const msg::ControlCommand&)>;
 
 /// What is left of a long command, for the thread of the commands.
 using Finish = std::function<Answer()>;
-/// The long part of a command, for a thread of its own; it changes nothing.
+/// The long part of a command, for a thread of its own; it changes nothing, and owns all that it
+/// uses: the end of the node does not wait for it.
 using Work = std::function<Finish()>;
 /// The long part of a command; empty where it has none.
 using FindWork = std::function<Work(const msg::ControlCommand&)>;
@@ -61,7 +62,7 @@ class CommandServer {
   CommandGuard guard_;
   std::deque<msg::ControlReply> replies_;  // the newest replies, oldest first
   msg::ControlCommand long_command_;
-  std::future<Finish> work_;  // of long_command_; ends before the rest of this
+  std::future<Finish> work_;  // of long_command_
 };
 
 }  // namespace cordis::node

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "node/background_work.h"
 #include "node/inherited_priority.h"
 #include "node/log.h"
 #include "node/runtime_folder.h"
@@ -140,8 +141,10 @@ dds::Participant NodeStart::join_for_force_loop() const {
   return dds::Participant(of_the_loop);
 }
 
-int node_main(int argc, char** argv, const std::string& kind,
-              int (*run)(const NodeStart&, config::Problems&)) {
+namespace {
+
+int run_and_report(int argc, char** argv, const std::string& kind,
+                   int (*run)(const NodeStart&, config::Problems&)) {
   try {
     const Arguments arguments = parse(argc, argv);
     if (arguments.help) {
@@ -172,6 +175,13 @@ int node_main(int argc, char** argv, const std::string& kind,
     print_text(stderr, kind + ": " + error.what() + "\n");
     return kRuntimeFailure;
   }
+}
+
+}  // namespace
+
+int node_main(int argc, char** argv, const std::string& kind,
+              int (*run)(const NodeStart&, config::Problems&)) {
+  return leave_with(run_and_report(argc, argv, kind, run));
 }
 
 void report(const config::Problems& problems) {

@@ -23,7 +23,7 @@ SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
       description_writer_(participant, dds::Topic::kDescription),
       executor_(
           loop.mailbox(), loop.simulation().shared_scene(), start.epoch,
-          [&launch = start.launch, is_forced](const std::string& path, config::Problems& problems) {
+          [launch = start.launch, is_forced](const std::string& path, config::Problems& problems) {
             return load_next_scene(launch, path, is_forced, problems);
           },
           [is_forced](const scene::Scene& scene, config::Problems& problems) {

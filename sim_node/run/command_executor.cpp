@@ -112,9 +112,9 @@ node::Work CommandExecutor::work_of(const msg::ControlCommand& message) {
   } catch (const std::invalid_argument&) {
     return {};  // execute() says what is wrong
   }
-  return [this, path = command.scene_file]() -> node::Finish {
+  return [this, load = load_, path = command.scene_file]() -> node::Finish {
     auto problems = std::make_shared<config::Problems>();
-    auto scene = std::make_shared<const scene::Scene>(load_(path, *problems));
+    auto scene = std::make_shared<const scene::Scene>(load(path, *problems));
     return [this, path, scene, problems] { return play(path, scene, *problems); };
   };
 }

@@ -20,7 +20,8 @@ class CommandExecutor {
  public:
   static constexpr std::chrono::milliseconds kPatience{1000};
 
-  /// Reads the scene of a path; whatever is wrong becomes a problem.
+  /// Reads the scene of a path; whatever is wrong becomes a problem. Owns all that it uses: it may
+  /// outlive this.
   using Load = std::function<scene::Scene(const std::string& path, config::Problems& problems)>;
   using Check = RequestMaker::Check;
   /// Publishes the description of the scene that is played now.

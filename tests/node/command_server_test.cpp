@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "node/background_work.h"
 #include "tests/support/eventually.h"
 
 namespace cordis::node {
@@ -151,6 +152,25 @@ TEST(CommandServer, ExecutesOthersWhileTheLongPartOfACommandIsUnderWay) {
   EXPECT_FALSE(server.is_working());
   EXPECT_EQ(server.take(load)->text(), "loaded") << "and answered again";
   EXPECT_EQ(works, 1);
+}
+
+TEST(CommandServer, EndsBesideALongPart) {
+  std::promise<void> end_of_work;
+  {
+    CommandServer server(
+        "sim", msg::KIND_SIM_NODE, [](const msg::ControlCommand&) { return Answer{}; },
+        [work_may_end = end_of_work.get_future().share()](const msg::ControlCommand&) -> Work {
+          return [work_may_end]() -> Finish {
+            work_may_end.wait();
+            return [] { return Answer{true, "loaded"}; };
+          };
+        });
+    EXPECT_FALSE(server.take(command_for("sim", 1)).has_value());
+    EXPECT_TRUE(server.is_working());
+  }
+  EXPECT_TRUE(background_work_is_under_way());
+  end_of_work.set_value();
+  EXPECT_TRUE(test::eventually([] { return !background_work_is_under_way(); }));
 }
 
 TEST(CommandServer, AnswersAFailureOfALongPartWithItsReason) {

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -14,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "node/background_work.h"
 #include "node/instance_lock.h"
 #include "node/runtime_folder.h"
 #include "node/session_registry.h"
@@ -70,6 +72,26 @@ int warn_and_fail(const NodeStart&, config::Problems& problems) {
                    "31m' and '\x1b]0;title\a' are odd");
   report(problems);
   throw std::runtime_error("a device named '\x1b[8m\xe2\x80\xae'");
+}
+
+int leave_work_behind(const NodeStart&, config::Problems&) {
+  static_cast<void>(start_background_work(std::function<int()>([] {
+    for (;;) pause();
+    return 0;
+  })));
+  spdlog::warn("the last line");
+  return 3;
+}
+
+TEST(NodeMainDeathTest, EndsBesideBackgroundWorkWithItsLogWritten) {
+  const LaunchFile file(kTwoDevices);
+  ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  EXPECT_EXIT(
+      {
+        run_main({file.path(), "--name", "left"}, "device_node", leave_work_behind);
+        _exit(4);
+      },
+      ::testing::ExitedWithCode(3), "the last line");
 }
 
 TEST(NodeMain, PrintsTextsOfFilesWithoutEscapeCodes) {
