@@ -1,6 +1,7 @@
 // viz_node/frame_encoder.cpp
 #include "viz_node/frame_encoder.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -108,16 +109,21 @@ std::string encode_sound(const msg::SceneSound& sound, std::uint32_t scene) {
 std::string encode_topology(const msg::SceneDescription& description, std::uint32_t scene) {
   const auto mats = static_cast<std::uint32_t>(description.mat_kind().size());
   const auto links = static_cast<std::uint32_t>(description.link_ends().size() / 2);
-  std::string bytes(kTopologyHeaderBytes + 5 * std::size_t{mats} + 8 * std::size_t{links}, '\0');
-  Packer(bytes.data())
-      .put_prefix(MessageType::kTopology, kTopologyHeaderBytes)
+  const std::vector<std::uint32_t>& machines = description.link_state_machine();
+  std::string bytes(
+      kTopologyHeaderBytes + 5 * std::size_t{mats} + 8 * std::size_t{links} + 2 * machines.size(),
+      '\0');
+  Packer packer(bytes.data());
+  packer.put_prefix(MessageType::kTopology, kTopologyHeaderBytes)
       .put(scene)
       .put(mats)
       .put(links)
-      .put(std::uint32_t{0})
+      .put(static_cast<std::uint32_t>(machines.size()))
       .put_all(description.mat_radius_m())
-      .put_all(description.link_ends())
-      .put_all(description.mat_kind());
+      .put_all(description.link_ends());
+  for (const std::uint32_t machine : machines)
+    packer.put(static_cast<std::uint16_t>(std::min<std::uint32_t>(machine, kNoStateMachine)));
+  packer.put_all(description.mat_kind());
   return bytes;
 }
 

@@ -42,6 +42,7 @@ function actionsOf(session, draw) {
     return answered(page, name, () => press(page, button));
   };
   const tool = (key) => () => press(page, `#tools button[data-key="${key}"]`);
+  const colours = () => page.keyboard.press('c');
   const window = (seconds) => () => press(page, `#windows button[data-window="${seconds}"]`);
   const scene = () => {
     const file = SCENES[Math.floor(draw() * SCENES.length)];
@@ -52,7 +53,8 @@ function actionsOf(session, draw) {
     step: verb('step'),
     reset: verb('reset'),
     load: scene,
-    ...Object.fromEntries(['f', '1', '2', '3', '4', 'o', 'c', 'g', 'n', 'h', 'l', 's', '?'].map((key) => [`tool '${key}'`, tool(key)])),
+    colours,
+    ...Object.fromEntries(['f', '1', '2', '3', '4', 'o', 'g', 'n', 'h', 'l', 's', '?'].map((key) => [`tool '${key}'`, tool(key)])),
     ...Object.fromEntries([1, 5, 20].map((seconds) => [`window ${seconds} s`, window(seconds)])),
   };
 }

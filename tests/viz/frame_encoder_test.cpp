@@ -20,7 +20,7 @@ Value value_at(const Bytes& bytes, std::size_t offset) {
 template <class Bytes>
 void expect_prefix(const Bytes& bytes, MessageType type, std::size_t header_bytes) {
   EXPECT_EQ(std::memcmp(bytes.data(), "CDS1", 4), 0);
-  EXPECT_EQ(value_at<std::uint8_t>(bytes, 4), 1);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 4), 2);
   EXPECT_EQ(value_at<std::uint8_t>(bytes, 5), static_cast<std::uint8_t>(type));
   EXPECT_EQ(value_at<std::uint16_t>(bytes, 6), header_bytes);
 }
@@ -85,7 +85,20 @@ TEST(FrameEncoder, PutsRadiiEndsAndKindsIntoTheTopology) {
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 16), 2u);
   EXPECT_EQ(value_at<float>(bytes, 24 + 4), 0.25F);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 36 + 12), 2u);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 20), 0u);
   EXPECT_EQ(value_at<std::uint8_t>(bytes, 52 + 2), 2);
+}
+
+TEST(FrameEncoder, PutsTheStateMachineOfEachLinkIntoTheTopology) {
+  msg::SceneDescription description = row_of_three();
+  description.link_state_machine({1, msg::NO_INDEX});
+  const std::string bytes = encode_topology(description, 9);
+
+  ASSERT_EQ(bytes.size(), 24u + 3 * 4 + 4 * 4 + 2 * 2 + 3);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 20), 2u);
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 52), 1u);
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 54), kNoStateMachine);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 56 + 2), 2);
 }
 
 TEST(FrameEncoder, PutsSoundStepAfterStepWithItsRate) {

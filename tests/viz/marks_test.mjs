@@ -84,8 +84,8 @@ const cases = {
       ['fixed-point', 'fixed point', fixed],
       ['handle', 'handle of a device', port],
       ['tool', 'tool that it holds', port],
-      ['link', 'link, hooked', states[0]],
-      ['link', 'free', states[1]],
+      ['link solid', 'link, hooked', states[0]],
+      ['link solid', 'free', states[1]],
     ]);
   },
 
@@ -118,13 +118,49 @@ const cases = {
   'a link that is clicked says its ends, its length and its state': async ({ page }) => {
     await pick(page, middleOfLink(page, HOOKED), /^joints\[23\]$/);
     assert.equal(await page.locator('#picked-follow').isVisible(), false);
-    for (const state of ['free', 'hooked or no states', 'free']) {
-      const pattern = new RegExp(`^string\\[23\\] to string\\[24\\] · length [\\d.]+\\s?mm · ${state}$`);
+    for (const state of ['free', 'hooked', 'free']) {
+      const pattern = new RegExp(`^string\\[23\\] to string\\[24\\] · length [\\d.]+\\s?mm, [+−][\\d.]+ % since [\\d.]+ s · ${state}$`);
       await until(`it is ${state}`, async () => pattern.test(await textOf(page, '#picked-values')));
     }
     const stage = await page.locator('#stage').boundingBox();
     await page.mouse.click(stage.x + 100, stage.y + 120);
     await until('a click on nothing lets go of it', async () => !(await page.locator('#picked').isVisible()));
+  },
+
+  'components have colours and sizes, and one that is torn off has its own': async ({ page }) => {
+    const { bodies } = palettes.dark; // the link behind string[32] does nothing: 33 and 27 MATs
+    await page.selectOption('#colouring', 'components');
+    await until('the sizes are in the legend', async () => (await legendOf(page)).some(([, text]) => text === '27 MATs'));
+    assert.deepEqual((await legendOf(page)).slice(0, 2), [
+      ['mass', 'joined by links: 33 MATs', bodies[0]],
+      ['mass', '27 MATs', bodies[1]],
+    ]);
+    await drawn(page, 2);
+    assertHue((await look(page, 30)).colour, bodies[0], 'the last but one of the larger component');
+    assertHue((await look(page, 35)).colour, bodies[1], 'the smaller component');
+    await pick(page, placeOf(page, 35), /^string2\[5\]$/);
+    await until('its component is said', async () => / · component 2 by size, 27 MATs$/.test(await textOf(page, '#picked-values')));
+    await page.click('#picked-close');
+  },
+
+  'links have the colour of their stretch, with a scale that says since when': async ({ page }) => {
+    await page.keyboard.press('c');
+    assert.equal(await page.locator('#colouring').inputValue(), 'stretch');
+    const texts = async () => Promise.all(['low', 'high', 'caption'].map((part) => textOf(page, `#scale-${part}`)));
+    const [low, high, caption] = await until('links are longer and shorter', async () => {
+      const all = await texts();
+      return /^\+[\d.]+ %$/.test(all[1]) && Number.parseFloat(all[1]) > 0 && all;
+    });
+    assert.equal(low.slice(1), high.slice(1));
+    assert.match(caption, /^length of links against that at [\d.]+ s; balls are drawn small$/);
+    await pick(page, middleOfLink(page, 45), /^joints\[45\]$/);
+    const longer = async () => Number(/, ([+−][\d.]+) % since/.exec(await textOf(page, '#picked-values'))?.[1].replace('−', '-') ?? 0);
+    await until('a link is longer', async () => (await longer()) > 0);
+    await page.screenshot({ path: join(out, 'marks_stretch.png') });
+    await page.click('#picked-close');
+    await page.keyboard.press('c');
+    assert.equal(await page.locator('#colouring').inputValue(), 'bodies');
+    assert.equal(await page.locator('#scale').isVisible(), false);
   },
 
   'names are written into the view, and are no more': async ({ page }) => {
@@ -210,6 +246,32 @@ const cases = {
     const [near, far] = await page.evaluate(() => [window.viz.project(0), window.viz.project(380)]);
     assert.ok(Math.abs(near.y - far.y) > 60, `its rows are apart: ${near.y} and ${far.y}`);
     await page.screenshot({ path: join(out, 'marks_drum.png') });
+  },
+
+  'states of several liaisons have line patterns of their own, and the legend says which': async (session) => {
+    const { page } = session;
+    await session.source.end();
+    session.source = session.scene('--states', '--liaisons');
+    await until('the string is drawn', async () => (await viz(page, 'lastFrame')).matCount === 60);
+    const states = palettes.dark.link_states;
+    await until('the legend has them', async () => (await legendOf(page)).length > 8);
+    assert.deepEqual((await legendOf(page)).filter(([mark]) => mark.startsWith('link')), [
+      ['link solid', 'link, hook: hooked', states[0]],
+      ['link solid', 'hook: free', states[1]],
+      ['link dashed', 'glue: stuck', states[0]],
+      ['link dashed', 'glue: loose', states[1]],
+      ['link dotted', 'without states', states[0]],
+    ]);
+    await pick(page, middleOfLink(page, 49), /^joints\[49\]$/);
+    await until('its liaison is said', async () => / · glue: stuck$/.test(await textOf(page, '#picked-values')));
+    await page.click('#picked-close');
+    const gaps = await page.evaluate(() => {
+      const [a, b] = [window.viz.project(44), window.viz.project(45)];
+      const colours = Array.from({ length: 40 }, (_, k) => window.viz.pixelAt(a.x + ((b.x - a.x) * (k + 10)) / 60, a.y + ((b.y - a.y) * (k + 10)) / 60).join());
+      return new Set(colours).size;
+    });
+    assert.ok(gaps > 1, 'a dashed link has gaps');
+    await page.screenshot({ path: join(out, 'marks_patterns.png') });
   },
 
   'nothing went wrong in the page': async ({ page, pageErrors }) => {

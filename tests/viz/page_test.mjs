@@ -169,8 +169,8 @@ const cases = {
     await page.keyboard.press('c');
     await drawn(page, 5);
     await until('a slow place is not the blue of a mass', async () => (await look(page, MIDDLE)).colour[2] < 240);
-    await until('the fastest speed is reported', async () => /m\/s$/.test(await textOf(page, '#speed-most')));
-    await page.keyboard.press('c');
+    await until('the fastest speed is reported', async () => /m\/s$/.test(await textOf(page, '#scale-high')));
+    await page.selectOption('#colouring', 'bodies');
 
     await page.keyboard.press('h');
     await banner(page, 'view frozen');

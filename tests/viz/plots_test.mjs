@@ -251,18 +251,19 @@ const cases = {
     const texts = await page.evaluate(() => window.textsElsewhere());
     const legend = await page.locator('#legend li').allTextContents();
     const ruler = await textOf(page, '#ruler span');
-    assert.deepEqual(texts.slice(0, -3), [`string · ${simulatedS.toFixed(3)} s`, ...legend]);
-    assert.equal(texts.at(-3), '0');
-    assert.match(texts.at(-2), /^[\d.]+\s?\S*m\/s$/);
+    assert.deepEqual(texts.slice(0, -4), [`string · ${simulatedS.toFixed(3)} s`, ...legend]);
+    assert.equal(texts.at(-4), '0');
+    assert.match(texts.at(-3), /^[\d.]+\s?\S*m\/s$/);
+    assert.equal(texts.at(-2), 'speed, mean over a frame');
     assert.equal(texts.at(-1).replace(/\.0+(?=\D)/, ''), ruler);
-    const mark = [16 + 7, 46 - 4];
-    const image = await page.evaluate(readImage, [bytes.toString('base64'), palette.bodies[0], ...mark]);
+    const mark = [16 + 3, 46 - 4]; // the edge of the square of fixed points
+    const image = await page.evaluate(readImage, [bytes.toString('base64'), palette.fixed, ...mark]);
     const stage = await page.locator('#stage').boundingBox();
     assert.deepEqual([image.width, image.height], [stage.width, stage.height].map(Math.floor));
-    const wanted = [1, 3, 5].map((begin) => Number.parseInt(palette.bodies[0].slice(begin, begin + 2), 16));
-    assert.ok(wanted.every((byte, k) => Math.abs(byte - image.place[k]) < 12), `the mark of the string is ${image.place}`);
+    const wanted = [1, 3, 5].map((begin) => Number.parseInt(palette.fixed.slice(begin, begin + 2), 16));
+    assert.ok(wanted.every((byte, k) => Math.abs(byte - image.place[k]) < 12), `the mark of fixed points is ${image.place}`);
     await page.keyboard.press('h');
-    await page.keyboard.press('c');
+    await page.selectOption('#colouring', 'bodies');
   },
 
   'nothing went wrong in the page': async ({ page, pageErrors }) => {

@@ -62,7 +62,7 @@ class Client {
   take(data, isBinary) {
     if (!isBinary) return void this.texts.push(JSON.parse(data.toString()));
     assert.equal(data.toString('latin1', 0, 4), MAGIC);
-    assert.equal(data[4], 1);
+    assert.equal(data[4], 2);
     const header = data.readUInt16LE(6);
     if (data[5] === FRAME) this.takeFrame(data, header);
     else if (data[5] === SIGNALS) this.takeSignals(data, header);
@@ -107,8 +107,9 @@ class Client {
   takeTopology(data, header) {
     const [mats, links] = [data.readUInt32LE(12), data.readUInt32LE(16)];
     assert.equal(header, 24);
-    assert.equal(data.length, header + 5 * mats + 8 * links);
-    const kinds = [...data.subarray(header + 4 * mats + 8 * links)];
+    const machines = data.readUInt32LE(20);
+    assert.equal(data.length, header + 5 * mats + 8 * links + 2 * machines);
+    const kinds = [...data.subarray(header + 4 * mats + 8 * links + 2 * machines)];
     const ends = Array.from({ length: 2 * links }, (_, i) => data.readUInt32LE(header + 4 * mats + 4 * i));
     this.topologies.push({ scene: data.readUInt32LE(8), mats, links, kinds, ends });
   }

@@ -2,8 +2,9 @@
 // moves by formula.
 //
 // usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
-//                     [--amplitude METRES] [--bodies N] [--space 1|2|3] [--surfaces] [--bad-frames]
+//                     [--amplitude METRES] [--bodies N] [--liaisons] [--space 1|2|3] [--surfaces] [--bad-frames]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -34,7 +35,8 @@ constexpr std::uint32_t kStepsPerFrame = 40;
 constexpr std::uint8_t kMass = 0;
 constexpr std::uint8_t kFixed = 1;
 constexpr std::uint8_t kPort = 2;
-constexpr std::size_t kIdleLink = 32;  // it does nothing, all the time
+constexpr std::ptrdiff_t kPlainLinks = 4;  // without states, where there are several liaisons
+constexpr std::size_t kIdleLink = 32;      // it does nothing, all the time
 
 struct Options {
   int domain = -1;
@@ -45,6 +47,7 @@ struct Options {
   std::size_t bodies = 1;    // that the MATs belong to
   std::uint8_t space = 0;    // 0: that of the scene
   bool states = false;
+  bool liaisons = false;  // two with states, and links without
   bool surfaces = false;
   bool bad_frames = false;
   bool hold_domain = false;
@@ -74,6 +77,8 @@ Options read_options(int argc, char** argv) {
       options.space = static_cast<std::uint8_t>(std::stoul(value()));
     } else if (word == "--states") {
       options.states = true;
+    } else if (word == "--liaisons") {
+      options.liaisons = true;
     } else if (word == "--surfaces") {
       options.surfaces = true;
     } else if (word == "--bad-frames") {
@@ -176,6 +181,18 @@ void describe_states(msg::SceneDescription& description) {
   hook.states({"hooked", "free"});
   description.state_machines({hook});
   description.link_state_machine().assign(description.link_ends().size() / 2, 0);
+}
+
+/// The last third of the links belongs to another liaison, but for the very last ones.
+void describe_other_liaisons(msg::SceneDescription& description) {
+  msg::StateMachineDescription glue;
+  glue.name("glue");
+  glue.states({"stuck", "loose"});
+  description.state_machines().push_back(glue);
+  std::vector<std::uint32_t>& machines = description.link_state_machine();
+  std::fill(machines.begin() + static_cast<std::ptrdiff_t>(machines.size() * 2 / 3), machines.end(),
+            1);
+  std::fill(machines.end() - kPlainLinks, machines.end(), msg::NO_INDEX);
 }
 
 void name_parts(MovingScene& scene, const std::string& name, std::size_t bodies,
@@ -285,6 +302,7 @@ int publish(const Options& options) {
   if (options.amplitude_m > 0.0) scene.amplitude_m = options.amplitude_m;
   if (options.space != 0) scene.description.space(options.space);
   if (options.states) describe_states(scene.description);
+  if (options.states && options.liaisons) describe_other_liaisons(scene.description);
   if (options.surfaces) scene.description.surfaces(test::steps_and_post());
   name_parts(scene, options.scene, options.bodies, epoch);
   dds::Writer<msg::SceneDescription> description_writer(sim, dds::Topic::kDescription);

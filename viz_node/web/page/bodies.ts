@@ -4,7 +4,6 @@ import type { Description, NamedRange, Topology } from './protocol.ts';
 import { MAT_FIXED, MAT_MASS, MAT_PORT } from './wire.ts';
 
 const MOST_NAMES = 60; // in the view
-const MOST_STATES = 3; // of one colour in the legend
 
 export interface Body {
   name: string;
@@ -65,22 +64,22 @@ export class Bodies {
     return false;
   }
 
-  /** Red, green, blue per MAT, 0..255. */
-  tints(palette: Palette): Uint8Array {
+  /** Red, green, blue per MAT, 0..255. @param massColour  of the masses that no hand holds, where it is not that of their body */
+  tints(palette: Palette, massColour: (mat: number) => string = (mat) => ofList(palette.bodies, this.bodyOf[mat]!)): Uint8Array {
     const bytes = new Map<string, [number, number, number]>();
     const tints = new Uint8Array(3 * this.topology.matCount);
     for (let mat = 0; mat < this.topology.matCount; ++mat) {
-      const colour = this.colourOf(mat, palette);
+      const colour = this.ownColourOf(mat, palette) ?? massColour(mat);
       if (!bytes.has(colour)) bytes.set(colour, bytesOf(colour));
       tints.set(bytes.get(colour)!, 3 * mat);
     }
     return tints;
   }
 
-  colourOf(mat: number, palette: Palette): string {
+  /** The colour of a MAT that is fixed or held by a hand; null for a free mass. */
+  private ownColourOf(mat: number, palette: Palette): string | null {
     if (this.isHeld[mat] === 1) return palette.port;
-    if (this.topology.kinds[mat] === MAT_FIXED) return palette.fixed;
-    return ofList(palette.bodies, this.bodyOf[mat]!);
+    return this.topology.kinds[mat] === MAT_FIXED ? palette.fixed : null;
   }
 
   /** The name of a MAT as the scene has it: `string[3]`. */
@@ -100,10 +99,4 @@ export class Bodies {
     const ranges = matter.length <= MOST_NAMES ? matter : this.list.map(({ name, first }) => ({ name, first, count: 1 }));
     return [...ports, ...ranges];
   }
-}
-
-/** Names of the states that have the colour of number `colour`, of `colours`. */
-export function stateNames({ state_machines }: Description, colour: number, colours: number): string {
-  const names = new Set(state_machines.flatMap(({ states }) => states.filter((_, state) => state % colours === colour)));
-  return [...names].slice(0, MOST_STATES).join(', ') + (names.size > MOST_STATES ? ' …' : '');
 }

@@ -12,7 +12,7 @@ const KEYS: [string, string][] = [
   ['f', 'fit the scene'],
   ['1 2 3 4', 'front, side, top, three-dimensional'],
   ['o', 'parallel or perspective'],
-  ['c', 'colour by speed'],
+  ['c', 'what the colours say: bodies and states, speed, components, stretch'],
   ['n', 'names of matter and ports'],
   ['g', 'grid'],
   ['+ -', 'plots over a shorter or a longer time, as does the wheel over them'],

@@ -1,28 +1,56 @@
 // viz_node/web/page/legend.ts -- what each colour and mark of the view means.
-import { bodyName, stateNames, type Bodies } from './bodies.ts';
+import { bodyName } from './bodies.ts';
 import { ofList, type Palette } from './colours.ts';
+import { count } from './format.ts';
+import type { Colouring } from './colouring.ts';
+import { SMALLER } from './components.ts';
+import { PATTERNS } from './link_groups.ts';
 import type { Description } from './protocol.ts';
 import { fillRows, setText } from './rows.ts';
+import type { SceneView } from './scene_view.ts';
 
 const MOST_BODIES = 8;
 const MOST_SURFACES = 3; // names in the legend
+const MOST_STATES = 3; // that have one colour and one pattern
+const MOST_LINKS = 12;
 
 export interface LegendEntry {
-  mark: 'mass' | 'fixed-point' | 'handle' | 'tool' | 'link' | 'surface';
+  mark: 'mass' | 'fixed-point' | 'handle' | 'tool' | 'link solid' | 'link dashed' | 'link dotted' | 'surface';
   text: string;
   colour: string;
 }
 
-export function legendOf(description: Description, bodies: Bodies, palette: Palette): LegendEntry[] {
-  const { list } = bodies;
-  const entries: LegendEntry[] = list.slice(0, MOST_BODIES).map(({ name }, number) => ({ mark: 'mass', text: name, colour: ofList(palette.bodies, number) }));
-  if (list.length > MOST_BODIES) entries.at(-1)!.text += ` and ${list.length - MOST_BODIES} more`;
+export function legendOf(description: Description, view: SceneView, colouring: Colouring, palette: Palette): LegendEntry[] {
+  const { bodies } = view;
+  const entries = massEntries(view, colouring, palette);
   if (bodies.hasFixedPoints) entries.push({ mark: 'fixed-point', text: 'fixed point', colour: palette.fixed });
   if (bodies.hasFixedBalls) entries.push({ mark: 'mass', text: 'fixed ball', colour: palette.fixed });
   if (bodies.hasPorts) entries.push({ mark: 'handle', text: 'handle of a device', colour: palette.port });
   if (description.tools.some((tool) => tool !== null)) entries.push({ mark: 'tool', text: 'tool that it holds', colour: palette.port });
   if (description.surfaces.length > 0) entries.push({ mark: 'surface', text: surfaceText(description), colour: palette.surface });
-  if (description.link_count > 0) entries.push(...linkEntries(description, palette.link_states));
+  if (colouring === 'bodies' || colouring === 'components') entries.push(...linkEntries(view, palette.link_states));
+  return entries;
+}
+
+/** What the colours of free masses say; a scale says it of speeds. */
+function massEntries(view: SceneView, colouring: Colouring, palette: Palette): LegendEntry[] {
+  if (colouring === 'speed') return [];
+  if (colouring === 'stretch') return [{ mark: 'mass', text: 'mass', colour: palette.quiet }];
+  if (colouring === 'components') return componentEntries(view, palette);
+  const { list } = view.bodies;
+  const entries = list.slice(0, MOST_BODIES).map(({ name }, number): LegendEntry => ({ mark: 'mass', text: name, colour: ofList(palette.bodies, number) }));
+  if (list.length > MOST_BODIES) entries.at(-1)!.text += ` and ${list.length - MOST_BODIES} more`;
+  return entries;
+}
+
+/** The largest components by their sizes. */
+function componentEntries({ links }: SceneView, palette: Palette): LegendEntry[] {
+  const list = links?.components.list ?? [];
+  const large = list.filter(({ colour }) => colour !== SMALLER);
+  const entries = large.map(({ size, colour }): LegendEntry => ({ mark: 'mass', text: `${count(size)} MATs`, colour: ofList(palette.bodies, colour) }));
+  if (entries.length > 0) entries[0]!.text = `joined by links: ${entries[0]!.text}`;
+  const more = list.length - large.length;
+  entries.push({ mark: 'mass', text: more > 0 ? `${count(more)} smaller ones, and MATs alone` : 'MATs alone', colour: palette.quiet });
   return entries;
 }
 
@@ -33,11 +61,25 @@ function surfaceText({ surfaces }: Description): string {
   return names.length === 0 ? 'surface' : `surface: ${names.slice(0, MOST_SURFACES).join(', ')}${more}`;
 }
 
-/** Links without states have the colour of the first state. */
-function linkEntries(description: Description, colours: string[]): LegendEntry[] {
-  const texts = colours.map((_, number) => stateNames(description, number, colours.length));
-  texts[0] = texts[0] === '' ? 'link' : `link, ${texts[0]}`;
-  return texts.map((text, number): LegendEntry => ({ mark: 'link', text, colour: colours[number]! })).filter(({ text }) => text !== '');
+/** A colour for each state, a pattern for each liaison where there are several. States that look the same share an entry. */
+function linkEntries({ groups }: SceneView, colours: string[]): LegendEntry[] {
+  const texts = new Map<number, string[]>();
+  for (const { name, states, pattern } of groups.list) {
+    const liaison = groups.list.length > 1 ? `${name}: ` : '';
+    (states.length === 0 ? [''] : states).forEach((state, number) => {
+      const look = PATTERNS.length * (number % colours.length) + pattern;
+      texts.set(look, [...(texts.get(look) ?? []), state !== '' ? liaison + state : groups.list.length > 1 ? 'without states' : '']);
+    });
+  }
+  const looks = [...texts.keys()].sort((a, b) => (a % PATTERNS.length) - (b % PATTERNS.length) || a - b);
+  const entries = looks.map((look): LegendEntry => {
+    const names = [...new Set(texts.get(look)!)];
+    const text = names.slice(0, MOST_STATES).join(' or ') + (names.length > MOST_STATES ? ' …' : '');
+    return { mark: `link ${PATTERNS[look % PATTERNS.length]!}`, text, colour: colours[Math.floor(look / PATTERNS.length)]! };
+  });
+  if (entries.length > 0) entries[0]!.text = entries[0]!.text === '' ? 'link' : `link, ${entries[0]!.text}`;
+  if (entries.length > MOST_LINKS) entries[MOST_LINKS - 1]!.text += ' …';
+  return entries.slice(0, MOST_LINKS);
 }
 
 export function showLegend(entries: LegendEntry[]): void {

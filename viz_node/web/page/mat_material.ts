@@ -1,6 +1,6 @@
 // viz_node/web/page/mat_material.ts -- the matter: one vertex per MAT, drawn as a sphere by
 // intersecting it with the ray of each pixel.
-import { paletteOf, sharesOf, type Palette } from './colours.ts';
+import { paletteOf, sharesOf } from './colours.ts';
 import type { Program, Uniforms } from './gl_canvas.ts';
 import { MAT_FIXED } from './wire.ts';
 
@@ -29,6 +29,7 @@ const MAT_VERTEX = /* glsl */ `
   uniform mat4 modelViewMatrix;
   uniform mat4 projectionMatrix;
   uniform float pixels_per_unit;   // of the plane at clip w = 1
+  uniform float radius_share;      // balls are drawn so much of their size
   uniform vec4 min_pixels;       // smallest radius on the screen, by kind
   uniform float speed_scale;       // 1 / full scale, per metre moved; 0: colour by body
   out vec3 centre;
@@ -42,7 +43,7 @@ const MAT_VERTEX = /* glsl */ `
     vec4 view_position = modelViewMatrix * vec4(position, 1.0);
     gl_Position = projectionMatrix * view_position;
     float pixels = pixels_per_unit / gl_Position.w;
-    size = max(radius, min_pixels[k >= 4 ? 0 : k] / pixels);
+    size = max(radius_share * radius, min_pixels[k >= 4 ? 0 : k] / pixels);
     // A square where a punctual MAT is fixed; a sphere with a halo where a hand is.
     shape = k == 3 ? 1 : (k == 2 ? 2 : 0);
     centre = view_position.xyz;
@@ -129,20 +130,31 @@ const LINK_VERTEX = /* glsl */ `
   uniform mat4 projectionMatrix;
   uniform float speed_scale;
   uniform vec3 link_colour;
+  uniform float view_width;   // [pixels of the canvas]
+  uniform float view_height;
   out vec3 colour;
+  flat out vec2 end;          // of the link, on the canvas
   ${SPEED_COLOUR}
 
   void main() {
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    end = (0.5 + 0.5 * gl_Position.xy / gl_Position.w) * vec2(view_width, view_height);
     colour = speed_scale > 0.0 ? 0.8 * speed_colour(length(position - previous) * speed_scale) : link_colour;
   }
 `;
 
 const LINK_FRAGMENT = /* glsl */ `
-  precision mediump float;
+  precision highp float;
   in vec3 colour;
+  flat in vec2 end;
+  uniform float pattern;      // 0 solid, 1 dashed, 2 dotted
+  uniform float pixel_ratio;
   out vec4 pixel;
-  void main() { pixel = vec4(colour, 1.0); }
+  void main() {
+    float along = distance(gl_FragCoord.xy, end) / pixel_ratio;
+    if (pattern > 1.5 ? mod(along, 4.0) > 1.7 : pattern > 0.5 && mod(along, 9.0) > 5.5) discard;
+    pixel = vec4(colour, 1.0);
+  }
 `;
 
 /** How many colours of links there are, in either theme. */
@@ -157,10 +169,14 @@ export interface SceneUniforms extends Uniforms {
   min_pixels: number[];
   speed_scale: number;
   orthographic: boolean;
+  radius_share: number;
+  view_width: number;
+  view_height: number;
+  pixel_ratio: number;
 }
 
 export function sceneUniforms(): SceneUniforms {
-  return { pixels_per_unit: 1, min_pixels: [3, 3, 6, 5], speed_scale: 0, orthographic: false };
+  return { pixels_per_unit: 1, min_pixels: [3, 3, 6, 5], speed_scale: 0, orthographic: false, radius_share: 1, view_width: 1, view_height: 1, pixel_ratio: 1 };
 }
 
 /** Kinds as the shader distinguishes them: a fixed point without a radius is no ball, and what has a shape of its own is not shown. */
@@ -179,5 +195,5 @@ export function matProgram(spheres: boolean): Program {
 
 export const LINK_PROGRAM: Program = { vertex: LINK_VERTEX, fragment: LINK_FRAGMENT };
 
-/** What the links of each state are drawn with. */
-export const linkUniforms = (palette: Palette): Uniforms[] => palette.link_states.map((colour) => ({ link_colour: sharesOf(colour) }));
+/** What a part of the links is drawn with. */
+export const linkUniforms = (colour: string, pattern: number): Uniforms => ({ link_colour: sharesOf(colour), pattern });

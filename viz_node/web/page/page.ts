@@ -3,12 +3,14 @@ import { Bodies } from './bodies.ts';
 import { ClockOffset, RealTimeFactor } from './clock.ts';
 import type { Pose } from './camera_rig.ts';
 import { firstTheme, keepTheme, paletteOf, type Palette, type ThemeName } from './colours.ts';
+import { ColouringBox, speedScale, stretchScale, type Scale } from './colouring.ts';
 import { Connection } from './connection.ts';
 import { Controls } from './controls.ts';
 import { joined, roundLength, withUnit } from './format.ts';
 import { Hud } from './hud.ts';
 import { keysAreListed, toggleKeys } from './keys_dialog.ts';
-import { legendOf, showLegend } from './legend.ts';
+import { legendOf, showLegend, type LegendEntry } from './legend.ts';
+import { LinkGroups } from './link_groups.ts';
 import { Marks } from './marks.ts';
 import { drawNames } from './names.ts';
 import { Picked } from './picked.ts';
@@ -73,7 +75,8 @@ export class Page {
   private frameMs = Number.NaN; // when the newest frame came
   private pose: Pose | null = null; // of the camera, for the next view
   private drawAsked = false;
-  private speeds = false;
+  private readonly colouring = new ColouringBox(() => this.colour());
+  private legendVersion = 0; // of the components that the legend names
   private names = false;
   private plotsMs = 0;
   private plotsDirty = false;
@@ -186,9 +189,10 @@ export class Page {
     const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : quality.note);
     try {
       const bodies = new Bodies(this.description, topology);
-      this.view = new SceneView(this.stage, topology, bodies, tools, space, surfaces, this.palette, quality, this.pose, changed, lost);
-      this.view.colourBySpeed(this.speeds);
-      this.showLegend();
+      const groups = new LinkGroups(this.description, topology);
+      this.view = new SceneView(this.stage, topology, bodies, groups, tools, space, surfaces, this.palette, quality, this.pose, changed, lost);
+      this.colouring.describe(topology.linkCount);
+      this.colour();
     } catch (error) {
       this.note(error);
       this.say('The browser gives this page no WebGL: figures and signals only. Close other tabs and reload the page');
@@ -262,9 +266,10 @@ export class Page {
     const ruler = find('#ruler');
     (ruler.firstElementChild as HTMLElement).style.width = `${length / scale}px`;
     ruler.lastElementChild!.textContent = joined(withUnit(length, 'm')).replace(/\.0+(?=\D)/, '');
-    if (this.speeds) {
-      find('#speed-most').textContent = joined(withUnit(this.view.fastestSpeed, 'm/s'));
-    }
+    this.colouring.show(this.scale);
+    const { componentsVersion } = this.view.links ?? { componentsVersion: 0 };
+    if (componentsVersion !== this.legendVersion) this.showLegend();
+    this.legendVersion = componentsVersion;
   }
 
   private refresh(): void {
@@ -291,7 +296,7 @@ export class Page {
       '4': () => this.view?.rig.look('free'),
       o: () => this.view?.rig.toggleProjection(),
       g: () => this.view?.toggleGround(),
-      c: () => this.colourBySpeed(!this.speeds),
+      c: () => this.colouring.step(),
       n: () => this.toggle('n', (this.names = !this.names)),
       h: () => this.freeze(!this.frozen),
       p: () => this.plots.togglePhase(),
@@ -322,10 +327,18 @@ export class Page {
     }
   }
 
-  private colourBySpeed(wanted: boolean): void {
-    this.speeds = wanted;
-    this.view?.colourBySpeed(wanted);
-    find('#speed-scale').hidden = !wanted;
+  private colour(): void {
+    this.view?.colourBy(this.colouring.value);
+    this.showLegend();
+  }
+
+  /** What the colours mean, where they are numbers. */
+  private get scale(): Scale | null {
+    const { view, palette } = this;
+    if (view === null) return null;
+    if (this.colouring.value === 'speed') return speedScale(view.fastestSpeed, palette);
+    if (this.colouring.value === 'stretch') return stretchScale(view.links?.widest ?? 0, view.stretchSinceS, palette);
+    return null;
   }
 
   /** Shows whether a button of the view is on. */
@@ -362,8 +375,13 @@ export class Page {
     this.askToDraw();
   }
 
+  private get legend(): LegendEntry[] {
+    if (this.description === null || this.view === null) return [];
+    return legendOf(this.description, this.view, this.colouring.value, this.palette);
+  }
+
   private showLegend(): void {
-    if (this.description !== null && this.view !== null) showLegend(legendOf(this.description, this.view.bodies, this.palette));
+    if (this.description !== null && this.view !== null) showLegend(this.legend);
   }
 
   private drawMarks(): void {
@@ -371,7 +389,7 @@ export class Page {
     if (this.view === null || this.description === null) return;
     const stage = this.stage.getBoundingClientRect();
     if (this.names) drawNames(this.marks, this.view, stage, this.palette.text);
-    this.picked.draw(this.marks, stage, this.palette, this.description);
+    this.picked.draw(this.marks, stage, this.palette);
     this.pointer.draw(this.marks, { mine: this.palette.text, others: this.palette.quiet });
   }
 
@@ -390,8 +408,8 @@ export class Page {
     const image = await imageOfView(this.view, this.marks.canvas, {
       scene: this.description.name,
       simulatedS: this.lastFrame.simulatedS,
-      legend: legendOf(this.description, this.view.bodies, this.palette),
-      fastest: this.speeds ? joined(withUnit(this.view.fastestSpeed, 'm/s')) : '',
+      legend: this.legend,
+      scale: this.scale,
       palette: this.palette,
     });
     if (image !== null) download(image, this.fileName('png'));

@@ -1,8 +1,8 @@
 // viz_node/web/page/picked.ts -- the MAT or the link that a person has picked: its name and values.
 import type { Palette } from './colours.ts';
-import { joined, withUnit } from './format.ts';
+import { percentOf } from './colouring.ts';
+import { count, joined, withUnit } from './format.ts';
 import type { Marks, Point } from './marks.ts';
-import type { Description } from './protocol.ts';
 import { setText } from './rows.ts';
 import type { SceneView } from './scene_view.ts';
 import { LINK_IS_IDLE } from './wire.ts';
@@ -51,7 +51,7 @@ export class Picked {
   }
 
   /** Marks it in the frame that is drawn now, and writes its values. */
-  draw(marks: Marks, stage: DOMRect, palette: Palette, description: Description): void {
+  draw(marks: Marks, stage: DOMRect, palette: Palette): void {
     const view = this.view();
     if (view === null || this.thing === null) return;
     const ring = (mat: number, room: number) => {
@@ -67,7 +67,7 @@ export class Picked {
     const now = performance.now();
     if (now - this.shownMs < REFRESH_MS) return;
     this.shownMs = now;
-    const [name, values] = 'mat' in this.thing ? matText(view, this.thing.mat) : linkText(view, this.thing.link, description);
+    const [name, values] = 'mat' in this.thing ? matText(view, this.thing.mat) : linkText(view, this.thing.link);
     setText(this.name, name);
     setText(this.values, values);
   }
@@ -90,22 +90,28 @@ export class Picked {
 
 function matText(view: SceneView, mat: number): [string, string] {
   const [x, y, z] = view.place(mat).map((value) => joined(withUnit(value, 'm')));
-  return [view.bodies.nameOf(mat), `x ${x} · y ${y} · z ${z} · speed ${joined(withUnit(view.speedOf(mat), 'm/s'))}`];
+  const part = view.componentOf(mat);
+  const component = part === null ? '' : ` · component ${part.place} by size, ${count(part.component.size)} MATs`;
+  return [view.bodies.nameOf(mat), `x ${x} · y ${y} · z ${z} · speed ${joined(withUnit(view.speedOf(mat), 'm/s'))}${component}`];
 }
 
-function linkText(view: SceneView, link: number, description: Description): [string, string] {
+function linkText(view: SceneView, link: number): [string, string] {
   const [a, b] = view.endsOf(link);
   const from = view.place(b);
   const length = Math.hypot(...view.place(a).map((value, k) => value - from[k]!));
-  const state = stateText(view.stateOf(link), description);
+  const stretch = view.stretchOf(link);
+  const since = `${stretch < 0 ? '−' : '+'}${percentOf(Math.abs(stretch))} since ${view.stretchSinceS.toFixed(2)} s`;
+  const state = stateText(view, link);
   const ends = `${view.bodies.nameOf(a)} to ${view.bodies.nameOf(b)}`;
-  return [view.bodies.linkNameOf(link), `${ends} · length ${joined(withUnit(length, 'm'))}${state === '' ? '' : ` · ${state}`}`];
+  return [view.bodies.linkNameOf(link), `${ends} · length ${joined(withUnit(length, 'm'))}, ${since}${state === '' ? '' : ` · ${state}`}`];
 }
 
-/** Links without states have the number of the first state. */
-function stateText(state: number, { state_machines }: Description): string {
-  if (state >= LINK_IS_IDLE) return 'does nothing';
-  const names = [...new Set(state_machines.flatMap(({ states }) => states[state] ?? []))];
-  if (names.length > 0 && state === 0) names.push('no states');
-  return names.join(' or ');
+/** The state with its liaison where the scene has several; empty for a link without states. */
+function stateText(view: SceneView, link: number): string {
+  const state = view.stateOf(link);
+  const { list } = view.groups;
+  const { name, states } = view.groups.of(link);
+  if (states.length === 0) return state >= LINK_IS_IDLE ? 'does nothing' : '';
+  const text = (states[state & ~LINK_IS_IDLE] ?? '') + (state >= LINK_IS_IDLE ? ', does nothing' : '');
+  return list.length > 1 ? `${name}: ${text}` : text;
 }

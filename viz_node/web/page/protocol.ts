@@ -2,7 +2,8 @@
 // each field is.
 
 export const MAGIC = 0x31534443; // the bytes "CDS1"
-export const VERSION = 1;
+export const VERSION = 2;
+export const NO_STATE_MACHINE = 65535; // of a link
 
 const TYPE_FRAME = 1;
 const TYPE_SIGNALS = 2;
@@ -43,6 +44,7 @@ export interface Topology {
   linkCount: number;
   radii: Float32Array<ArrayBuffer>; // [m]
   linkEnds: Uint32Array<ArrayBuffer>; // two per link
+  stateMachines: Uint16Array<ArrayBuffer>; // per link: an index in those of the description, or NO_STATE_MACHINE; or empty
   kinds: Uint8Array<ArrayBuffer>; // MAT_*
 }
 
@@ -299,7 +301,8 @@ function decodeSound(view: DataView<ArrayBuffer>, header: number): Sound {
 function decodeTopology(view: DataView<ArrayBuffer>, header: number): Topology {
   const matCount = view.getUint32(12, true);
   const linkCount = view.getUint32(16, true);
-  checkLength(view, header + 5 * matCount + 8 * linkCount);
+  const machineCount = view.getUint32(20, true);
+  checkLength(view, header + 5 * matCount + 8 * linkCount + 2 * machineCount);
   return {
     type: 'topology',
     scene: view.getUint32(8, true),
@@ -307,6 +310,7 @@ function decodeTopology(view: DataView<ArrayBuffer>, header: number): Topology {
     linkCount,
     radii: new Float32Array(view.buffer, header, matCount),
     linkEnds: new Uint32Array(view.buffer, header + 4 * matCount, 2 * linkCount),
-    kinds: new Uint8Array(view.buffer, header + 4 * matCount + 8 * linkCount, matCount),
+    stateMachines: new Uint16Array(view.buffer, header + 4 * matCount + 8 * linkCount, machineCount),
+    kinds: new Uint8Array(view.buffer, header + 4 * matCount + 8 * linkCount + 2 * machineCount, matCount),
   };
 }

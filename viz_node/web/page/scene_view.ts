@@ -2,10 +2,14 @@
 // straight into a GPU buffer that matter and links share.
 import { Box3, Vector3 } from 'three';
 import type { Bodies } from './bodies.ts';
-import { sharesOf, type Palette } from './colours.ts';
-import { GlCanvas, shapeOf, VertexArray, type Shape, type Uniforms } from './gl_canvas.ts';
+import { ofList, sharesOf, type Palette } from './colours.ts';
+import type { Colouring } from './colouring.ts';
+import { SMALLER, type Component } from './components.ts';
+import { GlCanvas, shapeOf, VertexArray, type Shape } from './gl_canvas.ts';
 import { Ground } from './ground.ts';
-import { colourOfState, LINK_PROGRAM, linkUniforms, matProgram, sceneUniforms, shownKinds } from './mat_material.ts';
+import type { LinkGroups } from './link_groups.ts';
+import { LinkView } from './link_view.ts';
+import { matProgram, sceneUniforms, shownKinds } from './mat_material.ts';
 import type { Frame, Surface, Topology } from './protocol.ts';
 import { LINK_IS_IDLE } from './wire.ts';
 import type { Quality } from './quality.ts';
@@ -16,6 +20,7 @@ import { CameraRig, type Pose } from './camera_rig.ts';
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
 const SAMPLE = 4000;
 const MATS_A_FRAME = 1000; // of larger scenes not every frame is looked at, whether all of it is seen
+const SMALL = 0.4; // of the radius of balls, where the links are looked at
 const ASTRAY = 0.01; // share of the MATs that may fly off unfollowed, at either end of each axis
 
 /** A MAT or a link near a point of the page. */
@@ -33,8 +38,7 @@ export class SceneView {
   private readonly radii: VertexArray; // as they are drawn
   private readonly tints: VertexArray<Uint8Array>;
   private readonly matter: Shape;
-  private readonly links: Shape | null;
-  private readonly linkColours: Uniforms[];
+  readonly links: LinkView | null;
   private newest: VertexArray;
   private before: VertexArray;
   private newestS = Number.NaN;
@@ -43,13 +47,15 @@ export class SceneView {
   private framesSinceLook = 0;
   private framed = false;
   private isDrum = false;
-  private speeds = false;
-  private states = new Uint8Array(0); // per link, as they are drawn
+  private colouring: Colouring = 'bodies';
+  private referenceS = 0; // simulated time that stretches are counted from [s]
+  private tintedVersion = 0; // of the components that have their colours
 
   constructor(
     private readonly container: HTMLElement,
     private readonly topology: Topology,
     readonly bodies: Bodies,
+    readonly groups: LinkGroups,
     private readonly tools: number[],
     private readonly space: number,
     private readonly surfaces: Surface[],
@@ -72,11 +78,11 @@ export class SceneView {
     this.before = new VertexArray(new Float32Array(coordinates), 3);
     this.radii = new VertexArray<Float32Array>(topology.radii.slice(), 1);
     this.tints = new VertexArray(bodies.tints(palette), 3);
-    this.linkColours = linkUniforms(palette);
     this.matter = this.matterShape();
-    this.links = quality.links && topology.linkCount > 0 ? this.linkShape() : null;
+    const vertices = { position: this.newest, previous: this.before };
+    this.links = topology.linkCount > 0 ? new LinkView(topology, groups, vertices, this.uniforms, palette, quality.links) : null;
     this.surfaceView = new SurfaceView(surfaces, space);
-    this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links]));
+    this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]));
     if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
     this.resize();
   }
@@ -84,6 +90,7 @@ export class SceneView {
   private matterShape(): Shape {
     const few = this.topology.matCount <= 3000;
     const least = few ? [3.2, 3.2, 6, 5] : [1.2, 1.2, 5, 2];
+    this.uniforms.pixel_ratio = this.quality.pixelRatio;
     this.uniforms.min_pixels = least.map((pixels) => pixels * this.quality.pixelRatio);
     const kind = new VertexArray(Float32Array.from(shownKinds(this.topology.kinds, this.topology.radii, this.tools, this.bodies.shapes)), 1);
     const vertices = { position: this.newest, previous: this.before, radius: this.radii, tint: this.tints, kind };
@@ -91,48 +98,20 @@ export class SceneView {
     return shapeOf('points', matProgram(this.quality.spheres), vertices, { uniforms: this.uniforms, parts: [all] });
   }
 
-  private linkShape(): Shape {
-    const all = { first: 0, count: 2 * this.topology.linkCount, uniforms: this.linkColours[0]! };
-    return shapeOf('lines', LINK_PROGRAM, { position: this.newest, previous: this.before }, {
-      index: new VertexArray<Uint32Array>(this.topology.linkEnds.slice(), 1),
-      uniforms: this.uniforms,
-      parts: [all],
-    });
-  }
-
-  /** Lays the links of one colour side by side in the index: one call draws each colour. Those that do nothing are not drawn. */
-  private sortLinks(states: Uint8Array): void {
-    if (this.links === null || states.length !== this.topology.linkCount) return;
-    if (states.length === this.states.length && states.every((state, l) => state === this.states[l])) return;
-    this.states = states.slice();
-    const ends = this.topology.linkEnds;
-    const index = this.links.index!;
-    let filled = 0;
-    const shown = [...new Set(states)].filter((state) => state < LINK_IS_IDLE);
-    this.links.parts = [...new Set(shown.map(colourOfState))].map((colour) => {
-      const first = filled;
-      for (let l = 0; l < states.length; ++l) {
-        const state = states[l]!;
-        if (state >= LINK_IS_IDLE || colourOfState(state) !== colour) continue;
-        index.array[filled++] = ends[2 * l]!;
-        index.array[filled++] = ends[2 * l + 1]!;
-      }
-      return { first, count: filled - first, uniforms: this.linkColours[colour]! };
-    });
-    index.set();
-  }
-
   /** Takes a frame; draw() shows it. */
   show(frame: Frame): void {
     const first = Number.isNaN(this.newestS);
     [this.newest, this.before] = [this.before, this.newest];
     this.newest.set(frame.positions);
-    this.sortLinks(frame.linkStates);
     if (first) {
       this.before.set(frame.positions.slice());
       this.sizePoints();
+      this.links?.measureFrom(frame.positions);
+      this.referenceS = frame.simulatedS;
     }
-    for (const shape of [this.matter, this.links]) if (shape !== null) Object.assign(shape.vertices, { position: this.newest, previous: this.before });
+    this.links?.take(frame.positions, frame.linkStates);
+    this.tintComponents();
+    for (const shape of [this.matter, this.links?.shape]) if (shape !== undefined) Object.assign(shape.vertices, { position: this.newest, previous: this.before });
     this.shownForS = frame.simulatedS - this.newestS;
     this.measureSpeed(this.shownForS);
     this.newestS = frame.simulatedS;
@@ -154,6 +133,7 @@ export class SceneView {
     const camera = this.rig.camera;
     this.uniforms.pixels_per_unit = 0.5 * this.canvas.element.height * camera.projectionMatrix.elements[5]!;
     this.uniforms.orthographic = this.rig.orthographic;
+    [this.uniforms.view_width, this.uniforms.view_height] = [this.canvas.element.width, this.canvas.element.height];
     camera.updateMatrixWorld();
     this.canvas.draw(camera.matrixWorldInverse.elements, camera.projectionMatrix.elements);
   }
@@ -173,8 +153,8 @@ export class SceneView {
   paint(palette: Palette): void {
     this.palette = palette;
     this.canvas.clearTo(sharesOf(palette.background));
-    this.tints.set(this.bodies.tints(palette));
-    linkUniforms(palette).forEach((uniforms, state) => Object.assign(this.linkColours[state]!, uniforms));
+    this.links?.paint(palette);
+    this.colourBy(this.colouring);
     if (this.framed) this.layGround();
     this.changed();
   }
@@ -206,7 +186,7 @@ export class SceneView {
   /** Likewise the nearest link that is drawn. */
   linkAt(x: number, y: number, within: number): Near | null {
     let best: Near | null = null;
-    for (let link = 0; this.links !== null && link < this.topology.linkCount; ++link) {
+    for (let link = 0; this.quality.links && link < this.topology.linkCount; ++link) {
       if (this.stateOf(link) >= LINK_IS_IDLE) continue;
       const [a, b] = this.endsOf(link).map((mat) => this.project(mat)) as [{ x: number; y: number }, { x: number; y: number }];
       const [dx, dy] = [b.x - a.x, b.y - a.y];
@@ -225,7 +205,7 @@ export class SceneView {
 
   /** State of a link in the newest frame, + LINK_IS_IDLE where it does nothing; 0 in scenes without states. */
   stateOf(link: number): number {
-    return this.states[link] ?? 0;
+    return this.links?.stateOf(link) ?? 0;
   }
 
   /** Speed of a MAT, the mean over the last frame [m/s]. */
@@ -240,10 +220,41 @@ export class SceneView {
     this.changed();
   }
 
-  colourBySpeed(wanted: boolean): void {
-    this.speeds = wanted;
+  /** How much longer a link is than at `stretchSinceS`, a share. */
+  stretchOf(link: number): number {
+    return this.links?.stretchOf(this.newest.array, link) ?? 0;
+  }
+
+  /** The component of a MAT, where these have colours. */
+  componentOf(mat: number): { component: Component; place: number } | null {
+    return this.colouring === 'components' ? (this.links?.components.of(mat) ?? null) : null;
+  }
+
+  get stretchSinceS(): number {
+    return this.referenceS;
+  }
+
+  colourBy(colouring: Colouring): void {
+    this.colouring = colouring;
+    this.uniforms.radius_share = colouring === 'stretch' ? SMALL : 1;
     this.measureSpeed(this.shownForS);
+    this.links?.colourBy(colouring, this.newest.array);
+    if (colouring === 'components') this.tintComponents();
+    else this.tints.set(this.bodies.tints(this.palette, colouring === 'stretch' ? () => this.palette.quiet : undefined));
     this.changed();
+  }
+
+  /** The components have changed: the largest ones have colours of their own. */
+  private tintComponents(): void {
+    const { links, palette } = this;
+    if (links === null || this.colouring !== 'components' || this.tintedVersion === links.componentsVersion) return;
+    this.tintedVersion = links.componentsVersion;
+    this.tints.set(
+      this.bodies.tints(palette, (mat) => {
+        const colour = links.components.of(mat)?.component.colour ?? SMALLER;
+        return colour === SMALLER ? palette.quiet : ofList(palette.bodies, colour);
+      }),
+    );
   }
 
   get fastestSpeed(): number {
@@ -277,7 +288,7 @@ export class SceneView {
 
   /** Radius of MAT `index` as it is drawn, at the middle of the scene [CSS pixels]. */
   radiusOnScreen(index: number): number {
-    return this.radii.array[index]! / this.rig.metresPerPixel;
+    return (this.uniforms.radius_share * this.radii.array[index]!) / this.rig.metresPerPixel;
   }
 
   /** Colour of one pixel of the view as it is drawn now, 0..255; a place on the page [CSS pixels]. */
@@ -349,7 +360,7 @@ export class SceneView {
 
   /** The full scale of the colours follows the fastest MAT, at once upwards and slowly down. */
   private measureSpeed(elapsedS: number): void {
-    if (!this.speeds) {
+    if (this.colouring !== 'speed') {
       this.uniforms.speed_scale = 0;
       return;
     }

@@ -1,5 +1,6 @@
 // viz_node/web/page/view_image.ts -- an image of the view to keep, with its scene, time, legend and
 // a length to measure by.
+import { stopsOf, type Scale } from './colouring.ts';
 import type { Palette } from './colours.ts';
 import { joined, roundLength, withUnit } from './format.ts';
 import type { LegendEntry } from './legend.ts';
@@ -7,12 +8,13 @@ import type { SceneView } from './scene_view.ts';
 
 const ROOM_PX = 16; // at the edges
 const ROW_PX = 20; // of the legend
+const STRIP_PX = 120; // of a scale
 
 export interface Caption {
   scene: string;
   simulatedS: number;
   legend: LegendEntry[];
-  fastest: string; // where the colours are speeds, else empty
+  scale: Scale | null; // where the colours are numbers
   palette: Palette;
 }
 
@@ -33,7 +35,7 @@ export async function imageOfView(view: SceneView, marks: HTMLCanvasElement, cap
   pen.fillStyle = palette.text;
   pen.fillText(`${caption.scene} · ${caption.simulatedS.toFixed(3)} s`, ROOM_PX, 24);
   const bottom = writeLegend(pen, caption.legend, palette, marks.clientWidth);
-  if (caption.fastest !== '') writeSpeeds(pen, bottom, caption.fastest, palette);
+  if (caption.scale !== null) writeScale(pen, bottom, caption.scale, palette);
   const scale = view.rig.metresPerPixel;
   const length = roundLength(160 * scale);
   pen.fillStyle = palette.quiet;
@@ -61,19 +63,23 @@ function drawMark(pen: CanvasRenderingContext2D, mark: LegendEntry['mark'], { x,
   pen.strokeStyle = colour;
   pen.lineWidth = 2;
   pen.beginPath();
-  if (mark === 'link') pen.rect(x - 7, y - 1.5, 14, 3);
+  if (mark === 'link solid') pen.rect(x - 7, y - 1.5, 14, 3);
+  else if (mark === 'link dashed') [-7, 2].forEach((left) => pen.rect(x + left, y - 1.5, 5, 3));
+  else if (mark === 'link dotted') [-7, -2, 3].forEach((left) => pen.rect(x + left, y - 1.5, 2, 3));
   else if (mark === 'fixed-point' || mark === 'surface') pen.rect(x - 4, y - 4, 8, 8);
   else pen.arc(x, y, mark === 'handle' ? 6 : 4.5, 0, 2 * Math.PI);
   if (mark === 'handle' || mark === 'fixed-point') pen.stroke();
   else pen.fill();
 }
 
-function writeSpeeds(pen: CanvasRenderingContext2D, y: number, fastest: string, palette: Palette): void {
-  const colours = pen.createLinearGradient(ROOM_PX + 14, 0, ROOM_PX + 134, 0);
-  palette.speeds.forEach((colour, i) => colours.addColorStop(i / (palette.speeds.length - 1), colour));
+function writeScale(pen: CanvasRenderingContext2D, y: number, scale: Scale, palette: Palette): void {
+  const left = ROOM_PX + pen.measureText(scale.low).width + 8;
+  const colours = pen.createLinearGradient(left, 0, left + STRIP_PX, 0);
+  for (const [colour, share] of stopsOf(scale)) colours.addColorStop(share, colour);
   pen.fillStyle = colours;
-  pen.fillRect(ROOM_PX + 14, y - 8, 120, 8);
+  pen.fillRect(left, y - 8, STRIP_PX, 8);
   pen.fillStyle = palette.quiet;
-  pen.fillText('0', ROOM_PX, y);
-  pen.fillText(fastest, ROOM_PX + 142, y);
+  pen.fillText(scale.low, ROOM_PX, y);
+  pen.fillText(scale.high, left + STRIP_PX + 8, y);
+  pen.fillText(scale.caption, left + STRIP_PX + 24 + pen.measureText(scale.high).width, y);
 }
