@@ -329,6 +329,7 @@ export class Page {
 
   private colour(): void {
     this.view?.colourBy(this.colouring.value);
+    this.colouring.show(this.scale);
     this.showLegend();
   }
 
