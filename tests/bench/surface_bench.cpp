@@ -26,7 +26,7 @@ constexpr std::uint32_t kSide = 100;
 constexpr double kRadius = 0.01;  // [m]
 
 /// 10,000 balls side by side, each pressed into the surface by its weight, or 1 m above it.
-std::shared_ptr<const Network> balls_on(Kind kind, bool far) {
+std::shared_ptr<const Network> balls_on(Kind kind, bool far, bool rub = false) {
   constexpr double kStiffness = 1000.0;
   constexpr double kMass = 0.01;
   constexpr double kGravity = 9.81;
@@ -69,6 +69,7 @@ std::shared_ptr<const Network> balls_on(Kind kind, bool far) {
   contact.states[0].stiffness = kStiffness;
   contact.states[0].viscosity = 0.1;
   contact.states[0].pulls = false;
+  if (rub) contact.friction = {0.5, 0.4, kStiffness, 0.1};
   network.state_machines.push_back(contact);
   set.set_p.push_back(surface.mat);
   set.range = kRadius;
@@ -88,5 +89,65 @@ BENCHMARK(step_of_balls_on_a_surface)
     ->ArgNames({"kind", "far"})
     ->ArgsProduct({{kNoSurface, kPlane, kBox, kCylinder}, {0, 1}})
     ->Unit(benchmark::kMicrosecond);
+
+/// Balls on a plane with friction, which stick or slide under a force along it.
+void step_of_balls_that_rub(benchmark::State& state) {
+  const bool rub = state.range(0) != 0;
+  World world(balls_on(kPlane, false, rub));
+  const double push = state.range(1) != 0 ? 0.06 : 0.03;  // [N]; the limit is 0.049
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i)
+    world.set_external_force(i, Vec3(rub ? push : 0.0, 0.0, 0.0));
+  for (int n = 0; n < 3; ++n) world.step();
+  for (auto _ : state) benchmark::DoNotOptimize(world.step());
+  state.counters["per_ball"] = benchmark::Counter(
+      kSide * kSide, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(step_of_balls_that_rub)
+    ->ArgNames({"rub", "slide"})
+    ->ArgsProduct({{0, 1}, {0, 1}})
+    ->Unit(benchmark::kMicrosecond);
+
+/// A block of balls in a cubic packing, each pressed into the six beside it, with friction or without.
+void step_of_a_heap(benchmark::State& state) {
+  constexpr std::uint32_t kEdge = 20;
+  NetworkDescription network;
+  network.dimension = 3;
+  network.step = 1e-4;
+  SetLiaison set;
+  for (std::uint32_t i = 0; i < kEdge * kEdge * kEdge; ++i) {
+    Mat mat;
+    mat.mass = 0.01;
+    mat.position = 1.999 * kRadius * Vec3(i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge);
+    mat.velocity = Vec3(1e-3 * (i % 7), -1e-3 * (i % 5), 1e-3 * (i % 3));
+    set.set_p.push_back(i);
+    network.mats.push_back(mat);
+    network.radius.push_back(kRadius);
+  }
+  StateMachine contact;
+  contact.states.emplace_back();
+  contact.states[0].stiffness = 1000.0;
+  contact.states[0].viscosity = 0.1;
+  contact.states[0].pulls = false;
+  if (state.range(0) != 0) contact.friction = {0.5, 0.4, 1000.0, 0.1};
+  network.state_machines.push_back(contact);
+  set.range = 2.0 * kRadius;
+  set.rest_length = -1.0;
+  network.sets.push_back(set);
+  auto shared = std::make_shared<const Network>(network);
+  World world(shared);
+  const auto begin = world.snapshot();
+  int steps = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(world.step());
+    if (++steps % 50 != 0) continue;
+    state.PauseTiming();
+    world.restore(begin);  // before it has come apart
+    state.ResumeTiming();
+  }
+  state.counters["per_ball"] =
+      benchmark::Counter(kEdge * kEdge * kEdge, benchmark::Counter::kIsIterationInvariantRate |
+                                                    benchmark::Counter::kInvert);
+}
+BENCHMARK(step_of_a_heap)->ArgName("rub")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -19,7 +19,7 @@ enum class Matter { kAnything, kPotentials, kModes };
 /// Draws one number in each statement: the order of arguments is the compiler's.
 class SceneWriter {
  public:
-  explicit SceneWriter(std::uint32_t seed) : random_(seed) {
+  explicit SceneWriter(std::uint32_t seed) : random_(seed), friction_random_(~seed) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -71,6 +71,7 @@ class SceneWriter {
           one_of<const char*>({"cordis", "cordis", "cordis", "leapfrog", "leapfrog", "implicit"});
     }
     const bool freezes = integrator == "cordis" && chance(0.1);
+    may_rub_ = integrator == "cordis" && !freezes && space_ > 1;
     head_ =
         fmt::format("cordis: 1\nname: chance\nspace: {}\nstep: {{rate_hz: {}, integrator: {}{}}}\n",
                     space_, one_of({1000, 2000, 5000, 20000, 44000}), integrator,
@@ -372,6 +373,25 @@ class SceneWriter {
         fmt::format("  - {{liaison: l{}, between: [\"{}\", \"{}\"]{}}}\n", l, a, mat_but(a), more);
   }
 
+  /// Half of the liaisons of sets rub where they may. Its numbers come from a source of their own: so what
+  /// else a seed writes stays as it was.
+  std::string perhaps_rubbing(const std::string& law) {
+    if (!may_rub_ || friction_random_() % 2 == 0) return law;
+    const auto chosen = [this](double low, double high) {
+      const double share = static_cast<double>(friction_random_()) / 4294967296.0;
+      return low * std::pow(high / low, share);
+    };
+    const double most = chosen(0.05, 1.5);
+    const double kinetic = chosen(0.3, 1.0) * most;
+    const double k = chosen(0.1, 3000.0);
+    const double z = friction_random_() % 3 == 0 ? 0.0 : chosen(1e-3, 1.0);
+    return law.substr(0, law.size() - 1) +
+           fmt::format(
+               ", friction: {{static: {:.4g}, kinetic: {:.3g}, stiffness_n_per_m: {:.4g}, "
+               "viscosity_n_s_per_m: {:.4g}}}}}",
+               most, 0.99 * kinetic, k, z);
+  }
+
   void add_set() {
     std::string law;
     if (matter_ == Matter::kPotentials) {
@@ -387,7 +407,7 @@ class SceneWriter {
     } else {
       law = one_state();
     }
-    liaisons_ += "  of_set: " + law + "\n";
+    liaisons_ += "  of_set: " + perhaps_rubbing(law) + "\n";
     const double range = decades(0.03, 1.0);
     const std::string rest =
         chance(0.5) ? "rest: radii" : fmt::format("rest_m: {:.4g}", range * between(0.2, 1.0));
@@ -456,7 +476,7 @@ class SceneWriter {
       law = fmt::format("{{kind: state_machine, stiffness_n_per_m: {:.4g}, pulls: false}}",
                         stiffness());
     }
-    liaisons_ += "  of_surface: " + law + "\n";
+    liaisons_ += "  of_surface: " + perhaps_rubbing(law) + "\n";
     const double range = decades(0.03, 0.5);
     const std::string rest =
         chance(0.5) ? "rest: radii" : fmt::format("rest_m: {:.4g}", range * between(0.2, 1.0));
@@ -466,6 +486,8 @@ class SceneWriter {
   }
 
   std::mt19937 random_;
+  std::mt19937 friction_random_;
+  bool may_rub_ = false;
   int space_ = 3;
   Matter matter_ = Matter::kAnything;
   std::uint32_t count_ = 1;

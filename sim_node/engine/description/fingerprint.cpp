@@ -73,6 +73,12 @@ class Fingerprint {
     add_all(state_machine.states);
     add_all(state_machine.exits);
     add(state_machine.start);
+    const Friction& friction = state_machine.friction;
+    if (!friction.acts()) return;
+    for (const double value : {friction.static_coefficient, friction.kinetic_coefficient,
+                               friction.stiffness, friction.viscosity}) {
+      add(value);
+    }
   }
   void add(const StateLink& link) {
     add(link.mat_a);

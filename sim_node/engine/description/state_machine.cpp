@@ -60,6 +60,16 @@ void check_state(const StateMachine& state_machine, const LinkState& state,
   }
 }
 
+void check_friction(const Friction& friction, const std::string& name) {
+  require(is_finite_and_at_least_zero(friction.stiffness), name + ": stiffness", "finite and > 0");
+  require(is_finite_and_at_least_zero(friction.viscosity), name + ": viscosity", "finite and >= 0");
+  require(is_finite_and_at_least_zero(friction.kinetic_coefficient), name + ": kinetic coefficient",
+          "finite and >= 0");
+  require(std::isfinite(friction.static_coefficient) &&
+              friction.static_coefficient >= friction.kinetic_coefficient,
+          name + ": static coefficient", "finite and not below the kinetic one");
+}
+
 }  // namespace
 
 void check_state_machine(const StateMachine& state_machine, const std::string& name) {
@@ -74,6 +84,7 @@ void check_state_machine(const StateMachine& state_machine, const std::string& n
     const LinkState& state = state_machine.states[s];
     check_state(state_machine, state, name + ": " + quoted("state", s, state.name));
   }
+  check_friction(state_machine.friction, name + ": friction");
 }
 
 double touch_distance(const StateMachine& state_machine) noexcept {

@@ -32,6 +32,23 @@ struct LinkState {
   std::uint32_t last_exit = 0;
 };
 
+/// Coulomb friction across the line of centres of the contacts of a set: a spring with memory and a
+/// damper, up to a share of the force with which the liaison pushes.
+///
+///     force = K s + Z w,  |force| <= static * push while it sticks, kinetic * push once it slides
+///
+/// with s what the contact has slid since it began, as far as the spring has followed, and w the sliding
+/// velocity. A contact that slides sticks again when it turns back and its spring is below the limit.
+/// Without a push there is no friction, and nothing is remembered. [Cundall and Strack 1979]
+struct Friction {
+  double static_coefficient = 0.0;   ///< >= kinetic_coefficient
+  double kinetic_coefficient = 0.0;  ///< >= 0
+  double stiffness = 0.0;            ///< K [N/m], > 0; 0: no friction
+  double viscosity = 0.0;            ///< Z [N s/m], >= 0
+
+  bool acts() const noexcept { return stiffness > 0.0; }
+};
+
 /// What a change of state does with the rest length.
 enum class RestRule : std::uint8_t {
   kKeep = 0,
@@ -59,6 +76,7 @@ struct StateMachine {
   std::vector<LinkState> states;
   std::vector<Transition> exits;
   std::uint32_t start = 0;  ///< state at step 0
+  Friction friction{};      ///< in every state; of sets in 2 or 3 dimensions alone
 
   bool is_stateless() const noexcept { return states.size() == 1 && exits.empty(); }
 };

@@ -81,6 +81,20 @@ std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescr
   return std::nullopt;
 }
 
+/// Friction remembers how the MATs have moved from step to step of `cordis`.
+std::optional<IntegratorRefusal> refusal_of_friction(const NetworkDescription& network) {
+  const bool remembers =
+      network.integrator == IntegratorKind::kCordis && !(network.freeze_tolerance > 0.0);
+  if (remembers) return std::nullopt;
+  for (std::size_t s = 0; s < network.sets.size(); ++s) {
+    if (!network.state_machines[network.sets[s].state_machine].friction.acts()) continue;
+    const bool freezes = network.integrator == IntegratorKind::kCordis;
+    return IntegratorRefusal{freezes ? "freezing together with friction" : "friction",
+                             LiaisonId{LiaisonKind::kSet, static_cast<std::uint32_t>(s)}};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 int evaluations_per_step(IntegratorKind integrator) noexcept {
@@ -97,6 +111,7 @@ int evaluations_per_step(IntegratorKind integrator) noexcept {
 }
 
 std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
+  if (const auto refusal = refusal_of_friction(network)) return refusal;
   if (network.freeze_tolerance > 0.0) {
     const bool freezes = network.integrator == IntegratorKind::kCordis ||
                          network.integrator == IntegratorKind::kLeapfrog;

@@ -48,7 +48,8 @@ const std::vector<StateMachine>& state_machines_of(const Snapshot& snapshot,
   const std::vector<StateMachine>& saved = snapshot.state_machines;
   if (saved.empty()) return own;
   const auto fit = [](const StateMachine& first, const StateMachine& second) {
-    return first.states.size() == second.states.size();
+    return first.states.size() == second.states.size() &&
+           first.friction.acts() == second.friction.acts();
   };
   if (!std::equal(own.begin(), own.end(), saved.begin(), saved.end(), fit)) {
     throw std::invalid_argument("the snapshot has other state machines than the network");
@@ -215,6 +216,10 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
     if (!std::isfinite(state.viscosity / network->step())) {
       throw std::invalid_argument("a viscosity is too large for the step");
     }
+  }
+  if (state_machine.friction.acts() != table.state_machines()[index].friction.acts() ||
+      !std::isfinite(state_machine.friction.viscosity / network->step())) {
+    throw std::invalid_argument("friction neither comes nor goes, and its viscosity fits the step");
   }
   const double before = stored_energy();
   table.replace(index, state_machine);

@@ -133,6 +133,37 @@ struct LinearPair {
 using LinearPairs = void (*)(const LinearPair& pair, const PairRow& row, std::size_t count,
                              const double* rest, double* factor, double* viscous_factor) noexcept;
 
+/// Friction, made ready for the contacts of a set.
+struct FrictionTerm {
+  double stiffness = 0.0;            // [N/m]
+  double viscosity_over_dt = 0.0;    // [N/m]
+  double static_coefficient = 0.0;   // of the push
+  double kinetic_coefficient = 0.0;  // of the push
+  bool unit_vectors = false;         // the vectors of the pairs are normals of surfaces
+};
+
+inline constexpr double kNoContact = 0.0;
+inline constexpr double kSticks = 1.0;
+inline constexpr double kSlides = 2.0;
+
+/// What belongs to the friction of each pair; arrays 64-byte aligned, padded to whole batches.
+struct FrictionRows {
+  double* stretch[3] = {};  // of the spring across the line of centres [m]
+  double* phase = nullptr;  // kNoContact, kSticks or kSlides
+  double* force[3] = {};    // force on a, and against b [N]
+};
+
+/// Takes the springs from the last step to this one, and finds the forces. That of a new contact begins at 0. Where a pair does not push, all
+/// of it is 0.
+/// @param factor  tension / distance of each pair
+using FrictionPairs = void (*)(const FrictionTerm& term, const MemberColumns& members,
+                               const PairRows& rows, const double* factor,
+                               const FrictionRows& friction) noexcept;
+
+/// As SpreadRows, of factor * (vector from a to b) + force of friction.
+using SpreadVectors = void (*)(const PairRows& rows, const double* factor,
+                               const FrictionRows& friction, double* force) noexcept;
+
 /// Lennard-Jones: tension = (attraction / d^6 - repulsion / d^12) / d.
 struct LennardJonesPair {
   double attraction = 0.0;    // 24 depth s^6 [J m^6]
@@ -155,6 +186,8 @@ struct PairKernel {
   MeasurePairs measure_pairs = nullptr;
   SpreadRows spread_rows = nullptr;
   LinearPairs linear_pairs = nullptr;
+  FrictionPairs friction_pairs = nullptr;
+  SpreadVectors spread_vectors = nullptr;
   LennardJonesRows lennard_jones_rows = nullptr;
 };
 

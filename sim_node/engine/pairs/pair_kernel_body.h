@@ -247,13 +247,11 @@ static_assert(sizeof(kLaneNumber) == kPairBatch * sizeof(double));
 /// stands in the lanes belongs to other rows, and gets nothing.
 template <class Lanes>
 void spread_some(const PairRows& rows, std::size_t i, std::size_t count, const double* factors,
-                 double* force, RowSum<Lanes>& sum, std::size_t part) noexcept {
+                 typename Lanes::Row3 tension, double* force, RowSum<Lanes>& sum,
+                 std::size_t part) noexcept {
   using Row = typename Lanes::Row;
   const PairRow& row = rows.pairs;
   const Row factor = Lanes::load_any(factors + i);
-  typename Lanes::Row3 tension{Lanes::load_any(row.x + i) * factor,
-                               Lanes::load_any(row.y + i) * factor,
-                               Lanes::load_any(row.z + i) * factor};
   const auto near = Lanes::less(Lanes::load_any(row.length + i), Lanes::every(rows.share.near));
   const Row share = Lanes::select(near, Lanes::every(-1.0), Lanes::every(-rows.share.beyond));
   Row partner = Lanes::select(Lanes::not_equal(factor, Lanes::zero()), share, Lanes::zero());
@@ -272,8 +270,19 @@ void spread_some(const PairRows& rows, std::size_t i, std::size_t count, const d
   Lanes::subtract(force, row.column + i, tension, partner);
 }
 
+/// factor * (vector from a to b), of pairs that begin anywhere.
 template <class Lanes>
-void spread_rows(const PairRows& rows, const double* factor, double* force) noexcept {
+typename Lanes::Row3 along_pairs(const PairRow& row, std::size_t i,
+                                 const double* factors) noexcept {
+  const typename Lanes::Row factor = Lanes::load_any(factors + i);
+  return {Lanes::load_any(row.x + i) * factor, Lanes::load_any(row.y + i) * factor,
+          Lanes::load_any(row.z + i) * factor};
+}
+
+/// @param force_of  of the pairs from a number on: what they give to a
+template <class Lanes, class ForceOf>
+void spread_all(const PairRows& rows, const double* factor, double* force,
+                ForceOf force_of) noexcept {
   for (std::size_t a = rows.first; a < rows.last; ++a) {
     const std::size_t end = rows.start[a - rows.first + 1];
     RowSum<Lanes> sum = no_force<Lanes>();
@@ -282,11 +291,29 @@ void spread_rows(const PairRows& rows, const double* factor, double* force) noex
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
         const std::size_t first = i + part * Lanes::kWidth;
         if (first >= end) break;
-        spread_some<Lanes>(rows, first, end - first, factor, force, sum, part);
+        spread_some<Lanes>(rows, first, end - first, factor, force_of(first), force, sum, part);
       }
     }
     give<Lanes>(sum, force + 4 * a);
   }
+}
+
+template <class Lanes>
+void spread_rows(const PairRows& rows, const double* factor, double* force) noexcept {
+  spread_all<Lanes>(rows, factor, force, [&](std::size_t i) noexcept {
+    return along_pairs<Lanes>(rows.pairs, i, factor);
+  });
+}
+
+template <class Lanes>
+void spread_vectors(const PairRows& rows, const double* factor, const FrictionRows& friction,
+                    double* force) noexcept {
+  spread_all<Lanes>(rows, factor, force, [&](std::size_t i) noexcept {
+    const typename Lanes::Row3 along = along_pairs<Lanes>(rows.pairs, i, factor);
+    return typename Lanes::Row3{along.x + Lanes::load_any(friction.force[0] + i),
+                                along.y + Lanes::load_any(friction.force[1] + i),
+                                along.z + Lanes::load_any(friction.force[2] + i)};
+  });
 }
 
 template <class Lanes>
@@ -309,6 +336,100 @@ void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count,
         stiffness * Lanes::minimum(max_elongation, Lanes::maximum(min_elongation, elongation));
     Lanes::store(factor + i, limited * inverse);
     Lanes::store(viscous_factor + i, (limited - stored) * inverse);
+  }
+}
+
+template <class Lanes>
+typename Lanes::Row dot(const typename Lanes::Row3& u, const typename Lanes::Row3& v) noexcept {
+  return u.x * v.x + u.y * v.y + u.z * v.z;
+}
+
+template <class Lanes>
+typename Lanes::Row3 scaled(const typename Lanes::Row3& v, typename Lanes::Row factor) noexcept {
+  return {v.x * factor, v.y * factor, v.z * factor};
+}
+
+/// The displacement of b relative to a across the line of centres in the last period [m].
+template <class Lanes>
+typename Lanes::Row3 slid(const MemberColumns& members, const PairRows& rows, std::size_t i,
+                          const typename Lanes::Row3& normal) noexcept {
+  const auto a = Lanes::vectors(members.moved, rows.column_a + i);
+  const auto b = Lanes::vectors(members.moved, rows.pairs.column + i);
+  const auto along = Lanes::load(rows.pairs.elongation_increment + i);
+  return {(b.x - a.x) - along * normal.x, (b.y - a.y) - along * normal.y,
+          (b.z - a.z) - along * normal.z};
+}
+
+template <class Lanes>
+void store_in(double* const* arrays, std::size_t i, typename Lanes::Mask mask,
+              const typename Lanes::Row3& v) noexcept {
+  Lanes::store(arrays[0] + i, Lanes::select(mask, v.x, Lanes::zero()));
+  Lanes::store(arrays[1] + i, Lanes::select(mask, v.y, Lanes::zero()));
+  Lanes::store(arrays[2] + i, Lanes::select(mask, v.z, Lanes::zero()));
+}
+
+/// What slides is limited, and its spring with it. Neither ever takes up more than the force takes from
+/// the motion: docs/integrators.md.
+template <class Lanes>
+void friction_pairs(const FrictionTerm& term, const MemberColumns& members, const PairRows& rows,
+                    const double* factor, const FrictionRows& friction) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  const PairRow row = rows.pairs;
+  const Row stiffness = Lanes::every(term.stiffness);
+  const Row viscosity = Lanes::every(term.viscosity_over_dt);
+  const Row sticking = Lanes::every(term.static_coefficient);
+  const Row kinetic = Lanes::every(term.kinetic_coefficient);
+  const Row shorter = Lanes::every(1.0 / term.stiffness);
+  const Row sticks = Lanes::every(kSticks);
+  const Row slides = Lanes::every(kSlides);
+  const Row one = Lanes::every(1.0);
+  const Row none = Lanes::zero();
+  for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
+    const Row reach = term.unit_vectors ? one : Lanes::load(row.length + i);
+    const Row push = none - Lanes::load(factor + i) * reach;
+    const auto touches = Lanes::less(none, push);
+    if (Lanes::bits(touches) == 0U) {
+      store_in<Lanes>(friction.stretch, i, touches, {none, none, none});
+      store_in<Lanes>(friction.force, i, touches, {none, none, none});
+      Lanes::store(friction.phase + i, none);
+      continue;
+    }
+    const Row inverse = Lanes::load(row.inverse + i);
+    const Row3 normal{Lanes::load(row.x + i) * inverse, Lanes::load(row.y + i) * inverse,
+                      Lanes::load(row.z + i) * inverse};
+    const Row3 way = slid<Lanes>(members, rows, i, normal);
+    Row3 stretch{Lanes::load(friction.stretch[0] + i), Lanes::load(friction.stretch[1] + i),
+                 Lanes::load(friction.stretch[2] + i)};
+    const Row phase = Lanes::load(friction.phase + i);
+    const Row turned = dot<Lanes>(stretch, normal);  // the normal has turned since
+    const auto is_known = Lanes::less(none, phase);
+    stretch.x = Lanes::select(is_known, (stretch.x - turned * normal.x) + way.x, none);
+    stretch.y = Lanes::select(is_known, (stretch.y - turned * normal.y) + way.y, none);
+    stretch.z = Lanes::select(is_known, (stretch.z - turned * normal.z) + way.z, none);
+    Row3 tangential{stiffness * stretch.x + viscosity * way.x,
+                    stiffness * stretch.y + viscosity * way.y,
+                    stiffness * stretch.z + viscosity * way.z};
+    const Row square = dot<Lanes>(tangential, tangential);
+    const auto slid_before = Lanes::less(sticks, phase);
+    const Row limit = Lanes::select(slid_before, kinetic, sticking) * push;
+    const auto beyond = Lanes::less(limit * limit, square);
+    const auto onward = Lanes::both(slid_before, Lanes::less(none, dot<Lanes>(way, stretch)));
+    if (Lanes::bits(beyond) != 0U) {
+      const Row most = kinetic * push;
+      const Row share = most * Lanes::inverse_or_zero(square, Lanes::sqrt(square));
+      tangential = scaled<Lanes>(tangential, Lanes::select(beyond, share, one));
+      const Row longest = most * shorter;
+      const Row stretch_square = dot<Lanes>(stretch, stretch);
+      const auto longer = Lanes::both(beyond, Lanes::less(longest * longest, stretch_square));
+      const Row left =
+          longest * Lanes::inverse_or_zero(stretch_square, Lanes::sqrt(stretch_square));
+      stretch = scaled<Lanes>(stretch, Lanes::select(longer, left, one));
+    }
+    store_in<Lanes>(friction.stretch, i, touches, stretch);
+    store_in<Lanes>(friction.force, i, touches, tangential);
+    const Row next = Lanes::select(Lanes::either(beyond, onward), slides, sticks);
+    Lanes::store(friction.phase + i, Lanes::select(touches, next, none));
   }
 }
 
@@ -342,9 +463,10 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
 
 template <class Lanes>
 constexpr PairKernel make_pair_kernel() noexcept {
-  return PairKernel{find_near<Lanes>,    largest_move<Lanes>,      gather_pairs<Lanes>,
-                    gather_plane<Lanes>, measure_pairs<Lanes>,     spread_rows<Lanes>,
-                    linear_pairs<Lanes>, lennard_jones_rows<Lanes>};
+  return PairKernel{find_near<Lanes>,         largest_move<Lanes>,   gather_pairs<Lanes>,
+                    gather_plane<Lanes>,      measure_pairs<Lanes>,  spread_rows<Lanes>,
+                    linear_pairs<Lanes>,      friction_pairs<Lanes>, spread_vectors<Lanes>,
+                    lennard_jones_rows<Lanes>};
 }
 
 }  // namespace cordis::engine

@@ -83,7 +83,9 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
           kernel),
       block_(description.sets[index].set_p.size() + description.sets[index].set_q.size()),
       state_machines_(description, description.sets[index], table,
-                      state_capacity(description.sets[index]), block_.capacity()) {
+                      state_capacity(description.sets[index]), block_.capacity()),
+      friction_(description, description.sets[index], state_capacity(description.sets[index]),
+                block_.capacity()) {
   const SetLiaison& set = description.sets[index];
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
@@ -115,12 +117,14 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
 
 void SetPairs::adopt(const StateTable& table) {
   state_machines_.adopt(table);
+  friction_.adopt(table.state_machines()[state_machine_].friction);
   const StateIndex start = table.start_state(state_machine_);
   const StateTerm& term = table.terms()[start];
   const Law& elasticity = table.state(start).elasticity;
   const auto* lennard_jones = std::get_if<LennardJones>(&elasticity);
   const bool plain = !state_machines_.has_states() && is_none(table.state(start).dissipation);
-  const bool bare = term.stiffness == 0.0 && term.viscosity_over_dt == 0.0 && !term.limited;
+  const bool bare =
+      term.stiffness == 0.0 && term.viscosity_over_dt == 0.0 && !term.limited && !friction_.acts();
   path_ = Path::kAnyStateMachine;
   if (plain && is_none(elasticity)) {
     path_ = Path::kLinear;
@@ -134,9 +138,10 @@ void SetPairs::adopt(const StateTable& table) {
     lennard_jones_ = {law.attraction, law.repulsion, range * range, touch * touch};
   }
   const auto is_bare_limit = [](double tension) { return tension == 0.0 || std::isinf(tension); };
-  const bool conservative = path_ == Path::kLennardJones ||
-                            (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 &&
-                             is_bare_limit(term.min_tension) && is_bare_limit(term.max_tension));
+  const bool conservative =
+      path_ == Path::kLennardJones ||
+      (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 && !friction_.acts() &&
+       is_bare_limit(term.min_tension) && is_bare_limit(term.max_tension));
   has_viscous_ = has_viscous_ || !conservative;  // forces of the last step may have been
 }
 
@@ -166,6 +171,7 @@ bool SetPairs::refresh() noexcept {
 StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept {
   clear_forces();
   state_machines_.begin_step(step);
+  if (!step.frozen) friction_.begin_step();
   if (!active_.are_all()) {
     step_active_rows(step);
   } else if (!surfaces_.empty()) {
@@ -179,6 +185,11 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   count_partners();
   StepEnergy energy = give_forces(columns);
   energy.switching += state_machines_.switching();
+  if (!friction_.acts() || step.frozen) return energy;
+  // The works count all of friction as taken; its springs give some of it back.
+  const double stored = friction_.end_step();
+  energy.elastic += stored;
+  energy.dissipated -= stored;
   return energy;
 }
 
@@ -321,6 +332,12 @@ void SetPairs::step_block(const PairStep& step) noexcept {
                          block_.viscous_factor());
   } else {
     state_machines_.step(step, members(), range_ * range_, block_);
+  }
+  if (friction_.acts() && !step.frozen) {
+    const FrictionRows friction = friction_.step(kernel_, members(), block_);
+    kernel_.spread_vectors(rows, block_.factor(), friction, force_.data());
+    kernel_.spread_vectors(rows, block_.viscous_factor(), friction, viscous_.data());
+    return;
   }
   kernel_.spread_rows(rows, block_.factor(), force_.data());
   if (has_viscous_) kernel_.spread_rows(rows, block_.viscous_factor(), viscous_.data());
@@ -499,7 +516,7 @@ void SetPairs::add_potential(const StateTable& table, StateIndex state, std::siz
 }
 
 double SetPairs::stored_energy(const StateTable& table) noexcept {
-  double sum = 0.0;
+  double sum = friction_.stored_energy();
   const PairStates& states = state_machines_.states();
   const StateIndex start = state_machines_.start_state();
   const auto distance = [this](std::size_t a, std::size_t b) {
@@ -571,8 +588,16 @@ std::size_t SetPairs::wanted_room() const noexcept {
   return std::min(all_pairs_, remembered + listed + listed / 4 + pairs_of_ports_);
 }
 
+/// Room for all that are listed, and more: the next list may be longer.
+std::size_t SetPairs::room_for_friction() const noexcept {
+  const std::size_t listed = surfaces_.empty()
+                                 ? std::min(neighbours_.entry_count(), NeighbourList::kMaxEntries)
+                                 : surfaces_.entry_count();
+  return std::min(all_pairs_, listed + listed / 4 + pairs_of_ports_);
+}
+
 bool SetPairs::wants_room(const double* position) const noexcept {
-  if (neighbours_.wants_room()) return true;
+  if (neighbours_.wants_room() || lacks_room_for_friction()) return true;
   return may_lack_room() &&
          (wanted_room() > state_machines_.states().capacity() || !covers(position));
 }
@@ -587,6 +612,10 @@ bool SetPairs::covers(const double* position) const noexcept {
 
 void SetPairs::make_room(const double* position) noexcept {
   make_list_room();
+  if (lacks_room_for_friction()) {
+    friction_.make_room(
+        std::min(all_pairs_, std::max(room_for_friction(), 2 * friction_.capacity())));
+  }
   if (!may_lack_room()) return;
   if (!covers(position)) {
     refresh_at(position);
@@ -616,12 +645,14 @@ void SetPairs::refresh_at(const double* position) noexcept {
 }
 
 void SetPairs::make_room_of(std::size_t value_count) noexcept {
+  if (friction_.acts())
+    friction_.make_room(std::min(all_pairs_, value_count / ContactStretches::kValuesPerPair));
   if (!state_machines_.has_states()) return;
   state_machines_.make_room(std::min(all_pairs_, value_count / PairStates::kValuesPerPair));
 }
 
 bool SetPairs::is_overflowed() const noexcept {
-  return !neighbours_.is_whole() || state_machines_.forgotten() > 0;
+  return !neighbours_.is_whole() || forgotten_count() > 0;
 }
 
 void SetPairs::serialize(Archive& archive, const StateTable& table) {
@@ -631,10 +662,11 @@ void SetPairs::serialize(Archive& archive, const StateTable& table) {
     has_viscous_ = has_viscous_ || std::any_of(viscous_.begin(), viscous_.end(),
                                                [](double force) { return force != 0.0; });
   }
+  const std::size_t first_later = count_p_ < column_.size() ? count_p_ : 1;
   if (state_machines_.has_states()) {
-    const std::size_t first_later = count_p_ < column_.size() ? count_p_ : 1;
     state_machines_.states().serialize(archive, first_later, column_.size(), table, state_machine_);
   }
+  friction_.serialize(archive, first_later, column_.size());
   if (!archive.restores()) return;
   neighbours_.forget();
   surfaces_.forget();

@@ -19,6 +19,7 @@
 #include "sim_node/engine/pairs/active_pairs.h"
 #include "sim_node/engine/pairs/neighbour_list.h"
 #include "sim_node/engine/pairs/pair_block.h"
+#include "sim_node/engine/pairs/pair_friction.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/pairs/pair_state_machines.h"
 #include "sim_node/engine/pairs/surface_neighbours.h"
@@ -94,7 +95,9 @@ class SetPairs {
 
   /// True if the pairs found no room in the neighbour list in the last step, or to be remembered.
   bool is_overflowed() const noexcept;
-  std::uint32_t forgotten_count() const noexcept { return state_machines_.forgotten(); }
+  std::uint32_t forgotten_count() const noexcept {
+    return state_machines_.forgotten() + friction_.forgotten();
+  }
   /// True if the neighbour list is short of room, or pairs could come into range in the next step
   /// and find no room beside those remembered.
   /// @param position  of all MATs as the next step begins, except for what ports do
@@ -128,6 +131,10 @@ class SetPairs {
   bool may_lack_room() const noexcept {
     return state_machines_.has_states() && state_machines_.states().capacity() < all_pairs_;
   }
+  bool lacks_room_for_friction() const noexcept {
+    return friction_.acts() && friction_.capacity() < room_for_friction();
+  }
+  std::size_t room_for_friction() const noexcept;
   void clear_forces() noexcept;
   void step_active_rows(const PairStep& step) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) const noexcept;
@@ -181,6 +188,7 @@ class SetPairs {
   std::size_t known_builds_ = 0;   // of the neighbour list, at the last refresh()
   PairBlock block_;
   PairStateMachines state_machines_;
+  PairFriction friction_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches and one batch more
   AlignedVector<double> moved_;
   AlignedVector<double> ahead_;    // positions of the next step, for make_room()

@@ -47,6 +47,8 @@ bool asks_for_an_axis(const engine::NetworkDescription& network) {
 bool fits_a_line(const scene::Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
   if (!network.state_links.empty()) return false;
+  const auto rubs = [](const engine::StateMachine& one) { return one.friction.acts(); };
+  if (std::ranges::any_of(network.state_machines, rubs)) return false;
   for (const scene::Signal& signal : scene.signals.signals()) {
     const bool is_of_link = signal.quantity >= scene::Quantity::kDistance &&
                             signal.quantity <= scene::Quantity::kTension;

@@ -35,6 +35,8 @@ struct OdeSystem::Geometry {
 OdeSystem::OdeSystem(engine::NetworkDescription network)
     : network_(std::move(network)), held_(network_.mats.size(), Vec3::Zero()) {
   for (const engine::StateMachine& state_machine : network_.state_machines) {
+    if (state_machine.friction.acts())
+      throw std::invalid_argument("friction has no reference integrator");
     for (const engine::Transition& exit : state_machine.exits) {
       refuse_impulse(exit.when);
       refuse_impulse(exit.rest_length);

@@ -30,7 +30,7 @@ class OdeSystem {
     NearPairs::Pair pair;
   };
 
-  /// @throws std::invalid_argument for what is not known here: the impulse of a link.
+  /// @throws std::invalid_argument for what is not known here: the impulse of a link, friction.
   explicit OdeSystem(engine::NetworkDescription network);
 
   Values start() const;

@@ -169,9 +169,10 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   here.energy += stored;
   here.brought += stored;
   const bool on_surfaces = engine::acts_on_surfaces(network, set);
-  const Slope slope =
+  const Slope slope = with_friction(
       on_surfaces ? largest_slope_at_surfaces(state_machine, rest, flips_at(network, set), here)
-                  : largest_slope(state_machine, rest, network.dimension, here);
+                  : largest_slope(state_machine, rest, network.dimension, here),
+      state_machine.friction);
   note(slope, {LiaisonKind::kSet, index}, graph);
   const std::size_t count_p = set.set_p.size();
   const std::size_t all =

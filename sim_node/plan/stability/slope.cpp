@@ -288,6 +288,15 @@ double stored_in(const engine::StateMachine& state_machine, const engine::LawPoi
   return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
 }
 
+Slope with_friction(Slope slope, const engine::Friction& friction) noexcept {
+  if (!friction.acts()) return slope;
+  const double followed = friction.static_coefficient;
+  slope.variation = std::max(slope.variation, friction.stiffness) + followed * slope.stiffness;
+  slope.stiffness = std::max(slope.stiffness, friction.stiffness) + followed * slope.stiffness;
+  slope.viscosity = std::max(slope.viscosity, friction.viscosity) + followed * slope.viscosity;
+  return slope;
+}
+
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach) {
   Slope largest;

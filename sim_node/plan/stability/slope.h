@@ -32,6 +32,10 @@ struct Slope {
   const char* uncertainty = nullptr;
 };
 
+/// Friction gives way across the line of centres, and follows the push along it: the slope in any direction.
+/// The slip is at most `static` times the push, as steep; derived in docs/stability.md.
+Slope with_friction(Slope slope, const engine::Friction& friction) noexcept;
+
 /// Over all states of a state machine. [Luc90 III.2.3 b formalism to modify the liaison]
 /// @param rest_length  of the liaison [m]; of a set, that of its nearest pair
 /// @param dimension    of the network: in 1 dimension a link never turns

@@ -149,6 +149,11 @@ std::optional<LinkLaw> law_of_liaison(const Use& use, const Value& name, const L
 
 }  // namespace
 
+bool rubs(const LinkLaw& law) {
+  return (law.state_machine != nullptr && law.state_machine->friction.acts()) ||
+         std::any_of(law.beside.begin(), law.beside.end(), rubs);
+}
+
 std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law) {
   CORDIS_ASSERT(law.kind != LinkKind::kMaxwell);
   if (law.kind == LinkKind::kState) return law.state_machine;
@@ -186,6 +191,8 @@ std::optional<LinkLaw> read_law(MappingReader& reader, LawPlace place, const Lia
   std::optional<LinkLaw> law;
   if (liaison != nullptr) {
     law = law_of_liaison(use, name, *liaison);
+    if (law && place == LawPlace::kMatter && rubs(*law))
+      reader.error_at("liaison", "friction acts in liaisons of sets, not between neighbours");
   } else if (!name.exists() && place == LawPlace::kMatter) {
     law.emplace();
     law->stiffness = reader.required_number(kStiffness, Range::not_negative());

@@ -58,6 +58,9 @@ inline constexpr const char* kViscosity = "viscosity_n_s_per_m";
 /// Precondition: the law is not of kMaxwell.
 std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law);
 
+/// True if a law, or one beside it, has friction.
+bool rubs(const LinkLaw& law);
+
 /// The state machines of a network, one for each distinct set of parameter values.
 class StateMachinePool {
  public:

@@ -118,8 +118,31 @@ void read_state(const Value::Entry& entry, const std::string& liaison, const Exi
   state_machine.states.push_back(std::move(state));
 }
 
-constexpr std::array<const char*, 6> kSignsOfStateMachine{
-    {"states", "elasticity", "dissipation", "force_limit_n", "pulls", "pushes"}};
+/// The key `friction`.
+engine::Friction read_friction(config::MappingReader& liaison, const ParameterValues& parameters,
+                               Problems& problems) {
+  engine::Friction friction;
+  const Value value = liaison.optional_mapping("friction");
+  if (!value.exists()) return friction;
+  config::MappingReader reader(value, "friction of " + liaison.what(), problems);
+  const Range not_negative = Range::not_negative();
+  friction.static_coefficient =
+      required_formula(reader, "static", not_negative, parameters, problems);
+  friction.kinetic_coefficient = optional_formula(reader, "kinetic", friction.static_coefficient,
+                                                  not_negative, parameters, problems);
+  friction.stiffness =
+      required_formula(reader, "stiffness_n_per_m", Range::positive(), parameters, problems);
+  friction.viscosity =
+      optional_formula(reader, "viscosity_n_s_per_m", 0.0, not_negative, parameters, problems);
+  if (friction.kinetic_coefficient > friction.static_coefficient) {
+    reader.error_at("kinetic", "'kinetic' in " + reader.what() + " must not be above 'static'");
+  }
+  reader.finish();
+  return friction;
+}
+
+constexpr std::array<const char*, 7> kSignsOfStateMachine{
+    {"states", "elasticity", "dissipation", "force_limit_n", "pulls", "pushes", "friction"}};
 
 }  // namespace
 
@@ -132,6 +155,7 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
                                         const ParameterValues& parameters,
                                         StateMachinePlaces& places, Problems& problems) {
   engine::StateMachine state_machine;
+  state_machine.friction = read_friction(reader, parameters, problems);
   if (!reader.has("states")) {
     state_machine.states.push_back(read_physics(reader, parameters, problems));
     places.states.push_back({reader.place(), true});

@@ -19,7 +19,7 @@ struct StateMachinePlaces {
   std::vector<config::Place> exits;  ///< of their conditions
 };
 
-/// Reads the keys `states` and `start`, or those of a single state, which then stand in the liaison
+/// Reads the keys `friction`, `states` and `start`, or those of a single state, which then stand in the liaison
 /// itself. Whatever is wrong is a problem; then the state machine is not to be used.
 /// The language is described in docs/language.md. [Luc90 III.2.3 b formalism to modify the liaison]
 engine::StateMachine read_state_machine(config::MappingReader& reader,

@@ -93,6 +93,10 @@ void read_ends(Assembly& assembly, LinkEntry& entry) {
                           "write between_sets: [matter, surface], also for one MAT");
     break;
   }
+  if (entry.law && rubs(*entry.law)) {
+    entry.reader.error_at("liaison", "friction acts between the members of sets, not in a link",
+                          "write between_sets: [a, b], also for one MAT each");
+  }
   const bool sound =
       entry.law && ends.size() == 2 && assembly.problems.error_count() == entry.errors_before;
   std::vector<LinkLaw> parts;

@@ -170,6 +170,11 @@ void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32
                       "take rings, a table or an expression");
       return;
     }
+    if (state_machine->friction.acts() && assembly.scene.space() == 1) {
+      reader.error_at("liaison", "space 1 has no direction to slide in, so there is no friction",
+                      "take a liaison without 'friction', or 'space: 2'");
+      return;
+    }
     if (part.rest_length && *part.rest_length < 0.0) {
       reader.error_at(reader.has("rest_m") ? "rest_m" : "liaison",
                       "the rest length of a liaison of sets must be >= 0, got " +

@@ -1,0 +1,85 @@
+// sim_node/engine/pairs/contact_stretches.cpp
+#include "sim_node/engine/pairs/contact_stretches.h"
+
+#include <algorithm>
+#include <new>
+#include <span>
+#include <utility>
+
+#include "sim_node/engine/core/assert.h"
+
+namespace cordis::engine {
+
+ContactStretches::ContactStretches(std::size_t row_count, std::size_t capacity)
+    : ended_(row_count) {
+  for (Table* table : {&read_, &written_}) {
+    table->start.assign(row_count + 1, 0);
+    table->contacts.resize(capacity);
+  }
+}
+
+void ContactStretches::begin_step() noexcept {
+  std::swap(read_, written_);
+  written_.count = 0;
+  ended_ = 0;
+}
+
+void ContactStretches::end_row(std::size_t row) noexcept {
+  CORDIS_ASSERT(row + 1 < written_.start.size());
+  for (; ended_ <= row; ++ended_) written_.start[ended_ + 1] = written_.count;
+}
+
+void ContactStretches::make_room(std::size_t capacity) noexcept {
+  if (capacity <= this->capacity()) return;
+  try {
+    for (Table* table : {&read_, &written_}) table->contacts.reserve(capacity);
+  } catch (const std::bad_alloc&) {
+    return;
+  }
+  for (Table* table : {&read_, &written_}) table->contacts.resize(capacity);
+}
+
+double ContactStretches::sum_of_squares() const noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < written_.count; ++i) {
+    const ContactStretch& contact = written_.contacts[i];
+    sum += contact.x * contact.x + contact.y * contact.y + contact.z * contact.z;
+  }
+  return sum;
+}
+
+/// Checks that each row holds later members than its own, of the other set where there are two, in
+/// their order.
+void ContactStretches::serialize(Archive& archive, std::size_t first_later,
+                                 std::size_t member_count) {
+  const std::size_t count = archive.count(written_.count, written_.contacts.size());
+  std::vector<std::size_t>& starts = read_.start;  // free between two steps
+  archive.wholes(std::span(written_.start), [&](std::size_t row, std::size_t start) {
+    starts[row] = start;
+    return (row == 0 ? start == 0 : start >= starts[row - 1]) &&
+           (row + 1 < starts.size() || start == count);
+  });
+  std::uint32_t row = 0;
+  const auto before_first =
+      static_cast<std::uint32_t>(4 * (std::max<std::size_t>(1, first_later) - 1));
+  std::uint32_t previous = before_first;  // column
+  const auto fits = [&](std::size_t i, const ContactStretch& contact) {
+    while (i >= starts[row + 1]) previous = std::max(before_first, 4 * ++row);
+    const bool follows = contact.column > previous && contact.column / 4 < member_count;
+    previous = contact.column;
+    return follows && contact.column % 4 == 0 && contact.is_sliding <= 1;
+  };
+  archive.records(std::span(written_.contacts).first(count), fits, &ContactStretch::column,
+                  &ContactStretch::is_sliding, &ContactStretch::x, &ContactStretch::y,
+                  &ContactStretch::z);
+  archive.hash_with([this](StateHash& hash) {
+    for (std::size_t i = 0; i < written_.count; ++i) {
+      const ContactStretch& contact = written_.contacts[i];
+      hash.add(std::uint64_t{contact.column} << 32 | contact.is_sliding);
+      for (const double value : {contact.x, contact.y, contact.z}) hash.add(value);
+    }
+    hash.add(std::uint64_t{written_.count});
+  });
+}
+
+}  // namespace cordis::engine

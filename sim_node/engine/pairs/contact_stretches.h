@@ -1,0 +1,73 @@
+// sim_node/engine/pairs/contact_stretches.h -- what contacts remember of their friction.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/core/archive.h"
+#include "sim_node/engine/core/vec.h"
+
+namespace cordis::engine {
+
+/// The spring of a contact, across its line of centres.
+struct ContactStretch {
+  std::uint32_t column = 0;  // of the later member
+  std::uint32_t is_sliding = 0;
+  double x = 0.0;  // [m]
+  double y = 0.0;
+  double z = 0.0;
+};
+
+/// The contacts that push, row by row, each row by the later member. A step reads the rows
+/// of the last one and writes its own beside them; there is room for a number of contacts that
+/// make_room() enlarges between two steps.
+class ContactStretches {
+ public:
+  ContactStretches() = default;
+  ContactStretches(std::size_t row_count, std::size_t capacity);
+
+  /// What was written is read from now on, and written again, row by row.
+  void begin_step() noexcept;
+  /// Contacts of a row in the last step.
+  const ContactStretch* old_begin(std::size_t row) const noexcept {
+    return read_.contacts.data() + read_.start[row];
+  }
+  const ContactStretch* old_end(std::size_t row) const noexcept {
+    return read_.contacts.data() + read_.start[row + 1];
+  }
+  /// Adds a contact to the row that is being written.
+  /// @return false when there is no room: the contact is forgotten.
+  [[nodiscard]] bool add(const ContactStretch& contact) noexcept {
+    if (written_.count == written_.contacts.size()) return false;
+    written_.contacts[written_.count++] = contact;
+    return true;
+  }
+  /// Ends a row, and all before it that have not been ended.
+  void end_row(std::size_t row) noexcept;
+
+  std::size_t capacity() const noexcept { return written_.contacts.size(); }
+  /// Makes room for more. Allocates; without memory the room stays as it is.
+  void make_room(std::size_t capacity) noexcept;
+  /// Sum of their squares [m^2]. Real time: O(contacts).
+  double sum_of_squares() const noexcept;
+  /// Values that a saved contact takes.
+  static constexpr std::size_t kValuesPerPair = 5;
+
+  /// What was written in the last step.
+  /// @param first_later  the first member that may be the later one of a pair
+  void serialize(Archive& archive, std::size_t first_later, std::size_t member_count);
+
+ private:
+  struct Table {
+    std::vector<std::size_t> start{0};  // by row; one past the last too
+    std::vector<ContactStretch> contacts;
+    std::size_t count = 0;
+  };
+
+  Table read_;
+  Table written_;
+  std::size_t ended_ = 0;  // rows
+};
+
+}  // namespace cordis::engine

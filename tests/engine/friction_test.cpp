@@ -1,0 +1,366 @@
+// tests/engine/friction_test.cpp -- contacts of sets that stick and slide.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/programs.h"
+#include "tests/engine/surfaces.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cordis::test {
+namespace {
+
+using engine::Energy;
+using engine::Friction;
+using engine::IntegratorKind;
+using engine::Snapshot;
+
+constexpr double kRadius = 0.05;
+constexpr double kGravity = 9.81;
+
+StateMachine rubbing(const LinkState& state, const Friction& friction) {
+  StateMachine state_machine = of_one_state(state);
+  state_machine.friction = friction;
+  return state_machine;
+}
+
+/// A ball of 1 kg on the floor y = 0 in 2 dimensions, pressed by a load [N] to where it floats.
+NetworkDescription pressed_ball(double load, const Friction& friction, double stiffness,
+                                double viscosity, double step) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = step;
+  scene.mats = {mass(1.0, Vec3(0.0, kRadius - load / stiffness, 0.0))};
+  scene.radius = {kRadius};
+  const std::uint32_t floor = add_surface(scene, plane(Vec3::UnitY()), Vec3::Zero());
+  touch(scene, 1, rubbing(contact(stiffness, viscosity), friction), kRadius, -1.0, {floor});
+  return scene;
+}
+
+/// A block on an incline of this angle: the floor, and gravity turned.
+NetworkDescription block_on_incline(double angle, const Friction& friction, double step = 1e-4) {
+  NetworkDescription scene = pressed_ball(kGravity * std::cos(angle), friction, 1e5, 100.0, step);
+  scene.gravity = kGravity * Vec3(std::sin(angle), -std::cos(angle), 0.0);
+  return scene;
+}
+
+struct StickSlip {
+  double load, static_coefficient, kinetic_coefficient, mass, stiffness, speed;
+  double slip_time, period, longest, shortest, taken;
+};
+
+/// A belt of this speed under a block on a spring, seen by who stands on the belt: the spring is drawn. The
+/// figures are the closed form of stick and slip: stick 2 D / V, slip (2 / w) (pi - atan(D w / V)), with
+/// D = (Fs - Fk) / K.
+class Belt : public testing::TestWithParam<StickSlip> {};
+
+TEST_P(Belt, SticksAndSlipsAsItsClosedForm) {
+  const StickSlip expected = GetParam();
+  constexpr double kTangential = 1e6;
+  constexpr double kStep = 2e-5;
+  const Friction friction{expected.static_coefficient, expected.kinetic_coefficient, kTangential,
+                          300.0};
+  NetworkDescription scene = pressed_ball(expected.load, friction, 1e5, 100.0, kStep);
+  scene.mats[0].mass = expected.mass;
+  const double height = scene.mats[0].position.y();
+  scene.mats.push_back(port(Vec3(1.0, height, 0.0)));
+  scene.radius.push_back(0.0);
+  scene.links = {{0, 2, expected.stiffness, 0.0, 1.0}};
+  World world = make_world(scene);
+  world.set_external_force(0, Vec3(0.0, -expected.load, 0.0));
+
+  double time = 0.0;
+  double longest = -1.0;
+  double shortest = 1.0;
+  double slip_began = 0.0;
+  double slip_ended = 0.0;
+  double taken_before = 0.0;
+  std::vector<double> periods;
+  std::vector<double> slips;
+  std::vector<double> taken;
+  bool slipped = false;
+  const double fast = 0.06 * expected.speed;
+  while (time < 6.5 * expected.period) {
+    time += kStep;
+    world.impose_position(2, Vec3(1.0 + expected.speed * time, height, 0.0));
+    world.step();
+    const bool slips_now = world.velocity(0).x() > fast;
+    if (slips_now && !slipped) {
+      const double dissipated = world.energy().dissipated;
+      if (slip_began > 0.0) {
+        periods.push_back(time - slip_began);
+        taken.push_back(dissipated - taken_before);
+      }
+      slip_began = time;
+      taken_before = dissipated;
+    }
+    if (!slips_now && slipped) {
+      slip_ended = time;
+      slips.push_back(slip_ended - slip_began);
+    }
+    slipped = slips_now;
+    if (periods.empty()) continue;
+    const double elongation = world.position(2).x() - world.position(0).x() - 1.0;
+    longest = std::max(longest, elongation);
+    shortest = std::min(shortest, elongation);
+  }
+
+  ASSERT_GE(periods.size(), 4u);
+  // The contact gives by Fk / 1e6 N/m, and a slip below `fast` is not seen: v = (Fs - Fk) t / m.
+  const double give = expected.load * expected.static_coefficient / kTangential;
+  const double force = expected.load * (expected.static_coefficient - expected.kinetic_coefficient);
+  const double unseen = 2.0 * fast * expected.mass / force;
+  for (std::size_t i = 1; i < periods.size(); ++i) {
+    EXPECT_NEAR(periods[i], expected.period, 2e-3 * expected.period);
+    EXPECT_NEAR(slips[i] + unseen, expected.slip_time, 2e-3 * expected.period);
+    EXPECT_NEAR(taken[i], expected.taken, 2e-3 * expected.taken);
+  }
+  EXPECT_NEAR(longest, expected.longest, 4.0 * give);
+  EXPECT_NEAR(shortest, expected.shortest, 4.0 * give);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Friction, Belt,
+    testing::Values(StickSlip{10.0, 0.5, 0.3, 1.0, 100.0, 0.1, 0.40688878715914055,
+                              0.80688878715914055, 0.052360679774997897, 0.0076393202250021030,
+                              0.24206663614774216},
+                    StickSlip{10.0, 0.8, 0.2, 0.2, 500.0, 0.3, 0.081377757431828109,
+                              0.16137775743182811, 0.017416407864998738, -0.0094164078649987382,
+                              0.096826654459096866}));
+
+TEST(Friction, HoldsABlockOnAnInclineInItsPlace) {
+  for (const double mu : {0.2, 0.5, 1.0}) {
+    const double angle = std::atan(0.98 * mu);
+    World world = make_world(block_on_incline(angle, {mu, 0.8 * mu, 1e5, 200.0}));
+    for (int n = 0; n <= 20000;
+         ++n) {  // set down slowly: let go at once it would swing to twice that
+      const double held = std::max(0.0, 1.0 - n / 10000.0);
+      world.set_external_force(0, Vec3(-held * kGravity * std::sin(angle), 0.0, 0.0));
+      world.step();
+    }
+    const Vec3 rest = world.position(0);
+    EXPECT_NEAR(rest.x(), kGravity * std::sin(angle) / 1e5, 1e-9) << mu;  // K s = m g sin a
+    run(world, 1'000'000);
+    EXPECT_NEAR(world.position(0).x(), rest.x(), 1e-9) << mu;
+    EXPECT_NEAR(world.position(0).y(), rest.y(), 1e-9) << mu;
+  }
+}
+
+TEST(Friction, StopsABlockThatSlidesDownAndHoldsIt) {
+  for (const double mu : {0.2, 0.5, 1.0}) {
+    const double angle = std::atan(0.9 * mu);
+    NetworkDescription scene = block_on_incline(angle, {mu, mu, 1e5, 200.0});
+    scene.mats[0].velocity = Vec3(0.1, 0.0, 0.0);
+    World world = make_world(scene);
+    run(world, 50000);
+    const Vec3 rest = world.position(0);
+    const double slower = kGravity * (mu * std::cos(angle) - std::sin(angle));
+    EXPECT_NEAR(rest.x(), 0.1 * 0.1 / (2.0 * slower), 1e-4) << mu;
+    run(world, 100'000);
+    EXPECT_NEAR(world.position(0).x(), rest.x(), 1e-9) << mu;
+  }
+}
+
+TEST(Friction, LetsABlockSlideWithTheAccelerationThatIsLeft) {
+  for (const double mu : {0.2, 0.5, 1.0}) {
+    const double angle = std::atan(1.3 * mu);
+    World world = make_world(block_on_incline(angle, {mu, 0.8 * mu, 1e5, 200.0}));
+    run(world, 5000);
+    const double before = world.velocity(0).x();
+    run(world, 5000);
+    const double acceleration = (world.velocity(0).x() - before) / 0.5;
+    const double expected = kGravity * (std::sin(angle) - 0.8 * mu * std::cos(angle));
+    EXPECT_NEAR(acceleration, expected, 1e-9 * kGravity) << mu;
+  }
+}
+
+TEST(Friction, YieldsWhereTheForcePassesItsLimit) {
+  const Friction friction{0.6, 0.4, 1e5, 300.0};
+  for (const bool passes : {false, true}) {
+    World world = make_world(pressed_ball(20.0, friction, 1e5, 100.0, 1e-4));
+    const double draw = passes ? 12.0 * 1.001 : 12.0 * 0.999;
+    for (int n = 0; n < 40000; ++n) {
+      world.set_external_force(0, Vec3(draw * std::min(1.0, n / 20000.0), -20.0, 0.0));
+      world.step();
+    }
+    if (!passes) {
+      EXPECT_NEAR(world.position(0).x(), draw / 1e5, 1e-8);
+      EXPECT_NEAR(world.link_force(0).x(), -draw, 1e-4);
+      continue;
+    }
+    EXPECT_GT(world.velocity(0).x(), 1.0);
+    EXPECT_NEAR(world.link_force(0).x(), -8.0, 1e-9);
+    // and it comes to rest again, without that force
+    world.set_external_force(0, Vec3(0.0, -20.0, 0.0));
+    const Vec3 here = world.position(0);
+    const double speed = world.velocity(0).x();
+    run(world, 40000);
+    EXPECT_NEAR(world.velocity(0).x(), 0.0, 1e-9);
+    EXPECT_NEAR(world.position(0).x() - here.x(), speed * speed / (2.0 * 8.0), 1e-3);
+  }
+}
+
+TEST(Friction, ForgetsWhatItHeldWhereNothingPresses) {
+  World world = make_world(pressed_ball(20.0, {0.6, 0.4, 1e5, 300.0}, 1e5, 100.0, 1e-4));
+  world.set_external_force(0, Vec3(10.0, -20.0, 0.0));
+  run(world, 5000);
+  EXPECT_GT(world.position(0).x(), 5e-5);
+  world.set_external_force(0, Vec3(0.0, 20.0, 0.0));
+  run(world, 200);
+  const double speed = world.velocity(0).x();
+  run(world, 200);
+  EXPECT_EQ(world.link_force(0), Vec3::Zero());
+  EXPECT_NEAR(world.velocity(0).x(), speed, 1e-12);
+}
+
+/// Moving balls in a box of planes, all of them rubbing.
+NetworkDescription rubbing_cloud(int dimension, unsigned seed, bool states = false) {
+  constexpr double kSide = 0.6;
+  NetworkDescription scene = cloud(40, 0.8 * kSide, 0.5, dimension, seed);
+  scene.step = 2e-4;
+  for (Mat& mat : scene.mats) mat.mass *= 0.1;
+  const Friction friction{0.7, 0.4, 200.0, 0.1};
+  StateMachine pair = rubbing(contact(300.0, 0.05), friction);
+  if (states) {
+    pair.states.push_back(contact(200.0, 0.0));
+    engine::Transition exit;
+    exit.when = (q(engine::Quantity::kElongation) < Term(-0.01)).program;
+    exit.target = 1;
+    pair.exits = {exit};
+    pair.states[0].last_exit = 1;
+    pair.states[1].first_exit = pair.states[1].last_exit = 1;
+  }
+  SetLiaison set;
+  set.state_machine = 0;
+  set.range = 0.12;
+  set.rest_length = -1.0;
+  for (std::uint32_t i = 0; i < 40; ++i) set.set_p.push_back(i);
+  scene.state_machines.push_back(pair);
+  scene.sets.push_back(set);
+  std::vector<std::uint32_t> walls;
+  for (int axis = 0; axis < dimension; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      walls.push_back(add_surface(scene, plane(-side * Vec3::Unit(axis)),
+                                  0.5 * side * kSide * Vec3::Unit(axis)));
+    }
+  }
+  touch(scene, 40, rubbing(contact(400.0, 0.05), friction), 0.1, -1.0, walls);
+  return scene;
+}
+
+TEST(Friction, KeepsTheMomentumOfFreeBalls) {
+  NetworkDescription scene = rubbing_cloud(3, 5);
+  scene.sets.pop_back();
+  World world = make_world(scene);
+  const Vec3 before = world.momentum();
+  const Vec3 turning = world.angular_momentum();
+  run(world, 3000);
+  EXPECT_LT((world.momentum() - before).norm(), 1e-12);
+  EXPECT_GT((world.angular_momentum() - turning).norm(), 1e-6);  // balls do not turn
+}
+
+TEST(Friction, ClosesTheAccountAndOnlyTakesEnergy) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    World world = make_world(rubbing_cloud(2 + static_cast<int>(seed % 2), seed, seed > 6));
+    double taken = 0.0;
+    for (int n = 0; n < 4000; ++n) {
+      world.step();
+      const Energy energy = world.energy();
+      ASSERT_NEAR(energy.residual(), 0.0, 1e-12 * energy.largest) << seed << " step " << n;
+      // The last half period is not whole: what is taken may fall by what a spring takes up in it.
+      ASSERT_GT(energy.dissipated, taken - 1e-3 * energy.initial) << seed << " step " << n;
+      taken = std::max(taken, energy.dissipated);
+    }
+    EXPECT_GT(taken, 0.5 * world.energy().initial) << seed;
+  }
+}
+
+TEST(Friction, IsTheSameBitsAtEveryVectorWidth) {
+  for (const bool states : {false, true}) {
+    std::vector<std::uint64_t> hashes;
+    for (const VectorWidth width : engine::supported_vector_widths()) {
+      World world = make_world(rubbing_cloud(3, 3, states), width);
+      run(world, 2000);
+      hashes.push_back(world.state_hash());
+    }
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
+  }
+}
+
+TEST(Friction, GoesOnFromASnapshot) {
+  for (const bool states : {false, true}) {
+    World world = make_world(rubbing_cloud(3, 7, states));
+    run(world, 1000);
+    const Snapshot snapshot = world.snapshot();
+    World other = make_world(rubbing_cloud(3, 7, states));
+    other.restore(snapshot);
+    EXPECT_EQ(other.state_hash(), world.state_hash());
+    for (int n = 0; n < 500; ++n) {
+      world.step();
+      other.step();
+      ASSERT_EQ(other.state_hash(), world.state_hash()) << n;
+    }
+    EXPECT_EQ(other.energy().dissipated, world.energy().dissipated);
+    Snapshot cut = snapshot;
+    cut.state.pop_back();
+    EXPECT_THROW(other.restore(cut), std::invalid_argument);
+  }
+}
+
+TEST(Friction, StepsWithoutAllocating) {
+  World world = make_world(rubbing_cloud(3, 9));
+  run(world, 3);
+  const AllocationGuard guard;
+  run(world, 200);
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+TEST(Friction, TakesOtherParametersWhileItHolds) {
+  World world = make_world(block_on_incline(0.3, {1.0, 0.8, 1e5, 200.0}));
+  run(world, 20000);
+  StateMachine softer = world.network().description().state_machines[0];
+  softer.friction.stiffness = 5e4;
+  world.replace_state_machine(0, softer);
+  run(world, 20000);
+  EXPECT_NEAR(world.position(0).x(), kGravity * std::sin(0.3) / 5e4, 1e-9);
+  EXPECT_NEAR(world.energy().residual(), 0.0, 1e-12);
+  softer.friction = {};
+  EXPECT_THROW(world.replace_state_machine(0, softer), std::invalid_argument);
+}
+
+TEST(Friction, IsRefusedWhereItDoesNotAct) {
+  const NetworkDescription good = block_on_incline(0.1, {0.5, 0.4, 1e4, 1.0});
+  const auto refuses = [&](const auto& spoil) {
+    NetworkDescription scene = good;
+    spoil(scene);
+    EXPECT_THROW(make_world(scene), std::invalid_argument);
+  };
+  EXPECT_NO_THROW(make_world(good));
+  refuses([](auto& scene) { scene.state_machines[0].friction.kinetic_coefficient = 0.6; });
+  refuses([](auto& scene) { scene.state_machines[0].friction.kinetic_coefficient = -0.1; });
+  refuses([](auto& scene) { scene.state_machines[0].friction.static_coefficient = kNan; });
+  refuses([](auto& scene) { scene.state_machines[0].friction.stiffness = -1.0; });
+  refuses([](auto& scene) { scene.state_machines[0].friction.viscosity = -1.0; });
+  refuses([](auto& scene) { scene.integrator = IntegratorKind::kLeapfrog; });
+  refuses([](auto& scene) { scene.integrator = IntegratorKind::kSymplectic4; });
+  refuses([](auto& scene) { scene.integrator = IntegratorKind::kImplicit; });
+  refuses([](auto& scene) { scene.freeze_tolerance = 1e-6; });
+  refuses([](auto& scene) {
+    scene.mats.push_back(fixed(Vec3(1.0, 1.0, 0.0)));
+    scene.radius.push_back(0.0);
+    scene.state_links = {{0, 2, 0, 1.0}};
+  });
+  refuses([](auto& scene) {
+    scene.dimension = 1;
+    scene.gravity = Vec3::Zero();
+    scene.mats[0].position = Vec3::Zero();
+    scene.surfaces[0].axis = Vec3::UnitX();
+  });
+}
+
+}  // namespace
+}  // namespace cordis::test

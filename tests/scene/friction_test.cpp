@@ -1,0 +1,88 @@
+// tests/scene/friction_test.cpp -- friction as a scene writes it.
+#include "tests/scene/bad_scene.h"
+
+namespace cordis::scene {
+namespace {
+
+constexpr const char* kMatter = R"(matter:
+  balls: {kind: mass, ball: {mass_kg: 1, radius_m: 0.1}, at_m: [[0, 1], [1, 1]]}
+  floor: {kind: plane, at_m: [0, 0], normal: y}
+)";
+
+TEST(FrictionOfALiaison, StandsBesideItsStates) {
+  const Scene scene = sound_scene(2, std::string(kMatter) + R"(liaisons:
+  rough: {parameters: {mu: 0.5}, stiffness_n_per_m: 600, pulls: false, range: rest,
+          friction: {static: mu, kinetic: 0.8 * mu, stiffness_n_per_m: 300, viscosity_n_s_per_m: 2}}
+  even: {like: rough, friction: {static: 0.25, kinetic: 0.25}}
+links:
+  - {liaison: rough, between_sets: [balls, floor]}
+  - {liaison: rough, within: balls, mu: 1}
+  - {liaison: even, within: balls}
+)");
+
+  const auto& machines = scene.network.state_machines;
+  ASSERT_EQ(scene.network.sets.size(), 3u);
+  const engine::Friction& floor = machines[scene.network.sets[0].state_machine].friction;
+  EXPECT_EQ(floor.static_coefficient, 0.5);
+  EXPECT_EQ(floor.kinetic_coefficient, 0.4);
+  EXPECT_EQ(floor.stiffness, 300.0);
+  EXPECT_EQ(floor.viscosity, 2.0);
+  EXPECT_EQ(machines[scene.network.sets[1].state_machine].friction.static_coefficient, 1.0);
+  const engine::Friction& even = machines[scene.network.sets[2].state_machine].friction;
+  EXPECT_EQ(even.static_coefficient, 0.25);
+  EXPECT_EQ(even.stiffness, 300.0);
+  EXPECT_NO_THROW(engine::Network{scene.network});
+}
+
+TEST(FrictionOfALiaison, IsTheSameAtRestAndInMotionUnlessWritten) {
+  const Scene scene = sound_scene(2, std::string(kMatter) + R"(liaisons:
+  rough: {stiffness_n_per_m: 600, range: rest, friction: {static: 0.3, stiffness_n_per_m: 300}}
+links:
+  - {liaison: rough, between_sets: [balls, floor]}
+)");
+  const engine::Friction& friction = scene.network.state_machines[0].friction;
+  EXPECT_EQ(friction.kinetic_coefficient, 0.3);
+  EXPECT_EQ(friction.viscosity, 0.0);
+}
+
+class BadFriction : public testing::TestWithParam<BadScene> {};
+
+TEST_P(BadFriction, IsAProblemOfItsPlace) {
+  expect_only_problem(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Friction, BadFriction,
+    testing::Values(
+        BadScene{kHead2,
+                 "liaisons:\n  a: {pulls: false, friction: ^{static: 0.1}}\n"
+                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 "missing key 'stiffness_n_per_m' in friction of liaison 'a'", ""},
+        BadScene{kHead2,
+                 "liaisons:\n  a: {friction: {static: 0.1, kinetic: ^0.2, stiffness_n_per_m: 1}}\n"
+                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 "'kinetic' in friction of liaison 'a' must not be above 'static'", ""},
+        BadScene{kHead2,
+                 "liaisons:\n  a: {friction: {static: 0.1, stiffness_n_per_m: ^0}}\n"
+                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 "'stiffness_n_per_m' in friction of liaison 'a' must be > 0, got 0", ""},
+        BadScene{kHead2,
+                 "liaisons:\n  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}\n"
+                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
+                 "links:\n  - {liaison: ^r, between: [\"a[0]\", \"a[1]\"]}\n",
+                 "friction acts between the members of sets, not in a link",
+                 "write between_sets: [a, b], also for one MAT each"},
+        BadScene{kHead2,
+                 "liaisons:\n  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}\n"
+                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
+                 "liaison: ^r}\n",
+                 "friction acts in liaisons of sets, not between neighbours", ""},
+        BadScene{kHead1,
+                 "liaisons:\n  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}\n"
+                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 1]}\n"
+                 "links:\n  - {liaison: ^r, within: a, rest_m: 1, range_m: 1}\n",
+                 "space 1 has no direction to slide in, so there is no friction",
+                 "take a liaison without 'friction', or 'space: 2'"}));
+
+}  // namespace
+}  // namespace cordis::scene
