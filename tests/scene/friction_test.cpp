@@ -13,7 +13,7 @@ TEST(FrictionOfALiaison, StandsBesideItsStates) {
   const Scene scene = sound_scene(2, std::string(kMatter) + R"(liaisons:
   rough: {parameters: {mu: 0.5}, stiffness_n_per_m: 600, pulls: false, range: rest,
           friction: {static: mu, kinetic: 0.8 * mu, stiffness_n_per_m: 300, viscosity_n_s_per_m: 2}}
-  even: {like: rough, friction: {static: 0.25, kinetic: 0.25}}
+  even: {like: rough, friction: {static: 0.25, kinetic: 0.5 * mu}}
 links:
   - {liaison: rough, between_sets: [balls, floor]}
   - {liaison: rough, within: balls, mu: 1}
