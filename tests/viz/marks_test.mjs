@@ -127,6 +127,42 @@ const cases = {
     await until('a click on nothing lets go of it', async () => !(await page.locator('#picked').isVisible()));
   },
 
+  'what is picked is plotted: the way of a MAT, the length of a link': async ({ page }) => {
+    await pick(page, placeOf(page, FIRST_BODY), /^string\[20\]$/);
+    await page.click('#picked-plot');
+    assert.equal(await page.locator('#picked-plot').getAttribute('aria-pressed'), 'true');
+    assert.match(await textOf(page, '.trace .at'), /^string\[20\]: way from [\d.]+ s on$/);
+    const metres = (text) => {
+      const [, number, unit] = /^(-?[\d.]+)\s?(m|mm|µm|nm)$/.exec(text);
+      return number * { m: 1, mm: 1e-3, 'µm': 1e-6, nm: 1e-9 }[unit];
+    };
+    await until('it has a value', async () => /\d/.test(await textOf(page, '.trace .series:nth-of-type(3) b')));
+    // What the plot says and where the MAT is, of the same frame.
+    const seen = async () => {
+      await page.keyboard.press('h');
+      await banner(page, 'view frozen');
+      const y = await page.evaluate((mat) => window.viz.position(mat)[1], FIRST_BODY);
+      const figure = metres(await textOf(page, '.trace .series:nth-of-type(3) b'));
+      await page.keyboard.press('h');
+      await banner(page, '');
+      return [y, figure];
+    };
+    const [y0, way0] = await seen();
+    await drawn(page, 7);
+    const [y1, way1] = await seen();
+    assert.ok(Math.abs(y1 - y0) > 1e-4, 'it has moved');
+    assert.ok(Math.abs(way1 - way0 - (y1 - y0)) < 3e-4, `the plot went from ${way0} to ${way1}, the MAT from ${y0} to ${y1}`);
+    await pick(page, middleOfLink(page, HOOKED), /^joints\[23\]$/);
+    assert.equal(await page.locator('#picked-plot').getAttribute('aria-pressed'), 'false');
+    await page.click('#picked-plot');
+    await until('its length is plotted', async () => /^1\d\.\d\s?mm$/.test(await textOf(page, '.trace:has-text("joints[23]") b')));
+    await page.screenshot({ path: join(out, 'marks_traces.png') });
+    await page.click('#picked-plot');
+    await page.click('.trace button');
+    assert.equal(await page.locator('.trace').count(), 0);
+    await page.click('#picked-close');
+  },
+
   'components have colours and sizes, and one that is torn off has its own': async ({ page }) => {
     const { bodies } = palettes.dark; // the link behind string[32] does nothing: 33 and 27 MATs
     await page.selectOption('#colouring', 'components');

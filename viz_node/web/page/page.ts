@@ -59,7 +59,7 @@ export class Page {
 
   private readonly stage = find('#stage');
   private readonly marks = new Marks(this.stage);
-  private readonly plots = new SignalPanel((ending) => this.fileName(ending));
+  private readonly plots = new SignalPanel((ending) => this.fileName(ending), () => this.picked?.showPlotted());
   private readonly clock = new ClockOffset();
   private readonly factor = new RealTimeFactor();
   private readonly renderer = findRenderer();
@@ -101,7 +101,7 @@ export class Page {
     this.sound = new SoundPanel(this.connection, (error) => this.note(error));
     this.takeBar = new TakeBar(this.connection);
     this.pointer = new PointerHand(this.stage, this.connection, () => this.view, () => this.askToDraw());
-    this.picked = new Picked(this.stage, () => this.view, () => this.askToDraw());
+    this.picked = new Picked(this.stage, () => this.view, this.plots.traces, () => this.askToDraw());
     this.applyTheme();
     window.setInterval(() => this.refresh(), FIGURES_PERIOD_MS);
   }
@@ -242,6 +242,8 @@ export class Page {
     const drawn = this.view !== null && !this.frozen && !this.pendingIsLate;
     this.connection.acknowledge(drawn ? frame.sequence : 0);
     if (this.view === null || this.frozen) return;
+    this.plots.traces.append(frame.simulatedS);
+    this.plotsDirty = true;
     ++this.framesDrawn;
     this.lastFrame = frame;
     this.pendingIsLate = false;

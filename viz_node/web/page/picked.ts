@@ -3,8 +3,9 @@ import type { Palette } from './colours.ts';
 import { percentOf } from './colouring.ts';
 import { count, joined, withUnit } from './format.ts';
 import type { Marks, Point } from './marks.ts';
-import { setText } from './rows.ts';
+import { press, setText } from './rows.ts';
 import type { SceneView } from './scene_view.ts';
+import type { Traced, Traces } from './traces.ts';
 import { LINK_IS_IDLE } from './wire.ts';
 
 const NEAR_MAT_PX = 8; // beyond its edge
@@ -24,11 +25,13 @@ export class Picked {
   private readonly panel = document.querySelector<HTMLElement>('#picked')!;
   private readonly name = document.querySelector('#picked-name')!;
   private readonly values = document.querySelector('#picked-values')!;
+  private readonly plotButton = document.querySelector<HTMLButtonElement>('#picked-plot')!;
   private readonly followButton = document.querySelector<HTMLButtonElement>('#picked-follow')!;
 
   constructor(
     stage: HTMLElement,
     private readonly view: () => SceneView | null,
+    private readonly traces: Traces,
     private readonly changed: () => void,
   ) {
     stage.addEventListener('pointerdown', ({ clientX: x, clientY: y, target }) => {
@@ -39,6 +42,10 @@ export class Picked {
       this.pick(this.thingAt(x, y));
     });
     document.querySelector('#picked-close')!.addEventListener('click', () => this.pick(null));
+    this.plotButton.addEventListener('click', () => {
+      const traced = this.traced;
+      if (traced !== null) this.traces.toggle(traced);
+    });
     this.followButton.addEventListener('click', () => this.follow(!this.follows));
   }
 
@@ -48,6 +55,13 @@ export class Picked {
     this.followButton.hidden = thing === null || !('mat' in thing);
     this.shownMs = 0;
     this.follow(false);
+    this.showPlotted();
+  }
+
+  /** Shows whether it is plotted. */
+  showPlotted(): void {
+    const traced = this.traced;
+    press(this.plotButton, traced !== null && this.traces.has(traced.key));
   }
 
   /** Marks it in the frame that is drawn now, and writes its values. */
@@ -72,6 +86,13 @@ export class Picked {
     setText(this.values, values);
   }
 
+  /** What a plot of it shows. */
+  private get traced(): Traced | null {
+    const view = this.view();
+    if (view === null || this.thing === null) return null;
+    return 'mat' in this.thing ? tracedMat(view, this.thing.mat) : tracedLink(view, this.thing.link);
+  }
+
   private thingAt(x: number, y: number): PickedThing | null {
     const view = this.view();
     const mat = view?.matAt(x, y, NEAR_MAT_PX) ?? null;
@@ -82,10 +103,26 @@ export class Picked {
 
   private follow(wanted: boolean): void {
     this.follows = wanted;
-    this.followButton.classList.toggle('on', wanted);
-    this.followButton.setAttribute('aria-pressed', String(wanted));
+    press(this.followButton, wanted);
     this.changed();
   }
+}
+
+/** Its way from where it is now, along the axes of the scene. */
+function tracedMat(view: SceneView, mat: number): Traced {
+  const start = view.place(mat);
+  const axes = view.axes;
+  const values = () => axes.map((axis) => view.place(mat)[axis]! - start[axis]!);
+  return { key: `mat ${mat}`, title: `${view.bodies.nameOf(mat)}: way from ${view.newestTimeS.toFixed(2)} s on`, series: axes.map((axis) => 'xyz'[axis]!), unit: 'm', values };
+}
+
+function tracedLink(view: SceneView, link: number): Traced {
+  return { key: `link ${link}`, title: `${view.bodies.linkNameOf(link)}, a value per frame`, series: ['length'], unit: 'm', values: () => [lengthOf(view, link)] };
+}
+
+function lengthOf(view: SceneView, link: number): number {
+  const [a, b] = view.endsOf(link).map((mat) => view.place(mat)) as [number[], number[]];
+  return Math.hypot(...a.map((value, k) => value - b[k]!));
 }
 
 function matText(view: SceneView, mat: number): [string, string] {
@@ -97,8 +134,7 @@ function matText(view: SceneView, mat: number): [string, string] {
 
 function linkText(view: SceneView, link: number): [string, string] {
   const [a, b] = view.endsOf(link);
-  const from = view.place(b);
-  const length = Math.hypot(...view.place(a).map((value, k) => value - from[k]!));
+  const length = lengthOf(view, link);
   const stretch = view.stretchOf(link);
   const since = `${stretch < 0 ? '−' : '+'}${percentOf(Math.abs(stretch))} since ${view.stretchSinceS.toFixed(2)} s`;
   const state = stateText(view, link);

@@ -12,3 +12,9 @@ export function fillRows<T>(parent: HTMLElement, items: T[], make: () => HTMLEle
 export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
+
+/** Shows whether a button is on. */
+export function press(button: HTMLElement, on: boolean): void {
+  button.classList.toggle('on', on);
+  button.setAttribute('aria-pressed', String(on));
+}

@@ -230,6 +230,16 @@ export class SceneView {
     return this.colouring === 'components' ? (this.links?.components.of(mat) ?? null) : null;
   }
 
+  /** Simulated time of the frame that is drawn [s]. */
+  get newestTimeS(): number {
+    return this.newestS;
+  }
+
+  /** The axes along which the scene moves: 0 x, 1 y, 2 z. A 1-D scene moves along y. */
+  get axes(): number[] {
+    return this.space === 1 ? [1] : this.space === 2 ? [0, 1] : [0, 1, 2];
+  }
+
   get stretchSinceS(): number {
     return this.referenceS;
   }

@@ -5,7 +5,9 @@ import { PhasePlot } from './phase_plot.ts';
 import { csvOf, download, imageOf } from './plot_export.ts';
 import { Plots } from './plots.ts';
 import type { Description } from './protocol.ts';
+import { press } from './rows.ts';
 import type { SignalStore } from './signal_store.ts';
+import { Traces } from './traces.ts';
 
 const ZOOM_PER_PX = 1e-3; // of the wheel
 
@@ -21,9 +23,17 @@ export class SignalPanel {
   private store: SignalStore | null = null;
   private signals: Description['signals'] = [];
   private phase: PhasePlot | null = null;
+  readonly traces: Traces;
   private isLogarithmic = false;
 
-  constructor(private readonly fileName: (ending: string) => string) {
+  constructor(
+    private readonly fileName: (ending: string) => string,
+    tracesChanged: () => void,
+  ) {
+    this.traces = new Traces(this.palette, () => {
+      this.placePhase();
+      tracesChanged();
+    });
     for (const button of this.windowButtons) button.addEventListener('click', () => this.setWindow(Number(button.dataset.window)));
     this.container.addEventListener('wheel', (event) => this.zoom(event), { passive: false });
     this.on('log', (button) => {
@@ -44,6 +54,7 @@ export class SignalPanel {
   /** Sets up for the signals of a scene; gives back the store to fill. */
   describe(description: Description): SignalStore {
     if (this.phase !== null) this.togglePhase();
+    this.traces.clear();
     this.signals = description.signals;
     this.store = this.plots.describe(description);
     this.listChoices();
@@ -53,16 +64,19 @@ export class SignalPanel {
   paint(palette: Palette): void {
     this.palette = palette;
     this.plots.paint(palette);
+    this.traces.paint(palette);
     this.placePhase();
   }
 
   /** What is shown stays while the view is frozen. */
   hold(wanted: boolean): void {
     this.plots.hold(wanted);
+    this.draw();
   }
 
   draw(): void {
     this.plots.draw();
+    this.traces.draw(this.plots.windowS, this.plots.endS);
     if (this.store !== null) this.phase?.draw(this.store, this.plots.windowS, this.plots.endS, this.palette);
   }
 
@@ -93,7 +107,7 @@ export class SignalPanel {
 
   /** The plots were built again: above them. */
   private placePhase(): void {
-    if (this.phase !== null) this.container.prepend(this.phase.box);
+    this.container.prepend(...(this.phase === null ? [] : [this.phase.box]), ...this.traces.boxes);
     this.draw();
   }
 
@@ -129,10 +143,4 @@ export class SignalPanel {
       button.blur();
     });
   }
-}
-
-/** Shows whether a button is on. */
-export function press(button: HTMLElement, on: boolean): void {
-  button.classList.toggle('on', on);
-  button.setAttribute('aria-pressed', String(on));
 }
