@@ -43,6 +43,7 @@ function actionsOf(session, draw) {
   };
   const tool = (key) => () => press(page, `#tools button[data-key="${key}"]`);
   const colours = () => page.keyboard.press('c');
+  const motion = () => page.keyboard.press('m');
   const window = (seconds) => () => press(page, `#windows button[data-window="${seconds}"]`);
   const scene = () => {
     const file = SCENES[Math.floor(draw() * SCENES.length)];
@@ -54,7 +55,8 @@ function actionsOf(session, draw) {
     reset: verb('reset'),
     load: scene,
     colours,
-    ...Object.fromEntries(['f', '1', '2', '3', '4', 'o', 'g', 'n', 'h', 'l', 's', '?'].map((key) => [`tool '${key}'`, tool(key)])),
+    motion,
+    ...Object.fromEntries(['f', '1', '2', '3', '4', 'o', 'r', 't', 'g', 'n', 'h', 'l', 's', '?'].map((key) => [`tool '${key}'`, tool(key)])),
     ...Object.fromEntries([1, 5, 20].map((seconds) => [`window ${seconds} s`, window(seconds)])),
   };
 }

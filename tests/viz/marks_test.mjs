@@ -182,7 +182,7 @@ const cases = {
   'links have the colour of their stretch, with a scale that says since when': async ({ page }) => {
     await page.keyboard.press('c');
     assert.equal(await page.locator('#colouring').inputValue(), 'stretch');
-    const texts = async () => Promise.all(['low', 'high', 'caption'].map((part) => textOf(page, `#scale-${part}`)));
+    const texts = () => page.evaluate(() => ['low', 'high', 'caption'].map((part) => document.querySelector(`#scale-${part}`).textContent)); // of one frame
     const [low, high, caption] = await until('links are longer and shorter', async () => {
       const all = await texts();
       return /^\+[\d.]+ %$/.test(all[1]) && Number.parseFloat(all[1]) > 0 && all;
@@ -197,6 +197,63 @@ const cases = {
     await page.keyboard.press('c');
     assert.equal(await page.locator('#colouring').inputValue(), 'bodies');
     assert.equal(await page.locator('#scale').isVisible(), false);
+  },
+
+  'motion is drawn larger than it is, and the view says so': async ({ page }) => {
+    await page.keyboard.press('h');
+    await banner(page, 'view frozen');
+    const place = await page.evaluate((mat) => window.viz.position(mat), FIRST_BODY);
+    const height = async (factor) => {
+      await page.selectOption('#motion', String(factor));
+      return (await placeOf(page, FIRST_BODY)()).y;
+    };
+    const [y1, y2, y5] = [await height(1), await height(2), await height(5)];
+    assert.ok(Math.abs(y2 - y1) > 0.3, `it has moved: ${y1} and ${y2}`);
+    assert.ok(Math.abs(y5 - y1 - 4 * (y2 - y1)) < 0.05, `four times as far from ${y1}: ${y2} and ${y5}`);
+    assert.deepEqual(await page.evaluate((mat) => window.viz.position(mat), FIRST_BODY), place, 'what is said of it is true');
+    await until('the view says so', async () => /^motion ×5, from where it was at [\d.]+ s$/.test(await textOf(page, '#exaggeration')));
+    await page.keyboard.press('f');
+    await until('it is seen', async () => {
+      const stage = await page.locator('#stage').boundingBox();
+      const { y } = await placeOf(page, FIRST_BODY)();
+      return y > stage.y && y < stage.y + stage.height;
+    });
+    assertHue((await look(page, FIRST_BODY)).colour, palettes.dark.bodies[0], 'the ball where it is drawn');
+    await page.screenshot({ path: join(out, 'marks_motion.png') });
+    await page.keyboard.press('r');
+    const [here, real] = await page.evaluate((mat) => [window.viz.project(mat), window.viz.screenOf(window.viz.position(mat))], FIRST_BODY);
+    assert.ok(Math.abs(here.y - real.y) < 0.01, 'counted from now, it is where it is');
+    await page.selectOption('#motion', '100');
+    await page.keyboard.press('m');
+    assert.equal(await page.locator('#motion').inputValue(), '1');
+    await until('the view says nothing', async () => !(await page.locator('#exaggeration').isVisible()));
+    await page.keyboard.press('h');
+    await banner(page, '');
+    await page.keyboard.press('1');
+    await page.keyboard.press('f');
+  },
+
+  'trails show where MATs have been': async ({ page }) => {
+    await page.keyboard.press('g'); // no grid behind them
+    await page.keyboard.press('t');
+    assert.equal(await isPressed(page, 't'), 'true');
+    await drawn(page, 20);
+    await page.keyboard.press('h');
+    await banner(page, 'view frozen');
+    const lit = () =>
+      page.evaluate((mat) => {
+        const { x, y } = window.viz.project(mat);
+        const heights = Array.from({ length: 61 }, (_, k) => k - 30).filter((dy) => Math.abs(dy) > 8);
+        return heights.filter((dy) => Math.max(...window.viz.pixelAt(x, y + dy)) > 40).length;
+      }, FIRST_BODY);
+    const withTrails = await lit();
+    await page.screenshot({ path: join(out, 'marks_trails.png') });
+    await page.keyboard.press('t');
+    const without = await lit();
+    assert.ok(withTrails > without + 5, `${withTrails} pixels with trails, ${without} without`);
+    await page.keyboard.press('h');
+    await banner(page, '');
+    await page.keyboard.press('g');
   },
 
   'names are written into the view, and are no more': async ({ page }) => {

@@ -19,6 +19,12 @@ const SPEED_COLOUR = /* glsl */ `
   }
 `;
 
+const DRAWN = /* glsl */ `
+  in vec3 reference;           // where it was when motion began to be counted [m]
+  uniform float exaggeration;  // of the way from there
+  vec3 drawn(vec3 place) { return place + (exaggeration - 1.0) * (place - reference); }
+`;
+
 const MAT_VERTEX = /* glsl */ `
   precision highp float;
   in vec3 position;   // [m]
@@ -37,10 +43,11 @@ const MAT_VERTEX = /* glsl */ `
   out vec3 colour;
   flat out int shape;
   ${SPEED_COLOUR}
+  ${DRAWN}
 
   void main() {
     int k = int(kind + 0.5);
-    vec4 view_position = modelViewMatrix * vec4(position, 1.0);
+    vec4 view_position = modelViewMatrix * vec4(drawn(position), 1.0);
     gl_Position = projectionMatrix * view_position;
     float pixels = pixels_per_unit / gl_Position.w;
     size = max(radius_share * radius, min_pixels[k >= 4 ? 0 : k] / pixels);
@@ -135,9 +142,10 @@ const LINK_VERTEX = /* glsl */ `
   out vec3 colour;
   flat out vec2 end;          // of the link, on the canvas
   ${SPEED_COLOUR}
+  ${DRAWN}
 
   void main() {
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(drawn(position), 1.0);
     end = (0.5 + 0.5 * gl_Position.xy / gl_Position.w) * vec2(view_width, view_height);
     colour = speed_scale > 0.0 ? 0.8 * speed_colour(length(position - previous) * speed_scale) : link_colour;
   }
@@ -170,13 +178,14 @@ export interface SceneUniforms extends Uniforms {
   speed_scale: number;
   orthographic: boolean;
   radius_share: number;
+  exaggeration: number;
   view_width: number;
   view_height: number;
   pixel_ratio: number;
 }
 
 export function sceneUniforms(): SceneUniforms {
-  return { pixels_per_unit: 1, min_pixels: [3, 3, 6, 5], speed_scale: 0, orthographic: false, radius_share: 1, view_width: 1, view_height: 1, pixel_ratio: 1 };
+  return { pixels_per_unit: 1, min_pixels: [3, 3, 6, 5], speed_scale: 0, orthographic: false, radius_share: 1, exaggeration: 1, view_width: 1, view_height: 1, pixel_ratio: 1 };
 }
 
 /** Kinds as the shader distinguishes them: a fixed point without a radius is no ball, and what has a shape of its own is not shown. */

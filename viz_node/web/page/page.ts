@@ -12,6 +12,7 @@ import { keysAreListed, toggleKeys } from './keys_dialog.ts';
 import { legendOf, showLegend, type LegendEntry } from './legend.ts';
 import { LinkGroups } from './link_groups.ts';
 import { Marks } from './marks.ts';
+import { MotionBox } from './motion_box.ts';
 import { drawNames } from './names.ts';
 import { Picked } from './picked.ts';
 import { download } from './plot_export.ts';
@@ -77,7 +78,9 @@ export class Page {
   private drawAsked = false;
   private readonly colouring = new ColouringBox(() => this.colour());
   private legendVersion = 0; // of the components that the legend names
+  private readonly motion = new MotionBox(() => this.exaggerate());
   private names = false;
+  private trails = false;
   private plotsMs = 0;
   private plotsDirty = false;
 
@@ -193,6 +196,8 @@ export class Page {
       this.view = new SceneView(this.stage, topology, bodies, groups, tools, space, surfaces, this.palette, quality, this.pose, changed, lost);
       this.colouring.describe(topology.linkCount);
       this.colour();
+      this.exaggerate();
+      this.view.showTrails(this.trails);
     } catch (error) {
       this.note(error);
       this.say('The browser gives this page no WebGL: figures and signals only. Close other tabs and reload the page');
@@ -269,6 +274,7 @@ export class Page {
     (ruler.firstElementChild as HTMLElement).style.width = `${length / scale}px`;
     ruler.lastElementChild!.textContent = joined(withUnit(length, 'm')).replace(/\.0+(?=\D)/, '');
     this.colouring.show(this.scale);
+    this.motion.say(this.motion.textSince(this.view.countedSinceS));
     const { componentsVersion } = this.view.links ?? { componentsVersion: 0 };
     if (componentsVersion !== this.legendVersion) this.showLegend();
     this.legendVersion = componentsVersion;
@@ -299,6 +305,9 @@ export class Page {
       o: () => this.view?.rig.toggleProjection(),
       g: () => this.view?.toggleGround(),
       c: () => this.colouring.step(),
+      m: () => this.motion.step(),
+      r: () => this.view?.measureFromNow(),
+      t: () => this.showTrails(!this.trails),
       n: () => this.toggle('n', (this.names = !this.names)),
       h: () => this.freeze(!this.frozen),
       p: () => this.plots.togglePhase(),
@@ -329,6 +338,17 @@ export class Page {
     }
   }
 
+  private exaggerate(): void {
+    this.view?.exaggerate(this.motion.factor);
+    this.motion.say(this.motion.textSince(this.view?.countedSinceS ?? 0));
+  }
+
+  private showTrails(wanted: boolean): void {
+    this.trails = wanted;
+    this.view?.showTrails(wanted);
+    this.toggle('t', wanted);
+  }
+
   private colour(): void {
     this.view?.colourBy(this.colouring.value);
     this.colouring.show(this.scale);
@@ -340,7 +360,7 @@ export class Page {
     const { view, palette } = this;
     if (view === null) return null;
     if (this.colouring.value === 'speed') return speedScale(view.fastestSpeed, palette);
-    if (this.colouring.value === 'stretch') return stretchScale(view.links?.widest ?? 0, view.stretchSinceS, palette);
+    if (this.colouring.value === 'stretch') return stretchScale(view.links?.widest ?? 0, view.countedSinceS, palette);
     return null;
   }
 
@@ -413,6 +433,7 @@ export class Page {
       simulatedS: this.lastFrame.simulatedS,
       legend: this.legend,
       scale: this.scale,
+      note: this.motion.textSince(this.view.countedSinceS),
       palette: this.palette,
     });
     if (image !== null) download(image, this.fileName('png'));

@@ -73,7 +73,7 @@ export class Picked {
       marks.ring({ x: middle.x - stage.left, y: middle.y - stage.top }, view.radiusOnScreen(mat) + room, palette.text);
     };
     if ('mat' in this.thing) {
-      if (this.follows) view.rig.moveTo(view.place(this.thing.mat));
+      if (this.follows) view.rig.moveTo(view.drawnPlace(this.thing.mat));
       ring(this.thing.mat, 6);
     } else {
       view.endsOf(this.thing.link).forEach((mat) => ring(mat, 3));
@@ -136,7 +136,7 @@ function linkText(view: SceneView, link: number): [string, string] {
   const [a, b] = view.endsOf(link);
   const length = lengthOf(view, link);
   const stretch = view.stretchOf(link);
-  const since = `${stretch < 0 ? '−' : '+'}${percentOf(Math.abs(stretch))} since ${view.stretchSinceS.toFixed(2)} s`;
+  const since = `${stretch < 0 ? '−' : '+'}${percentOf(Math.abs(stretch))} since ${view.countedSinceS.toFixed(2)} s`;
   const state = stateText(view, link);
   const ends = `${view.bodies.nameOf(a)} to ${view.bodies.nameOf(b)}`;
   return [view.bodies.linkNameOf(link), `${ends} · length ${joined(withUnit(length, 'm'))}, ${since}${state === '' ? '' : ` · ${state}`}`];

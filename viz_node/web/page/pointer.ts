@@ -19,6 +19,7 @@ export interface HandColours {
 
 interface Drag {
   port: number;
+  mat: number; // of its handle
   start: number[]; // of the handle when it was taken hold of [m]
   grip: number[]; // where the pointer was in the scene then [m]
   at: Point; // the pointer now, on the page
@@ -140,8 +141,8 @@ export class PointerHand {
       // a pointer that is gone already
     }
     const start = view.place(mat);
-    const grip = view.unproject(event.clientX, event.clientY, start);
-    this.drags.set(event.pointerId, { port, start, grip, at: { x: event.clientX, y: event.clientY }, event: 0 });
+    const grip = view.unproject(event.clientX, event.clientY, view.drawnAt(mat, start));
+    this.drags.set(event.pointerId, { port, mat, start, grip, at: { x: event.clientX, y: event.clientY }, event: 0 });
     this.stage.classList.add('dragging');
     this.send(event.pointerId, event.timeStamp);
   }
@@ -169,8 +170,10 @@ export class PointerHand {
   }
 
   private wanted(drag: Drag): number[] {
-    const now = this.view()?.unproject(drag.at.x, drag.at.y, drag.start) ?? drag.grip;
-    return drag.start.map((start, k) => start + now[k]! - drag.grip[k]!);
+    const view = this.view();
+    if (view === null) return drag.start;
+    const now = view.unproject(drag.at.x, drag.at.y, view.drawnAt(drag.mat, drag.start));
+    return drag.start.map((start, k) => start + (now[k]! - drag.grip[k]!) / view.exaggeration);
   }
 
   private send(id: number, timeMs: number): void {
@@ -200,8 +203,8 @@ export class PointerHand {
       const colour = mine ? colours.mine : colours.others;
       const handle = local(view.project(mat));
       const drag = [...this.drags.values()].find((one) => one.port === port.port);
-      const place = view.place(mat);
-      const hand = drag !== undefined ? local(view.screenOf(this.wanted(drag))) : local(view.screenOf(port.target_m));
+      const place = view.drawnPlace(mat);
+      const hand = local(view.screenOf(view.drawnAt(mat, drag !== undefined ? this.wanted(drag) : port.target_m)));
       marks.thread(handle, hand, colour);
       const force = Math.hypot(...port.force_n);
       const tip = local(view.screenOf(place.map((x, k) => x + (port.force_n[k]! / (force || 1)) * view.rig.metresPerPixel * 100)));

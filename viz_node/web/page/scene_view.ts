@@ -11,7 +11,8 @@ import type { LinkGroups } from './link_groups.ts';
 import { LinkView } from './link_view.ts';
 import { matProgram, sceneUniforms, shownKinds } from './mat_material.ts';
 import type { Frame, Surface, Topology } from './protocol.ts';
-import { LINK_IS_IDLE } from './wire.ts';
+import { Trails } from './trails.ts';
+import { LINK_IS_IDLE, MAT_FIXED } from './wire.ts';
 import type { Quality } from './quality.ts';
 import { boundsWith } from './surface_shape.ts';
 import { SurfaceView } from './surfaces.ts';
@@ -40,6 +41,8 @@ export class SceneView {
   private readonly matter: Shape;
   readonly links: LinkView | null;
   private newest: VertexArray;
+  private readonly reference: VertexArray; // places from which motion and stretch are counted
+  private readonly trails: Trails;
   private before: VertexArray;
   private newestS = Number.NaN;
   private shownForS = Number.NaN; // simulated time between the last two frames
@@ -76,13 +79,16 @@ export class SceneView {
     const coordinates = 3 * topology.matCount;
     this.newest = new VertexArray(new Float32Array(coordinates), 3);
     this.before = new VertexArray(new Float32Array(coordinates), 3);
+    this.reference = new VertexArray(new Float32Array(coordinates), 3);
     this.radii = new VertexArray<Float32Array>(topology.radii.slice(), 1);
     this.tints = new VertexArray(bodies.tints(palette), 3);
     this.matter = this.matterShape();
-    const vertices = { position: this.newest, previous: this.before };
+    const vertices = { position: this.newest, previous: this.before, reference: this.reference };
     this.links = topology.linkCount > 0 ? new LinkView(topology, groups, vertices, this.uniforms, palette, quality.links) : null;
     this.surfaceView = new SurfaceView(surfaces, space);
-    this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]));
+    const mobile = [...topology.kinds.keys()].filter((mat) => topology.kinds[mat] !== MAT_FIXED);
+    this.trails = new Trails(mobile, palette);
+    this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]), this.trails.shape);
     if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
     this.resize();
   }
@@ -93,7 +99,7 @@ export class SceneView {
     this.uniforms.pixel_ratio = this.quality.pixelRatio;
     this.uniforms.min_pixels = least.map((pixels) => pixels * this.quality.pixelRatio);
     const kind = new VertexArray(Float32Array.from(shownKinds(this.topology.kinds, this.topology.radii, this.tools, this.bodies.shapes)), 1);
-    const vertices = { position: this.newest, previous: this.before, radius: this.radii, tint: this.tints, kind };
+    const vertices = { position: this.newest, previous: this.before, reference: this.reference, radius: this.radii, tint: this.tints, kind };
     const all = { first: 0, count: this.topology.matCount, uniforms: {} };
     return shapeOf('points', matProgram(this.quality.spheres), vertices, { uniforms: this.uniforms, parts: [all] });
   }
@@ -106,8 +112,7 @@ export class SceneView {
     if (first) {
       this.before.set(frame.positions.slice());
       this.sizePoints();
-      this.links?.measureFrom(frame.positions);
-      this.referenceS = frame.simulatedS;
+      this.measureFrom(frame.positions, frame.simulatedS);
     }
     this.links?.take(frame.positions, frame.linkStates);
     this.tintComponents();
@@ -115,6 +120,7 @@ export class SceneView {
     this.shownForS = frame.simulatedS - this.newestS;
     this.measureSpeed(this.shownForS);
     this.newestS = frame.simulatedS;
+    this.trails.append((mat) => this.drawnPlace(mat));
     if (!this.framed) {
       this.framed = true;
       this.isDrum = this.liesFlat();
@@ -154,6 +160,7 @@ export class SceneView {
     this.palette = palette;
     this.canvas.clearTo(sharesOf(palette.background));
     this.links?.paint(palette);
+    this.trails.paint(palette);
     this.colourBy(this.colouring);
     if (this.framed) this.layGround();
     this.changed();
@@ -220,7 +227,38 @@ export class SceneView {
     this.changed();
   }
 
-  /** How much longer a link is than at `stretchSinceS`, a share. */
+  private measureFrom(positions: Float32Array, timeS: number): void {
+    this.reference.array.set(positions);
+    this.reference.set();
+    this.links?.measureFrom(positions);
+    this.referenceS = timeS;
+  }
+
+  /** Motion and stretch are counted from the newest frame on. */
+  measureFromNow(): void {
+    if (Number.isNaN(this.newestS)) return;
+    this.measureFrom(this.newest.array, this.newestS);
+    this.trails.clear();
+    this.colourBy(this.colouring);
+  }
+
+  /** Motion is drawn so many times as large as it is. */
+  exaggerate(factor: number): void {
+    this.uniforms.exaggeration = factor;
+    this.trails.clear();
+    this.changed();
+  }
+
+  get exaggeration(): number {
+    return this.uniforms.exaggeration;
+  }
+
+  showTrails(wanted: boolean): void {
+    this.trails.show(wanted);
+    this.changed();
+  }
+
+  /** How much longer a link is than at `countedSinceS`, a share. */
   stretchOf(link: number): number {
     return this.links?.stretchOf(this.newest.array, link) ?? 0;
   }
@@ -240,7 +278,7 @@ export class SceneView {
     return this.space === 1 ? [1] : this.space === 2 ? [0, 1] : [0, 1, 2];
   }
 
-  get stretchSinceS(): number {
+  get countedSinceS(): number {
     return this.referenceS;
   }
 
@@ -276,9 +314,20 @@ export class SceneView {
     return [...this.newest.array.slice(3 * index, 3 * index + 3)];
   }
 
+  /** Where MAT `index` is drawn in the scene [m]. */
+  drawnPlace(index: number): number[] {
+    return this.drawnAt(index, this.place(index));
+  }
+
+  /** Where MAT `index` is drawn when it is at `place` [m]. */
+  drawnAt(index: number, place: number[]): number[] {
+    const extra = this.uniforms.exaggeration - 1;
+    return place.map((value, k) => value + extra * (value - this.reference.array[3 * index + k]!));
+  }
+
   /** Where MAT `index` is on the page [CSS pixels]. */
   project(index: number): { x: number; y: number } {
-    return this.screenOf(this.place(index));
+    return this.screenOf(this.drawnPlace(index));
   }
 
   /** Where a place of the scene is on the page [CSS pixels]. */
@@ -328,12 +377,15 @@ export class SceneView {
     const count = Math.ceil(this.topology.matCount / stride);
     const left = Math.floor(outliers * count);
     const radii = this.radii.array;
+    const extra = this.uniforms.exaggeration - 1;
     const low = new Float32Array(count);
     const high = new Float32Array(count);
     const box = new Box3();
     for (let axis = 0; axis < 3; ++axis) {
       for (let k = 0; k < count; ++k) {
-        const coordinate = this.newest.array[3 * k * stride + axis]!;
+        const place = 3 * k * stride + axis;
+        const moved = this.newest.array[place]! - this.reference.array[place]!;
+        const coordinate = this.newest.array[place]! + extra * moved;
         low[k] = coordinate - radii[k * stride]!;
         high[k] = coordinate + radii[k * stride]!;
       }

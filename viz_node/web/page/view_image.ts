@@ -15,6 +15,7 @@ export interface Caption {
   simulatedS: number;
   legend: LegendEntry[];
   scale: Scale | null; // where the colours are numbers
+  note: string; // how the motion is drawn; empty where it is as it is
   palette: Palette;
 }
 
@@ -33,7 +34,7 @@ export async function imageOfView(view: SceneView, marks: HTMLCanvasElement, cap
   pen.font = '13px system-ui, "DejaVu Sans", sans-serif';
   const { palette } = caption;
   pen.fillStyle = palette.text;
-  pen.fillText(`${caption.scene} · ${caption.simulatedS.toFixed(3)} s`, ROOM_PX, 24);
+  pen.fillText(`${caption.scene} · ${caption.simulatedS.toFixed(3)} s${caption.note === '' ? '' : ` · ${caption.note}`}`, ROOM_PX, 24);
   const bottom = writeLegend(pen, caption.legend, palette, marks.clientWidth);
   if (caption.scale !== null) writeScale(pen, bottom, caption.scale, palette);
   const scale = view.rig.metresPerPixel;
