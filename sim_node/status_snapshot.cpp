@@ -57,7 +57,10 @@ void StatusSnapshot::record(Runner& runner, const PartnersSeen& partners, std::u
   record_let_go(simulation, let_go);
   if (!realtime || !is_looping_) figures_.of_world = figures_of(simulation.world());
   figures_.is_looping = is_looping_;
+  const bool had_trouble = figures_.troubles.drive_jumps + figures_.troubles.refused_drives > 0;
   figures_.troubles = simulation.troubles();
+  const bool has_trouble = figures_.troubles.drive_jumps + figures_.troubles.refused_drives > 0;
+  if (has_trouble && !had_trouble) spdlog::warn("{}", drive_trouble_text(figures_.troubles));
   figures_.version = version;
   figures_.changes = loaded.changes.count(simulation.world());
 }

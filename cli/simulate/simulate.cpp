@@ -175,6 +175,7 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   }
   result.failure = session.simulation().failure();
   result.bound = session.bound_text();
+  result.drives = drive_trouble_text(session.simulation().troubles());
   result.wall_s = std::chrono::duration<double>(WallClock::now() - begun).count();
   result.simulated_s = session.time_s();
   result.step_count = session.world().step_count();

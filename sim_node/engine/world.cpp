@@ -24,6 +24,7 @@ Vec3 velocity_at_half_step(const WorldState& state, std::uint32_t mat) noexcept 
 World::World(std::shared_ptr<const Network> network, VectorWidth width) {
   const FloatMode mode;
   state_ = std::make_unique<WorldState>(std::move(network), width);
+  state_->outside.begin(state_->mats);
   state_->scheme->start(*state_);
   make_room();
 }

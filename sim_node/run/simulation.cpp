@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "node/config/count_text.h"
+#include "node/config/number.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/scene/naming.h"
 
@@ -40,6 +42,20 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
 }
 
 }  // namespace
+
+std::string drive_trouble_text(const StepTroubles& troubles) {
+  std::string text;
+  if (troubles.drive_jumps > 0) {
+    text = "what is driven jumped in " + config::count_text(troubles.drive_jumps, "step") +
+           ", first at " + config::number_text(troubles.first_jump_s) +
+           " s: liaisons feel a jump as a blow";
+  }
+  if (troubles.refused_drives > 0) {
+    text += (text.empty() ? "" : "; ") + config::count_text(troubles.refused_drives, "value") +
+            " of 'driven' were no finite numbers: a position stayed, a force was 0";
+  }
+  return text;
+}
 
 Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch)
     : scene_(std::move(scene)),
@@ -82,7 +98,11 @@ bool Simulation::advance(int steps, EventRoom& events, StepRows* rows) noexcept 
     if (partners_.is_passed()) let_devices_go(PassedBound::kPartners);
     troubles_.overflowed_steps += report.overflowed_sets > 0 ? 1U : 0U;
     troubles_.forgotten_pairs += report.forgotten_pairs;
-    troubles_.refused_inputs += report.refused_inputs;
+    troubles_.refused_inputs += report.refused_inputs + report.refused_drives;
+    troubles_.refused_drives += report.refused_drives;
+    if (report.drive_jumps > 0 && troubles_.drive_jumps == 0)
+      troubles_.first_jump_s = simulated_s();
+    troubles_.drive_jumps += report.drive_jumps;
     if (report.wants_room) world_.make_room();
     if (report.non_finite_mats > 0) {
       failed_ = true;

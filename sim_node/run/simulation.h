@@ -20,8 +20,14 @@ namespace cordis::sim {
 struct StepTroubles {
   std::uint64_t overflowed_steps = 0;  ///< with StepReport::overflowed_sets
   std::uint64_t forgotten_pairs = 0;   ///< sum of StepReport::forgotten_pairs
-  std::uint64_t refused_inputs = 0;    ///< sum of StepReport::refused_inputs
+  std::uint64_t refused_inputs = 0;    ///< sum of StepReport::refused_inputs and refused_drives
+  std::uint64_t refused_drives = 0;    ///< sum of StepReport::refused_drives
+  std::uint64_t drive_jumps = 0;       ///< sum of StepReport::drive_jumps
+  double first_jump_s = 0.0;           ///< simulated time of the first
 };
+
+/// What the drives of a scene have done wrong, for a person; empty when nothing.
+std::string drive_trouble_text(const StepTroubles& troubles);
 
 /// What a scene has passed beyond which its step is not certain to be stable.
 enum class PassedBound : std::uint8_t { kNone, kPartners, kNumber, kEnergy };

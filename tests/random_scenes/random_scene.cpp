@@ -19,7 +19,8 @@ enum class Matter { kAnything, kPotentials, kModes };
 /// Draws one number in each statement: the order of arguments is the compiler's.
 class SceneWriter {
  public:
-  explicit SceneWriter(std::uint32_t seed) : random_(seed), friction_random_(~seed) {
+  explicit SceneWriter(std::uint32_t seed)
+      : random_(seed), friction_random_(~seed), random_of_drives_(seed ^ 0x5bd1e995U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -30,6 +31,7 @@ class SceneWriter {
   std::string text() {
     write_head();
     write_masses();
+    if (matter_ != Matter::kPotentials) drive_some();
     write_port();
     const std::uint32_t links = 1 + below(count_ + 2);
     for (std::uint32_t l = 0; l < links; ++l) add_link(l);
@@ -112,6 +114,44 @@ class SceneWriter {
         "  p: {{kind: points, at_m: [{}], mass_kg: [{}], velocity_m_per_s: [{}], radius_m: "
         "{:.4g}}}\n",
         places, weights, speeds, between(0.02, 0.1));
+  }
+
+  double drive_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_drives_()) / 4294967296.0;
+  }
+
+  /// A formula of time for each axis, or a table, 0 at 0 s, of about this size.
+  std::string function_of_time(double size) {
+    const bool is_table = drive_between(0.0, 1.0) < 0.3;
+    std::string values;
+    for (int row = 0; row < (is_table ? 4 : 1); ++row) {
+      values += row > 0 ? ", [" : "[";
+      for (int axis = 0; axis < space_; ++axis) {
+        const double share = size * drive_between(-1.0, 1.0);
+        const double rate = drive_between(2.0, 80.0);
+        const std::string comma = axis > 0 ? ", " : "";
+        values += is_table ? fmt::format("{}{:.5g}", comma, row == 0 ? 0.0 : share)
+                           : fmt::format("{}\"{:.5g} * sin({:.5g} * time_s)\"", comma, share, rate);
+      }
+      values += "]";
+    }
+    if (!is_table) return values;
+    const bool is_smooth = drive_between(0.0, 1.0) < 0.5;
+    return fmt::format("{{at_s: [0.001, 0.02, 0.05, 0.09], values: [{}], between: {}}}", values,
+                       is_smooth ? "smooth" : "linear");
+  }
+
+  /// Shakes the wall, or pushes the masses.
+  void drive_some() {
+    const double choice = drive_between(0.0, 1.0);
+    if (choice < 0.15) {
+      const std::string motion = function_of_time(0.02);
+      const std::string end = "0.05}}";
+      masses_.insert(masses_.find(end) + end.size() - 1,
+                     ", driven: {displacement_m: " + motion + "}");
+    } else if (choice < 0.25) {
+      masses_.insert(masses_.size() - 2, ", driven: {force_n: " + function_of_time(0.05) + "}");
+    }
   }
 
   void write_port() {
@@ -487,6 +527,7 @@ class SceneWriter {
 
   std::mt19937 random_;
   std::mt19937 friction_random_;
+  std::mt19937 random_of_drives_;  // by itself: what a seed draws besides does not depend on it
   bool may_rub_ = false;
   int space_ = 3;
   Matter matter_ = Matter::kAnything;

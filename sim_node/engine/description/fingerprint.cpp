@@ -107,6 +107,19 @@ class Fingerprint {
     add(surface.half_size);
     add(static_cast<std::uint64_t>(surface.both_sides));
   }
+  void add(const TimeFunction& function) {
+    for (const Program& formula : function.formula) add_all(formula.code);
+    add_all(function.time);
+    add_all(function.value);
+    add(static_cast<std::uint64_t>(function.smooth));
+  }
+  void add(const Drive& drive) {
+    add(drive.mat);
+    add(drive.function);
+    add(static_cast<std::uint64_t>(drive.is_force));
+    add(drive.origin);
+    for (const double value : drive.turn) add(value);
+  }
   template <class Items>
   void add_all(const Items& items) {
     add(static_cast<std::uint64_t>(items.size()));
@@ -166,6 +179,8 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   fingerprint.add_if_any(4, description.maxwell_links);
   fingerprint.add_if_any(5, description.sets);
   fingerprint.add_if_any(8, description.surfaces);
+  fingerprint.add_if_any(9, description.time_functions);
+  fingerprint.add_if_any(10, description.drives);
   if (description.freeze_tolerance > 0.0) {
     fingerprint.add(std::uint64_t{7});
     fingerprint.add(description.freeze_tolerance);

@@ -180,6 +180,15 @@ void check_balls(const NetworkDescription& description) {
   }
 }
 
+void check_drives(const NetworkDescription& description) {
+  check_each(description, description.time_functions, "time function", check_time_function);
+  check_each(description, description.drives, "drive", check_drive);
+  for (std::size_t i = 1; i < description.drives.size(); ++i) {
+    require(description.drives[i - 1].mat < description.drives[i].mat, "the drives",
+            "in the order of their MATs, one each");
+  }
+}
+
 void check(const NetworkDescription& description) {
   require(description.dimension >= 1 && description.dimension <= 3, "dimension", "1, 2 or 3");
   require(std::isfinite(description.step) && description.step > 0.0, "step", "finite and > 0");
@@ -201,6 +210,7 @@ void check(const NetworkDescription& description) {
   check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
   check_each(description, description.surfaces, "surface", check_surface);
   check_each(description, description.sets, "set", check_set);
+  check_drives(description);
   require(is_finite_and_at_least_zero(description.freeze_tolerance), "tolerance of freezing",
           "finite and >= 0");
   for (const std::uint32_t mat : description.kept_awake) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/vec.h"
+#include "sim_node/engine/description/drive.h"
 #include "sim_node/engine/description/integrator_kind.h"
 #include "sim_node/engine/description/state_machine.h"
 #include "sim_node/engine/description/surface.h"
@@ -12,7 +13,7 @@
 namespace cordis::engine {
 
 /// What a MAT is: a punctual mass, a point that never moves, or a mass whose position is imposed
-/// from outside.
+/// from outside or by a Drive.
 enum class MatKind : std::uint8_t { kMass = 0, kFixed = 1, kPort = 2 };
 
 /// One MAT of a description. [Luc90 III.2.1 Matter modelisation]
@@ -107,6 +108,8 @@ struct NetworkDescription {
   std::vector<MaxwellLink> maxwell_links;
   std::vector<SetLiaison> sets;
   std::vector<Surface> surfaces;  ///< of fixed MATs, at most one each
+  std::vector<TimeFunction> time_functions;
+  std::vector<Drive> drives;  ///< in the order of their MATs, at most one each
 
   Vec3 gravity_on(const Mat& mat) const noexcept {
     return mat.weightless ? Vec3(Vec3::Zero()) : gravity;

@@ -13,6 +13,8 @@ struct StepReport {
   std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
   std::uint32_t refused_inputs =
       0;  ///< positions and forces from outside that were not finite, since the last step
+  std::uint32_t refused_drives = 0;  ///< values of drives that were not finite: their MATs stayed
+  std::uint32_t drive_jumps = 0;     ///< positions of drives that jumped, see jumps()
   std::uint32_t overflowed_sets =
       0;  ///< sets with more pairs in range than there was room for: correct, but slow
   std::uint32_t forgotten_pairs = 0;  ///< pairs of sets whose states found no room

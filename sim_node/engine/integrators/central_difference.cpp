@@ -27,6 +27,7 @@ void CentralDifference::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   world.add_frozen_forces(mats.force_columns());
   const double excess = kinetic_excess_of(world);
+  world.outside.kick(mats);  // what drives push with is known from the start
   mats.start();
   world.start_one_period_ago();
   const StepEnergy since = world.work_since_last_call();
@@ -48,6 +49,7 @@ Moved CentralDifference::step(WorldState& world) noexcept {
   if (world.freezing) energy.dissipated += world.freezing->choose_movers(world, false);
   const AdvanceReport advance = mats.advance(world.kernel);
   energy.port_work += world.outside.release(mats);
+  energy.port_work += world.outside.drive_to(world.step_count + 1, mats);
 
   energy.dissipated += advance.medium_work;
   moved.non_finite_mats = advance.non_finite_mats;

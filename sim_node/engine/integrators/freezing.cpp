@@ -110,6 +110,7 @@ Freezing::Freezing(const NetworkDescription& network)
     kept_awake_[i] = mat.kind == MatKind::kPort;
   }
   for (const std::uint32_t mat : network.kept_awake) kept_awake_[mat] = true;
+  for (const Drive& drive : network.drives) kept_awake_[drive.mat] = true;
   for (auto* list : {&whole_, &computed_, &some_, &stopped_}) list->reserve(network.mats.size());
   movers_.reserve(network.mats.size() / 2 + 1);
   adopt(network, network.state_machines);

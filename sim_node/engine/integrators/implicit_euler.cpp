@@ -38,6 +38,7 @@ Moved ImplicitEuler::step(WorldState& world) noexcept {
   for (std::size_t i = 0; i < change_.size(); ++i) change_[i] += before_[i];
   moved.non_finite_mats = mats.move_by(change_);
   pending_.port_work += world.outside.release(mats);
+  pending_.port_work += world.outside.drive_to(world.step_count + 1, mats);
   end_step(world);
   return moved;
 }

@@ -23,6 +23,7 @@ const char* not_a_potential(const StateMachine& state_machine) {
 std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
     const NetworkDescription& network) {
   if (network.medium_viscosity > 0.0) return IntegratorRefusal{"viscosity", {}};
+  if (!network.drives.empty()) return IntegratorRefusal{"what follows a function of time", {}};
   for (const Mat& mat : network.mats) {
     if (mat.kind == MatKind::kPort) return IntegratorRefusal{"a port with the role mass", {}};
   }

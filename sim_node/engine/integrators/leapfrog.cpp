@@ -25,6 +25,7 @@ void Leapfrog::start(WorldState& world) noexcept {
   if (damping_) {
     mats.clear_forces();
   } else {
+    world.outside.kick(mats);  // what drives push with is known from the start
     mats.start();
   }
   mats.set_forces_are_present(true);
@@ -54,6 +55,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
     take_half(0.5 * advance.medium_work, energy);
   }
   pending_.port_work += world.outside.release(mats);
+  pending_.port_work += world.outside.drive_to(world.step_count + 1, mats);
   if (damping_) mats.add_forces(damping_->force());
   end_step(world);
   return moved;
@@ -79,10 +81,16 @@ void Leapfrog::adopt(WorldState& world) noexcept {
   stiff_friction_.choose(world.description(), world.table.state_machines());
 }
 
-/// What a port does is given from outside: it is extrapolated as it has moved in the last period.
+/// What a port does is given from outside: it is extrapolated as it has moved in the last period. Of a
+/// driven one the next place is known, and so its velocity to second order.
 void Leapfrog::feel_ports(const WorldState& world) noexcept {
   for (const std::uint32_t port : world.outside.ports()) {
-    column(extrapolated_, port) = world.mats.delayed(port);
+    const Vec3 delayed = world.mats.delayed(port);
+    column(extrapolated_, port) = delayed;
+    if (!world.mats.is_driven(port)) continue;
+    const Vec3 next = world.outside.driven_place(port, world.step_count + 1);
+    if (!next.allFinite()) continue;
+    column(extrapolated_, port) = world.mats.position(port) - 0.5 * (next - delayed);
   }
 }
 

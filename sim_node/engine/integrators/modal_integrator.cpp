@@ -23,10 +23,12 @@ ModalIntegrator::ModalIntegrator(const NetworkDescription& network)
   ends_.reserve(network.mats.size());
   driven_.reserve(network.mats.size());
   drives_.reserve(network.mats.size());
-  for (const Link& link : network.links) {
+  for (std::uint32_t l = 0; l < network.links.size(); ++l) {
+    const Link& link = network.links[l];
     const bool to_port = network.mats[link.mat_a].kind == MatKind::kPort ||
                          network.mats[link.mat_b].kind == MatKind::kPort;
     if (!to_port) continue;
+    port_links_.push_back(l);
     drive(link.mat_a);
     drive(link.mat_b);
   }
@@ -43,6 +45,7 @@ ModalIntegrator::ModalIntegrator(const NetworkDescription& network)
       for (const std::uint32_t mat : *half) drive(mat);
     }
   }
+  for (const Drive& of_time : network.drives) drive(of_time.mat);
   own_driven_ = static_cast<std::ptrdiff_t>(driven_.size());
 }
 
@@ -60,6 +63,7 @@ void ModalIntegrator::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   kernel_ = &modal_kernel(world.width);
   world.add_frozen_forces(mats.force_columns());
+  world.outside.kick(mats);  // what drives push with is known from the start
   block_.start(world.description(), mats.force_columns().force);
   for (std::uint32_t i = 0; i < mats.count(); ++i) {
     if (is_mass_[i] != 0) {
@@ -109,6 +113,7 @@ Moved ModalIntegrator::step(WorldState& world) noexcept {
     if (!std::isfinite(next)) ++moved.non_finite_mats;
   }
   energy.port_work += world.outside.release(mats);
+  energy.port_work += world.outside.drive_to(world.step_count + 1, mats);
   return moved;
 }
 
@@ -124,9 +129,24 @@ void ModalIntegrator::show_all(WorldState& world) const noexcept {
   for (std::uint32_t i = 0; i < is_mass_.size(); ++i) show(world, i);
 }
 
+/// Elastic energy of linear links to ports, as `cordis` keeps it [J].
+double ModalIntegrator::energy_of_port_links(const WorldState& world) const noexcept {
+  const NetworkDescription& network = world.description();
+  double sum = 0.0;
+  for (const std::uint32_t l : port_links_) {
+    const Link& link = network.links[l];
+    const double now = world.mats.position(link.mat_b).x() - world.mats.position(link.mat_a).x();
+    const double before =
+        world.mats.delayed_at_rest(link.mat_b).x() - world.mats.delayed_at_rest(link.mat_a).x();
+    sum += link.stiffness * (now - link.rest_length) * (before - link.rest_length);
+  }
+  return 0.5 * sum;
+}
+
 Energy ModalIntegrator::energy(WorldState& world) const noexcept {
   return world.account.at_half_step(
-      {block_.kinetic_energy(), block_.elastic_energy(), block_.gravity_energy()},
+      {block_.kinetic_energy(), block_.elastic_energy() + energy_of_port_links(world),
+       block_.gravity_energy()},
       world.work_since_last_call(), world.stored_energy());
 }
 

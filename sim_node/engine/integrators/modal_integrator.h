@@ -32,17 +32,19 @@ class ModalIntegrator final : public Integrator {
 
  private:
   void drive(std::uint32_t mat);
+  double energy_of_port_links(const WorldState& world) const noexcept;
 
   ModalBlock block_;
   const ModalKernel* kernel_ = nullptr;
-  std::vector<double> start_;            // position of each MAT at step 0 [m]
-  std::vector<std::uint32_t> ends_;      // of what is not in the block
-  std::vector<std::uint32_t> driven_;    // MATs that forces act on
-  std::vector<std::uint8_t> is_end_;     // by MAT
-  std::vector<std::uint8_t> is_driven_;  // by MAT
-  std::vector<std::uint8_t> is_mass_;    // by MAT
-  std::vector<ModeDrive> drives_;        // of driven_
-  std::ptrdiff_t own_driven_ = 0;        // of driven_, whatever is held from outside
+  std::vector<double> start_;              // position of each MAT at step 0 [m]
+  std::vector<std::uint32_t> port_links_;  // linear links to ports
+  std::vector<std::uint32_t> ends_;        // of what is not in the block
+  std::vector<std::uint32_t> driven_;      // MATs that forces act on
+  std::vector<std::uint8_t> is_end_;       // by MAT
+  std::vector<std::uint8_t> is_driven_;    // by MAT
+  std::vector<std::uint8_t> is_mass_;      // by MAT
+  std::vector<ModeDrive> drives_;          // of driven_
+  std::ptrdiff_t own_driven_ = 0;          // of driven_, whatever is held from outside
 };
 
 }  // namespace cordis::engine

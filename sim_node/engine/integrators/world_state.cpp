@@ -92,11 +92,14 @@ StepReport WorldState::step() noexcept {
   StepReport report;
   report.refused_inputs = outside.take_refused();
   log.begin_step();
+  outside.push_at(step_count);
   sets.forget_partners();
   const Moved moved = scheme->step(*this);
   std::construct_at(&positions, mats.position());
   account.add(moved.energy);
   ++step_count;
+  report.refused_drives = outside.take_refused_drives();
+  report.drive_jumps = outside.take_drive_jumps();
   report.non_finite_mats = moved.non_finite_mats;
   report.overflowed_sets = sets.overflowed_count();
   report.forgotten_pairs = sets.forgotten_count();

@@ -41,6 +41,11 @@ MatArray::MatArray(const NetworkDescription& description, const MatLayout& layou
     weightless_.resize(count(), 0);
     weightless_[i] = 1;
   }
+  for (const Drive& drive : description.drives) {
+    if (drive.is_force) continue;
+    driven_.resize(count(), 0);
+    driven_[drive.mat] = 1;
+  }
   masses_.reserve(count());
   list_by_weight(masses, masses_);
   masses_.shrink_to_fit();
@@ -251,6 +256,10 @@ double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
 
 void MatArray::add_forces(const AlignedVector<double>& more) noexcept {
   for (std::size_t i = 0; i < force_.size(); ++i) force_[i] += more[i];
+}
+
+void MatArray::set_delayed(std::uint32_t mat, const Vec3& position) noexcept {
+  set(delayed_, mat, position);
 }
 
 void MatArray::move_port(std::uint32_t mat, const Vec3& position) noexcept {

@@ -112,6 +112,8 @@ class MatArray {
   /// Adds to the forces on all MATs, 4 x N.
   void add_forces(const AlignedVector<double>& more) noexcept;
 
+  /// Puts the delayed position of a port somewhere, before step 0.
+  void set_delayed(std::uint32_t mat, const Vec3& position) noexcept;
   /// Moves a MAT from where it is, its delayed position then.
   void move_port(std::uint32_t mat, const Vec3& position) noexcept;
 
@@ -134,10 +136,12 @@ class MatArray {
     return moved_.empty() || !is_mass(mat) ? Vec3(position(mat) - delayed(mat))
                                            : vector(moved_, mat);
   }
-  /// x(n-1) of a mass; of all else, which rests between two steps, x(n). [m]
+  /// x(n-1) of a mass, or of a MAT that a Drive moves along with the masses; of all else, which rests
+  /// between two steps, x(n). [m]
   Vec3 delayed_at_rest(std::uint32_t mat) const noexcept {
-    return vector(is_mass(mat) ? delayed_ : position_, mat);
+    return vector(is_mass(mat) || is_driven(mat) ? delayed_ : position_, mat);
   }
+  bool is_driven(std::uint32_t mat) const noexcept { return !driven_.empty() && driven_[mat] != 0; }
   /// Where a MAT was when the last forces were computed [m].
   Vec3 position_of_forces(std::uint32_t mat) const noexcept {
     return forces_are_present_ ? position(mat) : delayed_at_rest(mat);
@@ -180,6 +184,7 @@ class MatArray {
   AlignedVector<double> velocity_retention_;  // 1 - dt Z / m
   std::vector<double> mass_;                  // [kg], 0 unless a mass
   std::vector<std::uint8_t> weightless_;      // by MAT; empty: none, or no gravity
+  std::vector<std::uint8_t> driven_;          // by MAT; empty: none has a driven position
   std::vector<Range> masses_;                 // rows of neighbouring masses, of one weight
   std::vector<Range> moving_;                 // those that are moved
   std::vector<std::uint32_t> ports_;          // MATs that move_port() moves

@@ -1,6 +1,7 @@
 // sim_node/engine/matter/port_inputs.cpp
 #include "sim_node/engine/matter/port_inputs.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -18,7 +19,9 @@ void serialize(Archive& archive, Vec3& value) {
 }  // namespace
 
 PortInputs::PortInputs(const NetworkDescription& description)
-    : dimension_(description.dimension), slot_(description.mats.size(), kNoSlot) {
+    : network_(description),
+      dimension_(description.dimension),
+      slot_(description.mats.size(), kNoSlot) {
   for (std::size_t i = 0; i < description.mats.size(); ++i) {
     is_mass_.push_back(description.mats[i].kind == MatKind::kMass);
     if (description.mats[i].kind != MatKind::kPort) continue;
@@ -27,10 +30,24 @@ PortInputs::PortInputs(const NetworkDescription& description)
     port_mats_.push_back(static_cast<std::uint32_t>(i));
   }
   forces_.reserve(description.mass_count());
+  function_value_.resize(description.time_functions.size(), Vec3::Zero());
+  for (const Drive& drive : description.drives) {
+    (drive.is_force ? pushing_functions_ : moving_functions_).push_back(drive.function);
+    if (drive.is_force) {
+      pushes_.push_back({&drive});
+    } else {
+      ports_[slot_[drive.mat]].drive = &drive;
+    }
+  }
+  for (auto* functions : {&moving_functions_, &pushing_functions_}) {
+    std::ranges::sort(*functions);
+    functions->erase(std::ranges::unique(*functions).begin(), functions->end());
+  }
+  push_at(0);
 }
 
 void PortInputs::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
-  CORDIS_ASSERT(mat < slot_.size() && is_port(mat));
+  CORDIS_ASSERT(mat < slot_.size() && is_port(mat) && ports_[slot_[mat]].drive == nullptr);
   if (!position.allFinite()) {
     ++refused_;
     return;
@@ -54,11 +71,81 @@ void PortInputs::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
 Vec3 PortInputs::external_force(std::uint32_t mat) const noexcept {
   CORDIS_ASSERT(mat < slot_.size());
   const bool is_held = slot_[mat] != kNoSlot && !is_port(mat);
-  return is_held ? forces_[slot_[mat]].force : Vec3(Vec3::Zero());
+  const Vec3 held = is_held ? forces_[slot_[mat]].force : Vec3(Vec3::Zero());
+  const Push* push = push_on(mat);
+  return push != nullptr ? Vec3(held + push->force) : held;
+}
+
+const PortInputs::Push* PortInputs::push_on(std::uint32_t mat) const noexcept {
+  const auto found =
+      std::ranges::lower_bound(pushes_, mat, {}, [](const Push& push) { return push.drive->mat; });
+  return found != pushes_.end() && found->drive->mat == mat ? &*found : nullptr;
 }
 
 std::uint32_t PortInputs::take_refused() noexcept {
   return std::exchange(refused_, 0U);
+}
+
+std::uint32_t PortInputs::take_refused_drives() noexcept {
+  return std::exchange(refused_drives_, 0U);
+}
+
+std::uint32_t PortInputs::take_drive_jumps() noexcept {
+  return std::exchange(drive_jumps_, 0U);
+}
+
+void PortInputs::begin(MatArray& mats) noexcept {
+  for (const Port& port : ports_) {
+    if (port.drive == nullptr) continue;
+    const Vec3 start = mats.position(port.mat);
+    const Vec3 next = value_at(network_, *port.drive, time_of(1));
+    if (next.allFinite()) mats.set_delayed(port.mat, start - (next - start));
+  }
+}
+
+void PortInputs::find_values(const std::vector<std::uint32_t>& functions,
+                             std::uint64_t step) noexcept {
+  for (const std::uint32_t function : functions) {
+    function_value_[function] = value_at(network_.time_functions[function], time_of(step));
+  }
+}
+
+void PortInputs::push_at(std::uint64_t step) noexcept {
+  find_values(pushing_functions_, step);
+  for (Push& push : pushes_) {
+    const Vec3 force = placed(*push.drive, function_value_[push.drive->function]);
+    if (!force.allFinite()) ++refused_drives_;
+    push.force = force.allFinite() ? force : Vec3(Vec3::Zero());
+  }
+}
+
+Vec3 PortInputs::driven_place(std::uint32_t mat, std::uint64_t step) const noexcept {
+  CORDIS_ASSERT(is_port(mat) && ports_[slot_[mat]].drive != nullptr);
+  return value_at(network_, *ports_[slot_[mat]].drive, time_of(step));
+}
+
+double PortInputs::drive_to(std::uint64_t step, MatArray& mats) noexcept {
+  if (moving_functions_.empty()) return 0.0;
+  double work = 0.0;
+  find_values(moving_functions_, step);
+  for (const Port& port : ports_) {
+    if (port.drive == nullptr) continue;
+    const Vec3 now = mats.position(port.mat);
+    Vec3 next = placed(*port.drive, function_value_[port.drive->function]);
+    if (!next.allFinite()) {
+      ++refused_drives_;
+      next = now;
+    }
+    constexpr double kTwice = 4.0;  // of squares
+    const double way = (next - now).squaredNorm();
+    if (way > kTwice * (now - mats.delayed(port.mat)).squaredNorm() &&
+        jumps(network_, *port.drive, time_of(step - 1), time_of(step), now, next)) {
+      ++drive_jumps_;
+    }
+    work -= 0.5 * port.link_force.dot(next - now);
+    mats.move_port(port.mat, next);
+  }
+  return work;
 }
 
 void PortInputs::start(const MatArray& mats) noexcept {
@@ -68,6 +155,7 @@ void PortInputs::start(const MatArray& mats) noexcept {
 double PortInputs::move_ports(MatArray& mats) noexcept {
   double work = 0.0;
   for (const Port& port : ports_) {
+    if (port.drive != nullptr) continue;
     work -= 0.5 * port.link_force.dot(port.next - mats.position(port.mat));
     mats.move_port(port.mat, port.next);
   }
@@ -90,11 +178,22 @@ double PortInputs::kick(MatArray& mats) noexcept {
     mats.set_force(held.mat, held.link_force + held.force);
     work += 0.5 * held.force.dot(mats.position(held.mat) - mats.delayed(held.mat));
   }
+  for (Push& push : pushes_) {
+    const std::uint32_t mat = push.drive->mat;
+    push.link_force = mats.force(mat);
+    mats.set_force(mat, push.link_force + push.force);
+    work += 0.5 * push.force.dot(mats.position(mat) - mats.delayed(mat));
+  }
   return work;
 }
 
 double PortInputs::release(MatArray& mats) const noexcept {
   double work = 0.0;
+  for (const Push& push : pushes_) {
+    const std::uint32_t mat = push.drive->mat;
+    mats.set_force(mat, push.link_force);
+    work += 0.5 * push.force.dot(mats.position(mat) - mats.delayed(mat));
+  }
   for (const HeldForce& held : forces_) {
     mats.set_force(held.mat, held.link_force);
     work += 0.5 * held.force.dot(mats.position(held.mat) - mats.delayed(held.mat));
@@ -107,6 +206,7 @@ void PortInputs::serialize(Archive& archive) {
     engine::serialize(archive, port.next);
     engine::serialize(archive, port.link_force);
   }
+  for (Push& push : pushes_) engine::serialize(archive, push.force);
   archive.whole(refused_, [](std::uint32_t) { return true; });
   std::size_t held_count = forces_.size();
   held_count = archive.count(held_count, forces_.capacity());

@@ -1,5 +1,5 @@
 // sim_node/engine/matter/port_inputs.h -- what a world takes from outside: positions of its ports,
-// forces on its masses.
+// forces on its masses, and what its drives say of both.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@
 namespace cordis::engine {
 
 /// The two halves of the dual dipole: a port mass is given positions and its links answer with a
-/// force; a mass is given forces and answers with a position. Keeps the work they do. [Luc90 V.
+/// force; a mass is given forces and answers with a position. A drive gives them as a function of time
+/// instead: its ports move along with the masses, at the end of a step. Keeps the work they do. [Luc90 V.
 /// Outside communication]
 class PortInputs {
  public:
@@ -23,10 +24,25 @@ class PortInputs {
   void impose_position(std::uint32_t mat, const Vec3& position) noexcept;
   /// The force [N] held on a mass from the next step on. Real time: O(1), no allocation.
   void hold_force(std::uint32_t mat, const Vec3& force) noexcept;
-  /// The force held on a mass [N]; 0 for a port.
+  /// The force held on a mass [N], with that of a drive in the last step, at first in the coming one; 0
+  /// for a port.
   Vec3 external_force(std::uint32_t mat) const noexcept;
   /// How many positions and forces were not finite since this was last asked.
   [[nodiscard]] std::uint32_t take_refused() noexcept;
+  /// How many values of drives were not finite, and how many positions jumped, since this was last asked.
+  [[nodiscard]] std::uint32_t take_refused_drives() noexcept;
+  [[nodiscard]] std::uint32_t take_drive_jumps() noexcept;
+
+  /// Puts the delayed positions of driven ports where the way of the first period begins: before anything
+  /// is done with the MATs.
+  void begin(MatArray& mats) noexcept;
+  /// The forces that drives put on masses in a step. Real time: O(drives), no allocation.
+  void push_at(std::uint64_t step) noexcept;
+  /// Where a driven port is at a step [m]; perhaps no finite numbers. Real time: as of value_at().
+  Vec3 driven_place(std::uint32_t mat, std::uint64_t step) const noexcept;
+  /// Moves the driven ports to a step, after the masses. @return half of the work [J] they do over the new
+  /// period. Real time: O(drives), no allocation.
+  [[nodiscard]] double drive_to(std::uint64_t step, MatArray& mats) noexcept;
 
   /// The forces of the links before step 0, which the account of the ports begins with.
   void start(const MatArray& mats) noexcept;
@@ -37,7 +53,7 @@ class PortInputs {
   /// The port masses, in their order.
   const std::vector<std::uint32_t>& ports() const noexcept { return port_mats_; }
 
-  /// Moves the ports. @return work [J] the last forces of their links took from the outside on the
+  /// Moves the ports that nothing drives. @return work [J] the last forces of their links took from the outside on the
   /// way, half of it.
   [[nodiscard]] double move_ports(MatArray& mats) noexcept;
   /// @return the other half, with the forces of the links at the new positions.
@@ -58,6 +74,12 @@ class PortInputs {
     std::uint32_t mat;
     Vec3 next;                       // position at the beginning of the next step [m]
     Vec3 link_force = Vec3::Zero();  // of the last step [N]
+    const Drive* drive = nullptr;    // of the network; none: moved from outside
+  };
+  struct Push {
+    const Drive* drive;              // of the network
+    Vec3 force = Vec3::Zero();       // [N]
+    Vec3 link_force = Vec3::Zero();  // as of HeldForce
   };
   struct HeldForce {
     std::uint32_t mat;
@@ -68,6 +90,13 @@ class PortInputs {
   Vec3 within_dimension(Vec3 value) const noexcept;
   bool is_port(std::uint32_t mat) const noexcept;
 
+  double time_of(std::uint64_t step) const noexcept {
+    return static_cast<double>(step) * network_.step;
+  }
+  void find_values(const std::vector<std::uint32_t>& functions, std::uint64_t step) noexcept;
+  const Push* push_on(std::uint32_t mat) const noexcept;
+
+  const NetworkDescription& network_;
   int dimension_;
   std::vector<bool> is_mass_;             // by MAT
   std::vector<Port> ports_;               // in MAT order
@@ -75,7 +104,13 @@ class PortInputs {
   std::vector<HeldForce>
       forces_;  // in the order in which the masses were first given one; room for all masses
   std::vector<std::uint32_t> slot_;  // by MAT: its place in ports_ or forces_
+  std::vector<Push> pushes_;         // in MAT order
   std::uint32_t refused_ = 0;
+  std::vector<std::uint32_t> moving_functions_;   // of driven ports, each once
+  std::vector<std::uint32_t> pushing_functions_;  // of pushes_, each once
+  std::vector<Vec3> function_value_;              // of the network's, at the step of the last call
+  std::uint32_t refused_drives_ = 0;
+  std::uint32_t drive_jumps_ = 0;
 };
 
 }  // namespace cordis::engine

@@ -115,6 +115,7 @@ void project(const scene::Subspace& subspace, int dimension, scene::Scene& scene
 
 std::string confine(scene::Scene& scene) {
   if (!scene.network.surfaces.empty()) return {};  // what touches them may leave the plane
+  if (!scene.network.drives.empty()) return {};    // so may what a function of time moves
   scene::Subspace subspace;
   subspace.space = scene.space();
   std::vector<int> left;

@@ -26,6 +26,7 @@ Held held_in(const scene::Scene& scene) {
     held.mats[i] = network.mats[i].kind != engine::MatKind::kMass;
   }
   for (const std::uint32_t mat : network.kept_awake) held.mats[mat] = true;
+  for (const engine::Drive& drive : network.drives) held.mats[drive.mat] = true;
   const auto hold_ends = [&held](const auto& links) {
     for (const auto& link : links) held.mats[link.mat_a] = held.mats[link.mat_b] = true;
   };

@@ -83,6 +83,7 @@ void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, sce
     of_mats.apply(set.set_p);
     of_mats.apply(set.set_q);
   }
+  for (engine::Drive& drive : network.drives) of_mats.apply(drive.mat);
   for (engine::Surface& surface : network.surfaces) of_mats.apply(surface.mat);
   for (scene::Port& port : scene.ports) {
     of_mats.apply(port.mat);

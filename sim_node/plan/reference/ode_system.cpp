@@ -34,6 +34,9 @@ struct OdeSystem::Geometry {
 
 OdeSystem::OdeSystem(engine::NetworkDescription network)
     : network_(std::move(network)), held_(network_.mats.size(), Vec3::Zero()) {
+  if (!network_.drives.empty()) {
+    throw std::invalid_argument("MATs that follow a function of time have no reference integrator");
+  }
   for (const engine::StateMachine& state_machine : network_.state_machines) {
     if (state_machine.friction.acts())
       throw std::invalid_argument("friction has no reference integrator");

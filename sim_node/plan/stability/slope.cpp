@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim_node/plan/stability/drive_speed.h"
 #include "sim_node/plan/stability/start_point.h"
 
 namespace cordis::plan {
@@ -436,7 +437,7 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, const engine
 
 Reach reach_of(const engine::NetworkDescription& network, double factor) {
   Reach reach;
-  reach.speed = kMinSpeed;
+  reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
   for (const engine::StateLink& link : network.state_links) {
     const double distance =
         (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();

@@ -18,6 +18,8 @@ struct GeneratedMatter {
   std::vector<double> drawn_radius_m;     ///< per MAT
   std::vector<NamedRange> names;          ///< of MATs within it, from 0
   std::vector<engine::Surface> surfaces;  ///< their MATs counted from 0
+  std::vector<engine::TimeFunction> time_functions;
+  std::vector<engine::Drive> drives;  ///< their MATs and functions counted from 0
 };
 
 }  // namespace cordis::scene

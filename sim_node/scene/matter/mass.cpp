@@ -8,8 +8,7 @@ using engine::Vec3;
 
 GeneratedMatter read_mass(Source& source) {
   GeneratedMatter matter;
-  const std::vector<Vec3> points =
-      required_points(source.reader, "at_m", source.space, source.problems);
+  const std::vector<Vec3> points = read_places(source);
   const PointSpec spec = read_point_spec(source);
   const Vec3 velocity =
       optional_point(source.reader, "velocity_m_per_s", Vec3::Zero(), source.space);
@@ -23,8 +22,7 @@ GeneratedMatter read_mass(Source& source) {
 
 GeneratedMatter read_fixed(Source& source) {
   GeneratedMatter matter;
-  const std::vector<Vec3> points =
-      required_points(source.reader, "at_m", source.space, source.problems);
+  const std::vector<Vec3> points = read_places(source);
   const std::optional<PointSpec> ball = optional_ball(source.reader, false, source.problems);
   for (const Vec3& point : points) {
     matter.mats.push_back({MatKind::kFixed, 0.0, point, Vec3::Zero()});

@@ -7,6 +7,7 @@
 #include "sim_node/scene/matter/ball.h"
 #include "sim_node/scene/matter/beam.h"
 #include "sim_node/scene/matter/disc.h"
+#include "sim_node/scene/matter/driven.h"
 #include "sim_node/scene/matter/grid.h"
 #include "sim_node/scene/matter/lattice.h"
 #include "sim_node/scene/matter/mass.h"
@@ -96,7 +97,11 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   if (!check_space(reader, kind, space)) return {};
 
   Source source{reader, liaisons, space, may_be_massless, problems};
+  const std::optional<DriveSpec> spec = read_driven(reader, space, problems);
+  const engine::Vec3 start = spec ? spec->start : engine::Vec3(engine::Vec3::Zero());
+  if (reader.optional_value("driven").find("position_m").exists()) source.driven_start = &start;
   GeneratedMatter matter = kind.read(source);
+  if (spec && reader.ok()) drive(*spec, reader, matter);
   if (matter.surfaces.empty()) {
     read_drawing(reader, matter);
   } else {

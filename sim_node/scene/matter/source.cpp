@@ -21,6 +21,14 @@ std::optional<PointSpec> optional_ball(config::MappingReader& reader, bool with_
   return spec;
 }
 
+std::vector<Vec3> read_places(Source& source) {
+  if (source.driven_start != nullptr && !source.reader.has("at_m")) {
+    source.reader.optional_value("at_m");
+    return {*source.driven_start};
+  }
+  return required_points(source.reader, "at_m", source.space, source.problems);
+}
+
 PointSpec read_point_spec(Source& source) {
   config::MappingReader& reader = source.reader;
   const config::Value mass = reader.optional_value("mass_kg");

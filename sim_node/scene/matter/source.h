@@ -21,7 +21,11 @@ struct Source {
   int space;
   bool may_be_massless;  ///< a mass of 0 is taken: a reduction is to take it out
   config::Problems& problems;
+  const engine::Vec3* driven_start = nullptr;  ///< where a drive puts it when `at_m` is left out
 };
+
+/// `at_m`; without it, where a drive begins.
+std::vector<engine::Vec3> read_places(Source& source);
 
 /// One MAT as a generator repeats it: a punctual mass or a ball.
 struct PointSpec {

@@ -22,6 +22,10 @@ bool Assembly::put(GeneratedMatter& matter) const {
     mat.position = placement(mat.position);
     mat.velocity = placement.turn * mat.velocity;
   }
+  for (engine::Drive& drive : matter.drives) {
+    drive.origin = placement(drive.origin);
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(drive.turn.data()) = placement.turn;
+  }
   for (LayoutPoint& point : matter.layout) {
     point.x += placement.layout_shift.x;
     point.z += placement.layout_shift.z;
@@ -53,9 +57,25 @@ bool Assembly::add(GeneratedMatter matter, const config::Place& place) {
                         matter.drawn_radius_m.end());
   scene.network.radius.insert(scene.network.radius.end(), matter.radius_m.begin(),
                               matter.radius_m.end());
+  const auto first_mat = mat_count();
   scene.network.mats.insert(scene.network.mats.end(), matter.mats.begin(), matter.mats.end());
+  add_drives(matter, first_mat);
   scene.layout.insert(scene.layout.end(), matter.layout.begin(), matter.layout.end());
   return true;
+}
+
+void Assembly::add_drives(const GeneratedMatter& matter, std::uint32_t first_mat) {
+  engine::NetworkDescription& network = scene.network;
+  const auto first_function = static_cast<std::uint32_t>(network.time_functions.size());
+  network.time_functions.insert(network.time_functions.end(), matter.time_functions.begin(),
+                                matter.time_functions.end());
+  for (engine::Drive drive : matter.drives) {
+    drive.mat += first_mat;
+    drive.function += first_function;
+    network.drives.push_back(drive);
+    // to the last bit, whatever a part has turned
+    if (!drive.is_force) network.mats[drive.mat].position = start_of(network, drive);
+  }
 }
 
 void Assembly::refuse_more(const config::Place& place, const std::string& message,

@@ -100,6 +100,7 @@ struct Assembly {
  private:
   /// @return false where a box would not lie along the axes
   [[nodiscard]] bool put(GeneratedMatter& matter) const;
+  void add_drives(const GeneratedMatter& matter, std::uint32_t first_mat);
 };
 
 }  // namespace cordis::scene

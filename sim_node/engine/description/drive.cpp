@@ -1,0 +1,153 @@
+// sim_node/engine/description/drive.cpp
+#include "sim_node/engine/description/drive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/engine/core/require.h"
+#include "sim_node/engine/description/network.h"
+
+namespace cordis::engine {
+namespace {
+
+/// Slope at a value of a smooth table, from the slopes of the straight lines beside it over their times:
+/// their harmonic mean, weighted, or 0 where they have different signs.
+double smooth_slope(double before, double after, double time_before, double time_after) noexcept {
+  if (!(before * after > 0.0)) return 0.0;
+  const double weight_before = time_before + 2.0 * time_after;
+  const double weight_after = 2.0 * time_before + time_after;
+  return (weight_before + weight_after) / (weight_before / before + weight_after / after);
+}
+
+/// Slope of one axis at a time of a smooth table; at its ends 0, where it rests.
+double slope_at(const TimeFunction& table, std::size_t index, int axis) noexcept {
+  if (index == 0 || index + 1 == table.time.size()) return 0.0;
+  const double time_before = table.time[index] - table.time[index - 1];
+  const double time_after = table.time[index + 1] - table.time[index];
+  const double before = (table.value[index][axis] - table.value[index - 1][axis]) / time_before;
+  const double after = (table.value[index + 1][axis] - table.value[index][axis]) / time_after;
+  return smooth_slope(before, after, time_before, time_after);
+}
+
+Vec3 in_table(const TimeFunction& table, double time) noexcept {
+  const auto next = std::upper_bound(table.time.begin(), table.time.end(), time);
+  if (next == table.time.begin()) return table.value.front();
+  if (next == table.time.end()) return table.value.back();
+  const auto right = static_cast<std::size_t>(next - table.time.begin());
+  const std::size_t left = right - 1;
+  const double width = table.time[right] - table.time[left];
+  const double share = (time - table.time[left]) / width;
+  Vec3 value;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double begin = table.value[left][axis];
+    const double way = table.value[right][axis] - begin;
+    value[axis] = begin + share * way;
+    if (!table.smooth) continue;
+    const double excess_left = width * slope_at(table, left, axis) - way;
+    const double excess_right = width * slope_at(table, right, axis) - way;
+    value[axis] += share * (1.0 - share) * ((1.0 - share) * excess_left - share * excess_right);
+  }
+  return value;
+}
+
+}  // namespace
+
+Vec3 value_at(const TimeFunction& function, double time) noexcept {
+  if (!function.time.empty()) return in_table(function, time);
+  LinkQuantities quantities{};
+  quantities[static_cast<std::size_t>(Quantity::kAge)] = time;
+  Vec3 value = Vec3::Zero();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Program& formula = function.formula[axis];
+    if (!formula.empty()) value[static_cast<int>(axis)] = value_of(formula, quantities);
+  }
+  return value;
+}
+
+Vec3 placed(const Drive& drive, const Vec3& value) noexcept {
+  const std::array<double, 9>& m = drive.turn;
+  const Vec3 turned(m[0] * value.x() + m[1] * value.y() + m[2] * value.z(),
+                    m[3] * value.x() + m[4] * value.y() + m[5] * value.z(),
+                    m[6] * value.x() + m[7] * value.y() + m[8] * value.z());
+  return drive.is_force ? turned : Vec3(drive.origin + turned);
+}
+
+Vec3 value_at(const NetworkDescription& network, const Drive& drive, double time) noexcept {
+  return placed(drive, value_at(network.time_functions[drive.function], time));
+}
+
+Vec3 start_of(const NetworkDescription& network, const Drive& drive) noexcept {
+  return value_at(network, drive, 0.0);
+}
+
+bool jumps(const NetworkDescription& network, const Drive& drive, double from, double to,
+           const Vec3& before, const Vec3& next) noexcept {
+  constexpr int kHalvings = 10;  // a thousandth
+  const double whole = (next - before).squaredNorm();
+  Vec3 low = before;
+  Vec3 high = next;
+  for (int n = 0; n < kHalvings; ++n) {
+    const double middle = 0.5 * (from + to);
+    const Vec3 there = value_at(network, drive, middle);
+    const double way_low = (there - low).squaredNorm();
+    const double way_high = (high - there).squaredNorm();
+    if (!(std::max(way_low, way_high) > 0.25 * whole)) return false;
+    if (way_low > way_high) {
+      to = middle;
+      high = there;
+    } else {
+      from = middle;
+      low = there;
+    }
+  }
+  return true;
+}
+
+void check_time_function(const NetworkDescription& network, const TimeFunction& function,
+                         const std::string& name) {
+  require(function.time.size() == function.value.size(), name + ": times", "as many as values");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Program& formula = function.formula[axis];
+    if (formula.empty()) continue;
+    require(function.time.empty(), name, "a table or formulas");
+    require(static_cast<int>(axis) < network.dimension, name + ": formula",
+            "none beyond the dimension of the network");
+    check_program(formula, name + ": formula");
+    require(!has_edge(formula), name + ": formula", "one without rising and falling");
+    for (const Instruction& instruction : formula.code) {
+      require(
+          instruction.operation != Operation::kQuantity || instruction.quantity == Quantity::kAge,
+          name + ": quantity", "the time");
+    }
+  }
+  for (std::size_t i = 0; i < function.time.size(); ++i) {
+    require(std::isfinite(function.time[i]), name + ": time", "finite");
+    require(i == 0 || function.time[i] > function.time[i - 1], name + ": time",
+            "larger than the one before");
+    require(function.value[i].allFinite(), name + ": value", "finite");
+    for (int axis = network.dimension; axis < 3; ++axis) {
+      require(function.value[i][axis] == 0.0, name + ": value",
+              "0 beyond the dimension of the network");
+    }
+  }
+}
+
+void check_drive(const NetworkDescription& network, const Drive& drive, const std::string& name) {
+  require(drive.mat < network.mats.size(), name + ": its MAT", "one of the network");
+  require(drive.function < network.time_functions.size(), name + ": its function",
+          "one of the network");
+  const Mat& mat = network.mats[drive.mat];
+  require(mat.kind == (drive.is_force ? MatKind::kMass : MatKind::kPort), name + ": its MAT",
+          "a port for a position, a mass for a force");
+  require(drive.origin.allFinite(), name + ": origin", "finite");
+  for (const double value : drive.turn) require(std::isfinite(value), name + ": turn", "finite");
+  const Vec3 start = start_of(network, drive);
+  require(start.allFinite(), name + ": value at the start", "finite");
+  for (int axis = network.dimension; axis < 3; ++axis) {
+    require(start[axis] == 0.0, name + ": value at the start",
+            "0 beyond the dimension of the network");
+  }
+  require(drive.is_force || mat.position == start, name + ": its MAT", "where it begins");
+}
+
+}  // namespace cordis::engine

@@ -1,0 +1,67 @@
+// sim_node/engine/description/drive.h -- MATs that follow a function of time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim_node/engine/core/vec.h"
+#include "sim_node/engine/expressions/program.h"
+
+namespace cordis::engine {
+
+struct NetworkDescription;
+
+/// A vector that depends on time alone: a formula for each axis, or a table.
+///
+/// A table keeps its first value before its first time, and its last one after the last time. Between two
+/// times it goes straight from one value to the next; a smooth one goes along cubics whose slopes are
+/// continuous, along each axis never beyond the two values (the slopes are those of Fritsch and Butland).
+struct TimeFunction {
+  std::array<Program, 3>
+      formula;               ///< per axis, of Quantity::kAge alone: here the time since step 0
+                             ///< [s]; empty: 0
+  std::vector<double> time;  ///< of a table [s], each larger than the one before; empty: none
+  std::vector<Vec3> value;   ///< of a table at these times
+  bool smooth = false;       ///< of a table
+};
+
+/// The value at a time [s]; its components may be no finite numbers. The same bits everywhere. Real time:
+/// O(instructions), of a table O(log(times)); no allocation.
+Vec3 value_at(const TimeFunction& function, double time) noexcept;
+
+/// One MAT that follows a function of time: its position, or a force from outside on it.
+///
+///     position = origin + turn F(t)      of a MatKind::kPort, which nothing else moves
+///     force    = turn F(t)               on a MatKind::kMass, beside all others
+///
+/// The time of step n is n dt, never a sum. The velocity that dampers see is the difference quotient of
+/// the last period, (x(n) - x(n-1)) / dt, as that of every other MAT: so the work of the drive is exactly
+/// what its liaisons receive. It begins with the quotient of the first period.
+struct Drive {
+  std::uint32_t mat = 0;
+  std::uint32_t function = 0;  ///< index in NetworkDescription::time_functions
+  bool is_force = false;
+  Vec3 origin = Vec3::Zero();                                               ///< of a position [m]
+  std::array<double, 9> turn{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};  ///< rows of a matrix
+};
+
+/// Position [m] or force [N] of a drive whose function has this value. Real time: O(1).
+Vec3 placed(const Drive& drive, const Vec3& value) noexcept;
+/// Position [m] or force [N] of a drive at a time [s]. Real time as of the other value_at().
+Vec3 value_at(const NetworkDescription& network, const Drive& drive, double time) noexcept;
+/// Where a MAT whose position is driven is at the start [m].
+Vec3 start_of(const NetworkDescription& network, const Drive& drive) noexcept;
+
+/// True where a position jumps between two times: more than half of its way lies within a thousandth of
+/// the period. `before` and `next` are its values there. Real time: 11 values.
+bool jumps(const NetworkDescription& network, const Drive& drive, double from, double to,
+           const Vec3& before, const Vec3& next) noexcept;
+
+/// @throws std::invalid_argument beginning with `name`
+void check_time_function(const NetworkDescription& network, const TimeFunction& function,
+                         const std::string& name);
+void check_drive(const NetworkDescription& network, const Drive& drive, const std::string& name);
+
+}  // namespace cordis::engine

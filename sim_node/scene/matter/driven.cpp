@@ -1,0 +1,234 @@
+// sim_node/scene/matter/driven.cpp
+#include "sim_node/scene/matter/driven.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "node/config/nearest_word.h"
+#include "sim_node/scene/language/formula.h"
+#include "sim_node/scene/language/quantity.h"
+#include "sim_node/scene/matter/point.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::MappingReader;
+using config::Problems;
+using config::Value;
+using engine::MatKind;
+using engine::TimeFunction;
+using engine::Vec3;
+
+constexpr double kSamePlace = 1e-9;  // [m]
+constexpr double kPi = 3.14159265358979323846;
+
+struct DriveKey {
+  const char* key;
+  DriveSpec::Kind kind;
+};
+constexpr std::array<DriveKey, 3> kDriveKeys{{{"position_m", DriveSpec::Kind::kPosition},
+                                              {"displacement_m", DriveSpec::Kind::kDisplacement},
+                                              {"force_n", DriveSpec::Kind::kForce}}};
+
+/// Puts the names of a formula to what they stand for: time_s is the age of the scene. @return whether
+/// all are known
+bool put_names(Expression& formula, const std::string& what, const ParameterValues& parameters,
+               Problems& problems) {
+  bool known = true;
+  for (ExpressionWord& word : formula.words) {
+    if (word.kind == ExpressionWord::Kind::kOperation) {
+      if (!engine::is_edge(word.operation)) continue;
+      problems.error(formula.place_of(word), what + " cannot ask for 'rising' or 'falling'");
+      known = false;
+    } else if (word.kind == ExpressionWord::Kind::kName) {
+      if (word.name == "time_s") {
+        word.name = "age_s";
+      } else if (parameters.find(word.name)) {
+        continue;
+      } else if (word.name == "pi") {
+        word.kind = ExpressionWord::Kind::kNumber;
+        word.number = kPi;
+      } else {
+        std::vector<std::string> words = parameters.names();
+        words.insert(words.end(), {"time_s", "pi"});
+        const std::string hint = config::did_you_mean(word.name, words);
+        problems.error(formula.place_of(word), what + " cannot ask for '" + word.name + "'",
+                       hint.empty() ? "it may ask for time_s, pi and its parameters" : hint);
+        known = false;
+      }
+    }
+  }
+  return known;
+}
+
+engine::Program read_time_formula(const Value& text, const std::string& what,
+                                  const ParameterValues& parameters, Problems& problems) {
+  std::optional<Expression> formula = parse_expression(text, what, problems);
+  if (!formula) return {};
+  if (formula->is_truth) {
+    problems.error(text.place(), what + " must be a number, got a comparison",
+                   "write if(..., 1, 0)");
+    return {};
+  }
+  if (!put_names(*formula, what, parameters, problems)) return {};
+  std::uint32_t slots = 0;
+  std::optional<CompiledExpression> compiled = compile(*formula, what, parameters, slots, problems);
+  return compiled ? std::move(compiled->program) : engine::Program{};
+}
+
+std::string axes_text(int space) {
+  return space == 1 ? "one formula" : std::to_string(space) + " formulas, one for each axis";
+}
+
+void read_formulas(const Value& value, const std::string& what, int space,
+                   const ParameterValues& parameters, TimeFunction& function, Problems& problems) {
+  const bool is_list = value.kind() == Value::Kind::kSequence;
+  const std::vector<Value> formulas = is_list ? value.items() : std::vector<Value>{value};
+  if (formulas.size() != static_cast<std::size_t>(space)) {
+    problems.error(value.place(),
+                   what + " must be " + axes_text(space) + ", or a table, got " +
+                       (is_list ? std::to_string(formulas.size()) : value.described()));
+    return;
+  }
+  for (std::size_t axis = 0; axis < formulas.size(); ++axis) {
+    function.formula[axis] = read_time_formula(formulas[axis], what, parameters, problems);
+  }
+}
+
+void read_table(const Value& value, const std::string& what, int space, TimeFunction& function,
+                Problems& problems) {
+  MappingReader reader(value, what, problems);
+  function.time = reader.required_numbers("at_s");
+  function.value = required_points(reader, "values", space, problems);
+  function.smooth = reader.optional_choice("between", "linear", {"linear", "smooth"}) == "smooth";
+  reader.finish();
+  if (!reader.ok()) return;
+  if (function.time.size() != function.value.size()) {
+    reader.error_at("values",
+                    "'values' in " + what + " must be " + std::to_string(function.time.size()) +
+                        ", one for each time, got " + std::to_string(function.value.size()));
+  }
+  const auto late = std::ranges::adjacent_find(function.time, std::greater_equal<>());
+  if (late == function.time.end()) return;
+  reader.error_at("at_s", "'at_s' in " + what + " must grow from each time to the next, got " +
+                              config::number_text(*late) + " before " +
+                              config::number_text(*(late + 1)));
+}
+
+std::string point_text(const Vec3& point, int space) {
+  std::string text;
+  for (int axis = 0; axis < space; ++axis) {
+    text += (axis == 0 ? "" : ", ") + config::number_text(point[axis]);
+  }
+  return space == 1 ? text : "[" + text + "]";
+}
+
+/// The value at 0 s must be one to begin with.
+void check_start_value(MappingReader& reader, const char* key, int space, DriveSpec& spec) {
+  spec.start = value_at(spec.function, 0.0);
+  const std::string what = "'" + std::string(key) + "' in " + reader.what();
+  if (!spec.start.allFinite()) {
+    reader.error_at(key, what + " is no finite number at 0 s");
+  } else if (spec.kind != DriveSpec::Kind::kForce && spec.start.cwiseAbs().maxCoeff() > kFarthest) {
+    reader.error_at(key, what + " begins farther than 1e6 m away");
+  } else if (spec.kind == DriveSpec::Kind::kDisplacement && spec.start.norm() > kSamePlace) {
+    reader.error_at(
+        key, what + " must be 0 at 0 s, where the matter is, got " + point_text(spec.start, space),
+        "subtract that, or put the matter there");
+  }
+}
+
+void drive_position(const DriveSpec& spec, MappingReader& reader, GeneratedMatter& matter) {
+  const bool is_displacement = spec.kind == DriveSpec::Kind::kDisplacement;
+  if (!is_displacement && matter.mats.size() != 1) {
+    reader.error_at("driven",
+                    "'position_m' drives one MAT, " + reader.what() + " has " +
+                        std::to_string(matter.mats.size()),
+                    "write displacement_m: it moves all of them alike");
+    return;
+  }
+  for (std::uint32_t i = 0; i < matter.mats.size(); ++i) {
+    engine::Mat& mat = matter.mats[i];
+    if (!mat.velocity.isZero(0.0)) {
+      reader.error_at("velocity_m_per_s",
+                      "a driven position has the velocity of its function: 'velocity_m_per_s' in " +
+                          reader.what() + " contradicts it");
+      return;
+    }
+    if (!is_displacement && (mat.position - spec.start).norm() > kSamePlace) {
+      reader.error_at("at_m", "'at_m' in " + reader.what() +
+                                  " must be where 'position_m' is at 0 s, or be left out");
+      return;
+    }
+    const Vec3 origin = is_displacement ? mat.position : Vec3(Vec3::Zero());
+    mat = {MatKind::kPort, 0.0, origin + spec.start, Vec3::Zero()};
+    matter.drives.push_back({i, 0, false, origin});
+  }
+}
+
+void drive_force(MappingReader& reader, GeneratedMatter& matter) {
+  for (std::uint32_t i = 0; i < matter.mats.size(); ++i) {
+    if (matter.mats[i].kind == MatKind::kMass) matter.drives.push_back({i, 0, true});
+  }
+  if (matter.drives.empty()) {
+    reader.error_at("driven", "'force_n' drives masses, " + reader.what() + " has none");
+  }
+}
+
+}  // namespace
+
+std::optional<DriveSpec> read_driven(MappingReader& reader, int space, Problems& problems) {
+  const Value section = reader.optional_mapping("driven");
+  if (!section.exists()) return std::nullopt;
+  const std::size_t errors_before = problems.error_count();
+  MappingReader driven(section, "'driven' of " + reader.what(), problems);
+  const ParameterValues parameters(driven.optional_mapping("parameters"), {}, nullptr,
+                                   driven.what(), problems);
+  DriveSpec spec;
+  const char* written = nullptr;
+  for (const DriveKey& known : kDriveKeys) {
+    const Value value = driven.optional_value(known.key);
+    if (!value.exists()) continue;
+    if (written != nullptr) {
+      driven.error_at(known.key, "either '" + std::string(written) + "' or '" + known.key +
+                                     "' can be given in " + driven.what());
+      break;
+    }
+    written = known.key;
+    spec.kind = known.kind;
+    const std::string what = "'" + std::string(known.key) + "' in " + driven.what();
+    if (value.kind() == Value::Kind::kMapping) {
+      read_table(value, what, space, spec.function, problems);
+    } else {
+      read_formulas(value, what, space, parameters, spec.function, problems);
+    }
+  }
+  driven.finish();
+  if (written == nullptr && problems.error_count() == errors_before) {
+    reader.error_at("driven", driven.what() + " needs position_m, displacement_m or force_n");
+  }
+  if (problems.error_count() == errors_before) check_start_value(driven, written, space, spec);
+  if (problems.error_count() != errors_before) return std::nullopt;
+  return spec;
+}
+
+void drive(const DriveSpec& spec, MappingReader& reader, GeneratedMatter& matter) {
+  if (matter.mats.empty()) return;  // after a problem
+  if (!matter.surfaces.empty()) {
+    reader.error_at("driven", "a surface cannot be driven");
+    return;
+  }
+  if (spec.kind == DriveSpec::Kind::kForce) {
+    drive_force(reader, matter);
+  } else {
+    drive_position(spec, reader, matter);
+  }
+  if (!matter.drives.empty()) matter.time_functions.push_back(spec.function);
+}
+
+}  // namespace cordis::scene
