@@ -41,7 +41,7 @@ PortInputs::PortInputs(const NetworkDescription& description)
   }
   for (auto* functions : {&moving_functions_, &pushing_functions_}) {
     std::ranges::sort(*functions);
-    functions->erase(std::ranges::unique(*functions).begin(), functions->end());
+    functions->erase(std::unique(functions->begin(), functions->end()), functions->end());
   }
   push_at(0);
 }
