@@ -217,6 +217,39 @@ TEST(Friction, ForgetsWhatItHeldWhereNothingPresses) {
   EXPECT_NEAR(world.velocity(0).x(), speed, 1e-12);
 }
 
+TEST(Friction, GraspsWithoutSlidingAndWithSliding) {
+  constexpr double kStiffness = 2e4;
+  constexpr double kSqueeze = 10.0;  // [N] of each finger: both together hold 2 mu 10 N = 10 N
+  for (const double weight : {8.0, 12.0}) {
+    NetworkDescription scene;
+    scene.dimension = 2;
+    scene.step = 1e-4;
+    scene.gravity = Vec3(0.0, -kGravity, 0.0);
+    const double apart = 2.0 * kRadius - kSqueeze / kStiffness;
+    scene.mats = {mass(weight / kGravity, Vec3::Zero()), port(Vec3(-apart, 0.0, 0.0)),
+                  port(Vec3(apart, 0.0, 0.0))};
+    scene.radius = {kRadius, kRadius, kRadius};
+    scene.state_machines = {rubbing(contact(kStiffness, 20.0), {0.5, 0.5, kStiffness, 50.0})};
+    scene.sets = {{0, {0}, {1, 2}, 0.1, -1.0}};
+    World world = make_world(scene);
+    for (int n = 1; n <= 20000; ++n) {
+      const double t = std::min(1.0, n / 10000.0);
+      const double height = 0.1 * t * t * (3.0 - 2.0 * t);  // carried up by 10 cm
+      world.impose_position(1, Vec3(-apart, height, 0.0));
+      world.impose_position(2, Vec3(apart, height, 0.0));
+      // it is handed over slowly
+      const double held = std::max(0.0, 1.0 - n / 2000.0);
+      world.set_external_force(0, Vec3(0.0, held * weight, 0.0));
+      world.step();
+    }
+    if (weight < 2.0 * 0.5 * kSqueeze) {
+      EXPECT_NEAR(world.position(0).y(), 0.1 - weight / (2.0 * kStiffness), 1e-5);
+    } else {
+      EXPECT_LT(world.position(0).y(), -0.05);  // it has slid out
+    }
+  }
+}
+
 /// Moving balls in a box of planes, all of them rubbing.
 NetworkDescription rubbing_cloud(int dimension, unsigned seed, bool states = false) {
   constexpr double kSide = 0.6;

@@ -58,6 +58,8 @@ TEST_P(WildHandOn, NeitherLetsGoNorDivergesNorPassesTheForceLimit) {
 INSTANTIATE_TEST_SUITE_P(Gallery, WildHandOn,
                          testing::Values(HeldScene{"gravel", 1, -0.08, 0.08, 20.0, 2.0},
                                          HeldScene{"bodies_meeting", 1, 0.0, 0.16, 20.0, 0.5},
+                                         HeldScene{"block_on_an_incline", 1, -0.08, 0.08, 20.0,
+                                                   0.5},
                                          HeldScene{"stirred_box", 2, -0.1, 0.1, 20.0, 0.1}),
                          [](const auto& held) { return std::string(held.param.name); });
 

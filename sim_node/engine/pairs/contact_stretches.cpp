@@ -21,6 +21,7 @@ ContactStretches::ContactStretches(std::size_t row_count, std::size_t capacity)
 void ContactStretches::begin_step() noexcept {
   std::swap(read_, written_);
   written_.count = 0;
+  sum_of_squares_ = 0.0;
   ended_ = 0;
 }
 
@@ -37,15 +38,6 @@ void ContactStretches::make_room(std::size_t capacity) noexcept {
     return;
   }
   for (Table* table : {&read_, &written_}) table->contacts.resize(capacity);
-}
-
-double ContactStretches::sum_of_squares() const noexcept {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < written_.count; ++i) {
-    const ContactStretch& contact = written_.contacts[i];
-    sum += contact.x * contact.x + contact.y * contact.y + contact.z * contact.z;
-  }
-  return sum;
 }
 
 /// Checks that each row holds later members than its own, of the other set where there are two, in
@@ -72,6 +64,13 @@ void ContactStretches::serialize(Archive& archive, std::size_t first_later,
   archive.records(std::span(written_.contacts).first(count), fits, &ContactStretch::column,
                   &ContactStretch::is_sliding, &ContactStretch::x, &ContactStretch::y,
                   &ContactStretch::z);
+  if (archive.restores()) {
+    sum_of_squares_ = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const ContactStretch& contact = written_.contacts[i];
+      sum_of_squares_ += contact.x * contact.x + contact.y * contact.y + contact.z * contact.z;
+    }
+  }
   archive.hash_with([this](StateHash& hash) {
     for (std::size_t i = 0; i < written_.count; ++i) {
       const ContactStretch& contact = written_.contacts[i];

@@ -275,6 +275,7 @@ double energy_brought(const engine::NetworkDescription& network) {
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine) {
   engine::StateMachine alone;
   alone.states = {state_machine.states[state_machine.start]};
+  alone.friction = state_machine.friction;
   alone.states[0].first_exit = alone.states[0].last_exit = 0;
   return alone;
 }
