@@ -4,18 +4,17 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "node/command_guard.h"
 #include "node/status_words.h"
 
 namespace cordis::viz {
 
 CommandRelay::CommandRelay(dds::Participant& participant, std::uint64_t epoch,
-                           std::optional<node::SessionKey> key)
+                           std::optional<node::SessionKey> key, PageRights rights)
     : session_(participant.config().session),
       sender_(participant.config().node + " " + std::to_string(epoch)),
       key_(std::move(key)),
+      rights_(std::move(rights)),
       writer_(participant, dds::Topic::kCommand) {}
 
 void CommandRelay::take(const msg::NodeStatus& status) {
@@ -35,9 +34,9 @@ void CommandRelay::send(const PageCommand& wanted) noexcept {
     command.sender(sender_);
     command.target(node::word_of(msg::KIND_SIM_NODE));
     command.verb(wanted.verb);
-    if (wanted.verb == msg::VERB_STEP) command.argument(std::to_string(wanted.steps));
-    if (wanted.verb == msg::VERB_SEEK || wanted.verb == msg::VERB_RATE)
-      command.argument(fmt::format("{:.6f}", wanted.value));
+    const std::optional<std::string> argument = argument_of(wanted, rights_);
+    if (!argument) return;
+    command.argument(*argument);
     const std::lock_guard lock(mutex_);
     command.command_id(++count_);
     std::vector<node::CommandedNode> targets;

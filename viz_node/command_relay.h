@@ -18,10 +18,11 @@ namespace cordis::viz {
 /// Writes control/command for the sim_node of the session. Any thread; does not wait.
 class CommandRelay {
  public:
-  /// @param key  of the session, when it has one
+  /// @param key     of the session, when it has one
+  /// @param rights  of pages; what goes beyond them is not sent
   /// @throws std::runtime_error when DDS refuses
   CommandRelay(dds::Participant& participant, std::uint64_t epoch,
-               std::optional<node::SessionKey> key);
+               std::optional<node::SessionKey> key, PageRights rights);
 
   /// Takes the status of a node: commands go to the newest life of each sim_node and player.
   void take(const msg::NodeStatus& status);
@@ -37,6 +38,7 @@ class CommandRelay {
   std::string session_;
   std::string sender_;
   std::optional<node::SessionKey> key_;
+  PageRights rights_;
   std::mutex mutex_;
   std::map<std::string, std::uint64_t> targets_;  // epochs of those that commands are for, by name
   dds::Writer<msg::ControlCommand> writer_;

@@ -73,7 +73,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
           std::to_string(joined.domain));
   dds::Participant participant(joined);
   viz::SceneMirror mirror(config.rate_hz);
-  viz::CommandRelay relay(participant, start.epoch, start.key);
+  viz::CommandRelay relay(participant, start.epoch, start.key, config.rights);
   dds::Writer<msg::PointerTarget> targets(participant, dds::Topic::kPointerTarget);
   viz::PointerDesk pointers(start.epoch, [&targets](msg::PointerTarget& target) {
     static_cast<void>(targets.write(target));  // the next one replaces it
@@ -83,7 +83,8 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                          .address = config.address,
                          .port = config.port,
                          .folder = viz::page_folder(),
-                         .token = page_token()},
+                         .token = page_token(),
+                         .rights = config.rights},
                         mirror, pointers,
                         [&relay](const viz::PageCommand& command) { relay.send(command); });
   const viz::SceneListener listener(participant, mirror, relay, pointers);

@@ -15,9 +15,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kLongestText = 300;  // of a text that another process wrote
-constexpr std::size_t kMaxStates = 64;     // of a liaison, and liaisons whose changes are counted
-constexpr std::size_t kMaxNames = 2000;    // names of matter, links and ports that a page receives
+constexpr std::size_t kLongestText = 300;    // of a text that another process wrote
+constexpr std::size_t kLongestReply = 4000;  // the parameters of a scene, line by line
+constexpr std::size_t kMaxStates = 64;       // of a liaison, and liaisons whose changes are counted
+constexpr std::size_t kMaxNames = 2000;  // names of matter, links and ports that a page receives
 
 std::string clipped(const std::string& text) {
   return text.substr(0, kLongestText);
@@ -219,30 +220,52 @@ Json replies_json(const ReceivedReplies& replies) {
     list.push_back({{"number", reply.command_id()},
                     {"node", clipped(reply.node())},
                     {"accepted", reply.accepted()},
-                    {"text", clipped(reply.text())}});
+                    {"text", reply.text().substr(0, kLongestReply)}});
   }
   return list;
 }
 
-/// True if a verb has a number as its argument.
+/// True if a verb has a number as its argument, or in it.
 bool has_value(msg::ControlVerb verb) noexcept {
-  return verb == msg::VERB_SEEK || verb == msg::VERB_RATE;
+  return verb == msg::VERB_SEEK || verb == msg::VERB_RATE || verb == msg::VERB_SET;
 }
 
-/// True if a verb reads no file and changes no scene.
+/// True if a page may ask for it.
 bool is_for_pages(msg::ControlVerb verb) noexcept {
   return verb == msg::VERB_PAUSE || verb == msg::VERB_RESUME || verb == msg::VERB_STEP ||
-         verb == msg::VERB_RESET || has_value(verb);
+         verb == msg::VERB_RESET || verb == msg::VERB_GET || verb == msg::VERB_LOAD ||
+         has_value(verb);
 }
 
 }  // namespace
 
-std::string hello_text(const std::string& session, const std::string& node, bool may_command) {
+std::string hello_text(const std::string& session, const std::string& node,
+                       const PageRights& rights, bool may_command) {
   return written({{"type", "hello"},
                   {"protocol", kProtocolVersion},
                   {"session", clipped(session)},
                   {"node", clipped(node)},
+                  {"scenes", rights.scenes},
+                  {"parameters", rights.parameters},
                   {"may_command", may_command}});
+}
+
+std::optional<std::string> argument_of(const PageCommand& command, const PageRights& rights) {
+  switch (command.verb) {
+    case msg::VERB_STEP:
+      return std::to_string(command.steps);
+    case msg::VERB_SEEK:
+    case msg::VERB_RATE:
+      return std::to_string(command.value);  // six decimals
+    case msg::VERB_SET:
+      if (!rights.parameters) return std::nullopt;
+      return written(Json::object({{command.parameter, command.value}}));
+    case msg::VERB_LOAD:
+      if (command.scene >= rights.scenes.size()) return std::nullopt;
+      return written(Json(rights.scenes[command.scene]));
+    default:
+      return "";
+  }
 }
 
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene) {
@@ -317,8 +340,15 @@ std::optional<PageCommand> read_page_command(std::string_view text) {
   if (known == nullptr || !is_for_pages(known->verb)) return std::nullopt;
   const Json value = json.value("value", Json());
   if (has_value(known->verb) && !value.is_number()) return std::nullopt;
+  const Json parameter = json.value("parameter", Json(""));
+  const Json scene = json.value("scene", Json());
+  if (known->verb == msg::VERB_LOAD && !scene.is_number_unsigned()) return std::nullopt;
+  if (!parameter.is_string()) return std::nullopt;
+  const std::string name = parameter.get<std::string>();
+  if (known->verb == msg::VERB_SET && name.empty()) return std::nullopt;
   return PageCommand{known->verb, steps.get<std::uint64_t>(),
-                     value.is_number() ? value.get<double>() : 0.0};
+                     value.is_number() ? value.get<double>() : 0.0, name,
+                     scene.is_number_unsigned() ? scene.get<std::uint64_t>() : 0};
 }
 
 }  // namespace cordis::viz

@@ -43,8 +43,15 @@ struct MirrorFigures {
 /// A node that was silent for so long is lost, unless it said that it stops.
 inline constexpr std::int64_t kLostAfterNsec = 1'600'000'000;
 
+/// What the launch file lets pages do beyond the commands that change no scene.
+struct PageRights {
+  std::vector<std::string> scenes;  ///< that they may load, relative to the launch file
+  bool parameters = false;          ///< whether they may set parameters
+};
+
 /// @param may_command  whether viz_node takes commands and a hand of the page
-std::string hello_text(const std::string& session, const std::string& node, bool may_command);
+std::string hello_text(const std::string& session, const std::string& node,
+                       const PageRights& rights, bool may_command);
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene);
 std::string status_text(const std::vector<ReportedNode>& nodes, const ReceivedEvents& events,
                         const ReceivedReplies& replies, const MirrorFigures& figures,
@@ -66,13 +73,19 @@ std::optional<bool> read_sound_request(std::string_view text);
 
 /// What a page wants of the simulation.
 struct PageCommand {
-  msg::ControlVerb verb = msg::VERB_PAUSE;  ///< or resume, step, reset, seek, rate
+  msg::ControlVerb verb = msg::VERB_PAUSE;  ///< or resume, step, reset, get, set, load, seek, rate
   std::uint64_t steps = 1;                  ///< of step
-  double value = 0.0;                       ///< of seek: the time of the take [s]; of rate
+  double value = 0.0;                       ///< of seek: the time of the take [s]; of rate; of set
+  std::string parameter;                    ///< of set: NAME.PARAMETER
+  std::uint64_t scene = 0;                  ///< of load: which of the scenes that pages may load
 };
 
 /// Reads `{"type": "command", "verb": "step", "steps": 10}`, or `"verb": "seek", "value": 2.5`; nothing when `text` is anything else,
-/// or wants what a page may not: files stay out of its reach.
+/// or wants what a page may not: it names no files.
 std::optional<PageCommand> read_page_command(std::string_view text);
+
+/// The argument of control/command that says the same. A name is quoted: it stays one name.
+/// Nothing when the page has no right to it.
+std::optional<std::string> argument_of(const PageCommand& command, const PageRights& rights);
 
 }  // namespace cordis::viz

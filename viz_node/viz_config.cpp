@@ -22,6 +22,14 @@ VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& prob
   viz.address = reader.optional_text("address", viz.address);
   viz.port = static_cast<int>(reader.optional_integer("port", viz.port, 0, 65535));
   viz.rate_hz = reader.optional_number("rate_hz", viz.rate_hz, config::Range::between(1.0, 240.0));
+  for (const config::Value& scene : reader.optional_sequence("scenes").items()) {
+    if (scene.kind() == config::Value::Kind::kScalar && !scene.text().empty()) {
+      viz.rights.scenes.push_back(scene.text());
+    } else {
+      problems.error(scene.place(), "scenes lists paths of scenes, got " + scene.described());
+    }
+  }
+  viz.rights.parameters = reader.optional_truth("parameters", false);
   if (!is_address(viz.address)) {
     reader.error_at("address",
                     "address must be an IP address of this machine, got '" + viz.address + "'",

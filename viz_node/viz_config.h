@@ -5,6 +5,7 @@
 
 #include "node/config/launch.h"
 #include "node/config/problem.h"
+#include "viz_node/page_text.h"
 
 namespace cordis::viz {
 
@@ -14,9 +15,10 @@ struct VizConfig {
       "127.0.0.1";        ///< IPv4 or IPv6 address to listen on; loopback keeps other machines out
   int port = 8080;        ///< 0 takes any free port
   double rate_hz = 25.0;  ///< most frames per second that pages get
+  PageRights rights;      ///< of pages
 };
 
-/// Reads the keys port, address and rate_hz, all optional. What is wrong goes to `problems`.
+/// Reads the keys port, address, rate_hz, scenes and parameters, all optional. What is wrong goes to `problems`.
 VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& problems);
 
 }  // namespace cordis::viz

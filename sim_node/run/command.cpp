@@ -53,7 +53,7 @@ std::vector<std::string> read_names(const config::Value& argument, config::Probl
   std::vector<std::string> names;
   if (argument.kind() == config::Value::Kind::kScalar) names.push_back(argument.text());
   for (const config::Value& item : argument.items()) names.push_back(item.text());
-  if (names.empty() || std::find(names.begin(), names.end(), std::string()) != names.end())
+  if (std::find(names.begin(), names.end(), std::string()) != names.end())
     problems.error(argument.place(), "'get' needs NAME or NAME.PARAMETER");
   return names;
 }
@@ -89,7 +89,7 @@ Command read_command(msg::ControlVerb verb, const std::string& argument) {
       command.values = read_values(value, problems);
       break;
     case msg::VERB_GET:
-      command.names = read_names(value, problems);
+      if (!empty) command.names = read_names(value, problems);
       break;
     case msg::VERB_STATE:
       read_state(value, command, problems);

@@ -21,7 +21,7 @@ struct Command {
   std::uint64_t steps = 1;         ///< of VERB_STEP
   std::string scene_file;          ///< of VERB_LOAD
   std::vector<NewValue> values;    ///< of VERB_SET, at least one
-  std::vector<std::string> names;  ///< of VERB_GET: NAME or NAME.PARAMETER, at least one
+  std::vector<std::string> names;  ///< of VERB_GET: NAME or NAME.PARAMETER; none: all of the scene
   std::string links;               ///< of VERB_STATE: name, name[3] or name[2..5]
   std::string state;               ///< of VERB_STATE
 };

@@ -93,7 +93,7 @@ node::Answer CommandExecutor::answer_of(const PreparedRequest& prepared) {
 
 node::Answer CommandExecutor::get(const std::vector<std::string>& names) const {
   std::string text;
-  for (const std::string& name : names) {
+  for (const std::string& name : names.empty() ? maker_.parameters().names_in_use() : names) {
     const scene::Parameters::Values values = maker_.parameters().get(name);
     if (!values.problem.empty())
       return {false, values.problem + (values.hint.empty() ? "" : "; " + values.hint)};

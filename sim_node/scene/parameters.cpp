@@ -331,6 +331,21 @@ std::vector<std::pair<std::string, double>> Parameters::values_of_liaison(
   return found;
 }
 
+std::vector<std::string> Parameters::names_in_use() const {
+  std::vector<std::string> names;
+  if (scene_->liaisons) {
+    std::set<std::string> used;
+    for (const auto& [origin, index] : scene_->liaisons->pool().origins())
+      used.insert(origin.liaison);
+    for (const LinkGroup& group : scene_->link_groups) used.insert(group.liaison);
+    for (const std::string& name : scene_->liaisons->names())
+      if (used.count(name) != 0) names.push_back(name);
+  }
+  for (const LinkGroup& group : scene_->link_groups)
+    if (group.liaison.empty() && !group.name.empty()) add_words(names, {group.name});
+  return names;
+}
+
 std::vector<std::string> Parameters::names() const {
   std::vector<std::string> names =
       scene_->liaisons ? scene_->liaisons->names() : std::vector<std::string>{};

@@ -63,6 +63,10 @@ class Parameters {
   /// set() has it; of links that differ the first one counts.
   [[nodiscard]] Values get(const std::string& what) const;
 
+  /// Names that get() and set() take: the liaisons that links or sets are of, in the order of the
+  /// scene, then the links that are of no liaison.
+  [[nodiscard]] std::vector<std::string> names_in_use() const;
+
  private:
   struct Target;
 

@@ -117,6 +117,14 @@ TEST_F(CommandExecutorTest, AnswersWhenTheSingleStepsAreDone) {
   EXPECT_EQ(runner_.simulation().world().step_count(), 10u);
 }
 
+TEST_F(CommandExecutorTest, SaysEveryParameterOfTheSceneWhenNoneIsNamed) {
+  execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 101}");
+  const node::Answer answer = execute(msg::VERB_GET);
+  EXPECT_TRUE(answer.accepted);
+  EXPECT_EQ(answer.text, execute(msg::VERB_GET, "spring").text);
+  EXPECT_NE(answer.text.find("spring.stiffness_n_per_m = 101"), std::string::npos) << answer.text;
+}
+
 TEST_F(CommandExecutorTest, PausesWhileAnotherThreadReadsAScene) {
   msg::ControlCommand load;
   load.verb(msg::VERB_LOAD);

@@ -154,10 +154,32 @@ TEST(PageCommand, IsNothingElse) {
        {"", "{", "[]", "3", R"({"type": "ack", "verb": "pause"})", R"({"verb": "pause"})",
         R"({"type": "command"})", R"({"type": "command", "verb": 3})",
         R"({"type": "command", "verb": "load"})", R"({"type": "command", "verb": "set"})",
+        R"({"type": "command", "verb": "load", "scene": "/etc/passwd"})",
+        R"({"type": "command", "verb": "load", "scene": -1})",
+        R"({"type": "command", "verb": "set", "value": 2})",
+        R"({"type": "command", "verb": "set", "parameter": "a.b", "value": "2"})",
+        R"({"type": "command", "verb": "set", "parameter": 4, "value": 2})",
+        R"({"type": "command", "verb": "state"})",
         R"({"type": "command", "verb": "step", "steps": -1})",
         R"({"type": "command", "verb": "step", "steps": "9"})"}) {
     EXPECT_FALSE(read_page_command(text).has_value()) << text;
   }
+}
+
+TEST(PageCommand, SetsAParameterUnderOneQuotedNameWhereTheLaunchFileLetsIt) {
+  const auto set = read_page_command(
+      R"({"type": "command", "verb": "set", "parameter": "a: 1, b.k", "value": 160})");
+  ASSERT_TRUE(set.has_value());
+  EXPECT_EQ(argument_of(*set, {.scenes = {}, .parameters = true}), R"({"a: 1, b.k":160.0})");
+  EXPECT_EQ(argument_of(*set, {}), std::nullopt);
+}
+
+TEST(PageCommand, LoadsNothingButWhatTheLaunchFileLists) {
+  const auto load = read_page_command(R"({"type": "command", "verb": "load", "scene": 1})");
+  ASSERT_TRUE(load.has_value());
+  EXPECT_EQ(argument_of(*load, {.scenes = {"scenes/a.yaml", "scenes/b.yaml"}}),
+            R"("scenes/b.yaml")");
+  EXPECT_EQ(argument_of(*load, {.scenes = {"scenes/a.yaml"}}), std::nullopt);
 }
 
 TEST(PageCommand, MovesATakeWithANumber) {

@@ -24,23 +24,29 @@ TEST(VizConfig, ServesThisMachineAloneUnlessSetOtherwise) {
   EXPECT_EQ(viz.address, "127.0.0.1");
   EXPECT_EQ(viz.port, 8080);
   EXPECT_EQ(viz.rate_hz, 25.0);
+  EXPECT_FALSE(viz.rights.parameters);
+  EXPECT_TRUE(viz.rights.scenes.empty());
 }
 
 TEST(VizConfig, ReadsItsKeys) {
   config::Problems problems;
-  const VizConfig viz = read("{address: '::1', port: 0, rate_hz: 50}", problems);
+  const VizConfig viz =
+      read("{address: '::1', port: 0, rate_hz: 50, scenes: [a.yaml, b.yaml], parameters: true}",
+           problems);
 
   EXPECT_FALSE(problems.has_errors());
   EXPECT_EQ(viz.address, "::1");
   EXPECT_EQ(viz.port, 0);
   EXPECT_EQ(viz.rate_hz, 50.0);
+  EXPECT_TRUE(viz.rights.parameters);
+  EXPECT_EQ(viz.rights.scenes, (std::vector<std::string>{"a.yaml", "b.yaml"}));
 }
 
 TEST(VizConfig, FindsAllThatIsWrongAtOnceAndWhere) {
   config::Problems problems;
-  read("address: lab\nport: 65536\nrate_hz: 0.5\nprot: 1\n", problems);
+  read("address: lab\nport: 65536\nrate_hz: 0.5\nprot: 1\nscenes: [[a]]\n", problems);
 
-  ASSERT_EQ(problems.all().size(), 4u);
+  ASSERT_EQ(problems.all().size(), 5u);
   for (const auto& problem : problems.all()) {
     EXPECT_EQ(problem.place.file, "launch.yaml");
     EXPECT_GE(problem.place.line, 1);

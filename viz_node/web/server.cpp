@@ -92,8 +92,8 @@ struct WebServer::Impl {
     listen(acceptor, config);
     const tcp::endpoint endpoint = acceptor.local_endpoint();
     url = url_of(endpoint);
-    state.hello = hello_text(config.session, config.node, true);
-    state.hello_view_only = hello_text(config.session, config.node, false);
+    state.hello = hello_text(config.session, config.node, config.rights, true);
+    state.hello_view_only = hello_text(config.session, config.node, config.rights, false);
     if (!endpoint.address().is_loopback()) open_to_others(config.token);
   }
 

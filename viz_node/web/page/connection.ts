@@ -47,7 +47,7 @@ export class Connection {
   }
 
   /** Asks for something of the simulation. */
-  command(verb: string, more: { steps?: number; value?: number } = {}): void {
+  command(verb: string, more: { steps?: number; value?: number; parameter?: string; scene?: number } = {}): void {
     if (this.isOpen && this.mayCommand) this.socket!.send(JSON.stringify({ type: 'command', verb, ...more }));
   }
 

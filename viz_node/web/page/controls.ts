@@ -1,5 +1,6 @@
 // viz_node/web/page/controls.ts -- buttons that command the simulation, and what it says to them.
 import type { Connection } from './connection.ts';
+import { parametersIn } from './parameters.ts';
 import type { NodeState, Reply } from './protocol.ts';
 
 const SHOWN_MS = 6000;
@@ -9,6 +10,7 @@ export class Controls {
   private readonly buttons = [...document.querySelectorAll<HTMLButtonElement>('#control button')];
   private readonly viewOnly = document.querySelector<HTMLElement>('#view-only')!;
   private readonly reply = document.querySelector<HTMLElement>('#reply')!;
+  private readonly scenes = document.querySelector<HTMLSelectElement>('#scenes')!;
   private paused = false;
   private shownNumber = 0; // of the reply shown last
   private asked = false; // a command was sent that has no reply yet
@@ -16,6 +18,11 @@ export class Controls {
   private timer = 0;
 
   constructor(private readonly connection: Connection) {
+    this.scenes.addEventListener('change', () => {
+      if (this.scenes.value !== '') this.command('load', { scene: Number(this.scenes.value) });
+      this.scenes.value = '';
+      this.scenes.blur(); // keys are for the view again
+    });
     for (const button of this.buttons) {
       button.addEventListener('click', () => {
         this.send(button.dataset.verb!);
@@ -24,10 +31,18 @@ export class Controls {
     }
   }
 
+  /** Lists the scenes that the launch file lets this page load. The first entry stands for the one that is played. */
+  list(scenes: string[]): void {
+    this.scenes.hidden = scenes.length === 0;
+    const nameOf = (path: string) => path.replace(/^.*\//, '').replace(/\.ya?ml$/, '');
+    this.scenes.replaceChildren(new Option('Load …', ''), ...scenes.map((path, number) => new Option(nameOf(path), String(number))));
+  }
+
   /** Takes what is newest about the simulation; undefined when there is none. */
   update(sim: NodeState | undefined, replies: Reply[]): void {
     this.paused = sim?.state === 'paused';
     this.viewOnly.hidden = this.connection.mayCommand;
+    this.scenes.disabled = sim === undefined || sim.kind !== 'sim_node' || !this.connection.mayCommand;
     for (const button of this.buttons) {
       button.disabled = sim === undefined || !this.connection.mayCommand;
       if (button.dataset.verb === 'pause') {
@@ -35,7 +50,7 @@ export class Controls {
         button.classList.toggle('on', this.paused);
       }
     }
-    const newest = replies[replies.length - 1];
+    const newest = replies.filter((reply) => parametersIn(reply) === null).at(-1); // parameters are shown elsewhere
     if (newest === undefined) this.shownNumber = 0; // a viz_node that was restarted counts from 1
     if (newest !== undefined && newest.number !== this.shownNumber) {
       // What was answered before this page came is of no interest; a late answer is.
@@ -55,11 +70,15 @@ export class Controls {
     if (!this.buttons[0]!.disabled) this.send(button);
   }
 
-  private send(button: string): void {
-    const verb = button === 'pause' && this.paused ? 'resume' : button;
+  /** Commands it, and shows what is said to it. */
+  command(verb: string, more: Parameters<Connection['command']>[1] = {}): void {
     this.asked = true;
     this.impatientMs = performance.now() + PATIENCE_MS;
-    this.connection.command(verb);
+    this.connection.command(verb, more);
+  }
+
+  private send(button: string): void {
+    this.command(button === 'pause' && this.paused ? 'resume' : button);
   }
 
   private say(text: string, refused: boolean): void {

@@ -14,6 +14,7 @@ import { LinkGroups } from './link_groups.ts';
 import { Marks } from './marks.ts';
 import { MotionBox } from './motion_box.ts';
 import { drawNames } from './names.ts';
+import { ParameterPanel } from './parameters.ts';
 import { Picked } from './picked.ts';
 import { download } from './plot_export.ts';
 import { PointerHand } from './pointer.ts';
@@ -66,6 +67,7 @@ export class Page {
   private readonly renderer = findRenderer();
   readonly connection: Connection;
   private readonly controls: Controls;
+  private readonly parameters: ParameterPanel;
   readonly sound: SoundPanel;
   readonly takeBar: TakeBar;
   readonly pointer: PointerHand;
@@ -80,6 +82,7 @@ export class Page {
   private legendVersion = 0; // of the components that the legend names
   private readonly motion = new MotionBox(() => this.exaggerate());
   private names = false;
+  private maySet = false; // the launch file lets pages set parameters
   private trails = false;
   private plotsMs = 0;
   private plotsDirty = false;
@@ -101,6 +104,7 @@ export class Page {
       failed: (error) => this.note(error),
     });
     this.controls = new Controls(this.connection);
+    this.parameters = new ParameterPanel((verb, more, isShown) => (isShown ? this.controls.command(verb, more) : this.connection.command(verb, more)));
     this.sound = new SoundPanel(this.connection, (error) => this.note(error));
     this.takeBar = new TakeBar(this.connection);
     this.pointer = new PointerHand(this.stage, this.connection, () => this.view, () => this.askToDraw());
@@ -123,6 +127,8 @@ export class Page {
     switch (message.type) {
       case 'hello':
         this.connection.mayCommand = message.may_command;
+        this.controls.list(message.scenes);
+        this.maySet = message.parameters;
         return this.hud.setHello(message);
       case 'description':
         return this.describe(message);
@@ -132,6 +138,7 @@ export class Page {
         this.clock.note(message.sent_nsec, performance.now());
         this.hud.setStatus(message);
         this.takeBar.update(message.nodes);
+        this.parameters.update(this.maySet && this.connection.mayCommand && this.hud.commanded?.kind === 'sim_node', message.replies);
         return this.controls.update(this.hud.commanded, message.replies);
       case 'signals':
         if (message.scene !== this.description?.scene) return;
@@ -174,6 +181,7 @@ export class Page {
     this.hud.setDescription(description);
     this.sound.describe(description);
     if (isSame) return;
+    this.parameters.describe();
     this.picked.pick(null);
     this.pose = looksAlike && this.view !== null ? this.view.rig.pose : null;
     this.view?.dispose();

@@ -88,6 +88,8 @@ export interface Hello {
   protocol: number;
   session: string;
   node: string;
+  scenes: string[]; // that pages may load by their number
+  parameters: boolean; // pages may set them
   may_command: boolean; // false: the address of the page lacks the token
 }
 
