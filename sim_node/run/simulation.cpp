@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "node/config/count_text.h"
-#include "node/config/number.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/scene/naming.h"
 
@@ -46,9 +46,10 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
 std::string drive_trouble_text(const StepTroubles& troubles) {
   std::string text;
   if (troubles.drive_jumps > 0) {
+    char first[32];
+    std::snprintf(first, sizeof(first), "%.6g", troubles.first_jump_s);
     text = "what is driven jumped in " + config::count_text(troubles.drive_jumps, "step") +
-           ", first at " + config::number_text(troubles.first_jump_s) +
-           " s: liaisons feel a jump as a blow";
+           ", first at " + first + " s: liaisons feel a jump as a blow";
   }
   if (troubles.refused_drives > 0) {
     text += (text.empty() ? "" : "; ") + config::count_text(troubles.refused_drives, "value") +

@@ -23,7 +23,8 @@ GeneratedMatter read_mass(Source& source) {
 GeneratedMatter read_fixed(Source& source) {
   GeneratedMatter matter;
   const std::vector<Vec3> points = read_places(source);
-  const std::optional<PointSpec> ball = optional_ball(source.reader, false, source.problems);
+  const std::optional<PointSpec> ball =
+      optional_ball(source.reader, MassOfBall::kNone, source.problems);
   for (const Vec3& point : points) {
     matter.mats.push_back({MatKind::kFixed, 0.0, point, Vec3::Zero()});
     matter.radius_m.push_back(ball.value_or(PointSpec{}).radius);

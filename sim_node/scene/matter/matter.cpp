@@ -15,6 +15,7 @@
 #include "sim_node/scene/matter/points.h"
 #include "sim_node/scene/matter/ring.h"
 #include "sim_node/scene/matter/skin.h"
+#include "sim_node/scene/matter/source.h"
 #include "sim_node/scene/matter/string.h"
 #include "sim_node/scene/matter/surfaces.h"
 
@@ -29,11 +30,12 @@ struct MatterKind {
   GeneratedMatter (*read)(Source&);
   int lowest_space;
   int highest_space;
+  bool may_be_fixed = true;  ///< takes `fixed: true`
 };
 constexpr std::array<MatterKind, 15> kMatterKinds{{
     {"mass", read_mass, 1, 3},
-    {"fixed", read_fixed, 1, 3},
-    {"points", read_points, 1, 3},
+    {"fixed", read_fixed, 1, 3, false},
+    {"points", read_points, 1, 3, false},
     {"string", read_string, 1, 3},
     {"ring", read_ring, 1, 3},
     {"grid", read_grid, 1, 3},
@@ -43,9 +45,9 @@ constexpr std::array<MatterKind, 15> kMatterKinds{{
     {"pack", read_pack, 2, 3},
     {"skin", read_skin, 2, 3},
     {"beam", read_beam, 2, 3},
-    {"plane", read_plane_surface, 1, 3},
-    {"box", read_box, 1, 3},
-    {"cylinder", read_cylinder, 2, 3},
+    {"plane", read_plane_surface, 1, 3, false},
+    {"box", read_box, 1, 3, false},
+    {"cylinder", read_cylinder, 2, 3, false},
 }};
 
 const MatterKind* kind_named(const std::string& word) {
@@ -63,6 +65,18 @@ bool check_space(config::MappingReader& reader, const MatterKind& kind, int spac
   reader.error_at("kind", std::string("a ") + kind.name + " needs a scene of space " + spaces +
                               ", this one has " + std::to_string(space));
   return false;
+}
+
+/// `fixed: true`
+void fix_all(config::MappingReader& reader, GeneratedMatter& matter) {
+  for (engine::Mat& mat : matter.mats) {
+    if (!mat.velocity.isZero(0.0)) {
+      reader.error_at("velocity_m_per_s", "what is fixed has no velocity: 'velocity_m_per_s' in " +
+                                              reader.what() + " contradicts 'fixed'");
+      return;
+    }
+    fix(mat);
+  }
 }
 
 }  // namespace
@@ -100,7 +114,10 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   const std::optional<DriveSpec> spec = read_driven(reader, space, problems);
   const engine::Vec3 start = spec ? spec->start : engine::Vec3(engine::Vec3::Zero());
   if (reader.optional_value("driven").find("position_m").exists()) source.driven_start = &start;
+  const bool is_fixed = kind.may_be_fixed && reader.optional_truth("fixed", false);
+  source.needs_no_mass = is_fixed || (spec && spec->kind != DriveSpec::Kind::kForce);
   GeneratedMatter matter = kind.read(source);
+  if (is_fixed) fix_all(reader, matter);
   if (spec && reader.ok()) drive(*spec, reader, matter);
   if (matter.surfaces.empty()) {
     read_drawing(reader, matter);

@@ -68,7 +68,8 @@ GeneratedMatter read_pack(Source& source) {
   config::MappingReader& reader = source.reader;
   const std::size_t errors_before = source.problems.error_count();
   if (!reader.has("ball")) reader.required_value("ball");
-  const std::optional<PointSpec> ball = optional_ball(reader, true, source.problems);
+  const std::optional<PointSpec> ball =
+      optional_ball(reader, mass_of_ball(source), source.problems);
   const Region region = read_region(reader.required_mapping("region"), source);
   const long seed = reader.optional_integer("seed", 1, 0, 1'000'000'000);
   const bool sound = ball && source.problems.error_count() == errors_before;

@@ -1,6 +1,8 @@
 // sim_node/scene/matter/points.cpp
 #include "sim_node/scene/matter/points.h"
 
+#include <algorithm>
+
 namespace cordis::scene {
 
 using engine::MatKind;
@@ -19,10 +21,17 @@ void spread(Source& source, const char* key, std::size_t count, std::vector<Item
   values.resize(count, values.front());
 }
 
-/// `fixed`: numbers of the MATs that never move.
+/// True if `fixed` is a truth and no list.
+bool is_truth(const config::Value& value) {
+  return !value.quoted() && (value.text() == "true" || value.text() == "false");
+}
+
+/// `fixed`: numbers of the MATs that never move, or true.
 std::vector<bool> read_fixed_ones(config::MappingReader& reader, std::size_t count) {
+  const config::Value written = reader.optional_value("fixed");
+  if (is_truth(written)) return std::vector<bool>(count, reader.optional_truth("fixed", false));
   std::vector<bool> fixed(count);
-  const bool any = reader.optional_value("fixed").exists();
+  const bool any = written.exists();
   const auto last = static_cast<long>(count) - 1;
   for (const long index : any ? reader.required_integers("fixed", 0, last) : std::vector<long>{}) {
     fixed[static_cast<std::size_t>(index)] = true;
@@ -69,7 +78,11 @@ GeneratedMatter read_points(Source& source) {
   config::MappingReader& reader = source.reader;
   const std::vector<Vec3> points = required_points(reader, "at_m", source.space, source.problems);
   const std::size_t count = points.size();
-  std::vector<double> mass = reader.required_numbers("mass_kg");
+  const config::Value all_fixed = reader.optional_value("fixed");
+  const bool is_fixed = is_truth(all_fixed) && reader.optional_truth("fixed", false);
+  std::vector<double> mass = is_fixed || source.needs_no_mass
+                                 ? reader.optional_numbers("mass_kg", {1.0})
+                                 : reader.required_numbers("mass_kg");
   if (mass.empty()) mass = {1.0};  // after a problem
   std::vector<double> radius = reader.optional_numbers("radius_m", {0.0});
   std::vector<Vec3> velocity = points_or(source, "velocity_m_per_s", source.space, {Vec3::Zero()});
@@ -77,6 +90,10 @@ GeneratedMatter read_points(Source& source) {
   spread(source, "radius_m", count, radius);
   spread(source, "velocity_m_per_s", count, velocity);
   const std::vector<bool> fixed = read_fixed_ones(reader, count);
+  if (is_fixed && std::ranges::any_of(velocity, [](const Vec3& v) { return !v.isZero(0.0); })) {
+    reader.error_at("velocity_m_per_s", "what is fixed has no velocity: 'velocity_m_per_s' in " +
+                                            reader.what() + " contradicts 'fixed'");
+  }
   for (std::size_t i = 0; i < count; ++i) {
     matter.mats.push_back({MatKind::kMass, mass[i], points[i], velocity[i]});
     if (fixed[i]) matter.mats.back() = {MatKind::kFixed, 0.0, points[i], Vec3::Zero()};

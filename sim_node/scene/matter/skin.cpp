@@ -89,6 +89,7 @@ Surface read_surface(Source& source) {
 void add_core(Source& source, GeneratedMatter& matter, const config::Value& section) {
   config::MappingReader reader(section, "'core' of " + source.reader.what(), source.problems);
   Source inner{reader, source.liaisons, source.space, false, source.problems};
+  inner.needs_no_mass = source.needs_no_mass;
   const PointSpec spec = read_point_spec(inner);
   const std::optional<LinkLaw> law = read_neighbour_law(inner);
   reader.finish();

@@ -9,13 +9,17 @@ using config::Range;
 using engine::MatKind;
 using engine::Vec3;
 
-std::optional<PointSpec> optional_ball(config::MappingReader& reader, bool with_mass,
+std::optional<PointSpec> optional_ball(config::MappingReader& reader, MassOfBall mass,
                                        config::Problems& problems) {
   const config::Value section = reader.optional_mapping("ball");
   if (!section.exists()) return std::nullopt;
   config::MappingReader ball(section, "'ball' of " + reader.what(), problems);
   PointSpec spec;
-  if (with_mass) spec.mass = ball.required_number("mass_kg", Range::positive());
+  if (mass == MassOfBall::kRequired) {
+    spec.mass = ball.required_number("mass_kg", Range::positive());
+  } else if (mass == MassOfBall::kOptional) {
+    spec.mass = ball.optional_number("mass_kg", 1.0, Range::positive());
+  }
   spec.radius = ball.required_number("radius_m", {0.0, kFarthest, true});
   ball.finish();
   return spec;
@@ -32,9 +36,11 @@ std::vector<Vec3> read_places(Source& source) {
 PointSpec read_point_spec(Source& source) {
   config::MappingReader& reader = source.reader;
   const config::Value mass = reader.optional_value("mass_kg");
-  const std::optional<PointSpec> ball = optional_ball(reader, true, source.problems);
+  const std::optional<PointSpec> ball =
+      optional_ball(reader, mass_of_ball(source), source.problems);
   if (!reader.has("ball")) {
     const Range range = source.may_be_massless ? Range::not_negative() : Range::positive();
+    if (source.needs_no_mass) return {reader.optional_number("mass_kg", 1.0, range), 0.0};
     return {reader.required_number("mass_kg", range), 0.0};
   }
   if (mass.exists()) {

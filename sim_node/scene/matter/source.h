@@ -22,6 +22,7 @@ struct Source {
   bool may_be_massless;  ///< a mass of 0 is taken: a reduction is to take it out
   config::Problems& problems;
   const engine::Vec3* driven_start = nullptr;  ///< where a drive puts it when `at_m` is left out
+  bool needs_no_mass = false;                  ///< all of it is fixed, or driven
 };
 
 /// `at_m`; without it, where a drive begins.
@@ -36,10 +37,15 @@ struct PointSpec {
 /// `mass_kg` of punctual masses, or `ball: {mass_kg, radius_m}`.
 PointSpec read_point_spec(Source& source);
 
-/// `ball: {mass_kg, radius_m}`; the mass is not asked for where something else decides on it.
-/// @return nothing when there is no such key.
-std::optional<PointSpec> optional_ball(config::MappingReader& reader, bool with_mass,
+/// How `ball` says its mass.
+enum class MassOfBall { kNone, kOptional, kRequired };
+/// `ball: {mass_kg, radius_m}`. @return nothing when there is no such key.
+std::optional<PointSpec> optional_ball(config::MappingReader& reader, MassOfBall mass,
                                        config::Problems& problems);
+/// How the balls of matter do.
+inline MassOfBall mass_of_ball(const Source& source) {
+  return source.needs_no_mass ? MassOfBall::kOptional : MassOfBall::kRequired;
+}
 
 /// Adds a mass.
 void add_mass(GeneratedMatter& matter, const PointSpec& spec, const engine::Vec3& position);
