@@ -85,7 +85,64 @@ matter:
       1e-12);
 }
 
+constexpr const char* kGong = R"(parts:
+  gong:
+    matter:
+      plate: {kind: string, count: 3, from_m: [0, 0], to_m: [1, 0], ends: first_fixed, mass_kg: 1, stiffness_n_per_m: 5}
+)";
+
+TEST(DrivenMatter, IsAPartAsAWhole) {
+  const Scene scene = sound_scene(2, std::string(kGong) + R"YAML(matter:
+  moved: {part: gong, rotate_deg: 90, repeat: {count: 2, translate_m: [0, 1]}, driven: {displacement_m: [0, "time_s"]}}
+  pushed: {part: gong, translate_m: [5, 0], driven: {force_n: [1, "2 * time_s"]}}
+)YAML");
+
+  ASSERT_EQ(scene.network.drives.size(), 6u + 2u);
+  EXPECT_EQ(scene.network.time_functions.size(), 2u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(scene.network.mats[i].kind, MatKind::kPort);
+    EXPECT_EQ(place_at(scene, i, 0.0), scene.network.mats[i].position);
+    EXPECT_LT((place_at(scene, i, 2.0) - scene.network.mats[i].position - Vec3(0, 2, 0)).norm(),
+              1e-15);
+  }
+  EXPECT_EQ(scene.network.mats[6].kind, MatKind::kFixed);
+  EXPECT_EQ(place_at(scene, 6, 3.0), Vec3(1, 6, 0));
+  EXPECT_EQ(scene.network.drives[7].mat, 8u);
+}
+
+TEST(DrivenMatter, OfAPartIsTurnedByThePartsAroundIt) {
+  const Scene scene = sound_scene(2, std::string(kGong) + R"YAML(  frame:
+    matter:
+      inner: {part: gong, rotate_deg: 45, driven: {displacement_m: [time_s, 0]}}
+matter:
+  outer: {part: frame, rotate_deg: 90, translate_m: [3, 0]}
+  bob: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+)YAML");
+
+  ASSERT_EQ(scene.network.drives.size(), 3u);
+  EXPECT_LT((place_at(scene, 2, 2.0) - scene.network.mats[2].position - Vec3(0, 2, 0)).norm(),
+            1e-15);
+}
+
 constexpr BadScene kBadDriven[] = {
+    {kHead2,
+     "parts:\n  p: {matter: {a: {kind: fixed, at_m: [0, 0]}}}\nmatter:\n"
+     "  u: {part: p, driven: ^{position_m: [0, 0]}}\n",
+     "'position_m' drives one MAT: matter 'u' follows displacement_m or force_n", ""},
+    {kHead2,
+     "parts:\n  p: {matter: {a: {kind: fixed, driven: {position_m: [0, 0]}}}}\nmatter:\n"
+     "  u: {part: p, driven: ^{displacement_m: [0, 0]}}\n",
+     "matter 'u' has matter that is driven already", ""},
+    {kHead2,
+     "parts:\n  p: {matter: {a: {kind: plane, at_m: [0, 0], normal: y}}}\nmatter:\n"
+     "  u: {part: p, driven: ^{displacement_m: [0, 0]}}\n",
+     "a surface cannot be driven, and matter 'u' has one", ""},
+    {kHead2,
+     "parts:\n  p: {matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: [1, "
+     "0]}}}\n"
+     "matter:\n  u: {part: p, driven: ^{displacement_m: [0, 0]}}\n",
+     "a driven position has the velocity of its function, and matter 'u' has one of its own", ""},
+
     {kHead1, "matter:\n  a: {kind: fixed, at_m: 0, driven: ^{}}\n",
      "'driven' of matter 'a' needs position_m, displacement_m or force_n", ""},
     {kHead1, "matter:\n  a: {kind: fixed, driven: {position_m: time_s, force_n: ^1}}\n",

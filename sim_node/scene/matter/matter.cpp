@@ -57,6 +57,11 @@ const MatterKind* kind_named(const std::string& word) {
   return nullptr;
 }
 
+/// True if `driven` is no key to be offered.
+bool is_surface(const MatterKind& kind) {
+  return kind.read == read_plane_surface || kind.read == read_box || kind.read == read_cylinder;
+}
+
 /// True if the kind fits into the space; if not, a problem.
 bool check_space(config::MappingReader& reader, const MatterKind& kind, int space) {
   if (kind.lowest_space <= space && space <= kind.highest_space) return true;
@@ -111,7 +116,8 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   if (!check_space(reader, kind, space)) return {};
 
   Source source{reader, liaisons, space, may_be_massless, problems};
-  const std::optional<DriveSpec> spec = read_driven(reader, space, problems);
+  std::optional<DriveSpec> spec;
+  if (!is_surface(kind) || reader.has("driven")) spec = read_driven(reader, space, problems);
   const engine::Vec3 start = spec ? spec->start : engine::Vec3(engine::Vec3::Zero());
   if (reader.optional_value("driven").find("position_m").exists()) source.driven_start = &start;
   const bool is_fixed = kind.may_be_fixed && reader.optional_truth("fixed", false);

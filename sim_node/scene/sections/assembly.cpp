@@ -11,6 +11,10 @@ namespace cordis::scene {
 
 using config::Value;
 
+void set_turn(const Eigen::Matrix3d& turn, engine::Drive& drive) {
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(drive.turn.data()) = turn;
+}
+
 void Assembly::read_liaisons(const Value& section) {
   std::vector<LiaisonSection> sections{{section, scene.file}};
   sections.insert(sections.end(), parts.liaisons().begin(), parts.liaisons().end());
@@ -24,7 +28,7 @@ bool Assembly::put(GeneratedMatter& matter) const {
   }
   for (engine::Drive& drive : matter.drives) {
     drive.origin = placement(drive.origin);
-    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(drive.turn.data()) = placement.turn;
+    set_turn(placement.turn, drive);
   }
   for (LayoutPoint& point : matter.layout) {
     point.x += placement.layout_shift.x;

@@ -40,6 +40,9 @@ inline std::uint32_t sum(const LinkCounts& counts) noexcept {
   return counts[0] + counts[1] + counts[2];
 }
 
+/// Turns what a drive says as a part is turned.
+void set_turn(const Eigen::Matrix3d& turn, engine::Drive& drive);
+
 /// What the sections of a scene file add to, in the order parts, liaisons, matter, ports, links,
 /// signals.
 struct Assembly {

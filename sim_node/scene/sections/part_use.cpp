@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sim_node/scene/matter/matter.h"
+#include "sim_node/scene/sections/driven_part.h"
 #include "sim_node/scene/sections/links.h"
 #include "sim_node/scene/sections/matter.h"
 
@@ -20,6 +21,8 @@ struct PartUse {
   Placement placement;
   Placement step;            ///< from one copy to the next
   std::uint32_t copies = 0;  ///< 0: it is not repeated
+  std::optional<DriveSpec> drive;
+  config::Place drive_place;
 };
 
 /// True if the part is none of those that are being added; if it is, a problem.
@@ -42,6 +45,8 @@ std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
   use.placement = read_placement(reader, assembly.scene.space(), assembly.problems);
   const Value overrides = reader.optional_mapping("parameters");
   const Value repeat = reader.optional_mapping("repeat");
+  use.drive = read_driven(reader, assembly.scene.space(), assembly.problems);
+  if (reader.has("driven")) use.drive_place = reader.optional_value("driven").place();
   reader.finish();
   if (repeat.exists()) {
     config::MappingReader repeat_reader(repeat, "'repeat' of " + reader.what(), assembly.problems);
@@ -120,6 +125,11 @@ bool read_part_use(Assembly& assembly, const Value::Entry& entry) {
   }
   // the faults of a part are reported once, however often it is used
   if (use && !sound) assembly.faulty_parts.insert(use->part);
+  if (sound && use->drive) {
+    const std::size_t errors_before = assembly.problems.error_count();
+    drive_part(assembly, *use->drive, first, matter_called(assembly, entry.key), use->drive_place);
+    sound = assembly.problems.error_count() == errors_before;
+  }
   assembly.names.add({entry.key, Named::kMatter, first, assembly.mat_count() - first, sound,
                       entry.key_place, use ? use->copies : 0},
                      assembly.problems);
