@@ -250,6 +250,44 @@ TEST(Friction, GraspsWithoutSlidingAndWithSliding) {
   }
 }
 
+/// A heap of balls on a floor, each in the gap of two below it: rows of 4, 3, 2 and 1.
+NetworkDescription heap(double mu) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.gravity = Vec3(0.0, -kGravity, 0.0);
+  for (int row = 0; row < 4; ++row) {
+    for (int i = 0; i < 4 - row; ++i) {
+      const double x = kRadius * (2.0 * i + row);
+      scene.mats.push_back(mass(0.1, Vec3(x, kRadius * (1.0 + std::sqrt(3.0) * row), 0.0)));
+      scene.radius.push_back(kRadius);
+    }
+  }
+  const auto count = static_cast<std::uint32_t>(scene.mats.size());
+  const std::uint32_t floor = add_surface(scene, plane(Vec3::UnitY()), Vec3::Zero());
+  const StateMachine pair = rubbing(contact(1e4, 5.0), {mu, mu, 1e4, 5.0});
+  touch(scene, count, pair, kRadius, -1.0, {floor});
+  SetLiaison within;
+  within.range = 2.0 * kRadius;
+  within.rest_length = -1.0;
+  for (std::uint32_t i = 0; i < count; ++i) within.set_p.push_back(i);
+  scene.sets.push_back(within);
+  return scene;
+}
+
+TEST(Friction, LetsAHeapStand) {
+  const double height = heap(0.8).mats[9].position.y();
+  World standing = make_world(heap(0.8));
+  run(standing, 20000);
+  const engine::Columns rest = standing.positions();
+  EXPECT_NEAR(standing.position(9).y(), height, 0.05 * kRadius);
+  run(standing, 200'000);
+  EXPECT_LT((standing.positions() - rest).cwiseAbs().maxCoeff(), 1e-9);
+  World falling = make_world(heap(0.05));
+  run(falling, 20000);
+  EXPECT_LT(falling.position(9).y(), height - kRadius);
+}
+
 /// Moving balls in a box of planes, all of them rubbing.
 NetworkDescription rubbing_cloud(int dimension, unsigned seed, bool states = false) {
   constexpr double kSide = 0.6;
