@@ -320,7 +320,7 @@ matter:
   a: {part: p, ^rotate_deg: 3}
 )",
                  "unknown key 'rotate_deg' in matter 'a'",
-                 "known keys: part, translate_m, layout_translate_m, parameters, repeat"},
+                 "known keys: part, translate_m, layout_translate_m, parameters, repeat, driven"},
         BadScene{kHead3,
                  R"(parts:
   p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}

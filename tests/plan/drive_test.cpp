@@ -1,0 +1,81 @@
+// tests/plan/drive_test.cpp -- what the plan makes of matter that follows a function of time.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/reference/reference.h"
+#include "sim_node/plan/stability/drive_speed.h"
+#include "sim_node/plan/stability/liaison_graph.h"
+#include "sim_node/plan/stability/step_bound.h"
+#include "tests/engine/programs.h"
+#include "tests/engine/scenes.h"
+
+namespace cordis::test {
+namespace {
+
+/// A row of masses between two ends.
+NetworkDescription row_between(bool driven, engine::IntegratorKind integrator) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.integrator = integrator;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const Vec3 place(0.1 * i, 0.0, 0.0);
+    scene.mats.push_back(i == 0 || i == 7 ? fixed(place) : mass(0.05 + 0.01 * i, place));
+  }
+  for (std::uint32_t i = 0; i < 7; ++i)
+    scene.links.push_back({i, i + 1, 300.0 + 50.0 * i, 0.4, 0.1});
+  if (!driven) return scene;
+  engine::TimeFunction function;
+  function.formula[1] = (Term(0.01) * one(Operation::kSin, Term(20.0) * q(Quantity::kAge))).program;
+  scene.time_functions.push_back(function);
+  engine::Drive drive;
+  drive.origin = scene.mats[0].position;
+  scene.drives = {drive};
+  scene.mats[0].kind = MatKind::kPort;
+  return scene;
+}
+
+TEST(DrivenPlan, BoundsTheStepAsThatOfAFixedPoint) {
+  for (const auto integrator : {engine::IntegratorKind::kCordis, engine::IntegratorKind::kLeapfrog,
+                                engine::IntegratorKind::kImplicit}) {
+    const NetworkDescription still = row_between(false, integrator);
+    const NetworkDescription driven = row_between(true, integrator);
+    const double of_still = plan::certified_bound(still, plan::liaison_graph(still)).step;
+    const double of_driven = plan::certified_bound(driven, plan::liaison_graph(driven)).step;
+    EXPECT_EQ(of_driven, of_still) << to_string(integrator);
+    EXPECT_GT(of_driven, 0.0);
+  }
+}
+
+TEST(DrivenPlan, StaysBoundedJustBelowTheCertifiedStep) {
+  NetworkDescription scene = row_between(true, engine::IntegratorKind::kCordis);
+  scene.step = 0.98 * plan::certified_bound(scene, plan::liaison_graph(scene)).step;
+  EXPECT_LT(largest_excursion(scene, 20'000), 1.0);
+  scene.step *= 3.0;
+  EXPECT_GT(largest_excursion(scene, 20'000), 1e6);
+}
+
+TEST(DrivenPlan, KnowsHowFastAFunctionIs) {
+  NetworkDescription scene = row_between(true, engine::IntegratorKind::kCordis);
+  EXPECT_NEAR(plan::largest_drive_speed(scene), 0.2, 1e-3);
+  scene.drives.clear();
+  EXPECT_EQ(plan::largest_drive_speed(scene), 0.0);
+}
+
+TEST(DrivenPlan, IsComparedWithTheSchemeForWantOfAReferenceIntegrator) {
+  plan::ReferenceOptions options;
+  options.sampling.period = 0.05;
+  options.sampling.count = 10;
+  options.finest_hz = 2000.0;
+  const plan::Reference reference =
+      plan::make_reference(row_between(true, engine::IntegratorKind::kCordis), {}, options);
+  EXPECT_FALSE(reference.by_reference);
+  EXPECT_NE(
+      reference.made_by.find("MATs that follow a function of time have no reference integrator"),
+      std::string::npos)
+      << reference.made_by;
+}
+
+}  // namespace
+}  // namespace cordis::test
