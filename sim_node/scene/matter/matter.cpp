@@ -119,7 +119,9 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   std::optional<DriveSpec> spec;
   if (!is_surface(kind) || reader.has("driven")) spec = read_driven(reader, space, problems);
   const engine::Vec3 start = spec ? spec->start : engine::Vec3(engine::Vec3::Zero());
-  if (reader.optional_value("driven").find("position_m").exists()) source.driven_start = &start;
+  if (reader.has("driven") && reader.optional_value("driven").find("position_m").exists()) {
+    source.driven_start = &start;
+  }
   const bool is_fixed = kind.may_be_fixed && reader.optional_truth("fixed", false);
   source.needs_no_mass = is_fixed || (spec && spec->kind != DriveSpec::Kind::kForce);
   GeneratedMatter matter = kind.read(source);
