@@ -13,14 +13,14 @@ namespace {
 using engine::Vec3;
 
 /// The points of a closed surface and how they lie to each other.
-struct Surface {
+struct ClosedSurface {
   std::vector<Vec3> points;
   std::vector<Edge> edges;
   std::vector<Edge> across;  // second neighbours
 };
 
-Surface closed_line(std::vector<Vec3> points) {
-  Surface surface{std::move(points), {}, {}};
+ClosedSurface closed_line(std::vector<Vec3> points) {
+  ClosedSurface surface{std::move(points), {}, {}};
   const auto count = static_cast<std::uint32_t>(surface.points.size());
   for (std::uint32_t i = 0; i < count; ++i) {
     surface.edges.emplace_back(i, (i + 1) % count);
@@ -29,7 +29,7 @@ Surface closed_line(std::vector<Vec3> points) {
   return surface;
 }
 
-Surface read_circle(Source& source) {
+ClosedSurface read_circle(Source& source) {
   config::MappingReader& reader = source.reader;
   const Vec3 center = required_point(reader, "center_m", 2);
   const double radius = reader.required_number("radius_m", {0.0, kFarthest, true});
@@ -44,7 +44,7 @@ Surface read_circle(Source& source) {
 }
 
 /// Every side of a polygon in equal pieces of about the spacing.
-Surface read_polygon(Source& source) {
+ClosedSurface read_polygon(Source& source) {
   config::MappingReader& reader = source.reader;
   const std::vector<Vec3> corners = required_points(reader, "corners_m", 2, source.problems);
   const double spacing = reader.required_number("spacing_m", {0.0, kFarthest, true});
@@ -68,7 +68,7 @@ Surface read_polygon(Source& source) {
   return closed_line(std::move(points));
 }
 
-Surface read_sphere(Source& source) {
+ClosedSurface read_sphere(Source& source) {
   config::MappingReader& reader = source.reader;
   constexpr long kMaxSubdivisions = 8;  // 655,362 MATs
   const Vec3 center = required_point(reader, "center_m", 3);
@@ -80,7 +80,7 @@ Surface read_sphere(Source& source) {
   return {std::move(sphere.points), std::move(sphere.edges), std::move(sphere.across)};
 }
 
-Surface read_surface(Source& source) {
+ClosedSurface read_surface(Source& source) {
   if (source.space == 3) return read_sphere(source);
   return source.reader.has("corners_m") ? read_polygon(source) : read_circle(source);
 }
@@ -111,7 +111,7 @@ void add_core(Source& source, GeneratedMatter& matter, const config::Value& sect
 
 GeneratedMatter read_skin(Source& source) {
   config::MappingReader& reader = source.reader;
-  const Surface surface = read_surface(source);
+  const ClosedSurface surface = read_surface(source);
   const PointSpec spec = read_point_spec(source);
   const std::optional<LinkLaw> law = read_neighbour_law(source);
   const std::optional<LinkLaw> shear = read_shear_law(reader);
