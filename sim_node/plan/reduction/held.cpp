@@ -4,15 +4,14 @@
 namespace cordis::plan {
 namespace {
 
-using scene::Quantity;
-
 void hold_signal(const scene::Signal& signal, Held& held) {
   for (const std::uint32_t mat : signal.mats) held.mats[mat] = true;
   if (scene::is_of_mat(signal.quantity)) held.mats[signal.index] = true;
   if (scene::is_of_link(signal.quantity) && signal.kind == scene::LinkKind::kLinear) {
     held.links[signal.index] = true;
   }
-  if (signal.quantity == Quantity::kEnergy || signal.quantity == Quantity::kElasticEnergy) {
+  if (signal.quantity == scene::Quantity::kEnergy ||
+      signal.quantity == scene::Quantity::kElasticEnergy) {
     held.energy = true;
   }
 }
