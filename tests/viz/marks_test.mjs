@@ -367,6 +367,25 @@ const cases = {
     await page.screenshot({ path: join(out, 'marks_patterns.png') });
   },
 
+  'a scene that comes while the view is frozen is not drawn before the view goes on': async (session) => {
+    const { page } = session;
+    await page.keyboard.press('h');
+    await banner(page, 'view frozen');
+    const { number } = await viz(page, 'scene');
+    await session.source.end();
+    session.source = session.scene('--scene', 'grid', '--mats', '400', '--space', '1');
+    await until('it is described', async () => (await viz(page, 'scene')).number > number);
+    await page.keyboard.press('3');
+    const stage = await page.locator('#stage').boundingBox();
+    const colours = await page.evaluate(
+      ({ x, y, width, height }) => [0.3, 0.45, 0.7].map((share) => window.viz.pixelAt(x + share * width, y + share * height)),
+      stage,
+    );
+    assert.ok(colours.every((colour) => Math.max(...colour) < 60), `the view is empty: ${colours.join(' | ')}`);
+    await page.keyboard.press('h');
+    await until('it is drawn', async () => (await viz(page, 'lastFrame')).matCount === 400);
+  },
+
   'nothing went wrong in the page': async ({ page, pageErrors }) => {
     assert.deepEqual([await viz(page, 'errors'), pageErrors], [[], []]);
   },

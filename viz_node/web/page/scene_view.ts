@@ -101,7 +101,7 @@ export class SceneView {
     const kind = new VertexArray(Float32Array.from(shownKinds(this.topology.kinds, this.topology.radii, this.tools, this.bodies.shapes)), 1);
     const vertices = { position: this.newest, previous: this.before, reference: this.reference, radius: this.radii, tint: this.tints, kind };
     const all = { first: 0, count: this.topology.matCount, uniforms: {} };
-    return shapeOf('points', matProgram(this.quality.spheres), vertices, { uniforms: this.uniforms, parts: [all] });
+    return shapeOf('points', matProgram(this.quality.spheres), vertices, { uniforms: this.uniforms, parts: [all], isVisible: false }); // until it has places
   }
 
   /** Takes a frame; draw() shows it. */
@@ -113,6 +113,7 @@ export class SceneView {
       this.before.set(frame.positions.slice());
       this.sizePoints();
       this.measureFrom(frame.positions, frame.simulatedS);
+      this.matter.isVisible = true;
     }
     this.links?.take(frame.positions, frame.linkStates);
     this.tintComponents();
