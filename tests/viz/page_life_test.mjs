@@ -135,7 +135,7 @@ const cases = {
     const old = await browser.newPage();
     await old.routeWebSocket(/live/, (socket) => {
       const server = socket.connectToServer();
-      server.onMessage((message) => socket.send(typeof message === 'string' ? message.replace('"protocol":1', '"protocol":2') : message));
+      server.onMessage((message) => socket.send(typeof message === 'string' ? message.replace(/"protocol":\d+/, '"protocol":0') : message));
     });
     await old.goto(url);
     await banner(old, 'reload this page');

@@ -127,7 +127,7 @@ export class Page {
     switch (message.type) {
       case 'hello':
         this.connection.mayCommand = message.may_command;
-        this.controls.list(message.scenes);
+        this.controls.list(message.scenes ?? []); // a viz_node of another version may list none
         this.maySet = message.parameters;
         return this.hud.setHello(message);
       case 'description':
