@@ -2,7 +2,6 @@
 #include "sim_node/status_snapshot.h"
 
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -172,14 +171,10 @@ void StatusSnapshot::report_passivity(std::uint64_t ticks) {
 void StatusSnapshot::report_integration_error(const engine::Energy& energy) {
   const std::int64_t now = node::monotonic_nsec();
   integration_errors_.report(now);
-  const double error = energy.integration_error();
   const bool passed = is_error_large(energy);
   const bool was_passed = std::exchange(error_is_passed_, passed);
   if (!passed || was_passed || !integration_errors_.record(now)) return;
-  spdlog::warn(
-      "the steps have {} {:.3g} J that no account explains, above 1 % of the largest energy "
-      "({:.3g} J): the step is too long for a liaison. A higher step rate helps",
-      error > 0.0 ? "made" : "taken", std::abs(error), energy.largest);
+  spdlog::warn("{}", integration_error_text(energy));
 }
 
 }  // namespace cordis::sim

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 #include "device_node/gesture_wire.h"
 #include "node/config/file_kind.h"
 #include "node/config/yaml_reader.h"
@@ -251,6 +253,7 @@ bool OfflineSession::play_tick(const std::function<void()>& after_step) {
   }
   simulation().read_signals(row_.data());
   const bool is_frame = simulation().tick_count() % loaded_->ticks_per_frame == 0;
+  if (is_frame) watch_integration_error();
   const bool watches = loaded_->watches_energy() && is_frame;
   const sim::PassedBound bound =
       loaded_->passed_bound(watches ? sim::signs_of(world(), loaded_->reach) : sim::BoundSigns{});
@@ -298,6 +301,14 @@ msg::SceneFrame OfflineSession::frame() {
   message.frame(++frame_count_);
   sim::put_frame(loaded_->frames.shape(), loaded_->frames.published(), message);
   return message;
+}
+
+void OfflineSession::watch_integration_error() {
+  if (!integration_error_text_.empty()) return;
+  const engine::Energy energy = world().energy();
+  if (!sim::is_error_large(energy)) return;
+  integration_error_text_ =
+      fmt::format("at {:.6g} s {}", time_s(), sim::integration_error_text(energy));
 }
 
 double OfflineSession::energy_residual() const {

@@ -85,6 +85,10 @@ class OfflineSession {
   /// Why the devices were let go of, or that the scene is beyond its certificate; empty if neither.
   std::string bound_text() const;
 
+  /// integration_error_text() of the first frame in which the steps had made or taken so much, with
+  /// its time; empty if none.
+  const std::string& integration_error_text() const noexcept { return integration_error_text_; }
+
   /// What the energy account does not explain, relative to the largest of its entries.
   double energy_residual() const;
 
@@ -95,11 +99,13 @@ class OfflineSession {
   void load_scene(const std::string& file);
   void make(scene::Scene&& scene);
   void warn(const config::Problems& problems);
+  void watch_integration_error();
 
   std::unique_ptr<sim::LoadedScene> loaded_;
   std::vector<std::unique_ptr<SimulatedDevice>> devices_;
   std::vector<double> row_;
   std::vector<std::string> warnings_;
+  std::string integration_error_text_;
   double duration_s_ = 0.0;
   std::uint64_t frame_count_ = 0;
   sim::EventRoom events_;

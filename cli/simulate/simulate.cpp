@@ -132,6 +132,8 @@ class Recording {
         {"wall_s", result.wall_s},
         {"energy_j", energy.total()},
         {"energy_drift", energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0},
+        {"integration_error_j", energy.integration_error()},
+        {"largest_energy_j", energy.largest},
         {"columns", columns}};
     summary_->write(json.dump(2) + "\n");
     summary_->flush();
@@ -176,6 +178,7 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   result.failure = session.simulation().failure();
   result.bound = session.bound_text();
   result.drives = drive_trouble_text(session.simulation().troubles());
+  result.integration_error = session.integration_error_text();
   result.wall_s = std::chrono::duration<double>(WallClock::now() - begun).count();
   result.simulated_s = session.time_s();
   result.step_count = session.world().step_count();

@@ -21,9 +21,10 @@ struct SimulateOptions : TableOptions {
 /// What came of it.
 struct SimulateResult {
   std::vector<std::string> warnings;
-  std::string failure;  ///< empty, or why it ended before its time
-  std::string bound;    ///< OfflineSession::bound_text()
-  std::string drives;   ///< sim::drive_trouble_text()
+  std::string failure;            ///< empty, or why it ended before its time
+  std::string bound;              ///< OfflineSession::bound_text()
+  std::string drives;             ///< sim::drive_trouble_text()
+  std::string integration_error;  ///< OfflineSession::integration_error_text()
   bool is_stopped = false;
   double simulated_s = 0.0;
   std::uint64_t step_count = 0;

@@ -1,6 +1,10 @@
 // sim_node/run/bound_text.cpp
 #include "sim_node/run/bound_text.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
+
 namespace cordis::sim {
 
 std::string let_go_text(const Simulation& simulation) {
@@ -16,6 +20,14 @@ std::string let_go_text(const Simulation& simulation) {
       break;
   }
   return {};
+}
+
+std::string integration_error_text(const engine::Energy& energy) {
+  const double error = energy.integration_error();
+  return fmt::format(
+      "the steps have {} {:.3g} J that no account explains, above 1 % of the largest energy "
+      "({:.3g} J): the step is too long for a liaison. A higher step rate helps",
+      error > 0.0 ? "made" : "taken", std::abs(error), energy.largest);
 }
 
 std::string bound_text(const LoadedScene& loaded) {

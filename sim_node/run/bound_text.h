@@ -16,6 +16,9 @@ inline constexpr const char* kBeyondReach =
 /// Why the devices were let go of. Precondition: a bound is passed.
 std::string let_go_text(const Simulation& simulation);
 
+/// The message about steps that have made or taken energy. @p energy is one with is_error_large().
+std::string integration_error_text(const engine::Energy& energy);
+
 /// let_go_text() or kBeyondReach; empty while the scene is within its bounds.
 std::string bound_text(const LoadedScene& loaded);
 

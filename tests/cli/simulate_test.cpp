@@ -23,6 +23,7 @@
 namespace cordis::cli {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -166,6 +167,22 @@ TEST_F(Simulate, SaysWhyTheDevicesWereLetGoOf) {
   ASSERT_EQ(run({falling, "--duration", "1s", "--summary", path("f.json")}), kSuccess) << error_;
   EXPECT_EQ(error_, "");
   EXPECT_EQ(nlohmann::json::parse(text_of("f.json"))["passed_bound"], "");
+}
+
+TEST_F(Simulate, SaysThatTheStepsHaveMadeEnergy) {
+  const std::string scene = put("bouncing.yaml", kBouncing);
+  ASSERT_EQ(run({scene, "--duration", "60s", "--summary", path("s.json")}), kSuccess) << error_;
+  EXPECT_THAT(error_,
+              ContainsRegex("warning: at [0-9.]+ s the steps have made .* J that no account "
+                            "explains, above 1 % of the largest energy"));
+  const auto made = nlohmann::json::parse(text_of("s.json"));
+  EXPECT_GT(made["integration_error_j"], 0.1 * made["largest_energy_j"].get<double>());
+
+  const std::string falling = put("fall.yaml", kFalling);
+  ASSERT_EQ(run({falling, "--duration", "1s", "--summary", path("f.json")}), kSuccess) << error_;
+  const auto truth = nlohmann::json::parse(text_of("f.json"));
+  EXPECT_LT(std::abs(truth["integration_error_j"].get<double>()),
+            1e-9 * truth["largest_energy_j"].get<double>());
 }
 
 TEST_F(Simulate, GivesTheStateOfTheSameStepsInAnyPortions) {
