@@ -2,10 +2,13 @@
 #include "cli/run/respawn_policy.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/test_seed.h"
 
 namespace cordis::cli {
 namespace {
@@ -49,7 +52,7 @@ TEST(RespawnPolicy, NeverGivesUpOnANodeThatRunsLongEnough) {
 /// Deaths at random moments: whatever they are, no minute has more than five restarts, every delay
 /// is one of the three, and a node is given up only when five restarts lie in the last minute.
 TEST(RespawnPolicy, NeverRestartsMoreThanFiveTimesInAnyMinuteWhateverHappens) {
-  const unsigned seed = std::random_device{}();
+  const std::uint32_t seed = test::test_seed();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
   for (int round = 0; round < 500; ++round) {

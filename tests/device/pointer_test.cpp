@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "device_node/pointer_link.h"
+#include "tests/support/test_seed.h"
 
 namespace cordis::device {
 namespace {
@@ -190,7 +192,7 @@ TEST(Pointer, NoTargetMakesItsHandJumpWhateverThePageSays) {
   // Whatever a page says, the target keeps its speed limit, and so the springs of the hand their share
   // of it: the key gets no more speed than the limit and what its force gives it. While nothing holds a
   // key its target follows the key.
-  const unsigned seed = std::random_device()();
+  const std::uint32_t seed = test::test_seed();
   std::mt19937 lot(seed);
   PointerSettings settings;
   settings.speed_limit_m_per_s = 0.5;

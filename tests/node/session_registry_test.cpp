@@ -3,6 +3,7 @@
 
 #include <array>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -23,6 +24,7 @@
 #include "node/dds/process_identity.h"
 #include "node/runtime_folder.h"
 #include "node/session_key.h"
+#include "tests/support/test_seed.h"
 
 namespace cordis::node {
 namespace {
@@ -324,7 +326,7 @@ TEST(SessionRegistry, DoesNotWaitForEverForAProcessThatStandsStillWithTheLock) {
 /// again, several at once. At no time do two that live have one domain, and the nodes of one
 /// session always share theirs.
 TEST(SessionRegistry, NeverGivesOneDomainToTwoSessionsWhateverHappens) {
-  const unsigned seed = std::random_device{}();
+  const std::uint32_t seed = test::test_seed();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
   const auto pick = [&random](int count) { return static_cast<int>(random() % count); };

@@ -25,6 +25,7 @@
 #include "sim_node/scene/sections/scene_reader.h"
 #include "tests/random_scenes/random_scene.h"
 #include "tests/support/rounds.h"
+#include "tests/support/test_seed.h"
 
 namespace cordis::test {
 namespace {
@@ -40,7 +41,7 @@ std::uint32_t from_environment(const char* name, std::uint32_t otherwise) {
   return text != nullptr ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : otherwise;
 }
 
-const std::uint32_t kFirst = from_environment("CORDIS_RANDOM_SEED", 1);
+const std::uint32_t kFirst = test_seed();
 const std::uint32_t kCount = from_environment("CORDIS_RANDOM_SCENES", rounds(2000));
 
 std::string named(std::uint32_t seed) {

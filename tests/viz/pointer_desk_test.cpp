@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <random>
@@ -10,6 +11,8 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/test_seed.h"
 
 namespace cordis::viz {
 namespace {
@@ -167,7 +170,7 @@ double wild_number(std::mt19937& lot) {
 }
 
 TEST(PointerDesk, MovesNoTargetFasterThanItsLimitWhateverPagesSend) {
-  const unsigned seed = std::random_device()();
+  const std::uint32_t seed = test::test_seed();
   std::mt19937 lot(seed);
   Desk desk;
   std::int64_t now = 0;
