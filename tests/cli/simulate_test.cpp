@@ -175,8 +175,8 @@ TEST_F(Simulate, SaysThatTheStepsHaveMadeEnergy) {
   EXPECT_THAT(error_,
               ContainsRegex("warning: at [0-9.]+ s the steps have made .* J that no account "
                             "explains, above 1 % of the largest energy"));
-  const auto made = nlohmann::json::parse(text_of("s.json"));
-  EXPECT_GT(made["integration_error_j"], 0.1 * made["largest_energy_j"].get<double>());
+  const auto after = nlohmann::json::parse(text_of("s.json"));
+  EXPECT_GT(after["integration_error_j"], 0.1 * after["largest_energy_j"].get<double>());
 
   const std::string falling = put("fall.yaml", kFalling);
   ASSERT_EQ(run({falling, "--duration", "1s", "--summary", path("f.json")}), kSuccess) << error_;
