@@ -37,8 +37,7 @@ int run(const SimulateOptions& options) {
   const SimulateResult result = simulate(options, [&signals] { return signals.take(); });
   for (const std::string& warning : result.warnings) node::print_text(stderr, warning + "\n");
   for (const std::string* text : {&result.bound, &result.integration_error, &result.drives}) {
-    if (!text->empty()) std::fprintf(stderr, "warning: %s
-", text->c_str());
+    if (!text->empty()) std::fprintf(stderr, "warning: %s\n", text->c_str());
   }
   const bool is_piped =
       options.csv_file == "-" || options.events_file == "-" || options.summary_file == "-";
