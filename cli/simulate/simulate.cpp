@@ -129,6 +129,7 @@ class Recording {
         {"complete", result.failure.empty() && !result.is_stopped},
         {"failure", result.failure},
         {"passed_bound", result.bound},
+        {"driven", result.drives},
         {"wall_s", result.wall_s},
         {"energy_j", energy.total()},
         {"energy_drift", energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0},

@@ -77,7 +77,7 @@ bool is_beyond(const ReachLimit& limit, const engine::World& world,
     if (mats[i].kind == engine::MatKind::kFixed) continue;
     const double square = world.velocity(i).squaredNorm();
     if (mats[i].kind == engine::MatKind::kPort) {
-      if (square > limit.speed * limit.speed) return true;
+      if (!(square <= limit.speed * limit.speed)) return true;
       continue;
     }
     const double kinetic = 0.5 * mats[i].mass * square;
@@ -85,7 +85,7 @@ bool is_beyond(const ReachLimit& limit, const engine::World& world,
     most = std::max(most, kinetic);
   }
   const double whole = energy.kinetic + std::max(energy.elastic, 0.0);
-  return whole > limit.energy || most + second > limit.pair_energy;
+  return !(whole <= limit.energy && most + second <= limit.pair_energy);
 }
 
 }  // namespace cordis::plan

@@ -8,7 +8,7 @@
 namespace cordis::sim {
 
 std::string let_go_text(const Simulation& simulation) {
-  const std::string done = "has let go of the devices: ";
+  const std::string done = simulation.has_devices() ? "has let go of the devices: " : "";
   switch (simulation.passed_bound()) {
     case PassedBound::kPartners:
       return done + crowding_text(simulation.scene(), *simulation.partners().nearest());
@@ -24,6 +24,8 @@ std::string let_go_text(const Simulation& simulation) {
 
 std::string integration_error_text(const engine::Energy& energy) {
   const double error = energy.integration_error();
+  if (!std::isfinite(error) || !std::isfinite(energy.largest))
+    return "the energy is no finite number any more: the motion diverges. A higher step rate helps";
   return fmt::format(
       "the steps have {} {:.3g} J that no account explains, above 1 % of the largest energy "
       "({:.3g} J): the step is too long for a liaison. A higher step rate helps",

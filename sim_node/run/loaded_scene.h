@@ -35,7 +35,7 @@ struct LoadedScene {
   StepRows step_rows;  ///< of the present turn
   ChangeCounter changes;
   LimitWatch limits;
-  bool is_certain;               ///< the step is certified, or there is no device to let go of
+  bool is_certain;               ///< the step is certified, or nothing moves the scene from outside
   plan::ReachLimit reach;        ///< within which it is certain; infinite where it is not certain
   bool is_beyond_reach = false;  ///< it has gone beyond its reach
   bool watches_number;  ///< K' + 2 Z' is below 4 at the start, and the step is not certified

@@ -14,9 +14,11 @@ BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
   return {makes_energy(energy), plan::is_beyond(reach, world, energy)};
 }
 
-/// True if an error is above this share of the largest energy, and no rounding.
+/// True if an error is above this share of the largest energy, and no rounding; also once they are no
+/// finite numbers any more.
 bool is_above(double share, double error, const engine::Energy& energy) noexcept {
   constexpr double kRounding = 1e-20;  // [J]
+  if (!std::isfinite(error) || !std::isfinite(energy.largest)) return true;
   return error > share * energy.largest && error > kRounding;
 }
 

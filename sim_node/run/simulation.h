@@ -58,6 +58,7 @@ class Simulation {
   /// The exchange of a device, nullptr when no port of the scene is its.
   DeviceExchange* find(std::uint32_t device_id) noexcept;
   std::vector<DeviceExchange>& devices() noexcept { return devices_; }
+  bool has_devices() const noexcept { return !devices_.empty(); }
   /// Time of the newest sample of all devices that are there; 0 when none is [ns].
   std::int64_t action_time_nsec() const noexcept;
 

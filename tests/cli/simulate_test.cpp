@@ -185,6 +185,30 @@ TEST_F(Simulate, SaysThatTheStepsHaveMadeEnergy) {
             1e-9 * truth["largest_energy_j"].get<double>());
 }
 
+TEST_F(Simulate, SaysThatADriveBringsMoreThanTheStepIsCertifiedFor) {
+  const std::string head =
+      "cordis: 1\nname: x\nspace: 1\nstep: {rate_hz: 1000}\n"
+      "liaisons: {d: {stiffness_n_per_m: 100, dissipation: '0.3 * speed_m_per_s^3'}}\n";
+  const std::string pushed =
+      put("pushed.yaml", head +
+                             "matter: {wall: {kind: fixed, at_m: 0}, "
+                             "m: {kind: mass, mass_kg: 0.01, at_m: 1, driven: {force_n: 'if(time_s "
+                             "> 1e5, 200, 2)'}}}\n"
+                             "links: [{liaison: d, between: [wall, m], rest_m: 1}]\n");
+  ASSERT_EQ(run({pushed, "--duration", "1s", "--summary", path("p.json")}), kSuccess) << error_;
+  EXPECT_EQ(nlohmann::json::parse(text_of("p.json"))["passed_bound"], "") << error_;
+
+  const std::string led = put(
+      "led.yaml", head +
+                      "matter: {wall: {kind: fixed, at_m: 0, driven: {displacement_m: "
+                      "'if(time_s < 0.3, 0, if(time_s < 0.3005, 200 * (time_s - 0.3), 0.1))'}}, "
+                      "m: {kind: mass, mass_kg: 0.01, at_m: 1}}\n"
+                      "links: [{liaison: d, between: [wall, m], rest_m: 1}]\n");
+  run({led, "--duration", "2s", "--summary", path("l.json")});
+  EXPECT_THAT(error_, testing::AnyOf(HasSubstr("than its step is certified for"),
+                                     HasSubstr("is no finite number any more")));
+}
+
 TEST_F(Simulate, GivesTheStateOfTheSameStepsInAnyPortions) {
   const std::string launch = CORDIS_SOURCE_DIR "/launch_configs/bowed_string.yaml";
   std::vector<std::string> hashes;

@@ -249,6 +249,18 @@ TEST(Drive, CountsJumpsAndNothingElse) {
   EXPECT_EQ(jumps_of(along_x(size(sine(Term(200.0) * now())))), 0u);  // kinks
   EXPECT_EQ(jumps_of(table({0.1, 0.102}, {0.0, 1.0}, false)), 0u);
   EXPECT_EQ(jumps_of(table({0.1, 0.1 + 1e-9}, {0.0, 1.0}, false)), 1u);
+  EXPECT_EQ(jumps_of(along_x(step_at(1e-9, 0.1))), 1u) << "at the start";
+  EXPECT_EQ(jumps_of(table({0.0, 0.7, 3.0}, {0.0, 0.0, 0.1}, false)), 0u) << "begins by rounding";
+  const Term settles = Term(0.01) * (Term(1.0) - one(Operation::kExp, Term(-50.0) * now()));
+  EXPECT_EQ(jumps_of(along_x(Term(0.3) + settles)), 0u) << "ends by rounding";
+}
+
+TEST(Drive, OfAJumpAtTheStartActsOnce) {
+  NetworkDescription scene = oscillator(0.1, 0.0, 3.0, 0.0, 0.0, 1e-3);
+  drive(scene, 0, along_x(three(Operation::kSelect, now() < Term(1e-9), Term(0.0), Term(0.1))));
+  World world = make_world(scene);
+  run(world, 3);
+  EXPECT_NEAR(world.velocity(1).x(), 3.0 * 0.1 / 0.1, 0.1);
 }
 
 TEST(Drive, StaysWhereItIsAndReportsWhatIsNotFinite) {

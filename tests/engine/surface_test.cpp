@@ -20,7 +20,7 @@ using engine::distance_from;
 using engine::IntegratorKind;
 using engine::SurfaceDistance;
 
-constexpr double kRadius = 0.05;
+constexpr double kBallRadius = 0.05;
 
 /// Random numbers, places and shapes.
 struct Chance {
@@ -106,9 +106,9 @@ NetworkDescription ball_on_floor(const LinkState& state, double height, double s
   scene.dimension = 2;
   scene.step = step;
   scene.mats = {mass(0.2, Vec3(0.3, height, 0.0), Vec3(0.0, speed, 0.0))};
-  scene.radius = {kRadius};
+  scene.radius = {kBallRadius};
   const std::uint32_t floor = add_surface(scene, plane(Vec3::UnitY()), Vec3(5.0, 0.0, 0.0));
-  touch(scene, 1, of_one_state(state), kRadius, -1.0, {floor});
+  touch(scene, 1, of_one_state(state), kBallRadius, -1.0, {floor});
   return scene;
 }
 
@@ -118,13 +118,13 @@ TEST(SurfaceContact, LastsHalfAPeriodAndGivesTheSpeedBack) {
   constexpr double kStep = 1e-5;
   // a third of a step before it touches
   World world = make_world(
-      ball_on_floor(contact(kStiffness, 0.0), kRadius + kSpeed * kStep / 3.0, -kSpeed, kStep));
+      ball_on_floor(contact(kStiffness, 0.0), kBallRadius + kSpeed * kStep / 3.0, -kSpeed, kStep));
   int touching = 0;
   double deepest = 0.0;
   for (int n = 0; n < 4000; ++n) {
     world.step();
     if (world.link_force(0).y() > 0.0) ++touching;
-    deepest = std::max(deepest, kRadius - world.position(0).y());
+    deepest = std::max(deepest, kBallRadius - world.position(0).y());
   }
 
   const double w = std::sqrt(kStiffness / 0.2);
@@ -136,31 +136,31 @@ TEST(SurfaceContact, LastsHalfAPeriodAndGivesTheSpeedBack) {
 }
 
 TEST(SurfaceContact, HoldsARestingBallAsDeepAsItsWeightPressesIt) {
-  NetworkDescription scene = ball_on_floor(contact(2000.0, 20.0), kRadius, 0.0, 1e-3);
+  NetworkDescription scene = ball_on_floor(contact(2000.0, 20.0), kBallRadius, 0.0, 1e-3);
   scene.gravity = Vec3(0.0, -9.81, 0.0);
   World world = make_world(scene);
   run(world, 20000);
 
-  EXPECT_NEAR(kRadius - world.position(0).y(), 0.2 * 9.81 / 2000.0, 1e-14);
+  EXPECT_NEAR(kBallRadius - world.position(0).y(), 0.2 * 9.81 / 2000.0, 1e-14);
   EXPECT_NEAR(world.link_force(1).y(), -0.2 * 9.81, 1e-9);
   EXPECT_EQ(world.largest_partners(0).of_q, 1u);
 }
 
 TEST(SurfaceContact, OfOneSidePushesOutWhatIsDeepInside) {
-  World world = make_world(ball_on_floor(contact(2000.0, 0.0), -3.0 * kRadius, 0.0));
+  World world = make_world(ball_on_floor(contact(2000.0, 0.0), -3.0 * kBallRadius, 0.0));
   world.step();
-  EXPECT_NEAR(world.link_force(0).y(), 2000.0 * 4.0 * kRadius, 1e-12);
+  EXPECT_NEAR(world.link_force(0).y(), 2000.0 * 4.0 * kBallRadius, 1e-12);
 }
 
 TEST(SurfaceContact, OfBothSidesKeepsABallWhereItIs) {
   for (const double side : {1.0, -1.0}) {
     NetworkDescription scene =
-        ball_on_floor(contact(5000.0, 0.0), side * 2.0 * kRadius, side * -0.3);
+        ball_on_floor(contact(5000.0, 0.0), side * 2.0 * kBallRadius, side * -0.3);
     scene.surfaces[0].both_sides = true;
     World world = make_world(scene);
     run(world, 10000);
     EXPECT_GT(side * world.velocity(0).y(), 0.29);
-    EXPECT_GT(side * world.position(0).y(), kRadius);
+    EXPECT_GT(side * world.position(0).y(), kBallRadius);
   }
 }
 
@@ -216,7 +216,7 @@ TEST(SurfaceContact, IsTheSumOverAllBallsAndSurfaces) {
   constexpr double kViscosity = 0.5;
   for (unsigned seed = 1; seed <= 24; ++seed) {
     const NetworkDescription scene =
-        among_surfaces(seed, 30, of_one_state(contact(kStiffness, kViscosity)), kRadius);
+        among_surfaces(seed, 30, of_one_state(contact(kStiffness, kViscosity)), kBallRadius);
     World world = make_world(scene);
     std::vector<Vec3> now;
     std::vector<Vec3> before;
@@ -235,7 +235,7 @@ TEST(SurfaceContact, IsTheSumOverAllBallsAndSurfaces) {
               distance_from(surface, scene.mats[surface.mat].position, now[i]);
           const double rate = from.normal.dot(now[i] - before[i]) / scene.step;
           const double tension = kStiffness * (from.distance - scene.radius[i]) + kViscosity * rate;
-          if (from.distance < kRadius) force -= std::min(tension, 0.0) * from.normal;
+          if (from.distance < kBallRadius) force -= std::min(tension, 0.0) * from.normal;
         }
         first_push = std::max(first_push, force.norm());
         const Vec3 next =
@@ -270,7 +270,7 @@ const std::vector<IntegratorKind> kWithStates{IntegratorKind::kCordis, Integrato
 
 TEST(SurfaceContact, StepsToTheSameBitsAtEveryWidthAndAfterASnapshot) {
   for (unsigned seed = 1; seed <= 9; ++seed) {
-    NetworkDescription scene = among_surfaces(seed, 60, sticking(), kRadius);
+    NetworkDescription scene = among_surfaces(seed, 60, sticking(), kBallRadius);
     scene.integrator = kWithStates[seed % kWithStates.size()];
     World narrow = make_world(scene, VectorWidth::kSse2);
     run(narrow, 150);
@@ -292,7 +292,7 @@ TEST(SurfaceContact, StepsToTheSameBitsAtEveryWidthAndAfterASnapshot) {
 }
 
 TEST(SurfaceContact, HoldsBoundBallsBeyondItsRangeAndReportsWhatTheyTouch) {
-  NetworkDescription scene = ball_on_floor(contact(1.0, 0.0), kRadius, -0.1, 1e-3);
+  NetworkDescription scene = ball_on_floor(contact(1.0, 0.0), kBallRadius, -0.1, 1e-3);
   scene.state_machines = {sticking()};
   World world = make_world(scene);
   world.step();
@@ -304,7 +304,7 @@ TEST(SurfaceContact, HoldsBoundBallsBeyondItsRangeAndReportsWhatTheyTouch) {
   world.set_external_force(0, Vec3(0.0, 2.0, 0.0));
   run(world, 400);
   ASSERT_EQ(world.bound_pairs(0).size(), 1u);
-  EXPECT_GT(world.position(0).y(), kRadius);
+  EXPECT_GT(world.position(0).y(), kBallRadius);
 
   world.set_external_force(0, Vec3(0.0, 20.0, 0.0));
   run(world, 200);
@@ -316,7 +316,7 @@ TEST(SurfaceContact, KeepsEnergyInItsAccount) {
   for (const IntegratorKind kind : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
     for (unsigned seed = 1; seed <= 6; ++seed) {
       NetworkDescription scene =
-          among_surfaces(seed, 20, of_one_state(contact(300.0, 0.4)), kRadius);
+          among_surfaces(seed, 20, of_one_state(contact(300.0, 0.4)), kBallRadius);
       scene.integrator = kind;
       scene.step = 1e-4;
       World world = make_world(scene);
@@ -332,7 +332,7 @@ TEST(SurfaceContact, KeepsEnergyInItsAccount) {
 TEST(SurfaceContact, IsSteppedByEveryIntegratorThatTakesSets) {
   for (const IntegratorKind kind : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog,
                                     IntegratorKind::kImplicit, IntegratorKind::kSymplectic4}) {
-    NetworkDescription scene = ball_on_floor(contact(2000.0, 0.0), 2.0 * kRadius, -0.5, 1e-4);
+    NetworkDescription scene = ball_on_floor(contact(2000.0, 0.0), 2.0 * kBallRadius, -0.5, 1e-4);
     scene.integrator = kind;
     World world = make_world(scene);
     run(world, 4000);
@@ -341,25 +341,25 @@ TEST(SurfaceContact, IsSteppedByEveryIntegratorThatTakesSets) {
 }
 
 TEST(SurfaceContact, LetsBallsSleepOnItAndWakesThem) {
-  NetworkDescription scene = ball_on_floor(contact(2000.0, 20.0), kRadius, 0.0, 1e-3);
+  NetworkDescription scene = ball_on_floor(contact(2000.0, 20.0), kBallRadius, 0.0, 1e-3);
   scene.gravity = Vec3(0.0, -9.81, 0.0);
   scene.freeze_tolerance = 1e-6;
   World world = make_world(scene);
   run(world, 4000);
   EXPECT_EQ(world.asleep_count(), 1u);
-  EXPECT_NEAR(kRadius - world.position(0).y(), 0.2 * 9.81 / 2000.0, 1e-6);
+  EXPECT_NEAR(kBallRadius - world.position(0).y(), 0.2 * 9.81 / 2000.0, 1e-6);
 
   world.set_external_force(0, Vec3(0.0, 4.0, 0.0));
   run(world, 200);
   world.set_external_force(0, Vec3::Zero());
-  EXPECT_GT(world.position(0).y(), kRadius);
+  EXPECT_GT(world.position(0).y(), kBallRadius);
   run(world, 8000);
   EXPECT_EQ(world.asleep_count(), 1u);
-  EXPECT_NEAR(kRadius - world.position(0).y(), 0.2 * 9.81 / 2000.0, 1e-6);
+  EXPECT_NEAR(kBallRadius - world.position(0).y(), 0.2 * 9.81 / 2000.0, 1e-6);
 }
 
 TEST(SurfaceContact, StepsWithoutAllocating) {
-  World world = make_world(among_surfaces(3, 60, of_one_state(contact(300.0, 0.1)), kRadius));
+  World world = make_world(among_surfaces(3, 60, of_one_state(contact(300.0, 0.1)), kBallRadius));
   run(world, 3);
   const AllocationGuard guard;
   run(world, 200);
@@ -367,7 +367,7 @@ TEST(SurfaceContact, StepsWithoutAllocating) {
 }
 
 TEST(SurfaceContact, OfABallThatIsNowhereIsNone) {
-  NetworkDescription scene = ball_on_floor(contact(2000.0, 0.0), kRadius, 0.0);
+  NetworkDescription scene = ball_on_floor(contact(2000.0, 0.0), kBallRadius, 0.0);
   World world = make_world(scene);
   world.set_external_force(0, Vec3(0.0, 1e308, 0.0));
   run(world, 20);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/plan/reference/reference.h"
-#include "sim_node/plan/stability/drive_speed.h"
+#include "sim_node/plan/stability/drive_extremes.h"
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/step_bound.h"
 #include "tests/engine/programs.h"
@@ -61,6 +61,43 @@ TEST(DrivenPlan, KnowsHowFastAFunctionIs) {
   EXPECT_NEAR(plan::largest_drive_speed(scene), 0.2, 1e-3);
   scene.drives.clear();
   EXPECT_EQ(plan::largest_drive_speed(scene), 0.0);
+}
+
+/// A blow of 10 ms, whenever it comes, and an oscillation at any frequency.
+TEST(DrivenPlan, KnowsShortAndPeriodicFunctions) {
+  NetworkDescription scene = row_between(true, engine::IntegratorKind::kCordis);
+  for (const double begin : {0.105, 3.3333, 12.0, 1000.0}) {
+    engine::TimeFunction blow;
+    blow.time = {0.0, begin, begin + 0.01};
+    blow.value = {Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.5, 0.0)};
+    for (const bool smooth : {false, true}) {
+      blow.smooth = smooth;
+      scene.time_functions = {blow};
+      EXPECT_GE(plan::largest_drive_speed(scene), smooth ? 74.0 : 49.999) << begin;
+    }
+  }
+  for (const double frequency : {50.0, 53.0, 100.0, 200.0, 1000.0}) {
+    const double w = 2.0 * std::acos(-1.0) * frequency;
+    engine::TimeFunction shake;
+    shake.formula[1] = (Term(0.05) * one(Operation::kSin, Term(w) * q(Quantity::kAge))).program;
+    scene.time_functions = {shake};
+    EXPECT_GT(plan::largest_drive_speed(scene), 0.95 * 0.05 * w) << frequency;
+  }
+}
+
+TEST(DrivenPlan, AddsTheForcesOfAllMasses) {
+  NetworkDescription scene = row_between(true, engine::IntegratorKind::kCordis);
+  engine::TimeFunction push;
+  push.formula[0] = (Term(20.0) * one(Operation::kSin, Term(3.0) * q(Quantity::kAge))).program;
+  scene.time_functions = {push};
+  scene.drives.clear();
+  for (const std::uint32_t mat : {1U, 2U, 3U}) {
+    engine::Drive drive;
+    drive.mat = mat;
+    drive.is_force = true;
+    scene.drives.push_back(drive);
+  }
+  EXPECT_NEAR(plan::sum_of_drive_forces(scene), 60.0, 0.01);
 }
 
 TEST(DrivenPlan, IsComparedWithTheSchemeForWantOfAReferenceIntegrator) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/description/network.h"
@@ -64,6 +65,18 @@ Vec3 value_at(const TimeFunction& function, double time) noexcept {
   return value;
 }
 
+double speed_bound_of_table(const TimeFunction& table) noexcept {
+  double largest = 0.0;
+  for (std::size_t left = 0; left + 1 < table.time.size(); ++left) {
+    const double width = table.time[left + 1] - table.time[left];
+    Vec3 steepest = (table.value[left + 1] - table.value[left]) / width;
+    // A cubic that stays between two values is at most three times as steep as the line.
+    if (table.smooth) steepest *= 3.0;
+    largest = std::max(largest, steepest.norm());
+  }
+  return largest;
+}
+
 Vec3 placed(const Drive& drive, const Vec3& value) noexcept {
   const std::array<double, 9>& m = drive.turn;
   const Vec3 turned(m[0] * value.x() + m[1] * value.y() + m[2] * value.z(),
@@ -82,8 +95,12 @@ Vec3 start_of(const NetworkDescription& network, const Drive& drive) noexcept {
 
 bool jumps(const NetworkDescription& network, const Drive& drive, double from, double to,
            const Vec3& before, const Vec3& next) noexcept {
-  constexpr int kHalvings = 10;  // a thousandth
+  constexpr int kHalvings = 10;     // a thousandth
+  constexpr double kLeast = 1e-12;  // [m]
+  constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
   const double whole = (next - before).squaredNorm();
+  const double least = std::max(kLeast, kRounding * std::max(before.norm(), next.norm()));
+  if (!(whole > least * least)) return false;
   Vec3 low = before;
   Vec3 high = next;
   for (int n = 0; n < kHalvings; ++n) {

@@ -47,6 +47,9 @@ struct Drive {
   std::array<double, 9> turn{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};  ///< rows of a matrix
 };
 
+/// No slope of a table along time is larger [1/s of its unit]; 0 of a formula. O(times).
+double speed_bound_of_table(const TimeFunction& table) noexcept;
+
 /// Position [m] or force [N] of a drive whose function has this value. Real time: O(1).
 Vec3 placed(const Drive& drive, const Vec3& value) noexcept;
 /// Position [m] or force [N] of a drive at a time [s]. Real time as of the other value_at().
@@ -55,7 +58,7 @@ Vec3 value_at(const NetworkDescription& network, const Drive& drive, double time
 Vec3 start_of(const NetworkDescription& network, const Drive& drive) noexcept;
 
 /// True where a position jumps between two times: more than half of its way lies within a thousandth of
-/// the period. `before` and `next` are its values there. Real time: 11 values.
+/// the period. A way of less than 1e-12 m, or of some roundings, is no jump. `before` and `next` are its values there. Real time: 11 values.
 bool jumps(const NetworkDescription& network, const Drive& drive, double from, double to,
            const Vec3& before, const Vec3& next) noexcept;
 

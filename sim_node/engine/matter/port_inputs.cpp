@@ -99,7 +99,8 @@ void PortInputs::begin(MatArray& mats) noexcept {
     if (port.drive == nullptr) continue;
     const Vec3 start = mats.position(port.mat);
     const Vec3 next = value_at(network_, *port.drive, time_of(1));
-    if (next.allFinite()) mats.set_delayed(port.mat, start - (next - start));
+    if (next.allFinite() && !jumps(network_, *port.drive, time_of(0), time_of(1), start, next))
+      mats.set_delayed(port.mat, start - (next - start));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim_node/plan/stability/drive_speed.h"
+#include "sim_node/plan/stability/drive_extremes.h"
 #include "sim_node/plan/stability/start_point.h"
 
 namespace cordis::plan {
@@ -244,14 +244,21 @@ bool acts_at(const engine::LinkState& state, double tension) {
 }
 
 /// Kinetic, stored and what falling through the scene brings [J].
-double energy_brought(const engine::NetworkDescription& network) {
-  double energy = 0.0;
+/// The diagonal of the box about all MATs [m].
+double extent_of(const engine::NetworkDescription& network) {
   engine::Vec3 lowest = network.mats.front().position;
   engine::Vec3 highest = lowest;
-  double weight = 0.0;
   for (const engine::Mat& mat : network.mats) {
     lowest = lowest.cwiseMin(mat.position);
     highest = highest.cwiseMax(mat.position);
+  }
+  return (highest - lowest).norm();
+}
+
+double energy_brought(const engine::NetworkDescription& network) {
+  double energy = 0.0;
+  double weight = 0.0;
+  for (const engine::Mat& mat : network.mats) {
     if (mat.kind != engine::MatKind::kMass) continue;
     energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
     weight += mat.mass * network.gravity_on(mat).norm();
@@ -267,7 +274,7 @@ double energy_brought(const engine::NetworkDescription& network) {
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     energy += 0.5 * link.start_force * link.start_force / link.stiffness;
   }
-  return energy + weight * (highest - lowest).norm();
+  return energy + weight * extent_of(network);
 }
 
 }  // namespace
@@ -379,7 +386,7 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
       state_machine.exits,
       [](const engine::Transition& exit) { return exit.rest != engine::RestRule::kKeep; });
   const double heaviest = std::max(reach.mass_a.high, reach.mass_b.high);
-  const double energy = 0.5 * heaviest * reach.speed * reach.speed;
+  const double energy = 0.5 * heaviest * reach.speed * reach.speed + reach.pushed;
   for (const engine::LinkState& state : state_machine.states) {
     const Flip flip = flip_of(state, rest_length, flips_at, moves_rest, reach);
     if (flip.pulls) slope.uncertainty = kPullsWhereNormalFlips;
@@ -452,7 +459,8 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
     reach.speed = std::max(reach.speed, mat.velocity.norm());
     reach.energy = std::max(reach.energy, mat.mass * mat.velocity.squaredNorm());
   }
-  reach.brought = factor * energy_brought(network);
+  reach.pushed = factor * sum_of_drive_forces(network) * extent_of(network);
+  reach.brought = factor * energy_brought(network) + reach.pushed;
   reach.energy *= factor;
   reach.speed *= std::sqrt(factor);
   return reach;

@@ -14,7 +14,9 @@ struct Reach {
   double elongation = 0.0;  ///< of a link, either way [m]
   double speed = 0.0;       ///< elongation rate of a link [m/s]
   double energy = 0.0;      ///< with which two MATs approach each other [J]
-  double brought = 0.0;  ///< kinetic and stored at the start, and by falling through the scene [J]
+  /// Kinetic and stored at the start, by falling and by `pushed` [J].
+  double brought = 0.0;
+  double pushed = 0.0;   ///< by driven forces through the scene [J]
   Interval mass_a = {};  ///< of the ends of the liaison [kg]; 0 for what is no mass
   Interval mass_b = {};
   bool held = false;  ///< a port holds an end, so that no energy limits the elongation

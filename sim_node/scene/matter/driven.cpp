@@ -189,6 +189,12 @@ std::optional<DriveSpec> read_driven(MappingReader& reader, int space, Problems&
   MappingReader driven(section, "'driven' of " + reader.what(), problems);
   const ParameterValues parameters(driven.optional_mapping("parameters"), {}, nullptr,
                                    driven.what(), problems);
+  for (const char* taken : {"time_s", "pi"}) {
+    if (!parameters.find(taken)) continue;
+    driven.error_at("parameters",
+                    "'" + std::string(taken) + "' has its meaning in formulas of time",
+                    "give the parameter another name");
+  }
   DriveSpec spec;
   const char* written = nullptr;
   for (const DriveKey& known : kDriveKeys) {

@@ -123,7 +123,9 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
     source.driven_start = &start;
   }
   const bool is_fixed = kind.may_be_fixed && reader.optional_truth("fixed", false);
-  source.needs_no_mass = is_fixed || (spec && spec->kind != DriveSpec::Kind::kForce);
+  const bool pushes =
+      reader.has("driven") && reader.optional_value("driven").find("force_n").exists();
+  source.needs_no_mass = is_fixed || (reader.has("driven") && !pushes);
   GeneratedMatter matter = kind.read(source);
   if (is_fixed) fix_all(reader, matter);
   if (spec && reader.ok()) drive(*spec, reader, matter);

@@ -1,0 +1,88 @@
+// sim_node/plan/stability/drive_extremes.cpp
+#include "sim_node/plan/stability/drive_extremes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace cordis::plan {
+namespace {
+
+using engine::NetworkDescription;
+using engine::TimeFunction;
+
+/// Calls @p look with moments [s]. No period has them all at one phase.
+template <class Look>
+void at_moments(const NetworkDescription& network, Look look) {
+  constexpr double kOver = 10.0;     // [s]
+  constexpr double kLatest = 100.0;  // [s]
+  constexpr double kGolden = 0.618033988749894848;
+  constexpr std::size_t kAll = 20'000;
+  constexpr std::size_t kLeast = 500;
+  constexpr std::size_t kLate = 1000;
+  const auto uneven = [](std::size_t n) {
+    const double golden = kGolden * static_cast<double>(n);
+    return static_cast<double>(n) + (golden - std::floor(golden));
+  };
+  const double steps = std::ceil(kOver / network.step);
+  const std::size_t wanted = std::max(kLeast, kAll / network.time_functions.size());
+  const auto count = static_cast<std::size_t>(std::min(static_cast<double>(wanted), steps));
+  for (std::size_t n = 0; n < count; ++n) look(kOver * uneven(n) / static_cast<double>(count));
+  const double octaves = std::log2(kLatest / kOver);
+  for (std::size_t n = 0; n < kLate; ++n) {
+    look(kOver * std::exp2(octaves * uneven(n) / static_cast<double>(kLate)));
+  }
+}
+
+double largest_of_finite(double largest, double value) noexcept {
+  return std::isfinite(value) ? std::max(largest, value) : largest;
+}
+
+double largest_speed(const NetworkDescription& network, const TimeFunction& function) {
+  if (!function.time.empty()) return engine::speed_bound_of_table(function);
+  double largest = 0.0;
+  at_moments(network, [&](double time) {
+    const engine::Vec3 way = value_at(function, time + network.step) - value_at(function, time);
+    largest = largest_of_finite(largest, way.norm() / network.step);
+  });
+  return largest;
+}
+
+double largest_value(const NetworkDescription& network, const TimeFunction& function) {
+  double largest = 0.0;
+  for (const engine::Vec3& value : function.value) largest = std::max(largest, value.norm());
+  if (!function.time.empty()) return largest;
+  at_moments(network, [&](double time) {
+    largest = largest_of_finite(largest, value_at(function, time).norm());
+  });
+  return largest;
+}
+
+}  // namespace
+
+double largest_drive_speed(const NetworkDescription& network) {
+  std::vector<bool> moves(network.time_functions.size());
+  for (const engine::Drive& drive : network.drives) {
+    if (!drive.is_force) moves[drive.function] = true;
+  }
+  double largest = 0.0;
+  for (std::size_t f = 0; f < moves.size(); ++f) {
+    if (moves[f]) largest = std::max(largest, largest_speed(network, network.time_functions[f]));
+  }
+  return largest;
+}
+
+double sum_of_drive_forces(const NetworkDescription& network) {
+  std::vector<double> count(network.time_functions.size(), 0.0);
+  for (const engine::Drive& drive : network.drives) {
+    if (drive.is_force) count[drive.function] += 1.0;
+  }
+  double sum = 0.0;
+  for (std::size_t f = 0; f < count.size(); ++f) {
+    if (count[f] > 0.0) sum += count[f] * largest_value(network, network.time_functions[f]);
+  }
+  return sum;
+}
+
+}  // namespace cordis::plan
