@@ -95,11 +95,11 @@ Vec3 start_of(const NetworkDescription& network, const Drive& drive) noexcept {
 
 bool jumps(const NetworkDescription& network, const Drive& drive, double from, double to,
            const Vec3& before, const Vec3& next) noexcept {
-  constexpr int kHalvings = 10;     // a thousandth
-  constexpr double kLeast = 1e-12;  // [m]
+  constexpr int kHalvings = 10;      // a thousandth
+  constexpr double kMinWay = 1e-12;  // [m]
   constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
   const double whole = (next - before).squaredNorm();
-  const double least = std::max(kLeast, kRounding * std::max(before.norm(), next.norm()));
+  const double least = std::max(kMinWay, kRounding * std::max(before.norm(), next.norm()));
   if (!(whole > least * least)) return false;
   Vec3 low = before;
   Vec3 high = next;

@@ -18,20 +18,20 @@ void at_moments(const NetworkDescription& network, Look look) {
   constexpr double kOver = 10.0;     // [s]
   constexpr double kLatest = 100.0;  // [s]
   constexpr double kGolden = 0.618033988749894848;
-  constexpr std::size_t kAll = 20'000;
-  constexpr std::size_t kLeast = 500;
-  constexpr std::size_t kLate = 1000;
+  constexpr std::size_t kCount = 20'000;
+  constexpr std::size_t kMin = 500;
+  constexpr std::size_t kLateCount = 1000;
   const auto uneven = [](std::size_t n) {
     const double golden = kGolden * static_cast<double>(n);
     return static_cast<double>(n) + (golden - std::floor(golden));
   };
   const double steps = std::ceil(kOver / network.step);
-  const std::size_t wanted = std::max(kLeast, kAll / network.time_functions.size());
+  const std::size_t wanted = std::max(kMin, kCount / network.time_functions.size());
   const auto count = static_cast<std::size_t>(std::min(static_cast<double>(wanted), steps));
   for (std::size_t n = 0; n < count; ++n) look(kOver * uneven(n) / static_cast<double>(count));
   const double octaves = std::log2(kLatest / kOver);
-  for (std::size_t n = 0; n < kLate; ++n) {
-    look(kOver * std::exp2(octaves * uneven(n) / static_cast<double>(kLate)));
+  for (std::size_t n = 0; n < kLateCount; ++n) {
+    look(kOver * std::exp2(octaves * uneven(n) / static_cast<double>(kLateCount)));
   }
 }
 

@@ -1,5 +1,4 @@
-// sim_node/plan/stability/drive_extremes.h -- how fast functions of time move matter, and how hard they
-// push.
+// sim_node/plan/stability/drive_extremes.h -- how fast drives move matter, and how hard they push.
 #pragma once
 
 #include "sim_node/engine/description/network.h"
