@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -175,6 +176,79 @@ TEST(Friction, LetsABlockSlideWithTheAccelerationThatIsLeft) {
     const double acceleration = (world.velocity(0).x() - before) / 0.5;
     const double expected = kGravity * (std::sin(angle) - 0.8 * mu * std::cos(angle));
     EXPECT_NEAR(acceleration, expected, 1e-9 * kGravity) << mu;
+  }
+}
+
+/// A block of 0.02 kg on the floor that presses with 0.2 N, on a spring of 10 N/m to a wall; its place
+/// is 0 where the spring is at rest.
+struct SpringBlock {
+  double damper;  // beside the spring [N s/m]
+  double start;   // from where it is let go, at rest [m]
+  Friction friction;
+};
+
+constexpr double kBlockMass = 0.02;
+constexpr double kBlockLoad = 0.2;
+constexpr double kBlockSpring = 10.0;
+
+/// @return where it is after a time [m]
+double place_at(double time, const SpringBlock& block, double rate) {
+  NetworkDescription scene = pressed_ball(kBlockLoad, block.friction, 2000.0, 2.0, 1.0 / rate);
+  scene.gravity = Vec3(0.0, -kBlockLoad / kBlockMass, 0.0);
+  scene.mats[0].mass = kBlockMass;
+  scene.mats[0].position.x() = block.start;
+  scene.mats.push_back(fixed(Vec3(-1.0, scene.mats[0].position.y(), 0.0)));
+  scene.radius.push_back(0.0);
+  scene.links = {{2, 0, kBlockSpring, block.damper, 1.0}};
+  World world = make_world(scene);
+  run(world, static_cast<int>(time * rate));
+  return world.position(0).x();
+}
+
+/// In closed form: half swings about the places where the spring carries the kinetic friction, each smaller
+/// than the one before; it stays at the first end of one where the static friction carries the spring. [m]
+double stays_at(const SpringBlock& block) {
+  const double least = kBlockLoad * block.friction.kinetic_coefficient / kBlockSpring;
+  const double most = kBlockLoad * block.friction.static_coefficient / kBlockSpring;
+  const double ratio = 0.5 * block.damper / std::sqrt(kBlockSpring * kBlockMass);
+  const double smaller = std::exp(-std::numbers::pi * ratio / std::sqrt(1.0 - ratio * ratio));
+  double place = block.start;
+  while (std::abs(place) > most) {
+    const double side = place > 0.0 ? 1.0 : -1.0;
+    place = -side * ((std::abs(place) - least) * smaller - least);
+  }
+  return place;
+}
+
+constexpr double kRates[] = {5000.0, 7000.0, 10000.0, 20000.0, 50000.0};
+constexpr double kFrictionStiffness[] = {2e4, 6e4, 2e5};
+
+TEST(Friction, StopsABlockOnASpringWhereTheClosedFormDoes) {
+  for (const auto& [kinetic, start] :
+       {std::pair(0.0, 0.0115), std::pair(0.0, -0.035), std::pair(0.05, 0.0125),
+        std::pair(0.05, -0.04), std::pair(0.25, 0.025), std::pair(0.25, -0.066)}) {
+    for (const double stiffness : kFrictionStiffness) {
+      const SpringBlock block{0.3, start, {0.5, kinetic, stiffness, 1.0}};
+      const double expected = stays_at(block);
+      for (const double rate : kRates) {
+        EXPECT_NEAR(place_at(1.5, block, rate), expected, 1e-4)
+            << kinetic << ' ' << start << ' ' << stiffness << ' ' << rate;
+      }
+    }
+  }
+}
+
+TEST(Friction, StopsABlockOnASpringAtTheSamePlaceAtEveryRate) {
+  for (const double kinetic : {0.0, 0.05, 0.25}) {
+    const double expected = place_at(3.5, {0.02, 0.015, {0.5, kinetic, 2e5, 1.0}}, 50000.0);
+    EXPECT_GT(std::abs(expected), 0.004) << kinetic;
+    for (const double stiffness : kFrictionStiffness) {
+      const SpringBlock block{0.02, 0.015, {0.5, kinetic, stiffness, 1.0}};
+      for (const double rate : kRates) {
+        EXPECT_NEAR(place_at(3.5, block, rate), expected, 1e-4)
+            << kinetic << ' ' << stiffness << ' ' << rate;
+      }
+    }
   }
 }
 

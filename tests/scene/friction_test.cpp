@@ -67,6 +67,18 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
                  "'stiffness_n_per_m' in friction of liaison 'a' must be > 0, got 0", ""},
         BadScene{kHead2,
+                 "liaisons:\n  a: {friction: {static: 0.1, stiffness_n_per_m: 1,\n"
+                 "      viscosity_n_s_per_m: ^1e308}}\n"
+                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 "'viscosity_n_s_per_m' in friction of liaison 'a' must be between 0 and 1e+300, "
+                 "got 1e308",
+                 ""},
+        BadScene{kHead2,
+                 "liaisons:\n  a: {pulls: false, viscosity_n_s_per_m: ^1e308}\n"
+                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 "'viscosity_n_s_per_m' in liaison 'a' must be between 0 and 1e+300, got 1e308",
+                 ""},
+        BadScene{kHead2,
                  "liaisons:\n  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}\n"
                  "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
                  "links:\n  - {liaison: ^r, between: [\"a[0]\", \"a[1]\"]}\n",

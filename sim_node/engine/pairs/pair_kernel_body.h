@@ -368,6 +368,10 @@ void store_in(double* const* arrays, std::size_t i, typename Lanes::Mask mask,
   Lanes::store(arrays[2] + i, Lanes::select(mask, v.z, Lanes::zero()));
 }
 
+/// The spring of a contact that slides is never shorter, for it has the direction in which it slides.
+/// Its energy is 0: the square is too small for a number [m].
+inline constexpr double kShortestStretch = 0x1p-600;
+
 /// What slides is limited, and its spring with it. Neither ever takes up more than the force takes from
 /// the motion: docs/integrators.md.
 template <class Lanes>
@@ -381,6 +385,7 @@ void friction_pairs(const FrictionTerm& term, const MemberColumns& members, cons
   const Row sticking = Lanes::every(term.static_coefficient);
   const Row kinetic = Lanes::every(term.kinetic_coefficient);
   const Row shorter = Lanes::every(1.0 / term.stiffness);
+  const Row shortest = Lanes::every(kShortestStretch);
   const Row sticks = Lanes::every(kSticks);
   const Row slides = Lanes::every(kSlides);
   const Row one = Lanes::every(1.0);
@@ -403,23 +408,26 @@ void friction_pairs(const FrictionTerm& term, const MemberColumns& members, cons
                  Lanes::load(friction.stretch[2] + i)};
     const Row phase = Lanes::load(friction.phase + i);
     const Row turned = dot<Lanes>(stretch, normal);  // the normal has turned since
+    stretch.x = stretch.x - turned * normal.x;
+    stretch.y = stretch.y - turned * normal.y;
+    stretch.z = stretch.z - turned * normal.z;
     const auto is_known = Lanes::less(none, phase);
-    stretch.x = Lanes::select(is_known, (stretch.x - turned * normal.x) + way.x, none);
-    stretch.y = Lanes::select(is_known, (stretch.y - turned * normal.y) + way.y, none);
-    stretch.z = Lanes::select(is_known, (stretch.z - turned * normal.z) + way.z, none);
+    const auto slid_before = Lanes::less(sticks, phase);
+    const auto onward = Lanes::both(slid_before, Lanes::less(none, dot<Lanes>(way, stretch)));
+    stretch.x = Lanes::select(is_known, stretch.x + way.x, none);
+    stretch.y = Lanes::select(is_known, stretch.y + way.y, none);
+    stretch.z = Lanes::select(is_known, stretch.z + way.z, none);
     Row3 tangential{stiffness * stretch.x + viscosity * way.x,
                     stiffness * stretch.y + viscosity * way.y,
                     stiffness * stretch.z + viscosity * way.z};
     const Row square = dot<Lanes>(tangential, tangential);
-    const auto slid_before = Lanes::less(sticks, phase);
-    const Row limit = Lanes::select(slid_before, kinetic, sticking) * push;
+    const Row limit = Lanes::select(onward, kinetic, sticking) * push;
     const auto beyond = Lanes::less(limit * limit, square);
-    const auto onward = Lanes::both(slid_before, Lanes::less(none, dot<Lanes>(way, stretch)));
     if (Lanes::bits(beyond) != 0U) {
       const Row most = kinetic * push;
       const Row share = most * Lanes::inverse_or_zero(square, Lanes::sqrt(square));
       tangential = scaled<Lanes>(tangential, Lanes::select(beyond, share, one));
-      const Row longest = most * shorter;
+      const Row longest = Lanes::maximum(most * shorter, shortest);
       const Row stretch_square = dot<Lanes>(stretch, stretch);
       const auto longer = Lanes::both(beyond, Lanes::less(longest * longest, stretch_square));
       const Row left =

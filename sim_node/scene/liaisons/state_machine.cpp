@@ -18,6 +18,7 @@ using engine::LinkState;
 using engine::Transition;
 
 constexpr std::size_t kMaxExits = 1'000;  // of a liaison
+constexpr double kMaxViscosity = 1e300;   // a number also over the shortest step [N s/m]
 
 /// What a state's exits are read from.
 struct ExitSource {
@@ -32,8 +33,8 @@ LinkState read_physics(config::MappingReader& reader, const ParameterValues& par
   LinkState state;
   state.stiffness =
       optional_formula(reader, "stiffness_n_per_m", 0.0, not_negative, parameters, problems);
-  state.viscosity =
-      optional_formula(reader, "viscosity_n_s_per_m", 0.0, not_negative, parameters, problems);
+  state.viscosity = optional_formula(reader, "viscosity_n_s_per_m", 0.0,
+                                     Range::between(0.0, kMaxViscosity), parameters, problems);
   state.elasticity = read_elasticity(reader, parameters, problems);
   state.dissipation = read_dissipation(reader, parameters, problems);
   state.force_limit = optional_formula(reader, "force_limit_n", state.force_limit,
@@ -132,8 +133,8 @@ engine::Friction read_friction(config::MappingReader& liaison, const ParameterVa
                                                   not_negative, parameters, problems);
   friction.stiffness =
       required_formula(reader, "stiffness_n_per_m", Range::positive(), parameters, problems);
-  friction.viscosity =
-      optional_formula(reader, "viscosity_n_s_per_m", 0.0, not_negative, parameters, problems);
+  friction.viscosity = optional_formula(reader, "viscosity_n_s_per_m", 0.0,
+                                        Range::between(0.0, kMaxViscosity), parameters, problems);
   if (friction.kinetic_coefficient > friction.static_coefficient) {
     reader.error_at("kinetic", "'kinetic' in " + reader.what() + " must not be above 'static'");
   }
