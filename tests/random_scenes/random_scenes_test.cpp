@@ -154,6 +154,29 @@ TEST(RandomScenes, AreReadAndNeverCertifiedAndDivergingAtOnce) {
   RecordProperty("certain", static_cast<int>(certain));
 }
 
+/// A link of several states that pulls across at the start more than it ever pulls along.
+TEST(RandomScenes, CountWhatPullsAcrossAtTheStart) {
+  config::Problems problems;
+  const scene::Scene scene = scene::load_scene_text(
+      R"(cordis: 1
+name: across
+space: 2
+step: {rate_hz: 1000}
+liaisons:
+  l: {states: {s: {elasticity: {kind: table, at_m: [-0.1, 0, 0.1], force_n: [1, 0, 0.5]}, exits: [{to: t, when: impulse_n_s > 1}]},
+               t: {exits: [{to: s, when: impulse_n_s > 1}]}}}
+matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  p: {kind: mass, mass_kg: 0.1, at_m: [0.08, 0]}
+links: [{liaison: l, between: [wall, p], rest_m: 0.2}]
+)",
+      "across", problems);
+  ASSERT_FALSE(problems.has_errors()) << problems.text();
+  const plan::Stability stability = stability_of(scene.network);
+  EXPECT_FALSE(stability.uncertainty && stability.uncertainty->why == plan::kLimitsCross);
+  EXPECT_NEAR(stability.bound.step, 2.0 / std::sqrt(1.0 / 0.08 / 0.1), 1e-3);
+}
+
 /// Sees a link, or a pair of a set, turn about between two steps, for which no step is short enough
 /// (docs/stability.md). Links in 1 dimension never turn.
 class TurnWatch {

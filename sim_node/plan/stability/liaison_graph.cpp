@@ -196,6 +196,20 @@ double largest_of_others(const ContactBound& crowd, const std::vector<double>& v
   return most;
 }
 
+namespace {
+
+/// The stiffness across a link where the scene begins [N/m]. The largest slope of several states leaves it
+/// out where they pull, for exits end them before the ends meet; at the start it is there.
+double stiffness_across_at_start(const NetworkDescription& network, const engine::StateLink& link) {
+  const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
+  if (network.dimension == 1 || state_machine.is_stateless()) return 0.0;
+  const engine::LawPoint start = start_point(network, link);
+  const double tension = stiffest_tangent(state_machine, start, network.step).tension;
+  return start.distance > 0.0 ? std::max(tension, 0.0) / start.distance : 0.0;
+}
+
+}  // namespace
+
 void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
   for (Edge& edge : edges) {
     if (edge.liaison.kind != LiaisonKind::kMaxwellLink) continue;
@@ -221,9 +235,10 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
   const Reach reach = reach_of(network, reach_factor);
   index = 0;
   for (const engine::StateLink& link : network.state_links) {
-    const Slope slope =
+    Slope slope =
         largest_slope(network.state_machines[link.state_machine], link.rest_length,
                       network.dimension, reach_between(reach, network, {link.mat_a}, {link.mat_b}));
+    slope.stiffness = std::max(slope.stiffness, stiffness_across_at_start(network, link));
     note(slope, {LiaisonKind::kStateLink, index}, graph);
     graph.edges.push_back({link.mat_a,
                            link.mat_b,
