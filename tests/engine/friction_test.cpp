@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/pairs/set_pairs.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/surfaces.h"
 #include "tests/support/allocation_guard.h"
@@ -462,6 +463,67 @@ TEST(Friction, StepsWithoutAllocating) {
   const AllocationGuard guard;
   run(world, 200);
   EXPECT_EQ(guard.count(), 0u);
+}
+
+/// A sheet of points, fixed or driven, far above many balls that do not touch; at half a millisecond a driven
+/// one is among them.
+NetworkDescription sheet_above_balls(bool driven) {
+  constexpr std::uint32_t kPoints = 100;
+  constexpr std::uint32_t kBalls = 1000;
+  NetworkDescription scene;
+  scene.dimension = 3;
+  scene.step = 1e-4;
+  SetLiaison set;
+  set.range = 0.1;
+  set.rest_length = 0.1;
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    scene.mats.push_back(fixed(Vec3(1e-4 * (i % 10), 1e-4 * (i / 10), 10.0)));
+    set.set_p.push_back(i);
+  }
+  for (std::uint32_t i = 0; i < kBalls; ++i) {
+    scene.mats.push_back(mass(1.0, 1e-3 * Vec3(i % 10, i / 10 % 10, i / 100)));
+    set.set_q.push_back(kPoints + i);
+  }
+  scene.state_machines = {rubbing(contact(1.0, 0.0), {0.5, 0.4, 1.0, 0.0})};
+  scene.sets = {set};
+  if (!driven) return scene;
+  engine::TimeFunction falls;
+  falls.time = {4e-4, 5e-4};
+  falls.value = {Vec3::Zero(), Vec3(0.0, 0.0, -9.99)};
+  scene.time_functions = {falls};
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    engine::Drive drive;
+    drive.mat = i;
+    drive.origin = scene.mats[i].position;
+    scene.drives.push_back(drive);
+    scene.mats[i].kind = MatKind::kPort;
+  }
+  return scene;
+}
+
+TEST(Friction, KeepsNoRoomForContactsThatDrivenPointsDoNotHave) {
+  const auto room_of = [](const NetworkDescription& scene) {
+    const engine::StateTable table(scene.state_machines, scene.step, false);
+    engine::SetPairs pairs(scene, 0, table, engine::pair_kernel(engine::best_vector_width()));
+    std::vector<double> position;
+    for (const Mat& mat : scene.mats) {
+      position.insert(position.end(), {mat.position.x(), mat.position.y(), mat.position.z(), 0.0});
+    }
+    pairs.make_room(position.data());
+    return pairs.contact_room();
+  };
+  EXPECT_EQ(room_of(sheet_above_balls(true)), room_of(sheet_above_balls(false)));
+}
+
+TEST(Friction, IsRememberedOfAllContactsThatBeginInOneStep) {
+  World world = make_world(sheet_above_balls(true));
+  for (int n = 0; n < 20; ++n) {
+    const engine::StepReport report = world.step();
+    ASSERT_EQ(report.forgotten_pairs, 0u) << n;
+    if (report.wants_room) world.make_room();
+  }
+  EXPECT_EQ(world.position(0).z(), 10.0 - 9.99);
+  EXPECT_GT(world.energy().elastic, 0.0);
 }
 
 TEST(Friction, TakesOtherParametersWhileItHolds) {

@@ -65,7 +65,8 @@ NetworkDescription thrown_balls(Chance& chance, int dimension) {
   const double stiffness = chance.decades(500.0, 50000.0);
   const double viscosity = chance(0.0, 1.0) < 0.5 ? 0.0 : chance.decades(0.1, 30.0);
   const double most = chance.decades(0.05, 1.5);
-  const Friction friction{most, most * chance(0.3, 1.0), stiffness * chance.decades(0.1, 10.0),
+  const double kinetic = chance(0.0, 1.0) < 0.2 ? 0.0 : most * chance(0.3, 1.0);
+  const Friction friction{most, kinetic, stiffness * chance.decades(0.1, 10.0),
                           chance(0.0, 1.0) < 0.5 ? 0.0 : chance.decades(0.1, 30.0)};
   std::vector<std::uint32_t> planes;
   for (int axis = 0; axis < 2; ++axis)

@@ -22,12 +22,17 @@ std::size_t all_pairs(const SetLiaison& set) {
   return set.set_q.empty() ? p * (p - 1) / 2 : p * set.set_q.size();
 }
 
-/// What ports do in the next step is not known between two steps.
+/// What ports do in the next step is not known between two steps. Those that a drive moves are already
+/// where they will be.
 std::size_t pairs_of_ports(const NetworkDescription& description, const SetLiaison& set) {
+  std::vector<bool> is_moved_from_outside(description.mats.size());
+  for (std::size_t mat = 0; mat < description.mats.size(); ++mat) {
+    is_moved_from_outside[mat] = description.mats[mat].kind == MatKind::kPort;
+  }
+  for (const Drive& drive : description.drives) is_moved_from_outside[drive.mat] = false;
   const auto ports_of = [&](const std::vector<std::uint32_t>& half) {
-    return static_cast<std::size_t>(std::count_if(half.begin(), half.end(), [&](std::uint32_t mat) {
-      return description.mats[mat].kind == MatKind::kPort;
-    }));
+    return static_cast<std::size_t>(std::count_if(
+        half.begin(), half.end(), [&](std::uint32_t mat) { return is_moved_from_outside[mat]; }));
   };
   return (ports_of(set.set_p) + ports_of(set.set_q)) * (set.set_p.size() + set.set_q.size());
 }
@@ -597,9 +602,8 @@ std::size_t SetPairs::room_for_friction() const noexcept {
 }
 
 bool SetPairs::wants_room(const double* position) const noexcept {
-  if (neighbours_.wants_room() || lacks_room_for_friction()) return true;
-  return may_lack_room() &&
-         (wanted_room() > state_machines_.states().capacity() || !covers(position));
+  if (neighbours_.wants_room() || lacks_room_for_states() || lacks_room_for_friction()) return true;
+  return may_lack_room() && !covers(position);
 }
 
 bool SetPairs::covers(const double* position) const noexcept {
@@ -612,18 +616,17 @@ bool SetPairs::covers(const double* position) const noexcept {
 
 void SetPairs::make_room(const double* position) noexcept {
   make_list_room();
-  if (lacks_room_for_friction()) {
-    friction_.make_room(
-        std::min(all_pairs_, std::max(room_for_friction(), 2 * friction_.capacity())));
-  }
-  if (!may_lack_room()) return;
-  if (!covers(position)) {
+  if (may_lack_room() && !covers(position)) {
     refresh_at(position);
     make_list_room();
   }
-  const std::size_t capacity = state_machines_.states().capacity();
-  if (wanted_room() <= capacity) return;
-  state_machines_.make_room(std::min(all_pairs_, std::max(wanted_room(), 2 * capacity)));
+  const auto enough = [this](std::size_t wanted, std::size_t capacity) {
+    return std::min(all_pairs_, std::max(wanted, 2 * capacity));
+  };
+  if (lacks_room_for_friction())
+    friction_.make_room(enough(room_for_friction(), friction_.capacity()));
+  if (lacks_room_for_states())
+    state_machines_.make_room(enough(wanted_room(), state_machines_.states().capacity()));
 }
 
 void SetPairs::make_list_room() noexcept {

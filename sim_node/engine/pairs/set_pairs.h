@@ -100,7 +100,7 @@ class SetPairs {
   }
   /// True if the neighbour list is short of room, or pairs could come into range in the next step
   /// and find no room beside those remembered.
-  /// @param position  of all MATs as the next step begins, except for what ports do
+  /// @param position  of all MATs as the next step begins, except for ports moved from outside
   bool wants_room(const double* position) const noexcept;
   /// Makes that room, twice the present one at least, and the neighbour list for these positions.
   /// Allocates; without memory the room stays.
@@ -108,6 +108,8 @@ class SetPairs {
   /// Makes room for all bonds that so many values of a saved state can hold. Allocates.
   void make_room_of(std::size_t value_count) noexcept;
   NeighbourList& neighbours() noexcept { return neighbours_; }
+  /// Contacts whose friction there is room for.
+  std::size_t contact_room() const noexcept { return friction_.capacity(); }
 
   /// Its length depends on the pairs that have states.
   void serialize(Archive& archive, const StateTable& table);
@@ -128,8 +130,14 @@ class SetPairs {
   bool covers(const double* position) const noexcept;
   void refresh_at(const double* position) noexcept;
   std::size_t wanted_room() const noexcept;
+  /// True if there is not room for all pairs at once.
   bool may_lack_room() const noexcept {
-    return state_machines_.has_states() && state_machines_.states().capacity() < all_pairs_;
+    return (state_machines_.has_states() && state_machines_.states().capacity() < all_pairs_) ||
+           (friction_.acts() && friction_.capacity() < all_pairs_);
+  }
+  bool lacks_room_for_states() const noexcept {
+    return state_machines_.has_states() &&
+           state_machines_.states().capacity() < std::min(all_pairs_, wanted_room());
   }
   bool lacks_room_for_friction() const noexcept {
     return friction_.acts() && friction_.capacity() < room_for_friction();
@@ -171,7 +179,7 @@ class SetPairs {
   std::uint32_t state_machine_;
   std::size_t count_p_;
   std::size_t all_pairs_;
-  std::size_t pairs_of_ports_;             // at most
+  std::size_t pairs_of_ports_;             // of those moved from outside, at most
   std::vector<std::uint32_t> column_;      // of the MAT of each member
   std::vector<std::uint32_t> own_column_;  // of each member here; empty without surfaces
   std::vector<double> is_mass_;            // of each member: 1 or 0
