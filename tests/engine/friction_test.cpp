@@ -239,6 +239,22 @@ TEST(Friction, StopsABlockOnASpringWhereTheClosedFormDoes) {
   }
 }
 
+TEST(Friction, HoldsMostOfItsLimitWhereItsDamperIsCritical) {
+  for (const auto& [kinetic, start] : {std::pair(0.05, 0.023), std::pair(0.25, -0.0185)}) {
+    for (const double stiffness : kFrictionStiffness) {
+      const double critical = 2.0 * std::sqrt(stiffness * kBlockMass);
+      const SpringBlock block{0.02, start, {0.5, kinetic, stiffness, critical}};
+      const double expected = stays_at(block);
+      const double share = std::abs(expected) * kBlockSpring / (0.5 * kBlockLoad);
+      EXPECT_NEAR(share, 0.77, 0.02) << "of the limit is held";
+      for (const double rate : {20000.0, 50000.0}) {
+        EXPECT_NEAR(place_at(1.5, block, rate), expected, 1e-4)
+            << kinetic << ' ' << stiffness << ' ' << rate;
+      }
+    }
+  }
+}
+
 TEST(Friction, StopsABlockOnASpringAtTheSamePlaceAtEveryRate) {
   for (const double kinetic : {0.0, 0.05, 0.25}) {
     const double expected = place_at(3.5, {0.02, 0.015, {0.5, kinetic, 2e5, 1.0}}, 50000.0);
