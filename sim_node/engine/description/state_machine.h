@@ -38,7 +38,7 @@ struct LinkState {
 ///     force = K s + Z w,  |force| <= static * push while it sticks, kinetic * push once it slides
 ///
 /// with s what the contact has slid since it began, as far as the spring has followed, and w the sliding
-/// velocity. A contact that slides sticks again when it turns back and its spring is below the limit.
+/// velocity. A contact that slides sticks again when it turns back and the force is within that of one that sticks.
 /// Without a push there is no friction, and nothing is remembered. [Cundall and Strack 1979]
 struct Friction {
   double static_coefficient = 0.0;   ///< >= kinetic_coefficient
