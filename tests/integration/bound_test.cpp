@@ -153,10 +153,7 @@ TEST_F(Bound, ACertifiedSceneBeyondItsReachSaysSoAndLetsGoOnceItMakesEnergy) {
   ASSERT_NO_FATAL_FAILURE(expect_let_go(reason));
   expect_zero_forces(1);
   const std::string output = end();
-  EXPECT_NE(
-      output.find("the scene has more energy, or a faster hand, than its step is certified for"),
-      std::string::npos)
-      << output;
+  EXPECT_NE(output.find("than its step is certified for"), std::string::npos) << output;
   EXPECT_NE(output.find(reason), std::string::npos) << output;
 }
 
