@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim_node/engine/core/assert.h"
+#include "sim_node/engine/pairs/restored_rows.h"
 
 namespace cordis::engine {
 
@@ -40,26 +41,15 @@ void ContactStretches::make_room(std::size_t capacity) noexcept {
   for (Table* table : {&read_, &written_}) table->contacts.resize(capacity);
 }
 
-/// Checks that each row holds later members than its own, of the other set where there are two, in
-/// their order.
 void ContactStretches::serialize(Archive& archive, std::size_t first_later,
                                  std::size_t member_count) {
   const std::size_t count = archive.count(written_.count, written_.contacts.size());
-  std::vector<std::size_t>& starts = read_.start;  // free between two steps
-  archive.wholes(std::span(written_.start), [&](std::size_t row, std::size_t start) {
-    starts[row] = start;
-    return (row == 0 ? start == 0 : start >= starts[row - 1]) &&
-           (row + 1 < starts.size() || start == count);
+  RestoredRows rows(read_.start, count, first_later, member_count);  // free between two steps
+  archive.wholes(std::span(written_.start), [&rows](std::size_t row, std::size_t start) {
+    return rows.takes_start(row, start);
   });
-  std::uint32_t row = 0;
-  const auto before_first =
-      static_cast<std::uint32_t>(4 * (std::max<std::size_t>(1, first_later) - 1));
-  std::uint32_t previous = before_first;  // column
   const auto fits = [&](std::size_t i, const ContactStretch& contact) {
-    while (i >= starts[row + 1]) previous = std::max(before_first, 4 * ++row);
-    const bool follows = contact.column > previous && contact.column / 4 < member_count;
-    previous = contact.column;
-    return follows && contact.column % 4 == 0 && contact.is_sliding <= 1;
+    return rows.takes_column(i, contact.column) && contact.is_sliding <= 1;
   };
   archive.records(std::span(written_.contacts).first(count), fits, &ContactStretch::column,
                   &ContactStretch::is_sliding, &ContactStretch::x, &ContactStretch::y,

@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "sim_node/engine/pairs/restored_rows.h"
+
 namespace cordis::engine {
 
 PairStates::PairStates(std::size_t row_count, std::size_t capacity, std::uint32_t slot_count)
@@ -84,27 +86,16 @@ void PairStates::add_to(StateHash& hash) const noexcept {
   hash.add(std::uint64_t{written_.count});
 }
 
-/// Checks that each row holds later members than its own, of the other set where there are two, in
-/// their order.
 void PairStates::serialize(Archive& archive, std::size_t first_later, std::size_t member_count,
                            const StateTable& table, std::uint32_t state_machine) {
   const std::size_t count = archive.count(written_.count, written_.states.size());
   archive.flag(has_rows_);
-  std::vector<std::size_t>& starts = read_.start;  // free between two steps
-  archive.wholes(std::span(written_.start), [&](std::size_t row, std::size_t start) {
-    starts[row] = start;
-    return (row == 0 ? start == 0 : start >= starts[row - 1]) &&
-           (row + 1 < starts.size() || start == count);
+  RestoredRows rows(read_.start, count, first_later, member_count);  // free between two steps
+  archive.wholes(std::span(written_.start), [&rows](std::size_t row, std::size_t start) {
+    return rows.takes_start(row, start);
   });
-  std::uint32_t row = 0;
-  const auto before_first =
-      static_cast<std::uint32_t>(4 * (std::max<std::size_t>(1, first_later) - 1));
-  std::uint32_t previous = before_first;  // column
   const auto fits = [&](std::size_t i, const PairState& pair) {
-    while (i >= starts[row + 1]) previous = std::max(before_first, 4 * ++row);
-    const bool follows = pair.column > previous && pair.column / 4 < member_count;
-    previous = pair.column;
-    return follows && pair.column % 4 == 0 && table.has_state(state_machine, pair.state);
+    return rows.takes_column(i, pair.column) && table.has_state(state_machine, pair.state);
   };
   archive.records(std::span(written_.states).first(count), fits, &PairState::column,
                   &PairState::state, &PairState::rest_length, &PairState::tension,
