@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/block_on_a_belt.h"
 #include "tests/engine/many_states.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
@@ -161,23 +162,7 @@ TEST(Drive, IsTheBeltOfAStickingAndSlippingBlock) {
   const nlohmann::json data = reference("R15_stick_slip_coulomb");
   const nlohmann::json& params = data["params"];
   const double step = 1e-5;
-  const double mass_kg = number(params["m"]);
-  const double hook = 1e5 * number(params["k"]);
-  LinkState slipping;
-  slipping.dissipation = power_law(number(params["Fk"]), 0.0);
-  NetworkDescription scene;
-  scene.dimension = 1;
-  scene.step = step;
-  scene.mats = {fixed(Vec3::Zero()), mass(mass_kg, Vec3::Zero(), Vec3(number(params["V"]), 0, 0)),
-                fixed(Vec3::Zero())};
-  scene.links = {{0, 1, number(params["k"]), 0.0, 0.0}};
-  scene.state_machines = {Behaving()
-                              .state(hook, 2.0 * std::sqrt(hook * mass_kg))
-                              .exit(size(q(Quantity::kForce)) > number(params["Fs"]), 1)
-                              .state(slipping)
-                              .exit(q(Quantity::kSpeed) >= 0.0, 0, RestRule::kHere)
-                              .state_machine};
-  scene.state_links = {{2, 1, 0, 0.0}};
+  NetworkDescription scene = block_on_a_belt(params, step);
   drive(scene, 2, along_x(Term(number(params["V"])) * now()));
   World world = make_world(scene);
 
