@@ -26,6 +26,14 @@ export interface Program {
   fragment: string;
 }
 
+/** The fragment shader of what has the colour of its vertices. */
+export const COLOUR_FRAGMENT = /* glsl */ `
+  precision mediump float;
+  in vec3 colour;
+  out vec4 pixel;
+  void main() { pixel = vec4(colour, 1.0); }
+`;
+
 /** Part of a shape: `count` of its indices, or vertices, from `first` on, with uniforms of its own. */
 export interface Part {
   first: number;

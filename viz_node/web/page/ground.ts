@@ -3,7 +3,7 @@
 import { type Box3, Vector3 } from 'three';
 import { sharesOf, type Palette } from './colours.ts';
 import { roundLength } from './format.ts';
-import { shapeOf, VertexArray, type Program } from './gl_canvas.ts';
+import { COLOUR_FRAGMENT, shapeOf, VertexArray, type Program } from './gl_canvas.ts';
 
 const CELLS = 24; // across the larger side of the scene, about
 
@@ -21,12 +21,7 @@ export const COLOURED: Program = {
       colour = tint;
     }
   `,
-  fragment: /* glsl */ `
-    precision mediump float;
-    in vec3 colour;
-    out vec4 pixel;
-    void main() { pixel = vec4(colour, 1.0); }
-  `,
+  fragment: COLOUR_FRAGMENT,
 };
 
 export class Ground {

@@ -1,6 +1,6 @@
 // viz_node/web/page/trails.ts -- where MATs have been in the frames before: lines that fade.
 import { sharesOf, type Palette } from './colours.ts';
-import { shapeOf, VertexArray, type Program, type Shape } from './gl_canvas.ts';
+import { COLOUR_FRAGMENT, shapeOf, VertexArray, type Program, type Shape } from './gl_canvas.ts';
 
 const MOST_MATS = 300; // more are sampled
 const FRAMES = 60; // of one trail
@@ -20,12 +20,7 @@ const TRAIL_PROGRAM: Program = {
       colour = mix(trail_colour, background, 0.85 * age);
     }
   `,
-  fragment: /* glsl */ `
-    precision mediump float;
-    in vec3 colour;
-    out vec4 pixel;
-    void main() { pixel = vec4(colour, 1.0); }
-  `,
+  fragment: COLOUR_FRAGMENT,
 };
 
 export class Trails {
