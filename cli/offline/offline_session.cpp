@@ -252,11 +252,13 @@ bool OfflineSession::play_tick(const std::function<void()>& after_step) {
     if (after_step) after_step();
   }
   simulation().read_signals(row_.data());
-  const bool is_frame = simulation().tick_count() % loaded_->ticks_per_frame == 0;
-  if (is_frame) watch_integration_error();
-  const bool watches = loaded_->watches_energy() && is_frame;
-  const sim::PassedBound bound =
-      loaded_->passed_bound(watches ? sim::signs_of(world(), loaded_->reach) : sim::BoundSigns{});
+  sim::BoundSigns signs;
+  if (simulation().tick_count() % loaded_->ticks_per_frame == 0) {
+    const engine::Energy energy = world().energy();
+    watch_integration_error(energy);
+    if (loaded_->watches_energy()) signs = sim::signs_of(world(), energy, loaded_->reach);
+  }
+  const sim::PassedBound bound = loaded_->passed_bound(signs);
   if (bound != sim::PassedBound::kNone) simulation().let_devices_go(bound);
   for (const auto& device : devices_) device->read_forces(world());
   return true;
@@ -303,10 +305,8 @@ msg::SceneFrame OfflineSession::frame() {
   return message;
 }
 
-void OfflineSession::watch_integration_error() {
-  if (!integration_error_text_.empty()) return;
-  const engine::Energy energy = world().energy();
-  if (!sim::is_error_large(energy)) return;
+void OfflineSession::watch_integration_error(const engine::Energy& energy) {
+  if (!integration_error_text_.empty() || !sim::is_error_large(energy)) return;
   integration_error_text_ =
       fmt::format("at {:.6g} s {}", time_s(), sim::integration_error_text(energy));
 }

@@ -99,7 +99,7 @@ class OfflineSession {
   void load_scene(const std::string& file);
   void make(scene::Scene&& scene);
   void warn(const config::Problems& problems);
-  void watch_integration_error();
+  void watch_integration_error(const engine::Energy& energy);
 
   std::unique_ptr<sim::LoadedScene> loaded_;
   std::vector<std::unique_ptr<SimulatedDevice>> devices_;

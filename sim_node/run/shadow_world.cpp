@@ -9,11 +9,6 @@ namespace cordis::sim {
 
 namespace {
 
-BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
-                    const plan::ReachLimit& reach) noexcept {
-  return {makes_energy(energy), plan::is_beyond(reach, world, energy)};
-}
-
 /// True if an error is above this share of the largest energy, and no rounding; also once they are no
 /// finite numbers any more.
 bool is_above(double share, double error, const engine::Energy& energy) noexcept {
@@ -40,6 +35,11 @@ bool makes_energy(const engine::Energy& energy) noexcept {
 WorldFigures figures_of(const engine::World& world, const plan::ReachLimit& reach) noexcept {
   const engine::Energy energy = world.energy();
   return {energy, world.step_count(), world.state_hash(), signs_of(world, energy, reach)};
+}
+
+BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
+                    const plan::ReachLimit& reach) noexcept {
+  return {makes_energy(energy), plan::is_beyond(reach, world, energy)};
 }
 
 BoundSigns signs_of(const engine::World& world, const plan::ReachLimit& reach) noexcept {

@@ -39,6 +39,9 @@ bool makes_energy(const engine::Energy& energy) noexcept;
 
 /// Real time: O(MATs + links + pairs), no allocation.
 BoundSigns signs_of(const engine::World& world, const plan::ReachLimit& reach) noexcept;
+/// @param energy  of the world now
+BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
+                    const plan::ReachLimit& reach) noexcept;
 
 /// A second world of a network, for a thread that reads the first one now and then. The loop
 /// that moves the first one copies its state, and only when the other thread has asked.
