@@ -39,7 +39,7 @@ struct LinkState {
 ///
 /// with s what the contact has slid since it began, as far as the spring has followed, and w the sliding
 /// velocity. A contact that slides sticks again when it turns back and the force is within that of one that sticks.
-/// Without a push there is no friction, and nothing is remembered. [Cundall and Strack 1979]
+/// A contact that does not push has no friction, and its spring starts again at 0. [Cundall and Strack 1979]
 struct Friction {
   double static_coefficient = 0.0;   ///< >= kinetic_coefficient
   double kinetic_coefficient = 0.0;  ///< >= 0

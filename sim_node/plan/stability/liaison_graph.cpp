@@ -198,8 +198,8 @@ double largest_of_others(const ContactBound& crowd, const std::vector<double>& v
 
 namespace {
 
-/// The stiffness across a link where the scene begins [N/m]. The largest slope of several states leaves it
-/// out where they pull, for exits end them before the ends meet; at the start it is there.
+/// The stiffness across a link at the start of the scene [N/m]: its tension over its length. The largest slope
+/// of a link with several states has none, because exits end a state that pulls before the ends meet.
 double stiffness_across_at_start(const NetworkDescription& network, const engine::StateLink& link) {
   const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
   if (network.dimension == 1 || state_machine.is_stateless()) return 0.0;
