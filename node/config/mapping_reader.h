@@ -66,6 +66,8 @@ class MappingReader {
   bool ok() const noexcept { return ok_; }
 
   const std::string& what() const noexcept { return what_; }
+  /// A key as messages call it: 'at_m' in matter 'a'.
+  std::string name_of(const std::string& key) const;
   const Problems& problems() const noexcept { return problems_; }
   const Place& place() const noexcept { return value_.place(); }
 
@@ -74,7 +76,6 @@ class MappingReader {
   Value take_required(const std::string& key);
   Value take_kind(const std::string& key, Value value, Value::Kind kind, const char* wanted);
   void report(const Place& place, std::string message, std::string hint = {});
-  std::string name_of(const std::string& key) const;
   double number_of(const Value& value, const std::string& key, double fallback, Range range);
   long integer_of(const Value& value, const std::string& key, long fallback, long lowest,
                   long highest);

@@ -148,7 +148,7 @@ matter:
             "unknown key 'plane' in matter 'a'",
             "known keys: kind, driven, fixed, count, mass_kg, ball, center_m, radius_m, liaison, "
             "stiffness_n_per_m, viscosity_n_s_per_m, rest_m, rest, tension_n, "
-            "drawn_radius_m"},
+            "velocity_m_per_s, spin_rad_per_s, displacement_m, drawn_radius_m"},
         BadScene{kHead3,
                  R"(matter:
   a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0, 0], radius_m: 1, stiffness_n_per_m: 1, plane: ^zx}
@@ -162,7 +162,7 @@ matter:
                  "known keys: kind, driven, fixed, count, mass_kg, ball, at_m, liaison, "
                  "stiffness_n_per_m, "
                  "viscosity_n_s_per_m, rest_m, rest, tension_n, layout_at_m, layout_spacing_m, "
-                 "drawn_radius_m"},
+                 "velocity_m_per_s, displacement_m, drawn_radius_m"},
         BadScene{kHead2,
                  R"(matter:
   a: {kind: grid, rows: ^1, columns: 2, mass_kg: 1, corner_m: [0, 0], spacing_m: 1, stiffness_n_per_m: 1}

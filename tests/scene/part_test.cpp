@@ -320,7 +320,8 @@ matter:
   a: {part: p, ^rotate_deg: 3}
 )",
                  "unknown key 'rotate_deg' in matter 'a'",
-                 "known keys: part, translate_m, layout_translate_m, parameters, repeat, driven"},
+                 "known keys: part, translate_m, layout_translate_m, parameters, repeat, driven, "
+                 "velocity_m_per_s"},
         BadScene{kHead3,
                  R"(parts:
   p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}

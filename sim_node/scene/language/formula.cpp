@@ -23,20 +23,6 @@ using engine::Operation;
 constexpr std::size_t kMaxParameters = 1'000;  // of a liaison
 constexpr std::size_t kMaxOpen = 64;           // parameters that wait for each other
 
-/// True if a value is read as a number rather than as a formula: it is one, or the message about a
-/// wrong number fits it best (.nan, 3 N, a sequence).
-bool is_plain_number(const Value& value) {
-  if (value.kind() != Value::Kind::kScalar) return true;
-  if (value.quoted()) return false;
-  Problems of_number;
-  config::read_number(value, "", 0.0, {}, of_number);
-  if (!of_number.has_errors()) return true;
-  const config::Problem& problem = of_number.all().front();
-  if (problem.message.find("must be a number") == std::string::npos) return true;
-  Problems of_formula;
-  return !problem.hint.empty() && !parse_expression(value, "", of_formula);
-}
-
 /// Depth of the stack after and during a program that is well-formed.
 std::size_t deepest_stack(const engine::Program& program) {
   std::size_t depth = 0;
@@ -296,6 +282,18 @@ std::vector<std::string> ParameterValues::unused() const {
     if (std::find(used_.begin(), used_.end(), name) == used_.end()) unused.push_back(name);
   }
   return unused;
+}
+
+bool is_plain_number(const Value& value) {
+  if (value.kind() != Value::Kind::kScalar) return true;
+  if (value.quoted()) return false;
+  Problems of_number;
+  config::read_number(value, "", 0.0, {}, of_number);
+  if (!of_number.has_errors()) return true;
+  const config::Problem& problem = of_number.all().front();
+  if (problem.message.find("must be a number") == std::string::npos) return true;
+  Problems of_formula;
+  return !problem.hint.empty() && !parse_expression(value, "", of_formula);
 }
 
 double read_formula(const Value& value, const std::string& what, double fallback, Range range,

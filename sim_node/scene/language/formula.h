@@ -40,6 +40,10 @@ class ParameterValues {
   mutable std::vector<std::string> used_;
 };
 
+/// True if a value is read as a number rather than as a formula: it is one, or the message about a
+/// wrong number fits it best (.nan, 3 N, a sequence).
+bool is_plain_number(const config::Value& value);
+
 /// A number of a liaison: written plainly, or a formula of parameters. It must be finite and within
 /// the range; a problem and the fallback otherwise.
 double read_formula(const config::Value& value, const std::string& what, double fallback,

@@ -8,9 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "node/config/nearest_word.h"
-#include "sim_node/scene/language/formula.h"
-#include "sim_node/scene/language/quantity.h"
+#include "sim_node/scene/language/named_formula.h"
 #include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {
@@ -25,7 +23,7 @@ using engine::TimeFunction;
 using engine::Vec3;
 
 constexpr double kSamePlace = 1e-9;  // [m]
-constexpr double kPi = 3.14159265358979323846;
+constexpr std::array<FormulaName, 1> kNamesOfTime{{{"time_s", engine::Quantity::kAge}}};
 
 struct DriveKey {
   const char* key;
@@ -34,71 +32,6 @@ struct DriveKey {
 constexpr std::array<DriveKey, 3> kDriveKeys{{{"position_m", DriveSpec::Kind::kPosition},
                                               {"displacement_m", DriveSpec::Kind::kDisplacement},
                                               {"force_n", DriveSpec::Kind::kForce}}};
-
-/// Puts the names of a formula to what they stand for: time_s is the age of the scene. @return whether
-/// all are known
-bool put_names(Expression& formula, const std::string& what, const ParameterValues& parameters,
-               Problems& problems) {
-  bool known = true;
-  for (ExpressionWord& word : formula.words) {
-    if (word.kind == ExpressionWord::Kind::kOperation) {
-      if (!engine::is_edge(word.operation)) continue;
-      problems.error(formula.place_of(word), what + " cannot ask for 'rising' or 'falling'");
-      known = false;
-    } else if (word.kind == ExpressionWord::Kind::kName) {
-      if (word.name == "time_s") {
-        word.name = "age_s";
-      } else if (parameters.find(word.name)) {
-        continue;
-      } else if (word.name == "pi") {
-        word.kind = ExpressionWord::Kind::kNumber;
-        word.number = kPi;
-      } else {
-        std::vector<std::string> words = parameters.names();
-        words.insert(words.end(), {"time_s", "pi"});
-        const std::string hint = config::did_you_mean(word.name, words);
-        problems.error(formula.place_of(word), what + " cannot ask for '" + word.name + "'",
-                       hint.empty() ? "it may ask for time_s, pi and its parameters" : hint);
-        known = false;
-      }
-    }
-  }
-  return known;
-}
-
-engine::Program read_time_formula(const Value& text, const std::string& what,
-                                  const ParameterValues& parameters, Problems& problems) {
-  std::optional<Expression> formula = parse_expression(text, what, problems);
-  if (!formula) return {};
-  if (formula->is_truth) {
-    problems.error(text.place(), what + " must be a number, got a comparison",
-                   "write if(..., 1, 0)");
-    return {};
-  }
-  if (!put_names(*formula, what, parameters, problems)) return {};
-  std::uint32_t slots = 0;
-  std::optional<CompiledExpression> compiled = compile(*formula, what, parameters, slots, problems);
-  return compiled ? std::move(compiled->program) : engine::Program{};
-}
-
-std::string axes_text(int space) {
-  return space == 1 ? "one formula" : std::to_string(space) + " formulas, one for each axis";
-}
-
-void read_formulas(const Value& value, const std::string& what, int space,
-                   const ParameterValues& parameters, TimeFunction& function, Problems& problems) {
-  const bool is_list = value.kind() == Value::Kind::kSequence;
-  const std::vector<Value> formulas = is_list ? value.items() : std::vector<Value>{value};
-  if (formulas.size() != static_cast<std::size_t>(space)) {
-    problems.error(value.place(),
-                   what + " must be " + axes_text(space) + ", or a table, got " +
-                       (is_list ? std::to_string(formulas.size()) : value.described()));
-    return;
-  }
-  for (std::size_t axis = 0; axis < formulas.size(); ++axis) {
-    function.formula[axis] = read_time_formula(formulas[axis], what, parameters, problems);
-  }
-}
 
 void read_table(const Value& value, const std::string& what, int space, TimeFunction& function,
                 Problems& problems) {
@@ -131,7 +64,7 @@ std::string point_text(const Vec3& point, int space) {
 /// The value at 0 s must be one to begin with.
 void check_start_value(MappingReader& reader, const char* key, int space, DriveSpec& spec) {
   spec.start = value_at(spec.function, 0.0);
-  const std::string what = "'" + std::string(key) + "' in " + reader.what();
+  const std::string what = reader.name_of(key);
   if (!spec.start.allFinite()) {
     reader.error_at(key, what + " is no finite number at 0 s");
   } else if (spec.kind != DriveSpec::Kind::kForce && spec.start.cwiseAbs().maxCoeff() > kFarthest) {
@@ -154,12 +87,6 @@ void drive_position(const DriveSpec& spec, MappingReader& reader, GeneratedMatte
   }
   for (std::uint32_t i = 0; i < matter.mats.size(); ++i) {
     engine::Mat& mat = matter.mats[i];
-    if (!mat.velocity.isZero(0.0)) {
-      reader.error_at("velocity_m_per_s",
-                      "a driven position has the velocity of its function: 'velocity_m_per_s' in " +
-                          reader.what() + " contradicts it");
-      return;
-    }
     if (!is_displacement && (mat.position - spec.start).norm() > kSamePlace) {
       reader.error_at("at_m", "'at_m' in " + reader.what() +
                                   " must be where 'position_m' is at 0 s, or be left out");
@@ -187,14 +114,8 @@ std::optional<DriveSpec> read_driven(MappingReader& reader, int space, Problems&
   if (!section.exists()) return std::nullopt;
   const std::size_t errors_before = problems.error_count();
   MappingReader driven(section, "'driven' of " + reader.what(), problems);
-  const ParameterValues parameters(driven.optional_mapping("parameters"), {}, nullptr,
-                                   driven.what(), problems);
-  for (const char* taken : {"time_s", "pi"}) {
-    if (!parameters.find(taken)) continue;
-    driven.error_at("parameters",
-                    "'" + std::string(taken) + "' has its meaning in formulas of time",
-                    "give the parameter another name");
-  }
+  const ParameterValues parameters =
+      read_formula_parameters(driven, kNamesOfTime, "formulas of time", problems);
   DriveSpec spec;
   const char* written = nullptr;
   for (const DriveKey& known : kDriveKeys) {
@@ -207,11 +128,12 @@ std::optional<DriveSpec> read_driven(MappingReader& reader, int space, Problems&
     }
     written = known.key;
     spec.kind = known.kind;
-    const std::string what = "'" + std::string(known.key) + "' in " + driven.what();
+    const std::string what = driven.name_of(known.key);
     if (value.kind() == Value::Kind::kMapping) {
       read_table(value, what, space, spec.function, problems);
     } else {
-      read_formulas(value, what, space, parameters, spec.function, problems);
+      spec.function.formula = read_axis_formulas(value, what, space, kNamesOfTime, parameters,
+                                                 ", or a table", problems);
     }
   }
   driven.finish();

@@ -10,12 +10,7 @@ GeneratedMatter read_mass(Source& source) {
   GeneratedMatter matter;
   const std::vector<Vec3> points = read_places(source);
   const PointSpec spec = read_point_spec(source);
-  const Vec3 velocity =
-      optional_point(source.reader, "velocity_m_per_s", Vec3::Zero(), source.space);
-  for (const Vec3& point : points) {
-    add_mass(matter, spec, point);
-    matter.mats.back().velocity = velocity;
-  }
+  for (const Vec3& point : points) add_mass(matter, spec, point);
   matter.layout = row_layout(source, points.size());
   return matter;
 }

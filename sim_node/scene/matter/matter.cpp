@@ -16,6 +16,7 @@
 #include "sim_node/scene/matter/ring.h"
 #include "sim_node/scene/matter/skin.h"
 #include "sim_node/scene/matter/source.h"
+#include "sim_node/scene/matter/start.h"
 #include "sim_node/scene/matter/string.h"
 #include "sim_node/scene/matter/surfaces.h"
 
@@ -62,6 +63,13 @@ bool is_surface(const MatterKind& kind) {
   return kind.read == read_plane_surface || kind.read == read_box || kind.read == read_cylinder;
 }
 
+/// True if the keys of a start are to be read: what is fixed refuses them without offering them.
+bool takes_start(const config::MappingReader& reader, const MatterKind& kind) {
+  if (is_surface(kind)) return false;
+  if (kind.read != read_fixed) return true;
+  return std::ranges::any_of(kStartKeys, [&reader](const char* key) { return reader.has(key); });
+}
+
 /// True if the kind fits into the space; if not, a problem.
 bool check_space(config::MappingReader& reader, const MatterKind& kind, int space) {
   if (kind.lowest_space <= space && space <= kind.highest_space) return true;
@@ -70,18 +78,6 @@ bool check_space(config::MappingReader& reader, const MatterKind& kind, int spac
   reader.error_at("kind", std::string("a ") + kind.name + " needs a scene of space " + spaces +
                               ", this one has " + std::to_string(space));
   return false;
-}
-
-/// `fixed: true`
-void fix_all(config::MappingReader& reader, GeneratedMatter& matter) {
-  for (engine::Mat& mat : matter.mats) {
-    if (!mat.velocity.isZero(0.0)) {
-      reader.error_at("velocity_m_per_s", "what is fixed has no velocity: 'velocity_m_per_s' in " +
-                                              reader.what() + " contradicts 'fixed'");
-      return;
-    }
-    fix(mat);
-  }
 }
 
 }  // namespace
@@ -118,16 +114,21 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   Source source{reader, liaisons, space, may_be_massless, problems};
   std::optional<DriveSpec> spec;
   if (!is_surface(kind) || reader.has("driven")) spec = read_driven(reader, space, problems);
-  const engine::Vec3 start = spec ? spec->start : engine::Vec3(engine::Vec3::Zero());
+  const engine::Vec3 led_from = spec ? spec->start : engine::Vec3(engine::Vec3::Zero());
   if (reader.has("driven") && reader.optional_value("driven").find("position_m").exists()) {
-    source.driven_start = &start;
+    source.driven_start = &led_from;
   }
   const bool is_fixed = kind.may_be_fixed && reader.optional_truth("fixed", false);
   const bool pushes =
       reader.has("driven") && reader.optional_value("driven").find("force_n").exists();
   source.needs_no_mass = is_fixed || (reader.has("driven") && !pushes);
   GeneratedMatter matter = kind.read(source);
-  if (is_fixed) fix_all(reader, matter);
+  if (is_fixed) std::ranges::for_each(matter.mats, fix);
+  const bool is_led = spec && spec->kind != DriveSpec::Kind::kForce;
+  if (takes_start(reader, kind)) {
+    const StartSpec written = read_start(reader, space, kind.read == read_points, problems);
+    if (reader.ok()) start(written, is_led, space, reader, matter);
+  }
   if (spec && reader.ok()) drive(*spec, reader, matter);
   if (matter.surfaces.empty()) {
     read_drawing(reader, matter);

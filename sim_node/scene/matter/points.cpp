@@ -1,8 +1,6 @@
 // sim_node/scene/matter/points.cpp
 #include "sim_node/scene/matter/points.h"
 
-#include <algorithm>
-
 namespace cordis::scene {
 
 using engine::MatKind;
@@ -37,13 +35,6 @@ std::vector<bool> read_fixed_ones(config::MappingReader& reader, std::size_t cou
     fixed[static_cast<std::size_t>(index)] = true;
   }
   return fixed;
-}
-
-/// The points of a key, or these when it is not written.
-std::vector<Vec3> points_or(Source& source, const char* key, int space,
-                            std::vector<Vec3> otherwise) {
-  const bool written = source.reader.optional_value(key).exists();
-  return written ? required_points(source.reader, key, space, source.problems) : otherwise;
 }
 
 /// Where the MATs of a 1-D scene are shown unless they say it.
@@ -85,23 +76,19 @@ GeneratedMatter read_points(Source& source) {
                                  : reader.required_numbers("mass_kg");
   if (mass.empty()) mass = {1.0};  // after a problem
   std::vector<double> radius = reader.optional_numbers("radius_m", {0.0});
-  std::vector<Vec3> velocity = points_or(source, "velocity_m_per_s", source.space, {Vec3::Zero()});
   spread(source, "mass_kg", count, mass);
   spread(source, "radius_m", count, radius);
-  spread(source, "velocity_m_per_s", count, velocity);
   const std::vector<bool> fixed = read_fixed_ones(reader, count);
-  if (is_fixed && std::ranges::any_of(velocity, [](const Vec3& v) { return !v.isZero(0.0); })) {
-    reader.error_at("velocity_m_per_s", "what is fixed has no velocity: 'velocity_m_per_s' in " +
-                                            reader.what() + " contradicts 'fixed'");
-  }
   for (std::size_t i = 0; i < count; ++i) {
-    matter.mats.push_back({MatKind::kMass, mass[i], points[i], velocity[i]});
+    matter.mats.push_back({MatKind::kMass, mass[i], points[i], Vec3::Zero()});
     if (fixed[i]) matter.mats.back() = {MatKind::kFixed, 0.0, points[i], Vec3::Zero()};
   }
   matter.radius_m = radius;
   check_points(source, matter);
   if (source.space > 1) return matter;
-  std::vector<Vec3> layout = points_or(source, "layout_at_m", 2, in_a_row(count));
+  const bool has_layout = reader.optional_value("layout_at_m").exists();
+  std::vector<Vec3> layout =
+      has_layout ? required_points(reader, "layout_at_m", 2, source.problems) : in_a_row(count);
   spread(source, "layout_at_m", count, layout);
   for (const Vec3& point : layout) matter.layout.push_back({point.x(), point.y()});
   return matter;

@@ -2,8 +2,10 @@
 #include "sim_node/scene/sections/part_use.h"
 
 #include <algorithm>
+#include <span>
 
 #include "sim_node/scene/matter/matter.h"
+#include "sim_node/scene/matter/start.h"
 #include "sim_node/scene/sections/driven_part.h"
 #include "sim_node/scene/sections/links.h"
 #include "sim_node/scene/sections/matter.h"
@@ -23,6 +25,8 @@ struct PartUse {
   std::uint32_t copies = 0;  ///< 0: it is not repeated
   std::optional<DriveSpec> drive;
   config::Place drive_place;
+  StartMotion motion;  ///< of all of a copy, along the axes of what the part is used in
+  config::Place motion_place;
 };
 
 /// True if the part is none of those that are being added; if it is, a problem.
@@ -47,6 +51,9 @@ std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
   const Value repeat = reader.optional_mapping("repeat");
   use.drive = read_driven(reader, assembly.scene.space(), assembly.problems);
   if (reader.has("driven")) use.drive_place = reader.optional_value("driven").place();
+  use.motion = read_motion(reader, assembly.scene.space());
+  use.motion_place =
+      reader.place_of(reader.has("velocity_m_per_s") ? "velocity_m_per_s" : "spin_rad_per_s");
   reader.finish();
   if (repeat.exists()) {
     config::MappingReader repeat_reader(repeat, "'repeat' of " + reader.what(), assembly.problems);
@@ -84,10 +91,23 @@ bool count_use(Assembly& assembly, const config::Place& place) {
   return true;
 }
 
+/// Adds the motion of a use to what its masses from `first` on have of their own. @return whether there
+/// is a mass; if not, a problem
+bool start_copy(Assembly& assembly, const PartUse& use, std::uint32_t first) {
+  if (use.motion.is_rest()) return true;
+  const Eigen::Matrix3d& turn = assembly.placement.turn;
+  const StartMotion motion{turn * use.motion.velocity, turn * use.motion.spin};
+  if (add_motion(motion, std::span(assembly.scene.network.mats).subspan(first))) return true;
+  assembly.problems.error(use.motion_place,
+                          "part '" + use.part->name + "' has no mass that starts in motion");
+  return false;
+}
+
 /// Adds the matter and links of a part. @return whether all of it was sound.
 bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
               const Placement& placement) {
   const std::size_t errors_before = assembly.problems.error_count();
+  const std::uint32_t first = assembly.mat_count();
   bool sound = true;
   const Placement outer = assembly.placement;
   assembly.placement = outer * placement;
@@ -99,6 +119,7 @@ bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
   }
   assembly.open_parts.pop_back();
   assembly.placement = outer;
+  sound = sound && start_copy(assembly, use, first);
   return sound && assembly.problems.error_count() == errors_before;
 }
 
