@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "node/config/key_log.h"
 #include "node/config/nearest_word.h"
 
 namespace cordis::config {
@@ -57,6 +58,33 @@ double placeholder(const Range& range) {
   return fits(1.0) ? 1.0 : r.highest;
 }
 
+const char* word_of(bool truth) {
+  return truth ? "true" : "false";
+}
+
+Range integers(long lowest, long highest) {
+  return Range::between(static_cast<double>(lowest), static_cast<double>(highest));
+}
+
+/// Records a request; `describe` completes it, and is called only when somebody keeps a log.
+template <class Describe>
+void log_request(const Value& mapping, const std::string& key, KeyKind kind, bool required,
+                 const Describe& describe) {
+  KeyLog* const log = KeyLog::current();
+  if (log == nullptr) return;
+  KeyRequest request;
+  request.key = key;
+  request.kind = kind;
+  request.required = required;
+  request.mapping = mapping.place();
+  describe(request);
+  log->add(std::move(request));
+}
+
+void log_request(const Value& mapping, const std::string& key, KeyKind kind, bool required) {
+  log_request(mapping, key, kind, required, [](KeyRequest& /*request*/) {});
+}
+
 }  // namespace
 
 MappingReader::MappingReader(Value value, std::string what, Problems& problems)
@@ -84,27 +112,40 @@ std::vector<std::string> MappingReader::present_keys() const {
 }
 
 double MappingReader::required_number(const std::string& key, Range range) {
+  log_request(value_, key, KeyKind::kNumber, true, [&](KeyRequest& r) { r.range = range; });
   const Value value = take_required(key);
   return value.exists() ? number_of(value, key, placeholder(range), range) : placeholder(range);
 }
 
 double MappingReader::optional_number(const std::string& key, double fallback, Range range) {
+  log_request(value_, key, KeyKind::kNumber, false, [&](KeyRequest& r) {
+    r.range = range;
+    r.fallback = number_text(fallback);
+  });
   const Value value = take(key);
   return value.exists() ? number_of(value, key, fallback, range) : fallback;
 }
 
 long MappingReader::required_integer(const std::string& key, long lowest, long highest) {
+  log_request(value_, key, KeyKind::kInteger, true,
+              [&](KeyRequest& r) { r.range = integers(lowest, highest); });
   const Value value = take_required(key);
   return value.exists() ? integer_of(value, key, lowest, lowest, highest) : lowest;
 }
 
 long MappingReader::optional_integer(const std::string& key, long fallback, long lowest,
                                      long highest) {
+  log_request(value_, key, KeyKind::kInteger, false, [&](KeyRequest& r) {
+    r.range = integers(lowest, highest);
+    r.fallback = std::to_string(fallback);
+  });
   const Value value = take(key);
   return value.exists() ? integer_of(value, key, fallback, lowest, highest) : fallback;
 }
 
 bool MappingReader::optional_truth(const std::string& key, bool fallback) {
+  log_request(value_, key, KeyKind::kTruth, false,
+              [&](KeyRequest& r) { r.fallback = word_of(fallback); });
   const Value value = take(key);
   if (!value.exists()) return fallback;
   const std::string& word = value.text();
@@ -115,6 +156,7 @@ bool MappingReader::optional_truth(const std::string& key, bool fallback) {
 }
 
 std::string MappingReader::required_text(const std::string& key) {
+  log_request(value_, key, KeyKind::kText, true);
   const Value value = take_required(key);
   if (!value.exists()) return {};
   if (value.kind() == Value::Kind::kScalar && value.text().empty())
@@ -123,23 +165,30 @@ std::string MappingReader::required_text(const std::string& key) {
 }
 
 std::string MappingReader::optional_text(const std::string& key, std::string fallback) {
+  log_request(value_, key, KeyKind::kText, false, [&](KeyRequest& r) { r.fallback = fallback; });
   const Value value = take(key);
   return value.exists() ? text_of(value, key, std::move(fallback)) : fallback;
 }
 
 std::string MappingReader::required_choice(const std::string& key,
                                            const std::vector<std::string>& choices) {
+  log_request(value_, key, KeyKind::kChoice, true, [&](KeyRequest& r) { r.choices = choices; });
   const Value value = take_required(key);
   return value.exists() ? choice_of(value, key, choices.front(), choices) : choices.front();
 }
 
 std::string MappingReader::optional_choice(const std::string& key, std::string fallback,
                                            const std::vector<std::string>& choices) {
+  log_request(value_, key, KeyKind::kChoice, false, [&](KeyRequest& r) {
+    r.choices = choices;
+    r.fallback = fallback;
+  });
   const Value value = take(key);
   return value.exists() ? choice_of(value, key, std::move(fallback), choices) : fallback;
 }
 
 std::vector<double> MappingReader::required_numbers(const std::string& key, std::size_t length) {
+  log_request(value_, key, KeyKind::kNumbers, true, [&](KeyRequest& r) { r.length = length; });
   const Value value = take_required(key);
   const std::vector<double> numbers =
       value.exists() ? numbers_of(value, key, length) : std::vector<double>{};
@@ -149,6 +198,7 @@ std::vector<double> MappingReader::required_numbers(const std::string& key, std:
 std::vector<double> MappingReader::optional_numbers(const std::string& key,
                                                     std::vector<double> fallback,
                                                     std::size_t length) {
+  log_request(value_, key, KeyKind::kNumbers, false, [&](KeyRequest& r) { r.length = length; });
   const Value value = take(key);
   const std::vector<double> numbers =
       value.exists() ? numbers_of(value, key, length) : std::vector<double>{};
@@ -157,6 +207,8 @@ std::vector<double> MappingReader::optional_numbers(const std::string& key,
 
 std::vector<long> MappingReader::required_integers(const std::string& key, long lowest,
                                                    long highest) {
+  log_request(value_, key, KeyKind::kIntegers, true,
+              [&](KeyRequest& r) { r.range = integers(lowest, highest); });
   const Value value = take_required(key);
   if (!value.exists()) return {lowest};
   if (value.kind() != Value::Kind::kSequence)
@@ -169,26 +221,32 @@ std::vector<long> MappingReader::required_integers(const std::string& key, long 
 }
 
 Value MappingReader::required_mapping(const std::string& key) {
+  log_request(value_, key, KeyKind::kMapping, true);
   return take_kind(key, take_required(key), Value::Kind::kMapping, "a mapping of keys");
 }
 
 Value MappingReader::optional_mapping(const std::string& key) {
+  log_request(value_, key, KeyKind::kMapping, false);
   return take_kind(key, take(key), Value::Kind::kMapping, "a mapping of keys");
 }
 
 Value MappingReader::required_sequence(const std::string& key) {
+  log_request(value_, key, KeyKind::kSequence, true);
   return take_kind(key, take_required(key), Value::Kind::kSequence, "a sequence");
 }
 
 Value MappingReader::optional_sequence(const std::string& key) {
+  log_request(value_, key, KeyKind::kSequence, false);
   return take_kind(key, take(key), Value::Kind::kSequence, "a sequence");
 }
 
 Value MappingReader::optional_value(const std::string& key) {
+  log_request(value_, key, KeyKind::kAny, false);
   return take(key);
 }
 
 Value MappingReader::required_value(const std::string& key) {
+  log_request(value_, key, KeyKind::kAny, true);
   return take_required(key);
 }
 

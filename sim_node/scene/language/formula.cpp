@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "node/config/key_log.h"
 #include "node/config/nearest_word.h"
 #include "sim_node/engine/expressions/elementary_functions.h"
 #include "sim_node/scene/language/quantity.h"
@@ -308,6 +309,8 @@ double read_formula(const Value& value, const std::string& what, double fallback
 double optional_formula(config::MappingReader& reader, const std::string& key, double fallback,
                         Range range, const ParameterValues& parameters, Problems& problems) {
   const Value value = reader.optional_value(key);
+  if (config::KeyLog* const log = config::KeyLog::current())
+    log->add({key, config::KeyKind::kFormula, false, range, {}, 0, {}, reader.place()});
   if (!value.exists()) return fallback;
   return read_formula(value, "'" + key + "' in " + reader.what(), fallback, range, parameters,
                       problems);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "node/config/key_log.h"
 #include "node/config/nearest_word.h"
 #include "sim_node/scene/language/name.h"
 #include "sim_node/scene/liaisons/include.h"
@@ -140,6 +141,8 @@ void Liaisons::read(const std::vector<LiaisonSection>& sections, int space,
 
 Value Liaisons::completed(const Value& definition, config::Problems& problems) const {
   const Value like = definition.find("like");
+  if (config::KeyLog* const log = config::KeyLog::current())
+    log->add({"like", config::KeyKind::kText, false, {}, {}, 0, {}, definition.place()});
   if (!like.exists()) return definition;
   const Liaison* const base = find(like, problems);
   return base == nullptr ? Value{} : laid_on(base->definition, definition, true);

@@ -1,0 +1,158 @@
+// tests/schema/key_facts.cpp
+#include "tests/schema/key_facts.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace cordis::test {
+
+using config::KeyKind;
+using config::KeyRequest;
+using config::Value;
+
+namespace {
+
+using PlaceKey = std::tuple<std::string, int, int>;
+
+PlaceKey key_of(const config::Place& place) {
+  return {place.file, place.line, place.column};
+}
+
+bool is_map_of_names(const KeyPath& path) {
+  return path == KeyPath{"liaisons"} || path == KeyPath{"parts"};
+}
+
+}  // namespace
+
+KeyPath below(KeyPath path, const std::string& name) {
+  path.push_back(name);
+  return path;
+}
+
+void KeyFacts::add(const KeyRequest& request) {
+  const bool first = kinds.empty() || kinds == std::set{KeyKind::kAny};
+  kinds.insert(request.kind);
+  if (request.kind == KeyKind::kAny) return;
+  if (first || request.range.lowest < lowest) {
+    lowest = request.range.lowest;
+    lowest_excluded = request.range.lowest_excluded;
+  } else if (request.range.lowest == lowest) {
+    lowest_excluded = lowest_excluded && request.range.lowest_excluded;
+  }
+  highest = first ? request.range.highest : std::max(highest, request.range.highest);
+  min_length = first ? request.length : std::min(min_length, request.length);
+  max_length = first ? request.length : std::max(max_length, request.length);
+  for (const std::string& choice : request.choices) {
+    if (std::ranges::find(choices, choice) == choices.end()) choices.push_back(choice);
+  }
+  fallbacks.insert(request.fallback);
+}
+
+struct FileFacts::Reading {
+  std::map<PlaceKey, std::vector<KeyRequest>> requests;  // by the place of their mapping
+};
+
+namespace {
+
+/// A mapping that is read in several places as it is in one.
+struct SameMapping {
+  KeyPath found;
+  KeyPath described;
+};
+
+const std::vector<SameMapping>& same_mappings() {
+  static const std::vector<SameMapping> kSame{
+      {{"parts", "*", "matter"}, {"matter"}},
+      {{"parts", "*", "links"}, {"links"}},
+      {{"matter", "*", "driven", "displacement_m"}, {"matter", "*", "driven", "position_m"}},
+      {{"matter", "*", "driven", "force_n"}, {"matter", "*", "driven", "position_m"}},
+      {{"matter", "*", "core", "ball"}, {"matter", "*", "ball"}},
+      {{"matter", "*", "repeat", "rotate"}, {"matter", "*", "rotate"}},
+      {{"liaisons", "*", "parallel", "[]"}, {"liaisons", "*"}},
+      {{"liaisons", "*", "states", "*", "elasticity"}, {"liaisons", "*", "elasticity"}},
+      {{"liaisons", "*", "states", "*", "dissipation"}, {"liaisons", "*", "dissipation"}},
+      {{"pointer", "key"}, {"mock", "key"}},
+      {{"pointer", "hand"}, {"mock", "hand"}},
+      {{"pointer", "sensor"}, {"mock", "sensor"}},
+  };
+  return kSame;
+}
+
+}  // namespace
+
+KeyPath canonical(const KeyPath& path) {
+  for (const auto& [found, described] : same_mappings()) {
+    if (path.size() < found.size() || !std::equal(found.begin(), found.end(), path.begin()))
+      continue;
+    KeyPath same = described;
+    same.insert(same.end(), path.begin() + static_cast<std::ptrdiff_t>(found.size()), path.end());
+    return canonical(same);
+  }
+  return path;
+}
+
+std::string variant_of(const Value& mapping) {
+  if (mapping.find("part").exists()) return "part";
+  const Value node = mapping.find("node");
+  return node.exists() ? node.text() : mapping.find("kind").text();
+}
+
+void FileFacts::add(const Value& root, const config::KeyLog& log) {
+  Reading reading;
+  for (const KeyRequest& request : log.requests()) {
+    if (request.mapping.file == root.place().file)
+      reading.requests[key_of(request.mapping)].push_back(request);
+  }
+  walk(root, {}, reading);
+  add_parameter_names(root);
+}
+
+void FileFacts::add_parameter_names(const Value& root) {
+  for (const Value& item : root.items()) add_parameter_names(item);
+  for (const Value::Entry& entry : root.entries()) {
+    if (entry.key == "parameters") {
+      for (const Value::Entry& parameter : entry.value.entries())
+        parameter_names_.insert(parameter.key);
+    }
+    add_parameter_names(entry.value);
+  }
+}
+
+void FileFacts::walk(const Value& value, const KeyPath& path, const Reading& reading) {
+  if (value.kind() == Value::Kind::kSequence) {
+    for (const Value& item : value.items()) {
+      if (item.kind() == Value::Kind::kScalar) words_.insert(below(path, "[]"));
+      walk(item, below(path, "[]"), reading);
+    }
+    return;
+  }
+  if (value.kind() != Value::Kind::kMapping) return;
+  const auto asked = reading.requests.find(key_of(value.place()));
+  const bool is_read = asked != reading.requests.end() && !is_map_of_names(path);
+  if (is_read) add_mapping(value, canonical(path), asked->second);
+  for (const Value::Entry& entry : value.entries()) {
+    if (is_map_of_names(path) && entry.key == "include") continue;
+    walk(entry.value, below(path, is_read ? entry.key : "*"), reading);
+  }
+}
+
+void FileFacts::add_mapping(const Value& value, const KeyPath& path,
+                            const std::vector<KeyRequest>& requests) {
+  std::map<std::string, std::vector<KeyRequest>> by_key;
+  for (const KeyRequest& request : requests) by_key[request.key].push_back(request);
+  const bool has_variants =
+      by_key.contains("kind") || by_key.contains("node") || by_key.contains("part");
+  VariantFacts& variant = paths_[path][has_variants ? variant_of(value) : ""];
+  ++variant.mapping_count;
+  for (const auto& [key, of_key] : by_key) {
+    KeyFacts& facts = variant.keys[key];
+    ++facts.mapping_count;
+    facts.required = facts.required && of_key.front().required;
+    for (const KeyRequest& request : of_key) facts.add(request);
+    const bool any_alone = std::ranges::all_of(
+        of_key, [](const KeyRequest& request) { return request.kind == KeyKind::kAny; });
+    facts.of_any_kind = facts.of_any_kind || (any_alone && value.find(key).exists());
+  }
+}
+
+}  // namespace cordis::test
