@@ -153,6 +153,14 @@ const std::vector<std::vector<std::vector<std::string>>> kFloors = {
      {"device_node/"}},
     {{"record_node/mcap/", "record_node/idl/"}, {"record_node/"}},
     {{"viz_node/"}, {"viz_node/web/"}, {"viz_node/main."}},
+    {{"cli/"},  // the files beside the folders: what several verbs share
+     {"cli/table/"},
+     {"cli/ctl/", "cli/export/", "cli/offline/", "cli/run/"},
+     {"cli/scene_source/", "cli/check/", "cli/cut/", "cli/doctor/", "cli/echo/", "cli/get/",
+      "cli/hz/", "cli/info/", "cli/lab/", "cli/list/", "cli/merge/", "cli/play/", "cli/record/",
+      "cli/recover/", "cli/resim/", "cli/simulate/", "cli/test/"},
+     {"cli/chronogram/", "cli/film/", "cli/plot/"},
+     {"cli/verbs.", "cli/main."}},
 };
 
 /// The floor of a file; -1 when it belongs to none.

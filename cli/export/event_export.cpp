@@ -1,7 +1,7 @@
 // cli/export/event_export.cpp
 #include "cli/export/event_export.h"
 
-#include "cli/event_table.h"
+#include "cli/export/event_table.h"
 #include "cli/export/time_window.h"
 #include "idl/topics.h"
 #include "node/config/count_text.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/table_options.h"
+#include "cli/table/table_options.h"
 #include "record_node/mcap/reader.h"
 
 namespace cordis::cli {

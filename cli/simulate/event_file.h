@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "cli/event_table.h"
+#include "cli/export/event_table.h"
 #include "sim_node/engine/links/link_event.h"
 #include "sim_node/scene/scene.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/table_options.h"
+#include "cli/table/table_options.h"
 
 namespace cordis::cli {
 

@@ -1,5 +1,5 @@
-// cli/event_table.cpp
-#include "cli/event_table.h"
+// cli/export/event_table.cpp
+#include "cli/export/event_table.h"
 
 #include "cli/table/csv_file.h"
 

@@ -1,4 +1,4 @@
-// cli/table_options.h -- the files that `cordis simulate` and `cordis export` write.
+// cli/table/table_options.h -- the files that `cordis simulate` and `cordis export` write.
 #pragma once
 
 #include <memory>

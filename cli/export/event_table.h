@@ -1,4 +1,4 @@
-// cli/event_table.h -- changes of state as a table, wherever they come from.
+// cli/export/event_table.h -- changes of state as a table, wherever they come from.
 #pragma once
 
 #include <cstdint>

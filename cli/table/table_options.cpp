@@ -1,5 +1,5 @@
-// cli/table_options.cpp
-#include "cli/table_options.h"
+// cli/table/table_options.cpp
+#include "cli/table/table_options.h"
 
 #include <cstddef>
 #include <utility>
