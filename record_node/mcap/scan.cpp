@@ -101,6 +101,7 @@ class Scanner {
   bool knows_channel(std::uint16_t id);
   std::string read_chunk(const ChunkView& chunk, Statistics& statistics);
   void end_chunk();
+  bool covers_chunk(const Record& record) const;
   bool is_plausible(std::uint64_t offset) const;
   bool begins_data(std::uint64_t offset) const;
   bool ends_data(std::uint64_t offset) const;
@@ -340,6 +341,7 @@ Scanner::Next Scanner::visit(const Record& record) {
     case Opcode::kStatistics:
       return visit_end(record);
     default:
+      if (covers_chunk(record)) return Next::kDamaged;
       if (record.opcode == Opcode::kDamaged) return Next::kGoOn;
       // Records of others are skipped, but not a chunk whose opcode is wrong.
       return record.opcode > Opcode::kDamaged && !is_exact_chunk(record.content) &&
@@ -347,6 +349,14 @@ Scanner::Next Scanner::visit(const Record& record) {
                  ? Next::kGoOn
                  : Next::kDamaged;
   }
+}
+
+/// True if a chunk of the summary begins inside the record: then its length is wrong.
+bool Scanner::covers_chunk(const Record& record) const {
+  return std::ranges::any_of(stored_.chunks, [&](const ChunkIndex& chunk) {
+    return chunk.offset > position_ && chunk.offset < position_ + record.size() &&
+           begins_data(chunk.offset);
+  });
 }
 
 bool Scanner::is_plausible(std::uint64_t offset) const {

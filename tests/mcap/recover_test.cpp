@@ -2,6 +2,8 @@
 #include "record_node/mcap/recover.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <random>
 #include <set>
 
@@ -192,6 +194,32 @@ TEST(Recover, MakesATakeWholeWhoseIndexIsWrittenTwice) {
   const TakeCheck check = check_take(path);
   EXPECT_TRUE(check.faults.empty()) << check.faults.front().text;
   EXPECT_TRUE(recover(path).was_whole);
+}
+
+/// A chunk gets the code of a record of others, and a length that covers the chunks after it, up to the
+/// beginning of another one.
+TEST(Recover, KeepsChunksThatARecordOfOthersSeemsToCover) {
+  const TakeFolder folder;
+  const auto path = folder / "covered.mcap";
+  for (const unsigned opcode : {0x80U, 0x81U, 0xffU}) {
+    const Original original(folder, 2);
+    std::vector<char> bytes = original.bytes;
+    const std::uint64_t begin = original.chunks[3].offset;
+    const std::uint64_t length = original.chunks[9].offset - begin - kRecordHead;
+    bytes[begin] = static_cast<char>(opcode);
+    std::memcpy(bytes.data() + begin + 1, &length, sizeof length);
+    write_file(path, bytes);
+
+    const Recovery recovery = recover(path);
+
+    EXPECT_FALSE(recovery.was_whole);
+    std::uint64_t expected = 0;
+    for (std::size_t i = 0; i < original.chunks.size(); ++i)
+      expected += i == 3 ? 0 : original.messages_of_chunk[i];
+    EXPECT_EQ(recovery.statistics.message_count, expected) << "opcode " << opcode;
+    expect_part_of(messages_of(Reader(path)), original.take.messages);
+    EXPECT_TRUE(check_take(path).faults.empty());
+  }
 }
 
 TEST(Recover, GivesATakeItsNameAndLeavesAWholeOneAlone) {
